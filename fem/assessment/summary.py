@@ -22,20 +22,9 @@ from fem.assessment.motion_words import covered_in_words, missing_peak, motion_i
 from fem.assessment.ranges import bolt_forces, crushes, in_words, largest_ratio, largest_slip
 from fem.assessment.rule_or_run import governing
 from fem.assessment.sureness import sureness_in_words
+from fem.results import run_result
 from fem.results.figures import BRIEF, FIGURES, SUMMARY, Place, summary_order
 from fem.results.outcome import ROCKING, SLIDING, Outcome
-from fem.results.run_result import (
-    ActionResult,
-    Band,
-    Energy,
-    MotionResult,
-    Numerics,
-    RigidCheckResult,
-    RunAndBlock,
-    RunResult,
-    StaticResult,
-    Verdict,
-)
 
 TEXT_WIDTH = 80
 INVISIBLE = 1e-9  #: in the units of people: smaller numbers are rounding
@@ -51,7 +40,7 @@ MARGIN_NOTE = (
 )
 
 
-def plain_summary(result: RunResult, *, folder: Path) -> str:
+def plain_summary(result: run_result.RunResult, *, folder: Path) -> str:
     """The summary as text, in lines of at most 80 characters; a path stands on a line of its own, unbroken.
 
     Args:
@@ -61,7 +50,7 @@ def plain_summary(result: RunResult, *, folder: Path) -> str:
     return "\n".join([*_lines(_parts(result, folder)), *_files(folder)]) + "\n"
 
 
-def brief_summary(result: RunResult, *, folder: Path) -> str:
+def brief_summary(result: run_result.RunResult, *, folder: Path) -> str:
     """What the terminal shows after a run: verdict, ranges, the static rule of its own motion, where the rest is."""
     lines = _lines(_brief_parts(result, folder))
     count = len(result.warnings or ())
@@ -76,11 +65,11 @@ def _lines(parts: Iterator[RenderableType]) -> list[str]:
     return [line.rstrip() for line in capture.get().splitlines()]
 
 
-def _brief_parts(result: RunResult, folder: Path) -> Iterator[RenderableType]:
+def _brief_parts(result: run_result.RunResult, folder: Path) -> Iterator[RenderableType]:
     # Text, never markup: titles, folders and warnings may hold anything.
     yield Text(result.title or result.case or folder.name)
     yield Text(f"{outcome_sentence(result)}\n")
-    verdict, motion = result.verdict or Verdict(), result.motion or MotionResult()
+    verdict, motion = result.verdict or run_result.Verdict(), result.motion or run_result.MotionResult()
     rows = [("floor motion", motion_in_words(motion)), *_figure_rows(result, BRIEF)]
     rows.append(("outcomes of the band", _band(verdict.band)))
     yield from _table_of_pairs("The run", [row for row in rows if row[1]])
@@ -88,8 +77,8 @@ def _brief_parts(result: RunResult, folder: Path) -> Iterator[RenderableType]:
         yield _static_table(replace(result.static, code=None, code_q1=None), verdict)
 
 
-def _parts(result: RunResult, folder: Path) -> Iterator[RenderableType]:
-    verdict = result.verdict or Verdict()
+def _parts(result: run_result.RunResult, folder: Path) -> Iterator[RenderableType]:
+    verdict = result.verdict or run_result.Verdict()
     yield Text(result.title or result.case or folder.name)
     yield Text(f"{outcome_sentence(result)}\n")
     yield from _table_of_pairs("The run", result_rows(result))
@@ -110,7 +99,7 @@ def _parts(result: RunResult, folder: Path) -> Iterator[RenderableType]:
     yield from _table_of_pairs("Numerics", numerics_rows(result))
 
 
-def outcome_sentence(result: RunResult) -> str:
+def outcome_sentence(result: run_result.RunResult) -> str:
     """The first line of the verdict: what happened, and how sure that is."""
     if result.status == "failed":
         return f"No verdict: {result.error or 'the solution failed'}. Results up to there are kept."
@@ -120,8 +109,8 @@ def outcome_sentence(result: RunResult) -> str:
     return " ".join(part for part in (f"Result: {found}.", sureness_in_words(result)) if part)
 
 
-def _found(result: RunResult) -> str:
-    verdict, motion = result.verdict or Verdict(), result.motion or MotionResult()
+def _found(result: run_result.RunResult) -> str:
+    verdict, motion = result.verdict or run_result.Verdict(), result.motion or run_result.MotionResult()
     if verdict.outcome is None:
         return "no result yet"
     if verdict.outcome == Outcome.OVERTURNED:
@@ -134,7 +123,7 @@ def _found(result: RunResult) -> str:
     return f"{found}; {joints}" if joints else found
 
 
-def _static_table(static: StaticResult, verdict: Verdict) -> Table:
+def _static_table(static: run_result.StaticResult, verdict: run_result.Verdict) -> Table:
     """Sliding and overturning under each action, one below the other."""
     columns = ("action", "check", "demand / limit", "use", "rule says", "run found")
     table = titled_table(f"Static rules, {own_motion_name(static)}", *columns)
@@ -157,14 +146,14 @@ def _static_table(static: StaticResult, verdict: Verdict) -> Table:
     return table
 
 
-def share_of_weight(action: ActionResult, static: StaticResult) -> float:
+def share_of_weight(action: run_result.ActionResult, static: run_result.StaticResult) -> float:
     """The least weight under a vertical motion over the weight; 1 of an action without one."""
     if action.least_weight_N is None or not static.weight_N:
         return 1.0
     return action.least_weight_N / static.weight_N
 
 
-def own_motion_name(static: StaticResult) -> str:
+def own_motion_name(static: run_result.StaticResult) -> str:
     """The run's own peak floor acceleration, from the uplift acceleration and its utilisation; and the slope."""
     use = static.own_motion.utilisation_overturning if static.own_motion is not None else None
     uplift = static.uplift_acceleration_m_s2
@@ -184,7 +173,7 @@ def rule_says(check: str, utilisation: float | None) -> str:
     return "overturns" if utilisation > 1.0 else "stands"
 
 
-def run_slid(verdict: Verdict) -> str:
+def run_slid(verdict: run_result.Verdict) -> str:
     """Whether the run slid, and how far; of a loose stack, on the floor and between the boxes."""
     slip = largest_slip(verdict)
     if not slip:
@@ -196,7 +185,7 @@ def run_slid(verdict: Verdict) -> str:
     return f"slip {slip}" + (f", {between} between boxes" if between else "")
 
 
-def run_tilted(verdict: Verdict) -> str:
+def run_tilted(verdict: run_result.Verdict) -> str:
     """Whether the run overturned, and how far it turned."""
     if verdict.outcome == Outcome.OVERTURNED:
         return "overturned"
@@ -212,10 +201,10 @@ def _table_of_pairs(title: str, rows: Sequence[tuple[str, str]]) -> Iterator[Tab
         yield table
 
 
-def result_rows(result: RunResult) -> list[tuple[str, str]]:
+def result_rows(result: run_result.RunResult) -> list[tuple[str, str]]:
     """Name and value of each result in reading order; results that were not reached are left out."""
-    verdict, motion = result.verdict or Verdict(), result.motion or MotionResult()
-    energy = result.energy or Energy()
+    verdict, motion = result.verdict or run_result.Verdict(), result.motion or run_result.MotionResult()
+    energy = result.energy or run_result.Energy()
     #: rows behind that of a figure
     behind = {
         "slip_travel_m": [
@@ -226,21 +215,21 @@ def result_rows(result: RunResult) -> list[tuple[str, str]]:
     }
     rows = [
         ("floor motion", motion_in_words(motion)),
-        ("vertical motion", motion_in_words(motion.vertical or MotionResult())),
-        ("simulated time", _simulated(verdict, result.numerics or Numerics())),
+        ("vertical motion", motion_in_words(motion.vertical or run_result.MotionResult())),
+        ("simulated time", _simulated(verdict, result.numerics or run_result.Numerics())),
         ("states seen", ", ".join(verdict.modes)),
     ]
     rows += _figure_rows(result, SUMMARY, behind)
     rows += [
         ("bolts, largest tension and shear", bolt_forces(result)),
         ("outcomes of the band", _band(verdict.band)),
-        *_rigid_rows(result.rigid_check, (result.static or StaticResult()).slenderness_angle_rad),
+        *_rigid_rows(result.rigid_check, (result.static or run_result.StaticResult()).slenderness_angle_rad),
     ]
     return [(name, value) for name, value in rows if value]
 
 
 def _figure_rows(
-    result: RunResult, place: Place, behind: Mapping[str, list[tuple[str, str]]] | None = None
+    result: run_result.RunResult, place: Place, behind: Mapping[str, list[tuple[str, str]]] | None = None
 ) -> list[tuple[str, str]]:
     """Name and value of the figures of a place, each with the rows behind it."""
     lowest = " of box 1" if result.verdict and result.verdict.boxes else ""
@@ -252,18 +241,18 @@ def _figure_rows(
     return rows
 
 
-def _simulated(verdict: Verdict, numerics: Numerics) -> str:
+def _simulated(verdict: run_result.Verdict, numerics: run_result.Numerics) -> str:
     if numerics.simulated_s is None:
         return ""
     at_rest = "" if verdict.at_rest_s is None else f", at rest from {verdict.at_rest_s:.4g} s on"
     return f"{numerics.simulated_s:.4g} s{at_rest}"
 
 
-def numerics_rows(result: RunResult) -> list[tuple[str, str]]:
+def numerics_rows(result: run_result.RunResult) -> list[tuple[str, str]]:
     """Name and value of the accuracy and the cost of the computation."""
-    numerics = result.numerics or Numerics()
+    numerics = result.numerics or run_result.Numerics()
     rows = [
-        ("energy balance error", _balance(result.energy or Energy())),
+        ("energy balance error", _balance(result.energy or run_result.Energy())),
         ("steps", _steps(numerics)),
         ("filters", _filters(numerics)),
         ("computing time", _times(result, numerics)),
@@ -271,7 +260,7 @@ def numerics_rows(result: RunResult) -> list[tuple[str, str]]:
     return [(name, value) for name, value in rows if value]
 
 
-def _crushing(energy: Energy, verdict: Verdict) -> str:
+def _crushing(energy: run_result.Energy, verdict: run_result.Verdict) -> str:
     """The work of crushing, and its share of all that was dissipated."""
     if not crushes(verdict) or energy.crushing_J is None:
         return ""
@@ -281,7 +270,7 @@ def _crushing(energy: Energy, verdict: Verdict) -> str:
     return f"{_number(energy.crushing_J, 1.0, '.3g')} J{share}"
 
 
-def _band(band: Band | None) -> str:
+def _band(band: run_result.Band | None) -> str:
     if band is None:
         return ""
     runs = len(band.members)
@@ -290,16 +279,16 @@ def _band(band: Band | None) -> str:
     return f"{', '.join(band.outcomes)} in {counts}"
 
 
-def _rigid_rows(check: RigidCheckResult | None, angle: float | None) -> list[tuple[str, str]]:
+def _rigid_rows(check: run_result.RigidCheckResult | None, angle: float | None) -> list[tuple[str, str]]:
     """The run beside the analytic rigid block."""
     if check is None:
         return []
     rows = []
     for pair, name, unit in (
-        (check.first_impact_s or RunAndBlock(), "first impact", " s"),
-        (check.velocity_ratio or RunAndBlock(), "velocity ratio", ""),
+        (check.first_impact_s or run_result.RunAndBlock(), "first impact", " s"),
+        (check.velocity_ratio or run_result.RunAndBlock(), "velocity ratio", ""),
     ):
-        if pair != RunAndBlock():
+        if pair != run_result.RunAndBlock():
             run, block = _number(pair.run, 1.0, ".4f"), _number(pair.block, 1.0, ".4f")
             rows.append((f"rigid check, {name}", f"{run}{unit} (block {block})"))
     if check.peaks and angle:
@@ -310,7 +299,7 @@ def _rigid_rows(check: RigidCheckResult | None, angle: float | None) -> list[tup
     return [*rows, ("rigid check", verdict + "; ".join(check.reasons))]
 
 
-def _balance(energy: Energy) -> str:
+def _balance(energy: run_result.Energy) -> str:
     error, reference, final = energy.closure_error, energy.reference_J, energy.numerical_J
     if error is None or reference is None:
         return ""
@@ -320,13 +309,13 @@ def _balance(energy: Energy) -> str:
     return f"{_number(error, 1.0, '.2g')} of the {reference:.4g} J that it takes to overturn{side}"
 
 
-def _steps(numerics: Numerics) -> str:
+def _steps(numerics: run_result.Numerics) -> str:
     if numerics.steps is None:
         return ""
     return f"{numerics.steps}, {numerics.rejected or 0} rejected, {numerics.unknowns} unknowns"
 
 
-def _times(result: RunResult, numerics: Numerics) -> str:
+def _times(result: run_result.RunResult, numerics: run_result.Numerics) -> str:
     if result.wall_s is None:
         return ""
     parts = []
@@ -348,7 +337,7 @@ def _files(folder: Path) -> list[str]:
     return [*paraview, f"History: {folder / 'history.csv'}", f"All results: {folder / 'run.json'}"]
 
 
-def _filters(numerics: Numerics) -> str:
+def _filters(numerics: run_result.Numerics) -> str:
     """How forces and accelerations of an impact, whose instantaneous values mean nothing, are averaged."""
     if numerics.contents_filter is None or numerics.contents_filter_Hz is None:
         return ""

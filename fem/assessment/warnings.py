@@ -13,17 +13,8 @@ from fem.assessment.sureness import SURE, sureness_in_words
 from fem.assessment.verdict import GAIN_LIMIT, LOSS_LIMIT, LOSS_SHARE_LIMIT
 from fem.case.case import Case
 from fem.case.rules import MOST_FREE_MOTION, ends_at_rest, longest_time
+from fem.results import run_result
 from fem.results.outcome import Outcome
-from fem.results.run_result import (
-    ActionResult,
-    Energy,
-    FloorNumbers,
-    MotionResult,
-    Numerics,
-    RunResult,
-    StaticResult,
-    Verdict,
-)
 
 # A tilt of one hundredth of the slenderness angle counts as rocking; the contact alone must stay well below.
 ROCKING_RATIO = 0.01
@@ -37,12 +28,12 @@ SMALL_STRAIN = 0.01
 FAST_RELAXATION = 0.1
 
 
-def warnings_for(result: RunResult, case: Case) -> list[str]:
+def warnings_for(result: run_result.RunResult, case: Case) -> list[str]:
     """All warnings that apply to a result, the most important first."""
     return [text for check in CHECKS if (text := check(result, case)) is not None]
 
 
-def verdict_is_unsure(result: RunResult, case: Case) -> str | None:
+def verdict_is_unsure(result: run_result.RunResult, case: Case) -> str | None:
     """The outcome changes within the uncertainty of the inputs."""
     verdict = _verdict(result)
     found = sureness_in_words(result)
@@ -53,9 +44,9 @@ def verdict_is_unsure(result: RunResult, case: Case) -> str | None:
     return f"{found[0].lower()}{found[1:]}{failures}"
 
 
-def energy_is_near_its_limits(result: RunResult, case: Case) -> str | None:
+def energy_is_near_its_limits(result: run_result.RunResult, case: Case) -> str | None:
     """The energy balance error is past half of what fails a run."""
-    energy = result.energy or Energy()
+    energy = result.energy or run_result.Energy()
     reference, final = energy.reference_J, energy.numerical_J
     if not reference or final is None:
         return None
@@ -72,7 +63,7 @@ def energy_is_near_its_limits(result: RunResult, case: Case) -> str | None:
     return None
 
 
-def contact_penetrates(result: RunResult, case: Case) -> str | None:
+def contact_penetrates(result: run_result.RunResult, case: Case) -> str | None:
     """The penetration of a corner alone tilts the container by a good part of what counts as rocking."""
     depth, angle = _numerics(result).max_penetration_m, _static(result).slenderness_angle_rad
     if depth is None or not angle:
@@ -96,7 +87,7 @@ def _stiffer(case: Case) -> str:
     )
 
 
-def regularised_friction_creeps(result: RunResult, case: Case) -> str | None:
+def regularised_friction_creeps(result: run_result.RunResult, case: Case) -> str | None:
     """v = v_reg artanh(s) under a steady load of share s of what friction carries: no true stick."""
     if case.contact.sticks:
         return None
@@ -111,7 +102,7 @@ def regularised_friction_creeps(result: RunResult, case: Case) -> str | None:
     )
 
 
-def housner_is_not_credible(result: RunResult, case: Case) -> str | None:
+def housner_is_not_credible(result: run_result.RunResult, case: Case) -> str | None:
     """Below 0.5 the plastic impact of Housner (1963) at the far corner is not what a squat block does."""
     static = _static(result)
     if static.housner_credible is not False or _verdict(result).impacts == 0:
@@ -122,7 +113,7 @@ def housner_is_not_credible(result: RunResult, case: Case) -> str | None:
     )
 
 
-def opening_is_not_uplift(result: RunResult, case: Case) -> str | None:
+def opening_is_not_uplift(result: run_result.RunResult, case: Case) -> str | None:
     """A base edge opens on its elastic bed at a third of the acceleration that lifts the body."""
     opening = _verdict(result).first_opening_s
     if opening is None or _verdict(result).first_uplift_s is not None:
@@ -133,7 +124,7 @@ def opening_is_not_uplift(result: RunResult, case: Case) -> str | None:
     )
 
 
-def it_still_moves(result: RunResult, case: Case) -> str | None:
+def it_still_moves(result: run_result.RunResult, case: Case) -> str | None:
     """The free motion after a pulse or a record was given up before the container came to rest."""
     if not ends_at_rest(case) or _verdict(result).at_rest_s is not None or result.status != "completed":
         return None
@@ -143,15 +134,15 @@ def it_still_moves(result: RunResult, case: Case) -> str | None:
     )
 
 
-def motion_is_doubtful(result: RunResult, case: Case) -> str | None:
+def motion_is_doubtful(result: run_result.RunResult, case: Case) -> str | None:
     """A recorded motion that drifts, or whose samples are too far apart; a floor that falls away."""
-    return "; ".join(doubts(result.motion or MotionResult(), case.gravity_m_s2)) or None
+    return "; ".join(doubts(result.motion or run_result.MotionResult(), case.gravity_m_s2)) or None
 
 
-def rest_proves_nothing(result: RunResult, case: Case) -> str | None:
+def rest_proves_nothing(result: run_result.RunResult, case: Case) -> str | None:
     """Where the static rule also says that it stands, a run at rest is no argument against the rule."""
     own = _own_motion(result)
-    if _verdict(result).outcome != Outcome.REST or own == ActionResult():
+    if _verdict(result).outcome != Outcome.REST or own == run_result.ActionResult():
         return None
     uses = (own.utilisation_sliding, own.utilisation_overturning)
     if any(use is None or use > 1.0 for use in uses):
@@ -162,7 +153,7 @@ def rest_proves_nothing(result: RunResult, case: Case) -> str | None:
     )
 
 
-def stress_is_beyond_yield(result: RunResult, case: Case) -> str | None:
+def stress_is_beyond_yield(result: run_result.RunResult, case: Case) -> str | None:
     """The model is elastic; a steel shell past its yield strength is not."""
     stress, limit = _verdict(result).max_von_mises_Pa, _verdict(result).yield_strength_Pa
     if limit is None or stress is None or stress <= limit:
@@ -175,9 +166,9 @@ def stress_is_beyond_yield(result: RunResult, case: Case) -> str | None:
     )
 
 
-def floor_is_crushed_deeply(result: RunResult, case: Case) -> str | None:
+def floor_is_crushed_deeply(result: run_result.RunResult, case: Case) -> str | None:
     """A strength that does not change with the indentation is that of a patch at the surface."""
-    depth, floor = _verdict(result).max_indentation_m, result.floor or FloorNumbers(kind="rigid")
+    depth, floor = _verdict(result).max_indentation_m, result.floor or run_result.FloorNumbers(kind="rigid")
     if depth is None or floor.corner_patch_m is None or depth <= min(floor.corner_patch_m):
         return None
     patch = " x ".join(f"{1e3 * side:g}" for side in floor.corner_patch_m)
@@ -187,7 +178,7 @@ def floor_is_crushed_deeply(result: RunResult, case: Case) -> str | None:
     )
 
 
-def strain_is_not_small(result: RunResult, case: Case) -> str | None:
+def strain_is_not_small(result: run_result.RunResult, case: Case) -> str | None:
     """The reduced model is linear elasticity in a turning frame: it leaves out what grows with the strain."""
     stress = _verdict(result).max_von_mises_Pa
     if case.solver.model != "reduced" or stress is None:
@@ -202,7 +193,7 @@ def strain_is_not_small(result: RunResult, case: Case) -> str | None:
     )
 
 
-def contact_relaxes_slowly(result: RunResult, case: Case) -> str | None:
+def contact_relaxes_slowly(result: run_result.RunResult, case: Case) -> str | None:
     """A dashpot that carries the weight for a good part of a swing is a floor that creeps."""
     frequency, rate = _numerics(result).contact_frequency_Hz, _static(result).frequency_parameter_1_s
     ratio = _numerics(result).contact_damping_ratio or case.contact.damping_ratio
@@ -219,7 +210,7 @@ def contact_relaxes_slowly(result: RunResult, case: Case) -> str | None:
     )
 
 
-def steps_were_rejected(result: RunResult, case: Case) -> str | None:
+def steps_were_rejected(result: run_result.RunResult, case: Case) -> str | None:
     """Many steps done twice mean that the contact was hard to solve."""
     steps, rejected = _numerics(result).steps, _numerics(result).rejected
     if not steps or rejected is None or rejected <= REJECTED_SHARE * (steps + rejected):
@@ -227,7 +218,7 @@ def steps_were_rejected(result: RunResult, case: Case) -> str | None:
     return f"{100.0 * rejected / (steps + rejected):.0f} % of the steps were rejected and repeated with a smaller step"
 
 
-CHECKS: tuple[Callable[[RunResult, Case], str | None], ...] = (
+CHECKS: tuple[Callable[[run_result.RunResult, Case], str | None], ...] = (
     verdict_is_unsure,
     motion_is_doubtful,
     it_still_moves,
@@ -246,17 +237,17 @@ CHECKS: tuple[Callable[[RunResult, Case], str | None], ...] = (
 
 
 # The blocks of a result that may not have got that far.
-def _verdict(result: RunResult) -> Verdict:
-    return result.verdict or Verdict()
+def _verdict(result: run_result.RunResult) -> run_result.Verdict:
+    return result.verdict or run_result.Verdict()
 
 
-def _static(result: RunResult) -> StaticResult:
-    return result.static or StaticResult()
+def _static(result: run_result.RunResult) -> run_result.StaticResult:
+    return result.static or run_result.StaticResult()
 
 
-def _numerics(result: RunResult) -> Numerics:
-    return result.numerics or Numerics()
+def _numerics(result: run_result.RunResult) -> run_result.Numerics:
+    return result.numerics or run_result.Numerics()
 
 
-def _own_motion(result: RunResult) -> ActionResult:
+def _own_motion(result: run_result.RunResult) -> run_result.ActionResult:
     return _static(result).ruling

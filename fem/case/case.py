@@ -15,16 +15,8 @@ import numpy as np
 import numpy.typing as npt
 from pydantic import ConfigDict, Field, PrivateAttr
 
+from fem.case import data_files
 from fem.case.boxes import Box, boxes_of, joint_friction
-from fem.case.data_files import (
-    FILE_KEYS,
-    DataFile,
-    as_named_from,
-    find_data_files,
-    outside_problems,
-    place_of,
-    without_channel,
-)
 from fem.case.files import CASES, DEFAULT_CASE, Origin, parse_case
 from fem.case.overrides import naming_overrides, parse_override, with_overrides
 from fem.case.resolved import resolved_tables
@@ -181,7 +173,7 @@ class Case(CaseHeading):
         return self.motion.nominal_peak
 
     @property
-    def files(self) -> dict[str, DataFile]:
+    def files(self) -> dict[str, data_files.DataFile]:
         """Mesh and motion files, as far as the case has them, by dotted key.
 
         Raises:
@@ -190,7 +182,7 @@ class Case(CaseHeading):
         trusted = self._origin.trusted
         if self.vertical.file is None and "motion.file" in trusted:
             trusted |= {"vertical.file"}
-        return find_data_files(self.folder, self._file_names(), trusted=trusted)
+        return data_files.find_data_files(self.folder, self._file_names(), trusted=trusted)
 
     @property
     def data_files(self) -> dict[str, Path]:
@@ -209,7 +201,9 @@ class Case(CaseHeading):
         for table, motion in (("motion", self.motion), ("vertical", self.vertical)):
             named[f"{table}.file"] = motion.file if motion.kind == "table" else None
         if self.vertical.kind == "table" and self.vertical.file is None:
-            named["vertical.file"] = without_channel(self.folder, self.motion.file)  # another component of it
+            named["vertical.file"] = data_files.without_channel(
+                self.folder, self.motion.file
+            )  # another component of it
         return named
 
     def given(self) -> dict[str, Any]:
@@ -316,10 +310,10 @@ def load_case(
     found = CASES.shipped(DEFAULT_CASE) if name_or_path is None else CASES.find(name_or_path)
     values = dict(parse_override(text) for text in overrides)
     if motion is not None:
-        recorded = {"motion.kind": "table", "motion.file": as_named_from(found.folder, motion)}
+        recorded = {"motion.kind": "table", "motion.file": data_files.as_named_from(found.folder, motion)}
         values = recorded | {key: value for key, value in values.items() if key not in recorded}
         overrides = (*(f"{key}={value}" for key, value in recorded.items()), *overrides)
-    trusted = frozenset(FILE_KEYS if allow_outside else values.keys() & set(FILE_KEYS))
+    trusted = frozenset(data_files.FILE_KEYS if allow_outside else values.keys() & set(data_files.FILE_KEYS))
     origin = replace(found, overrides=tuple(overrides), trusted=trusted, allow_outside=allow_outside)
     return _read(with_overrides(parse_case(origin), values), origin, values)
 
@@ -373,7 +367,7 @@ def case_hash(case: Case) -> str:
             with path.open("rb") as stream:
                 content = hashlib.file_digest(stream, "sha256").hexdigest()
         except OSError as error:
-            raise CaseError(place_of(key) + f"cannot be read: {path}: {error.strerror}") from error
+            raise CaseError(data_files.place_of(key) + f"cannot be read: {path}: {error.strerror}") from error
         digest.update(f"{key} {content}\n".encode())
     if case.recorded is not None:
         digest.update(written(case.recorded).encode())
@@ -393,7 +387,7 @@ def _plain(value: Any) -> Any:
 
 def _read(data: Mapping[str, Any], origin: Origin, overrides: Mapping[str, Any]) -> Case:
     values, problems = read_case_tables(data)
-    problems += outside_problems(values, trusted=origin.trusted)
+    problems += data_files.outside_problems(values, trusted=origin.trusted)
     if problems:
         lines = problem_lines(problems, f"{origin.place}: ")
         raise CaseError("\n".join(naming_overrides(lines, overrides)))

@@ -9,33 +9,22 @@ from typing import Annotated, Any
 from cyclopts import Parameter
 
 from fem.case.case import Case, CaseError, load_case
+from fem.cli import console
 from fem.cli.check import numerics_lines, preview_of
-from fem.cli.console import (
-    EXIT_CODES,
-    AllowOutside,
-    CaseName,
-    Folder,
-    Force,
-    Motion,
-    Overrides,
-    Quiet,
-    Resume,
-    flag,
-)
 from fem.results.disk import free_disk, in_units
 from fem.results.folder import read_result
 from fem.runtime.progress import ScreenReporter
 
 
 def run(
-    case: CaseName = None,
+    case: console.CaseName = None,
     /,
     *,
-    out: Folder = None,
-    overrides: Overrides = (),
-    motion: Motion = None,
-    allow_outside: AllowOutside = False,
-    check_rigid: Annotated[bool, flag("Compare with the analytic rigid block.")] = False,
+    out: console.Folder = None,
+    overrides: console.Overrides = (),
+    motion: console.Motion = None,
+    allow_outside: console.AllowOutside = False,
+    check_rigid: Annotated[bool, console.flag("Compare with the analytic rigid block.")] = False,
     band: Annotated[
         bool | None,
         Parameter(
@@ -43,13 +32,13 @@ def run(
             help="Repeat it over what is not known; default: all but a plain rest and the full model.",
         ),
     ] = None,
-    resume: Resume = False,
-    force: Force = False,
-    dry_run: Annotated[bool, flag("Print the plan and exit.")] = False,
-    as_json: Annotated[bool, flag("Print run.json.", "--json")] = False,
-    full: Annotated[bool, flag("Print the whole summary.")] = False,
-    quiet: Quiet = False,
-    verbose: Annotated[bool, flag("Print the plan before the run.", "--verbose", "-v")] = False,
+    resume: console.Resume = False,
+    force: console.Force = False,
+    dry_run: Annotated[bool, console.flag("Print the plan and exit.")] = False,
+    as_json: Annotated[bool, console.flag("Print run.json.", "--json")] = False,
+    full: Annotated[bool, console.flag("Print the whole summary.")] = False,
+    quiet: console.Quiet = False,
+    verbose: Annotated[bool, console.flag("Print the plan before the run.", "--verbose", "-v")] = False,
 ) -> int:
     """Compute a case: does the container rest, slide, rock, slide-rock or overturn?"""
     if quiet and verbose:
@@ -86,7 +75,7 @@ def run(
         )
     elif stopped:
         print("interrupted during the sensitivity runs; run the same command to continue", file=sys.stderr)
-    return EXIT_CODES["interrupted" if stopped else result.status]
+    return console.EXIT_CODES["interrupted" if stopped else result.status]
 
 
 def text_with_overrides(case: Case) -> str:

@@ -11,18 +11,10 @@ from typing import Annotated, Any
 
 from pydantic import Field, Strict
 
+from fem.batch import study_file
 from fem.batch.axes import MOTION_FILE, Axis, AxisError, check_varied, first_motion, read_axis
 from fem.batch.derived import FREE, Derived, read_derived
 from fem.batch.intervals import least_draws
-from fem.batch.study_file import (
-    base_case,
-    read_as,
-    read_axes,
-    read_study,
-    require_once,
-    require_verticals,
-    split_tables,
-)
 from fem.case.files import DEFAULT_CASE, ENSEMBLES, Origin
 from fem.case.tables import CaseTable
 from fem.case.validation import CaseError
@@ -67,27 +59,27 @@ def load_ensemble(name_or_path: str | Path) -> Ensemble:
     Raises:
         CaseError: with one line for each reason why it cannot be used.
     """
-    return read_study(ENSEMBLES.find(name_or_path), _read)
+    return study_file.read_study(ENSEMBLES.find(name_or_path), _read)
 
 
 def _read(data: Mapping[str, Any], origin: Origin) -> Ensemble:
-    given, tables = split_tables(data, TABLES)
-    heading = read_as("", EnsembleHeading, given)
-    axes = read_axes(tables.get("axes", {}), MOST_AXES, EXAMPLE, _axis)
+    given, tables = study_file.split_tables(data, TABLES)
+    heading = study_file.read_as("", EnsembleHeading, given)
+    axes = study_file.read_axes(tables.get("axes", {}), MOST_AXES, EXAMPLE, _axis)
     random = _random(tables.get("random", {}), axes)
     sets = [one.axis for one in random if isinstance(one, RandomChoice) and one.key == MOTION_FILE]
-    base = base_case(
+    base = study_file.base_case(
         heading.case, tables.get("set", {}), origin, first_motion(sets), [axis.key for axis in axes]
     )
     if base.solver.model == "full":
         raise CaseError(
             '[set] "solver.model" must be "rigid" or "reduced": an ensemble of the full model would take weeks'
         )
-    require_verticals(sets, [*(axis.key for axis in axes), *(one.key for one in random)], base)
+    study_file.require_verticals(sets, [*(axis.key for axis in axes), *(one.key for one in random)], base)
     drawn = [one.key for one in random if not one.relative]
     replicates = 1 if heading.sampling == "independent" else heading.replicates
     varied = [*(axis.key for axis in axes), *drawn, *tables.get("derived", {})]
-    require_once(tables.get("set", {}), varied, base)
+    study_file.require_once(tables.get("set", {}), varied, base)
     ensemble = Ensemble(
         name=origin.name,
         text=origin.text,

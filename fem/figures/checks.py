@@ -6,22 +6,7 @@ import textwrap
 import numpy as np
 from matplotlib.figure import Figure
 
-from fem.case.unknown_inputs import (
-    DASHPOT,
-    JOINTS_MU_KINETIC,
-    JOINTS_MU_STATIC,
-    JOINTS_WEAKENING,
-    MATERIAL,
-    MODULUS,
-    MU_KINETIC,
-    PENALTY,
-    RAMP,
-    START,
-    STRENGTH,
-    STRIBECK,
-    TOLERANCE,
-    WEAKENING,
-)
+from fem.case import unknown_inputs
 from fem.figures import style
 from fem.results.outcome import Outcome
 from fem.results.reader import OpenedRun
@@ -32,20 +17,20 @@ FALLEN_ROW = 1.18  #: rotation ratio at which overturned members are drawn
 LINE_LENGTH = 105  #: characters of a line of text in a figure
 #: inputs of a band in a word or two
 GROUPS = {
-    MU_KINETIC: "mu_k",
-    WEAKENING: "weakening",
-    STRIBECK: "velocity",
-    JOINTS_MU_STATIC: "joint mu_s",
-    JOINTS_MU_KINETIC: "joint mu_k",
-    JOINTS_WEAKENING: "joint fall",
-    START: "start",
-    RAMP: "ramp",
-    PENALTY: "stiffness",
-    STRENGTH: "strength",
-    MODULUS: "floor's E",
-    DASHPOT: "damping",
-    MATERIAL: "material",
-    TOLERANCE: "numerics",
+    unknown_inputs.MU_KINETIC: "mu_k",
+    unknown_inputs.WEAKENING: "weakening",
+    unknown_inputs.STRIBECK: "velocity",
+    unknown_inputs.JOINTS_MU_STATIC: "joint mu_s",
+    unknown_inputs.JOINTS_MU_KINETIC: "joint mu_k",
+    unknown_inputs.JOINTS_WEAKENING: "joint fall",
+    unknown_inputs.START: "start",
+    unknown_inputs.RAMP: "ramp",
+    unknown_inputs.PENALTY: "stiffness",
+    unknown_inputs.STRENGTH: "strength",
+    unknown_inputs.MODULUS: "floor's E",
+    unknown_inputs.DASHPOT: "damping",
+    unknown_inputs.MATERIAL: "material",
+    unknown_inputs.TOLERANCE: "numerics",
 }
 
 

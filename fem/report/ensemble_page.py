@@ -14,17 +14,9 @@ from fem.ensemble.result import EnsembleResult
 from fem.html import sections as html
 from fem.html.page import Signature
 from fem.html.units import ABSENT, number, short, typeset
+from fem.report import studies
 from fem.report.comparison import asked_rows, limits_section
 from fem.report.motion_part import motions_of_ensemble
-from fem.report.studies import (
-    again_from_files,
-    answer_section,
-    axes_table,
-    drawings,
-    repeat_section,
-    study_html,
-    unfinished,
-)
 from fem.results.kinds import ENSEMBLE
 from fem.results.outcome import COUNTED
 
@@ -42,8 +34,8 @@ def ensemble_report(folder: Path, *, signature: Signature | None = None) -> str:
     case, axes = load_case(str(folder / "base.toml")), info.point_axes
     answer, name = ensemble_answer(info), info.ensemble or folder.name
     given = html.Pairs(asked_rows(case), caption="Base case, where nothing changes it", look="asked")
-    varied = html.Group("", [axes_table(axes, info.derived), random_table(info)])
-    return study_html(
+    varied = html.Group("", [studies.axes_table(axes, info.derived), random_table(info)])
+    return studies.study_html(
         "an ensemble",
         info=info,
         title=info.title,
@@ -61,20 +53,20 @@ def ensemble_report(folder: Path, *, signature: Signature | None = None) -> str:
             html.section(
                 "Fragility curve" if len(axes) == 1 else "Boundary",
                 "drawn",
-                *drawings(folder, FIGURES, "ensemble"),
+                *studies.drawings(folder, FIGURES, "ensemble"),
             ),
             motions_of_ensemble(folder, info),
             html.section("The ensemble", "asked", html.columns(varied, given)),
             html.section("Points", "points", points_table(info)),
             limits_section(case),
-            repeat_section(
+            studies.repeat_section(
                 [
                     ("ensemble", f"{name}, {info.status}, model {info.model}"),
                     ("draws", f"{info.draws} at each point, {info.sampling}, seed {info.seed}"),
                     ("hash", info.asked),
                 ],
                 info,
-                again_from_files(folder, study="ensemble", name=name, case=case),
+                studies.again_from_files(folder, study="ensemble", name=name, case=case),
             ),
         ],
     )
@@ -87,10 +79,10 @@ def found_section(info: EnsembleResult, answer: EnsembleAnswer | None) -> html.P
     motions = (
         "the motions of the set, each equally often" if info.motions else "the floor motion of the base case"
     )
-    return answer_section(
+    return studies.answer_section(
         info,
         answer.sentence if answer else None,
-        f"{len(info.points)} points of {info.draws} draws{unfinished(info)}; share that overturned: {regions}.",
+        f"{len(info.points)} points of {info.draws} draws{studies.unfinished(info)}; share that overturned: {regions}.",
         *(typeset(f"{head}: {line}.") for head, line in fragility_lines(info)),
         *([f"Held fixed: {info.held}."] if info.held else []),
         note=f"A share of draws over the uncertain quantities listed below, under {motions}. It is not the probability "

@@ -11,16 +11,8 @@ from fem.case.case import load_case
 from fem.html import sections as html
 from fem.html.page import Signature
 from fem.html.units import ABSENT, millimetres, number, ratio, short
+from fem.report import studies
 from fem.report.comparison import asked_rows, limits_section
-from fem.report.studies import (
-    Again,
-    answer_section,
-    drawings,
-    repeat_section,
-    study_html,
-    text_of,
-    unfinished,
-)
 from fem.response.answer import found_at, response_answer
 from fem.response.records import PointRow
 from fem.response.result import ResponseResult
@@ -57,7 +49,7 @@ def response_report(folder: Path, *, signature: Signature | None = None) -> str:
     """
     info = read_study(folder, RESPONSE, ResponseResult)
     case, name = load_case(str(folder / "case.toml")), info.case or folder.name
-    return study_html(
+    return studies.study_html(
         "a response curve",
         info=info,
         title=info.title,
@@ -67,7 +59,7 @@ def response_report(folder: Path, *, signature: Signature | None = None) -> str:
         hash=info.asked,
         sections=[
             found_section(info),
-            html.section("Response", "drawn", *drawings(folder, FIGURES, "response curve")),
+            html.section("Response", "drawn", *studies.drawings(folder, FIGURES, "response curve")),
             html.section("Where the curve changes", "branches", *branch_tables(info)),
             html.section(
                 "The drive and the case",
@@ -79,18 +71,18 @@ def response_report(folder: Path, *, signature: Signature | None = None) -> str:
             ),
             html.section("Points", "points", points_table(info)),
             limits_section(case),
-            repeat_section(
+            studies.repeat_section(
                 [
                     ("response curve", f"{name}, {info.status}, model {case.solver.model}"),
                     ("hash", info.asked),
                 ],
                 info,
-                Again(
+                studies.Again(
                     words="Save the file below as case.toml:",
                     command=shlex.join(
                         ["python", "-m", "fem", "response", "case.toml", *_options(info.request)]
                     ),
-                    files=[("case.toml", text_of(folder / "case.toml"))],
+                    files=[("case.toml", studies.text_of(folder / "case.toml"))],
                 ),
             ),
         ],
@@ -102,10 +94,10 @@ def found_section(info: ResponseResult) -> html.PageSection:
     counts = Counter(point.words for point in info.points).most_common()
     counted = ", ".join(f"{count} {words}" for words, count in counts)
     judged = [point.stable for point in info.points if point.stable is not None]
-    return answer_section(
+    return studies.answer_section(
         info,
         response_answer(info),
-        f"{len(info.points)} of {2 * info.request['count']} points{unfinished(info)}: {counted}.",
+        f"{len(info.points)} of {2 * info.request['count']} points{studies.unfinished(info)}: {counted}.",
         html.joined(f"{sum(judged)} of {len(judged)} points are ", html.strong("stable"), STABLE),
         note=METHOD,
     )

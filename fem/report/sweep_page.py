@@ -25,18 +25,10 @@ from fem.figures.style import STATE_COLOURS, VERMILLION
 from fem.html import sections as html
 from fem.html.page import Signature
 from fem.html.units import ABSENT, millimetres, number, short, typeset
+from fem.report import studies
 from fem.report.animation import colour_scale, packed
 from fem.report.comparison import asked_rows, limits_section
 from fem.report.motion_part import motions_of_sweep
-from fem.report.studies import (
-    again_from_files,
-    answer_section,
-    axes_table,
-    drawings,
-    repeat_section,
-    study_html,
-    unfinished,
-)
 from fem.results.errors import FolderError
 from fem.results.figures import FIGURES, Place, keys_of
 from fem.runtime import units
@@ -75,10 +67,10 @@ def sweep_report(folder: Path, *, signature: Signature | None = None) -> str:
     """
     table = open_sweep(folder)
     info, case = table.info, load_case(str(folder / "base.toml"))
-    data, drawn = map_data(table, folder), drawings(folder, table.info.maps, "sweep")
+    data, drawn = map_data(table, folder), studies.drawings(folder, table.info.maps, "sweep")
     answer, name = sweep_answer(table, folder), info.sweep or folder.name
     given = html.Pairs(asked_rows(case), caption="Base case, where no axis changes it", look="asked")
-    return study_html(
+    return studies.study_html(
         "a sweep",
         info=info,
         title=info.title,
@@ -101,16 +93,18 @@ def sweep_report(folder: Path, *, signature: Signature | None = None) -> str:
             html.section(
                 "Counts", "counts", counts_table(table), *_failures(table), *_thresholds(folder, info)
             ),
-            html.section("The sweep", "asked", html.columns(axes_table(table.axes, info.derived), given)),
+            html.section(
+                "The sweep", "asked", html.columns(studies.axes_table(table.axes, info.derived), given)
+            ),
             limits_section(case),
-            repeat_section(
+            studies.repeat_section(
                 [
                     ("sweep", f"{name}, {info.status}, model {info.model}"),
                     ("sweep hash", info.sweep_hash),
                     ("base hash", info.base_hash),
                 ],
                 info,
-                again_from_files(folder, study="sweep", name=name, case=case),
+                studies.again_from_files(folder, study="sweep", name=name, case=case),
             ),
         ],
     )
@@ -120,10 +114,10 @@ def found_section(table: SweepTable, answer: str | None) -> html.PageSection:
     """The answer, how many cells have which outcome, and how sure they are."""
     info, computed = table.info, int((table["status"] != "").sum())
     counted = ", ".join(f"{count} {label}" for label, _, count, _ in counts(table))
-    return answer_section(
+    return studies.answer_section(
         info,
         answer,
-        f"{computed} of {info.cells} cells{unfinished(info)}: {counted}.",
+        f"{computed} of {info.cells} cells{studies.unfinished(info)}: {counted}.",
         *([f"Held fixed: {info.held}."] if info.held else []),
         *_sure_lines(table),
         note="What happened under these motions, in a study. Nothing is known between the cells: a region of "

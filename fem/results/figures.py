@@ -14,18 +14,7 @@ from enum import Flag, auto
 from typing import Annotated, Any, Generic, TypeVar, get_args, get_type_hints
 
 from fem.results.json_block import JsonBlock
-from fem.runtime.units import (
-    ACCELERATION,
-    COUNT,
-    DEGREES,
-    KILONEWTONS,
-    MEGAPASCALS,
-    RATIO,
-    SECONDS,
-    VELOCITY,
-    DisplayUnit,
-    Reach,
-)
+from fem.runtime import units
 from fem.runtime.units import MILLIMETRES as MM
 from fem.runtime.units import SHORT_MILLIMETRES as SHORT_MM
 
@@ -53,7 +42,7 @@ class Shown:
     """How people are shown a figure, and where."""
 
     words: str
-    unit: DisplayUnit
+    unit: units.DisplayUnit
     places: Place
     of: str = ""  #: what the stepper records of it: a field of the (lowest) "joint" or of the "track"
     _: KW_ONLY
@@ -67,7 +56,7 @@ class Shown:
     cutoff: str = ""  #: key of `Numerics`: that of the filter in place of a mean
     column: str = ""  #: of a box: with the numbers of all boxes
 
-    def text(self, value: float | None, reach: Reach | None = None, *, bare: bool = False) -> str:
+    def text(self, value: float | None, reach: units.Reach | None = None, *, bare: bool = False) -> str:
         """The figure with its range and unit; empty where there is none."""
         return self.unit.text(value, reach, signed=self.signed, bare=bare)
 
@@ -78,7 +67,7 @@ class BoxFigures(JsonBlock, Generic[ValueT]):
 
     #: largest |rotation|
     max_rotation_rad: Annotated[
-        ValueT, Shown("rotation", DEGREES, BAND, "joint.max_rotation", column="box_rotations_rad")
+        ValueT, Shown("rotation", units.DEGREES, BAND, "joint.max_rotation", column="box_rotations_rad")
     ]
     #: largest |slip|
     max_slip_m: Annotated[ValueT, Shown("slip", SHORT_MM, BAND, "joint.max_slip", column="box_slips_m")]
@@ -104,10 +93,10 @@ class Figures(JsonBlock, Generic[ValueT]):
 
     #: largest |rotation|
     max_rotation_rad: Annotated[
-        ValueT | None, Shown("largest rotation", DEGREES, COLUMN | SUMMARY | BRIEF)
+        ValueT | None, Shown("largest rotation", units.DEGREES, COLUMN | SUMMARY | BRIEF)
     ] = None
     #: largest |rotation| over the slenderness angle
-    rotation_ratio: Annotated[ValueT | None, Shown("rotation ratio", RATIO, TABLES | KEY | MAP)] = None
+    rotation_ratio: Annotated[ValueT | None, Shown("rotation ratio", units.RATIO, TABLES | KEY | MAP)] = None
     #: largest |slip|
     max_slip_m: Annotated[
         ValueT | None,
@@ -134,7 +123,7 @@ class Figures(JsonBlock, Generic[ValueT]):
     max_slip_velocity_m_s: Annotated[
         ValueT | None,
         Shown(
-            *("largest sliding velocity", VELOCITY, TABLES | READ, "joint.max_slip_velocity"),
+            *("largest sliding velocity", units.VELOCITY, TABLES | READ, "joint.max_slip_velocity"),
             head="velocity",
             lowest=True,
         ),
@@ -148,31 +137,36 @@ class Figures(JsonBlock, Generic[ValueT]):
         ValueT | None, Shown("indentation of the floor", MM, BAND | SUMMARY | BRIEF)
     ] = None
     impacts: Annotated[
-        int | None, Shown("impacts", COUNT, COLUMN | READ, "track.impacts", below="first_uplift_s")
+        int | None, Shown("impacts", units.COUNT, COLUMN | READ, "track.impacts", below="first_uplift_s")
     ] = None
     #: a base gap opens
     first_opening_s: Annotated[
-        ValueT | None, Shown("first opening", SECONDS, COLUMN, "track.first_opening")
+        ValueT | None, Shown("first opening", units.SECONDS, COLUMN, "track.first_opening")
     ] = None
     #: a side carries nothing
     first_uplift_s: Annotated[
-        ValueT | None, Shown("first uplift", SECONDS, COLUMN | READ, "track.first_uplift")
+        ValueT | None, Shown("first uplift", units.SECONDS, COLUMN | READ, "track.first_uplift")
     ] = None
-    first_impact_s: Annotated[ValueT | None, Shown("first impact", SECONDS, COLUMN, "track.first_impact")] = (
-        None
-    )
+    first_impact_s: Annotated[
+        ValueT | None, Shown("first impact", units.SECONDS, COLUMN, "track.first_impact")
+    ] = None
     overturned_at_s: Annotated[
-        ValueT | None, Shown("overturned at", SECONDS, COLUMN | MAP, "track.overturned_at")
+        ValueT | None, Shown("overturned at", units.SECONDS, COLUMN | MAP, "track.overturned_at")
     ] = None
     #: it rocked and stands again at the end
-    restored: Annotated[bool | None, Shown("restored", COUNT, COLUMN)] = None
+    restored: Annotated[bool | None, Shown("restored", units.COUNT, COLUMN)] = None
     restitution_first: Annotated[
-        ValueT | None, Shown("restitution, first impact", COUNT, COLUMN | SUMMARY)
+        ValueT | None, Shown("restitution, first impact", units.COUNT, COLUMN | SUMMARY)
     ] = None
     max_corner_force_N: Annotated[
         ValueT | None,
         Shown(
-            *("largest corner force", KILONEWTONS, COLUMN | BAND | READ | BRIEF, "track.max_corner_force"),
+            *(
+                "largest corner force",
+                units.KILONEWTONS,
+                COLUMN | BAND | READ | BRIEF,
+                "track.max_corner_force",
+            ),
             below="max_uplift_m",
             impact=True,
             window="corner_force_window_s",
@@ -186,7 +180,7 @@ class Figures(JsonBlock, Generic[ValueT]):
     max_acceleration_m_s2: Annotated[
         ValueT | None,
         Shown(
-            *("acceleration of the contents", ACCELERATION, COLUMN | BAND | READ),
+            *("acceleration of the contents", units.ACCELERATION, COLUMN | BAND | READ),
             impact=True,
             window="acceleration_window_s",
             cutoff="contents_filter_Hz",
@@ -194,12 +188,12 @@ class Figures(JsonBlock, Generic[ValueT]):
     ] = None
     #: None of a rigid container
     max_von_mises_Pa: Annotated[
-        ValueT | None, Shown("von Mises stress", MEGAPASCALS, COLUMN | BAND | READ, impact=True)
+        ValueT | None, Shown("von Mises stress", units.MEGAPASCALS, COLUMN | BAND | READ, impact=True)
     ] = None
     #: largest of all joints and sides; of short members of a band that change one input
-    bolt_tension_N: Annotated[ValueT | None, Shown("tension of the bolts", KILONEWTONS, BAND)] = None
+    bolt_tension_N: Annotated[ValueT | None, Shown("tension of the bolts", units.KILONEWTONS, BAND)] = None
     #: largest of all joints; likewise
-    bolt_shear_N: Annotated[ValueT | None, Shown("shear of the bolts", KILONEWTONS, BAND)] = None
+    bolt_shear_N: Annotated[ValueT | None, Shown("shear of the bolts", units.KILONEWTONS, BAND)] = None
 
 
 JOINT_SLIP = Shown(
@@ -223,7 +217,7 @@ class RunFigures(Figures[float], RunOutcome):  # of several bases the last comes
 
     boxes: tuple[BoxResult, ...] | None = None  #: of a loose stack, from the floor up
     #: the first box of a loose stack that fell, from 1 at the floor
-    fell_box: Annotated[int | None, Shown("first box that fell", COUNT, COLUMN | MAP)] = None
+    fell_box: Annotated[int | None, Shown("first box that fell", units.COUNT, COLUMN | MAP)] = None
 
     @property
     def turned(self) -> float:

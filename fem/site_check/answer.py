@@ -5,17 +5,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from fem.batch.intervals import binomial_interval
 from fem.results.outcome import Outcome
 from fem.runtime.units import RATIO, SHORT_MILLIMETRES
+from fem.site_check import result
 from fem.site_check.file import SiteRequest
-from fem.site_check.result import (
-    LIMITED,
-    ByRule,
-    ConfirmedRun,
-    FurtherMotions,
-    MotionSet,
-    ScanPoint,
-    SiteAnswer,
-    SiteRun,
-)
 from fem.site_check.rule import RunGroup, groups_of, rule_in_words
 from fem.site_check.runs import FURTHER, REFINED, SCAN, SET, RunKey
 
@@ -24,16 +15,16 @@ CONFIDENCE = 0.95
 
 def answer_of(
     request: SiteRequest,
-    motions: MotionSet,
-    found: Mapping[RunKey, SiteRun],
-    confirmed: Sequence[ConfirmedRun] = (),
-) -> SiteAnswer:
+    motions: result.MotionSet,
+    found: Mapping[RunKey, result.SiteRun],
+    confirmed: Sequence[result.ConfirmedRun] = (),
+) -> result.SiteAnswer:
     """The answer, from all runs."""
     own = [run for key, run in found.items() if key.stage == SET]
     rule = rule_in_words(motions.count)
     if not motions.valid:
         reasons = "; ".join(motions.reasons)
-        return SiteAnswer(
+        return result.SiteAnswer(
             rule=rule,
             sentence=f"Not valid: the set of motions fails its checks and is not used ({reasons}).",
             overturned=0,
@@ -42,9 +33,9 @@ def answer_of(
     groups, limits = groups_of(own), request.limits
     overturned, failed = sum(one.overturned for one in groups), sum(one.failed for one in groups)
     found_by_rule = _largest(groups)
-    within, short = (_within(found_by_rule[name], getattr(limits, name)) for name in LIMITED)
+    within, short = (_within(found_by_rule[name], getattr(limits, name)) for name in result.LIMITED)
     fulfilled = None if failed and not overturned else not overturned and within and short
-    return SiteAnswer(
+    return result.SiteAnswer(
         answer={None: None, True: "fulfilled", False: "not fulfilled"}[fulfilled],
         fulfilled=fulfilled,
         rule=rule,
@@ -62,14 +53,16 @@ def answer_of(
     )
 
 
-def no_answer_yet(motions: MotionSet, own: Sequence[SiteRun], missing: str) -> SiteAnswer:
+def no_answer_yet(
+    motions: result.MotionSet, own: Sequence[result.SiteRun], missing: str
+) -> result.SiteAnswer:
     """What stands in place of the answer of an interrupted verification.
 
     Args:
         own: the runs of the set that are there.
         missing: what is not, in words.
     """
-    return SiteAnswer(
+    return result.SiteAnswer(
         rule=rule_in_words(motions.count),
         sentence=f"No answer yet: {missing}.",
         overturned=sum(run.outcome == Outcome.OVERTURNED for run in own),
@@ -77,7 +70,7 @@ def no_answer_yet(motions: MotionSet, own: Sequence[SiteRun], missing: str) -> S
     )
 
 
-def governing_run(request: SiteRequest, runs: Sequence[SiteRun]) -> SiteRun | None:
+def governing_run(request: SiteRequest, runs: Sequence[result.SiteRun]) -> result.SiteRun | None:
     """The run that decides: one that overturned, else the largest of the group that uses most of a limit."""
     fell = [run for run in runs if run.outcome == Outcome.OVERTURNED]
     if fell:
@@ -90,21 +83,21 @@ def governing_run(request: SiteRequest, runs: Sequence[SiteRun]) -> SiteRun | No
         (
             ((group.by_rule[name] or 0.0) / getattr(request.limits, name), name, group)
             for group in known
-            for name in LIMITED
+            for name in result.LIMITED
         ),
         key=lambda one: one[0],
     )
-    return max(group.runs, key=lambda run: run[LIMITED[name]] or 0.0)
+    return max(group.runs, key=lambda run: run[result.LIMITED[name]] or 0.0)
 
 
-def _same_group(one: SiteRun, other: SiteRun) -> bool:
+def _same_group(one: result.SiteRun, other: result.SiteRun) -> bool:
     return len(groups_of((one, other))) == 1
 
 
-def _largest(groups: Iterable[RunGroup]) -> ByRule:
+def _largest(groups: Iterable[RunGroup]) -> result.ByRule:
     """The largest figures of all groups; None where one has none."""
-    figures = {name: [group.by_rule[name] for group in groups] for name in LIMITED}
-    return ByRule(
+    figures = {name: [group.by_rule[name] for group in groups] for name in result.LIMITED}
+    return result.ByRule(
         **{name: None if None in some else max(some, default=None) for name, some in figures.items()}
     )
 
@@ -113,7 +106,7 @@ def _within(value: float | None, limit: float) -> bool:
     return value is not None and value <= limit
 
 
-def _first_overturning(found: Mapping[RunKey, SiteRun]) -> float | None:
+def _first_overturning(found: Mapping[RunKey, result.SiteRun]) -> float | None:
     factors = [
         key.factor
         for key, run in found.items()
@@ -122,8 +115,8 @@ def _first_overturning(found: Mapping[RunKey, SiteRun]) -> float | None:
     return min(factors, default=None)
 
 
-def _scan(found: Mapping[RunKey, SiteRun]) -> tuple[ScanPoint, ...]:
-    by_factor: dict[float, list[SiteRun]] = {}
+def _scan(found: Mapping[RunKey, result.SiteRun]) -> tuple[result.ScanPoint, ...]:
+    by_factor: dict[float, list[result.SiteRun]] = {}
     for key, run in found.items():
         if key.stage in (SET, SCAN):
             by_factor.setdefault(key.factor, []).append(run)
@@ -131,7 +124,7 @@ def _scan(found: Mapping[RunKey, SiteRun]) -> tuple[ScanPoint, ...]:
     for factor in sorted(by_factor):
         groups = groups_of(by_factor[factor])
         points.append(
-            ScanPoint(
+            result.ScanPoint(
                 factor=factor,
                 runs=len(by_factor[factor]),
                 overturned=sum(group.overturned for group in groups),
@@ -141,9 +134,9 @@ def _scan(found: Mapping[RunKey, SiteRun]) -> tuple[ScanPoint, ...]:
     return tuple(points) if len(points) > 1 else ()
 
 
-def _further(request: SiteRequest, found: Mapping[RunKey, SiteRun]) -> FurtherMotions | None:
+def _further(request: SiteRequest, found: Mapping[RunKey, result.SiteRun]) -> result.FurtherMotions | None:
     """Of the further motions, how many overturn the container, with the worse sign."""
-    by_motion: dict[int, list[SiteRun]] = {}
+    by_motion: dict[int, list[result.SiteRun]] = {}
     for key, run in found.items():
         if key.stage == FURTHER and run.outcome is not None:
             by_motion.setdefault(key.motion, []).append(run)
@@ -151,7 +144,7 @@ def _further(request: SiteRequest, found: Mapping[RunKey, SiteRun]) -> FurtherMo
         return None
     fell = sum(any(run.outcome == Outcome.OVERTURNED for run in runs) for runs in by_motion.values())
     beyond = sum(any(_beyond(request, run) for run in runs) for runs in by_motion.values())
-    return FurtherMotions(
+    return result.FurtherMotions(
         motions=len(by_motion),
         overturned=fell,
         interval=binomial_interval(fell, len(by_motion), CONFIDENCE),
@@ -159,8 +152,8 @@ def _further(request: SiteRequest, found: Mapping[RunKey, SiteRun]) -> FurtherMo
     )
 
 
-def _beyond(request: SiteRequest, run: SiteRun) -> bool:
-    limited = ((run[figure] or 0.0, getattr(request.limits, name)) for name, figure in LIMITED.items())
+def _beyond(request: SiteRequest, run: result.SiteRun) -> bool:
+    limited = ((run[figure] or 0.0, getattr(request.limits, name)) for name, figure in result.LIMITED.items())
     return run.outcome == Outcome.OVERTURNED or any(value > limit for value, limit in limited)
 
 
@@ -173,7 +166,7 @@ def _sentence(
         return f"No answer: {failed} of {runs} runs failed."
     if overturned:
         return f"Not fulfilled under the rule below: {overturned} of {runs} runs overturned."
-    rotation, slip = (_largest(groups)[name] or 0.0 for name in LIMITED)
+    rotation, slip = (_largest(groups)[name] or 0.0 for name in result.LIMITED)
     figures = (
         f"none of {runs} runs overturned; rotation {RATIO.text(rotation)} of the slenderness angle (limit "
         f"{limits.rotation_ratio:g}), slip {_slip_in_words(slip)} (limit {1e3 * limits.slip_m:g} mm)"

@@ -9,17 +9,8 @@ from matplotlib.figure import Figure
 from fem.figures import style
 from fem.runtime.arrays import FloatArray
 from fem.seismic.static_rules import floor_factor
+from fem.site_check import result
 from fem.site_check.bracket import SizePoint, SizeResult
-from fem.site_check.result import (
-    FloorResult,
-    MotionSet,
-    ScanPoint,
-    SiteActionResult,
-    SiteAnswer,
-    SiteInputs,
-    SiteMethod,
-    SiteMotion,
-)
 
 LEAST_RATIO = 0.9  #: of the mean spectrum over the target, EN 1998-1:2004, 3.2.3.1.2 (4) c)
 TICKS = (0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 4.0)
@@ -29,7 +20,7 @@ MARKERS = {"overturning": "o", "sliding": "s", "slip": "D"}
 FACTORS = (0.1, 10.0)
 
 
-def draw_spectra(action: SiteActionResult, motions: MotionSet) -> str:
+def draw_spectra(action: result.SiteActionResult, motions: result.MotionSet) -> str:
     """Target, mean and every motion, with the 90 % line in the band; horizontal and, where there is one, vertical."""
     rows = [(action.target_m_s2, action.mean_m_s2, "horizontal")]
     if action.vertical_target_m_s2:
@@ -63,7 +54,7 @@ def draw_spectra(action: SiteActionResult, motions: MotionSet) -> str:
         return style.svg_of(figure)
 
 
-def draw_floor(action: SiteActionResult, floor: FloorResult) -> str:
+def draw_floor(action: result.SiteActionResult, floor: result.FloorResult) -> str:
     """Mean spectrum of the floor, with that of the ground and what formula (4.25) gives an element."""
     with style.house_style():
         figure, (axes,) = style.panels((2.0,), header=3)
@@ -95,8 +86,8 @@ def draw_floor(action: SiteActionResult, floor: FloorResult) -> str:
 
 
 def draw_motion(
-    motion: SiteMotion,
-    action: SiteActionResult,
+    motion: result.SiteMotion,
+    action: result.SiteActionResult,
     times: FloatArray,
     horizontal: FloatArray,
     vertical: FloatArray | None,
@@ -147,7 +138,7 @@ def draw_motion(
         return style.svg_of(figure)
 
 
-def draw_scan(answer: SiteAnswer, inputs: SiteInputs) -> str:
+def draw_scan(answer: result.SiteAnswer, inputs: result.SiteInputs) -> str:
     """Rotation, slip and the runs that overturned over the factor on the motions."""
     first = answer.factor_at_first_overturning
     statement = (
@@ -167,7 +158,7 @@ def draw_scan(answer: SiteAnswer, inputs: SiteInputs) -> str:
         return style.svg_of(figure)
 
 
-def draw_size(size: SizeResult, inputs: SiteInputs) -> str:
+def draw_size(size: SizeResult, inputs: result.SiteInputs) -> str:
     """Rotation, slip and the runs that overturned over the key that was varied; what fulfils the rule is shaded."""
     answer = size.sentence.partition(";")[0].rstrip(".")  # the islands are in the figure
     with style.house_style():
@@ -186,11 +177,11 @@ def _over(
     title: str,
     statement: str,
     label: str,
-    points: Sequence[ScanPoint] | Sequence[SizePoint],
-    inputs: SiteInputs,
+    points: Sequence[result.ScanPoint] | Sequence[SizePoint],
+    inputs: result.SiteInputs,
 ) -> tuple[Figure, list[Axes]]:
     """Three panels over a value: rotation ratio and slip with their limits, and the share that overturned."""
-    values = [point.factor if isinstance(point, ScanPoint) else point.value for point in points]
+    values = [point.factor if isinstance(point, result.ScanPoint) else point.value for point in points]
     figure, (tilt, slip, fell) = style.panels([1.3, 1.1, 0.9], gaps=[0.12, 0.12], header=3)
     style.head(figure, title, statement)
     _limited(tilt, values, [point.rotation_ratio for point in points], inputs.rotation_ratio_limit)
@@ -210,7 +201,7 @@ def _over(
     return figure, [tilt, slip, fell]
 
 
-def draw_methods(methods: Sequence[SiteMethod], answer: SiteAnswer, name: str) -> str:
+def draw_methods(methods: Sequence[result.SiteMethod], answer: result.SiteAnswer, name: str) -> str:
     """Capacity over strength by each method: the factor on the action at which it is used up."""
     drawn = sorted(
         (one for one in methods if one.factor is not None), key=lambda one: list(COLOURS).index(one.quantity)

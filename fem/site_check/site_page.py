@@ -15,6 +15,7 @@ from fem.results.errors import FolderError
 from fem.results.kinds import SITE
 from fem.results.outcome import Outcome
 from fem.runtime.arrays import FloatArray
+from fem.site_check import site_sections
 from fem.site_check.figures import draw_motion, draw_spectra
 from fem.site_check.result import (
     RESULT_FILE,
@@ -24,18 +25,6 @@ from fem.site_check.result import (
     SiteDocument,
     SiteMotion,
     SiteResult,
-)
-from fem.site_check.site_sections import (
-    DrawnMotion,
-    SiteView,
-    every_run_section,
-    figure,
-    methods_section,
-    motions_section,
-    repeat_section,
-    runs_section,
-    sheet_section,
-    symbols,
 )
 
 COPIES = ("site.toml", "container.toml")  #: in the folder, printed on the page
@@ -70,9 +59,11 @@ def site_report(folder: Path, result: SiteResult | None = None, *, signature: Si
     """
     result = result or read_study(folder, SITE, SiteResult)
     signing = SIGNING if result.state == "finished" else ()
-    view, document = SiteView(result=result), asdict(result.document or SiteDocument())
+    view, document = site_sections.SiteView(result=result), asdict(result.document or SiteDocument())
     motions = [
-        DrawnMotion(motion, motion_figure(folder, motion, result) if motion.number <= MOST_DRAWN else None)
+        site_sections.DrawnMotion(
+            motion, motion_figure(folder, motion, result) if motion.number <= MOST_DRAWN else None
+        )
         for motion in result.set.motions
     ]
     copies = [(name, _text(folder / name)) for name in COPIES if (folder / name).is_file()]
@@ -99,12 +90,12 @@ def site_report(folder: Path, result: SiteResult | None = None, *, signature: Si
                     ),
                 ],
             ),
-            runs_section(view),
-            methods_section(view),
-            motions_section(motions),
-            every_run_section(view),
-            sheet_section(view),
-            repeat_section(view, copies),
+            site_sections.runs_section(view),
+            site_sections.methods_section(view),
+            site_sections.motions_section(motions),
+            site_sections.every_run_section(view),
+            site_sections.sheet_section(view),
+            site_sections.repeat_section(view, copies),
         ],
     )
     return html_of(page)
@@ -153,7 +144,7 @@ def inputs_section(result: SiteResult) -> html.PageSection:
     """The action beside the container, friction and limits."""
 
     def listed(title: str, rows: Sequence[tuple[str, str]]) -> html.Group:
-        pairs = [(symbols(name), symbols(typeset(value))) for name, value in rows]
+        pairs = [(site_sections.symbols(name), site_sections.symbols(typeset(value))) for name, value in rows]
         return html.Group("", [html.Heading(title), html.Pairs(pairs, look="asked")])
 
     given = [
@@ -180,8 +171,8 @@ def set_section(result: SiteResult) -> html.PageSection:
         f"The set of motions: {'its checks' if result.set.valid else 'not valid'}",
         "set",
         html.table_of("checks of the set of motions", columns, result.set.checks),
-        html.Note(symbols(period_sentence(result.set))),
-        figure(drawn, "spectra", "target, mean and every motion"),
+        html.Note(site_sections.symbols(period_sentence(result.set))),
+        site_sections.figure(drawn, "spectra", "target, mean and every motion"),
     )
 
 

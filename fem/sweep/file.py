@@ -7,18 +7,9 @@ from typing import Any
 
 from pydantic import Field
 
+from fem.batch import study_file
 from fem.batch.axes import Axis, AxisError, check_varied, field_of, first_motion, hint, read_axis
 from fem.batch.derived import Derived, read_derived, value_in
-from fem.batch.study_file import (
-    base_case,
-    flat,
-    read_as,
-    read_axes,
-    read_study,
-    require_once,
-    require_verticals,
-    split_tables,
-)
 from fem.case.case import Case
 from fem.case.files import DEFAULT_CASE, SWEEPS, Origin
 from fem.case.overrides import keys_in_effect
@@ -48,22 +39,25 @@ def load_sweep(name_or_path: str | Path) -> Sweep:
     Raises:
         CaseError: with one line for each reason why it cannot be used.
     """
-    return read_study(SWEEPS.find(name_or_path), _read)
+    return study_file.read_study(SWEEPS.find(name_or_path), _read)
 
 
 def _read(data: Mapping[str, Any], origin: Origin) -> Sweep:
-    given, tables = split_tables(data, TABLES)
-    heading = read_as("", SweepHeading, given)
-    axes = read_axes(
-        flat("axes", tables.get("axes", {})), MOST_AXES, '"contact.mu_static" = [0.2, 0.3, 0.4]', read_axis
+    given, tables = study_file.split_tables(data, TABLES)
+    heading = study_file.read_as("", SweepHeading, given)
+    axes = study_file.read_axes(
+        study_file.flat("axes", tables.get("axes", {})),
+        MOST_AXES,
+        '"contact.mu_static" = [0.2, 0.3, 0.4]',
+        read_axis,
     )
-    base = base_case(
+    base = study_file.base_case(
         heading.case, tables.get("set", {}), origin, first_motion(axes), [axis.key for axis in axes]
     )
-    require_verticals(axes, [axis.key for axis in axes], base)
+    study_file.require_verticals(axes, [axis.key for axis in axes], base)
     derived = _derived(tables.get("derived", {}), base, axes)
     varied = [axis.key for axis in axes] + [one.key for one in derived]
-    require_once(tables.get("set", {}), varied, base)
+    study_file.require_once(tables.get("set", {}), varied, base)
     sweep = Sweep(
         name=origin.name,
         text=origin.text,
@@ -71,7 +65,7 @@ def _read(data: Mapping[str, Any], origin: Origin) -> Sweep:
         base=base,
         axes=axes,
         derived=derived,
-        perturbation=read_as("perturbation", Perturbation, tables.get("perturbation", {})),
+        perturbation=study_file.read_as("perturbation", Perturbation, tables.get("perturbation", {})),
         threshold=_threshold(tables, axes),
         maps=_maps(tables.get("maps", {}), axes),
     )
@@ -93,13 +87,13 @@ def _derived(content: Mapping[str, Any], base: Case, axes: tuple[Axis, ...]) -> 
                 "given there"
             )
 
-    return read_derived(flat("derived", content), values, check_varied, check_reference)
+    return read_derived(study_file.flat("derived", content), values, check_varied, check_reference)
 
 
 def _threshold(tables: Mapping[str, Any], axes: tuple[Axis, ...]) -> Threshold | None:
     if "threshold" not in tables:
         return None
-    threshold = read_as("threshold", Threshold, tables["threshold"])
+    threshold = study_file.read_as("threshold", Threshold, tables["threshold"])
     known = {axis.key: axis for axis in axes}
     if threshold.axis not in known:
         raise CaseError(
@@ -117,8 +111,10 @@ def _threshold(tables: Mapping[str, Any], axes: tuple[Axis, ...]) -> Threshold |
 
 def _maps(content: Mapping[str, Any], axes: tuple[Axis, ...]) -> MapChoice:
     fixed = content.get("fixed", {})
-    given = dict(content) | ({"fixed": flat("maps.fixed", fixed)} if isinstance(fixed, dict) else {})
-    choice = read_as("maps", MapChoice, given)
+    given = dict(content) | (
+        {"fixed": study_file.flat("maps.fixed", fixed)} if isinstance(fixed, dict) else {}
+    )
+    choice = study_file.read_as("maps", MapChoice, given)
     known = {axis.key: axis.values for axis in axes}
     for key in (choice.x, choice.y, *choice.fixed):
         if key is not None and key not in known:

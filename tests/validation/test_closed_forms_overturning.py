@@ -6,15 +6,7 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from contact.reference.closed_forms_overturning import (
-    half_sine_threshold_slender,
-    initiation_mode,
-    one_sine_threshold_slender,
-    rectangular_pulse_duration,
-    rocking_friction,
-    sustained_sine_threshold_slender,
-    velocity_step_threshold,
-)
+from contact.reference import closed_forms_overturning
 from contact.reference.floor_acceleration import (
     Acceleration,
     half_sine_pulse,
@@ -52,9 +44,9 @@ def one(block, w):
 @pytest.mark.parametrize(
     ("motion", "form"),
     [
-        (sustained, sustained_sine_threshold_slender),
-        (half, half_sine_threshold_slender),
-        (one, one_sine_threshold_slender),
+        (sustained, closed_forms_overturning.sustained_sine_threshold_slender),
+        (half, closed_forms_overturning.half_sine_threshold_slender),
+        (one, closed_forms_overturning.one_sine_threshold_slender),
     ],
 )
 def test_slender_thresholds_are_those_of_a_needle(motion, form, w):
@@ -78,14 +70,16 @@ def test_exact_first_swing_thresholds_of_the_stack(w, exact):
         STACK, sustained(STACK, w), low=1.3 * unit, high=7.0 * unit, duration=20.0, relative_tolerance=1e-7
     )
     assert threshold / unit == pytest.approx(exact, abs=5e-6)
-    assert threshold / unit == pytest.approx(sustained_sine_threshold_slender(w), rel=0.025)
+    assert threshold / unit == pytest.approx(
+        closed_forms_overturning.sustained_sine_threshold_slender(w), rel=0.025
+    )
 
 
 @pytest.mark.parametrize("block", [STACK, BOX])
 @pytest.mark.parametrize("ratio", [1.001, 1.2, 2.0, 20.0])
 def test_rectangular_pulse_of_just_the_critical_duration(block, ratio):
     peak = ratio * block.uplift_acceleration
-    critical = rectangular_pulse_duration(block, peak)
+    critical = closed_forms_overturning.rectangular_pulse_duration(block, peak)
     outcomes = [
         simulate_rocking(
             block,
@@ -100,7 +94,7 @@ def test_rectangular_pulse_of_just_the_critical_duration(block, ratio):
 
 @pytest.mark.parametrize("block", [STACK, BOX])
 def test_velocity_step_of_just_the_critical_size(block):
-    critical = velocity_step_threshold(block)
+    critical = closed_forms_overturning.velocity_step_threshold(block)
     inertia = block.inertia_ratio * block.radius**2  # about the corner, per mass
     outcomes = [
         simulate_rocking(
@@ -117,9 +111,9 @@ def test_velocity_step_of_just_the_critical_size(block):
 
 def test_pulses_that_do_not_lift_the_block_are_refused():
     with pytest.raises(ValueError, match="does not lift"):
-        rectangular_pulse_duration(STACK, 2.6)
+        closed_forms_overturning.rectangular_pulse_duration(STACK, 2.6)
     with pytest.raises(ValueError, match="frequency_ratio"):
-        half_sine_threshold_slender(0.0)
+        closed_forms_overturning.half_sine_threshold_slender(0.0)
 
 
 GRAVITY = 9.81
@@ -132,7 +126,7 @@ def test_friction_to_begin_rocking_is_that_of_the_equations_of_motion(slendernes
     block = RigidBlock.homogeneous(width=1.0, height=slenderness)
     contact = rock(block, 1, 0.0, 0.0, Acceleration(-ratio * GRAVITY))
     assert abs(contact.friction) / contact.normal == pytest.approx(
-        rocking_friction(ratio, slenderness), rel=1e-12
+        closed_forms_overturning.rocking_friction(ratio, slenderness), rel=1e-12
     )
 
 
@@ -148,7 +142,7 @@ def test_initiation_modes_on_a_grid():
     # Shenton (1996), with mu_k below mu_s; every mode occurs.
     seen = Counter()
     for lam, ratio, mu_static, mu_kinetic in initiation_grid():
-        expected = initiation_mode(
+        expected = closed_forms_overturning.initiation_mode(
             acceleration_ratio=ratio, slenderness=lam, mu_static=mu_static, mu_kinetic=mu_kinetic
         )
         body = RigidBlock.homogeneous(width=1.0, height=lam)

@@ -9,29 +9,21 @@ import pytest
 from fem.assessment.loose_boxes import box_rows, largest_joint_slip
 from fem.assessment.rule_or_run import governing
 from fem.assessment.summary import outcome_sentence, plain_summary
+from fem.results import run_result
 from fem.results.figures import BoxResult
-from fem.results.run_result import (
-    ActionResult,
-    Band,
-    BandMember,
-    BoxReach,
-    RunResult,
-    StaticResult,
-    Verdict,
-)
 
 STILL = BoxResult(max_rotation_rad=0.0, max_slip_m=0.0, residual_slip_m=0.0, max_opening_m=0.0, fell=False)
 #: four boxes of 1.1 m x 1 m: slip counts from 0.11 mm, an opening from 3 mm
-STATIC = StaticResult(centroid_m=2.0, slenderness_angle_rad=math.atan(0.55 / 2.0))
+STATIC = run_result.StaticResult(centroid_m=2.0, slenderness_angle_rad=math.atan(0.55 / 2.0))
 
 
-def result(*changed: tuple[int, dict], **verdict) -> RunResult:
+def result(*changed: tuple[int, dict], **verdict) -> run_result.RunResult:
     """Of a stack of four boxes, some of them changed."""
     boxes = [STILL] * 4
     for number, values in changed:
         boxes[number - 1] = replace(boxes[number - 1], **values)
-    found = Verdict(**({"outcome": "slide-rock", "boxes": tuple(boxes)} | verdict))
-    return RunResult(status="completed", verdict=found, static=STATIC)
+    found = run_result.Verdict(**({"outcome": "slide-rock", "boxes": tuple(boxes)} | verdict))
+    return run_result.RunResult(status="completed", verdict=found, static=STATIC)
 
 
 @pytest.mark.parametrize(
@@ -79,13 +71,15 @@ def test_the_table_has_a_row_a_box_from_the_floor_up():
 
 
 def test_the_figures_of_a_box_have_their_ranges_over_the_band():
-    reach = BoxReach(
+    reach = run_result.BoxReach(
         max_rotation_rad=(0.0, 0.1),
         max_slip_m=(0.1, 0.25),
         residual_slip_m=(-0.3, 0.1),
         max_opening_m=(0.0, 0.0),
     )
-    band = Band(boxes=(reach, reach, reach, replace(reach, fell=2)), members=(BandMember(status=""),) * 9)
+    band = run_result.Band(
+        boxes=(reach, reach, reach, replace(reach, fell=2)), members=(run_result.BandMember(status=""),) * 9
+    )
     run = result((2, {"max_slip_m": 0.2194, "residual_slip_m": -0.1}), band=band)
     assert box_rows(run)[1] == ("2", "0 (0 to 5.7)", "220 (100 to 250)", "about zero, up to 300", "0", "")
     assert box_rows(run)[3][-1] == "in 2 of 9 runs"
@@ -113,6 +107,6 @@ def test_of_many_boxes_the_table_has_those_that_decide():
 )
 def test_the_static_rule_is_that_of_the_stack_on_its_floor(on_floor, words):
     run = result((1, {"max_slip_m": on_floor}), (2, {"max_slip_m": 0.0365}), outcome="slide")
-    rule = ActionResult(utilisation_sliding=0.765, utilisation_overturning=0.9)
+    rule = run_result.ActionResult(utilisation_sliding=0.765, utilisation_overturning=0.9)
     (said,) = governing(replace(run, static=replace(STATIC, own_motion=rule)))
     assert said.startswith("Sliding: the static rule holds at 0.765") and words in said

@@ -9,15 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from contact.interface.laws import (
-    FRICTION_LAWS,
-    normal_force,
-    regularised_friction,
-    relaxed_stick,
-    stick_friction,
-    stribeck_mu,
-    weakened_mu,
-)
+from contact.interface import laws
 
 STIFFNESS, DAMPING, STEP = 2.7e9, 1.1e7, 1e-3
 DECADES = 10.0 ** np.arange(-9.0, -1.0)
@@ -30,7 +22,7 @@ def central_difference(function, at: float) -> float:
 
 
 def normal(penetration: float, rate: float) -> tuple[float, float, float]:
-    return normal_force(penetration, rate, STIFFNESS, DAMPING, math.inf, STEP)
+    return laws.normal_force(penetration, rate, STIFFNESS, DAMPING, math.inf, STEP)
 
 
 @pytest.mark.parametrize("penetration", DECADES)
@@ -49,7 +41,7 @@ def test_normal_tangents_are_derivatives(penetration, share):
 
 @given(st.floats(-1e-2, 1e-2), st.floats(-10.0, 10.0), st.floats(1e-7, 1e-1))
 def test_the_floor_never_pulls(penetration, rate, step):
-    force, by_penetration, by_rate = normal_force(penetration, rate, STIFFNESS, DAMPING, math.inf, step)
+    force, by_penetration, by_rate = laws.normal_force(penetration, rate, STIFFNESS, DAMPING, math.inf, step)
     assert force >= 0.0
     if penetration <= 0.0 or STIFFNESS * penetration + DAMPING * rate <= 0.0:
         assert (force, by_penetration, by_rate) == (0.0, 0.0, 0.0)
@@ -60,7 +52,7 @@ def test_the_floor_never_pulls(penetration, rate, step):
 def test_a_floor_that_crushes_bears_the_cap_and_no_more(share, penetration, rate):
     elastic = normal(penetration, rate)
     cap = share * elastic[0] if elastic[0] > 0.0 else share
-    capped = normal_force(penetration, rate, STIFFNESS, DAMPING, cap, STEP)
+    capped = laws.normal_force(penetration, rate, STIFFNESS, DAMPING, cap, STEP)
     assert capped == (elastic if elastic[0] < cap else (cap, 0.0, 0.0))
 
 
@@ -68,7 +60,9 @@ def test_a_floor_that_crushes_bears_the_cap_and_no_more(share, penetration, rate
 def test_the_cap_bounds_the_spring_and_the_dashpot_together(rate):
     spring, whole = STIFFNESS * 1e-2, normal(1e-2, rate)[0]
     cap = (spring + whole) / 2.0
-    assert normal_force(1e-2, rate, STIFFNESS, DAMPING, cap, STEP)[0] == min(whole, cap) != min(spring, cap)
+    assert (
+        laws.normal_force(1e-2, rate, STIFFNESS, DAMPING, cap, STEP)[0] == min(whole, cap) != min(spring, cap)
+    )
 
 
 @given(st.floats(1e-9, 1e-2), st.floats(-10.0, 10.0))
@@ -92,7 +86,7 @@ def test_the_force_is_continuous_where_the_dashpot_takes_over(penetration):
 
 @given(st.floats(-1e6, 1e6), st.floats(0.0, 1e6))
 def test_return_mapping_stays_in_the_cone_and_moves_no_admissible_force(trial, limit):
-    force, by_trial, by_limit = stick_friction(trial, limit)
+    force, by_trial, by_limit = laws.stick_friction(trial, limit)
     assert abs(force) <= limit
     if abs(trial) <= limit:
         assert (force, by_trial, by_limit) == (trial, 1.0, 0.0)
@@ -104,12 +98,12 @@ def test_return_mapping_stays_in_the_cone_and_moves_no_admissible_force(trial, l
 @pytest.mark.parametrize("share", [-30.0, -1.01, -0.99, -1e-3, 1e-3, 0.99, 1.01, 30.0])
 def test_return_mapping_tangents_are_derivatives(limit, share):
     trial = share * limit
-    _, by_trial, by_limit = stick_friction(trial, limit)
+    _, by_trial, by_limit = laws.stick_friction(trial, limit)
     assert by_trial == pytest.approx(
-        central_difference(lambda t: stick_friction(t, limit)[0], trial), abs=1e-9
+        central_difference(lambda t: laws.stick_friction(t, limit)[0], trial), abs=1e-9
     )
     assert by_limit == pytest.approx(
-        central_difference(lambda m: stick_friction(trial, m)[0], limit), abs=1e-9
+        central_difference(lambda m: laws.stick_friction(trial, m)[0], limit), abs=1e-9
     )
 
 
@@ -123,16 +117,16 @@ def test_a_sliding_element_relaxes_like_its_differential_equation(steps, stick):
         return (force - stiffness * s) / (stiffness * relaxation)  # k s + c s' = F, c = k relaxation
 
     exact = solve_ivp(rate, (0.0, step), [stick], method="DOP853", rtol=1e-12, atol=1e-20).y[0, -1]
-    assert relaxed_stick(stick, force, stiffness, relaxation, step) == pytest.approx(exact, rel=1e-9)
+    assert laws.relaxed_stick(stick, force, stiffness, relaxation, step) == pytest.approx(exact, rel=1e-9)
 
 
 def test_a_relaxed_element_ends_at_its_static_elongation():
-    assert relaxed_stick(1e-5, 5e3, 2e9, 6e-3, 10.0) == pytest.approx(5e3 / 2e9, rel=1e-14)
-    assert relaxed_stick(1e-5, 5e3, 2e9, 0.0, 1e-9) == 5e3 / 2e9  # no dashpot: at once
+    assert laws.relaxed_stick(1e-5, 5e3, 2e9, 6e-3, 10.0) == pytest.approx(5e3 / 2e9, rel=1e-14)
+    assert laws.relaxed_stick(1e-5, 5e3, 2e9, 0.0, 1e-9) == 5e3 / 2e9  # no dashpot: at once
 
 
 def sliding(normal_load: float, velocity: float, mu_static: float = 0.4) -> tuple[float, float, float]:
-    return regularised_friction(normal_load, velocity, mu_static, 0.2, 1e-3)
+    return laws.regularised_friction(normal_load, velocity, mu_static, 0.2, 1e-3)
 
 
 @pytest.mark.parametrize("mu_static", [0.2, 0.4])
@@ -161,36 +155,36 @@ def test_regularised_friction_is_kinetic_when_fast():
 @pytest.mark.parametrize("share", [0.1, 0.5, 0.9])
 def test_regularised_friction_creeps_at_the_stated_speed(share):
     # A load s mu N is carried at v_reg atanh(s): no true stick.
-    force = regularised_friction(3e4, 1e-3 * math.atanh(share), 0.4, 0.4, 1e-3)[0]
+    force = laws.regularised_friction(3e4, 1e-3 * math.atanh(share), 0.4, 0.4, 1e-3)[0]
     assert force == pytest.approx(-share * 0.4 * 3e4, rel=1e-14)
 
 
 def test_friction_weakens_linearly_over_its_distance_and_stays_weak():
-    assert weakened_mu(0.4, 0.2, 1e-4, 0.0) == 0.4
-    assert weakened_mu(0.4, 0.2, 1e-4, 2.5e-5) == pytest.approx(0.35, rel=1e-14)
-    assert weakened_mu(0.4, 0.2, 1e-4, 1e-4) == 0.2
-    assert weakened_mu(0.4, 0.2, 1e-4, 1.0) == 0.2
+    assert laws.weakened_mu(0.4, 0.2, 1e-4, 0.0) == 0.4
+    assert laws.weakened_mu(0.4, 0.2, 1e-4, 2.5e-5) == pytest.approx(0.35, rel=1e-14)
+    assert laws.weakened_mu(0.4, 0.2, 1e-4, 1e-4) == 0.2
+    assert laws.weakened_mu(0.4, 0.2, 1e-4, 1.0) == 0.2
 
 
 def test_without_a_distance_friction_weakens_at_once():
-    assert weakened_mu(0.4, 0.2, 0.0, 0.0) == 0.2
+    assert laws.weakened_mu(0.4, 0.2, 0.0, 0.0) == 0.2
 
 
 def test_friction_falls_with_the_slip_velocity_from_static_to_kinetic():
-    assert stribeck_mu(0.4, 0.2, 0.3, 0.0) == 0.4
-    assert stribeck_mu(0.4, 0.2, 0.3, 0.3) == pytest.approx(0.2 + 0.2 / math.e, rel=1e-14)
-    assert stribeck_mu(0.4, 0.2, 0.3, -3.0) == pytest.approx(0.2, rel=1e-12)
+    assert laws.stribeck_mu(0.4, 0.2, 0.3, 0.0) == 0.4
+    assert laws.stribeck_mu(0.4, 0.2, 0.3, 0.3) == pytest.approx(0.2 + 0.2 / math.e, rel=1e-14)
+    assert laws.stribeck_mu(0.4, 0.2, 0.3, -3.0) == pytest.approx(0.2, rel=1e-12)
 
 
 def test_without_a_stribeck_velocity_friction_does_not_depend_on_the_velocity():
-    assert stribeck_mu(0.4, 0.2, 0.0, 1.0) == 0.4
+    assert laws.stribeck_mu(0.4, 0.2, 0.0, 1.0) == 0.4
 
 
 class OnUnknownFriction(Block):
     """A block on a floor with a friction law of no known code."""
 
     def contact(self):
-        return super().contact()._replace(friction=len(FRICTION_LAWS))
+        return super().contact()._replace(friction=len(laws.FRICTION_LAWS))
 
 
 def test_a_run_with_an_unknown_friction_law_is_refused():

@@ -17,19 +17,10 @@ from contact.reference.floor_acceleration import still_floor
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
 from fem.case.case import load_case
+from fem.figures import style
 from fem.figures.cache import drawings_of, write_figures
 from fem.figures.checks import band_figure
 from fem.figures.run import FIGURES, figures_of
-from fem.figures.style import (
-    STRETCHES,
-    TIME,
-    cursor_axes,
-    house_style,
-    kept_samples,
-    number,
-    svg_of,
-    time_panels,
-)
 from fem.model.container import discretise
 from fem.results.reader import OpenedRun
 from fem.run.run import RunOptions, run_case
@@ -136,7 +127,7 @@ def test_axes_carry_units_and_no_text_is_cut_off(drawn):
     for name, figures in drawn.items():
         for kind, figure in figures.items():
             canvas = FigureCanvasAgg(figure)
-            with house_style():
+            with style.house_style():
                 canvas.draw()
             for axes in figure.axes:
                 rows = axes.get_ylabel() == ""  # names of states or of energies stand there
@@ -192,7 +183,7 @@ def test_the_rigid_check_says_whether_it_means_anything(runs, meaningful, words)
         "meaningful": meaningful,
         "reasons": [] if meaningful else ["it is squat"],
     }
-    with house_style():
+    with style.house_style():
         figure = FIGURES["rigid_check"](changed(run, rigid_check=check))
     assert any(text.get_text().startswith(words) for text in figure.texts)
 
@@ -217,7 +208,7 @@ def test_forces_of_impacts_are_cut_off_and_given_in_words(runs, drawn):
     normal = 1e-3 * runs["rocking"].history["normal_force_N"]
     figure = drawn["rocking"]["forces"]
     assert normal.max() > figure.axes[0].get_ylim()[1]
-    assert any(number(normal.max(), 4) in text.get_text() for text in figure.texts)
+    assert any(style.number(normal.max(), 4) in text.get_text() for text in figure.texts)
     marks = [line for line in figure.axes[0].lines if line.get_marker() == "^"]
     assert len(marks[0].get_xdata()) > 0
     assert not any("beyond the scale" in text.get_text() for text in drawn["rest"]["forces"].texts)
@@ -278,7 +269,7 @@ def test_a_band_shows_every_member_the_fallen_above_the_slenderness_angle(runs):
         "unsure": True,
         "members": members,
     }
-    with house_style():
+    with style.house_style():
         figure = band_figure(changed(runs["rocking"], verdict={"band": band}))
     axes = figure.axes[0]
     places = sorted(line.get_ydata()[0] for line in axes.lines if len(line.get_xdata()) == 1)
@@ -295,23 +286,23 @@ def test_a_run_that_is_not_whole_says_so_in_every_title(runs):
 def test_no_peak_is_lost_in_a_long_curve():
     values = np.sin(np.linspace(0.0, 60.0, 200_000))
     values[[1234, 150_000]] = 7.0, -8.0
-    kept = kept_samples(values)
+    kept = style.kept_samples(values)
     assert {0, 1234, 150_000, 199_999} <= set(kept.tolist())
-    assert len(kept) <= 4 * STRETCHES
+    assert len(kept) <= 4 * style.STRETCHES
     assert (np.diff(kept) > 0).all()
-    assert kept_samples(values[:1000]).tolist() == list(range(1000))
-    both = kept_samples(values, np.roll(values, 5))
+    assert style.kept_samples(values[:1000]).tolist() == list(range(1000))
+    both = style.kept_samples(values, np.roll(values, 5))
     assert {1234, 1239} <= set(both.tolist())
     values[100:] = np.nan  # a block no longer followed
-    assert kept_samples(values)[-1] == 199_999
+    assert style.kept_samples(values)[-1] == 199_999
 
 
 def test_the_cursor_axes_of_a_panel_over_time_are_its_frame(runs):
-    with house_style():
-        figure, axes = time_panels((1.0, 1.0), history=runs["rest"].history)
+    with style.house_style():
+        figure, axes = style.time_panels((1.0, 1.0), history=runs["rest"].history)
         axes[0].plot([0.0, 6.0], [0.0, 1.0])
-    svg = svg_of(figure)
-    place = cursor_axes(figure)
+    svg = style.svg_of(figure)
+    place = style.cursor_axes(figure)
     assert (place["kind"], place["x"]) == ("time", [0.0, 6.0])
     # The frame of the axes in the SVG, whose y points down.
     size = [float(figure.get_size_inches()[i]) * 72.0 for i in (0, 1)]
@@ -320,7 +311,7 @@ def test_the_cursor_axes_of_a_panel_over_time_are_its_frame(runs):
     upper, lower = (panel.get_position() for panel in axes[:2])
     assert 1.0 - float(spine[2]) / size[1] == pytest.approx(upper.y0, abs=1e-4)
     assert (place["top"], place["bottom"]) == (upper.y1, lower.y0) and upper.y0 > lower.y1
-    assert figure.axes[-1].get_xlabel() == TIME
+    assert figure.axes[-1].get_xlabel() == style.TIME
 
 
 def test_a_cursor_follows_every_figure_over_time_and_the_phase_portrait(runs):
@@ -361,4 +352,4 @@ def test_a_fault_in_the_drawing_does_not_spoil_a_run(tmp_path, monkeypatch):
     [(1349.6, "1350"), (-0.00184, "−0.00184"), (0.0, "0"), (5e-9, "5 × 10⁻⁹"), (15.376, "15.4")],
 )
 def test_numbers_are_for_people(value, text):
-    assert number(value) == text
+    assert style.number(value) == text
