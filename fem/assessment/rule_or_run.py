@@ -10,7 +10,7 @@ from fem.assessment.loose_boxes import largest_joint_slip, limits
 from fem.assessment.sureness import below_uplift, rests_on_stiff_floor
 from fem.case.unknown_inputs import MU_KINETIC, STRIBECK, WEAKENING
 from fem.results.outcome import ROCKING, SLIDING, Outcome
-from fem.results.run_result import BandMember, RunResult, StaticResult, Verdict
+from fem.results.run_result import ChangedRun, RunResult, StaticResult, Verdict
 
 FRICTION = {MU_KINETIC, WEAKENING, STRIBECK}
 WITHOUT_BAND = "; only the band can tell which of the two governs (--band)."
@@ -42,12 +42,12 @@ def governing(result: RunResult) -> tuple[str, ...]:
     return tuple(sentences)
 
 
-def _slides(run: Verdict | BandMember, least: float) -> bool:
+def _slides(run: Verdict | ChangedRun, least: float) -> bool:
     """True if it slides on the floor: in a loose stack, if its lowest box slides by more than `least` [m]."""
     return run.outcome in SLIDING and (not run.boxes or run.boxes[0].max_slip_m > least)
 
 
-def _on_sliding(members: Sequence[BandMember], least: float) -> str:
+def _on_sliding(members: Sequence[ChangedRun], least: float) -> str:
     """Where friction drops at once, a moment of vibration can decide; a static rule cannot know of it."""
     if not members:
         return WITHOUT_BAND
@@ -64,7 +64,7 @@ def _on_sliding(members: Sequence[BandMember], least: float) -> str:
     return f". The run governs: {tried}."
 
 
-def _on_rocking(members: Sequence[BandMember]) -> str:
+def _on_rocking(members: Sequence[ChangedRun]) -> str:
     if not members:
         return WITHOUT_BAND
     if rests_on_stiff_floor(members):

@@ -17,7 +17,7 @@ from fem.case.uncertainty import InputChange
 from fem.case.unknown_inputs import INPUTS
 from fem.results.figures import BOX_FIGURES, Place, RunFigures, keys_of
 from fem.results.outcome import ROCKING, Outcome
-from fem.results.run_result import Band, BandMember, BoxReach, RunResult, StaticResult, Verdict
+from fem.results.run_result import Band, BoxReach, ChangedRun, RunResult, StaticResult, Verdict
 
 SURE, REGIME_UNSURE, UNSURE = "sure", "regime unsure", "unsure"
 ANOTHER_SIZE = 10.0
@@ -31,7 +31,7 @@ MOST_DRAWN = 3  #: inputs named where only draws differ
 
 def judged(
     verdict: Verdict,
-    members: Sequence[BandMember],
+    members: Sequence[ChangedRun],
     changes: Sequence[InputChange],
     left_out: Sequence[InputChange],
     *,
@@ -74,12 +74,12 @@ def judged(
     return replace(verdict, sure=sure, decided_by=tuple(dict.fromkeys(deciding)), band=band)
 
 
-def below_uplift(members: Sequence[BandMember]) -> bool:
+def below_uplift(members: Sequence[ChangedRun]) -> bool:
     """True if the run rocks although a rigid block on a rigid floor would rest; a member has a stiff floor."""
     return bool(members) and members[0].outcome in ROCKING and any(one.kind == "floor" for one in members)
 
 
-def rests_on_stiff_floor(members: Sequence[BandMember]) -> bool:
+def rests_on_stiff_floor(members: Sequence[ChangedRun]) -> bool:
     """True if on a practically rigid floor the container rests, or slides without rocking."""
     still = (Outcome.REST, Outcome.SLIDE)
     return any(one.kind == "floor" and one.outcome in still for one in members)
@@ -169,7 +169,7 @@ def _reach(values: Iterator[float | None]) -> tuple[float, float] | None:
 
 
 def _reach_of_boxes(
-    alike: Sequence[BandMember], members: Sequence[BandMember]
+    alike: Sequence[ChangedRun], members: Sequence[ChangedRun]
 ) -> tuple[BoxReach, ...] | None:
     """The ranges of each box over the members that end as the run does, and in how many of all it fell first."""
     fell = Counter(one.fell_box for one in members)

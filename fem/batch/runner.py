@@ -4,7 +4,6 @@ Cases that have the same container share its mesh and modes. A case that cannot 
 status "failed" and the reason; it never has an outcome.
 """
 
-import math
 import time
 from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
@@ -59,8 +58,6 @@ class Runner:
         items: Iterable[ItemT],
         make: Callable[[ItemT], Case],
         model_of: Callable[[ItemT], str],
-        *,
-        at_a_time: int | None = None,
     ) -> Iterator[tuple[list[ItemT], list[Row]]]:
         """Run one case for each item; yields items and their rows as they are ready, in any order.
 
@@ -69,7 +66,6 @@ class Runner:
             items: in an order in which those of one container are neighbours.
             make: the case of an item; for processes it must be picklable.
             model_of: the model of its case.
-            at_a_time: cases handed to a core at a time; None: as suits the model.
         """
         by_model: dict[str, list[ItemT]] = {}
         for item in items:
@@ -87,7 +83,7 @@ class Runner:
                 some,
                 partial(run_chunk, make),
                 pools,
-                at_a_time=at_a_time or _chunk_size(model, len(some), pools),
+                at_a_time=_chunk_size(model, len(some), pools),
                 stop=self.stop,
                 finish=model != "full",  # one of these may take an hour
             )
@@ -163,7 +159,6 @@ def run_cases(
     jobs: int | None = None,
     done: Callable[[int], None] = lambda count: None,
     stop: Callable[[], bool] = never,
-    time_limit_s: float | None = None,
 ) -> list[Row]:
     """Run cases and return a row each, in their order; the rows do not depend on `jobs`.
 
@@ -175,13 +170,11 @@ def run_cases(
         jobs: cores to use; all by default.
         done: called with the number of rows that are ready.
         stop: asked repeatedly; true ends the work.
-        time_limit_s: wall time after which no further case is started, the first of a container first [s].
 
     Returns:
         For each case `status` (completed | overturned | failed), `reason` (why it failed, else None), `wall_s`, and
         every scalar of a verdict (`SCALARS`). Cases not reached have status "interrupted".
     """
-    until = math.inf if time_limit_s is None else time.monotonic() + time_limit_s
     rows: list[Row] = [_row_without_outcome("interrupted", "stopped before its turn") for _ in cases]
     first: dict[Hashable, int] = {}
     for k, case in enumerate(cases):
@@ -189,13 +182,12 @@ def run_cases(
     order = sorted(range(len(cases)), key=lambda k: first[container_key(cases[k])])
     finished = 0
     with LocalWorkers(jobs or cores()) as workers_of:
-        runner = Runner(workers_of=workers_of, stop=lambda: stop() or time.monotonic() > until)
+        runner = Runner(workers_of=workers_of, stop=stop)
         for chunk, found in runner.rows(
             "cases",
             [(k, cases[k]) for k in order],
             itemgetter(1),
             lambda item: item[1].solver.model,
-            at_a_time=1 if time_limit_s is not None else None,
         ):
             for (k, _), row in zip(chunk, found, strict=True):
                 rows[k] = row

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from fem.case import quantities as q
 from fem.case.case import Case
+from fem.case.quantities import with_unit
 from fem.case.unknown_inputs import (
     JOINTS_MU_KINETIC,
     JOINTS_MU_STATIC,
@@ -26,6 +27,7 @@ from fem.case.unknown_inputs import (
     STRIBECK,
     TOLERANCE,
     WEAKENING,
+    WORDS,
     InputRange,
     Value,
     ranges_of,
@@ -39,12 +41,14 @@ STIFF_FLOOR = 30.0
 
 @dataclass(frozen=True, kw_only=True)
 class InputChange:
-    """A changed case: what one member of a band, or one copy of a cell, does differently."""
+    """A changed case: what one member of a band, one copy of a cell, or one line of a report does differently."""
 
-    kind: Literal["one", "floor", "pair", "draw"]
+    kind: Literal["one", "floor", "pair", "draw", "further"]
     values: Mapping[str, Value]  #: dotted key -> value
     share: float  #: how far it goes from the case to the end of the range; of a draw 1
     place: tuple[float, ...] = ()  #: of a draw in the ranges of `inputs`, 0 to 1
+    subject: str = ""  #: what a further one changes, in words, and to what
+    to: str = ""
 
     @property
     def inputs(self) -> tuple[str, ...]:
@@ -53,11 +57,26 @@ class InputChange:
 
     @property
     def label(self) -> str:
-        """The change in words, the same for the same change."""
+        """The change by its keys, the same for the same change."""
         return ", ".join(
             f"{key} = {value:.4g}" if isinstance(value, float) else f'{key} = "{value}"'
             for key, value in self.values.items()
         )
+
+    @property
+    def in_words(self) -> tuple[str, str]:
+        """What it changes and to what, for people."""
+        if self.subject:
+            return self.subject, self.to
+        units = {key: one.unit for key, one in QUANTITIES.items()}
+        values = (with_unit(value, units.get(key, "")) for key, value in self.values.items())
+        return ", ".join(WORDS[key] for key in self.values), ", ".join(values)
+
+
+def largest_first(changes: Sequence[InputChange]) -> list[InputChange]:
+    """The last change of the same inputs, which is the end of their range, before all others."""
+    largest = list({change.inputs: change for change in changes}.values())
+    return largest + [change for change in changes if change not in largest]
 
 
 def changes_of(case: Case, penalty: float | None) -> tuple[InputChange, ...]:

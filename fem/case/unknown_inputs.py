@@ -74,6 +74,7 @@ class UnknownNumber(NamedTuple):
 
     key: str  #: dotted
     name: str  #: in [uncertainty]
+    words: str  #: for people
     quantity: q.Quantity  #: what both ends are
     #: unless stated: factors on the case's own value, or both ends from the case and that value
     ends: Ends | Callable[[Any, float], Ends]
@@ -133,6 +134,7 @@ class UnknownChoice(NamedTuple):
 
     key: str  #: dotted
     name: str  #: in [uncertainty]
+    words: str  #: for people
     other: Callable[[Any], Value | None]  #: None where it makes no difference
 
     def range_in(self, case: Any, penalty: float | None) -> InputRange | None:
@@ -251,22 +253,79 @@ def _any_falls(case: Any) -> bool:
 Number, Choice = UnknownNumber, UnknownChoice
 #: every input that may vary, those first that decide most often
 UNKNOWN: tuple[UnknownNumber | UnknownChoice, ...] = (
-    Number(MU_KINETIC, "mu_kinetic", q.FRICTION, _to_static, power=1.0, between=_middle),
-    Number(WEAKENING, "weakening_m", q.WEAKENING, _slower, _falls, 3.0, _weakenings),
-    Number(STRIBECK, "stribeck_velocity_m_s", q.STRIBECK_VELOCITY, _faster, _any_falls, 2.0),
-    Number(JOINTS_MU_STATIC, "joints_mu_static", q.FRICTION, _joints_mu_static, _is_loose),
-    Number(JOINTS_MU_KINETIC, "joints_mu_kinetic", q.FRICTION, _joints_to_static, _is_loose, 1.0, _middle),
-    Number(JOINTS_WEAKENING, "joints_weakening_m", q.WEAKENING, _slower, _joints_fall, 3.0, _weakenings),
-    Choice(START, "start", _other_start),
-    Choice(RAMP, "ramp", _other_ramp),
-    Number(PENALTY, "normal_penalty_Pa_m", q.PENALTY, (SOFTEST, STIFFEST)),
-    Number(STRENGTH, "bearing_strength_Pa", q.BEARING_STRENGTH, SLAB),
-    Number(MODULUS, "floor_youngs_modulus_Pa", q.FLOOR_STIFFNESS, SLAB),
-    Number(DASHPOT, "damping_ratio", q.CONTACT_DAMPING, DAMPING),
-    Number(RESTITUTION, "restitution_over_housner", q.RESTITUTION, _restitutions, power=1.0),
-    Number(MATERIAL, "material_damping_ratio", q.MATERIAL_DAMPING, DAMPING, _is_elastic),
+    Number(MU_KINETIC, "mu_kinetic", "kinetic friction", q.FRICTION, _to_static, power=1.0, between=_middle),
+    Number(
+        WEAKENING,
+        "weakening_m",
+        "slip over which friction falls",
+        q.WEAKENING,
+        _slower,
+        _falls,
+        3.0,
+        _weakenings,
+    ),
+    Number(
+        STRIBECK,
+        "stribeck_velocity_m_s",
+        "velocity over which friction falls",
+        q.STRIBECK_VELOCITY,
+        _faster,
+        _any_falls,
+        2.0,
+    ),
+    Number(
+        JOINTS_MU_STATIC,
+        "joints_mu_static",
+        "static friction of the joints",
+        q.FRICTION,
+        _joints_mu_static,
+        _is_loose,
+    ),
+    Number(
+        JOINTS_MU_KINETIC,
+        "joints_mu_kinetic",
+        "kinetic friction of the joints",
+        q.FRICTION,
+        _joints_to_static,
+        _is_loose,
+        1.0,
+        _middle,
+    ),
+    Number(
+        JOINTS_WEAKENING,
+        "joints_weakening_m",
+        "slip over which joint friction falls",
+        q.WEAKENING,
+        _slower,
+        _joints_fall,
+        3.0,
+        _weakenings,
+    ),
+    Choice(START, "start", "start", _other_start),
+    Choice(RAMP, "ramp", "cycles of the ramp", _other_ramp),
+    Number(PENALTY, "normal_penalty_Pa_m", "stiffness of the contact", q.PENALTY, (SOFTEST, STIFFEST)),
+    Number(STRENGTH, "bearing_strength_Pa", "strength of the floor", q.BEARING_STRENGTH, SLAB),
+    Number(MODULUS, "floor_youngs_modulus_Pa", "stiffness of the floor", q.FLOOR_STIFFNESS, SLAB),
+    Number(DASHPOT, "damping_ratio", "damping of the contact", q.CONTACT_DAMPING, DAMPING),
+    Number(
+        RESTITUTION,
+        "restitution_over_housner",
+        "restitution over Housner's",
+        q.RESTITUTION,
+        _restitutions,
+        power=1.0,
+    ),
+    Number(
+        MATERIAL,
+        "material_damping_ratio",
+        "damping of the container",
+        q.MATERIAL_DAMPING,
+        DAMPING,
+        _is_elastic,
+    ),
 )
 INPUTS = (*(one.key for one in UNKNOWN), TOLERANCE)
+WORDS = {one.key: one.words for one in UNKNOWN} | {TOLERANCE: "energy tolerance of the steps"}
 QUANTITIES = {one.key: one.quantity for one in UNKNOWN if isinstance(one, UnknownNumber)}
 
 

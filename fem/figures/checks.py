@@ -6,32 +6,15 @@ import textwrap
 import numpy as np
 from matplotlib.figure import Figure
 
-from fem.case import unknown_inputs
+from fem.case.unknown_inputs import WORDS
 from fem.figures import style
 from fem.results.outcome import Outcome
 from fem.results.reader import OpenedRun
-from fem.results.run_result import BandMember, RigidCheckResult, RunAndBlock, Verdict
+from fem.results.run_result import ChangedRun, RigidCheckResult, RunAndBlock, Verdict
 from fem.runtime.units import RATIO
 
 FALLEN_ROW = 1.18  #: rotation ratio at which overturned members are drawn
 LINE_LENGTH = 105  #: characters of a line of text in a figure
-#: inputs of a band in a word or two
-GROUPS = {
-    unknown_inputs.MU_KINETIC: "mu_k",
-    unknown_inputs.WEAKENING: "weakening",
-    unknown_inputs.STRIBECK: "velocity",
-    unknown_inputs.JOINTS_MU_STATIC: "joint mu_s",
-    unknown_inputs.JOINTS_MU_KINETIC: "joint mu_k",
-    unknown_inputs.JOINTS_WEAKENING: "joint fall",
-    unknown_inputs.START: "start",
-    unknown_inputs.RAMP: "ramp",
-    unknown_inputs.PENALTY: "stiffness",
-    unknown_inputs.STRENGTH: "strength",
-    unknown_inputs.MODULUS: "floor's E",
-    unknown_inputs.DASHPOT: "damping",
-    unknown_inputs.MATERIAL: "material",
-    unknown_inputs.TOLERANCE: "numerics",
-}
 
 
 def rigid_check_figure(run: OpenedRun) -> Figure | None:
@@ -81,7 +64,7 @@ def band_figure(run: OpenedRun) -> Figure | None:
     band = verdict.band
     if band is None or not band.members:
         return None
-    groups: dict[str, list[BandMember]] = {}
+    groups: dict[str, list[ChangedRun]] = {}
     for member in band.members:
         groups.setdefault(_group_of(member), []).append(member)
     figure, (above, below) = style.panels((2.2, 1.5), header=3)
@@ -122,15 +105,15 @@ def band_figure(run: OpenedRun) -> Figure | None:
     return figure
 
 
-def _group_of(member: BandMember) -> str:
-    """What a member changes, in a word or two."""
+def _group_of(member: ChangedRun) -> str:
+    """What a member changes, in words."""
     if member.kind in ("pair", "draw"):
         return f"{member.kind}s"
     keys = list(member.values or {})
-    return GROUPS.get(keys[0], keys[0]) if keys else "as given"
+    return WORDS.get(keys[0], keys[0]) if keys else "as given"
 
 
-def _slip(member: BandMember) -> float:
+def _slip(member: ChangedRun) -> float:
     """The largest slip, of a loose stack that of any box over what is below it [m]."""
     return max((box.max_slip_m for box in member.boxes or ()), default=member.slipped)
 
@@ -142,7 +125,7 @@ def _ratios(check: RigidCheckResult) -> str:
     return f" Velocity ratio at the first impact: {ratio.run:.4f}, block {ratio.block:.4f}."
 
 
-def _height(member: BandMember) -> float:
+def _height(member: ChangedRun) -> float:
     if member.outcome is None:
         return 0.0
     return FALLEN_ROW if member.outcome == Outcome.OVERTURNED else min(member.turned, FALLEN_ROW)

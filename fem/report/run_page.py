@@ -2,7 +2,6 @@
 
 import datetime as dt
 from collections.abc import Callable, Iterator
-from contextlib import nullcontext
 
 from fem.assessment.code_note import code_note
 from fem.assessment.floor_words import floor_rows
@@ -34,7 +33,7 @@ from fem.report.run_sections import (
     variations_section,
 )
 from fem.report.sketch import sketch
-from fem.report.variation_table import VariationTable, variations_meanwhile
+from fem.report.variations import VariationTable, variation_table
 from fem.results.errors import FolderError
 from fem.results.fields import Fields
 from fem.results.history import History
@@ -86,40 +85,26 @@ def run_report(
     if run.typed_result.static is None:
         raise FolderError(f"{run.place.result}: the run has not begun; run the case, then report it")
     model = build_model(run.case)
-    varying = (
-        variations_meanwhile(
-            run.case,
-            run.place.variations,
-            result=run.typed_result,
-            every=every_variation,
-            message=message,
-            stop=stop,
-        )
-        if run.status in RUN.finished and not brief
-        else nullcontext(lambda: None)
+    varied = None
+    if run.status in RUN.finished and not brief:
+        varied = variation_table(run, every=every_variation, message=message, stop=stop)
+    view = RunView(
+        run=run,
+        model=model,
+        history=_history(run, message),
+        shown=animation_of(model, _fields(run, message)),
+        drawn=drawings_of(run, model.container),
+        brief=brief,
     )
-    with varying as variations:
-        view = RunView(
-            run=run,
-            model=model,
-            history=_history(run, message),
-            shown=animation_of(model, _fields(run, message)),
-            drawn=drawings_of(run, model.container),
-            brief=brief,
-        )
-        return html_of(_page(view, signature, variations))
+    return html_of(_page(view, signature, varied))
 
 
-def _page(
-    view: RunView, signature: Signature | None, variations: Callable[[], VariationTable | None]
-) -> Page:
-    """The sections in the order of reading; the variations are waited for last."""
+def _page(view: RunView, signature: Signature | None, varied: VariationTable | None) -> Page:
+    """The sections in the order of reading."""
     further = [] if view.brief else [modes_section, block_section, joints_section, sheet_section]
     behind = [part(view) for part in (motion_section, boxes_section)]
     proof = [part(view) for part in (*further, numerics_section, provenance_section)]
-    static, case = static_section(view), case_section(view)
-    varied = variations()
-    first = [verdict_section(view, varied), case, limits_section(view.case, view.result)]
+    first = [verdict_section(view, varied), case_section(view), limits_section(view.case, view.result)]
     return Page(
         kind=f"{'Short report' if view.brief else 'Report'} of a run",
         title=view.case.title or view.run.name,
@@ -128,7 +113,7 @@ def _page(
         signature=(signature or Signature()).completed(view.case.named),
         sections=[
             html.Group("first", first),
-            static,
+            static_section(view),
             *behind,
             variations_section(view, varied),
             *proof,

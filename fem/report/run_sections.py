@@ -16,7 +16,7 @@ from fem.case.case import Case
 from fem.figures.style import Drawing
 from fem.html import sections as html
 from fem.html.page import svg_element
-from fem.html.units import millimetres, number, quantity, ratio, short
+from fem.html.units import millimetres, number, quantity, ratio, short, typeset
 from fem.model.model import Model
 from fem.report.animation import (
     COLOURS,
@@ -29,7 +29,7 @@ from fem.report.animation import (
 from fem.report.comparison import Compared, compared_rows
 from fem.report.static_sheet import SheetLine, static_sheet
 from fem.report.stills import stills
-from fem.report.variation_table import VariationTable, Varied
+from fem.report.variations import VariationTable, Varied
 from fem.results.history import History
 from fem.results.kinds import RUN
 from fem.results.outcome import Outcome
@@ -233,16 +233,18 @@ def variations_section(view: RunView, variations: VariationTable | None) -> html
 
 def _varied_table(variations: VariationTable, *, loose: bool) -> html.Table:
     def outcome(line: Varied) -> str:
-        if line.row.outcome:
-            return f"{line.row.outcome}{' *' if line.changed else ''}"
-        return html.joined(html.marked("no outcome", "fail"), f": {line.row.reason}")
+        if line.run.outcome:
+            return f"{line.run.outcome}{' *' if line.changed else ''}"
+        return html.joined(
+            html.marked("no outcome", "fail"), f": {(line.run.error or '').partition(chr(10))[0]}"
+        )
 
     def turned(line: Varied) -> str:
-        fell = line.row.outcome == Outcome.OVERTURNED
-        return "≥ 1, fell" if fell else ratio(line.row.rotation_ratio)
+        fell = line.run.outcome == Outcome.OVERTURNED
+        return "≥ 1, fell" if fell else ratio(line.run.rotation_ratio)
 
     def length(name: str, line: Varied) -> str:
-        return millimetres(getattr(line.row, name))
+        return millimetres(getattr(line.run, name))
 
     lengths = {
         f"{'slip on floor' if loose else 'largest slip'} [mm]": "max_slip_m",
@@ -251,8 +253,8 @@ def _varied_table(variations: VariationTable, *, loose: bool) -> html.Table:
         "uplift [mm]": "max_uplift_m",
     }
     columns: list[html.Column[Varied]] = [
-        html.Column("changed", lambda line: line.variation.subject),
-        html.Column("to", lambda line: line.variation.change),
+        html.Column("changed", lambda line: line.change.in_words[0]),
+        html.Column("to", lambda line: typeset(line.change.in_words[1])),
         html.Column("outcome", outcome),
         html.Column("rotation ratio", turned, html.NUMBER),
         *(html.Column(head, partial(length, name), html.NUMBER) for head, name in lengths.items()),
@@ -272,7 +274,7 @@ def _left_out(variations: VariationTable) -> list[html.Block]:
     if not variations.left_out:
         return []
     price = quantity(variations.price, "s", figures=2)
-    listed = "; ".join(f"{one.subject} {one.change}" for one in variations.left_out)
+    listed = "; ".join(" ".join(one.in_words) for one in variations.left_out)
     return [
         html.Note(
             html.joined(

@@ -1,132 +1,169 @@
-"""The variations in the report of a run: friction, impacts, penalty, phase, vertical motion, start, strength.
+"""The variations in the report of a run: one thing changed a line.
 
-None of these is known exactly. Every variation changes one thing. Where there is time for some of them only, one of
-each subject comes first, and moderate changes come before large ones.
+The unknown inputs come first, one at a time over their ranges: those that the band of the run tried are taken as they
+are. Then what is known or chosen: the phase of the floor, its vertical motion, the start, the strength. A case of the
+`full` model is varied with `reduced`, which takes seconds instead of hours.
 """
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
-from fem.case.case import Case
+from fem.assessment.verdict import numerics_of
+from fem.case.case import Case, case_hash
 from fem.case.strength import scaled_motion
-from fem.case.uncertainty import apart_from_floor
-from fem.html.units import degrees, quantity, short
+from fem.case.uncertainty import InputChange, changes_of, largest_first
+from fem.html.units import degrees, quantity
+from fem.model.model import build_model
+from fem.results.files import write_atomically
+from fem.results.outcome import Outcome
+from fem.results.reader import OpenedRun
+from fem.results.run_result import ChangedRun, Numerics
+from fem.run.changed_runs import changed_run, cost_of, run_changes
+from fem.run.changed_runs_file import ChangedRunsFile, key_of
+from fem.run.outcome import run_without_history
+from fem.runtime.units import RATIO
 
-FRICTION_FACTORS = (0.5, 0.75, 1.25, 1.5)
-DAMPING_RATIOS = (0.5, 1.0, 2.0, 4.0)
-RESTITUTION_FACTORS = (0.9, 0.95)
-SLAB_FACTORS = (0.5, 2.0)  #: on strength and stiffness of a slab
-PENALTY_FACTORS = (1.0 / 3.0, 3.0)
 PHASES = (0.25, 0.5, 0.75)  #: of half a turn; a whole half turn is the mirror image
 STRENGTHS = (0.8, 0.9, 1.1, 1.25, 1.5, 2.0)
 ROTATIONS = (0.9, 1.1)
+BUDGET_S = 8.0  #: processor time of lines that are not asked for, by the estimate of `cost_of` [s]
 
 
-@dataclass(frozen=True, kw_only=True)
-class Variation:
-    """One thing that is changed, and to what."""
+def further_changes(case: Case) -> Iterator[InputChange]:
+    """What is tried besides the unknown inputs, in the order of the table."""
+    motion, initial = case.motion, case.initial
 
-    subject: str
-    change: str  #: for people
-    values: Mapping[str, Any]  #: dotted keys; none: the run as computed
+    def change(subject: str, to: str, values: dict[str, Any]) -> InputChange:
+        return InputChange(kind="further", values=values, share=1.0, subject=subject, to=to)
 
-    @property
-    def command(self) -> str:
-        """The options that make this run from its resolved case."""
-        return " ".join(f"--set {key}={value!r}".replace("'", "") for key, value in self.values.items())
-
-
-def variations_of(case: Case) -> Iterator[Variation]:
-    """The variations, in the order of the table."""
-    contact, motion, initial = case.contact, case.motion, case.initial
-    for factor in FRICTION_FACTORS:
-        static, kinetic = (round(factor * mu, 6) for mu in (contact.mu_static, contact.mu_kinetic))
-        yield Variation(
-            subject="friction",
-            change=f"μₛ {short(static)}, μₖ {short(kinetic)} (× {factor:g})",
-            values=apart_from_floor(case, {"contact.mu_static": static, "contact.mu_kinetic": kinetic}),
-        )
-    for factor in FRICTION_FACTORS if case.container.is_loose else ():
-        between = case.joint_friction
-        static, kinetic = (round(factor * between[name], 6) for name in ("mu_static", "mu_kinetic"))
-        yield Variation(
-            subject="friction between boxes",
-            change=f"μₛ {short(static)}, μₖ {short(kinetic)} (× {factor:g})",
-            values={"joints.mu_static": static, "joints.mu_kinetic": kinetic},
-        )
-    if (restitution := contact.restitution_over_housner) is not None:
-        for factor in RESTITUTION_FACTORS:
-            yield Variation(
-                subject="restitution",
-                change=f"{short(factor * restitution)} of Housner's (× {factor:g})",
-                values={"contact.restitution_over_housner": round(factor * restitution, 6)},
-            )
     if case.floor.is_slab:
-        for name, key in (
-            ("bearing strength", "bearing_strength_Pa"),
-            ("stiffness of the floor", "youngs_modulus_Pa"),
-        ):
-            for factor in SLAB_FACTORS:
-                values = {f"floor.{key}": factor * getattr(case.floor, key)}
-                yield Variation(subject=name, change=f"× {factor:g}", values=values)
-        yield Variation(subject="floor", change="rigid, with elastic impacts", values={"floor.kind": "rigid"})
-    for ratio in DAMPING_RATIOS if not case.floor.is_slab else ():
-        if contact.damping_ratio not in (None, ratio):
-            yield Variation(
-                subject="contact damping", change=f"ratio {ratio:g}", values={"contact.damping_ratio": ratio}
-            )
-    if not isinstance(contact.normal_penalty_Pa_m, str):
-        for factor in PENALTY_FACTORS:
-            yield Variation(
-                subject="contact penalty",
-                change=f"× {'1/3' if factor < 1.0 else '3'}",
-                values={"contact.normal_penalty_Pa_m": factor * contact.normal_penalty_Pa_m},
-            )
+        yield change("floor", "rigid, with elastic impacts", {"floor.kind": "rigid"})
     if motion.kind == "harmonic":
         for share in PHASES:
             phase = math.remainder(motion.phase_rad + share * math.pi, 2.0 * math.pi)
-            yield Variation(
-                subject="phase of the floor", change=degrees(phase, 3), values={"motion.phase_rad": phase}
-            )
-    if motion.kind != "none":
-        start = "rest" if motion.start == "moving" else "moving"
-        words = {"rest": "the floor starts with its velocity", "moving": "it moves with the floor"}
-        yield Variation(subject="start", change=f"{start}: {words[start]}", values={"motion.start": start})
+            yield change("phase of the floor", degrees(phase, 3), {"motion.phase_rad": phase})
     if case.has_vertical:
         key = "scale" if case.vertical.scale_to_m_s2 is None else "scale_to_m_s2"
         other = {f"vertical.{key}": -getattr(case.vertical, key)}
-        yield Variation(subject="vertical motion", change="the other sign", values=other)
-        yield Variation(subject="vertical motion", change="none", values={"vertical.kind": "none"})
+        yield change("vertical motion", "the other sign", other)
+        yield change("vertical motion", "none", {"vertical.kind": "none"})
     if initial.rotation_rad != 0.0:
         for factor in ROTATIONS:
             rotation = factor * initial.rotation_rad
-            yield Variation(
-                subject="start",
-                change=f"from {degrees(rotation)} (× {factor:g})",
-                values={"initial.rotation_rad": rotation},
+            yield change(
+                "start", f"from {degrees(rotation)} (× {factor:g})", {"initial.rotation_rad": rotation}
             )
-    yield from _strengths(case)
-
-
-def _strengths(case: Case) -> Iterator[Variation]:
-    """The floor's motions made stronger and weaker: the factor at which it overturns is the margin."""
-    peak = case.nominal_peak_acceleration
+    peak, both = case.nominal_peak_acceleration, case.has_vertical and motion.kind != "none"
     for factor in STRENGTHS:
         shown = f", peak {quantity(factor * peak, 'm/s²', figures=3)}" if peak else ""
-        both = ", both motions" if case.has_vertical and case.motion.kind != "none" else ""
         if values := scaled_motion(case, factor):
-            yield Variation(subject="strength", change=f"× {factor:g}{shown}{both}", values=values)
+            yield change("strength", f"× {factor:g}{shown}{', both motions' * both}", values)
 
 
-def by_importance(variations: Sequence[Variation]) -> list[int]:
-    """Indices of variations, the more important first."""
-    subjects: dict[str, list[int]] = {}
-    for index, one in enumerate(variations):
-        subjects.setdefault(one.subject, []).append(index)
-    ranked = []
-    for indices in subjects.values():
-        middle = 0.5 * (indices[0] + indices[-1])
-        ranked += [(turn, index) for turn, index in enumerate(sorted(indices, key=lambda i: abs(i - middle)))]
-    return [index for _, index in sorted(ranked)]
+@dataclass(frozen=True, kw_only=True)
+class Varied:
+    """A line of the table."""
+
+    change: InputChange
+    run: ChangedRun
+    changed: bool  #: another outcome than the first line's
+
+
+@dataclass(frozen=True, kw_only=True)
+class VariationTable:
+    """The table, with the run as computed first."""
+
+    model: str  #: with which it was computed
+    lines: tuple[Varied, ...]
+    left_out: tuple[InputChange, ...]  #: not computed
+    price: float  #: of one line, about [s]
+
+    @property
+    def changed(self) -> int:
+        """Lines with another outcome."""
+        return sum(line.changed for line in self.lines)
+
+    @property
+    def sentence(self) -> str:
+        """The table in a few words."""
+        count, outcomes = len(self.lines) - 1, [line.run.outcome for line in self.lines]
+        overturned = outcomes[1:].count(Outcome.OVERTURNED)
+        words = [
+            f"The outcome is the same in all {count}."
+            if self.changed == 0
+            else f"In {self.changed} of {count} the outcome differs."
+        ]
+        if overturned and outcomes[0] != Outcome.OVERTURNED:
+            words.append(f"It overturns in {overturned}.")
+        runs = [line.run for line in self.lines if line.run.outcome != Outcome.OVERTURNED]
+        ratios = [run.rotation_ratio for run in runs if run.rotation_ratio is not None]
+        if ratios:
+            low, high = RATIO.text(min(ratios)), RATIO.text(max(ratios))
+            reach = f"ranges from {low} to {high}" if low != high else f"is {low}"
+            words.append(f"Where it does not overturn, the rotation ratio {reach}.")
+        return " ".join(words)
+
+
+def variation_table(
+    run: OpenedRun,
+    *,
+    every: bool = False,
+    message: Callable[[str], None] = lambda text: None,
+    stop: Callable[[], bool] = lambda: False,
+) -> VariationTable | None:
+    """The table of a finished run; None if it was stopped.
+
+    Args:
+        run: its folder keeps the lines; where it cannot be written, the next report computes them again.
+        every: compute every line, however long it takes.
+        message: receives a sentence for the user where it takes time.
+        stop: asked repeatedly; true ends the work.
+    """
+    case, result, verdict = run.case, run.typed_result, run.verdict
+    known = verdict.band.members[1:] if verdict.band is not None else ()
+    status, numerics, error = result.status, result.numerics or Numerics(), None
+    if case.solver.model == "full":
+        case, known = case.with_values({"solver.model": "reduced"}), ()
+        model = build_model(case)
+        verdict, error = run_without_history(model, None)
+        numerics = numerics_of(model, 0.0)
+    model = build_model(case)
+    own = changed_run(None, model, status, verdict, None)
+    if error is not None:
+        own = ChangedRun(status="failed", error=error)
+    changes = [*changes_of(case, model.penalty), *further_changes(case)]
+    path = run.place.variations
+
+    def write(text: str) -> None:
+        with suppress(OSError):
+            write_atomically(path, text)
+
+    kept_in = ChangedRunsFile(path, case_hash=case_hash(case), write=write, message=message)
+    there = {key_of(one.values) for one in (*known, *kept_in.read())}
+    price = cost_of(numerics)
+    missing = [one for one in largest_first(changes) if key_of(one.values) not in there]
+    most = len(missing) if every else max(1, int(BUDGET_S / price))
+    left_out = missing[most:]
+    if missing[:most]:
+        message("computing variations of the run")
+    if left_out:
+        message(
+            f"variations left out, because they take longer: {len(left_out)}; --all-variations computes them"
+        )
+    wanted = [one for one in changes if one not in left_out]
+    runs = run_changes(model, wanted, numerics=numerics, stop=stop, known=known, kept_in=kept_in)
+    if any(one.status == "interrupted" for one in runs):
+        return None
+    first = InputChange(kind="further", values={}, share=0.0, subject="as computed")
+    return VariationTable(
+        model=case.solver.model,
+        lines=tuple(
+            Varied(change=change, run=one, changed=one.outcome != own.outcome)
+            for change, one in zip((first, *wanted), (own, *runs), strict=True)
+        ),
+        left_out=tuple(left_out),
+        price=price,
+    )

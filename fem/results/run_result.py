@@ -135,7 +135,7 @@ class BoxReach(BoxFigures[Reach]):
 
 
 @dataclass(frozen=True, kw_only=True)
-class BandMember(RunFigures):
+class ChangedRun(RunFigures):
     """One run of a band."""
 
     change: str = ""  #: in words; empty: the run itself
@@ -163,7 +163,7 @@ class Band(Figures[Reach]):
     left_out: tuple[str, ...] = ()  #: changes that the time did not allow
     draws_left_out: int | None = None
     boxes: tuple[BoxReach, ...] | None = None  #: of a loose stack, from the floor up
-    members: tuple[BandMember, ...] = ()  #: the run itself first
+    members: tuple[ChangedRun, ...] = ()  #: the run itself first
 
     written_where_given = keys_beside(Place.BAND) | {"boxes"}
 

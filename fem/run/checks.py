@@ -15,7 +15,7 @@ from fem.results.history import History
 from fem.results.kinds import RUN
 from fem.results.run_result import RigidCheckResult, RunResult
 from fem.run.band import rests_far_below_limits, wants_band, with_band
-from fem.run.band_checkpoint import BandCheckpoint
+from fem.run.changed_runs_file import ChangedRunsFile
 from fem.runtime.progress import Reporter
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ def add_checks(
     model: Model,
     history_of: Callable[[], History],
     wanted: WantedChecks,
-    members: BandCheckpoint | None,
+    members: ChangedRunsFile | None,
     *,
     reporter: Reporter,
     stop: Callable[[], bool],
@@ -45,7 +45,7 @@ def add_checks(
     Args:
         result, model: of the run; history_of: gives its samples.
         wanted: what is asked for.
-        members: where the finished members of a band are stored.
+        members: the file of the finished members of a band.
         reporter: of the band.
         stop: called in pauses; true ends the band.
 
@@ -67,7 +67,7 @@ def add_checks(
             result = replace(result, rigid_check=RigidCheckResult(reasons=(str(error),)))
     if lacks_band(result, model.case, wanted) and not stop():
         reporter.message("band: repeating the run over what is not known of its inputs")
-        judged = with_band(model, result, stop=stop, checkpoint=members)
+        judged = with_band(model, result, stop=stop, kept_in=members)
         if judged is not None:
             result = replace(result, verdict=judged)
     elif verdict.sure is None and wanted.band is None and rests_far_below_limits(result):

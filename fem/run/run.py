@@ -25,7 +25,7 @@ from fem.results.kinds import RUN
 from fem.results.reader import OpenedRun, open_run
 from fem.results.run_files import RunFiles, copy_data_files
 from fem.results.run_result import RunResult
-from fem.run.band_checkpoint import BandCheckpoint
+from fem.run.changed_runs_file import ChangedRunsFile
 from fem.run.checkpoint import CheckpointWriter
 from fem.run.checks import WantedChecks, add_checks, lacks_band, lacks_checks
 from fem.run.output import Start, Stopwatch, open_output, read_start
@@ -96,7 +96,12 @@ def run_case(
                 )
                 result = store(replace(result, **watch.spent()), case, place)
             # The run is safe before its checks begin, and complete after them.
-            members = BandCheckpoint(place, case_hash=request, reporter=reporter)
+
+            def write(text: str) -> None:
+                place.check()
+                place.write_text(files.band.name, text)
+
+            members = ChangedRunsFile(files.band, case_hash=request, write=write, message=reporter.warning)
             checked, block = add_checks(
                 result, model, lambda: _history_of(files), options, members, reporter=reporter, stop=stop
             )

@@ -78,7 +78,7 @@ def test_the_figures_of_a_box_have_their_ranges_over_the_band():
         max_opening_m=(0.0, 0.0),
     )
     band = run_result.Band(
-        boxes=(reach, reach, reach, replace(reach, fell=2)), members=(run_result.BandMember(status=""),) * 9
+        boxes=(reach, reach, reach, replace(reach, fell=2)), members=(run_result.ChangedRun(status=""),) * 9
     )
     run = result((2, {"max_slip_m": 0.2194, "residual_slip_m": -0.1}), band=band)
     assert box_rows(run)[1] == ("2", "0 (0 to 5.7)", "220 (100 to 250)", "about zero, up to 300", "0", "")

@@ -12,7 +12,7 @@ from fem.results.figures import BoxResult
 from fem.results.run_result import (
     ActionResult,
     Band,
-    BandMember,
+    ChangedRun,
     RunResult,
     StaticResult,
     Verdict,
@@ -36,8 +36,8 @@ def draw(mu, stiffness):
 def member(change=None, **found):
     values = {"status": "completed"} | OWN | found
     if change is None:
-        return BandMember(**values)
-    return BandMember(change=change.label, kind=change.kind, values=change.values, **values)
+        return ChangedRun(**values)
+    return ChangedRun(change=change.label, kind=change.kind, values=change.values, **values)
 
 
 def verdict(*found, left_out=(), **own):

@@ -1,8 +1,9 @@
 """The report of a run: whole, self-contained, honest about what is missing, and its refusals."""
 
 import html
+import json
 import re
-from dataclasses import replace
+import shutil
 
 import pytest
 from markupsafe import escape
@@ -11,11 +12,10 @@ from fem.__main__ import main
 from fem.case.case import load_case, read_case
 from fem.html.units import typeset
 from fem.model.model import build_model
-from fem.report import variation_table as variation_table_module
+from fem.report import variations
 from fem.report.animation import animation_of
 from fem.report.run_page import Signature, run_report
-from fem.report.variation_table import variation_table, variations_meanwhile
-from fem.report.variations import by_importance, variations_of
+from fem.report.variations import variation_table
 from fem.results.reader import open_run
 from fem.run.run import RunOptions, run_case
 
@@ -39,11 +39,6 @@ def folder(tmp_path_factory):
 @pytest.fixture(scope="module")
 def page(folder):
     return run_report(open_run(folder), signature=Signature(author="A. Author <a@b>"), every_variation=True)
-
-
-def without_band(run):
-    """The result of a run whose variations are not known yet."""
-    return replace(run.typed_result, verdict=replace(run.typed_result.verdict, band=None))
 
 
 def test_the_page_has_every_part_in_the_order_of_reading(page):
@@ -79,62 +74,52 @@ def test_the_animation_of_a_rigid_run_has_no_stress(tmp_path):
 
 def test_variations_are_kept_beside_the_run(folder, page):
     said, run = [], open_run(folder)
-    table = variation_table(run.case, run.place.variations, result=run.typed_result, message=said.append)
-    assert said == []
-    assert table.left_out == () and all(escape(line.variation.change) in page for line in table.lines)
+    table = variation_table(run, message=said.append)
+    assert said == [] and table.left_out == ()
+    shown = [typeset(word) for line in table.lines for word in line.change.in_words]
+    assert all(escape(word) in page for word in shown)
 
 
 def test_variations_that_take_long_are_named_and_computed_when_asked_for(folder, tmp_path, monkeypatch):
-    run = open_run(folder)
-    kept = tmp_path / "variations.json"
-    some = [one for one in variations_of(run.case) if one.subject in ("contact damping", "contact penalty")]
-    monkeypatch.setattr(variation_table_module, "variations_of", lambda case: some)
-    monkeypatch.setattr(variation_table_module, "AFFORDED_S", 0.0)
-    short = variation_table(run.case, kept, result=run.typed_result)
-    known = {line.variation.command: line.row for line in short.lines}
-    assert len(known) == 4  # the run itself and those members of its band that differ in one thing
-    assert [one.change for one in short.left_out] == ["ratio 0.5", "× 1/3"]
-    again = variation_table(run.case, kept, result=run.typed_result)
-    assert again == short  # a second report does not compute them unasked
-    full = variation_table(run.case, kept, result=run.typed_result, every=True)
-    assert full.left_out == ()
-    # A run without known rows gets the same ones.
-    bare = without_band(run)
-    fresh = variation_table(run.case, tmp_path / "other.json", result=bare, every=True)
-    assert [line.row for line in fresh.lines] == [line.row for line in full.lines]
+    copied = shutil.copytree(folder, tmp_path / "copied")
+    (copied / "variations.json").unlink(missing_ok=True)
+    run, said = open_run(copied), []
+    monkeypatch.setattr(variations, "BUDGET_S", 0.0)
+    short = variation_table(run, message=said.append)
+    known = [line.run for line in short.lines]
+    assert known[1].kind == "one"  # of the band
+    assert (
+        len(short.left_out) > 5 and f"left out, because they take longer: {len(short.left_out)}" in said[-1]
+    )
+    full = variation_table(run, every=True)
+    assert full.left_out == () and {one.change for one in known} < {line.run.change for line in full.lines}
+    assert variation_table(run).lines == full.lines  # kept
+    # A run without a band gets the same ones.
+    (copied / "variations.json").unlink()
+    result = json.loads((copied / "run.json").read_text())
+    result["verdict"]["band"] = None
+    (copied / "run.json").write_text(json.dumps(result))
+    fresh = variation_table(open_run(copied), every=True)
+    assert [(one.run.change, one.run.outcome, one.run.rotation_ratio) for one in fresh.lines] == [
+        (one.run.change, one.run.outcome, one.run.rotation_ratio) for one in full.lines
+    ]
 
 
 def test_variations_of_a_full_run_begin_with_the_run_as_reduced(folder, tmp_path, monkeypatch):
-    run = open_run(folder)
-    some = [one for one in variations_of(run.case) if one.subject == "contact penalty"]
-    monkeypatch.setattr(variation_table_module, "variations_of", lambda case: some)
-    monkeypatch.setattr(variation_table_module, "AFFORDED_S", 0.0)
-    case = run.case.with_values({"solver.model": "full"})
-    table = variation_table(case, tmp_path / "v.json", result=run.typed_result)
-    assert [line.variation.subject for line in table.lines] == ["as computed"]
-    assert table.lines[0].row.outcome == run.typed_result.verdict.outcome
-    assert list(table.left_out) == some and table.model == "reduced"
+    copied = shutil.copytree(folder, tmp_path / "copied")
+    (copied / "variations.json").unlink(missing_ok=True)
+    resolved = (copied / "resolved.toml").read_text().replace('model = "reduced"', 'model = "full"')
+    (copied / "resolved.toml").write_text(resolved)
+    monkeypatch.setattr(variations, "BUDGET_S", 0.0)
+    table = variation_table(open_run(copied))
+    assert table.model == "reduced" and [line.change.subject for line in table.lines[:1]] == ["as computed"]
+    assert table.lines[0].run.outcome == open_run(folder).verdict.outcome and len(table.lines) == 2
 
 
-def test_who_leaves_a_report_does_not_wait_for_its_variations(folder, tmp_path):
-    run, kept = open_run(folder), tmp_path / "variations.json"
-    endless = run.case.with_values({"solver.duration_s": 1e4})
-    bare = without_band(run)
-    with (
-        pytest.raises(OSError, match="disk"),
-        variations_meanwhile(endless, kept, result=bare, every=True),
-    ):
-        raise OSError("disk")
-    assert not kept.exists()
-
-
-def test_moderate_variations_of_every_subject_come_first(folder):
-    variations = list(variations_of(open_run(folder).case))
-    first = [variations[index] for index in by_importance(variations)]
-    subjects = {one.subject for one in variations}
-    assert {one.subject for one in first[: len(subjects)]} == subjects
-    frictions = [one.change.rpartition("× ")[2] for one in first if one.subject == "friction"]
-    assert frictions == ["0.75)", "1.25)", "0.5)", "1.5)"]
+def test_a_report_that_is_stopped_has_no_variations(folder, tmp_path):
+    copied = shutil.copytree(folder, tmp_path / "copied")
+    (copied / "variations.json").unlink(missing_ok=True)
+    assert variation_table(open_run(copied), every=True, stop=lambda: True) is None
 
 
 @pytest.mark.parametrize(

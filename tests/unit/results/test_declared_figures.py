@@ -11,7 +11,7 @@ from fem.batch.runner import run_chunk
 from fem.case.case import load_case
 from fem.report.sweep_page import QUANTITIES
 from fem.results.figures import BOX_FIGURES, FIGURES, SCALARS, BoxResult, Place, keys_of, summary_order
-from fem.results.run_result import Band, BandMember, RunResult, Verdict
+from fem.results.run_result import Band, ChangedRun, RunResult, Verdict
 from fem.site_check.result import SiteRun
 from fem.site_check.runs import COLUMNS
 from fem.sweep.table import FOUND
@@ -36,7 +36,7 @@ def test_a_figure_is_a_key_of_run_json_and_comes_back():
 
 def test_a_member_of_a_band_and_its_ranges_have_the_figures_of_a_band_and_no_others():
     banded = set(keys_of(Place.BAND))
-    member = BandMember(status="completed", **FULL.figures(Place.BAND)).to_json()
+    member = ChangedRun(status="completed", **FULL.figures(Place.BAND)).to_json()
     reach = Band(**dict.fromkeys(banded, (0.1, 0.5)))
     assert set(OF_FIELDS) & member.keys() == banded == set(OF_FIELDS) & reach.to_json().keys()
     assert Band.from_json(json.loads(json.dumps(reach.to_json()))) == reach

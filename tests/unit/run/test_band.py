@@ -16,7 +16,8 @@ from fem.model.recovery import recovery_of
 from fem.results.kinds import read_result
 from fem.results.run_result import ActionResult, Numerics, RunResult, StaticResult, Verdict
 from fem.run import band
-from fem.run.band import cost_of, plan_of, wants_band
+from fem.run.band import plan_of, wants_band
+from fem.run.changed_runs import DRAWN_TOLERANCE, SHORT_S, cost_of
 from fem.run.recorder import Recorder
 from fem.run.run import RunOptions, run_case
 from fem.run.simulation import simulate
@@ -87,7 +88,7 @@ def test_members_side_by_side_are_the_runs_one_by_one(tmp_path, model):
     members = verdict_with_band(tmp_path, case).band.members
     assert len(members) >= 10
     for one in members[1:]:
-        coarser = {"solver.energy_tolerance": band.DRAWN_TOLERANCE} if one.kind == "draw" else {}
+        coarser = {"solver.energy_tolerance": DRAWN_TOLERANCE} if one.kind == "draw" else {}
         alone = build_model(case.with_values(one.values | coarser))
         recorder = Recorder(alone, recovery_of(alone) if model == "reduced" else None)
         simulate(alone, recorder)
@@ -115,23 +116,24 @@ class TestWhatDoesNotFitTheTime:
     case = load_case("seed_stack_plateau", ["solver.model=rigid"])
     model = build_model(case)
 
+    def numerics(self, steps):
+        return Numerics(steps=steps, rejected=0, contact_nodes=27, unknowns=77)
+
     def plan(self, steps, **case):
         model = replace(self.model, case=self.case.with_values(case)) if case else self.model
-        numerics = Numerics(steps=steps, rejected=0, contact_nodes=27, unknowns=77)
-        return plan_of(model, result("rock", numerics=numerics))
+        return plan_of(model, result("rock", numerics=self.numerics(steps)))
 
     def test_a_cheap_band_is_whole_and_needs_no_checkpoints(self):
-        plan = self.plan(1000)
-        assert plan.left_out == () and plan.short
+        assert self.plan(1000).left_out == () and cost_of(self.numerics(1000)) < SHORT_S
 
     def test_draws_are_left_out_before_changes_of_one_input(self):
         plan = self.plan(50_000)
-        assert {one.kind for one in plan.left_out} == {"draw"} and plan.short
+        assert {one.kind for one in plan.left_out} == {"draw"}
         assert {one.kind for one in plan.changes} == {"one", "pair", "draw"}
 
     def test_of_a_dear_band_one_change_of_each_of_the_first_inputs_stays(self):
         plan = self.plan(10_000_000)
-        assert not plan.short and len(plan.changes) == band.LEAST_MEMBERS
+        assert len(plan.changes) == band.LEAST_MEMBERS
         inputs = [one.inputs for one in plan.changes]
         assert len(set(inputs)) == len(inputs) and inputs[0] == ("contact.mu_kinetic",)
         assert plan.changes[0].label == "contact.mu_kinetic = 0.4"

@@ -15,24 +15,24 @@ import fem.run.simulation
 from fem.__main__ import main
 from fem.case.case import case_hash
 from fem.results.kinds import read_result
-from fem.run import band
-from fem.run.band_checkpoint import BandCheckpoint
+from fem.run import changed_runs
+from fem.run.changed_runs_file import ChangedRunsFile
 
 SHORT = ("solver.duration_s=0.5", "output.fields_s=0", "output.figures=false", "uncertainty.draws=2")
 MODELS = {"reduced": (), "full": (*COARSE, "solver.duration_s=0.06")}
 #: the command line, which waits for ever when its third member begins
 KILLED = """
 import sys, time
-from fem.run import band
-band.cores = lambda: 1
-stepping, count = band.simulate, [0]
+from fem.run import changed_runs
+changed_runs.cores = lambda: 1
+stepping, count = changed_runs.simulate, [0]
 def step_or_wait(*arguments, **options):
     count[0] += 1
     if count[0] == 3:
         print(flush=True)
         time.sleep(600.0)
     return stepping(*arguments, **options)
-band.simulate = step_or_wait
+changed_runs.simulate = step_or_wait
 from fem.__main__ import main
 main(sys.argv[1:])
 """
@@ -47,14 +47,14 @@ def one_by_one(monkeypatch):
     monkeypatch.setattr(fem.run.simulation, "SLICE_FULL", 0.02)
     monkeypatch.setattr(fem.run.simulation, "SLICE_REDUCED", 0.2)
     monkeypatch.setattr(fem.run.simulation, "FIRST_PAUSE", 400)
-    monkeypatch.setattr(band, "cores", lambda: 1)
-    monkeypatch.setattr(band, "SHORT_S", 0.0)  # each member is stepped in pauses and noted
+    monkeypatch.setattr(changed_runs, "cores", lambda: 1)
+    monkeypatch.setattr(changed_runs, "SHORT_S", 0.0)  # each member is stepped in pauses and noted
 
 
 @pytest.mark.parametrize("model", MODELS)
 def test_a_band_cut_off_after_every_member_is_the_band_left_alone(tmp_path, monkeypatch, one_by_one, model):
     assert main(command(tmp_path / "whole", *MODELS[model])) == 0
-    stepping, begun, cuts = band.simulate, [], 0
+    stepping, begun, cuts = changed_runs.simulate, [], 0
 
     def step(model, recorder, **options):
         begun.append(case_hash(model.case))
@@ -62,7 +62,7 @@ def test_a_band_cut_off_after_every_member_is_the_band_left_alone(tmp_path, monk
             return one_slice(stepping, model, recorder, **options)
         return stepping(model, recorder, **options)
 
-    monkeypatch.setattr(band, "simulate", step)
+    monkeypatch.setattr(changed_runs, "simulate", step)
     finished = []
     while main(command(tmp_path / "cut", *MODELS[model])) == 4:
         assert read_result(tmp_path / "cut" / "run.json")["verdict"]["band"] is None
@@ -85,13 +85,13 @@ def test_a_band_killed_within_a_member_continues_with_the_finished_ones(tmp_path
         process.wait()
         process.stdout.close()
     assert len(json.loads((tmp_path / "cut" / "band.json").read_text())["members"]) == 2
-    stepping, begun = band.simulate, []
+    stepping, begun = changed_runs.simulate, []
 
     def step(model, recorder, **options):
         begun.append(case_hash(model.case))
         return stepping(model, recorder, **options)
 
-    monkeypatch.setattr(band, "simulate", step)
+    monkeypatch.setattr(changed_runs, "simulate", step)
     assert main(command(tmp_path / "cut", *MODELS["full"])) == 0
     assert len(begun) == 4  # of six
     require_same(tmp_path / "cut", tmp_path / "whole")
@@ -103,7 +103,7 @@ def test_members_that_cannot_be_trusted_are_reported_and_computed_again(
     rigid = ("solver.model=rigid",)
     assert main(command(tmp_path / "whole", *rigid)) == 0
     with monkeypatch.context() as patch:
-        patch.setattr(band, "simulate", partial(one_slice, band.simulate))
+        patch.setattr(changed_runs, "simulate", partial(one_slice, changed_runs.simulate))
         assert main(command(tmp_path / "cut", *rigid)) == 4
     (tmp_path / "cut" / "band.json").write_text('{"case_hash": "theirs"}')
     capsys.readouterr()
@@ -117,13 +117,13 @@ def test_a_band_that_cannot_be_stored_ends_at_once(tmp_path, monkeypatch):
     def no_room(*_):
         raise OSError(28, "No space left on device", "band.json")
 
-    monkeypatch.setattr(BandCheckpoint, "write_members", no_room)
-    begun, stepping = [], band.simulate
+    monkeypatch.setattr(ChangedRunsFile, "store", no_room)
+    begun, stepping = [], changed_runs.simulate
     monkeypatch.setattr(
-        band, "simulate", lambda *rest, **options: begun.append(1) or stepping(*rest, **options)
+        changed_runs, "simulate", lambda *rest, **options: begun.append(1) or stepping(*rest, **options)
     )
-    monkeypatch.setattr(band, "cores", lambda: 1)
-    monkeypatch.setattr(band, "SHORT_S", 0.0)
+    monkeypatch.setattr(changed_runs, "cores", lambda: 1)
+    monkeypatch.setattr(changed_runs, "SHORT_S", 0.0)
     assert main(command(tmp_path / "r", "solver.model=rigid")) == 3
     assert len(begun) == 1
     assert read_result(tmp_path / "r" / "run.json")["status"] == "completed"

@@ -12,7 +12,7 @@ from fem.figures.run import figures_of
 from fem.model.model import build_model
 from fem.report.animation import animation_of
 from fem.report.run_page import run_report
-from fem.report.variations import variations_of
+from fem.report.variations import further_changes
 from fem.response.request import ResponseRequest
 from fem.results.reader import open_run
 from fem.run.run import RunOptions, run_case
@@ -157,9 +157,9 @@ def test_a_floor_that_falls_away_and_a_jerk_are_told_before_the_run(capsys):
 
 
 def test_variations_try_the_other_sign_and_strengthen_both_motions():
-    changed = [one.values for one in variations_of(load_case("seed_stack_plateau", VERTICAL))]
+    changed = [one.values for one in further_changes(load_case("seed_stack_plateau", VERTICAL))]
     assert {"vertical.scale": 1.0} in changed
     assert {"vertical.kind": "none"} in changed
     assert {"motion.peak_acceleration_m_s2": 8.0, "vertical.peak_acceleration_m_s2": 6.0} in changed
-    plain = [one.values for one in variations_of(load_case("seed_stack_plateau"))]
+    plain = [one.values for one in further_changes(load_case("seed_stack_plateau"))]
     assert not [values for values in plain if any(key.startswith("vertical") for key in values)]

@@ -1,0 +1,182 @@
+"""Runs of a case with some inputs changed, side by side on the container of the run.
+
+A member of a band and a variation in a report are both such a run. Those of rigid and reduced models that take seconds
+run without a history; of a bolted stack those that change one unknown input have one, for the forces in its joints.
+Long ones and those of the `full` model have one. How many fit a budget follows from the sizes and steps of the run,
+not from the clock, so that a resumed or repeated study is the same.
+"""
+
+import threading
+import time
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+
+from fem.assessment.joint_demands import joint_demands
+from fem.assessment.ranges import largest_bolt_forces
+from fem.assessment.verdict import verdict_of
+from fem.case.uncertainty import InputChange, apart_from_floor
+from fem.case.unknown_inputs import TOLERANCE
+from fem.model.joints import Joints, joints_of
+from fem.model.model import Model, build_model
+from fem.model.recovery import Recovery, recovery_of
+from fem.model.validity import runs_in_memory
+from fem.results.figures import Place
+from fem.results.outcome import Outcome
+from fem.results.run_result import ChangedRun, JointDemand, Numerics, Verdict
+from fem.run.changed_runs_file import ChangedRunsFile, key_of
+from fem.run.outcome import run_without_history
+from fem.run.recorder import Recorder
+from fem.run.simulation import simulate
+from fem.runtime.threads import cores
+from fem.solid.nodal_body import full_model_memory
+
+SHORT_S = 5.0  #: estimated processor time up to which a run is stepped in one go [s]
+COST = 1.2  #: of a changed run over the run: stiffer floors and tighter tolerances take more steps
+#: processor time of one attempted step of a modal model: fixed, by (base points)^2, by unknowns x 2 base points [s].
+#: Measured: 0.42e-6 (rigid) and 0.87e-6 (20 modes) on corners, 4.3e-6 (feet), 5.6e-6 and 25e-6 (flat)
+STEP_COST = (0.4e-6, 7e-9, 5e-9)
+DRAWN_TOLERANCE = 10.0  #: energy tolerance of draws at least, as of maps: 0.01 to 10 give the same outcomes
+STORED_S = 1.0  #: wall time between two notes of finished runs
+
+
+@dataclass(frozen=True, kw_only=True)
+class Shared:
+    """What all runs take from the container that they share."""
+
+    short: bool  #: they are stepped in one go
+    recovery: Recovery | None  #: of stresses
+    joints: Joints | None  #: of a stack
+
+
+def cost_of(numerics: Numerics) -> float:
+    """Processor time that a changed run of a modal model takes, about, from the steps and sizes of its run [s]."""
+    points, unknowns = numerics.contact_nodes or 0, numerics.unknowns or 0
+    fixed, by_points, by_unknowns = STEP_COST
+    step = fixed + by_points * points**2 + by_unknowns * unknowns * 2 * points
+    return COST * step * max(1, (numerics.steps or 0) + (numerics.rejected or 0))
+
+
+def run_changes(
+    model: Model,
+    changes: Sequence[InputChange],
+    *,
+    numerics: Numerics,
+    stop: Callable[[], bool],
+    known: Iterable[ChangedRun] = (),
+    kept_in: ChangedRunsFile | None = None,
+) -> list[ChangedRun]:
+    """One run for each change, side by side; a problem of any kind is its error, never an outcome.
+
+    Args:
+        model: of the run; the mesh and modes of its container serve every change.
+        changes: what to change.
+        numerics: of the run.
+        stop: called in pauses; true ends the work.
+        known: finished runs that need no computing.
+        kept_in: a file of finished runs, to resume from and to add to.
+
+    Returns:
+        The runs in the order of the changes; those not finished have the status "interrupted".
+
+    Raises:
+        OSError: the file could not be written; the other runs have stopped then.
+    """
+    case = model.case
+    short = case.solver.model != "full" and cost_of(numerics) <= SHORT_S
+    shared = Shared(
+        short=short,
+        recovery=recovery_of(model) if case.solver.model == "reduced" else None,
+        joints=joints_of(model) if short else None,
+    )
+    kept = {key_of(one.values): one for one in (kept_in.read() if kept_in else ())}
+    found = {key_of(one.values): one for one in known} | kept
+    one_at_a_time, broken = threading.Lock(), threading.Event()
+    stored, unstored = time.monotonic(), False
+
+    def halted() -> bool:
+        return stop() or broken.is_set()
+
+    def run_of(change: InputChange) -> ChangedRun:
+        nonlocal stored, unstored
+        key = key_of(change.values)
+        if key in found:
+            return replace(found[key], kind=change.kind, change=change.label)
+        if halted():
+            return _without_outcome(change, "interrupted")
+        try:
+            one = _run_changed(model, change, shared, halted)
+            with one_at_a_time:
+                if one.status != "interrupted":
+                    found[key] = kept[key] = one
+                    unstored = True
+                    if kept_in and (not short or time.monotonic() - stored > STORED_S):
+                        kept_in.store(list(kept.values()))
+                        stored, unstored = time.monotonic(), False
+        except BaseException:
+            broken.set()  # stops the others
+            raise
+        return one
+
+    workers = min(cores(), max(1, len(changes)))
+    if case.solver.model == "full":
+        workers = runs_in_memory(workers, full_model_memory(len(model.container.elements.nodes)))
+    with ThreadPoolExecutor(max_workers=workers) as pool:
+        runs = list(pool.map(run_of, changes))
+    if kept_in and unstored:
+        kept_in.store(list(kept.values()))
+    return runs
+
+
+def _run_changed(run: Model, change: InputChange, shared: Shared, stop: Callable[[], bool]) -> ChangedRun:
+    try:
+        values = {**change.values, "output.fields_s": 0.0}
+        if change.kind == "draw":
+            values[TOLERANCE] = max(DRAWN_TOLERANCE, run.case.solver.energy_tolerance)
+        case = run.case.with_values(apart_from_floor(run.case, values))
+        model = build_model(case, run.container)
+        if shared.short and (change.kind != "one" or case.container.bolted_joints == 0):
+            verdict, error = run_without_history(model, shared.recovery)
+            status = "overturned" if verdict.outcome == Outcome.OVERTURNED else "completed"
+            if error is not None:
+                return _without_outcome(change, "failed", error)
+            return changed_run(change, model, status, verdict, None)
+        recorder = Recorder(model, shared.recovery, joints=shared.joints)
+        ending = simulate(model, recorder, stop=stop)
+    # bad input, no equilibrium, a singular matrix
+    except (ValueError, ArithmeticError, RuntimeError) as problem:
+        return _without_outcome(change, "failed", str(problem))
+    if ending.status not in ("completed", "overturned"):
+        return _without_outcome(change, ending.status, ending.error)
+    history = recorder.history()
+    verdict = verdict_of(model, history, recorder.largest_von_mises)
+    joints = joint_demands(model, history) if shared.short else None
+    return changed_run(change, model, ending.status, verdict, joints)
+
+
+def changed_run(
+    change: InputChange | None,
+    model: Model,
+    status: str,
+    verdict: Verdict,
+    joints: Sequence[JointDemand] | None,
+) -> ChangedRun:
+    """The changed run of a verdict; without a change, the run itself."""
+    tension, shear = largest_bolt_forces(joints) if joints else (None, None)
+    return replace(
+        _without_outcome(change, status),
+        normal_penalty_Pa_m=None if model.case.floor.is_slab else model.penalty,
+        damping_ratio=model.damping_ratio,
+        outcome=verdict.outcome,
+        **verdict.figures(Place.BAND) | {"bolt_tension_N": tension, "bolt_shear_N": shear},
+        boxes=verdict.boxes,
+        fell_box=verdict.fell_box,
+    )
+
+
+def _without_outcome(change: InputChange | None, status: str, error: str | None = None) -> ChangedRun:
+    if change is None:
+        return ChangedRun(status=status)
+    return ChangedRun(
+        change=change.label, kind=change.kind, values=dict(change.values), status=status, error=error
+    )
