@@ -18,6 +18,7 @@ from fem.assessment.code_note import code_note
 from fem.assessment.floor_words import floor_rows
 from fem.assessment.joint_tables import joint_tables, titled_table
 from fem.assessment.loose_boxes import box_table, fall_in_words, joints_in_words, largest_joint_slip
+from fem.assessment.margin_words import margin_in_words
 from fem.assessment.motion_words import covered_in_words, missing_peak, motion_in_words
 from fem.assessment.ranges import bolt_forces, crushes, in_words, largest_ratio, largest_slip
 from fem.assessment.rule_or_run import governing
@@ -35,8 +36,8 @@ BAND_NOTE = (
     "inputs, not on this run."
 )
 MARGIN_NOTE = (
-    "The rotation ratio is not a margin. The margin is the factor on the motion at which the container overturns; a "
-    "sweep over motions finds it."
+    "The rotation ratio is not a margin. The margin is the factor on the motion at which the container overturns; "
+    "--margin finds it."
 )
 
 
@@ -90,7 +91,7 @@ def _parts(result: run_result.RunResult, folder: Path) -> Iterator[RenderableTyp
     yield from box_table(result)
     if result.joints:
         yield from joint_tables(result.joints, verdict)
-    if verdict.outcome in ROCKING:
+    if verdict.outcome in ROCKING and verdict.margin is None:
         yield Text(f"{MARGIN_NOTE}\n")
     if verdict.band is not None:
         yield Text(f"{BAND_NOTE}\n")
@@ -106,7 +107,8 @@ def outcome_sentence(result: run_result.RunResult) -> str:
     found = _found(result)
     if result.status in ("interrupted", "running"):
         return f"Not finished ({result.status}). So far: {found}."
-    return " ".join(part for part in (f"Result: {found}.", sureness_in_words(result)) if part)
+    parts = (margin_in_words(result.verdict), f"Result: {found}.", sureness_in_words(result))
+    return " ".join(part for part in parts if part)
 
 
 def _found(result: run_result.RunResult) -> str:

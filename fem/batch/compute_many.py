@@ -28,6 +28,7 @@ def compute_many(
     jobs: int | None = None,
     *,
     band: bool | None = None,
+    margin: bool | None = None,
     check_rigid: bool = False,
     errors: Literal["raise"] = "raise",
 ) -> list[Run]: ...
@@ -37,6 +38,7 @@ def compute_many(
     jobs: int | None = None,
     *,
     band: bool | None = None,
+    margin: bool | None = None,
     check_rigid: bool = False,
     errors: Literal["return"],
 ) -> list[Run | ValueError]: ...
@@ -45,6 +47,7 @@ def compute_many(
     jobs: int | None = None,
     *,
     band: bool | None = None,
+    margin: bool | None = None,
     check_rigid: bool = False,
     errors: Literal["raise", "return"] = "raise",
 ) -> Sequence[Run | ValueError]:
@@ -57,7 +60,7 @@ def compute_many(
     Args:
         cases: from `fem.load_case`, `fem.case_from` or `case.replace`, of any models.
         jobs: cores to use; default: all.
-        band, check_rigid: as for `fem.compute`.
+        band, margin, check_rigid: as for `fem.compute`.
         errors: "raise" that of the first case that cannot be computed, which is looked for before any is computed; or
             "return" it in place of its run.
 
@@ -94,7 +97,7 @@ def compute_many(
     for number, case in enumerate(asked):
         first.setdefault(container_key(case), number)
     order = sorted(range(len(asked)), key=lambda number: first[container_key(asked[number])])
-    work = partial(_compute, WantedChecks(check_rigid=check_rigid, band=band), len(asked))
+    work = partial(_compute, WantedChecks(check_rigid=check_rigid, band=band, margin=margin), len(asked))
     with LocalWorkers(jobs, WORTH_PROCESSES if script is None else IN_THREADS) as workers_of:
         for model in WORTH_PROCESSES:
             items = [(n, asked[n]) for n in order if asked[n].solver.model == model and n not in runs]

@@ -32,6 +32,13 @@ def run(
             help="Repeat it over what is not known; default: all but a plain rest and the full model.",
         ),
     ] = None,
+    margin: Annotated[
+        bool | None,
+        Parameter(
+            show_default=False,
+            help="Find the factor on the motion at which it overturns; default: unless --no-band or dear.",
+        ),
+    ] = None,
     resume: console.Resume = False,
     force: console.Force = False,
     dry_run: Annotated[bool, console.flag("Print the plan and exit.")] = False,
@@ -53,7 +60,7 @@ def run(
         return 0
     # Loaded late: bad input is refused before anything is compiled.
     solver = importlib.import_module("fem.run.run")
-    options = solver.RunOptions(check_rigid=check_rigid, band=band, resume=resume, force=force)
+    options = solver.RunOptions(check_rigid=check_rigid, band=band, margin=margin, resume=resume, force=force)
     result = solver.run_case(
         loaded,
         case_text=text_with_overrides(loaded),
@@ -74,7 +81,10 @@ def run(
             file=sys.stderr,
         )
     elif stopped:
-        print("interrupted during the sensitivity runs; run the same command to continue", file=sys.stderr)
+        print(
+            "interrupted while it was repeated with other inputs; run the same command to continue",
+            file=sys.stderr,
+        )
     return console.EXIT_CODES["interrupted" if stopped else result.status]
 
 

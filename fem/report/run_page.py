@@ -185,7 +185,7 @@ def _reading(view: RunView, variations: VariationTable | None) -> Iterator[str]:
         "What happened under this one motion. This is a study, not a verification, and says nothing about other "
         "motions. "
     )
-    if view.verdict.outcome in ROCKING:
+    if view.verdict.outcome in ROCKING and view.verdict.margin is None:
         yield f"{MARGIN_NOTE} "
     if variations is not None and (count := len(variations.lines) - 1):
         yield html.link(f"{variations.changed} of {count} variations", "variations")

@@ -169,6 +169,25 @@ class Band(Figures[Reach]):
 
 
 @dataclass(frozen=True, kw_only=True)
+class Margin(JsonBlock):
+    """How much stronger the motion may be (`fem.run.margin`); factors on the whole motion of the run."""
+
+    factor: float | None = None  #: of the first overturning; None: none was found
+    stands_up_to: float | None = (
+        None  #: the largest factor below it that was tried; None: none stood, or none fell
+    )
+    #: least and largest factor of the first overturning over the draws and the run; `high` None: not in all of them
+    low: float | None = None
+    high: float | None = None
+    draws: int = 0  #: in which all unknown inputs are drawn
+    draws_standing: int = 0  #: those that stand under the largest factor, too
+    islands: tuple[tuple[float, float], ...] = ()  #: [from, to] beyond `factor` where it stands again
+    least_tried: float
+    largest_tried: float
+    runs: int  #: with the inputs of the run, besides itself
+
+
+@dataclass(frozen=True, kw_only=True)
 class Verdict(RunFigures):
     """Outcome, extremes and events of a run."""
 
@@ -183,6 +202,7 @@ class Verdict(RunFigures):
     sure: str | None = None  #: sure | regime unsure | unsure; None: not tried
     decided_by: tuple[str, ...] = ()  #: inputs that change the outcome, the one of the smallest change first
     band: Band | None = None
+    margin: Margin | None = None
 
     #: the forces in bolts of a run are those of its joints
     written_where_given = frozenset(

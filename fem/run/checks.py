@@ -1,6 +1,6 @@
-"""Checks of a finished run, where they are wanted and missing: the rigid block, the band over what is not known.
+"""Checks of a finished run, where they are wanted and missing: rigid block, band over what is not known, margin.
 
-Both can be added to a run that was finished without them.
+All can be added to a run that was finished without them.
 """
 
 import importlib
@@ -16,6 +16,7 @@ from fem.results.kinds import RUN
 from fem.results.run_result import RigidCheckResult, RunResult
 from fem.run.band import rests_far_below_limits, wants_band, with_band
 from fem.run.changed_runs_file import ChangedRunsFile
+from fem.run.margin import margin_of, wants_margin
 from fem.runtime.progress import Reporter
 
 if TYPE_CHECKING:
@@ -28,6 +29,7 @@ class WantedChecks:
 
     check_rigid: bool = False
     band: bool | None = None  #: None: wherever it takes no longer than it is worth
+    margin: bool | None = None  #: None: wherever it takes seconds, and a band is not refused
 
 
 def add_checks(
@@ -40,14 +42,14 @@ def add_checks(
     reporter: Reporter,
     stop: Callable[[], bool],
 ) -> tuple[RunResult, "RigidCheck | None"]:
-    """Add the rigid check and the band to a finished run, where they are wanted and missing.
+    """Add the rigid check, the band and the margin to a finished run, where they are wanted and missing.
 
     Args:
         result, model: of the run; history_of: gives its samples.
         wanted: what is asked for.
         members: the file of the finished members of a band.
-        reporter: of the band.
-        stop: called in pauses; true ends the band.
+        reporter: of band and margin.
+        stop: called in pauses; true ends them.
 
     Returns:
         The result with them, the same object where nothing was added; and the comparison with the rigid block, where
@@ -72,12 +74,29 @@ def add_checks(
             result = replace(result, verdict=judged)
     elif verdict.sure is None and wanted.band is None and rests_far_below_limits(result):
         result = replace(result, verdict=replace(verdict, sure=SURE))
+    if lacks_margin(result, model.case, wanted) and not stop():
+        reporter.message("margin: repeating the run under stronger and weaker motions")
+        margin = margin_of(model, result, drawn=wanted.band is not False, stop=stop)
+        if margin is not None:
+            result = replace(result, verdict=replace(result.verdict or verdict, margin=margin))
     return result, check
 
 
 def lacks_checks(result: RunResult, case: Case, wanted: WantedChecks) -> bool:
-    """Whether a finished run is still to have its rigid check or its band."""
-    return _lacks_rigid_check(result, case, wanted) or lacks_band(result, case, wanted)
+    """Whether a finished run is still to have its rigid check, its band or its margin."""
+    return (
+        _lacks_rigid_check(result, case, wanted)
+        or lacks_band(result, case, wanted)
+        or lacks_margin(result, case, wanted)
+    )
+
+
+def lacks_margin(result: RunResult, case: Case, wanted: WantedChecks) -> bool:
+    """Whether a finished run is still to have its margin."""
+    verdict = result.verdict
+    if verdict is None or verdict.margin is not None or (wanted.band is False and not wanted.margin):
+        return False
+    return wants_margin(wanted.margin, case, result)
 
 
 def lacks_band(result: RunResult, case: Case, wanted: WantedChecks) -> bool:

@@ -77,7 +77,9 @@ class Run:
         return pyvista_grid(self.frame(time))
 
 
-def compute(case: Case, *, band: bool | None = None, check_rigid: bool = False) -> Run:
+def compute(
+    case: Case, *, band: bool | None = None, margin: bool | None = None, check_rigid: bool = False
+) -> Run:
     """Compute a case in memory; no file is written.
 
     It is the computation of `python -m fem run`, with the same numbers. The first one after installation compiles the
@@ -88,6 +90,8 @@ def compute(case: Case, *, band: bool | None = None, check_rigid: bool = False) 
         case: from `fem.load_case` or `fem.case_from`.
         band: repeat the run over its unknown inputs, for `verdict.sure`; default: all but a plain rest
             and the full model, as the command.
+        margin: repeat it under stronger and weaker motions, for `verdict.margin`; default: where that takes
+            seconds, unless `band` is False.
         check_rigid: compare it with the analytic rigid block.
 
     Returns:
@@ -97,7 +101,7 @@ def compute(case: Case, *, band: bool | None = None, check_rigid: bool = False) 
         CaseError, MeshError: the case cannot be computed; both are a ValueError with the message of the command.
     """
     require_case(case)
-    return compute_on(None, case, WantedChecks(check_rigid=check_rigid, band=band))
+    return compute_on(None, case, WantedChecks(check_rigid=check_rigid, band=band, margin=margin))
 
 
 def require_case(given: object) -> None:

@@ -27,7 +27,7 @@ from fem.results.run_files import RunFiles, copy_data_files
 from fem.results.run_result import RunResult
 from fem.run.changed_runs_file import ChangedRunsFile
 from fem.run.checkpoint import CheckpointWriter
-from fem.run.checks import WantedChecks, add_checks, lacks_band, lacks_checks
+from fem.run.checks import WantedChecks, add_checks, lacks_band, lacks_checks, lacks_margin
 from fem.run.output import Start, Stopwatch, open_output, read_start
 from fem.run.size import required_disk, size_in_words
 from fem.run.solve import begun, in_words, resolve, stepped
@@ -118,9 +118,10 @@ def run_case(
 
 
 def was_stopped(run: OpenedRun, options: RunOptions) -> bool:
-    """Whether the stepping of a run was interrupted, or the band after it."""
+    """Whether the stepping of a run was interrupted, or the band or the margin after it."""
     if run.status in RUN.finished:
-        return lacks_band(run.typed_result, run.case, options)
+        result = run.typed_result
+        return lacks_band(result, run.case, options) or lacks_margin(result, run.case, options)
     return run.status == "interrupted"
 
 

@@ -8,8 +8,8 @@ from typing import Literal
 
 import numpy as np
 
-from fem.batch.bracket import least_width, values_to_try
 from fem.batch.study import COMPLETED, StudyResult
+from fem.run.bracket import least_width, values_to_try
 from fem.site_check.result import LIMITED, ByRule, SiteAnswer
 
 RESOLUTION = 0.01  #: largest width of a bracket over the value

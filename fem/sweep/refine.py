@@ -1,4 +1,4 @@
-"""Locates the changes of outcome of a sweep along one axis, on all lines of cells at once: see `fem.batch.bracket`."""
+"""Locates the changes of outcome of a sweep along one axis, on all lines of cells at once: see `fem.run.bracket`."""
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from fem.batch.bracket import Change, changes_of, least_width, values_to_try
 from fem.batch.log import LoggedRuns, fields_of, table_text
 from fem.batch.runner import Runner
 from fem.results.figures import Place, keys_of
 from fem.results.outcome import Ending, ending_of
+from fem.run.bracket import Change, changes_of, least_width, values_to_try
 from fem.sweep.cells import CellRows
 from fem.sweep.plan import Sweep
 

@@ -319,6 +319,12 @@ MUTATIONS = (
         new="soft = case.support.foot is not None and case.support.kind != ",
         tests=("verification/sureness/test_sure_verdicts.py", "-k", "flat"),
     ),
+    Mutation(
+        name="the last overturning taken for the first",
+        old="one.high == min(fallen)",
+        new="one.high == max(fallen)",
+        tests=("unit/run/test_margin.py",),
+    ),
     *VERTICAL_MOTION,
     *FLOOR_FAULTS,
     *LOOSE_STACKS,

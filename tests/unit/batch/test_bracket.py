@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fem.batch.bracket import changes_of, least_width, values_to_try
+from fem.run.bracket import changes_of, least_width, values_to_try
 
 SCAN = [1.0, 2.0, 3.0, 4.0, 5.0]
 

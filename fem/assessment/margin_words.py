@@ -1,0 +1,48 @@
+"""The margin of a run in one sentence: whether it stands, and by which factor on the motion it overturns."""
+
+from fem.results.outcome import Outcome
+from fem.results.run_result import Margin, Verdict
+from fem.runtime.units import DisplayUnit
+
+FACTOR = DisplayUnit(figures=3)
+
+
+def margin_in_words(verdict: Verdict | None) -> str:
+    """The sentence; empty if no margin was looked for."""
+    if verdict is None or verdict.margin is None:
+        return ""
+    margin, stands = verdict.margin, verdict.outcome != Outcome.OVERTURNED
+    lead = "Stands" if stands else "Overturns"
+    if margin.factor is None:
+        most = f"{margin.largest_tried:.3g}"
+        words = f"{lead}; none of {margin.runs} other motions up to {most} times as strong overturns it"
+    elif margin.stands_up_to is None:
+        words = f"{lead}; overturns at {margin.factor:.3g} times this motion, too, the weakest tried"
+    elif stands:
+        words = f"{lead}; overturns first at {FACTOR.text(margin.factor)} times this motion"
+    else:
+        words = f"{lead}; stands up to {FACTOR.text(margin.stands_up_to)} times this motion"
+    return f"{words}{_range(margin)}{_islands(margin)}."
+
+
+def _range(margin: Margin) -> str:
+    """What the draws say of the first overturning."""
+    if not margin.draws:
+        return ""
+    if margin.low is None:
+        return f", nor in any of {margin.draws} draws of what is not known"
+    low = FACTOR.in_figures(margin.low, 2)
+    if margin.high is not None:
+        high = FACTOR.in_figures(margin.high, 2)
+        return f" ({low} to {high} over what is not known)"
+    standing = f"{margin.draws_standing} of {margin.draws} draws stand up to {margin.largest_tried:.3g}"
+    return f" (from {low} on over what is not known; {standing})"
+
+
+def _islands(margin: Margin) -> str:
+    """Where it stands again beyond the first overturning."""
+    again = [
+        FACTOR.text(low) if low == high else f"{FACTOR.text(low)} to {FACTOR.text(high)}"
+        for low, high in margin.islands
+    ]
+    return f", stands again at {' and at '.join(again)}" if again else ""
