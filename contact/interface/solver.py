@@ -64,7 +64,7 @@ def evaluate_laws(
             -work.point[i, 1],
             -work.velocity[i, 1],
             contact.normal_stiffness[i],
-            contact.normal_stiffness[i] * contact.relaxation_time,
+            contact.normal_stiffness[i] * contact.relaxation_time[i],
             contact.cap[i],
             step,
         )
@@ -77,11 +77,11 @@ def evaluate_laws(
             work.excess[i, 0] = 0.0
         elif contact.friction == ELASTIC_STICK:
             stiffness = contact.tangential_stiffness[i]
-            elongation, trial_slope = 0.0, stiffness * contact.relaxation_time * velocity_slope
+            elongation, trial_slope = 0.0, stiffness * contact.relaxation_time[i] * velocity_slope
             if start[i, 1] < 0.0:  # closed at the beginning: the spring acts over the whole step
                 elongation = stick[i] + work.point[i, 0] - start[i, 0]
                 trial_slope += stiffness
-            trial = stick_trial(stiffness, contact.relaxation_time, elongation, work.velocity[i, 0])
+            trial = stick_trial(stiffness, contact.relaxation_time[i], elongation, work.velocity[i, 0])
             force, by_trial, by_limit = stick_friction(trial, mu[i] * normal)
             work.excess[i, 0], work.excess[i, 1] = trial - force, trial_slope
             work.law[i, 0] = force
@@ -113,10 +113,10 @@ def return_held_points(
     `work.trial` and returns whether any point was moved.
     """
     placed = False
-    magnified = 1.0 + contact.relaxation_time * velocity_slope
     for i in range(work.force.shape[0]):
         tangential, normal = work.force[i, 0], work.force[i, 1]
         closed = normal > 0.0 and start[i, 1] < 0.0
+        magnified = 1.0 + contact.relaxation_time[i] * velocity_slope
         stuck = closed and contact.friction == ELASTIC_STICK and abs(tangential) < SLIDING * mu[i] * normal
         for k in range(2):
             stiffness = contact.tangential_stiffness[i] if k == 0 else contact.normal_stiffness[i]
@@ -160,7 +160,7 @@ def linearise_in_old_states(
             continue
         found = True
         stiffness = contact.normal_stiffness[i]
-        damping = stiffness * contact.relaxation_time
+        damping = stiffness * contact.relaxation_time[i]
         if normal < SLIDING * contact.cap[i]:
             work.law[i, 1] = -stiffness * work.point[i, 1] - damping * work.velocity[i, 1]
             work.slope[i, 2] = stiffness + damping * velocity_slope
@@ -168,8 +168,10 @@ def linearise_in_old_states(
             work.law[i, 1], work.slope[i, 2] = contact.cap[i], 0.0
         if abs(tangential) < SLIDING * mu[i] * normal:
             stiffness, elongation = contact.tangential_stiffness[i], stick[i] + work.point[i, 0] - start[i, 0]
-            work.law[i, 0] = stick_trial(stiffness, contact.relaxation_time, elongation, work.velocity[i, 0])
-            work.slope[i, 0] = stiffness * contact.relaxation_time * velocity_slope + stiffness
+            work.law[i, 0] = stick_trial(
+                stiffness, contact.relaxation_time[i], elongation, work.velocity[i, 0]
+            )
+            work.slope[i, 0] = stiffness * contact.relaxation_time[i] * velocity_slope + stiffness
             work.slope[i, 1] = 0.0
             work.excess[i, 0] = 0.0
         else:
@@ -216,7 +218,7 @@ def press_where_turned(
             level = 1
         if iteration > 0 and level * work.level[i] < 0:
             stiffness = contact.normal_stiffness[i]
-            damping = stiffness * contact.relaxation_time
+            damping = stiffness * contact.relaxation_time[i]
             penetration, rate = -work.point[i, 1], -work.velocity[i, 1]
             if rate * step < penetration:
                 work.law[i, 1] = stiffness * penetration + damping * rate

@@ -14,7 +14,8 @@ class Contact(NamedTuple):
     normal_stiffness: FloatArray  #: [N/m]
     tangential_stiffness: FloatArray  #: [N/m]
     cap: FloatArray  #: largest normal force, dashpot included, at which the floor crushes [N]; infinite: it does not
-    relaxation_time: float  #: dashpot over spring, of the normal and of the stuck tangential direction [s]
+    #: (n,) dashpot over spring, of the normal and of the stuck tangential direction [s]
+    relaxation_time: FloatArray
     mu_static: FloatArray  #: (n,) the same for all points of a joint, as the next two
     mu_kinetic: FloatArray  #: (n,)
     weakening: FloatArray  #: (n,) slip over which static falls to kinetic friction [m]

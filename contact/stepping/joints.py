@@ -329,11 +329,11 @@ def slide(run: RunState, j: int, step: float, holding: float) -> None:
             slip[i] = moved
         elif stops and normal > 0.0:
             start = -holding * normal / loaded / contact.tangential_stiffness[i]
-            new.stick[i] = start - contact.relaxation_time * work.velocity[i, 0]
+            new.stick[i] = start - contact.relaxation_time[i] * work.velocity[i, 0]
             slip[i] = moved - (new.stick[i] - stick)
         elif normal <= 0.0 or work.slope[i, 0] == 0.0:
             new.stick[i] = relaxed_stick(
-                stick, -tangential, contact.tangential_stiffness[i], contact.relaxation_time, step
+                stick, -tangential, contact.tangential_stiffness[i], contact.relaxation_time[i], step
             )
             slip[i] = moved - (new.stick[i] - stick)
         elif old.point[i, 1] >= 0.0:

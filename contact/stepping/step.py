@@ -97,7 +97,7 @@ def crush(contact: Contact, step: float, old: State, new: State, work: Workspace
                 max(0.0, -old.point[i, 1]),
                 contact.cap[i],
                 contact.normal_stiffness[i],
-                contact.relaxation_time,
+                contact.relaxation_time[i],
                 step,
             )
             indented = max(indented, -new.point[i, 1] - elastic)

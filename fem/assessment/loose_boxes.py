@@ -10,14 +10,14 @@ from contact.stepping.observables import ROCKING, SLIDING
 from fem.assessment.joint_tables import titled_table
 from fem.results.figures import BOX_FIGURES, BoxResult
 from fem.results.run_result import BoxReach, RunResult, StaticResult, Verdict
-from fem.runtime.units import SHORT_MILLIMETRES as LENGTH
-from fem.runtime.units import in_figures
+from fem.runtime.units import JOINT_MILLIMETRES, SHORT_MILLIMETRES
 
 AS_ONE = "the boxes moved as one"
 MOST_BOXES = 12  #: boxes in a table; of more, those with a largest value
 BOXES_NOTE = (
     "The boxes stand on one another without bolts. Slip and opening of a box are over what is below it: the floor or "
-    "the next box. The rotation ratio is the largest rotation of any box over the slenderness angle of the whole stack."
+    "the next box; less slip than 1 mm is not resolved, because the dashpot of the joints decides it. The rotation "
+    "ratio is the largest rotation of any box over the slenderness angle of the whole stack."
 )
 
 
@@ -37,14 +37,13 @@ def joints_in_words(verdict: Verdict, static: StaticResult | None) -> str:
         return ""
     slip_limit, opening_limit = limits(static or StaticResult())
     moved = []
-    for verb, preposition, key, limit in (
-        ("slid", "on", "max_slip_m", slip_limit),
-        ("opened", "from", "max_opening_m", opening_limit),
+    for verb, preposition, key, limit, unit in (
+        ("slid", "on", "max_slip_m", slip_limit, JOINT_MILLIMETRES),
+        ("opened", "from", "max_opening_m", opening_limit, SHORT_MILLIMETRES),
     ):
         most = _most(boxes, key, above=1)
         if boxes[most][key] > limit:
-            length = in_figures(boxes[most][key], LENGTH.figures, LENGTH.factor)
-            moved.append(f"box {most + 1} {verb} {length} mm {preposition} box {most}")
+            moved.append(f"box {most + 1} {verb} {unit.text(boxes[most][key])} {preposition} box {most}")
     return ", ".join(moved) or AS_ONE
 
 
@@ -55,7 +54,7 @@ def largest_joint_slip(verdict: Verdict) -> tuple[str, str]:
         return "", ""
     most = _most(boxes, "max_slip_m", above=1)
     reach = _reaches(verdict)[most]
-    slip = LENGTH.text(boxes[most].max_slip_m, reach.max_slip_m if reach else None)
+    slip = JOINT_MILLIMETRES.text(boxes[most].max_slip_m, reach.max_slip_m if reach else None)
     return slip, f"box {most + 1} on box {most}"
 
 
@@ -68,7 +67,7 @@ def limits(static: StaticResult) -> tuple[float, float]:
     """Slip and opening from which a joint counts as sliding and rocking [m], by the limits of the whole stack."""
     centroid, angle = static.centroid_m, static.slenderness_angle_rad
     if centroid is None or angle is None:
-        return LENGTH.least, LENGTH.least
+        return SHORT_MILLIMETRES.least, SHORT_MILLIMETRES.least
     width = 2.0 * centroid * math.tan(angle)
     return SLIDING * width, ROCKING * angle * width
 

@@ -223,10 +223,7 @@ JOINT_RULES = (
     ),
     Rule(
         "joints.",
-        lambda case: (
-            case.container.boxes > 1
-            or (case.joints.mu_static, case.joints.mu_kinetic, case.joints.weakening_m) == (None, None, None)
-        ),
+        lambda case: case.container.boxes > 1 or all(value is None for value in vars(case.joints).values()),
         "is friction between boxes, but a stack of one has no joints; remove the table, or give boxes or "
         "[[container.box]]",
     ),

@@ -15,6 +15,7 @@ from fem.case.rules import CONTACT_RULES, CONTAINER_RULES, SOLVER_RULES
 from fem.case.table import CaseTable, case_key
 from fem.case.unknown_inputs import UNCERTAINTY_RULES
 
+USUAL_DASHPOT = 2.0  #: damping ratio of a stiff contact that does not bounce
 #: a range [low, high], or that the value of the case is known
 Unknown = Annotated[list[float], Field(min_length=2, max_length=2)] | Literal["known"] | None
 
@@ -176,8 +177,8 @@ class ContactTable(CaseTable):
     )
     damping_ratio: Annotated[float, q.CONTACT_DAMPING] | None = case_key(
         "c/(2 sqrt(k m)), the whole mass m on the spring k of one corner; default: 2",
-        follows=lambda values: None if values["restitution_over_housner"] else 2.0,
-        example=2.0,
+        follows=lambda values: None if values["restitution_over_housner"] else USUAL_DASHPOT,
+        example=USUAL_DASHPOT,
     )
 
     rules = CONTACT_RULES
@@ -211,7 +212,7 @@ class ContactTable(CaseTable):
 
 
 class JointsTable(CaseTable):
-    """Friction between boxes that stand on one another without bolts; what is left out is as on the floor."""
+    """Contact between boxes that stand on one another without bolts; friction left out is as on the floor."""
 
     mu_static: Annotated[float, q.FRICTION] | None = case_key(
         "loose joints: of static friction; default: that of the floor", None, example=0.4
@@ -222,6 +223,16 @@ class JointsTable(CaseTable):
     weakening_m: Annotated[float, q.WEAKENING] | None = case_key(
         "loose joints: slip over which mu_static falls; default: that of the floor", None, example=0.0
     )
+    damping_ratio: Annotated[float, q.CONTACT_DAMPING] | None = case_key(
+        "loose joints: c/(2 sqrt(k m)), all boxes' mass m on the spring k of a corner on a rigid floor; default: 2",
+        None,
+        example=0.5,
+    )
+
+    @property
+    def dashpot(self) -> float:
+        """The damping ratio of loose joints: steel on steel, whatever the floor is."""
+        return USUAL_DASHPOT if self.damping_ratio is None else self.damping_ratio
 
 
 class InitialTable(CaseTable):
@@ -314,6 +325,9 @@ class UncertaintyTable(CaseTable):
     )
     joints_weakening_m: Unknown = case_key(
         "loose joints: default: 0 to 5 mm where mu_kinetic < mu_static", None, example=[0.0, 0.005]
+    )
+    joints_damping_ratio: Unknown = case_key(
+        "loose joints: default: 0.1 to 2, and as given", None, example=[0.1, 2.0]
     )
     weakening_m: Unknown = case_key(
         "of the contact; default: 0 to 5 mm where mu_kinetic < mu_static", None, example=[0.0, 0.005]

@@ -26,6 +26,7 @@ SOFTEST, STIFFEST = 1.0 / 9.0, 3.0  #: contact stiffness over that of the case
 DAMPING = (0.5, 2.0)  #: contact and material damping over those of the case
 SLAB = (0.5, 2.0)  #: Young's modulus and bearing strength of a slab over those of the case
 JOINTS = (0.5, 2.0)  #: static friction between loose boxes over that of the case, where this has the floor's
+JOINTS_DASHPOTS = (0.1, 2.0)  #: damping ratio between loose boxes, as far as the case has none beyond
 LOSS = (0.8, 1.5)  #: loss at an impact, 1 - e, over that of the case where its restitution is given
 WEAKENING_M, STRIBECK_M_S = 5e-3, 0.3  #: largest slip and velocity over which friction falls
 WEAKENINGS_BETWEEN_M = (1e-4, 1e-3)
@@ -35,7 +36,7 @@ MOVES = 1e-9  #: cosine of the phase of a floor that starts at rest
 MU_KINETIC, WEAKENING, STRIBECK = "contact.mu_kinetic", "contact.weakening_m", "contact.stribeck_velocity_m_s"
 #: between loose boxes
 JOINTS_MU_STATIC, JOINTS_MU_KINETIC = "joints.mu_static", "joints.mu_kinetic"
-JOINTS_WEAKENING = "joints.weakening_m"
+JOINTS_WEAKENING, JOINTS_DASHPOT = "joints.weakening_m", "joints.damping_ratio"
 START, RAMP, TOLERANCE = "motion.start", "motion.ramp_cycles", "solver.energy_tolerance"
 PENALTY, DASHPOT, RESTITUTION, MATERIAL = (
     "contact.normal_penalty_Pa_m",
@@ -161,6 +162,8 @@ def _own(case: Any, key: str, penalty: float | None) -> Any:
         return None if case.floor.is_slab else penalty
     if key == DASHPOT:  # that of a slab matters little where it crushes
         return case.contact_damping_ratio
+    if key == JOINTS_DASHPOT:
+        return case.joints.dashpot
     return case.joint_friction[name] if table == "joints" else getattr(getattr(case, table), name)
 
 
@@ -210,6 +213,10 @@ def _joints_mu_static(case: Any, own: float) -> Ends:
     if case.joints.mu_static is not None:
         return own, own
     return JOINTS[0] * own, min(q.FRICTION.most or math.inf, JOINTS[1] * own)
+
+
+def _joints_dashpot(case: Any, own: float) -> Ends:
+    return min(JOINTS_DASHPOTS[0], own), max(JOINTS_DASHPOTS[1], own)
 
 
 def _restitutions(case: Any, ratio: float) -> Ends:
@@ -300,6 +307,14 @@ UNKNOWN: tuple[UnknownNumber | UnknownChoice, ...] = (
         _joints_fall,
         3.0,
         _weakenings,
+    ),
+    Number(
+        JOINTS_DASHPOT,
+        "joints_damping_ratio",
+        "damping of the joints",
+        q.CONTACT_DAMPING,
+        _joints_dashpot,
+        _is_loose,
     ),
     Choice(START, "start", "start", _other_start),
     Choice(RAMP, "ramp", "cycles of the ramp", _other_ramp),

@@ -69,7 +69,7 @@ def find_equilibrium(case: Case, container: Container, gravity: float) -> Equili
     body: Body
     try:
         if container.boxes:
-            contact = with_joints(case, contact, steel_penalty(case, container.mesh))
+            contact = with_joints(case, contact, container.mesh.mass, steel_penalty(case, container.mesh))
             body, force, compression = _settled_stack(case, container, contact, gravity)
         else:
             stance = _stance(case, container, contact, gravity)
@@ -81,7 +81,7 @@ def find_equilibrium(case: Case, container: Container, gravity: float) -> Equili
     require_stiff_container(case, compression)
     return Equilibrium(
         penalty=penalty,
-        damping_ratio=contact.relaxation_time
+        damping_ratio=float(contact.relaxation_time[0])
         / relaxation_time(1.0, container.mesh.mass, float(springs[:base].sum())),
         gravity=gravity,
         contact=contact,
@@ -145,7 +145,7 @@ def _contact(case: Case, mesh: ContainerMesh, springs: FloatArray, base: int) ->
         normal_stiffness=springs,
         tangential_stiffness=ratio * springs,
         cap=cap,
-        relaxation_time=relaxation,
+        relaxation_time=np.full(springs.size, relaxation),
         mu_static=np.full(springs.size, chosen.mu_static),
         mu_kinetic=np.full(springs.size, chosen.mu_kinetic),
         weakening=np.full(springs.size, chosen.weakening_m),

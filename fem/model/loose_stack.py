@@ -1,7 +1,7 @@
 """A loose stack at rest on its floor: its contact points, its boxes as one body, its joints.
 
-A joint between two boxes has the springs of a rigid floor under the face that they share, its own friction, and the
-dashpot of the floor. Each contact point has the spring of a corner; two corners that face each other share it.
+A joint between two boxes has the springs of a rigid floor under the face that they share, and friction and dashpot of
+its own. Each contact point has the spring of a corner; two corners that face each other share it.
 """
 
 import math
@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from contact.interface.penalty import relaxation_time
 from contact.interface.workspace import Contact
 from contact.stepping.body import State, make_state
 from contact.stepping.loose_stack import LooseStack
@@ -31,20 +32,19 @@ HELD_SHARE = 0.15
 TURNED_STEPS = 4  #: without line search, where points turn: corners that rattle turn in cycles
 
 
-def with_joints(case: Case, floor: Contact, penalty: float) -> Contact:
+def with_joints(case: Case, floor: Contact, mass: float, penalty: float) -> Contact:
     """The contact of the floor under the lowest box, extended by the joints between the boxes.
 
     Args:
         case: of a loose stack.
         floor: of its two corners on the floor.
+        mass: of all boxes [kg].
         penalty: normal stiffness of a face over width times depth [Pa/m].
     """
-    stack, friction, chosen = case.stack, case.joint_friction, case.contact
-    mass = floor.force_scale / case.gravity_m_s2
+    stack, friction, chosen, depth = case.stack, case.joint_friction, case.contact, case.container.depth_m
     faces = [shared_face(*pair) for pair in pairwise(stack)]
-    springs = np.repeat(
-        [0.5 * penalty * (right - left) * case.container.depth_m for left, right in faces], POINTS
-    )
+    springs = np.repeat([0.5 * penalty * (right - left) * depth for left, right in faces], POINTS)
+    damping = relaxation_time(case.joints.dashpot, mass, penalty * stack[0].width * depth)
 
     def extended(of_floor: FloatArray, of_joints: FloatArray | float) -> FloatArray:
         return np.concatenate([of_floor, np.broadcast_to(of_joints, springs.shape)])
@@ -53,10 +53,12 @@ def with_joints(case: Case, floor: Contact, penalty: float) -> Contact:
         normal_stiffness=extended(floor.normal_stiffness, springs),
         tangential_stiffness=extended(floor.tangential_stiffness, chosen.tangential_ratio * springs),
         cap=extended(floor.cap, math.inf),
+        relaxation_time=extended(floor.relaxation_time, damping),
         mu_static=extended(floor.mu_static, friction["mu_static"]),
         mu_kinetic=extended(floor.mu_kinetic, friction["mu_kinetic"]),
         weakening=extended(floor.weakening, friction["weakening_m"]),
-        held_step=HELD_SHARE * math.sqrt(mass / float(floor.normal_stiffness.sum())),
+        held_step=HELD_SHARE
+        * math.sqrt(floor.force_scale / case.gravity_m_s2 / float(floor.normal_stiffness.sum())),
         turned_steps=TURNED_STEPS,
     )
 

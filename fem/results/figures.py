@@ -15,6 +15,7 @@ from typing import Annotated, Any, Generic, TypeVar, get_args, get_type_hints
 
 from fem.results.json_block import JsonBlock
 from fem.runtime import units
+from fem.runtime.units import JOINT_MILLIMETRES as JOINT_MM
 from fem.runtime.units import MILLIMETRES as MM
 from fem.runtime.units import SHORT_MILLIMETRES as SHORT_MM
 
@@ -70,10 +71,10 @@ class BoxFigures(JsonBlock, Generic[ValueT]):
         ValueT, Shown("rotation", units.DEGREES, BAND, "joint.max_rotation", column="box_rotations_rad")
     ]
     #: largest |slip|
-    max_slip_m: Annotated[ValueT, Shown("slip", SHORT_MM, BAND, "joint.max_slip", column="box_slips_m")]
+    max_slip_m: Annotated[ValueT, Shown("slip", JOINT_MM, BAND, "joint.max_slip", column="box_slips_m")]
     #: signed, at the end
     residual_slip_m: Annotated[
-        ValueT | None, Shown("slip left", SHORT_MM, BAND, "joint.slip", signed=True)
+        ValueT | None, Shown("slip left", JOINT_MM, BAND, "joint.slip", signed=True)
     ] = None
     max_opening_m: Annotated[
         ValueT, Shown("opening", SHORT_MM, BAND, "joint.max_opening", column="box_openings_m")
@@ -197,7 +198,7 @@ class Figures(JsonBlock, Generic[ValueT]):
 
 
 JOINT_SLIP = Shown(
-    "largest slip between boxes", MM, COLUMN | MAP, map_words="largest slip between loose boxes"
+    "largest slip between boxes", JOINT_MM, COLUMN | MAP, map_words="largest slip between loose boxes"
 )
 JOINT_OPENING = Shown(
     "largest opening between boxes", MM, COLUMN | MAP, map_words="largest opening between loose boxes"

@@ -20,6 +20,7 @@ class DisplayUnit:
     factor: float = 1.0  #: from SI to this unit
     least: float = 0.0  #: sizes below it [SI] are shown as that limit
     figures: int = MANY  #: significant figures, without trailing zeros where they are four
+    under: str = "<"  #: the word before that limit
 
     def text(
         self,
@@ -53,7 +54,7 @@ class DisplayUnit:
 
     def in_figures(self, value: float, figures: int) -> str:
         """A number [SI] with so many significant figures, or the limit that it is below."""
-        return in_figures(value, figures, self.factor, self.least)
+        return in_figures(value, figures, self.factor, self.least, self.under)
 
 
 def figures_of(reach: Reach | None, many: int = MANY) -> int:
@@ -63,10 +64,10 @@ def figures_of(reach: Reach | None, many: int = MANY) -> int:
     return FEW if reach[1] - reach[0] > WIDE * max(map(abs, reach)) else many
 
 
-def in_figures(value: float, figures: int, factor: float = 1.0, least: float = 0.0) -> str:
+def in_figures(value: float, figures: int, factor: float = 1.0, least: float = 0.0, under: str = "<") -> str:
     """A number with so many significant figures, without an exponent where it has at most six digits."""
     if 0.0 < abs(value) < least:
-        return f"< {factor * least:g}"
+        return f"{under} {factor * least:g}"
     shown = factor * value
     if shown == 0.0:
         return "0"
@@ -80,6 +81,8 @@ def in_figures(value: float, figures: int, factor: float = 1.0, least: float = 0
 COUNT, SECONDS = DisplayUnit(), DisplayUnit(name="s")
 MILLIMETRES = DisplayUnit(name="mm", factor=1e3, least=1e-5)
 SHORT_MILLIMETRES = replace(MILLIMETRES, figures=3)
+#: what loose boxes slip at impacts is less known than that: their joints' dashpots decide it
+JOINT_MILLIMETRES = replace(SHORT_MILLIMETRES, least=1e-3, under="under")
 DEGREES = DisplayUnit(name="degrees", factor=math.degrees(1.0), least=math.radians(0.01), figures=3)
 RATIO = DisplayUnit(
     least=1e-3, figures=3

@@ -37,6 +37,12 @@ LOOSE_STACKS = (
         tests=STACKS,
     ),
     Mutation(
+        name="the dashpot of the floor in every joint",
+        old="relaxation_time=extended(floor.relaxation_time, damping)",
+        new="relaxation_time=extended(floor.relaxation_time, floor.relaxation_time[0])",
+        tests=("unit/model/test_loose_stack.py", "-k", "dashpot"),
+    ),
+    Mutation(
         name="a box that may lie on the floor without having fallen",
         old="fallen = fallen or new.corner[c, 1] <= 0.0",
         new="fallen = fallen or new.corner[c, 1] <= -1e9",

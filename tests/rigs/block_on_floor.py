@@ -84,7 +84,7 @@ class Block:
             normal_stiffness=springs,
             tangential_stiffness=springs,
             cap=np.full(2, self.cap),
-            relaxation_time=self.relaxation_time,
+            relaxation_time=np.full(2, self.relaxation_time),
             mu_static=np.full(2, self.mu_static),
             mu_kinetic=np.full(2, self.mu_kinetic),
             weakening=np.full(2, self.weakening),

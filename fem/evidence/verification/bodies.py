@@ -151,7 +151,7 @@ def _contact(springs: FloatArray, caps: FloatArray | None, mass: float) -> Conta
         normal_stiffness=springs,
         tangential_stiffness=springs.copy(),
         cap=np.full(springs.size, math.inf) if caps is None else caps,
-        relaxation_time=0.0,
+        relaxation_time=np.zeros(springs.size),
         mu_static=np.full(springs.size, 1e-9),
         mu_kinetic=np.full(springs.size, 1e-9),
         weakening=np.zeros(springs.size),

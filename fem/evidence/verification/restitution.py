@@ -207,7 +207,7 @@ def turning_point_on_springs(done: Finished, kind: str) -> float:
         done.block,
         places=np.array([-0.5, 0.5]) * width if kind == "corners" else evenly_spaced(width, 111),
         stiffness=float(contact.normal_stiffness.sum()) / done.model.container.mesh.mass,
-        relaxation_time=contact.relaxation_time,
+        relaxation_time=float(contact.relaxation_time[0]),
         rotation=0.5 * done.block.slenderness_angle,
         duration=done.model.duration,
     )

@@ -81,7 +81,9 @@ def random_problem(seed: int, points: int, *, friction: int = ELASTIC_STICK) -> 
         normal_stiffness=stiffness * draw.uniform(0.5, 2.0, points),
         tangential_stiffness=stiffness * draw.uniform(0.5, 2.0, points),
         cap=np.full(points, np.inf),
-        relaxation_time=draw.choice([0.0, 0.1, 1.0]) * step * 10.0 ** draw.uniform(-1.0, 1.0),
+        relaxation_time=np.full(
+            points, draw.choice([0.0, 0.1, 1.0]) * step * 10.0 ** draw.uniform(-1.0, 1.0)
+        ),
         mu_static=np.full(points, mu),
         mu_kinetic=np.full(points, mu),
         weakening=np.zeros(points),
@@ -124,7 +126,7 @@ def forces_in_state(problem: Problem, states: tuple[tuple[str, str], ...]) -> np
         x, z, k = 2 * i, 2 * i + 1, contact.normal_stiffness[i]
         if normal == OPEN:
             continue
-        damping = k * contact.relaxation_time
+        damping = k * contact.relaxation_time[i]
         if normal == CLOSED:
             by_point[z, z], by_velocity[z, z] = -k, -damping
         elif normal == CRUSHING:
@@ -133,7 +135,7 @@ def forces_in_state(problem: Problem, states: tuple[tuple[str, str], ...]) -> np
             by_point[z, z] = -(k + damping / problem.step)
         if tangential == STUCK:
             kt = contact.tangential_stiffness[i]
-            by_velocity[x, x] = -kt * contact.relaxation_time
+            by_velocity[x, x] = -kt * contact.relaxation_time[i]
             if problem.start[i, 1] < 0.0:
                 by_point[x, x] = -kt
                 constant[x] = -kt * (problem.stick[i] - problem.start[i, 0])
@@ -158,7 +160,7 @@ def forces_in_state(problem: Problem, states: tuple[tuple[str, str], ...]) -> np
 def _agrees(problem, i, state, point, velocity, force, slack) -> bool:
     """Whether a point in that state meets the inequalities of the state; `slack` in N."""
     contact, k = problem.contact, problem.contact.normal_stiffness[i]
-    damping = k * contact.relaxation_time
+    damping = k * contact.relaxation_time[i]
     penetration, rate = -point[1], -velocity[1]
     touching = damping * (rate - penetration / problem.step)  # > 0: the point came from outside in this step
     if state[0] == OPEN:
@@ -171,7 +173,7 @@ def _agrees(problem, i, state, point, velocity, force, slack) -> bool:
             return False
     elif (touching > slack) if state[0] == CLOSED else (touching < -slack):
         return False
-    trial = -contact.tangential_stiffness[i] * contact.relaxation_time * velocity[0]
+    trial = -contact.tangential_stiffness[i] * contact.relaxation_time[i] * velocity[0]
     if problem.start[i, 1] < 0.0:
         trial -= contact.tangential_stiffness[i] * (problem.stick[i] + point[0] - problem.start[i, 0])
     limit = problem.mu * force[1]

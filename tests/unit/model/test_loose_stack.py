@@ -49,6 +49,17 @@ def test_each_joint_carries_the_weight_above_it_at_rest(model):
     assert (right - left) / (right + left) * 0.55 == pytest.approx(0.1 * 800.0 / 4800.0, rel=1e-3)
 
 
+@pytest.mark.parametrize("floor", ["", '\n[floor]\npreset = "asphalt"\ncorner_patch_m = [0.1, 0.2]'])
+def test_joints_have_a_dashpot_of_their_own_on_any_floor(floor):
+    # c/k = 2 zeta sqrt(m/k), the whole mass on the spring of a corner
+    for values, ratio in (({}, 2.0), ({"joints.damping_ratio": 0.5, "contact.damping_ratio": 0.1}, 0.5)):
+        contact = build_model(loose(model="rigid", more=floor).with_values(values)).equilibrium.contact
+        mass = contact.force_scale / 9.81
+        assert contact.relaxation_time[2:] == pytest.approx(
+            2.0 * ratio * np.sqrt(mass / contact.normal_stiffness[2])
+        )
+
+
 @pytest.mark.parametrize("model", ["rigid", "reduced", "full"])
 def test_a_stack_at_rest_is_where_its_mesh_is(model):
     built = build_model(loose(UNEQUAL, model=model))
