@@ -198,6 +198,20 @@ def test_friction_between_loose_boxes_is_unknown_apart_from_that_of_the_floor():
 
 
 @pytest.mark.parametrize(
+    ("given", "tried"),
+    [({}, (0.1,)), ({"joints.damping_ratio": 0.5}, (0.1, 2.0)), ({"joints.damping_ratio": 4.0}, (0.1,))],
+)
+def test_the_dashpot_of_loose_joints_is_unknown_whatever_the_floor_is(given, tried):
+    for floor in (
+        {},
+        {"contact.damping_ratio": 0.3},
+        {"floor.preset": "asphalt", "floor.corner_patch_m": [0.1, 0.2]},
+    ):
+        assert ends("harmonic", LOOSE | given | floor)["joints.damping_ratio"] == tried
+    assert "joints.damping_ratio" not in ends("harmonic", {})
+
+
+@pytest.mark.parametrize(
     ("given", "changed", "expected"),
     [
         ({}, {"contact.mu_kinetic": 0.4, "contact.weakening_m": 1e-3}, (0.4, 0.2, 0.0)),
