@@ -1,6 +1,7 @@
 """Settings of the whole suite."""
 
 import os
+from importlib import import_module
 
 import pytest
 from hypothesis import settings
@@ -8,6 +9,21 @@ from hypothesis import settings
 # A slow or busy machine must not fail a property; on a server every run tries the same examples.
 settings.register_profile("suite", deadline=None, derandomize=bool(os.environ.get("CI")), print_blob=True)
 settings.load_profile("suite")
+
+WHOLE = 1000  #: tests, from which a run is one of the whole suite
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_configure(config: pytest.Config) -> None:
+    """Give a file to one worker: what its tests share is then made once."""
+    if config.getoption("dist", "no") == "load":
+        config.option.dist = "loadfile"
+
+
+def pytest_collection_finish(session: pytest.Session) -> None:
+    """Compile before the tests: each worker would compile the same kernels when it first needs them."""
+    if "PYTEST_XDIST_WORKER" in os.environ and len(session.items) > WHOLE:
+        import_module("kernels").compile_kernels()  # late: numba takes a second to import
 
 
 @pytest.fixture

@@ -2,11 +2,9 @@
 
 import ast
 from collections import Counter
-from collections.abc import Iterator
+from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
-
-import pytest
 
 ROOT = Path(__file__).parents[1]
 PACKAGES = ("mesh", "contact", "fem")
@@ -113,6 +111,7 @@ def module_of(path: Path) -> str:
     return name_of(path).removesuffix(".py").replace("/", ".").removesuffix(".__init__")
 
 
+TREES = {path: ast.parse(path.read_text()) for path in SOURCES}
 MODULES = {module_of(path): path for path in SOURCES}
 
 
@@ -123,26 +122,29 @@ def package_of(module: str) -> str:
     return ".".join(words[:longest])
 
 
-def imported(path: Path) -> Iterator[str]:
+@cache
+def imported(path: Path) -> frozenset[str]:
     """Full names of what a file imports, at any depth of it, by statement or by string."""
-    for node in ast.walk(ast.parse(path.read_text())):
+    found = set()
+    for node in ast.walk(TREES[path]):
         if isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names)
+            found |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
             assert node.level == 0, f"{name_of(path)}:{node.lineno}: relative import"
             assert node.module is not None
-            yield node.module
-            yield from (f"{node.module}.{alias.name}" for alias in node.names)
+            found |= {node.module, *(f"{node.module}.{alias.name}" for alias in node.names)}
         elif isinstance(node, ast.Constant) and isinstance(node.value, str):
             name = node.value.partition(":")[0]
             if "." in name and name in MODULES:
-                yield name
+                found.add(name)
+    return frozenset(found)
 
 
-def of_this_project(path: Path) -> set[str]:
+@cache
+def of_this_project(path: Path) -> frozenset[str]:
     """Modules of this project that a file imports, apart from the packages that hold the module named."""
     names = {name for name in imported(path) if name in MODULES} - {module_of(path)}
-    return {name for name in names if not any(other.startswith(f"{name}.") for other in names)}
+    return frozenset(name for name in names if not any(other.startswith(f"{name}.") for other in names))
 
 
 def lower(package: str) -> set[str]:
@@ -155,15 +157,18 @@ def lower(package: str) -> set[str]:
 
 def test_there_is_something_to_look_at():
     assert {name_of(path).split("/")[0] for path in SOURCES} == set(PACKAGES)
-    assert "skfem" in set(imported(ROOT / "fem/solid/assembly.py"))
+    assert "skfem" in imported(ROOT / "fem/solid/assembly.py")
 
 
-@pytest.mark.parametrize("path", SOURCES, ids=name_of)
-def test_imports_go_down_the_layers(path):
-    package = package_of(module_of(path))
-    others = {name: package_of(name) for name in of_this_project(path)}
-    wrong = sorted(name for name, other in others.items() if other not in {package} | lower(package))
-    assert not wrong, f"{name_of(path)} imports {wrong}"
+def test_imports_go_down_the_layers():
+    wrong = [
+        f"{name_of(path)} imports {name}"
+        for path in SOURCES
+        for package in [package_of(module_of(path))]
+        for name in of_this_project(path)
+        if package_of(name) not in {package} | lower(package)
+    ]
+    assert not wrong
 
 
 def test_no_module_imports_itself_by_way_of_others():
@@ -183,46 +188,51 @@ def test_fem_holds_packages_only():
 def test_a_public_class_has_a_name_of_its_own():
     classes = [
         (node.name, name_of(path))
-        for path in SOURCES
-        for node in ast.parse(path.read_text()).body
+        for path, tree in TREES.items()
+        for node in tree.body
         if isinstance(node, ast.ClassDef) and not node.name.startswith("_")
     ]
     counts = Counter(name for name, _ in classes)
     assert not [(name, path) for name, path in classes if counts[name] > 1]
 
 
-@pytest.mark.parametrize("path", SOURCES, ids=name_of)
-def test_third_party_packages_come_in_by_their_doors(path):
-    name = name_of(path)
-    for package in {full.split(".")[0] for full in imported(path)} & set(DOORS):
-        places = {name, *(parent.as_posix() for parent in Path(name).parents)}
-        assert places & DOORS[package], f"{name} imports {package}"
+def test_third_party_packages_come_in_by_their_doors():
+    wrong = [
+        f"{name_of(path)} imports {package}"
+        for path in SOURCES
+        for package in {full.split(".")[0] for full in imported(path)} & set(DOORS)
+        if not {name_of(path), *(parent.as_posix() for parent in Path(name_of(path)).parents)}
+        & DOORS[package]
+    ]
+    assert not wrong
 
 
-@pytest.mark.parametrize("path", SOURCES, ids=name_of)
-def test_imports_stand_at_the_top_of_the_module(path):
+def test_imports_stand_at_the_top_of_the_module():
     """The command line loads its commands by import string; nobody imports inside a function."""
-    for node in ast.walk(ast.parse(path.read_text())):
-        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda | ast.ClassDef):
-            inside = [n for n in ast.walk(node) if isinstance(n, ast.Import | ast.ImportFrom)]
-            assert not inside, f"{name_of(path)}:{inside[0].lineno}: import inside {type(node).__name__}"
+    wrong = [
+        f"{name_of(path)}:{inside.lineno}: import inside {type(node).__name__}"
+        for path, tree in TREES.items()
+        for node in ast.walk(tree)
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda | ast.ClassDef)
+        for inside in ast.walk(node)
+        if isinstance(inside, ast.Import | ast.ImportFrom)
+    ]
+    assert not wrong
 
 
-@pytest.mark.parametrize("path", SOURCES, ids=name_of)
-def test_only_the_command_line_and_the_opening_import_by_string(path):
-    calls = [
-        node
-        for node in ast.walk(ast.parse(path.read_text()))
+def test_only_the_command_line_and_the_opening_import_by_string():
+    calls = {
+        name_of(path)
+        for path, tree in TREES.items()
+        for node in ast.walk(tree)
         if isinstance(node, ast.Call)
         and ast.unparse(node.func).split(".")[-1] in ("import_module", "__import__")
-    ]
-    name = name_of(path)
-    assert not calls or name.startswith("fem/cli/") or name in LOADING_LATE
+    }
+    assert not {name for name in calls - LOADING_LATE if not name.startswith("fem/cli/")}
 
 
-@pytest.mark.parametrize("path", SOURCES, ids=name_of)
-def test_every_module_says_what_it_is(path):
-    assert ast.get_docstring(ast.parse(path.read_text())), f"{name_of(path)} has no docstring"
+def test_every_module_says_what_it_is():
+    assert not [name_of(path) for path, tree in TREES.items() if not ast.get_docstring(tree)]
 
 
 def test_no_room_is_a_lumber_room():

@@ -25,7 +25,7 @@ def compiled():
         ("mesh", 35),
         ("table", 35),
         ("record", 40),
-        ("hostile", 40),
+        ("hostile", 25),
         ("case", 25),
         ("option", 20),
         ("folder", 5),

@@ -126,8 +126,10 @@ STUDIES = pytest.mark.parametrize(
 
 @pytest.fixture(autouse=True)
 def short(undrawn, monkeypatch):
-    """Maps, and the repetition of deciding runs with another model, are tested by themselves."""
+    """Maps, pages and the repetition of deciding runs with another model are tested by themselves."""
     monkeypatch.setattr("fem.site_check.run.confirmed", lambda *arguments: [])
+    monkeypatch.setattr("fem.site_check.run.site_report", lambda *arguments: "")
+    monkeypatch.setattr("fem.site_check.runs.SCANNED", (0.5,))
 
 
 def files_of(folder):

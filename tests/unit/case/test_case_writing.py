@@ -209,7 +209,7 @@ def changes(draw):
     return values
 
 
-@settings(max_examples=300)
+@settings(max_examples=100)
 @given(changes(), st.sampled_from(sorted(SHIPPED)))
 def test_every_case_that_is_read_is_written_and_read_back(values, name):
     try:

@@ -42,12 +42,23 @@ def files_of(folder):
     return {path.name: path.read_bytes() for path in folder.rglob("*") if path.suffix in (".csv", ".json")}
 
 
-@pytest.mark.parametrize("act", [killed, interrupted])
-def test_a_slipping_curve_stopped_at_every_point_continues_to_the_same_bytes(tmp_path, act):
+@pytest.fixture(scope="module")
+def asked():
     case = load_case("seed_stack_plateau", SLIPPING)
-    asked = ResponseRequest(case=case, first_Hz=0.8, last_Hz=2.0, count=3, settle=4, observe=8)
-    whole = run_response(asked, folder=tmp_path / "whole")
-    assert max(point["slip_stroke_m"] for point in whole["points"]) > 0.01  # it breaks loose
+    return ResponseRequest(case=case, first_Hz=0.8, last_Hz=2.0, count=3, settle=4, observe=8)
+
+
+@pytest.fixture(scope="module")
+def whole(asked, tmp_path_factory):
+    """The folder of the undisturbed curve."""
+    folder = tmp_path_factory.mktemp("whole")
+    points = run_response(asked, folder=folder)["points"]
+    assert max(point["slip_stroke_m"] for point in points) > 0.01  # it breaks loose
+    return folder
+
+
+@pytest.mark.parametrize("act", [killed, interrupted])
+def test_a_slipping_curve_stopped_at_every_point_continues_to_the_same_bytes(tmp_path, asked, whole, act):
     time, folder = 0.0, tmp_path / "stopped"
     for frequency in [0.8, 1.4, 2.0, 2.0, 1.4]:
         # killed within the point behind this one, or stopped by Ctrl-C within it, and so at its end
@@ -60,4 +71,4 @@ def test_a_slipping_curve_stopped_at_every_point_continues_to_the_same_bytes(tmp
             assert act is killed
         time += 12.0 / frequency
     run_response(asked, folder=folder, resume=True)
-    assert files_of(folder) == files_of(tmp_path / "whole")
+    assert files_of(folder) == files_of(whole)

@@ -53,10 +53,10 @@ def no_room(*_, **__):
     raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
 
-@pytest.fixture
-def whole(tmp_path):
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
     """The folder of the undisturbed run."""
-    folder = tmp_path / "whole"
+    folder = tmp_path_factory.mktemp("whole")
     assert command(folder) == 0
     return folder
 

@@ -20,7 +20,7 @@ fem.run.simulation.SLICE_REDUCED = fem.run.simulation.SLICE_FULL = 0.01
 from fem.__main__ import main
 sys.exit(main(sys.argv[1:]))
 """
-RIGID = ("solver.model=rigid", "solver.duration_s=0.8")
+RIGID = ("solver.model=rigid", "solver.duration_s=0.4")
 REDUCED = ("solver.duration_s=0.6", "output.fields_s=0.005")
 FLAT = (*REDUCED, *FLAT_SHELL)
 FULL = (*COARSE, "solver.duration_s=0.3", "output.fields_s=0.005")
@@ -75,7 +75,7 @@ def torture(tmp_path: Path, overrides: tuple[str, ...], cuts: int, seed: int, st
 
 
 def test_a_rigid_run_killed_three_times_comes_to_the_same_bits(tmp_path):
-    torture(tmp_path, RIGID, cuts=3, seed=1, step=30)
+    torture(tmp_path, RIGID, cuts=3, seed=1, step=15)
 
 
 @pytest.mark.slow

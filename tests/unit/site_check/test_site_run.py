@@ -1,7 +1,6 @@
 """Verifications from file to folder: the same result on any number of cores and after an interruption."""
 
 import json
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -61,15 +60,19 @@ def site_file(folder, *, reference=2.4 / 1.35, further=4, heading="", motions=""
     return folder / "site.toml"
 
 
+@pytest.fixture
+def brief(monkeypatch):
+    """Runs at one factor, and no page."""
+    monkeypatch.setattr("fem.site_check.runs.SCANNED", ())
+    monkeypatch.setattr("fem.site_check.run.confirmed", lambda *arguments: [])
+    monkeypatch.setattr("fem.site_check.run.site_report", lambda *arguments: "")
+
+
 @pytest.fixture(scope="module")
 def computed(tmp_path_factory):
     folder = tmp_path_factory.mktemp("site")
     place = site_file(folder)
     return run_site(load_site(place), folder / "out", jobs=1), folder
-
-
-def without_times(result: SiteResult) -> SiteResult:
-    return replace(result, provenance=replace(result.provenance, wall_s=None))
 
 
 def test_every_motion_runs_with_both_signs_at_every_factor(computed):
@@ -140,7 +143,7 @@ def test_the_motions_are_written_and_read_back_to_the_same_bits(computed):
         assert motion.end_velocity_m_s < 1e-10 and motion.end_displacement_m < 1e-9
 
 
-def test_on_a_floor_the_period_of_the_building_is_varied(tmp_path):
+def test_on_a_floor_the_period_of_the_building_is_varied(tmp_path, brief):
     more = "[building]\nz_over_h = 1.0\nbuilding_period_s = 0.5"
     place = site_file(tmp_path, reference=0.6, further=0, motions="vertical = false", more=more)
     result = run_site(load_site(place), tmp_path / "out", jobs=1)
@@ -181,7 +184,7 @@ def test_records_are_matched_to_the_site(tmp_path):
     assert found.mean_peak < 1.3 * found.wanted_peak
 
 
-def test_records_are_scaled_to_the_site(tmp_path):
+def test_records_are_scaled_to_the_site(tmp_path, brief):
     place = site_file(tmp_path, further=0, motions=records(tmp_path, scale=0.1))
     result = run_site(load_site(place), tmp_path / "out", jobs=1)
     assert result.set.valid and result.set.source == "records" and result.set.stationary_s is None

@@ -1,0 +1,40 @@
+"""All stepping kernels, compiled once for a whole suite: its workers share the work, and none waits for long."""
+
+from filelock import FileLock, Timeout
+
+from contact.jit import cache_folder
+from contact.stepping.outcome import run_to_end
+from fem.case.case import load_case
+from fem.model.model import build_model
+from fem.run.recorder import Recorder
+from fem.run.simulation import simulate
+
+LOOSE = ("container.joints=loose", "container.boxes=3")
+#: cases that step with different kernels, the longest compilation first
+STEPPED = {
+    "loose": LOOSE,
+    "corners": (),
+    "outcome": (),
+    "full loose": ("solver.model=full", *LOOSE),
+    "full": ("solver.model=full",),
+    "flat": ("support.kind=flat",),
+}
+
+
+def compile_kernels() -> None:
+    """Compile those that no other worker is compiling, then wait for the others."""
+    for wait in (0.0, -1.0):
+        for name in STEPPED:
+            try:
+                with FileLock(cache_folder() / f"{name}.lock", timeout=wait):
+                    _step(name)
+            except Timeout:
+                continue
+
+
+def _step(name: str) -> None:
+    model = build_model(load_case("seed_box", ["solver.duration_s=0.02", *STEPPED[name]]))
+    if name == "outcome":
+        run_to_end(model.body, model.run, model.duration)
+    else:
+        simulate(model, Recorder(model))
