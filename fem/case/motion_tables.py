@@ -8,12 +8,7 @@ import math
 from typing import Annotated, Literal, assert_never
 
 from fem.case import quantities as q
-from fem.case.motion_rules import (
-    MOTION_RULES,
-    VERTICAL_RULES,
-    harmonic_amplitude,
-    harmonic_angular_frequency,
-)
+from fem.case.motion_rules import MOTION_RULES, VERTICAL_RULES, harmonic_amplitude, harmonic_angular_frequency
 from fem.case.table import CaseTable, case_key
 
 

@@ -22,16 +22,7 @@ from fem.batch.motion_set import (
     write_motions,
 )
 from fem.batch.runner import Row, Runner
-from fem.batch.study import (
-    COMPLETED,
-    FAILED,
-    INTERRUPTED,
-    Study,
-    StudyOptions,
-    hash_of,
-    run_study,
-    runner_of,
-)
+from fem.batch.study import COMPLETED, FAILED, INTERRUPTED, Study, StudyOptions, hash_of, run_study, runner_of
 from fem.case.case import case_hash, to_toml
 from fem.case.rules import ends_at_rest, longest_time
 from fem.ensemble.answers import ensemble_answer
@@ -39,12 +30,7 @@ from fem.ensemble.distributions import RandomChoice
 from fem.ensemble.figures import ensemble_figures
 from fem.ensemble.plan import Draw, Ensemble
 from fem.ensemble.result import EnsembleResult
-from fem.ensemble.statistics import (
-    POINT_COLUMNS,
-    PointResult,
-    count_point,
-    fragility_of,
-)
+from fem.ensemble.statistics import POINT_COLUMNS, PointResult, count_point, fragility_of
 from fem.ensemble.unknown import UnknownInputs
 from fem.results.disk import BYTES_BESIDE, table_bytes
 from fem.results.folder import ResultFolder

@@ -7,14 +7,7 @@ from typing import Any
 import numpy as np
 
 from fem.batch.intervals import Estimate, estimate
-from fem.ensemble.fragility import (
-    BOOTSTRAPS,
-    bootstrap_fits,
-    falls,
-    fit_lognormal,
-    misses,
-    misses_by_chance,
-)
+from fem.ensemble.fragility import BOOTSTRAPS, bootstrap_fits, falls, fit_lognormal, misses, misses_by_chance
 from fem.ensemble.plan import Ensemble
 from fem.results.outcome import COUNTED, Ending
 from fem.runtime.arrays import FloatArray

@@ -9,13 +9,7 @@ import re
 from dataclasses import dataclass
 
 from fem.records.directions import direction_of
-from fem.records.fixed_width import (
-    fortran_format,
-    positive_number,
-    read_block,
-    regular_times,
-    whole_number,
-)
+from fem.records.fixed_width import fortran_format, positive_number, read_block, regular_times, whole_number
 from fem.records.record import Component, Quantity, Record
 from fem.records.source import MotionText
 from fem.records.units import UNITS, settled_unit, unit_in_header

@@ -15,6 +15,7 @@ from fem.case.data_files import FILE_KEYS
 from fem.case.toml import toml_document
 from fem.results.figures import Place, keys_of
 from fem.results.outcome import Outcome
+from fem.run.bracket import values_to_try
 from fem.site_check.file import FULL, SiteRequest
 from fem.site_check.result import MOTIONS, SiteRun
 
@@ -97,22 +98,16 @@ class RunPlan:
 
     def refined(self, found: Mapping[RunKey, SiteRun]) -> list[RunKey]:
         """Those that overturned at the least factor, at factors between it and the one below."""
-        tried = sorted({1.0, *SCANNED})
         fell = [
             key
             for key, run in found.items()
             if run.outcome == Outcome.OVERTURNED and key.stage in (SET, SCAN)
         ]
-        if not fell:
-            return []
-        first = min(key.factor for key in fell)
-        below = [factor for factor in tried if factor < first]
-        if not below:
-            return []
-        steps = (below[-1] + (first - below[-1]) * number / (BETWEEN + 1) for number in range(1, BETWEEN + 1))
+        first = min((key.factor for key in fell), default=0.0)
+        to_first = {factor: "" for factor in (1.0, *SCANNED) if factor < first} | {first: "overturned"}
         return [
             key._replace(stage=REFINED, factor=factor)
-            for factor in steps
+            for factor in values_to_try(to_first, resolution=0.0, inner=BETWEEN)
             for key in fell
             if key.factor == first
         ]

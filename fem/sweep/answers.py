@@ -11,14 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from fem.batch.answers import (
-    Answer,
-    Trial,
-    answer_axis,
-    answer_of,
-    is_rising,
-    sentence_of,
-)
+from fem.batch.answers import Answer, Trial, answer_axis, answer_of, is_rising, sentence_of
 from fem.batch.axes import Axis, point_of, set_axis
 from fem.batch.labels import axis_name, place_in_words
 from fem.batch.log import fields_of, number_in, table_text

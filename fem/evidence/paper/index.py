@@ -1,15 +1,6 @@
 """Every claim of the paper that is checked, by topic, and those that are not, with the reason."""
 
-from fem.evidence.paper import (
-    counting,
-    example,
-    overturning,
-    quasi_static,
-    rocking,
-    shape,
-    sliding,
-    stacking,
-)
+from fem.evidence.paper import counting, example, overturning, quasi_static, rocking, shape, sliding, stacking
 from fem.evidence.paper.claims import Claim
 
 TOPICS = {

@@ -14,6 +14,7 @@ from fem.evidence.paper.experiments import Experiments, VariantBand, stands, var
 from fem.evidence.paper.figures import curve, draw_curves
 from fem.evidence.verification.runs import Finished
 from fem.model.static_checks import period_eq2, period_eq3
+from fem.run.bracket import changes_of
 
 FREE = {"motion.kind": "none", **NO_SLIDING}
 RELEASES = (0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.98)  #: over the slenderness angle
@@ -230,9 +231,9 @@ def _largest_kick(experiments: Experiments, case: PaperCase, kick: float) -> flo
     """Scan by a quarter of a per cent around a kick: where standing ends, over the kick; nan if it ends twice."""
     factors = [1.0 + 0.0025 * n for n in range(-4, 5)]
     scan = case.scan("velocity", [factor * kick for factor in factors], "kicked by {:g} rad/s")
-    falls = [not stands(row) for row in experiments.rows(scan)]
-    first = falls.index(True) if True in falls else 0
-    return 0.5 * (factors[first - 1] + factors[first]) if first and all(falls[first:]) else math.nan
+    rows = zip(factors, experiments.rows(scan), strict=True)
+    changes = changes_of({factor: "stands" if stands(row) else "falls" for factor, row in rows})
+    return changes[0].value if [one.above for one in changes] == ["falls"] else math.nan
 
 
 @claim(

@@ -8,13 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fem.assessment.rigid_check import (
-    RigidCheck,
-    block_of,
-    check_against_rigid_block,
-    first_peaks,
-    floor_of,
-)
+from fem.assessment.rigid_check import RigidCheck, block_of, check_against_rigid_block, first_peaks, floor_of
 from fem.assessment.verdict import verdict_of
 from fem.case.case import load_case
 from fem.model.model import Model, build_model

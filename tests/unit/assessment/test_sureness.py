@@ -9,14 +9,7 @@ from fem.assessment.rule_or_run import governing
 from fem.assessment.sureness import judged, sureness_in_words
 from fem.case.uncertainty import InputChange
 from fem.results.figures import BoxResult
-from fem.results.run_result import (
-    ActionResult,
-    Band,
-    ChangedRun,
-    RunResult,
-    StaticResult,
-    Verdict,
-)
+from fem.results.run_result import ActionResult, Band, ChangedRun, RunResult, StaticResult, Verdict
 
 MU, SLIP, PENALTY = "contact.mu_kinetic", "contact.weakening_m", "contact.normal_penalty_Pa_m"
 OWN = {"outcome": "slide-rock", "rotation_ratio": 0.2, "max_slip_m": 0.2, "residual_slip_m": -0.2}

@@ -3,12 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from contact.reference.floor_acceleration import (
-    half_sine_pulse,
-    rectangular_pulse,
-    sine_floor,
-    still_floor,
-)
+from contact.reference.floor_acceleration import half_sine_pulse, rectangular_pulse, sine_floor, still_floor
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import RockingOutcome, first_swing_threshold, simulate_rocking
 
