@@ -18,7 +18,7 @@ from fem.batch.workers import LocalWorkers, WorkersOf
 from fem.results.errors import FolderError
 from fem.results.folder import ResultFolder, open_result_folder, program_of_results
 from fem.results.json_block import JsonBlock
-from fem.results.kinds import ResultKind, read_result
+from fem.results.kinds import ResultKind, read_result, typed_result
 from fem.runtime.progress import Reporter, SilentReporter
 from fem.runtime.signals import interruptible
 from fem.runtime.threads import cores
@@ -107,7 +107,7 @@ def run_study(study: Study[ResultT], folder: Path, **options: Unpack[StudyOption
         interruptible(runner.reporter) as stop,
     ):
         if place.finished and place.found:
-            known = study.again(place, _typed(study.result, place.found, folder / kind.mark))
+            known = study.again(place, typed_result(study.result, place.found, folder / kind.mark))
             if known is not None:
                 runner.reporter.message(f"{folder} holds this {kind.name} already; --force computes it again")
                 return known
@@ -137,7 +137,7 @@ def read_study(folder: Path, kind: ResultKind, result: type[ResultT]) -> ResultT
         raise FolderError(
             f"{folder}: the {kind.name} is not finished; continue it with --resume, then report it"
         )
-    return _typed(result, content, place)
+    return typed_result(result, content, place)
 
 
 @contextmanager
@@ -150,13 +150,6 @@ def runner_of(**options: Unpack[StudyOptions]) -> Iterator[Runner]:
             reporter=options.get("reporter") or SilentReporter(),
             jobs=jobs,
         )
-
-
-def _typed(result: type[ResultT], content: Mapping[str, Any], place: Path) -> ResultT:
-    try:
-        return result.from_json(content)
-    except ValueError as error:
-        raise FolderError(f"{place}: damaged, {error}; compute it again with --force") from None
 
 
 def hash_of(asked: Any) -> str:

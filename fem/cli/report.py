@@ -13,6 +13,14 @@ from fem.runtime.progress import ScreenReporter
 
 PAGE = "report.html"
 SUFFIXES = (".html", ".htm")
+#: what makes the page of a study, by the file that marks its folder
+PAGES = {
+    "sweep.json": "fem.report.sweep_page:sweep_report",
+    "ensemble.json": "fem.report.ensemble_page:ensemble_report",
+    "response.json": "fem.report.response_page:response_report",
+    "study.json": "fem.evidence.paper.page:paper_report",
+    "assess.json": "fem.site_check.site_page:site_report",
+}
 
 
 def report(
@@ -51,20 +59,10 @@ def report(
     interrupts = importlib.import_module("fem.runtime.signals")
     pages = importlib.import_module("fem.report.run_page")
     signature = pages.Signature(author=author, checker=checker, revision=revision)
-    if (folder / "sweep.json").is_file():
-        page = importlib.import_module("fem.report.sweep_page").sweep_report(folder, signature=signature)
-    elif (folder / "ensemble.json").is_file():
-        page = importlib.import_module("fem.report.ensemble_page").ensemble_report(
-            folder, signature=signature
-        )
-    elif (folder / "response.json").is_file():
-        page = importlib.import_module("fem.report.response_page").response_report(
-            folder, signature=signature
-        )
-    elif (folder / "study.json").is_file():
-        page = importlib.import_module("fem.evidence.paper.page").paper_report(folder, signature=signature)
-    elif (folder / "assess.json").is_file():
-        page = importlib.import_module("fem.site_check.site_page").site_report(folder, signature=signature)
+    marks = [mark for mark in PAGES if (folder / mark).is_file()]
+    if marks:
+        module, _, name = PAGES[marks[0]].partition(":")
+        page = getattr(importlib.import_module(module), name)(folder, signature=signature)
     else:
         opened = importlib.import_module("fem.results.reader").open_run(folder)
         with interrupts.interruptible(reporter) as stop:

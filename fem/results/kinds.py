@@ -2,11 +2,15 @@
 
 import json
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from fem.results.errors import FolderError
+from fem.results.json_block import JsonBlock
+
+BlockT = TypeVar("BlockT", bound=JsonBlock)
 
 #: ends of the names of numbers in the result of a run
 MEASURED = re.compile(r"_(m|m2|m3|s|s2|N|Nm|J|Pa|Hz|rad|ratio)$")
@@ -159,6 +163,18 @@ def read_result(path: Path, kind: ResultKind = RUN) -> dict[str, Any]:
     if wrong is not None:
         raise FolderError(f"{path}: damaged, {wrong} is not a number; {again}")
     return result
+
+
+def typed_result(result: type[BlockT], content: Mapping[str, Any], path: Path) -> BlockT:
+    """The content of a marking file as a type.
+
+    Raises:
+        FolderError: it is damaged.
+    """
+    try:
+        return result.from_json(content)
+    except ValueError as error:
+        raise FolderError(f"{path}: damaged, {error}; compute it again with --force") from None
 
 
 def _not_a_number(content: Any) -> str | None:

@@ -21,7 +21,7 @@ from fem.model.motion import build_motions, longest_run
 from fem.results.errors import FolderError, FolderLostError, unwritable
 from fem.results.folder import ResultFolder, find_result, open_result_folder
 from fem.results.history import History, add_analytic_rotation, read_history
-from fem.results.kinds import RUN
+from fem.results.kinds import RUN, typed_result
 from fem.results.reader import OpenedRun, open_run
 from fem.results.run_files import RunFiles, copy_data_files
 from fem.results.run_result import RunResult
@@ -170,10 +170,7 @@ def finished_result(folder: Path, request: str, options: RunOptions, reporter: R
     if found is None or found.get("status") not in RUN.finished:
         return None
     reporter.message(f"{folder} holds this run already; --force computes it again")
-    try:
-        return RunResult.from_json(found)
-    except ValueError as error:
-        raise FolderError(f"{folder / RUN.mark}: damaged, {error}; compute it again with --force") from None
+    return typed_result(RunResult, found, folder / RUN.mark)
 
 
 @contextmanager
