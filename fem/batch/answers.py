@@ -45,12 +45,18 @@ class Trial(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class Answer:
-    """The result of the runs of one or more lines, from the safe side on."""
+    """The result of the runs of one or more lines, from the safe side on.
+
+    With a limit on the slip, what slides further does not stand, and counts as what overturns.
+    """
 
     stood_to: float | None  #: up to here every run stood; None where one of the first value did not
     overturned_from: float | None  #: the first value at which a run overturned
-    slip: float | None = None  #: of that run [m]
+    stood_slip: float | None = None  #: largest of the runs up to the first of these values [m]
+    slip: float | None = None  #: of the run that overturned [m]
     line: int | None = None  #: of that run
+    slid: bool = False  #: no run overturned at the second of these values: one slid beyond the limit
+    limit_slip: float | None = None  #: [m]
     stood_again: tuple[Range, ...] = ()  #: beyond that value, where every line was tried and stood
     failed: tuple[Range, ...] = ()  #: where a run has no outcome
     unsure: tuple[Range, ...] = ()  #: where the outcome of a run is unsure
@@ -82,25 +88,33 @@ def is_rising(axis: Axis, trials: Iterable[Trial]) -> bool:
     return not (Ending.OVERTURNED in kinds[axis.values[0]] and kinds[axis.values[-1]] == {Ending.STANDING})
 
 
-def answer_of(trials: Sequence[Trial], *, rising: bool) -> Answer:
+def answer_of(trials: Sequence[Trial], *, rising: bool, limit_slip: float | None = None) -> Answer:
     """The answer of some lines together.
 
     Args:
         trials: of all these lines, in any order.
         rising: the smaller values are the safe ones.
+        limit_slip: beyond which a run does not stand [m]; None: none.
     """
+
+    def falls(one: Trial) -> bool:
+        beyond = limit_slip is not None and one.kind == Ending.STANDING and (one.slip or 0.0) > limit_slip
+        return beyond or one.kind == Ending.OVERTURNED
+
     lines = len({one.line for one in trials})
     at: dict[float, list[Trial]] = defaultdict(list)
     for one in trials:
         at[one.value].append(one)
     values = sorted(at, reverse=not rising)
     kinds = {value: {one.kind for one in at[value]} for value in values}
-    stands = [kinds[value] == {Ending.STANDING} for value in values]
-    fallen = [value for value in values if Ending.OVERTURNED in kinds[value]]
+    fallen = [value for value in values if any(map(falls, at[value]))]
+    stands = [kinds[value] == {Ending.STANDING} and value not in fallen for value in values]
     first = values.index(fallen[0]) if fallen else len(values)
     upright = stands.index(False) if False in stands else len(values)
-    fell = [one for one in at[fallen[0]] if one.kind == Ending.OVERTURNED] if fallen else []
-    worst = max(fell, key=lambda one: (one.slip or 0.0, -one.line), default=None)
+    fell = [one for one in at[fallen[0]] if falls(one)] if fallen else []
+    overturned = [one for one in fell if one.kind == Ending.OVERTURNED]
+    worst = max(overturned or fell, key=lambda one: (one.slip or 0.0, -one.line), default=None)
+    slips = [one.slip for value in values[:upright] for one in at[value] if one.slip is not None]
     # A value tried in some lines only is unknown for the others; where it did not stand, it ends a range.
     beyond = [
         (value, stood)
@@ -115,8 +129,11 @@ def answer_of(trials: Sequence[Trial], *, rising: bool) -> Answer:
     return Answer(
         stood_to=values[upright - 1] if upright else None,
         overturned_from=fallen[0] if fallen else None,
+        stood_slip=max(slips, default=None),
         slip=worst.slip if worst else None,
         line=worst.line if worst else None,
+        slid=bool(fell) and not overturned,
+        limit_slip=limit_slip,
         stood_again=tuple(_ranges(beyond)),
         failed=tuple(_ranges((value, Ending.FAILED in kinds[value]) for value in values)),
         unsure=tuple(_ranges((value, any(marks)) for value, marks in sureness)),
@@ -124,28 +141,41 @@ def answer_of(trials: Sequence[Trial], *, rising: bool) -> Answer:
 
 
 def sentence_of(answer: Answer, axis: Axis, *, rising: bool, where: str = "") -> str:
-    """An answer in words: "stood in every motion tried up to 0.42 g; first overturned at 0.44 g (slip there 64 mm)"."""
+    """An answer in words: "stood in every motion tried up to 0.42 g (slid up to 50 mm); first overturned at 0.44 g"."""
     every = f"stood in every {'motion' if axis.key.startswith('motion.') else 'case'} tried"
+    limit = "" if answer.limit_slip is None else slip_in_words(answer.limit_slip)
+    overturned = f"slid beyond {limit}" if answer.slid else "overturned"
     stood, fell = ends_in_words(answer, axis)
-    slip = _slip_in_words(answer.slip) if fell and answer.slip is not None else ""
+    if stood and answer.stood_slip is not None and answer.stood_slip >= MILLIMETRES.least:
+        there = f" (slid up to {slip_in_words(answer.stood_slip)})"
+    else:
+        there = ""
+    slip = ""
+    if fell and answer.slip is not None:
+        slip = (
+            f"slip there {slip_in_words(answer.slip)}"
+            if answer.slip >= MILLIMETRES.least
+            else "no slip there"
+        )
     noted = ", ".join(filter(None, (slip, f"with {where}" if fell and where else "")))
     noted = f" ({noted})" if noted else ""
     at_once = fell and not stood and not answer.failed
     if rising:
         parts = [
-            f"{every} up to {stood}" if stood else "",
-            f"{'overturned at the least tried,' if at_once else 'first overturned at'} {fell}{noted}"
+            f"{every} up to {stood}{there}" if stood else "",
+            f"{f'{overturned} at the least tried,' if at_once else f'first {overturned} at'} {fell}{noted}"
             if fell
             else "",
         ]
     else:
         parts = [
-            f"overturned {'even at the largest tried,' if at_once else 'up to'} {fell}{noted}"
+            f"{overturned} {'even at the largest tried,' if at_once else 'up to'} {fell}{noted}"
             if fell
             else "",
-            f"{every} from {stood} on" if stood else "",
+            f"{every} from {stood} on{there}" if stood else "",
         ]
-    parts.append("none overturned" if stood and not fell else "")
+    none = f"none overturned or slid beyond {limit}" if limit else "none overturned"
+    parts.append(none if stood and not fell else "")
     ranges = {
         "stood again at" if rising else "stood below that at": answer.stood_again,
         "no outcome at": answer.failed,
@@ -155,21 +185,26 @@ def sentence_of(answer: Answer, axis: Axis, *, rising: bool, where: str = "") ->
     return "; ".join(filter(None, parts))
 
 
-def ends_in_words(answer: Answer, axis: Axis) -> tuple[str, str]:
-    """Up to where it stood and where it first overturned, with enough figures to differ; empty for none."""
+def ends_in_words(answer: Answer, axis: Axis, *, bare: bool = False) -> tuple[str, str]:
+    """Up to where it stood and where it first overturned, with enough figures to differ; empty for none.
+
+    Args:
+        answer, axis: what to say.
+        bare: without the unit.
+    """
     ends = (answer.stood_to, answer.overturned_from)
     words = ("", "")
     for figures in range(3, MOST_FIGURES + 1):
-        stood, fell = ("" if one is None else in_words(axis, [one], figures) for one in ends)
+        stood, fell = ("" if one is None else in_words(axis, [one], figures, bare=bare) for one in ends)
         words = stood, fell
         if stood != fell:
             break
     return words
 
 
-def ranges_in_words(ranges: Sequence[Range], axis: Axis) -> str:
+def ranges_in_words(ranges: Sequence[Range], axis: Axis, *, bare: bool = False) -> str:
     """Ranges of values: "0.5 to 0.55 g, 0.61 g"; those after the fourth are counted."""
-    shown = [in_words(axis, sorted({*one})) for one in ranges[:MOST_RANGES]]
+    shown = [in_words(axis, sorted({*one}), bare=bare) for one in ranges[:MOST_RANGES]]
     more = len(ranges) - len(shown)
     return ", ".join(shown) + (f" and {more} more" if more else "")
 
@@ -183,8 +218,9 @@ def table_lines(rows: Iterable[tuple[str, str]], file: str = "") -> Iterator[str
         yield f"  {more} more rows" + (f" in {file}" if file else "")
 
 
-def _slip_in_words(slip: float) -> str:
-    return f"slip there {plain_number(1e3 * slip)} mm" if slip >= MILLIMETRES.least else "no slip there"
+def slip_in_words(slip: float) -> str:
+    """A slip [m]: "64 mm", "2.9 m"."""
+    return f"{plain_number(slip)} m" if slip >= 1.0 else f"{plain_number(1e3 * slip)} mm"
 
 
 def _ranges(marked: Iterable[tuple[float, bool]]) -> Iterator[Range]:

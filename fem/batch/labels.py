@@ -33,13 +33,18 @@ def axis_label(axis: Axis) -> str:
     return axis_name(axis) + ("" if words else f" [{shown}]")
 
 
-def in_words(axis: Axis, values: Sequence[Any], figures: int = 3) -> str:
-    """Values on an axis in their usual unit: "0.5 to 0.55 g", "steel, wood"."""
+def in_words(axis: Axis, values: Sequence[Any], figures: int = 3, *, bare: bool = False) -> str:
+    """Values on an axis in their usual unit, unless `bare`: "0.5 to 0.55 g", "steel, wood"."""
     if any(isinstance(value, bool | str) for value in values):
         return ", ".join(str(value) for value in values)
-    numbers = [value for value in axis.values if not isinstance(value, bool | str)]
-    unit, factor = _unit_of_people(axis, max((abs(value) for value in numbers), default=0.0))
-    return f"{' to '.join(plain_number(factor * value, figures) for value in values)} {unit}".strip()
+    unit, factor = _unit_of_people(axis)
+    words = " to ".join(plain_number(factor * value, figures) for value in values)
+    return words if bare else f"{words} {unit}".strip()
+
+
+def unit_in_words(axis: Axis) -> str:
+    """The unit that `in_words` takes; empty for none."""
+    return _unit_of_people(axis)[0]
 
 
 def place_in_words(axes: Iterable[Axis], point: Mapping[str, Any]) -> str:
@@ -52,8 +57,9 @@ def plain_number(value: float, figures: int = 3) -> str:
     return f"{float(f'{value:.{figures}g}'):.{max(figures, 6)}g}"
 
 
-def _unit_of_people(axis: Axis, largest: float) -> tuple[str, float]:
+def _unit_of_people(axis: Axis) -> tuple[str, float]:
     """The usual unit and the factor from the unit of the key; it depends on the largest value."""
+    largest = max((abs(value) for value in axis.values if not isinstance(value, bool | str)), default=0.0)
     if axis.unit == "m/s2" and axis.key.startswith(("motion.", "vertical.")):
         return "g", 1.0 / STANDARD_GRAVITY
     for least, unit, factor in PEOPLE.get(axis.unit, ()):

@@ -1,11 +1,11 @@
-"""Maps over two axes: a colour for every cell, the change of outcome as a line, doubtful cells hatched or dotted.
+"""Maps over two axes: a colour for every cell, the change of outcome as a line, doubtful cells hatched.
 
 Cells are drawn side by side at equal size, whatever the spacing of their values; ticks stand at round values. Each
 panel is one map; all have the same axes and colours.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -19,13 +19,12 @@ from matplotlib.patheffects import AbstractPathEffect, withStroke
 from matplotlib.ticker import LogLocator, MaxNLocator
 from matplotlib.transforms import Affine2D
 
-from fem.figures.style import BLACK, GREY, WIDTH, house_style, number
+from fem.figures.style import BLACK, GREY, WHITE, WIDTH, house_style, number
 from fem.runtime.arrays import BoolArray, FloatArray
 
-COLUMNS = 3  #: of panels at most
+COLUMNS = 3  #: of panels
 TICKS = 7
-HATCH, DOTS = "////", ".."
-WHITE = "#FFFFFF"
+HATCH = "////"
 CASED: list[AbstractPathEffect] = [
     withStroke(linewidth=2.8, foreground=WHITE)
 ]  #: seen on black cells as well
@@ -70,6 +69,14 @@ class MapCurve:
     label: str = ""
 
 
+@dataclass(frozen=True, kw_only=True)
+class Look:
+    """The classes of a panel by their words."""
+
+    colours: Mapping[str, str]
+    hatches: Mapping[str, str] = field(default_factory=dict)  #: over the colour, for print without colours
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Panel:
     """One map; arrays have a row for each value of y and a column for each of x."""
@@ -78,7 +85,7 @@ class Panel:
     title: str = ""
     overturned: BoolArray | None = None  #: cells enclosed by a line; black where colours are a scale
     unsure: BoolArray | None = None  #: cells that are hatched
-    regime_unsure: BoolArray | None = None  #: cells that are dotted
+    look: "Look | None" = None  #: colours of its own, to whose places `values` refer
     texts: Sequence[Sequence[str]] | None = None  #: within the cells
     curves: Sequence[MapCurve] = ()
 
@@ -92,6 +99,7 @@ def draw_heat_map(
     colours: Colormap | Mapping[str, str],
     norm: Normalize | None = None,
     bar: str = "",
+    columns: int = COLUMNS,
 ) -> Figure:
     """Draw maps side by side.
 
@@ -102,25 +110,31 @@ def draw_heat_map(
         colours: a colour scale; or colours by their words, to whose places `values` refer.
         norm: limits of the colour scale.
         bar: label of the colour scale.
+        columns: of panels, at most.
     """
-    words = list(colours) if isinstance(colours, Mapping) else []
-    scale = ListedColormap(list(colours.values())) if isinstance(colours, Mapping) else colours
-    norm = Normalize(-0.5, len(words) - 0.5) if words else norm
-    columns = min(COLUMNS, len(panels))
+    shared = Look(colours=colours) if isinstance(colours, Mapping) else None
+    columns = min(columns, len(panels))
     rows = -(-len(panels) // columns)
+    height = {1: 4.6, 2: 3.4 * rows}.get(columns, 2.6 * rows)
     with house_style():
-        figure = Figure(figsize=(WIDTH, (4.6 if columns == 1 else 2.6 * rows) + 0.9), layout="constrained")
+        figure = Figure(figsize=(WIDTH, height + 0.9), layout="constrained")
         places = list(figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=True).flat)
         for axes in places[len(panels) :]:
             axes.set_visible(False)
         for k, (axes, panel) in enumerate(zip(places, panels, strict=False)):
+            look = panel.look or shared
             image = axes.imshow(
-                panel.values, origin="lower", aspect="auto", interpolation="none", cmap=scale, norm=norm
+                panel.values,
+                origin="lower",
+                aspect="auto",
+                interpolation="none",
+                cmap=ListedColormap(list(look.colours.values())) if look else colours,
+                norm=Normalize(-0.5, len(look.colours) - 0.5) if look else norm,
             )
-            _draw_over(axes, x, y, panel, cover=not words)
+            _draw_over(axes, x, y, panel, look)
             axes.set_title(panel.title, fontsize=8.5)
             axes.grid(visible=False)
-            axes.spines[["left", "bottom"]].set_visible(False)
+            axes.spines[:].set_visible(panel.look is not None)
             axes.set_xticks(*x.ticks())
             axes.set_yticks(*y.ticks())
             if k % columns == 0:
@@ -128,10 +142,14 @@ def draw_heat_map(
             if k + columns >= len(panels):
                 axes.set_xlabel(x.label)
                 axes.tick_params(labelbottom=True)
+            if panel.look and k + columns >= len(panels):
+                handles = _classes([one for one in panels if one.look is panel.look], panel.look)
+                below = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.2), "ncols": 2}
+                axes.legend(handles=handles, handlelength=1.4, columnspacing=1.0, **below)
         figure.suptitle(title, x=0.01, ha="left", fontsize=10.0)
         if bar:
             figure.colorbar(image, ax=places[: len(panels)], label=bar, pad=0.02, aspect=30)
-        handles = _legend(panels, colours if isinstance(colours, Mapping) else {})
+        handles = _legend([panel for panel in panels if panel.look is None], shared)
         handles += places[0].get_legend_handles_labels()[0]
         if handles:  # names of curves are long
             columns = 4 if len(handles) > 7 or any(panel.curves for panel in panels) else 7
@@ -144,37 +162,39 @@ def value_label(value: Any) -> str:
     return str(value) if isinstance(value, bool | str) else number(float(value))
 
 
-def _legend(panels: Sequence[Panel], colours: Mapping[str, str]) -> list[Any]:
-    """A patch for every colour and sign that occurs."""
-    seen = {int(value) for panel in panels for value in np.unique(panel.values)} if colours else set()
-    handles = [
-        Patch(facecolor=colour, edgecolor=GREY, label=word)
-        for k, (word, colour) in enumerate(colours.items())
+def _classes(panels: Sequence[Panel], look: Look) -> list[Any]:
+    """A patch for every class that occurs."""
+    seen = {int(value) for panel in panels for value in np.unique(panel.values)}
+    return [
+        Patch(facecolor=colour, edgecolor=GREY, label=word, hatch=look.hatches.get(word))
+        for k, (word, colour) in enumerate(look.colours.items())
         if k in seen and word
     ]
-    if not colours and any(panel.overturned is not None for panel in panels):
+
+
+def _legend(panels: Sequence[Panel], look: Look | None) -> list[Any]:
+    """A patch for every class and sign that occurs."""
+    handles = _classes(panels, look) if look else []
+    if not look and any(panel.overturned is not None for panel in panels):
         handles.append(Patch(facecolor=BLACK, label="overturned"))
-    signs = [(panel.regime_unsure, DOTS, "regime unsure") for panel in panels]
-    signs += [(panel.unsure, HATCH, "unsure") for panel in panels]
-    marked = {label: hatch for cells, hatch, label in signs if cells is not None and cells.any()}
-    if "regime unsure" in marked:
-        handles.append(Patch(facecolor=WHITE, edgecolor=GREY, label="sure: no sign", linewidth=0.5))
-    for label, hatch in marked.items():
-        handles.append(Patch(facecolor=WHITE, edgecolor=BLACK, hatch=hatch, label=label, linewidth=0))
+    if any(panel.unsure is not None and panel.unsure.any() for panel in panels):
+        handles.append(Patch(facecolor=WHITE, edgecolor=BLACK, hatch=HATCH, label="unsure", linewidth=0))
     return handles
 
 
-def _draw_over(axes: Axes, x: MapAxis, y: MapAxis, panel: Panel, *, cover: bool) -> None:
+def _draw_over(axes: Axes, x: MapAxis, y: MapAxis, panel: Panel, look: Look | None) -> None:
     """What is drawn over the colours of a panel."""
     fallen = np.zeros(panel.values.shape, dtype=bool) if panel.overturned is None else panel.overturned
-    if cover:
+    if look is None:
         shade = np.zeros((*fallen.shape, 4))
         shade[fallen] = to_rgba(BLACK)
         axes.imshow(shade, origin="lower", aspect="auto", interpolation="none")
-    for marked, hatch in ((panel.unsure, HATCH), (panel.regime_unsure, DOTS)):
-        if marked is not None:
-            _hatch(axes, marked & fallen, hatch, WHITE)
-            _hatch(axes, marked & ~fallen, hatch, BLACK)
+    if panel.unsure is not None:
+        _hatch(axes, panel.unsure & fallen, HATCH, WHITE)
+        _hatch(axes, panel.unsure & ~fallen, HATCH, BLACK)
+    if look:
+        for k, word in enumerate(look.colours):
+            _hatch(axes, np.equal(panel.values, k), look.hatches.get(word), BLACK)
     _outline(axes, fallen, WHITE, 1.6)
     _outline(axes, fallen, BLACK, 0.7)
     for row, words in enumerate(panel.texts or ()):
@@ -193,9 +213,9 @@ def _draw_over(axes: Axes, x: MapAxis, y: MapAxis, panel: Panel, *, cover: bool)
         )
 
 
-def _hatch(axes: Axes, cells: BoolArray, hatch: str, colour: str) -> None:
+def _hatch(axes: Axes, cells: BoolArray, hatch: str | None, colour: str) -> None:
     """Hatch cells, all as one path."""
-    if not cells.any():
+    if hatch is None or not cells.any():
         return
     squares = [
         Path.unit_rectangle().transformed(Affine2D().translate(column - 0.5, row - 0.5))

@@ -25,7 +25,7 @@ from fem.results.history import History
 from fem.results.outcome import Outcome
 from fem.runtime.arrays import FloatArray
 
-BLACK, GREY = "#222222", "#6E6E6E"
+BLACK, GREY, WHITE = "#222222", "#6E6E6E", "#FFFFFF"
 BLUE, VERMILLION, GREEN = "#0072B2", "#D55E00", "#009E73"
 ORANGE, SKY, PURPLE = "#E69F00", "#56B4E9", "#CC79A7"
 #: of the states of motion; sky and orange, green and purple also differ in brightness

@@ -8,7 +8,7 @@ import csv
 import re
 import shlex
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from fem.assessment.sureness import REGIME_UNSURE, SURE, UNSURE
 from fem.batch.answers import ends_in_words, ranges_in_words
-from fem.batch.labels import axis_label
+from fem.batch.labels import axis_label, unit_in_words
 from fem.case.case import load_case
 from fem.figures.style import STATE_COLOURS, VERMILLION
 from fem.html import sections as html
@@ -33,6 +33,7 @@ from fem.results.errors import FolderError
 from fem.results.figures import FIGURES, Place, keys_of
 from fem.runtime import units
 from fem.sweep.answers import AnswerRow, SweepAnswer, sweep_answer
+from fem.sweep.maps import SHARE_COLOURS, shares_of
 from fem.sweep.result import SweepResult
 from fem.sweep.table import SweepTable, open_sweep
 
@@ -43,11 +44,13 @@ QUANTITIES = (
     ("band_rotation_ratio_high", "rotation ratio, perturbed, most", units.RATIO),
     ("wall_s", "computing time", units.SECONDS),
 )
-#: shown by a colour for every word: how sure a cell is; of folders of before, whether it is unsure
-FLAGS = (("sure", "how sure"), ("unsure", "unsure"))
+#: shown by a colour for every word; the last in folders of before
+FLAGS = (("overturned_share", "variations that overturn"), ("sure", "how sure"), ("unsure", "unsure"))
+SURENESS = {SURE: "#e3e8ee", REGIME_UNSURE: "#f2c879", UNSURE: "#c2410c", "not tried": "#ffffff"}
 NEEDED = 3  #: of these, in the order above: without them no page is made
 MOST_BYTES = 3_600_000  #: of all columns, in base64
 COLOURS = 64
+MOST_OPEN = 12  #: rows of answers that are not folded
 #: outcome, words for it, its colour, and whether there is an outcome
 OUTCOMES = (
     *((name, name, colour, True) for name, colour in STATE_COLOURS.items()),
@@ -82,14 +85,14 @@ def sweep_report(folder: Path, *, signature: Signature | None = None) -> str:
         data={"sweep": data},
         sections=[
             found_section(table, answer.sentence if answer else None),
+            html.section("Maps", "drawn", *drawn),
+            html.section("Cell by cell", "map-title", cell_map(table, data), look="screen" if drawn else ""),
             html.section(
                 "The answer for each value of the other axes",
                 "answers",
-                *([answer_table(answer)] if answer and answer.others else []),
+                *([answer_part(answer)] if answer and answer.others else []),
             ),
             motions_of_sweep(folder, table),
-            html.section("The map", "map-title", cell_map(table, data), look="screen" if drawn else ""),
-            html.section("Maps as drawn", "drawn", *drawn),
             html.section(
                 "Counts", "counts", counts_table(table), *_failures(table), *_thresholds(folder, info)
             ),
@@ -158,7 +161,7 @@ def cell_map(table: SweepTable, data: Mapping[str, Any]) -> html.CellMap:
     """The map, first over the one or two longest axes."""
     labels, known = [axis_label(axis) for axis in table.axes], {column["name"] for column in data["columns"]}
     longest = sorted(sorted(range(len(labels)), key=lambda k: -len(table.axes[k].values))[:2])
-    shown = (("outcome", "outcome"), *FLAGS, *((name, label) for name, label, *_ in QUANTITIES))
+    shown = (FLAGS[0], ("outcome", "outcome"), *FLAGS[1:], *((name, label) for name, label, *_ in QUANTITIES))
     return html.CellMap(
         [html.Choice(name, label) for name, label in shown if name in known],
         *([html.Choice(k, label, k == first) for k, label in enumerate(labels)] for first in longest),
@@ -175,31 +178,42 @@ def counts_table(table: SweepTable) -> html.Table:
     return html.table_of("counts", columns, counts(table))
 
 
+def answer_part(answer: SweepAnswer) -> html.Block:
+    """The table of answers, folded where it is longer than a person reads at once."""
+    table = answer_table(answer)
+    return table if len(answer.rows) <= MOST_OPEN else html.Folded(f"All {len(answer.rows)} rows", [table])
+
+
 def answer_table(answer: SweepAnswer) -> html.Table:
     """The answers: where, up to where it stood, where it first overturned, the slip, what else there is to say."""
-    up_to, first = (
-        ("stood up to", "first overturned at") if answer.rising else ("stood from", "overturned up to")
+    ends = ("stood up to", "first overturned at") if answer.rising else ("stood from", "overturned up to")
+    unit = unit_in_words(answer.axis)
+    up_to, first, again, failed, unsure = (
+        f"{head} [{unit}]" if unit else head for head in (*ends, "stood again", "no outcome", "unsure")
     )
 
     def where(row: AnswerRow) -> str:
         return answer.where(row) + (": every motion" if len(row.point) < len(answer.others) else "")
 
     def end(k: int, row: AnswerRow) -> str:
-        return ends_in_words(row.answer, answer.axis)[k] or ABSENT
+        words = ends_in_words(row.answer, answer.axis, bare=True)[k] or ABSENT
+        return f"{words} (slid too far)" if k == 1 and row.answer.slid else words
 
-    def slip(row: AnswerRow) -> str:
-        return "" if row.answer.slip is None else f"{millimetres(row.answer.slip)} mm"
+    def slip(value: float | None) -> str:
+        return "" if value is None else millimetres(value)
+
+    def ranges(found: Sequence[tuple[float, float]]) -> str:
+        return ranges_in_words(found, answer.axis, bare=True)
 
     columns: list[html.Column[AnswerRow]] = [
         html.Column("", where),
         html.Column(up_to, partial(end, 0)),
+        html.Column("slip up to there [mm]", lambda row: slip(row.answer.stood_slip), optional=True),
         html.Column(first, partial(end, 1)),
-        html.Column("slip there", slip, optional=True),
-        html.Column(
-            "stood again", lambda row: ranges_in_words(row.answer.stood_again, answer.axis), optional=True
-        ),
-        html.Column("no outcome", lambda row: ranges_in_words(row.answer.failed, answer.axis), optional=True),
-        html.Column("unsure", lambda row: ranges_in_words(row.answer.unsure, answer.axis), optional=True),
+        html.Column("slip there [mm]", lambda row: slip(row.answer.slip), optional=True),
+        html.Column(again, lambda row: ranges(row.answer.stood_again), optional=True),
+        html.Column(failed, lambda row: ranges(row.answer.failed), optional=True),
+        html.Column(unsure, lambda row: ranges(row.answer.unsure), optional=True),
     ]
     return html.table_of("answers", columns, answer.rows, file="answers.csv")
 
@@ -286,21 +300,25 @@ def _short_key(key: str) -> str:
 def _sureness(table: SweepTable) -> list[dict[str, Any]]:
     """How sure each cell is and what decides, as numbers of words; in a folder of before, whether it is unsure."""
     if "sure" not in table.columns:
-        names = ["sure", "unsure"]
-        return [_words("unsure", "unsure", np.where(table["unsure"] == 1.0, *reversed(names)), names)]
+        return [_words("unsure", "unsure", np.where(table["unsure"] == 1.0, UNSURE, SURE), SURENESS)]
     sure = np.where(table["sure"] == "", "not tried", table["sure"])
     deciding = [" ".join(map(_short_key, str(one).split())) or "-" for one in table["decided_by"]]
-    return [
-        _words("sure", "how sure", sure, [SURE, REGIME_UNSURE, UNSURE, "not tried"]),
-        _words("decided_by", "decided by", np.array(deciding), sorted(set(deciding))),
+    columns = [
+        _words("sure", "how sure", sure, SURENESS),
+        _words("decided_by", "decided by", np.array(deciding), dict.fromkeys(sorted(set(deciding)), "")),
     ]
+    if (shares := shares_of(table)) is not None:
+        words = np.array(list(SHARE_COLOURS))[shares]
+        columns.append(_words(*FLAGS[0], words, SHARE_COLOURS))
+    return columns
 
 
-def _words(name: str, label: str, values: NDArray[Any], names: list[str]) -> dict[str, Any]:
-    """A column of words, as their places among `names`."""
+def _words(name: str, label: str, values: NDArray[Any], colours: Mapping[str, str]) -> dict[str, Any]:
+    """A column of words, as their places among those that have colours."""
+    names = list(colours)
     places = np.array([names.index(str(one)) for one in values], dtype="<f4")
     column = {"name": name, "label": label, "unit": "", "factor": 1.0, "names": names}
-    return column | {"values": packed(places, "<f4")}
+    return column | {"colours": list(colours.values()), "values": packed(places, "<f4")}
 
 
 def counts(table: SweepTable) -> list[tuple[str, str, int, float]]:

@@ -21,7 +21,10 @@ from fem.sweep.table import SweepTable
 
 TRIED = "tried.csv"
 #: columns of `answers.csv` behind those of the other axes
-COLUMNS = ("stood_to", "overturned_from", "max_slip_m", "stood_again", "no_outcome", "unsure", "answer")
+COLUMNS = (
+    *("stood_to", "stood_max_slip_m", "overturned_from", "max_slip_m"),
+    *("stood_again", "no_outcome", "unsure", "answer"),
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,7 +65,7 @@ class SweepAnswer:
     def _row(self, row: AnswerRow) -> Iterator[Any]:
         answer = row.answer
         yield from (row.point.get(axis.key) for axis in self.others)
-        yield from (answer.stood_to, answer.overturned_from, answer.slip)
+        yield from (answer.stood_to, answer.stood_slip, answer.overturned_from, answer.slip)
         for ranges in (answer.stood_again, answer.failed, answer.unsure):
             yield "; ".join(f"{low!r} to {high!r}" for low, high in ranges)
         yield row.sentence
@@ -92,7 +95,7 @@ def sweep_answer(table: SweepTable, folder: Path) -> SweepAnswer | None:
             point = point_of(table.axes, first)
             groups[tuple(point[one.key] for one in kept)] += line
         for values, trials in groups.items():
-            answer = answer_of(trials, rising=rising)
+            answer = answer_of(trials, rising=rising, limit_slip=table.info.limit_slip_m)
             rest = [one for one in others if one not in kept]
             where = "" if answer.line is None else place_in_words(rest, point_of(table.axes, answer.line))
             yield AnswerRow(

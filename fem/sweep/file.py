@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from itertools import islice, product
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 from pydantic import Field
 
@@ -13,11 +13,13 @@ from fem.batch.derived import Derived, read_derived, value_in
 from fem.case.case import Case
 from fem.case.files import DEFAULT_CASE, SWEEPS, Origin
 from fem.case.overrides import keys_in_effect
+from fem.case.quantities import Quantity
 from fem.case.tables import CaseTable
 from fem.case.validation import CaseError
 from fem.sweep.perturbation import Perturbation
 from fem.sweep.plan import MapChoice, Sweep, Threshold
 
+SLIP_LIMIT = Quantity(unit="m", least=0.0, most=100.0, advice="a clearance such as 0.1")
 MOST_AXES = 4
 #: cells that are built to find bad values before anything is computed
 TRIED = 64
@@ -28,6 +30,9 @@ class SweepHeading(CaseTable):
 
     case: str = Field(default=DEFAULT_CASE, description="a shipped case, or a file beside the sweep file")
     title: str = Field(default="", max_length=500, description="for people")
+    limit_slip_m: Annotated[float, SLIP_LIMIT] | None = Field(
+        default=None, description="slip beyond which a cell does not stand in the answer"
+    )
 
 
 TABLES = ("set", "axes", "derived", "perturbation", "threshold", "maps")
@@ -68,6 +73,7 @@ def _read(data: Mapping[str, Any], origin: Origin) -> Sweep:
         perturbation=study_file.read_as("perturbation", Perturbation, tables.get("perturbation", {})),
         threshold=_threshold(tables, axes),
         maps=_maps(tables.get("maps", {}), axes),
+        limit_slip_m=heading.limit_slip_m,
     )
     _try_cells(sweep)
     return sweep

@@ -1,11 +1,12 @@
 """Maps of a sweep: outcome, rotation and slip over two axes, drawn from its table alone.
 
-Two axes span a map; there is a panel for each combination of the others, unless they are held at one value. A line
-encloses the cells that overturn; unsure cells are hatched, those unsure in their regime alone are dotted. The title
-says what the map holds fixed of the unknown inputs.
+Two axes span a map; there is a panel for each combination of the others, unless they are held at one value. Where cells
+have copies, the first map shows the share of them that overturns, and beside it the outcomes. A line encloses the cells
+that overturn. The title says what the map holds fixed of the unknown inputs.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import partial
 from itertools import islice, product
 from pathlib import Path
 from typing import Any
@@ -16,17 +17,40 @@ from matplotlib.colors import Colormap, LogNorm, Normalize
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from fem.assessment.sureness import REGIME_UNSURE
 from fem.batch.axes import Axis
 from fem.batch.labels import axis_label, axis_name
 from fem.figures import style
-from fem.figures.heat_map import MapAxis, Panel, draw_heat_map, value_label
+from fem.figures.heat_map import Look, MapAxis, Panel, draw_heat_map, value_label
 from fem.results.files import write_atomically
 from fem.results.outcome import Outcome
 from fem.sweep.plan import MapChoice
 from fem.sweep.table import SweepTable
 
-OUTCOME_COLOURS = {**style.STATE_COLOURS, "failed": style.VERMILLION, "": "#FFFFFF"}
+OUTCOME_COLOURS = {**style.STATE_COLOURS, "failed": style.VERMILLION, "": style.WHITE}
+#: shares of a cell and its copies that overturn, up to so much each; their brightness falls, so that the order is seen
+#: without colours, too
+SHARES = {
+    "none overturns": 0.0,
+    "up to a quarter": 0.25,
+    "up to three quarters": 0.75,
+    "more": 1.0 - 1e-9,
+    "all overturn": 1.0,
+}
+SHARE_COLOURS = {
+    "none overturns": "#DDEEF8",
+    "up to a quarter": "#F5D878",
+    "up to three quarters": "#EE9A3A",
+    "more": "#A6401B",
+    "all overturn": style.BLACK,
+    "no outcome": style.WHITE,
+}
+GREYS = (style.WHITE, "#DDDDDD", "#AAAAAA", style.GREY, style.BLACK)
+PRINTED_SHARES = dict(zip(SHARES, GREYS, strict=True)) | {"no outcome": style.WHITE}
+PRINTED_OUTCOMES = dict(
+    zip(style.STATE_COLOURS, (style.WHITE, "#DDDDDD", "#DDDDDD", "#AAAAAA", style.BLACK), strict=True)
+)
+PRINTED_OUTCOMES |= {"failed": style.WHITE, "": style.WHITE}
+HATCHES = {Outcome.SLIDE: "---", Outcome.ROCK: "///", Outcome.SLIDE_ROCK: "xxx", "failed": "oo"}
 MOST_PANELS = 12
 LEAST_SLIP_MM = 1e-2  #: less is no slip
 JOINT_SLIP = "max_joint_slip_m"
@@ -43,7 +67,8 @@ def draw_maps(table: SweepTable, folder: Path, choice: MapChoice) -> list[str]:
         figures = {"rotation": rotation_curve(table)}
     else:
         loose = ("joint_slip",) if np.isfinite(table.columns.get(JOINT_SLIP, np.nan)).any() else ()
-        figures = {kind: sweep_map(table, kind, choice) for kind in ("outcome", "rotation", "slip", *loose)}
+        kinds = ("outcome", "outcome_print", "rotation", "slip", *loose)
+        figures = {kind: sweep_map(table, kind, choice) for kind in kinds}
     for name, figure in figures.items():
         write_atomically(folder / f"{name}.svg", style.svg_of(figure))
     return [f"{folder.name}/{name}.svg" for name in figures]
@@ -54,13 +79,13 @@ def sweep_map(table: SweepTable, kind: str, choice: MapChoice) -> Figure:
 
     Args:
         table: of the sweep, which has two axes or more.
-        kind: outcome (by colour) | rotation (largest, over the slenderness angle) | slip (largest) | joint_slip
-            (largest between loose boxes); all but the first where the container stands.
+        kind: outcome (the share of copies that overturns, and the outcome) | outcome_print (the same without colours)
+            | rotation (largest, over the slenderness angle) | slip (largest) | joint_slip (largest between loose
+            boxes); the last three where the container stands.
         choice: of axes that the sweep has, and of values on them.
     """
-    if kind == "outcome":
-        codes = np.array([list(OUTCOME_COLOURS).index(word) for word in table.outcome])
-        return _map(table, choice, codes, title="Outcome", colours=OUTCOME_COLOURS)
+    if kind.startswith("outcome"):
+        return _outcome_map(table, choice, printed=kind == "outcome_print")
     fallen = table.outcome == Outcome.OVERTURNED
     if kind == "rotation":
         return _map(
@@ -128,47 +153,85 @@ def rotation_curve(table: SweepTable) -> Figure:
     return figure
 
 
+def _outcome_map(table: SweepTable, choice: MapChoice, *, printed: bool) -> Figure:
+    """Panels of the share of copies that overturns, where there are copies, each beside that of the outcomes."""
+    outcome, share = np.array([list(OUTCOME_COLOURS).index(word) for word in table.outcome]), shares_of(table)
+    outcomes = Look(colours=PRINTED_OUTCOMES, hatches=HATCHES) if printed else Look(colours=OUTCOME_COLOURS)
+    shares = Look(colours=PRINTED_SHARES if printed else SHARE_COLOURS)
+    grids, across, up, left_out = _grids(
+        table, choice, most=MOST_PANELS if share is None else MOST_PANELS // 2
+    )
+    panels = []
+    for name, plane in grids:
+        overturned = plane(table.outcome == Outcome.OVERTURNED)
+        if share is not None:
+            words = "; ".join(filter(None, ("Share of a cell's variations that overturn", name)))
+            panels.append(Panel(values=plane(share), title=words, overturned=overturned, look=shares))
+        words = "; ".join(filter(None, ("Outcome", name)))
+        panels.append(Panel(values=plane(outcome), title=words, overturned=overturned, look=outcomes))
+    title = _titled(table, "Outcome" if share is None else "Does it overturn?", left_out)
+    return draw_heat_map(
+        map_axis(across), map_axis(up), panels, title=title, colours={}, columns=3 if share is None else 2
+    )
+
+
+def shares_of(table: SweepTable) -> NDArray[Any] | None:
+    """The place in `SHARE_COLOURS` of each cell (n_cells,); None where no cell has copies."""
+    share = table.columns.get("overturned_share")
+    if share is None or not np.isfinite(share).any():
+        return None
+    places = np.searchsorted(list(SHARES.values()), np.nan_to_num(share))
+    return np.where(np.isfinite(share), places, len(SHARES))
+
+
 def _map(
     table: SweepTable,
     choice: MapChoice,
     values: NDArray[Any],
     *,
     title: str,
-    colours: Colormap | Mapping[str, str],
-    norm: Normalize | None = None,
-    bar: str = "",
+    colours: Colormap,
+    norm: Normalize,
+    bar: str,
 ) -> Figure:
     """The panels of values (n_cells,)."""
+    grids, across, up, left_out = _grids(table, choice)
+    unsure = table.columns.get("unsure")
+    panels = [
+        Panel(
+            values=plane(values),
+            title=name,
+            overturned=plane(table.outcome == Outcome.OVERTURNED),
+            unsure=None if unsure is None else plane(unsure == 1.0),
+        )
+        for name, plane in grids
+    ]
+    title = _titled(table, title, left_out)
+    return draw_heat_map(
+        map_axis(across), map_axis(up), panels, title=title, colours=colours, norm=norm, bar=bar
+    )
+
+
+def _titled(table: SweepTable, title: str, left_out: int) -> str:
+    """A title with the subject of the sweep, and what its maps hold fixed."""
+    subject = table.info.title or table.info.sweep
+    more = f"; {left_out} more panels are not drawn" if left_out else ""
+    return "\n".join(filter(None, (title, f"{subject}{more}", table.info.held)))
+
+
+def _grids(
+    table: SweepTable, choice: MapChoice, most: int = MOST_PANELS
+) -> tuple[list[tuple[str, Callable[[NDArray[Any]], NDArray[Any]]]], Axis, Axis, int]:
+    """For each panel its name and what takes its part of a column; the axes; how many panels are left out."""
     across, up = _plane(table, choice)
-    picks, left_out = _picks(table, (across, up), choice.fixed)
+    picks, left_out = _picks(table, (across, up), choice.fixed, most)
     swapped = table.axes.index(across) < table.axes.index(up)
 
-    def plane(column: NDArray[Any], pick: Mapping[int, int]) -> NDArray[Any]:
+    def plane(pick: Mapping[int, int], column: NDArray[Any]) -> NDArray[Any]:
         grid = column.reshape(table.shape)[tuple(pick.get(k, slice(None)) for k in range(len(table.axes)))]
         return grid.T if swapped else grid
 
-    unsure, sure = table.columns.get("unsure"), table.columns.get("sure")
-    panels = [
-        Panel(
-            values=plane(values, pick),
-            title=name,
-            overturned=plane(table.outcome == Outcome.OVERTURNED, pick),
-            unsure=None if unsure is None else plane(unsure == 1.0, pick),
-            regime_unsure=None if sure is None else plane(sure == REGIME_UNSURE, pick),
-        )
-        for name, pick in picks
-    ]
-    subject = table.info.title or table.info.sweep
-    more = f"; {left_out} more panels are not drawn" if left_out else ""
-    return draw_heat_map(
-        map_axis(across),
-        map_axis(up),
-        panels,
-        title="\n".join(filter(None, (title, f"{subject}{more}", table.info.held))),
-        colours=colours,
-        norm=norm,
-        bar=bar,
-    )
+    return [(name, partial(plane, pick)) for name, pick in picks], across, up, left_out
 
 
 def map_axis(axis: Axis) -> MapAxis:
@@ -190,7 +253,7 @@ def _plane(table: SweepTable, choice: MapChoice) -> tuple[Axis, Axis]:
 
 
 def _picks(
-    table: SweepTable, plane: tuple[Axis, Axis], fixed: Mapping[str, Any]
+    table: SweepTable, plane: tuple[Axis, Axis], fixed: Mapping[str, Any], most: int
 ) -> tuple[list[tuple[str, dict[int, int]]], int]:
     """Name and indices of the other axes for each panel, and how many panels are left out."""
     others = [(k, axis) for k, axis in enumerate(table.axes) if axis not in plane]
@@ -199,7 +262,7 @@ def _picks(
         for _, axis in others
     ]
     picks = []
-    for indices in islice(product(*choices), MOST_PANELS):
+    for indices in islice(product(*choices), most):
         pairs = list(zip(others, indices, strict=True))
         name = ", ".join(
             f"{axis_name(axis)} {value_label(axis.values[index])} {axis.unit}".strip()

@@ -1,8 +1,8 @@
 """The perturbed copies of a sweep's cells: which cells have which, and what they show.
 
 A change is tried on a coarse grid of all cells and near changes of outcome, and then around every cell whose outcome it
-turns, until no further cell has another outcome. The draws of all unknown inputs follow where nothing else turned a
-cell over. Which copies there are depends on the outcomes alone, not on the order in which they are computed.
+turns, until no further cell has another outcome. The draws of all unknown inputs follow, on that grid and around what
+the others turned. Which copies there are depends on the outcomes alone, not on the order in which they are computed.
 """
 
 from collections import Counter
@@ -25,6 +25,7 @@ from fem.assessment.sureness import (
 )
 from fem.batch.log import LoggedRuns, fields_of
 from fem.batch.runner import Row, Runner
+from fem.results.outcome import Ending
 from fem.runtime.arrays import BoolArray
 from fem.sweep.cells import SHOWN, CellRows, RunShown, shown_in
 from fem.sweep.copies import CellCopies, Copy
@@ -110,6 +111,19 @@ class PerturbedRows:
         own = float(self._cells.ratio[cell])
         return (min(own, *found), max(own, *found)) if found and np.isfinite(own) else (None, None)
 
+    def overturned_share(self, cell: int) -> float | None:
+        """Share of a cell and all its copies that overturn; None of a cell that failed.
+
+        Copies that were not tried, because they turned no cell around it, and those that failed count as the cell.
+        """
+        if not self._cells.decided[cell]:
+            return None
+        own = self._cells.kind[cell]
+        others = (one.shown.kind for one in self.rows.get(cell, {}).values())
+        turned = sum(kind not in (own, Ending.FAILED) for kind in others)
+        share = turned / (1 + len(self.copies.of(cell)))
+        return 1.0 - share if own == Ending.OVERTURNED else share
+
 
 def band_rows(
     sweep: Sweep, cells: CellRows, perturbed: PerturbedRows
@@ -134,7 +148,8 @@ def band_rows(
         copies = len(perturbed.rows.get(cell, {}))
         by = " ".join(found[cell][1])
         ratios = perturbed.ratios(cell)
-        return copies, unsure[cell], sure(cell), by, *ratios, *(width[cell] for width in widths)
+        share = perturbed.overturned_share(cell) if sure(cell) else None
+        return copies, unsure[cell], sure(cell), by, *ratios, share, *(width[cell] for width in widths)
 
     counts = Counter(word for cell in range(sweep.count) if (word := sure(cell)))
     return counts, Counter(key for word, by in found if word == UNSURE for key in by), values
@@ -174,8 +189,10 @@ def _missing(sweep: Sweep, cells: CellRows, perturbed: PerturbedRows) -> Iterato
         case "auto":
             begin |= coarse_cells(axes)
     yield from _closing_in(sweep, perturbed, decided, drawn=False, begin=begin, small=near)
-    sure = decided & ~perturbed.unsure(drawn=False).reshape(shape)
-    yield from _closing_in(sweep, perturbed, sure, drawn=True, begin=begin | around(axes, ~sure), small=near)
+    unsure = perturbed.unsure(drawn=False).reshape(shape)
+    yield from _closing_in(
+        sweep, perturbed, decided, drawn=True, begin=begin | around(axes, unsure), small=near
+    )
 
 
 def _closing_in(

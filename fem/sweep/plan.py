@@ -82,6 +82,7 @@ class Sweep:
     perturbation: Perturbation
     threshold: Threshold | None
     maps: MapChoice
+    limit_slip_m: float | None = None  #: beyond which a cell does not stand in the answer
 
     @property
     def shape(self) -> tuple[int, ...]:

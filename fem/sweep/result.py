@@ -26,6 +26,7 @@ class SweepResult(StudyResult):
     perturbation: dict[str, Any] = field(default_factory=dict)
     uncertainty: dict[str, Any] = field(default_factory=dict)
     left_out: str = ""  #: by the copies, of the band of a run, in words
+    limit_slip_m: float | None = None  #: beyond which a cell does not stand in the answer
     threshold: dict[str, Any] | None = None
     jobs: int = 1
     wall_s: float | None = None

@@ -99,8 +99,8 @@ def sweep_hash(sweep: Sweep) -> str:
 
 
 def band_hash(sweep: Sweep) -> str:
-    """Equal for sweeps that are perturbed and refined in the same way."""
-    return hash_of(repr((sweep.perturbation, sweep.base.uncertainty, sweep.threshold)))
+    """Equal for sweeps that are perturbed, refined and answered in the same way."""
+    return hash_of(repr((sweep.perturbation, sweep.base.uncertainty, sweep.threshold, sweep.limit_slip_m)))
 
 
 def check_size(sweep: Sweep, jobs: int, force: bool) -> None:
@@ -152,6 +152,7 @@ def asked_of(sweep: Sweep, motions: Sequence[FloorMotionPair], jobs: int) -> Swe
         perturbation=sweep.perturbation.model_dump(),
         uncertainty=sweep.base.uncertainty.model_dump(),
         left_out=left_out(sweep),
+        limit_slip_m=sweep.limit_slip_m,
         threshold=sweep.threshold.model_dump() if sweep.threshold else None,
         jobs=jobs,
         cells=sweep.count,

@@ -23,7 +23,10 @@ from fem.sweep.result import SweepResult
 #: columns behind the values of axes and derived keys in every row
 FOUND = ("status", *SCALARS, *BOXES, "reason", "wall_s")
 #: columns of the perturbed copies of a cell; the width of the band along each numeric axis follows
-BAND = ("perturbed", "unsure", "sure", "decided_by", "band_rotation_ratio_low", "band_rotation_ratio_high")
+BAND = (
+    *("perturbed", "unsure", "sure", "decided_by"),
+    *("band_rotation_ratio_low", "band_rotation_ratio_high", "overturned_share"),
+)
 WIDTH = "band_width."  #: before the key of an axis
 WORDS = frozenset({"status", "outcome", "reason", "sure", "decided_by", *BOXES})
 

@@ -8,14 +8,12 @@
   const canvas = byId("map"), pen = canvas.getContext("2d");
   const shown = byId("quantity"), across = byId("across"), up = byId("up");
   const INK = "#1c2330", QUIET = "#55606f", MARK = "#c2410c";
-  const SURENESS = { sure: "#e3e8ee", "regime unsure": "#f2c879", unsure: MARK, "not tried": "#ffffff" };
 
   const bytes = (text) => Uint8Array.from(atob(text), (sign) => sign.charCodeAt(0)).buffer;
   const sizes = sweep.axes.map((axis) => axis.values.length);
   const strides = sizes.map((_, k) => sizes.slice(k + 1).reduce((a, b) => a * b, 1));
   const columns = Object.fromEntries(sweep.columns.map((column) => [column.name, { ...column,
     values: column.words ? new Uint8Array(bytes(column.values)) : new Float32Array(bytes(column.values)) }]));
-  const unsure = columns.sure || columns.unsure;  // how sure; in folders of before, whether unsure
   const outcome = columns.outcome, fell = sweep.outcomes.findIndex((one) => one.name === "overturned");
 
   const place = sizes.map(() => 0);      // index along every axis: the chosen cell
@@ -59,7 +57,7 @@
   const paint = (column, scale, cell) => {
     const word = sweep.outcomes[outcome.values[cell]];
     if (column.words || !word.found || (outcome.values[cell] === fell && !column.names)) return word.colour;
-    if (column.names) return SURENESS[valueOf(column, cell)];
+    if (column.names) return column.colours[column.values[cell]];
     const share = (column.values[cell] - scale[0]) / (scale[1] - scale[0]);
     if (!Number.isFinite(share)) return "#ffffff";
     return sweep.colours[Math.round(Math.min(Math.max(share, 0), 1) * (sweep.colours.length - 1))];
@@ -83,15 +81,6 @@
       const x0 = Math.round(x), y0 = Math.round(y);  // whole pixels: no seams between cells
       pen.fillStyle = paint(column, scale, cell);
       pen.fillRect(x0, y0, Math.round(x + frame.w) - x0, Math.round(y + frame.h) - y0);
-      if (unsure && !column.names && valueOf(unsure, cell) === "regime unsure") {  // a dot
-        pen.fillStyle = "#ffffff"; pen.beginPath(); pen.arc(x + 0.5 * frame.w, y + 0.5 * frame.h, 0.2 * Math.min(frame.w, frame.h), 0, 7); pen.fill();
-        pen.strokeStyle = INK; pen.lineWidth = 0.8; pen.stroke();
-      }
-      if (unsure && !column.names && valueOf(unsure, cell) === "unsure") {  // crossed out
-        pen.strokeStyle = "rgba(255,255,255,.9)"; pen.lineWidth = Math.min(3, 0.3 * frame.w);
-        pen.beginPath(); pen.moveTo(x + 0.15 * frame.w, y + 0.85 * frame.h); pen.lineTo(x + 0.85 * frame.w, y + 0.15 * frame.h); pen.stroke();
-        pen.strokeStyle = INK; pen.lineWidth = Math.min(1.2, 0.15 * frame.w); pen.stroke();
-      }
     }
     ticks(a, columnCount, (i) => [left + (i + 0.5) * frame.w, top + rowCount * frame.h], true, wide);
     if (b >= 0) ticks(b, rowCount, (j) => [left, top + (rowCount - 0.5 - j) * frame.h], false, wide);
@@ -133,7 +122,7 @@
       const item = document.createElement("span"), patch = document.createElement("span");
       patch.className = "swatch"; patch.style.background = colour; item.append(patch, text); box.append(item);
     };
-    if (column.names) { column.names.forEach((name, k) => { if (column.values.includes(k)) swatch(SURENESS[name], name); }); return; }
+    if (column.names) { column.names.forEach((name, k) => { if (column.values.includes(k)) swatch(column.colours[k], name); }); return; }
     const seen = new Set(outcome.values);
     sweep.outcomes.forEach((one, k) => { if (seen.has(k) && (column.words || !one.found || k === fell)) swatch(one.colour, one.label); });
     if (scale) {
@@ -142,10 +131,6 @@
       ramp.style.flex = "0 1 9rem"; ramp.style.height = ".9rem";
       box.append(`${column.label}: ${figures(scale[0] * column.factor, 3)}`, ramp, withUnit(figures(scale[1] * column.factor, 3), column.unit));
     }
-    if (unsure) [["unsure", "/ unsure"], ["regime unsure", "○ regime unsure"]].forEach(([name, text]) => {
-      if (unsure.values.includes(unsure.names.indexOf(name))) box.append(` ${text}`);
-    });
-    if (columns.sure) box.append(" no sign: sure");
   };
 
   // ---- the chosen cell --------------------------------------------------------------------------------------

@@ -31,7 +31,7 @@ def said(axis, trials, where=""):
 def test_a_strength_is_told_from_below_in_g_with_the_slip():
     trials = line([G * one for one in (0.1, 0.42, 0.44)], "sso", slip=0.064)
     assert said(PEAK, trials) == (
-        "stood in every motion tried up to 0.42 g; first overturned at 0.44 g (slip there 64 mm)"
+        "stood in every motion tried up to 0.42 g (slid up to 64 mm); first overturned at 0.44 g (slip there 64 mm)"
     )
 
 
@@ -82,15 +82,42 @@ def test_every_pattern_has_a_sentence(axis, kinds, sentence):
     assert said(axis, line(axis.values, kinds)) == sentence
 
 
+def test_with_a_limit_what_slides_beyond_it_does_not_stand():
+    trials = [
+        Trial(value=G * peak, line=0, kind=Ending.STANDING, slip=slip)
+        for peak, slip in ((0.2, 0.02), (0.3, 0.09), (0.4, 0.16), (0.5, 2.9))
+    ]
+    free, limited = (answer_of(trials, rising=True, limit_slip=limit) for limit in (None, 0.1))
+    assert sentence_of(free, PEAK, rising=True) == (
+        "stood in every motion tried up to 0.5 g (slid up to 2.9 m); none overturned"
+    )
+    assert (limited.stood_to, limited.overturned_from, limited.slid) == (0.3 * G, 0.4 * G, True)
+    assert sentence_of(limited, PEAK, rising=True) == (
+        "stood in every motion tried up to 0.3 g (slid up to 90 mm); first slid beyond 100 mm at 0.4 g (slip there "
+        "160 mm)"
+    )
+    mixed = answer_of(
+        [*trials, Trial(value=0.4 * G, line=1, kind=Ending.OVERTURNED, slip=0.01)],
+        rising=True,
+        limit_slip=0.1,
+    )
+    assert not mixed.slid
+    assert mixed.line == 1
+    wide = answer_of(trials, rising=True, limit_slip=5.0)
+    assert sentence_of(wide, PEAK, rising=True).endswith("none overturned or slid beyond 5 m")
+
+
 def test_several_lines_stand_where_all_of_them_do():
     """The second line was refined between 2 and 3; what it showed there is not claimed of the first."""
     first = line([1.0, 2.0, 3.0, 4.0, 5.0], "sssss", number=0)
     second = line([1.0, 2.0, 2.5, 2.75, 3.0, 4.0, 5.0], "ssosoos", number=5, slip=0.01)
     found = answer_of([*first, *second], rising=True)
-    assert found == Answer(stood_to=2.0, overturned_from=2.5, slip=0.01, line=5, stood_again=((5.0, 5.0),))
+    assert found == Answer(
+        stood_to=2.0, overturned_from=2.5, stood_slip=0.01, slip=0.01, line=5, stood_again=((5.0, 5.0),)
+    )
     assert said(MU, [*first, *second], where="width 1 m") == (
-        "stood in every case tried up to 2; first overturned at 2.5 (slip there 10 mm, with width 1 m); "
-        "stood again at 5"
+        "stood in every case tried up to 2 (slid up to 10 mm); first overturned at 2.5 (slip there 10 mm, with "
+        "width 1 m); stood again at 5"
     )
 
 

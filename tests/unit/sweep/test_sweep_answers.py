@@ -45,15 +45,15 @@ def folder(tmp_path):
 def test_the_sentence_is_that_of_all_lines_and_a_row_is_that_of_one(folder):
     answer = sweep_answer(open_sweep(folder), folder)
     assert answer.sentence == (
-        "peak acceleration: stood in every motion tried up to 0.42 g; first overturned at 0.44 g (slip there 64 mm, "
-        "with mu static 0.5); unsure at 0.4 to 0.6 g"
+        "peak acceleration: stood in every motion tried up to 0.42 g (slid up to 80 mm); first overturned at 0.44 g "
+        "(slip there 64 mm, with mu static 0.5); unsure at 0.4 to 0.6 g"
     )
     assert list(answer.lines()) == [
-        ("mu static 0.3", "stood in every motion tried up to 0.6 g; none overturned"),
+        ("mu static 0.3", "stood in every motion tried up to 0.6 g (slid up to 80 mm); none overturned"),
         (
             "mu static 0.5",
-            "stood in every motion tried up to 0.42 g; first overturned at 0.44 g (slip there 64 mm); "
-            "unsure at 0.4 to 0.6 g",
+            "stood in every motion tried up to 0.42 g (slid up to 80 mm); first overturned at 0.44 g (slip there "
+            "64 mm); unsure at 0.4 to 0.6 g",
         ),
     ]
     first, second = csv.DictReader(answer.table().splitlines())
@@ -92,14 +92,15 @@ def test_a_set_of_motions_is_told_as_one_and_motion_by_motion(tmp_path):
     (tmp_path / "sweep.json").write_text(json.dumps(info))
     answer = sweep_answer(open_sweep(tmp_path), tmp_path)
     assert answer.sentence == (
-        "peak acceleration: stood in every motion tried up to 0.2 g; first overturned at 0.4 g (slip there 20 mm, "
-        "with mu static 0.5, motion b.csv, vertical scale -1)"
+        "peak acceleration: stood in every motion tried up to 0.2 g (slid up to 20 mm); first overturned at 0.4 g "
+        "(slip there 20 mm, with mu static 0.5, motion b.csv, vertical scale -1)"
     )
     assert list(answer.lines()) == [
-        ("mu static 0.3", "stood in every motion tried up to 0.4 g; none overturned"),
+        ("mu static 0.3", "stood in every motion tried up to 0.4 g (slid up to 20 mm); none overturned"),
         (
             "mu static 0.5",
-            "stood in every motion tried up to 0.2 g; first overturned at 0.4 g (slip there 20 mm, with motion b.csv, "
+            "stood in every motion tried up to 0.2 g (slid up to 20 mm); first overturned at 0.4 g "
+            "(slip there 20 mm, with motion b.csv, "
             "vertical scale -1)",
         ),
     ]
@@ -116,7 +117,7 @@ def test_without_a_threshold_the_cells_answer_over_the_strength(folder):
     (folder / "sweep.json").write_text(json.dumps(info | {"threshold": None}))
     (folder / "tried.csv").unlink()
     sentence = sweep_answer(open_sweep(folder), folder).sentence
-    assert "up to 0.4 g; first overturned at 0.6 g (slip there 80 mm" in sentence
+    assert "up to 0.4 g (slid up to 80 mm); first overturned at 0.6 g (slip there 80 mm" in sentence
 
 
 def test_missing_cells_give_no_answer(folder):

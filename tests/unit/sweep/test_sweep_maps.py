@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
+from matplotlib.colors import to_rgb
 
 from fem.batch.axes import Axis
 from fem.batch.labels import axis_label
 from fem.figures.style import svg_of
-from fem.sweep.maps import draw_maps, sweep_map
+from fem.sweep.maps import PRINTED_SHARES, SHARE_COLOURS, draw_maps, sweep_map
 from fem.sweep.plan import MapChoice
 from fem.sweep.result import SweepResult
 from fem.sweep.table import SweepTable
@@ -19,7 +20,7 @@ MU = Axis(key="contact.mu_static", values=(0.2, 0.3, 0.4))
 MODEL = Axis(key="solver.model", values=("rigid", "reduced"))
 
 
-def table_of(*axes):
+def table_of(*axes, copies=False):
     count = int(np.prod([len(axis.values) for axis in axes]))
     words = np.array(["rest", "rock", "overturned", "slide", "slide-rock"], dtype=object)
     outcome = words[np.arange(count) % 5]
@@ -33,6 +34,8 @@ def table_of(*axes):
         "unsure": (np.arange(count) % 3 == 0).astype(float),
         "sure": np.array(["unsure", "regime unsure", "sure"], dtype=object)[np.arange(count) % 3],
     }
+    if copies:
+        columns["overturned_share"] = np.linspace(0.0, 1.0, count)
     info = SweepResult(
         sweep_hash="", axes=(), title="A <title> & more", sweep="try", held="with mu_k = mu_s/2"
     )
@@ -49,21 +52,42 @@ def test_keys_are_named_for_people():
     assert axis_label(MODEL) == "model"
 
 
-def test_a_map_says_what_it_holds_and_how_sure_its_cells_are():
-    figure = sweep_map(table_of(FREQUENCY, PEAK), "outcome", MapChoice())
+def words_of(axes):
+    return [text.get_text() for text in axes.get_legend().get_texts()]
+
+
+@pytest.mark.parametrize("kind", ["outcome", "outcome_print"])
+def test_a_map_shows_how_many_copies_overturn_beside_the_outcome(kind):
+    table = table_of(FREQUENCY, PEAK, copies=True)
+    figure = sweep_map(table, kind, MapChoice())
     assert "with mu_k = mu_s/2" in figure.get_suptitle()
-    legend = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert {"sure: no sign", "regime unsure", "unsure"} <= set(legend)
+    share, outcome = panels_of(figure)
+    assert words_of(share) == [
+        *("none overturns", "up to a quarter", "up to three quarters", "more", "all overturn")
+    ]
+    assert {"rest", "slide", "rock", "slide-rock", "overturned"} <= set(words_of(outcome))
+    classes = share.images[0].get_array()
+    for cell, part in enumerate(table["overturned_share"]):
+        frequency, peak = divmod(cell, 4)
+        least = [0.0, 0.0, 0.25, 0.75, 1.0][classes[peak, frequency]]
+        most = [0.0, 0.25, 0.75, 1.0, 1.0][classes[peak, frequency]]
+        assert least <= part <= most
+
+
+def test_the_shades_get_darker_so_that_a_print_without_colours_shows_the_order():
+    for colours in (SHARE_COLOURS, PRINTED_SHARES):
+        red, green, blue = np.array([to_rgb(one) for one in colours.values()][:5]).T
+        brightness = 0.2126 * red + 0.7152 * green + 0.0722 * blue
+        assert np.all(np.diff(brightness) < -0.03)
 
 
 def test_two_axes_span_a_map_and_the_rest_has_panels():
     table = table_of(FREQUENCY, MU, PEAK)
     figure = sweep_map(table, "outcome", MapChoice())
     assert [axes.get_title(loc="left") for axes in panels_of(figure)] == [
-        "mu static 0.2",
-        "mu static 0.3",
-        "mu static 0.4",
+        f"Outcome; mu static {mu}" for mu in (0.2, 0.3, 0.4)
     ]
+    assert len(panels_of(sweep_map(table_of(FREQUENCY, MU, PEAK, copies=True), "outcome", MapChoice()))) == 6
     fixed = sweep_map(table, "outcome", MapChoice(fixed={"contact.mu_static": 0.3}))
     assert len(panels_of(fixed)) == 1
     turned = sweep_map(table, "outcome", MapChoice(x="contact.mu_static", y="motion.peak_acceleration_m_s2"))
@@ -81,13 +105,13 @@ def test_a_cell_stands_where_its_axes_say():
 
 def test_failed_cells_have_their_own_colour():
     figure = sweep_map(table_of(FREQUENCY, PEAK), "outcome", MapChoice())
-    assert "failed" in [text.get_text() for text in figure.legends[0].get_texts()]
+    assert "failed" in words_of(panels_of(figure)[0])
 
 
 def test_maps_are_the_same_bytes_again(tmp_path):
     table = table_of(FREQUENCY, PEAK)
     names = draw_maps(table, tmp_path / "maps", MapChoice())
-    assert names == ["maps/outcome.svg", "maps/rotation.svg", "maps/slip.svg"]
+    assert names == [f"maps/{kind}.svg" for kind in ("outcome", "outcome_print", "rotation", "slip")]
     first = (tmp_path / names[0]).read_bytes()
     draw_maps(table, tmp_path / "maps", MapChoice())
     assert (tmp_path / names[0]).read_bytes() == first
