@@ -1,6 +1,7 @@
 """What the joints of a stack must carry, as tables of a summary."""
 
 from collections.abc import Iterator, Sequence
+from functools import partial
 
 from rich.box import SIMPLE
 from rich.console import RenderableType
@@ -9,8 +10,8 @@ from rich.text import Text
 
 from fem.assessment.ranges import crushes, impact_note
 from fem.results.run_result import JointDemand, Verdict
+from fem.runtime.units import visible_number
 
-LEAST_N = 1e-6  #: smaller joint forces [N] and moments [Nm] are rounding
 MOST_JOINTS = 8  #: joints shown; of more, those with a largest value
 JOINTS_NOTE = (
     "The boxes are bolted and move as one. The table gives the forces in their joints (means over output.history_s), "
@@ -44,7 +45,7 @@ def titled_table(title: str, *columns: str) -> Table:
 
 def joint_tables(every: Sequence[JointDemand], verdict: Verdict) -> Iterator[RenderableType]:
     """Forces, and what bolts carry; one row a joint, from the floor up."""
-    note = impact_note(verdict)
+    note, kilo = impact_note(verdict), partial(visible_number, factor=1e-3)
     forces = titled_table(
         f"Forces in the joints between boxes{note}", "joint at", ">normal kN", ">shear kN", ">moment kNm"
     )
@@ -57,11 +58,9 @@ def joint_tables(every: Sequence[JointDemand], verdict: Verdict) -> Iterator[Ren
         tension = (joint.bolt_tension_left_N, joint.bolt_tension_right_N)
         needed = "no mu" if joint.friction_needed is None else f"{joint.friction_needed:.3g}"
         forces.add_row(
-            place, " .. ".join(map(_kilo, normal)), _kilo(joint.max_shear_N), _kilo(joint.max_moment_Nm)
+            place, " .. ".join(map(kilo, normal)), kilo(joint.max_shear_N), kilo(joint.max_moment_Nm)
         )
-        bolts.add_row(
-            place, ", ".join(map(_kilo, tension)), _kilo(joint.bolt_shear_N), needed, unbolted(joint)
-        )
+        bolts.add_row(place, ", ".join(map(kilo, tension)), kilo(joint.bolt_shear_N), needed, unbolted(joint))
     yield from (forces, bolts)
     left_out = len(every) - len(joints)
     yield Text(
@@ -81,7 +80,3 @@ def unbolted(joint: JointDemand) -> str:
     events = (("opens", joint.opens_at_s), ("slides", joint.slides_at_s))
     found = [f"{verb} at {instant:.3g} s" for verb, instant in events if instant is not None]
     return ", ".join(found) or "stays closed, sticks"
-
-
-def _kilo(value: float) -> str:
-    return f"{1e-3 * value:.4g}" if abs(value) >= LEAST_N else "0"

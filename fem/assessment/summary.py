@@ -26,9 +26,9 @@ from fem.assessment.sureness import sureness_in_words
 from fem.results import run_result
 from fem.results.figures import BRIEF, FIGURES, SUMMARY, Place, summary_order
 from fem.results.outcome import ROCKING, SLIDING, Outcome
+from fem.runtime.units import INVISIBLE, visible_number
 
 TEXT_WIDTH = 80
-INVISIBLE = 1e-9  #: in the units of people: smaller numbers are rounding
 BAND_NOTE = (
     "The band repeats the run with changed inputs: one at a time to the ends of the ranges that [uncertainty] states "
     "or that follow from the case, and with all of them drawn at once. Numbers in parentheses are the least and the "
@@ -139,12 +139,16 @@ def _static_table(static: run_result.StaticResult, verdict: run_result.Verdict) 
         if action is not None:
             slid, tilted = (run_slid(verdict), run_tilted(verdict)) if name.startswith("own") else ("", "")
             factor = 1e-3 * share_of_weight(action, static)
-            demand = f"{_number(action.base_shear_N, 1e-3)} / {_number(sliding, factor)} kN"
+            demand = f"{visible_number(action.base_shear_N, 1e-3)} / {visible_number(sliding, factor)} kN"
             use = action.utilisation_sliding
-            table.add_row(name, "sliding", demand, _number(use, 1.0, ".3f"), rule_says("sliding", use), slid)
-            demand = f"{_number(action.tilting_moment_Nm, 1e-3)} / {_number(restoring, factor)} kNm"
+            table.add_row(
+                name, "sliding", demand, visible_number(use, 1.0, ".3f"), rule_says("sliding", use), slid
+            )
+            demand = (
+                f"{visible_number(action.tilting_moment_Nm, 1e-3)} / {visible_number(restoring, factor)} kNm"
+            )
             use, check = action.utilisation_overturning, "overturning"
-            table.add_row("", check, demand, _number(use, 1.0, ".3f"), rule_says(check, use), tilted)
+            table.add_row("", check, demand, visible_number(use, 1.0, ".3f"), rule_says(check, use), tilted)
     return table
 
 
@@ -269,7 +273,7 @@ def _crushing(energy: run_result.Energy, verdict: run_result.Verdict) -> str:
     parts = (energy.friction_J, energy.contact_damping_J, energy.material_damping_J, energy.crushing_J)
     lost = sum(part or 0.0 for part in parts)
     share = f", {energy.crushing_J / lost:.0%} of all losses" if lost > 0.0 else ""
-    return f"{_number(energy.crushing_J, 1.0, '.3g')} J{share}"
+    return f"{visible_number(energy.crushing_J, 1.0, '.3g')} J{share}"
 
 
 def _band(band: run_result.Band | None) -> str:
@@ -291,7 +295,7 @@ def _rigid_rows(check: run_result.RigidCheckResult | None, angle: float | None) 
         (check.velocity_ratio or run_result.RunAndBlock(), "velocity ratio", ""),
     ):
         if pair != run_result.RunAndBlock():
-            run, block = _number(pair.run, 1.0, ".4f"), _number(pair.block, 1.0, ".4f")
+            run, block = visible_number(pair.run, 1.0, ".4f"), visible_number(pair.block, 1.0, ".4f")
             rows.append((f"rigid check, {name}", f"{run}{unit} (block {block})"))
     if check.peaks and angle:
         run = ", ".join(f"{peak.run_rad / angle:.3f}" for peak in check.peaks[:4])
@@ -308,7 +312,7 @@ def _balance(energy: run_result.Energy) -> str:
     side = ""
     if final and abs(final) >= INVISIBLE * reference:
         side = f"; numerical {'loss' if final > 0.0 else 'gain'} {abs(final):.3g} J"
-    return f"{_number(error, 1.0, '.2g')} of the {reference:.4g} J that it takes to overturn{side}"
+    return f"{visible_number(error, 1.0, '.2g')} of the {reference:.4g} J that it takes to overturn{side}"
 
 
 def _steps(numerics: run_result.Numerics) -> str:
@@ -346,10 +350,3 @@ def _filters(numerics: run_result.Numerics) -> str:
     window = numerics.corner_force_window_s
     force = "" if window is None else f"; corner force: mean over {1e3 * window:.2g} ms"
     return f"contents: {numerics.contents_filter}, {numerics.contents_filter_Hz:g} Hz{force}"
-
-
-def _number(value: float | None, factor: float, form: str = ".4g") -> str:
-    if value is None:
-        return "-"
-    shown = factor * value
-    return "0" if abs(shown) < INVISIBLE else format(shown, form)

@@ -11,9 +11,9 @@ from itertools import groupby
 from typing import NamedTuple
 
 from fem.batch.axes import Axis
-from fem.batch.labels import in_words, plain_number
+from fem.batch.labels import in_words
 from fem.results.outcome import Ending
-from fem.runtime.units import MILLIMETRES
+from fem.runtime.units import MILLIMETRES, plain_number
 
 #: axes of the floor's strength, that first along which an answer is given where a study does not say
 STRENGTHS = (

@@ -5,6 +5,7 @@ from typing import Any
 
 from fem.assessment.motion_words import STANDARD_GRAVITY
 from fem.batch.axes import MOTION_FILE, Axis
+from fem.runtime.units import plain_number
 
 #: units in which people say the values of a key: from which value on, the unit, the factor
 PEOPLE = {
@@ -50,11 +51,6 @@ def unit_in_words(axis: Axis) -> str:
 def place_in_words(axes: Iterable[Axis], point: Mapping[str, Any]) -> str:
     """Where on some axes a point is: "mu static 0.3, width 1.1 m"."""
     return ", ".join(f"{axis_name(axis)} {in_words(axis, [point[axis.key]], 4)}" for axis in axes)
-
-
-def plain_number(value: float, figures: int = 3) -> str:
-    """A number for text on a screen: 1350 for 1.35e+03."""
-    return f"{float(f'{value:.{figures}g}'):.{max(figures, 6)}g}"
 
 
 def _unit_of_people(axis: Axis) -> tuple[str, float]:

@@ -9,6 +9,7 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
 from fem.figures import style
+from fem.html.units import rounded
 from fem.results.figures import BOX_FIGURES, BoxResult
 from fem.results.reader import OpenedRun
 
@@ -73,7 +74,7 @@ def box_figure(run: OpenedRun, quantity: BoxQuantity, boxes: tuple[BoxResult, ..
     if tilted:
         angle = math.degrees(run.slenderness_angle)
         style.keep_visible(axes, 1.12 * angle)
-        style.draw_limits(axes, angle, f"α, ±{style.number(angle, 4)}°", color=style.BLACK, linestyle="-.")
+        style.draw_limits(axes, angle, f"α, ±{rounded(angle, 4)}°", color=style.BLACK, linestyle="-.")
         low, high = axes.get_ylim()
         # a box that falls leaves the scale
         axes.set_ylim(max(low, -FARTHEST * angle), min(high, FARTHEST * angle))
@@ -85,7 +86,7 @@ def box_figure(run: OpenedRun, quantity: BoxQuantity, boxes: tuple[BoxResult, ..
     style.legend_above(axes, LEGEND_COLUMNS)
     sizes = [quantity.factor * box[quantity.figure] for box in boxes]
     most = int(np.argmax(sizes))
-    most_words = f"< {quantity.least:g}" if 0.0 < sizes[most] < quantity.least else style.number(sizes[most])
+    most_words = f"< {quantity.least:g}" if 0.0 < sizes[most] < quantity.least else rounded(sizes[most])
     title = f"{quantity.title}: {most_words}{quantity.unit} at most (box {most + 1})"
     style.head(figure, title, status=run.status)
     return figure

@@ -6,6 +6,7 @@ from matplotlib.figure import Figure
 
 from fem.assessment.verdict import GAIN_LIMIT, LOSS_LIMIT, LOSS_SHARE_LIMIT
 from fem.figures import style
+from fem.html.units import rounded
 from fem.results.history import History
 from fem.results.reader import OpenedRun
 from fem.results.run_result import Energy, StaticResult
@@ -33,9 +34,7 @@ def energy_figure(run: OpenedRun) -> Figure:
     style.legend_above(axes[1], columns=3)
     style.legend_above(axes[2])
     closure = energy.closure_error
-    share = (
-        "" if closure is None else f": largest imbalance {style.number(closure, 2)} of the energy to overturn"
-    )
+    share = "" if closure is None else f": largest imbalance {rounded(closure, 2)} of the energy to overturn"
     style.head(figure, f"Energy{share}", status=run.status)
     return figure
 
@@ -56,7 +55,7 @@ def _draw_stored(axes: Axes, run: OpenedRun, reference: float | None, unit: str,
         zero=False,
     )
     if reference and raised.max() > style.NEAR_LIMIT * reference:
-        label = f"to overturn, {style.number(reference / size)} {unit}"
+        label = f"to overturn, {rounded(reference / size)} {unit}"
         axes.axhline(reference / size, color=style.BLACK, linestyle="-.", linewidth=0.9, label=label)
 
 
@@ -75,7 +74,7 @@ def _draw_supplied(axes: Axes, history: History, unit: str, size: float) -> None
         *crushed,
     ):
         end = round(float(values[-1]) / size, DECIMALS) + 0.0  # no minus zero
-        curves.append((values / size, colour, line, f"{name}, {style.number(end)} {unit}"))
+        curves.append((values / size, colour, line, f"{name}, {rounded(end)} {unit}"))
     style.curve_panel(axes, f"since the start [{unit}]", history["time_s"], *curves)
 
 
@@ -86,5 +85,5 @@ def _imbalance_limits(energy: Energy) -> str:
         return text
     dissipated = sum(getattr(energy, key) or 0.0 for key in (*DISSIPATED, CRUSHING))
     loss = max(LOSS_SHARE_LIMIT * dissipated, LOSS_LIMIT * reference)
-    gain = style.number(GAIN_LIMIT * reference, 2)
-    return f"{text}; a loss of {style.number(loss)} J or a gain of {gain} J fails the run"
+    gain = rounded(GAIN_LIMIT * reference, 2)
+    return f"{text}; a loss of {rounded(loss)} J or a gain of {gain} J fails the run"

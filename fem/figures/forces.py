@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fem.figures import style
+from fem.html.units import rounded
 from fem.results.reader import OpenedRun
 from fem.runtime.arrays import FloatArray
 
@@ -38,7 +39,7 @@ def forces_figure(run: OpenedRun) -> Figure:
         style.curve_panel(panel, label, time, (force, colour, "-", None), zero=False, linewidth=0.8)
     changing = style.changing_weight(history, run.case.gravity_m_s2)
     times = " times (g + a_v)/g" if changing is not None else ""
-    name = f"weight, {style.number(weight, 4)} kN{times}"
+    name = f"weight, {rounded(weight, 4)} kN{times}"
     if changing is None:
         axes[0].axhline(weight, color=style.BLACK, linestyle="--", linewidth=0.9, label=name)
     else:
@@ -46,14 +47,12 @@ def forces_figure(run: OpenedRun) -> Figure:
             changing[0], weight * changing[1], color=style.BLACK, linestyle="--", linewidth=0.9, label=name
         )
     if cap is not None and style.NEAR_LIMIT * 1e-3 * cap < normal.max():
-        label = f"a corner crushes at {style.number(1e-3 * cap)} kN"
+        label = f"a corner crushes at {rounded(1e-3 * cap)} kN"
         axes[0].axhline(1e-3 * cap, color=style.BLACK, linestyle=":", linewidth=0.9, label=label)
     axes[0].set_ylim(bottom=0.0)
     friction = {"static": (contact.mu_static, "--"), "kinetic": (contact.mu_kinetic, ":")}
     for name, (mu, dashes) in friction.items():
-        label = (
-            f"{name} friction{' of the weight' if not times else ''}, ±{style.number(mu * weight)} kN{times}"
-        )
+        label = f"{name} friction{' of the weight' if not times else ''}, ±{rounded(mu * weight)} kN{times}"
         style.draw_limits(
             axes[1], mu * weight, label, of_weight=changing, color=style.BLACK, linestyle=dashes
         )
@@ -64,8 +63,8 @@ def forces_figure(run: OpenedRun) -> Figure:
             cut_off(panel, time, force, limit)
         style.legend_above(panel)
     statement = (
-        f"marks at the rim: beyond the scale, up to {style.number(normal.max(), 4)} and "
-        f"{style.number(np.abs(shear).max(), 4)} kN, when the contact's damper stops an impact"
+        f"marks at the rim: beyond the scale, up to {rounded(normal.max(), 4)} and "
+        f"{rounded(np.abs(shear).max(), 4)} kN, when the contact's damper stops an impact"
     )
     style.head(figure, "Forces of the floor on the container", statement if cut else "", status=run.status)
     return figure

@@ -19,7 +19,8 @@ from matplotlib.patheffects import AbstractPathEffect, withStroke
 from matplotlib.ticker import LogLocator, MaxNLocator
 from matplotlib.transforms import Affine2D
 
-from fem.figures.style import BLACK, GREY, WHITE, WIDTH, house_style, number
+from fem.figures.style import BLACK, GREY, WHITE, WIDTH, house_style
+from fem.html.units import rounded
 from fem.runtime.arrays import BoolArray, FloatArray
 
 COLUMNS = 3  #: of panels
@@ -57,7 +58,7 @@ class MapAxis:
             locator = LogLocator(subs=(1.0,) if high / low > 100.0 else (1.0, 2.0, 3.0, 5.0), numticks=20)
         margin = 1e-9 * abs(high)
         marks = [mark for mark in locator.tick_values(low, high) if low - margin <= mark <= high + margin]
-        return self.places(np.clip(marks, low, high)).tolist(), [number(mark) for mark in marks]
+        return self.places(np.clip(marks, low, high)).tolist(), [rounded(mark) for mark in marks]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -159,7 +160,7 @@ def draw_heat_map(
 
 def value_label(value: Any) -> str:
     """A value of an axis for people."""
-    return str(value) if isinstance(value, bool | str) else number(float(value))
+    return str(value) if isinstance(value, bool | str) else rounded(float(value))
 
 
 def _classes(panels: Sequence[Panel], look: Look) -> list[Any]:

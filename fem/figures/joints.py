@@ -15,6 +15,7 @@ from fem.assessment.joint_demands import edge_forces
 from fem.case.boxes import shared_face
 from fem.case.columns import JOINTS
 from fem.figures import style
+from fem.html.units import rounded
 from fem.results.reader import OpenedRun
 from fem.results.run_result import Verdict
 from fem.runtime.arrays import FloatArray
@@ -60,7 +61,7 @@ def joints_figure(run: OpenedRun) -> Figure | None:
     _draw_bolt_force(axes[0], time, right, "right edge", style.VERMILLION, sign=-1.0)
     style.keep_visible(axes[0], LEAST_FORCE)
     axes[0].yaxis.set_major_formatter(lambda value, position: f"{abs(value):g}")  # both are tension
-    _draw_bolt_force(axes[1], time, beyond, f"beyond μ = {style.number(mu)}", style.BLUE)
+    _draw_bolt_force(axes[1], time, beyond, f"beyond μ = {rounded(mu)}", style.BLUE)
     axes[1].set_ylim(0.0, max(1.08 * float(beyond.max()), LEAST_FORCE))
     for panel, label in zip(axes, ("tension [kN]", "shear [kN]"), strict=True):
         panel.set_ylabel(label)
@@ -118,7 +119,7 @@ def _draw_ranges(
     axes.set_xlabel(f"{name} [{unit}]")
     axes.margins(x=0.06)
     joint = int(np.abs(forces).max(axis=1).argmax())
-    largest = f"up to {style.number(np.abs(forces[joint]).max())} {unit}, at {style.number(levels[joint])} m"
+    largest = f"up to {rounded(np.abs(forces[joint]).max())} {unit}, at {rounded(levels[joint])} m"
     axes.set_title(largest, fontsize=8.0, pad=4.0)
 
 
@@ -128,7 +129,7 @@ def _draw_bolt_force(
     """The largest of forces (J, n) >= 0 at every instant, drawn upwards or, with `sign` -1, downwards."""
     largest = forces.max(axis=0)
     joint, instant = np.unravel_index(int(forces.argmax()), forces.shape)
-    where = f": {style.number(largest[instant])} kN at most, joint {joint + 1}, {time[instant]:.3f} s"
+    where = f": {rounded(largest[instant])} kN at most, joint {joint + 1}, {time[instant]:.3f} s"
     if largest[instant] == 0.0:
         axes.plot([], [], color=colour, label=f"{name}: none")
         return

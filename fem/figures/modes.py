@@ -6,7 +6,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from fem.figures.style import BLUE, GREY, LINE, WIDTH, head, number
+from fem.figures.style import BLUE, GREY, LINE, WIDTH, head
+from fem.html.units import rounded
 from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid.edges import chained, outline_edges
 from fem.solid.modes import ElasticModes
@@ -53,7 +54,9 @@ def modes_figure(
             axes.plot(*points[line].T, color=GREY, linewidth=0.6, linestyle=":")
             axes.plot(*moved[line].T, color=BLUE, linewidth=1.1)
         axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
-        axes.set_title(f"{k + 1}: {number(modes.frequencies_Hz[k], 4)} Hz", loc="center", fontsize=8.5, pad=3)
+        axes.set_title(
+            f"{k + 1}: {rounded(modes.frequencies_Hz[k], 4)} Hz", loc="center", fontsize=8.5, pad=3
+        )
     more = len(modes.frequencies_Hz) - shown
     rest = f"; {more} more are in the table" if more else ""
     head(

@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from fem.case.case import CaseError
 from fem.case.recorded import MotionKey, recorded_motion
 from fem.figures import style
+from fem.html.units import rounded
 from fem.records.processing import motion_of
 from fem.records.record import Component
 from fem.records.spectrum import Spectrum, evenly_sampled, log_spaced_periods, response_spectrum
@@ -44,7 +45,7 @@ def spectrum_figure(run: OpenedRun) -> Figure | None:
     periods, largest = _largest(found[0][1])
     style.head(
         figure,
-        f"Response spectrum of the floor's motion: {style.number(largest)} m/s² at {style.number(periods)} s",
+        f"Response spectrum of the floor's motion: {rounded(largest)} m/s² at {rounded(periods)} s",
         DAMPED,
     )
     return figure
@@ -82,8 +83,8 @@ def record_figure(components: Sequence[Component], title: str) -> Figure:
             style.legend_above(axes[0])
         first = components[0]
         peak = float(np.abs(motion_of(first)[2]).max())
-        statement = f"{first.times.size} samples of {style.number(first.step)} s; below: {DAMPED}"
-        style.head(figure, f"{title}: {style.number(peak)} m/s² at most", statement)
+        statement = f"{first.times.size} samples of {rounded(first.step)} s; below: {DAMPED}"
+        style.head(figure, f"{title}: {rounded(peak)} m/s² at most", statement)
         return figure
 
 

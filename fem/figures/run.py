@@ -21,6 +21,7 @@ from fem.figures.forces import forces_figure
 from fem.figures.joints import joints_figure
 from fem.figures.modes import modes_figure
 from fem.figures.recorded import spectrum_figure
+from fem.html.units import rounded
 from fem.model.container import Container
 from fem.results.reader import OpenedRun
 from fem.results.run_result import StaticResult, Verdict
@@ -95,20 +96,20 @@ def base_motion_figure(run: OpenedRun) -> Figure:
         (run.case.contact.mu_static * run.case.gravity_toward_floor - downhill, ":", "slides"),
     ):
         if limit and limit < 1.3 * peak:
-            label = f"a static load {name} it from {style.number(limit)} m/s²"
+            label = f"a static load {name} it from {rounded(limit)} m/s²"
             if history.vertical:
-                label = f"{name} statically from {style.number(limit)} (g + a_v)/g"
+                label = f"{name} statically from {rounded(limit)} (g + a_v)/g"
             style.draw_limits(axes[2], limit, label, of_weight=weight, color=style.BLACK, linestyle=dashes)
     if axes[2].get_legend_handles_labels()[0]:
         style.legend_above(axes[2])
-    title = f"Motion of the floor: {style.number(moved)} mm and {style.number(peak)} m/s² at most"
+    title = f"Motion of the floor: {rounded(moved)} mm and {rounded(peak)} m/s² at most"
     if not (peak or moved):
         title = "The floor stands still"
     if history.vertical:
         style.legend_above(axes[0])
         vertical = float(np.abs(history["base_vertical_acceleration_m_s2"]).max())
         along = title if peak or moved else "Motion of the floor"
-        title = f"{along}; {style.number(vertical)} m/s² upward or downward"
+        title = f"{along}; {rounded(vertical)} m/s² upward or downward"
     style.head(figure, title)
     return figure
 
@@ -133,19 +134,19 @@ def rotation_figure(run: OpenedRun) -> Figure:
     if largest >= style.NEAR_LIMIT * angle:
         style.keep_visible(axes, 1.12 * angle)
         style.draw_limits(
-            axes, angle, f"slenderness angle ±{style.number(angle, 4)}°", color=style.BLACK, linestyle="-."
+            axes, angle, f"slenderness angle ±{rounded(angle, 4)}°", color=style.BLACK, linestyle="-."
         )
     else:
         style.keep_visible(axes, 1.2 * rocking)
         if largest < 10.0 * rocking:
-            name = f"counts as rocking, ±{style.number(rocking, 2)}°"
+            name = f"counts as rocking, ±{rounded(rocking, 2)}°"
             style.draw_limits(axes, rocking, name, color=style.GREY, linestyle=":")
-        axes.plot([], [], " ", label=f"slenderness angle ±{style.number(angle, 4)}°: far off the scale")
+        axes.plot([], [], " ", label=f"slenderness angle ±{rounded(angle, 4)}°: far off the scale")
     _mark_impact(axes, verdict)
     style.legend_above(axes)
     found = math.degrees(verdict.max_rotation_rad or math.radians(largest))
     least, ratio = math.degrees(DEGREES.least), RATIO.text(found / angle)
-    largest_shown = f"< {least:g}" if 0.0 < found < least else style.number(found)
+    largest_shown = f"< {least:g}" if 0.0 < found < least else rounded(found)
     style.head(
         figure, f"Rotation: {largest_shown}° at most, {ratio} of the slenderness angle", status=run.status
     )
@@ -163,7 +164,7 @@ def slip_figure(run: OpenedRun) -> Figure:
     style.keep_visible(axes, 1.5 * limit)
     if small:
         style.draw_limits(
-            axes, limit, f"counts as sliding, ±{style.number(limit, 2)} mm", color=style.GREY, linestyle=":"
+            axes, limit, f"counts as sliding, ±{rounded(limit, 2)} mm", color=style.GREY, linestyle=":"
         )
         style.legend_above(axes)
     largest = 1e3 * verdict.slipped
@@ -188,7 +189,7 @@ def uplift_figure(run: OpenedRun) -> Figure:
         style.legend_above(axes)
     impacts, largest = verdict.impacts, 1e3 * (verdict.max_uplift_m or 0.0)
     count = "" if impacts is None else f", {impacts} impact{'' if impacts == 1 else 's'}"
-    title = f"Uplift of the base: {style.number(largest)} mm at most{count}"
+    title = f"Uplift of the base: {rounded(largest)} mm at most{count}"
     style.head(figure, title if largest > 0.0 else "The base never opens", status=run.status)
     return figure
 
@@ -260,7 +261,7 @@ def _panel(
 
 def _millimetres(value: float) -> str:
     """A slip in a title; below 0.01 mm it has no practical meaning."""
-    return "< 0.01 mm" if 0.0 < abs(value) < 0.01 else f"{style.number(value)} mm"
+    return "< 0.01 mm" if 0.0 < abs(value) < 0.01 else f"{rounded(value)} mm"
 
 
 def _mark_impact(axes: Axes, verdict: Verdict) -> None:

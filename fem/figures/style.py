@@ -20,7 +20,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 from numpy.typing import NDArray
 
-from fem.html.units import times_ten_to
+from fem.html.units import rounded
 from fem.results.history import History
 from fem.results.outcome import Outcome
 from fem.runtime.arrays import FloatArray
@@ -204,7 +204,7 @@ def legend_above(axes: Axes, columns: int = 4) -> None:
 def spectrum_axes(axes: Axes) -> None:
     """Logarithmic periods with plain numbers, and ordinates from zero."""
     axes.set_xscale("log")
-    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: number(value)))
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: rounded(value)))
     axes.set_ylim(bottom=0.0)
 
 
@@ -272,12 +272,6 @@ def changing_weight(history: History, gravity: float) -> tuple[FloatArray, Float
 def zero_line(axes: Axes) -> None:
     """A thin line at zero."""
     axes.axhline(0.0, color=GREY, linewidth=0.7)
-
-
-def number(value: float, digits: int = 3) -> str:
-    """A number for text: 1350 for 1.35e+03, 2 × 10⁻⁵ for 2e-05, with a minus sign for a hyphen."""
-    mantissa, power, exponent = f"{float(f'{value:.{digits}g}'):.{max(digits, 6)}g}".partition("e")
-    return mantissa.replace("-", "−") + (times_ten_to(exponent) if power else "")
 
 
 def keep_visible(axes: Axes, least: float) -> None:

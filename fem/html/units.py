@@ -7,7 +7,7 @@ import math
 import re
 
 from fem.results.figures import Shown
-from fem.runtime.units import MILLIMETRES, RATIO, DisplayUnit
+from fem.runtime.units import MILLIMETRES, RATIO, DisplayUnit, plain_number
 
 ABSENT = "–"
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -30,6 +30,11 @@ def short(value: float | None, factor: float = 1.0, figures: int = 4) -> str:
     """The same without trailing zeros, for what was given and not computed."""
     text = number(value, factor, figures)
     return text.rstrip("0").rstrip(".") if "." in text and "×" not in text else text
+
+
+def rounded(value: float, figures: int = 3) -> str:
+    """A number for a figure: 1350 for 1.35e+03, 2 × 10⁻⁵ for 2e-05."""
+    return typeset(plain_number(value, figures))
 
 
 def quantity(value: float | None, unit: str, factor: float = 1.0, figures: int = 4) -> str:

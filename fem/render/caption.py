@@ -13,7 +13,7 @@ import pyvista
 
 from fem.assessment.floor_words import drawn_level
 from fem.assessment.verdict import relative_rotation
-from fem.figures.style import number
+from fem.html.units import rounded
 from fem.render.scene import BAR, BOTTOM, SIDE, View
 from fem.results.errors import FolderError
 from fem.results.fields import Frame
@@ -67,7 +67,7 @@ def caption(run: OpenedRun, frame: Frame) -> tuple[str, str]:
 
 def symbols(frame: Frame) -> str:
     """Meaning of the symbols on the floor."""
-    pressure = number(1e-6 * float(frame.contact_pressure.max()))
+    pressure = rounded(1e-6 * float(frame.contact_pressure.max()))
     return f"▲ initial middle of the base    ↑ contact pressure, up to {pressure} MPa"
 
 
@@ -148,4 +148,4 @@ class Captions:
         for share in shares:
             over = "≥ " if share == 1.0 else ""
             y = floor + share * tall
-            self._write(over + number(1e-6 * share * limit), width - BAR + BAR_SIZE[0] + 9, y, size=14)
+            self._write(over + rounded(1e-6 * share * limit), width - BAR + BAR_SIZE[0] + 9, y, size=14)

@@ -10,6 +10,7 @@ Reach = tuple[float, float]
 
 WIDE = 0.1  #: width of a range over its larger end, from which two figures are enough
 FEW, MANY = 2, 4  #: significant figures
+INVISIBLE = 1e-9  #: in the units of people: smaller numbers are rounding
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,6 +77,19 @@ def in_figures(value: float, figures: int, factor: float = 1.0, least: float = 0
         return f"{shown:.{figures - 1}e}"
     words = f"{round(shown, digits):.{max(digits, 0)}f}"
     return words.rstrip("0").rstrip(".") if figures == MANY and "." in words else words
+
+
+def plain_number(value: float, figures: int = 3) -> str:
+    """A number without a unit and without trailing zeros: 1350 for 1.35e+03."""
+    return f"{float(f'{value:.{figures}g}'):.{max(figures, 6)}g}"
+
+
+def visible_number(value: float | None, factor: float = 1.0, form: str = ".4g") -> str:
+    """A number in a table on a screen; 0 where it is rounding, a hyphen where there is none."""
+    if value is None:
+        return "-"
+    shown = factor * value
+    return "0" if abs(shown) < INVISIBLE else format(shown, form)
 
 
 COUNT, SECONDS = DisplayUnit(), DisplayUnit(name="s")

@@ -21,6 +21,7 @@ from fem.batch.axes import Axis
 from fem.batch.labels import axis_label, axis_name
 from fem.figures import style
 from fem.figures.heat_map import Look, MapAxis, Panel, draw_heat_map, value_label
+from fem.html.units import rounded
 from fem.results.files import write_atomically
 from fem.results.outcome import Outcome
 from fem.sweep.plan import MapChoice
@@ -107,7 +108,7 @@ def sweep_map(table: SweepTable, kind: str, choice: MapChoice) -> Figure:
         title=title,
         colours=matplotlib.colormaps["cividis"],
         norm=LogNorm(LEAST_SLIP_MM, largest),
-        bar=f"slip [mm] (below {style.number(LEAST_SLIP_MM)}: none)",
+        bar=f"slip [mm] (below {rounded(LEAST_SLIP_MM)}: none)",
     )
 
 

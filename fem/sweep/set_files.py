@@ -11,7 +11,8 @@ from fem.batch.labels import axis_label, place_in_words
 from fem.batch.log import table_text
 from fem.batch.motion_set import FloorMotionPair, write_motions
 from fem.figures.motions import ShareCurve, draw_shares
-from fem.figures.style import number, svg_of
+from fem.figures.style import svg_of
+from fem.html.units import rounded
 from fem.results.folder import ResultFolder
 from fem.sweep.cells import CellRows
 from fem.sweep.motion_outcomes import SET_COLUMNS, by_motion, motions_at, set_in_words, set_row
@@ -77,4 +78,4 @@ def _shares(axes: Sequence[Axis], rows: Sequence[Mapping[str, Any]]) -> tuple[Ax
 
 
 def _shown(value: Any) -> str:
-    return number(value) if isinstance(value, float) else str(value)
+    return rounded(value) if isinstance(value, float) else str(value)

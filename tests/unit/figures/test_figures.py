@@ -21,6 +21,7 @@ from fem.figures import style
 from fem.figures.cache import drawings_of, write_figures
 from fem.figures.checks import band_figure
 from fem.figures.run import FIGURES, figures_of
+from fem.html.units import rounded
 from fem.model.container import discretise
 from fem.results.reader import OpenedRun
 from fem.run.run import RunOptions, run_case
@@ -208,7 +209,7 @@ def test_forces_of_impacts_are_cut_off_and_given_in_words(runs, drawn):
     normal = 1e-3 * runs["rocking"].history["normal_force_N"]
     figure = drawn["rocking"]["forces"]
     assert normal.max() > figure.axes[0].get_ylim()[1]
-    assert any(style.number(normal.max(), 4) in text.get_text() for text in figure.texts)
+    assert any(rounded(normal.max(), 4) in text.get_text() for text in figure.texts)
     marks = [line for line in figure.axes[0].lines if line.get_marker() == "^"]
     assert len(marks[0].get_xdata()) > 0
     assert not any("beyond the scale" in text.get_text() for text in drawn["rest"]["forces"].texts)
@@ -352,4 +353,4 @@ def test_a_fault_in_the_drawing_does_not_spoil_a_run(tmp_path, monkeypatch):
     [(1349.6, "1350"), (-0.00184, "−0.00184"), (0.0, "0"), (5e-9, "5 × 10⁻⁹"), (15.376, "15.4")],
 )
 def test_numbers_are_for_people(value, text):
-    assert style.number(value) == text
+    assert rounded(value) == text
