@@ -79,8 +79,9 @@ def box_rows(result: RunResult) -> list[tuple[str, ...]]:
     """
     verdict = result.verdict or Verdict()
     rows: list[tuple[str, ...]] = []
+    members = len(verdict.band.members) if verdict.band is not None else 0
     for number, (box, reach) in enumerate(zip(verdict.boxes or (), _reaches(verdict), strict=True), 1):
-        of_band = f"in {reach.fell} of {_members(verdict)} runs" if reach and reach.fell else ""
+        of_band = f"in {reach.fell} of {members} runs" if reach and reach.fell else ""
         figures = (
             one.text(box[key], reach[key] if reach else None, bare=True) for key, one in BOX_FIGURES.items()
         )
@@ -92,10 +93,6 @@ def _reaches(verdict: Verdict) -> Sequence[BoxReach | None]:
     """The ranges of each box over the band, where there is one."""
     found = verdict.band.boxes if verdict.band is not None else None
     return found or [None] * len(verdict.boxes or ())
-
-
-def _members(verdict: Verdict) -> int:
-    return len(verdict.band.members) if verdict.band is not None else 0
 
 
 def box_table(result: RunResult) -> Iterator[RenderableType]:

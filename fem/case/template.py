@@ -54,16 +54,13 @@ def _key_lines(fields: Mapping[str, FieldInfo], values: Mapping[str, Any]) -> li
     lines = []
     for key, field in fields.items():
         in_use = key in values
-        value = values[key] if in_use else _example(field)
+        example = field.examples[0] if field.examples else field.get_default()
+        value = values[key] if in_use else example
         assignment = f"{'' if in_use else '# '}{key} = {toml_value(value)}"
         quantity = quantity_of(field.annotation, field.metadata)
         unit = f" [{quantity.unit}]" if quantity and quantity.unit else ""
         lines.append(f"{assignment:<{COMMENT_COLUMN}} # {field.description}{unit}")
     return lines
-
-
-def _example(field: FieldInfo) -> Any:
-    return field.examples[0] if field.examples else field.get_default()
 
 
 def _first_line(text: str | None) -> str:

@@ -72,7 +72,7 @@ def band_figure(run: OpenedRun) -> Figure | None:
         spread = np.linspace(-0.3, 0.3, len(members)) if len(members) > 1 else np.zeros(1)
         for offset, member in zip(spread, members, strict=True):
             own = member is band.members[0]
-            for axes, height in ((above, _height(member)), (below, 1e3 * _slip(member))):
+            for axes, height in ((above, _height(member)), (below, 1e3 * member.slipped_most)):
                 axes.plot(
                     place + offset,
                     height,
@@ -111,11 +111,6 @@ def _group_of(member: ChangedRun) -> str:
         return f"{member.kind}s"
     keys = list(member.values or {})
     return WORDS.get(keys[0], keys[0]) if keys else "as given"
-
-
-def _slip(member: ChangedRun) -> float:
-    """The largest slip, of a loose stack that of any box over what is below it [m]."""
-    return max((box.max_slip_m for box in member.boxes or ()), default=member.slipped)
 
 
 def _ratios(check: RigidCheckResult) -> str:

@@ -168,8 +168,8 @@ def _together(places: Sequence[str], rows: Sequence[Mapping[str, Any]]) -> html.
 
 def _outcome(one: MotionOutcome) -> str:
     """An outcome with the figures that belong to it."""
-    words = _words(one.outcome, one.rotation_ratio)
-    return f"{words}, {millimetres(one.max_slip_m)} mm" if one.outcome in SLIDING else words
+    words = _words(one.outcome, one.turned)
+    return f"{words}, {millimetres(one.slipped)} mm" if one.outcome in SLIDING else words
 
 
 def _words(outcome: str | None, turned: float | None) -> str:

@@ -231,6 +231,11 @@ class RunFigures(Figures[float], RunOutcome):  # of several bases the last comes
         return self.max_slip_m or 0.0
 
     @property
+    def slipped_most(self) -> float:
+        """Largest |slip|, of a loose stack that of any box over what is below it [m]."""
+        return max((box.max_slip_m for box in self.boxes or ()), default=self.slipped)
+
+    @property
     def max_joint_slip_m(self) -> Annotated[float | None, JOINT_SLIP]:
         """Largest slip of a box on another, of a loose stack."""
         return max((box.max_slip_m for box in (self.boxes or ())[1:]), default=None)

@@ -33,7 +33,10 @@ def answer_of(
     groups, limits = groups_of(own), request.limits
     overturned, failed = sum(one.overturned for one in groups), sum(one.failed for one in groups)
     found_by_rule = _largest(groups)
-    within, short = (_within(found_by_rule[name], getattr(limits, name)) for name in result.LIMITED)
+    within, short = (
+        found_by_rule[name] is not None and found_by_rule[name] <= getattr(limits, name)
+        for name in result.LIMITED
+    )
     fulfilled = None if failed and not overturned else not overturned and within and short
     return result.SiteAnswer(
         answer={None: None, True: "fulfilled", False: "not fulfilled"}[fulfilled],
@@ -74,7 +77,7 @@ def governing_run(request: SiteRequest, runs: Sequence[result.SiteRun]) -> resul
     """The run that decides: one that overturned, else the largest of the group that uses most of a limit."""
     fell = [run for run in runs if run.outcome == Outcome.OVERTURNED]
     if fell:
-        counts = {id(run): sum(_same_group(run, other) for other in fell) for run in fell}
+        counts = {id(run): sum(len(groups_of((run, other))) == 1 for other in fell) for run in fell}
         return max(fell, key=lambda run: counts[id(run)])
     known = [group for group in groups_of(runs) if not group.failed]
     if not known:
@@ -90,20 +93,12 @@ def governing_run(request: SiteRequest, runs: Sequence[result.SiteRun]) -> resul
     return max(group.runs, key=lambda run: run[result.LIMITED[name]] or 0.0)
 
 
-def _same_group(one: result.SiteRun, other: result.SiteRun) -> bool:
-    return len(groups_of((one, other))) == 1
-
-
 def _largest(groups: Iterable[RunGroup]) -> result.ByRule:
     """The largest figures of all groups; None where one has none."""
     figures = {name: [group.by_rule[name] for group in groups] for name in result.LIMITED}
     return result.ByRule(
         **{name: None if None in some else max(some, default=None) for name, some in figures.items()}
     )
-
-
-def _within(value: float | None, limit: float) -> bool:
-    return value is not None and value <= limit
 
 
 def _first_overturning(found: Mapping[RunKey, result.SiteRun]) -> float | None:

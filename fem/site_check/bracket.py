@@ -14,7 +14,6 @@ from fem.site_check.result import LIMITED, ByRule, SiteAnswer
 
 RESOLUTION = 0.01  #: largest width of a bracket over the value
 INNER = 3  #: values tried within a bracket at a time
-FULFILLED, NOT_FULFILLED, NO_ANSWER = "fulfilled", "not fulfilled", "no answer"
 #: which values a user looks for: the least, the largest, or all
 Wanted = Literal["least", "largest", "window"]
 
@@ -82,7 +81,7 @@ def next_values(axis: SizeAxis, found: Mapping[float, SiteAnswer]) -> list[float
     missing = [value for value in axis.values if value not in found]
     if missing or axis.whole:
         return missing
-    outcomes = {value: _outcome(answer) for value, answer in found.items()}
+    outcomes = {value: str(answer.fulfilled) for value, answer in found.items()}
     return values_to_try(
         outcomes, resolution=RESOLUTION, inner=INNER, least=least_width(axis.values, RESOLUTION)
     )
@@ -195,10 +194,6 @@ def _inward(value: float, figures: int, *, up: bool) -> float:
     step = 10.0 ** (math.floor(math.log10(abs(value))) - figures + 1)
     steps = value / step
     return (math.ceil(steps - 1e-9) if up else math.floor(steps + 1e-9)) * step
-
-
-def _outcome(answer: SiteAnswer) -> str:
-    return {True: FULFILLED, False: NOT_FULFILLED, None: NO_ANSWER}[answer.fulfilled]
 
 
 def _point(value: float, answer: SiteAnswer) -> SizePoint:

@@ -241,8 +241,6 @@ def confirmation(result: SiteResult) -> tuple[str, bool]:
     words = f"The deciding runs, repeated with the {models} model over their unknown inputs"
     failed = sum(one.outcome is None for one in again)
     fell = sum(Outcome.OVERTURNED in (one.outcome, *one.outcomes) for one in again)
-    ratios = [one.rotation_ratio for one in again if one.rotation_ratio is not None]
-    slips = [one.max_slip_m for one in again if one.max_slip_m is not None]
     if failed:
         return f"{words}: {failed} of {len(again)} runs failed.", True
     if fell:
@@ -251,7 +249,7 @@ def confirmation(result: SiteResult) -> tuple[str, bool]:
             f"{words}: {fell} of {len(again)} runs can overturn{', so the answer is not sure' if doubt else ''}.",
             doubt,
         )
-    turned, slip = max(ratios, default=0.0), max(slips, default=0.0)
+    turned, slip = max(one.turned for one in again), max(one.slipped for one in again)
     beyond = turned > inputs.rotation_ratio_limit or slip > inputs.slip_limit_m
     doubt = beyond and result.result.fulfilled is True
     found = f"largest rotation ratio {ratio(turned)}, largest slip {millimetres(slip)} mm"
