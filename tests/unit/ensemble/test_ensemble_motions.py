@@ -2,7 +2,6 @@
 
 import csv
 import hashlib
-import json
 from dataclasses import replace
 
 import numpy as np
@@ -149,18 +148,6 @@ def test_a_large_set_is_the_same_on_any_number_of_cores(large_set, tmp_path):
         content = (tmp_path / one_motion["file"]).read_bytes()
         assert one_motion["sha256"] == hashlib.sha256(content).hexdigest()
     assert "16 to 84 %" in (tmp_path / "one" / "figures" / "spectra.svg").read_text(encoding="utf-8")
-
-
-def test_an_interrupted_large_set_is_resumed(large_set, tmp_path):
-    ensemble, folder = load_ensemble(large_set), tmp_path / "results"
-    run_ensemble(ensemble, folder=folder, jobs=2)
-    kept = {name: (folder / name).read_bytes() for name in ("draws.csv", "ensemble.json", "spectra.csv")}
-    lines = kept["draws.csv"].splitlines(keepends=True)
-    (folder / "draws.csv").write_bytes(b"".join(lines[:40]) + lines[40][:9])  # as a kill leaves it
-    mark = json.loads(kept["ensemble.json"]) | {"status": "running"}
-    (folder / "ensemble.json").write_text(json.dumps(mark), encoding="utf-8")
-    run_ensemble(ensemble, folder=folder, jobs=2, resume=True)
-    assert kept == {name: (folder / name).read_bytes() for name in kept}
 
 
 def test_of_several_bad_files_the_first_is_named(large_set, tmp_path):

@@ -83,24 +83,9 @@ def test_results_that_are_replaced_make_room(tmp_path, monkeypatch):
     assert run(tmp_path / "other") == 2
 
 
-ENSEMBLE = """
-case = "seed_stack_plateau"
-draws = 8
-confidence = 0.9
-probability = 0.5
-[set]
-"solver.model" = "rigid"
-"solver.duration_s" = 1.0
-[axes]
-"motion.peak_acceleration_m_s2" = [2.0, 6.0]
-[random]
-"motion.phase_rad" = { distribution = "uniform", from = 0.0, to = 6.2 }
-"""
 COMMANDS = {
     "run": f"run rocking --no-band {' '.join(f'--set {one}' for one in COMMON)}",
     "sweep": "sweep small.toml -j 1",
-    "ensemble": "ensemble ensemble.toml -j 1",
-    "response": "response rocking --from 0.6 --to 1 --count 2 --settle 2 --observe 8 --set solver.model=rigid",
     "study": "study seed --only half-width --only numbers-one-box",
 }
 WITHOUT_A_RESULT_FOLDER = {"modes": "modes seed_box --count 1", "verify": "verify --room statics -q"}
@@ -111,7 +96,6 @@ def command(request, tmp_path, monkeypatch) -> list[str]:
     """Something that writes a folder of results."""
     monkeypatch.chdir(tmp_path)
     Path("small.toml").write_text(SMALL + '[perturbation]\ncells = "none"\n')
-    Path("ensemble.toml").write_text(ENSEMBLE)
     if request.param in COMMANDS:
         return [*COMMANDS[request.param].split(), "-q"]
     return WITHOUT_A_RESULT_FOLDER[request.param].split()

@@ -1,6 +1,5 @@
 """A sweep from its file to its table: the same whatever the jobs, cut off or not."""
 
-import json
 import os
 import random
 import shutil
@@ -15,7 +14,6 @@ from small_sweep import SMALL, rows_without_wall
 
 from fem.__main__ import main
 from fem.case.validation import CaseError
-from fem.results.errors import FolderError
 from fem.sweep.file import load_sweep
 from fem.sweep.run import check_size, run_sweep
 from fem.sweep.table import open_sweep
@@ -110,33 +108,18 @@ def kill_in_the_middle(arguments, folder, pause):
     process.wait()
 
 
-@pytest.mark.parametrize(("kills", "peaks"), [(2, 5), pytest.param(20, 40, marks=pytest.mark.slow)])
-def test_a_sweep_killed_and_resumed_gives_the_same_table(tmp_path, monkeypatch, capsys, kills, peaks):
+@pytest.mark.slow
+def test_a_sweep_killed_twenty_times_gives_the_same_table(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    text = SMALL.replace("count = 5", f"count = {peaks}")
+    text = SMALL.replace("count = 5", "count = 40")
     (tmp_path / "small.toml").write_text(text, encoding="utf-8")
     choice = random.Random(0)
-    for k in range(kills):
+    for k in range(20):
         kill_in_the_middle(["small.toml", *(["--resume"] if k else [])], tmp_path, choice.uniform(0.0, 0.3))
     assert main(["sweep", "small.toml", "--resume", "-q"]) == 0
     assert main(["sweep", "small.toml", "-q", "--out", "alone"]) == 0
     assert rows_without_wall(tmp_path / "outputs" / "small") == rows_without_wall(tmp_path / "alone")
     capsys.readouterr()
-
-
-def test_an_unfinished_sweep_is_not_overwritten_silently(small, folder):
-    table = (folder / "table.csv").read_text().splitlines()
-    header = (folder / "table.csv").read_text().splitlines()[0].partition(",perturbed")[0]
-    kept = [",".join(line.split(",")[: header.count(",") + 1]) for line in table[1:8]]
-    (folder / "rows.csv").write_text("\n".join([header, *kept]) + "\n")
-    (folder / "table.csv").unlink()
-    info = json.loads((folder / "sweep.json").read_text()) | {"status": "running"}
-    (folder / "sweep.json").write_text(json.dumps(info))
-    with pytest.raises(FolderError, match="unfinished, with 7 of 20 rows; --resume"):
-        run_sweep(small, folder)
-    assert np.isfinite(open_sweep(folder)["wall_s"]).sum() == 7
-    assert run_sweep(small, folder, resume=True)["rows"] == 20
-    assert (folder / "table.csv").read_text().splitlines()[1:8] == table[1:8]  # wall times included
 
 
 @pytest.mark.parametrize(
