@@ -5,7 +5,7 @@ counter-clockwise; bolted boxes share the nodes between them. A mesh built here 
 faces of the walls and on the edges of the feet, so thickness and density are constant in every cell.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -141,6 +141,25 @@ def _nearest_line(distances: FloatArray, foot: float) -> float:
             "put a mesh line there, or change the foot"
         )
     return nearest
+
+
+def with_mass_beside(mesh: ContainerMesh, distance: float) -> ContainerMesh:
+    """The mesh with the mass centre of every box moved by a distance along x [m].
+
+    The density of each box gets a linear part along x, so that its mass and the height of its centre stay.
+
+    Raises:
+        MeshError: so far that a density would be negative.
+    """
+    area, centre = areas_and_centroids(mesh.points, mesh.quads)
+    mass, factor = area * mesh.areal_density, np.ones(len(mesh.quads))
+    for box in range(int(mesh.box.max()) + 1):
+        own = mesh.box == box
+        beside = centre[own, 0] - np.average(centre[own, 0], weights=mass[own])
+        factor[own] += distance * mass[own].sum() / np.sum(mass[own] * beside**2) * beside
+    if factor.min() < 0.0:
+        raise MeshError(f"the mass centre cannot lie {distance:g} m beside the axis of a box")
+    return replace(mesh, areal_density=mesh.areal_density * factor)
 
 
 def build_container_mesh(

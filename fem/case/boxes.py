@@ -235,15 +235,4 @@ JOINT_RULES = (
             f"{_friction(case)['mu_kinetic']:g}; leave it out where the two are equal"
         ),
     ),
-    Rule(
-        "uncertainty.joints_mu_kinetic",
-        lambda case: (
-            not isinstance(case.uncertainty.joints_mu_kinetic, list)
-            or case.uncertainty.joints_mu_kinetic[1] <= _friction(case)["mu_static"]
-        ),
-        lambda case: (
-            f"must be at most mu_static = {_friction(case)['mu_static']:g} of the joints, got up to "
-            f"{case.uncertainty.joints_mu_kinetic[1]:g}; end the range there, or raise joints.mu_static"
-        ),
-    ),
 )

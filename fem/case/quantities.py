@@ -176,6 +176,7 @@ BEARING_STRENGTH = Quantity(
 )
 PATCH = Quantity(unit="m", least=1e-4, most=100.0, typical=0.02, slips=MILLI_AND_CENTI)
 SLOPE = Quantity(unit="per cent", least=-20.0, most=20.0, advice="1 to 2 is usual for drainage")
+EFFECTIVE_WIDTH = Quantity(unit="", least=0.5, most=1.0, advice="0.97 to 1 is usual")
 DRAWS = Quantity(unit="", least=0, most=1024, advice="32 is usual")
 RATIO = Quantity(unit="", least=1e-6, most=1e3, advice="1 is usual")
 WEAKENING = Quantity(

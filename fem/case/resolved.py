@@ -1,6 +1,7 @@
 """The keys of a case with every default, as its resolved file has them.
 
-A case without vertical motion, on a level rigid floor, of equal bolted boxes has no keys of these, and keeps its hash.
+A case without vertical motion, on a level rigid floor, of equal bolted boxes that bear on all of their base has no keys
+of these, and keeps its hash.
 What [joints] leaves out stays out: the floor's friction stands in its place, and the band treats it as unknown.
 """
 
@@ -25,6 +26,10 @@ def resolved_tables(case: Any) -> dict[str, Any]:
         }
     if not case.container.is_loose:
         del document["container"]["joints"]
+    if case.container.eccentricity_m == 0.0:
+        del document["container"]["eccentricity_m"]
+    if case.support.effective_width == 1.0:
+        del document["support"]["effective_width"]
     if case.container.box is not None:
         del document["container"]["boxes"]
         document["container"]["box"] = _boxes(case)

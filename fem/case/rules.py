@@ -299,15 +299,9 @@ CASE_RULES = (
         'is missing: kind = "table" needs file, or a motion.file with a vertical component',
     ),
     Rule(
-        "uncertainty.mu_kinetic",
-        lambda case: (
-            not isinstance(case.uncertainty.mu_kinetic, list)
-            or case.uncertainty.mu_kinetic[1] <= case.contact.mu_static
-        ),
-        lambda case: (
-            f"must be at most contact.mu_static = {case.contact.mu_static:g}, got up to "
-            f"{case.uncertainty.mu_kinetic[1]:g}; end the range there, or raise contact.mu_static"
-        ),
+        "support.effective_width",
+        lambda case: case.solver.model != "full" or case.support.effective_width == 1.0,
+        "belongs to the rigid and the reduced model: the full model bears where its nodes are; change width_m",
     ),
     Rule(
         "output.history_s",

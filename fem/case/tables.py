@@ -17,7 +17,7 @@ from fem.case.unknown_inputs import UNCERTAINTY_RULES
 
 USUAL_DASHPOT = 2.0  #: damping ratio of a stiff contact that does not bounce
 #: a range [low, high], or that the value of the case is known
-Unknown = Annotated[list[float], Field(min_length=2, max_length=2)] | Literal["known"] | None
+Unknown = Annotated[list[float], Field(min_length=2, max_length=2)] | Literal["held", "known"] | None
 
 
 class BoxTable(CaseTable):
@@ -69,6 +69,9 @@ class ContainerTable(CaseTable):
     centroid_m: Annotated[float, q.LENGTH] = case_key(
         "height of the mass centre in the box; default: half the height",
         follows=lambda values: 0.5 * values["height_m"],
+    )
+    eccentricity_m: Annotated[float, q.OFFSET] = case_key(
+        "of the mass centre of every box from its axis, > 0: toward +x", 0.0
     )
     wall_m: Annotated[float, q.WALL] | None = case_key(
         "wall thickness, shell only", None, example=0.008, only=("section", "shell")
@@ -136,6 +139,11 @@ class SupportTable(CaseTable):
     kind: Literal["corners", "feet", "flat"] = case_key('"corners" | "feet" | "flat"', "corners")
     foot_m: Annotated[float, q.FOOT] = case_key(
         "length of each foot from its corner, feet only", 0.15, only=("kind", "feet")
+    )
+
+    effective_width: Annotated[float, q.EFFECTIVE_WIDTH] = case_key(
+        "width between the points about which it rocks, over width_m: rounded or worn edges; rigid, reduced",
+        1.0,
     )
 
     @property
@@ -310,10 +318,13 @@ class OutputTable(CaseTable):
 
 
 class UncertaintyTable(CaseTable):
-    """What is not known of the inputs: [low, high], or "known" as given. The band of a run covers it."""
+    """What is not known of the inputs: [low, high], or "held" as given. The band of a run covers it."""
 
+    mu_static: Unknown = case_key(
+        "of static friction; default: 0.9 to 1.1 times; mu_kinetic keeps its share", None, example=[0.3, 0.4]
+    )
     mu_kinetic: Unknown = case_key(
-        "of kinetic friction; default: as given to mu_static", None, example=[0.2, 0.4]
+        "of kinetic friction; default: half of mu_static to all of it", None, example=[0.2, 0.4]
     )
     joints_mu_static: Unknown = case_key(
         "loose joints: of static friction; default: half to twice where [joints] leaves it out",
@@ -321,19 +332,15 @@ class UncertaintyTable(CaseTable):
         example=[0.2, 0.8],
     )
     joints_mu_kinetic: Unknown = case_key(
-        "loose joints: of kinetic friction; default: as given to mu_static", None, example=[0.2, 0.4]
+        "loose joints: of kinetic friction; default: half of mu_static to all of it", None, example=[0.2, 0.4]
     )
-    joints_weakening_m: Unknown = case_key(
-        "loose joints: default: 0 to 5 mm where mu_kinetic < mu_static", None, example=[0.0, 0.005]
-    )
+    joints_weakening_m: Unknown = case_key("loose joints: default: 0 to 5 mm", None, example=[0.0, 0.005])
     joints_damping_ratio: Unknown = case_key(
         "loose joints: default: 0.1 to 2, and as given", None, example=[0.1, 2.0]
     )
-    weakening_m: Unknown = case_key(
-        "of the contact; default: 0 to 5 mm where mu_kinetic < mu_static", None, example=[0.0, 0.005]
-    )
+    weakening_m: Unknown = case_key("of the contact; default: 0 to 5 mm", None, example=[0.0, 0.005])
     stribeck_velocity_m_s: Unknown = case_key(
-        "of the contact; default: 0 to 0.3 m/s where mu_kinetic < mu_static", None, example=[0.0, 0.3]
+        "of the contact; default: 0 to 0.3 m/s", None, example=[0.0, 0.3]
     )
     normal_penalty_Pa_m: Unknown = case_key(  # noqa: N815
         "of the contact; default: a ninth to three times", None, example=[1e9, 3e10]
@@ -353,10 +360,28 @@ class UncertaintyTable(CaseTable):
     material_damping_ratio: Unknown = case_key(
         "of the container; default: half to twice", None, example=[0.01, 0.04]
     )
-    start: bool | Literal["known"] | None = case_key(
-        "harmonic: whether motion.start may be the other one; default: true", None, example=True
+    centroid_m: Unknown = case_key(
+        "height of the mass centre in a box; default: 0.98 to 1.02 times", None, example=[0.45, 0.55]
     )
-    ramp: bool | Literal["known"] | None = case_key(
+    eccentricity_m: Unknown = case_key(
+        "of the mass centre; default: a hundredth of the width to both sides", None, example=[-0.01, 0.01]
+    )
+    effective_width: Unknown = case_key("of the base; default: 0.97 to 1 times", None, example=[0.97, 1.0])
+    slope_percent: Unknown = case_key(
+        "of the floor; default: half a per cent less to half a per cent more", None, example=[-0.5, 0.5]
+    )
+    vertical_phase_rad: Unknown = case_key(
+        "of a vertical harmonic beside a horizontal one; default: the whole turn", None, example=[0.0, 3.14]
+    )
+    support: bool | Literal["held", "known"] | None = case_key(
+        "corners and flat: whether the base may touch as the other does; default: true", None, example=True
+    )
+    start: bool | Literal["held", "known"] | None = case_key(
+        "harmonic: true tries the other motion.start, a jump of the floor's velocity; default: false",
+        None,
+        example=True,
+    )
+    ramp: bool | Literal["held", "known"] | None = case_key(
         "harmonic: whether a ramp of two cycles may begin it, or none; default: true", None, example=True
     )
     draws: Annotated[int, Strict(), q.DRAWS] = case_key("runs in which all of these are drawn at once", 32)

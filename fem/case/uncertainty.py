@@ -2,14 +2,14 @@
 
 A run repeats itself over these changes (its band); a sweep takes its perturbed copies from them. The numerics are no
 input and are always tried, ten times tighter. Friction between loose boxes keeps what the case had where that of the
-floor changes (`apart_from_floor`).
+floor changes (`as_changed`).
 """
 
 import importlib
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,18 +22,23 @@ from fem.case.unknown_inputs import (
     JOINTS_MU_STATIC,
     MODULUS,
     MU_KINETIC,
+    MU_STATIC,
     PENALTY,
     QUANTITIES,
     STRIBECK,
+    SUPPORT,
     TOLERANCE,
     WEAKENING,
     WORDS,
     InputRange,
     Value,
+    other_patch,
     ranges_of,
     short,
 )
 
+#: static and kinetic friction of the same surfaces
+FRICTIONS = ((MU_STATIC, MU_KINETIC), (JOINTS_MU_STATIC, JOINTS_MU_KINETIC))
 TIGHTER = 0.1  #: energy tolerance over that of the case
 #: stiffness over that of the case at which a flat base must still open, or it does so by softness
 STIFF_FLOOR = 30.0
@@ -69,7 +74,10 @@ class InputChange:
         if self.subject:
             return self.subject, self.to
         units = {key: one.unit for key, one in QUANTITIES.items()}
-        values = (with_unit(value, units.get(key, "")) for key, value in self.values.items())
+        values = (
+            value if isinstance(value, str) else with_unit(value, units.get(key, ""))
+            for key, value in self.values.items()
+        )
         return ", ".join(WORDS[key] for key in self.values), ", ".join(values)
 
 
@@ -86,6 +94,7 @@ def changes_of(case: Case, penalty: float | None) -> tuple[InputChange, ...]:
             kind="one", values={one.key: value}, share=one.share(value) if isinstance(value, float) else 1.0
         )
         for one in ranges_of(case, penalty)
+        if one.alone
         for value in (*one.between, *one.ends)
     ]
     tolerance = max(TIGHTER * case.solver.energy_tolerance, q.ENERGY_TOLERANCE.least or 0.0)
@@ -103,6 +112,7 @@ def pairs_of(case: Case) -> tuple[InputChange, ...]:
     if MU_KINETIC not in ranges:
         return ()
     friction = ranges[MU_KINETIC]
+    assert friction.drawn is not None
     middle = short(float(friction.drawn(0.5)))
     slower = [(key, ranges[key].ends[-1]) for key in (WEAKENING, STRIBECK) if key in ranges]
     if middle >= case.contact.mu_static:
@@ -119,7 +129,7 @@ def draws_of(case: Case, penalty: float | None, count: int | None = None) -> tup
         case, penalty: as for `ranges_of`.
         count: of draws; None: as the case says.
     """
-    ranges = ranges_of(case, penalty)
+    ranges = [one for one in ranges_of(case, penalty) if one.drawn is not None]
     if not ranges:
         return ()
     places = sobol_points(case.uncertainty.draws if count is None else count, len(ranges))
@@ -132,28 +142,37 @@ def draws_of(case: Case, penalty: float | None, count: int | None = None) -> tup
 def drawn_values(ranges: Sequence[InputRange], places: Sequence[float]) -> dict[str, Value]:
     """The values at places from 0 to 1 in these ranges, by key.
 
-    A range of `joints.mu_kinetic` holds for the `joints.mu_static` of the case, and scales with it.
+    A range of kinetic friction holds for the static friction of the case, and scales with it.
     """
-    values = {one.key: one.drawn(place) for one, place in zip(ranges, places, strict=True)}
+    values = {one.key: one.drawn(place) for one, place in zip(ranges, places, strict=True) if one.drawn}
     own = {one.key: one.own for one in ranges}
-    if JOINTS_MU_STATIC in values and JOINTS_MU_KINETIC in values:
-        share = float(values[JOINTS_MU_STATIC]) / float(own[JOINTS_MU_STATIC])
-        values[JOINTS_MU_KINETIC] = short(share * float(values[JOINTS_MU_KINETIC]))
+    for static, kinetic in FRICTIONS:
+        if static in values and kinetic in values:
+            share = float(values[static]) / float(own[static])
+            values[kinetic] = short(share * float(values[kinetic]))
     return values
 
 
-def apart_from_floor(case: Case, values: Mapping[str, Value]) -> dict[str, Value]:
-    """The values that change a case, with those of friction between its loose boxes, which do not follow the floor's.
+def as_changed(case: Case, values: Mapping[str, Value]) -> dict[str, Any]:
+    """The values that change a case, with those that follow from them.
 
-    Where `joints.mu_static` changes alone, `joints.mu_kinetic` keeps its share of it.
+    Where a static friction changes alone, the kinetic one keeps its share of it, and is never larger. Friction between
+    loose boxes does not follow the floor's. A base that touches otherwise has another patch on a slab.
     """
-    if not case.container.is_loose:
-        return dict(values)
-    own = {f"joints.{key}": value for key, value in case.joint_friction.items()}
-    if JOINTS_MU_STATIC in values and own[JOINTS_MU_STATIC] > 0.0:
-        own[JOINTS_MU_KINETIC] *= float(values[JOINTS_MU_STATIC]) / own[JOINTS_MU_STATIC]
-    changed = {**own, **values}
-    changed[JOINTS_MU_KINETIC] = min(float(changed[JOINTS_MU_KINETIC]), float(changed[JOINTS_MU_STATIC]))
+    changed: dict[str, Any] = dict(values)
+    own = {f"contact.{key}": getattr(case.contact, key) for key in ("mu_static", "mu_kinetic")}
+    if case.container.is_loose:
+        joints = {f"joints.{key}": value for key, value in case.joint_friction.items()}
+        own |= joints
+        changed = {**joints, **changed}
+    for static, kinetic in FRICTIONS:
+        if static in own and (static in values or kinetic in values):
+            limit = float(changed.get(static, own[static]))
+            share = limit / own[static] if own[static] > 0.0 else 1.0
+            follows = short(share * own[kinetic]) if kinetic not in values else float(values[kinetic])
+            changed[kinetic] = min(follows, limit)
+    if SUPPORT in values and case.floor.is_slab:
+        changed["floor.corner_patch_m"] = other_patch(case, str(values[SUPPORT]))
     return changed
 
 

@@ -1,9 +1,10 @@
 """The inputs that a case may not know, a row each: where it stands, when it matters, the range it has.
 
-Where the case says nothing in its table [uncertainty], a range follows the case: friction falls from `mu_static` by an
-amount and a way not measured for this floor; the stiffness of a rigid floor is known within a factor of nine downwards
-(the point of a corner) and three upwards (a casting), stiffness and strength of a slab and damping within a factor of
-two either way; and a harmonic motion begins in one of several ways.
+Where the case says nothing in its table [uncertainty], a range follows the case: static friction, and how far and in
+which way friction falls from it; the mass centre, the width on which the base bears, the slope of the floor; the
+stiffness of a rigid floor within a factor of nine downwards (the point of a corner) and three upwards (a casting),
+stiffness and strength of a slab and damping within a factor of two either way; what of a base touches, where nobody
+said that it has feet or castings; and a harmonic motion begins in one of several ways. `README.md` has the sources.
 
 Friction between loose boxes is not that of the floor: other surfaces meet there. Where [joints] does not give it, a
 case takes the floor's, and the joints have ranges of their own: `mu_static` within a factor of two unless it is given,
@@ -27,6 +28,12 @@ DAMPING = (0.5, 2.0)  #: contact and material damping over those of the case
 SLAB = (0.5, 2.0)  #: Young's modulus and bearing strength of a slab over those of the case
 JOINTS = (0.5, 2.0)  #: static friction between loose boxes over that of the case, where this has the floor's
 JOINTS_DASHPOTS = (0.1, 2.0)  #: damping ratio between loose boxes, as far as the case has none beyond
+STATIC = (0.9, 1.1)  #: static friction over that of the case
+LEAST_KINETIC = 0.5  #: kinetic friction over the static, at least
+CENTROID = (0.98, 1.02)  #: height of the mass centre over that of the case
+BESIDE = 0.01  #: of the mass centre from the axis, over the width
+EFFECTIVE_WIDTH = 0.97  #: over that of the case, at least
+SLOPE_PERCENT = 0.5  #: more or less than that of the case
 LOSS = (0.8, 1.5)  #: loss at an impact, 1 - e, over that of the case where its restitution is given
 WEAKENING_M, STRIBECK_M_S = 5e-3, 0.3  #: largest slip and velocity over which friction falls
 WEAKENINGS_BETWEEN_M = (1e-4, 1e-3)
@@ -37,6 +44,9 @@ MU_KINETIC, WEAKENING, STRIBECK = "contact.mu_kinetic", "contact.weakening_m", "
 #: between loose boxes
 JOINTS_MU_STATIC, JOINTS_MU_KINETIC = "joints.mu_static", "joints.mu_kinetic"
 JOINTS_WEAKENING, JOINTS_DASHPOT = "joints.weakening_m", "joints.damping_ratio"
+MU_STATIC, SUPPORT = "contact.mu_static", "support.kind"
+CENTROID_KEY, ECCENTRICITY = "container.centroid_m", "container.eccentricity_m"
+EFFECTIVE, SLOPE, VERTICAL_PHASE = "support.effective_width", "floor.slope_percent", "vertical.phase_rad"
 START, RAMP, TOLERANCE = "motion.start", "motion.ramp_cycles", "solver.energy_tolerance"
 PENALTY, DASHPOT, RESTITUTION, MATERIAL = (
     "contact.normal_penalty_Pa_m",
@@ -48,7 +58,7 @@ STRENGTH, MODULUS = "floor.bearing_strength_Pa", "floor.youngs_modulus_Pa"
 
 Value = float | str
 Ends = tuple[float, float]
-KNOWN = "known"  #: in place of a range
+HELD = ("held", "known")  #: in place of a range
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,7 +69,8 @@ class InputRange:
     own: Value  #: of the case
     ends: tuple[Value, ...]  #: that differ from the case's own; one after the other, lowest first
     between: tuple[float, ...] = ()  #: tried one at a time, too
-    drawn: Callable[[float], Value]  #: value at a place from 0 to 1
+    drawn: Callable[[float], Value] | None  #: value at a place from 0 to 1; None: it is not drawn
+    alone: bool = True  #: it makes a difference where nothing else is changed
 
     def share(self, value: float) -> float:
         """How far a value lies on the way from the case's own to the end of the range."""
@@ -71,7 +82,7 @@ class InputRange:
 
 
 class UnknownNumber(NamedTuple):
-    """A number that a case may not know: [low, high] in [uncertainty], or "known"."""
+    """A number that a case may not know: [low, high] in [uncertainty], or "held"."""
 
     key: str  #: dotted
     name: str  #: in [uncertainty]
@@ -85,19 +96,24 @@ class UnknownNumber(NamedTuple):
     between: Callable[[float, float], tuple[float, ...]] = (
         lambda low, high: ()
     )  #: values tried between the ends
+    alone: Callable[[Any], bool] = lambda case: True  #: where a change of it alone makes a difference
+    same: Callable[[float], float] = lambda value: value  #: the value that means the same, of an angle
 
     def range_in(self, case: Any, penalty: float | None) -> InputRange | None:
         """The range in a case; None where it makes no difference."""
         own, stated = _own(case, self.key, penalty), getattr(case.uncertainty, self.name)
         if own is None or not self.matters(case):
             return None
-        low, high = self._default(case, own) if stated is None else (own, own) if stated == KNOWN else stated
+        low, high = self._default(case, own) if stated is None else (own, own) if stated in HELD else stated
+        ends = {self.same(end) for end in (low, high)}
+        between = (value for value in self.between(low, high) if low < value < high and value != own)
         return InputRange(
             key=self.key,
             own=own,
-            ends=tuple(end for end in sorted({low, high}) if not math.isclose(end, own, rel_tol=1e-12)),
-            between=tuple(value for value in self.between(low, high) if low < value < high and value != own),
+            ends=tuple(end for end in sorted(ends) if not math.isclose(end, own, rel_tol=1e-12)),
+            between=tuple(map(self.same, between)),
             drawn=partial(self._drawn, low, high),
+            alone=self.alone(case),
         )
 
     def _default(self, case: Any, own: float) -> Ends:
@@ -109,7 +125,7 @@ class UnknownNumber(NamedTuple):
 
     def _drawn(self, low: float, high: float, place: float) -> float:
         if self.power is not None:
-            return short(low + (high - low) * place**self.power)
+            return self.same(short(low + (high - low) * place**self.power))
         return short(low * (high / low) ** place if low > 0.0 else high * place)
 
     def refusal(self, table: Any) -> str:
@@ -126,26 +142,28 @@ class UnknownNumber(NamedTuple):
             return ""
         return (
             f"must be [low, high] with low at most high, got {ends}; write {ends[::-1]}, "
-            'or "known" for the value of the case alone'
+            'or "held" for the value of the case alone'
         )
 
 
 class UnknownChoice(NamedTuple):
-    """An input that may be otherwise than the case says: true in [uncertainty]; false or "known"."""
+    """An input that may be otherwise than the case says: true in [uncertainty]; false or "held"."""
 
     key: str  #: dotted
     name: str  #: in [uncertainty]
     words: str  #: for people
     other: Callable[[Any], Value | None]  #: None where it makes no difference
+    unless_stated: bool = True  #: tried where the case does not say
+    drawn: bool = True
 
     def range_in(self, case: Any, penalty: float | None) -> InputRange | None:
         """The range in a case; None where it makes no difference."""
         own, other = _own(case, self.key, penalty), self.other(case)
-        if other is None or getattr(case.uncertainty, self.name) not in (None, True):
+        stated = getattr(case.uncertainty, self.name)
+        if other is None or stated in (*HELD, False) or (stated is None and not self.unless_stated):
             return None
-        return InputRange(
-            key=self.key, own=own, ends=(other,), drawn=lambda place: own if place < 0.5 else other
-        )
+        drawn = (lambda place: own if place < 0.5 else other) if self.drawn else None
+        return InputRange(key=self.key, own=own, ends=(other,), drawn=drawn)
 
 
 def short(value: float) -> float:
@@ -172,18 +190,23 @@ def _is_loose(case: Any) -> bool:
 
 
 def _falls(case: Any) -> bool:
-    """Whether friction on the floor may fall, by a law that says how."""
-    contact = case.contact
-    return contact.sticks and (
-        contact.mu_kinetic < contact.mu_static or isinstance(case.uncertainty.mu_kinetic, list)
-    )
+    """Whether friction on the floor falls, by a law that says how."""
+    return case.contact.sticks and case.contact.mu_kinetic < case.contact.mu_static
+
+
+def _may_fall(case: Any) -> bool:
+    return case.contact.sticks and (_falls(case) or case.uncertainty.mu_kinetic not in HELD)
 
 
 def _joints_fall(case: Any) -> bool:
-    """Whether friction between loose boxes may fall, by a law that says how."""
+    """Whether friction between loose boxes falls, by a law that says how."""
     own = case.joint_friction
-    falls = own["mu_kinetic"] < own["mu_static"] or isinstance(case.uncertainty.joints_mu_kinetic, list)
-    return case.contact.sticks and case.container.is_loose and falls
+    return case.contact.sticks and case.container.is_loose and own["mu_kinetic"] < own["mu_static"]
+
+
+def _joints_may_fall(case: Any) -> bool:
+    varied = case.uncertainty.joints_mu_kinetic not in HELD
+    return case.contact.sticks and case.container.is_loose and (_joints_fall(case) or varied)
 
 
 def _middle(low: float, high: float) -> tuple[float]:
@@ -229,12 +252,64 @@ def _restitutions(case: Any, ratio: float) -> Ends:
     return short(max(q.RESTITUTION.least or 0.0, less)), short(more)
 
 
-def _to_static(case: Any, own: float) -> Ends:
-    return own, case.contact.mu_static
+def _kinetic(case: Any, own: float) -> Ends:
+    static = case.contact.mu_static
+    return short(min(own, LEAST_KINETIC * static)), static
 
 
-def _joints_to_static(case: Any, own: float) -> Ends:
-    return own, case.joint_friction["mu_static"]
+def _joints_kinetic(case: Any, own: float) -> Ends:
+    static = case.joint_friction["mu_static"]
+    return short(min(own, LEAST_KINETIC * static)), static
+
+
+def _beside(case: Any, own: float) -> Ends:
+    distance = BESIDE * case.container.width_m
+    return short(own - distance), short(own + distance)
+
+
+def _slopes(case: Any, own: float) -> Ends:
+    return max(q.SLOPE.least or 0.0, own - SLOPE_PERCENT), min(q.SLOPE.most or 0.0, own + SLOPE_PERCENT)
+
+
+def _turn(case: Any, own: float) -> Ends:
+    return short(own - math.pi), short(own + math.pi)
+
+
+def _quarters(low: float, high: float) -> tuple[float, ...]:
+    return tuple(short(low + share * (high - low)) for share in (0.25, 0.75))
+
+
+def _same_angle(value: float) -> float:
+    return short(math.pi - (math.pi - value) % (2.0 * math.pi))
+
+
+def _two_harmonics(case: Any) -> bool:
+    return case.motion.kind == case.vertical.kind == "harmonic"
+
+
+def _equal_boxes(case: Any) -> bool:
+    return case.container.box is None and case.container.mesh_file is None
+
+
+def other_patch(case: Any, kind: str) -> list[float] | None:
+    """What bears under one corner where the base touches otherwise, of a slab; None where nobody can say."""
+    depth, wall = case.container.depth_m, case.container.wall_m
+    return (
+        [0.5 * case.container.width_m, depth] if kind == "flat" else None if wall is None else [wall, depth]
+    )
+
+
+def _other_support(case: Any) -> Value | None:
+    """Corners and flat stand for one another; feet, castings and the boxes of a loose stack stay."""
+    kind = {"corners": "flat", "flat": "corners"}.get(case.support.kind)
+    if kind is None or case.container.is_loose or case.container.box is not None:
+        return None
+    if case.floor.is_slab:
+        stated = case.floor.corner_patch_m
+        castings = stated is not None and stated[1] < 0.99 * case.container.depth_m
+        if castings or other_patch(case, kind) is None:
+            return None
+    return kind
 
 
 def _slower(case: Any, own: float) -> Ends:
@@ -257,88 +332,53 @@ def _any_falls(case: Any) -> bool:
     return _falls(case) or _joints_fall(case)
 
 
+def _any_may_fall(case: Any) -> bool:
+    return _may_fall(case) or _joints_may_fall(case)
+
+
+def _not_full(case: Any) -> bool:
+    return case.solver.model != "full"
+
+
 Number, Choice = UnknownNumber, UnknownChoice
 #: every input that may vary, those first that decide most often
+# fmt: off
 UNKNOWN: tuple[UnknownNumber | UnknownChoice, ...] = (
-    Number(MU_KINETIC, "mu_kinetic", "kinetic friction", q.FRICTION, _to_static, power=1.0, between=_middle),
-    Number(
-        WEAKENING,
-        "weakening_m",
-        "slip over which friction falls",
-        q.WEAKENING,
-        _slower,
-        _falls,
-        3.0,
-        _weakenings,
-    ),
-    Number(
-        STRIBECK,
-        "stribeck_velocity_m_s",
-        "velocity over which friction falls",
-        q.STRIBECK_VELOCITY,
-        _faster,
-        _any_falls,
-        2.0,
-    ),
-    Number(
-        JOINTS_MU_STATIC,
-        "joints_mu_static",
-        "static friction of the joints",
-        q.FRICTION,
-        _joints_mu_static,
-        _is_loose,
-    ),
-    Number(
-        JOINTS_MU_KINETIC,
-        "joints_mu_kinetic",
-        "kinetic friction of the joints",
-        q.FRICTION,
-        _joints_to_static,
-        _is_loose,
-        1.0,
-        _middle,
-    ),
-    Number(
-        JOINTS_WEAKENING,
-        "joints_weakening_m",
-        "slip over which joint friction falls",
-        q.WEAKENING,
-        _slower,
-        _joints_fall,
-        3.0,
-        _weakenings,
-    ),
-    Number(
-        JOINTS_DASHPOT,
-        "joints_damping_ratio",
-        "damping of the joints",
-        q.CONTACT_DAMPING,
-        _joints_dashpot,
-        _is_loose,
-    ),
-    Choice(START, "start", "start", _other_start),
+    Number(MU_KINETIC, "mu_kinetic", "kinetic friction", q.FRICTION, _kinetic, power=1.0, between=_middle),
+    Number(MU_STATIC, "mu_static", "static friction", q.FRICTION, STATIC, power=1.0),
+    Number(WEAKENING, "weakening_m", "slip over which friction falls", q.WEAKENING, _slower,
+           matters=_may_fall, power=3.0, between=_weakenings, alone=_falls),
+    Number(STRIBECK, "stribeck_velocity_m_s", "velocity over which friction falls", q.STRIBECK_VELOCITY, _faster,
+           matters=_any_may_fall, power=2.0, alone=_any_falls),
+    Number(JOINTS_MU_STATIC, "joints_mu_static", "static friction of the joints", q.FRICTION, _joints_mu_static,
+           matters=_is_loose),
+    Number(JOINTS_MU_KINETIC, "joints_mu_kinetic", "kinetic friction of the joints", q.FRICTION, _joints_kinetic,
+           matters=_is_loose, power=1.0, between=_middle),
+    Number(JOINTS_WEAKENING, "joints_weakening_m", "slip over which friction of the joints falls", q.WEAKENING, _slower,
+           matters=_joints_may_fall, power=3.0, between=_weakenings, alone=_joints_fall),
+    Number(JOINTS_DASHPOT, "joints_damping_ratio", "damping of the joints", q.CONTACT_DAMPING, _joints_dashpot,
+           matters=_is_loose),
+    Choice(SUPPORT, "support", "what of the base touches", _other_support, drawn=False),
+    Number(CENTROID_KEY, "centroid_m", "height of the mass centre", q.LENGTH, CENTROID,
+           matters=_equal_boxes, power=1.0),
+    Number(ECCENTRICITY, "eccentricity_m", "eccentricity of the mass centre", q.OFFSET, _beside, power=1.0),
+    Number(EFFECTIVE, "effective_width", "effective width of the base", q.EFFECTIVE_WIDTH, (EFFECTIVE_WIDTH, 1.0),
+           matters=_not_full, power=1.0),
+    Number(SLOPE, "slope_percent", "slope of the floor", q.SLOPE, _slopes, power=1.0),
+    Number(VERTICAL_PHASE, "vertical_phase_rad", "phase of the vertical motion", q.PHASE, _turn,
+           matters=_two_harmonics, power=1.0, between=_quarters, same=_same_angle),
+    Choice(START, "start", "start", _other_start, unless_stated=False),
     Choice(RAMP, "ramp", "cycles of the ramp", _other_ramp),
     Number(PENALTY, "normal_penalty_Pa_m", "stiffness of the contact", q.PENALTY, (SOFTEST, STIFFEST)),
     Number(STRENGTH, "bearing_strength_Pa", "strength of the floor", q.BEARING_STRENGTH, SLAB),
     Number(MODULUS, "floor_youngs_modulus_Pa", "stiffness of the floor", q.FLOOR_STIFFNESS, SLAB),
     Number(DASHPOT, "damping_ratio", "damping of the contact", q.CONTACT_DAMPING, DAMPING),
-    Number(
-        RESTITUTION,
-        "restitution_over_housner",
-        "restitution over Housner's",
-        q.RESTITUTION,
-        _restitutions,
-        power=1.0,
-    ),
-    Number(
-        MATERIAL,
-        "material_damping_ratio",
-        "damping of the container",
-        q.MATERIAL_DAMPING,
-        DAMPING,
-        _is_elastic,
-    ),
+    Number(RESTITUTION, "restitution_over_housner", "restitution over Housner's", q.RESTITUTION, _restitutions,
+           power=1.0),
+    Number(MATERIAL, "material_damping_ratio", "damping of the container", q.MATERIAL_DAMPING, DAMPING,
+           matters=_is_elastic),
 )
+# fmt: on
 INPUTS = (*(one.key for one in UNKNOWN), TOLERANCE)
 WORDS = {one.key: one.words for one in UNKNOWN} | {TOLERANCE: "energy tolerance of the steps"}
 QUANTITIES = {one.key: one.quantity for one in UNKNOWN if isinstance(one, UnknownNumber)}

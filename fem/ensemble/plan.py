@@ -12,7 +12,7 @@ from fem.batch.axes import MOTION_FILE, Axis, point_of, shape_of, with_following
 from fem.batch.case_maker import CaseMaker
 from fem.batch.derived import FREE, Derived, number_of, with_derived
 from fem.case.case import Case
-from fem.case.uncertainty import apart_from_floor
+from fem.case.uncertainty import as_changed
 from fem.case.unknown_inputs import Value
 from fem.ensemble.distributions import RandomChoice, RandomQuantity, Sampling, draw_shares
 
@@ -131,7 +131,7 @@ class Ensemble:
         values = with_derived(values, self.derived, self.base)
         keys = {key: value for key, value in values.items() if not key.startswith(FREE)}
         if unknown and keys.get("container.joints", self.base.container.joints) == "loose":
-            unknown = apart_from_floor(self._make(keys), unknown)
+            unknown = as_changed(self._make(keys), unknown)
         return self._make(keys | dict(unknown or {}))
 
     @cached_property

@@ -171,7 +171,7 @@ def _body(case: Case, container: Container, contact: Contact) -> ModalBody | Ful
         inertia=mesh.inertia,
         gravity=gravity,
         downhill=downhill,
-        point=elements.nodes[nodes] - centroid,
+        point=base_points(case, elements.nodes[nodes], container.support.index.size) - centroid,
         rest=mesh.centroid,
         shape=np.moveaxis(basis.shapes[:, nodes], 0, -1),
         frequencies=basis.angular_frequencies,
@@ -182,13 +182,23 @@ def _body(case: Case, container: Container, contact: Contact) -> ModalBody | Ful
     )
 
 
+def base_points(case: Case, place: FloatArray, count: int) -> FloatArray:
+    """Points of a container (n, 2), the first of which bear at the effective width of the base [m]."""
+    if case.support.effective_width == 1.0:
+        return place
+    factor = np.ones_like(place)
+    factor[:count, 0] = case.support.effective_width
+    return factor * place
+
+
 def _stance(case: Case, container: Container, contact: Contact, gravity: float) -> Stance:
     """Stance of the container at t = 0, with the floor at x = 0."""
     mesh, elements, initial = container.mesh, container.elements, case.initial
     downhill, mu = case.gravity_downhill, case.contact.mu_static
     base = container.support.index.size
     nodes = container.nodes[:base]
-    point = elements.nodes[nodes] - np.asarray(mesh.centroid)
+    placed = base_points(case, elements.nodes[nodes], base)
+    point = placed - np.asarray(mesh.centroid)
     elastic = 0.0 if case.solver.model == "rigid" else 1.0
     compliance = elastic * container.response.compliance[: 2 * base, : 2 * base]
     if initial.rotation_rad == 0.0:
@@ -203,7 +213,7 @@ def _stance(case: Case, container: Container, contact: Contact, gravity: float) 
         if initial.angular_velocity_rad_s != 0.0:
             stance = stance.turning(initial.angular_velocity_rad_s, point)
     else:
-        corner = nodes[-1] if initial.rotation_rad > 0.0 else nodes[0]
+        corner = -1 if initial.rotation_rad > 0.0 else 0
         stance = tilted(
             rotation=initial.rotation_rad,
             angular_velocity=initial.angular_velocity_rad_s,
@@ -212,7 +222,7 @@ def _stance(case: Case, container: Container, contact: Contact, gravity: float) 
             gravity=gravity,
             downhill=downhill,
             point=point,
-            corner_x=float(elements.nodes[corner, 0]),
+            corner_x=float(placed[corner, 0]),
             compliance=compliance,
             normal_stiffness=contact.normal_stiffness[:base],
             mu_static=mu,

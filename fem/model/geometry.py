@@ -7,7 +7,7 @@ import numpy as np
 from fem.case.boxes import Box
 from fem.case.case import Case
 from fem.runtime.arrays import FloatArray
-from mesh.container import ContainerMesh, build_container_mesh
+from mesh.container import ContainerMesh, build_container_mesh, with_mass_beside
 from mesh.files import read_container_mesh, read_stack_mesh
 from mesh.fill import MassFill
 from mesh.geometry import ContainerGeometry, Section
@@ -22,6 +22,11 @@ def build_container(case: Case) -> ContainerMesh:
             that does not fit the case.
         CaseError: the mesh file is missing in the folder of the case.
     """
+    mesh, beside = _centred(case), case.container.eccentricity_m
+    return with_mass_beside(mesh, beside) if beside else mesh
+
+
+def _centred(case: Case) -> ContainerMesh:
     container, size, foot = case.container, case.solver.element_size_m, case.support.foot
     file = case.data_files["container.mesh_file"] if container.mesh_file is not None else None
     boxes = [_stacked(case, box) for box in case.stack]

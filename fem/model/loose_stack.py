@@ -101,12 +101,15 @@ def _modal_body(case: Case, container: Container, number: int, tolerance: float)
     centroid = np.asarray(box.mesh.centroid)
     damping = container.damping(case.container.damping_ratio)
     watched = _watched(container, number)
+    corner = box.elements.nodes[box.corners].copy()
+    if number == 0:
+        corner[:2, 0] *= case.support.effective_width
     return make_modal_body(
         mass=box.mesh.mass,
         inertia=box.mesh.inertia,
         gravity=case.gravity_toward_floor,
         downhill=case.gravity_downhill,
-        point=box.elements.nodes[box.corners] - centroid,
+        point=corner - centroid,
         rest=(place.axis + float(centroid[0]), place.bottom + float(centroid[1])),
         shape=np.moveaxis(box.basis.shapes[:, box.corners], 0, -1),
         frequencies=box.basis.angular_frequencies,

@@ -15,8 +15,9 @@ from dataclasses import dataclass, replace
 from fem.assessment.joint_demands import joint_demands
 from fem.assessment.ranges import largest_bolt_forces
 from fem.assessment.verdict import verdict_of
-from fem.case.uncertainty import InputChange, apart_from_floor
+from fem.case.uncertainty import InputChange, as_changed
 from fem.case.unknown_inputs import TOLERANCE
+from fem.model.container import with_mass_of
 from fem.model.joints import Joints, joints_of
 from fem.model.model import Model, build_model
 from fem.model.recovery import Recovery, recovery_of
@@ -133,8 +134,16 @@ def _run_changed(run: Model, change: InputChange, shared: Shared, stop: Callable
         values = {**change.values, "output.fields_s": 0.0}
         if change.kind == "draw":
             values[TOLERANCE] = max(DRAWN_TOLERANCE, run.case.solver.energy_tolerance)
-        case = run.case.with_values(apart_from_floor(run.case, values))
-        model = build_model(case, run.container)
+        case = run.case.with_values(as_changed(run.case, values))
+        if case.support.kind == run.case.support.kind:
+            model = build_model(case, with_mass_of(case, run.container, run.case))
+        else:
+            model = build_model(case)
+            shared = replace(
+                shared,
+                recovery=recovery_of(model) if shared.recovery else None,
+                joints=joints_of(model) if shared.joints else None,
+            )
         if shared.short and (change.kind != "one" or case.container.bolted_joints == 0):
             verdict, error = run_without_history(model, shared.recovery)
             status = "overturned" if verdict.outcome == Outcome.OVERTURNED else "completed"

@@ -14,7 +14,7 @@ from fem.case.quantities import CONTACT_DAMPING, DRAWS, Quantity
 from fem.case.strength import scaled_motion
 from fem.case.tables import CaseTable
 from fem.case.uncertainty import InputChange
-from fem.case.unknown_inputs import DASHPOT
+from fem.case.unknown_inputs import DASHPOT, HELD
 
 SHARE = Quantity(unit="", least=0.0, most=0.5, advice="0.02 is two per cent")
 FRICTION_STEP = Quantity(unit="", least=0.0, most=1.0, advice="0.02 is usual")
@@ -77,7 +77,7 @@ class Perturbation(CaseTable):
             case.floor.is_slab
             or friction.damping_ratio is None
             or (
-                case.uncertainty.damping_ratio == "known"
+                case.uncertainty.damping_ratio in HELD
                 and "contact_damping_ratios" not in self.model_fields_set
             )
         ):

@@ -19,7 +19,7 @@ from fem.batch.derived import Derived, with_derived
 from fem.case.case import Case
 from fem.case.quantities import Quantity
 from fem.case.tables import CaseTable
-from fem.case.uncertainty import apart_from_floor
+from fem.case.uncertainty import as_changed
 from fem.case.validation import CaseError
 from fem.sweep.perturbation import Perturbation
 
@@ -134,7 +134,7 @@ class Sweep:
         """The case of a copy of a cell, whose loose boxes keep the friction that they have in the cell."""
         point, values = self.point(item.cell), item.values
         if self.values(point).get("container.joints", self.base.container.joints) == "loose":
-            values = apart_from_floor(self.case_at(point), values)
+            values = as_changed(self.case_at(point), values)
         return self.case_at(point, values)
 
     def tried_case(self, item: tuple[int, float]) -> Case:

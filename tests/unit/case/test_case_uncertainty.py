@@ -8,7 +8,7 @@ from cases import named_case
 
 from fem.case.case import CaseError
 from fem.case.tables import TABLES
-from fem.case.uncertainty import apart_from_floor, changes_of, draws_of, pairs_of, sobol_points, stiff_floor
+from fem.case.uncertainty import as_changed, changes_of, draws_of, pairs_of, sobol_points, stiff_floor
 from fem.case.unknown_inputs import INPUTS, UNKNOWN, UnknownNumber, ranges_of
 
 PENALTY = 1e9
@@ -224,13 +224,13 @@ def test_the_dashpot_of_loose_joints_is_unknown_whatever_the_floor_is(given, tri
 )
 def test_a_changed_case_keeps_the_friction_between_its_boxes(given, changed, expected):
     case = named_case("harmonic", LOOSE | given)
-    found = case.with_values(apart_from_floor(case, changed)).joint_friction
+    found = case.with_values(as_changed(case, changed)).joint_friction
     assert tuple(found.values()) == pytest.approx(expected)
 
 
 def test_draws_of_a_loose_stack_draw_its_joints_and_its_floor_apart():
     case = named_case("harmonic", LOOSE)
-    drawn = [case.with_values(apart_from_floor(case, one.values)) for one in draws_of(case, PENALTY)]
+    drawn = [case.with_values(as_changed(case, one.values)) for one in draws_of(case, PENALTY)]
     static = np.array([one.joint_friction["mu_static"] for one in drawn])
     share = np.array([one.joint_friction["mu_kinetic"] for one in drawn]) / static
     assert 0.2 < static.min() < 0.21 and 0.76 < static.max() < 0.8
@@ -242,7 +242,7 @@ def test_draws_of_a_loose_stack_draw_its_joints_and_its_floor_apart():
 
 def test_one_body_has_no_friction_between_boxes():
     bolted = named_case("harmonic", LOOSE | {"container.joints": "bolted"})
-    assert apart_from_floor(bolted, {"contact.mu_kinetic": 0.3}) == {"contact.mu_kinetic": 0.3}
+    assert as_changed(bolted, {"contact.mu_kinetic": 0.3}) == {"contact.mu_kinetic": 0.3}
     assert not set(JOINTS) & {one.key for one in ranges_of(bolted, PENALTY)}
 
 
