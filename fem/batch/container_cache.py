@@ -6,19 +6,23 @@ from concurrent.futures import Future
 from weakref import WeakKeyDictionary
 
 from fem.case.case import Case
-from fem.model.container import Container, discretise
+from fem.model.container import Container, discretise, with_mass_of
 from fem.model.geometry import build_container
 from fem.model.model import Model
 from fem.model.recovery import Recovery, recovery_of
 from fem.model.support import normal_penalty
 
 
-def container_key(case: Case) -> Hashable:
-    """Equal for cases whose containers are the same, whatever floor they stand on and however they are damped."""
+def container_key(case: Case, *, mass: bool = True) -> Hashable:
+    """Equal for cases whose containers are the same, whatever floor they stand on and however they are damped.
+
+    `mass`: also the places of their mass.
+    """
     solver = case.solver
+    places = {} if mass else {"centroid_m": 0.0, "eccentricity_m": 0.0}
     return (
-        case.container.model_copy(update={"damping_ratio": 0.0}),
-        case.support,
+        case.container.model_copy(update={"damping_ratio": 0.0, **places}),
+        case.support.model_copy(update={"effective_width": 1.0}),
         case.gravity_m_s2,
         case.folder,
         solver.model,
@@ -35,21 +39,21 @@ class ContainerCache:
     def __init__(self, most: int = 8) -> None:
         self._most = most
         self._lock = threading.Lock()
-        self._held: dict[Hashable, Future[Container]] = {}
+        self._held: dict[Hashable, tuple[Case, Future[Container]]] = {}
         self._recoveries = WeakKeyDictionary[Container, Recovery]()
 
     def container_of(self, case: Case) -> Container:
-        """The container of a case, built if it is missing.
+        """The container of a case, built if it is missing; rigid ones share all but their mass.
 
         Raises:
             CaseError, MeshError: bad input.
         """
-        key = container_key(case)
+        key = container_key(case, mass=case.solver.model != "rigid")
         with self._lock:
             found = self._held.pop(key, None)
             mine = found is None
-            promise = Future[Container]() if found is None else found
-            self._held[key] = promise  # the one used last is last
+            own, promise = (case, Future[Container]()) if found is None else found
+            self._held[key] = own, promise  # the one used last is last
             while len(self._held) > self._most:
                 del self._held[next(iter(self._held))]
         if mine:
@@ -57,7 +61,7 @@ class ContainerCache:
                 promise.set_result(discretise(case))
             except BaseException as error:
                 promise.set_exception(error)
-        return promise.result()
+        return with_mass_of(case, promise.result(), own)
 
     def recovery_of(self, model: Model) -> Recovery:
         """What recovers the stresses of a model's container; built once a container."""

@@ -52,9 +52,7 @@ def _beginning(cases: Sequence[Case], varied: Collection[str]) -> Iterator[str]:
     if not motions:
         return
     ramps, starts = {one.ramp_cycles for one in motions}, {one.start for one in motions}
-    if START not in varied and starts == {"moving"}:
-        yield "a start with the floor"
-    elif START not in varied and starts == {"rest"}:
+    if START not in varied and starts == {"rest"}:
         yield "a start at rest"
     if RAMP not in varied and len(ramps) == 1:
         cycles = ramps.pop()

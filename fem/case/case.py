@@ -40,6 +40,7 @@ from fem.case.tables import (
     VerticalTable,
 )
 from fem.case.toml import toml_document
+from fem.case.unknown_inputs import excluded_values
 from fem.case.validation import CaseError, problem_lines, read_case_tables
 from fem.records.columns import given_record, written
 from fem.records.record import Direction, Record
@@ -315,7 +316,10 @@ def load_case(
         overrides = (*(f"{key}={value}" for key, value in recorded.items()), *overrides)
     trusted = frozenset(data_files.FILE_KEYS if allow_outside else values.keys() & set(data_files.FILE_KEYS))
     origin = replace(found, overrides=tuple(overrides), trusted=trusted, allow_outside=allow_outside)
-    return _read(with_overrides(parse_case(origin), values), origin, values)
+    case = _read(with_overrides(parse_case(origin), values), origin, values)
+    if reasons := excluded_values(case):
+        raise CaseError("\n".join(f"{origin.place}: {reason}" for reason in reasons))
+    return case
 
 
 def read_case(text: str, *, name: str = "case", folder: Path | None = None) -> Case:

@@ -121,7 +121,7 @@ class UnknownNumber(NamedTuple):
             return self.ends(case, own)
         least, most = self.quantity.least or 0.0, (self.quantity.below or math.inf) * (1.0 - 1e-9)
         low, high = self.ends
-        return max(least, low * own), min(most, self.quantity.most or math.inf, high * own)
+        return short(max(least, low * own)), short(min(most, self.quantity.most or math.inf, high * own))
 
     def _drawn(self, low: float, high: float, place: float) -> float:
         if self.power is not None:
@@ -389,6 +389,20 @@ def _ends_hold(one: UnknownNumber) -> Rule:
 
 
 UNCERTAINTY_RULES = tuple(_ends_hold(one) for one in UNKNOWN if isinstance(one, UnknownNumber))
+
+
+def excluded_values(case: Any) -> list[str]:
+    """What is wrong with stated ranges that do not hold the value of the case; one sentence each."""
+    found = []
+    for one in UNKNOWN:
+        stated = getattr(case.uncertainty, one.name)
+        own = _own(case, one.key, None) if isinstance(stated, list) else None
+        if isinstance(own, float) and not stated[0] - 1e-9 <= own <= stated[1] * (1.0 + 1e-9) + 1e-9:
+            found.append(
+                f"[uncertainty] {one.name} = {stated} excludes the value of the case, {one.key} = {own:g}; widen "
+                "the range, or change the value"
+            )
+    return found
 
 
 def ranges_of(case: Any, penalty: float | None) -> tuple[InputRange, ...]:

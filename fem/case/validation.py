@@ -18,6 +18,7 @@ from fem.case.problem import Problem, broken
 from fem.case.quantities import Quantity, with_unit
 from fem.case.rules import CASE_RULES
 from fem.case.tables import OPTIONAL, TABLES, BoxTable, CaseHeading, CaseTable
+from fem.case.unknown_inputs import short
 
 
 class CaseError(ValueError):
@@ -71,6 +72,7 @@ def read_case_tables(data: Mapping[str, Any]) -> tuple[dict[str, Any], list[Prob
     """
     heading: dict[str, Any] = {}
     problems: list[Problem] = []
+    data = with_friction_range(data)
     for key, value in data.items():
         if key in TABLES and not isinstance(value, dict):
             reason = f"must be one table, got {_shown(value)}; write [{key}] above its keys"
@@ -93,6 +95,23 @@ def read_case_tables(data: Mapping[str, Any]) -> tuple[dict[str, Any], list[Prob
         if not found:
             read[name] = model.model_validate(given)
     return read, problems + broken(CASE_RULES, SimpleNamespace(**partial))
+
+
+def with_friction_range(data: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The tables with `contact.mu_static = [low, high]` as its middle, and as its range in [uncertainty]."""
+    contact, unknown = data.get("contact"), data.get("uncertainty", {})
+    static = contact.get("mu_static") if isinstance(contact, dict) else None
+    if contact is None or not isinstance(static, list) or "mu_static" in unknown:
+        return data
+    if len(static) != 2 or not all(isinstance(end, int | float) for end in static):
+        return data
+    middle = short(0.5 * (float(static[0]) + float(static[1])))
+    ends = [float(end) for end in static]
+    return {
+        **data,
+        "contact": {**contact, "mu_static": middle},
+        "uncertainty": {**unknown, "mu_static": ends},
+    }
 
 
 def problem_lines(problems: Iterable[Problem], heading: str = "") -> list[str]:

@@ -31,7 +31,8 @@ class UnknownInputs:
         cases = list(_cases(ensemble))
         given = {axis.key for axis in ensemble.axes} | {one.key for one in ensemble.random}
         fixed = given | {one.key for one in ensemble.derived}
-        drawn = {one.key for case in cases for one in ranges_of(case, self._penalties.of(case))} - fixed
+        ranges = (one for case in cases for one in ranges_of(case, self._penalties.of(case)))
+        drawn = {one.key for one in ranges if one.drawn is not None} - fixed
         #: keys of the inputs that are drawn
         self.keys = tuple(key for key in INPUTS if key in drawn) if ensemble.unknown_inputs == "drawn" else ()
         #: what is held fixed of the others, in words

@@ -112,6 +112,9 @@ def same_equilibrium(case: Case, other: Case) -> bool:
         and case.joints == other.joints
         and case.floor == other.floor
         and case.initial == other.initial
+        and case.support == other.support
+        and case.container.centroid_m == other.container.centroid_m
+        and case.container.eccentricity_m == other.container.eccentricity_m
         and case.container.damping_ratio == other.container.damping_ratio
         and case.gravity_m_s2 == other.gravity_m_s2
         and case.solver.model == other.solver.model

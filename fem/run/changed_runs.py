@@ -16,7 +16,7 @@ from fem.assessment.joint_demands import joint_demands
 from fem.assessment.ranges import largest_bolt_forces
 from fem.assessment.verdict import verdict_of
 from fem.case.uncertainty import InputChange, as_changed
-from fem.case.unknown_inputs import TOLERANCE
+from fem.case.unknown_inputs import SUPPORT, TOLERANCE
 from fem.model.container import with_mass_of
 from fem.model.joints import Joints, joints_of
 from fem.model.model import Model, build_model
@@ -132,7 +132,7 @@ def run_changes(
 def _run_changed(run: Model, change: InputChange, shared: Shared, stop: Callable[[], bool]) -> ChangedRun:
     try:
         values = {**change.values, "output.fields_s": 0.0}
-        if change.kind == "draw":
+        if change.kind == "draw" or SUPPORT in change.values:  # a flat base takes twenty times as long
             values[TOLERANCE] = max(DRAWN_TOLERANCE, run.case.solver.energy_tolerance)
         case = run.case.with_values(as_changed(run.case, values))
         if case.support.kind == run.case.support.kind:

@@ -8,11 +8,13 @@ done near the first one with all unknown inputs drawn at once. An island narrowe
 import math
 from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
+from functools import cache
 
 from fem.case.case import Case
 from fem.case.strength import scaled_motion
-from fem.case.uncertainty import apart_from_floor, draws_of
+from fem.case.uncertainty import as_changed, draws_of
 from fem.case.unknown_inputs import TOLERANCE, Value
+from fem.model.container import Container, with_mass_of
 from fem.model.equilibrium import same_equilibrium
 from fem.model.model import Model, build_model
 from fem.model.validity import runs_in_memory
@@ -197,13 +199,17 @@ def _trial(model: Model, values: Mapping[str, Value], stop: Callable[[], bool]) 
         TOLERANCE: max(DRAWN_TOLERANCE, own.solver.energy_tolerance),
     }
 
+    @cache
+    def container() -> Container:
+        return with_mass_of(own.with_values(as_changed(own, values)), model.container, own)
+
     def ending(factor: float) -> Ending:
         if stop():
             raise StoppedError
         try:
-            case = own.with_values(apart_from_floor(own, {**values, **scaled_motion(own, factor), **coarse}))
+            case = own.with_values(as_changed(own, {**values, **scaled_motion(own, factor), **coarse}))
             shared = model.equilibrium if same_equilibrium(case, own) else None
-            return _ending(build_model(case, model.container, shared), stop)
+            return _ending(build_model(case, container(), shared), stop)
         except (ValueError, ArithmeticError, RuntimeError):  # a motion too strong for its key, no equilibrium
             return Ending.FAILED
 

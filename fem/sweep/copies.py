@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from fem.batch.container_cache import PenaltyCache
 from fem.case.case import Case
 from fem.case.uncertainty import InputChange, changes_of, draws_of, pairs_of
-from fem.case.unknown_inputs import TOLERANCE
+from fem.case.unknown_inputs import SUPPORT, TOLERANCE
 from fem.sweep.perturbation import SMALL
 from fem.sweep.plan import Sweep
 
@@ -31,7 +31,7 @@ def left_out(sweep: Sweep) -> str:
     if chosen == "none" or (chosen == "auto" and sweep.base.solver.model == "full"):
         return "all"
     cells = "cells away from a change of outcome" if chosen == "near" else ""
-    return ", ".join(filter(None, (cells, "" if rigid else LEFT_OUT)))
+    return ", ".join(filter(None, (cells, "what of the base touches", "" if rigid else LEFT_OUT)))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -99,6 +99,8 @@ class CellCopies:
         else:
             changes = tuple(one for one in changes if one.share == 1.0 and TOLERANCE not in one.values)
         for change in changes:
+            if SUPPORT in change.values:  # as a rule takes longer than all other copies together
+                continue
             kept = {key: value for key, value in change.values.items() if key not in self._axes}
             places = zip(change.values, change.place, strict=False)
             yield replace(change, values=kept, place=tuple(one for key, one in places if key in kept))

@@ -124,11 +124,6 @@ def test_a_number_of_boxes_replaces_tables_of_boxes():
         (f"boxes = 2\n{LOOSE}", "[initial]\nrotation_rad = 0.1", "[initial] rotation_rad does not apply to container"),
         (f"boxes = 2\n{LOOSE}", "[initial]\nangular_velocity_rad_s = 0.1", "[initial] angular_velocity_rad_s does not"),
         (f"boxes = 2\n{LOOSE}", "[output]\nstop_when_overturned = false", "[output] stop_when_overturned must be true"),
-        (
-            f"boxes = 2\n{LOOSE}",
-            "[uncertainty]\njoints_mu_kinetic = [0.2, 0.6]",
-            "[uncertainty] joints_mu_kinetic must be at most mu_static = 0.4 of the joints, got up to 0.6",
-        ),
         ("boxes = 2", "[joints]\nmu_static = 30.0", "[joints] mu_static must be between 0 and 5, got 30"),
         (
             f"{BOX}{BOX}offset_m = 0.6\n",

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from cases import named_case
 
-from fem.case.case import CaseError
+from fem.case.case import CaseError, load_case, read_case, to_toml
 from fem.case.tables import TABLES
 from fem.case.uncertainty import as_changed, changes_of, draws_of, pairs_of, sobol_points, stiff_floor
 from fem.case.unknown_inputs import INPUTS, UNKNOWN, UnknownNumber, ranges_of
@@ -27,9 +27,14 @@ def ends(name="harmonic", values=None):
 def test_defaults_follow_the_case():
     assert ends("harmonic", FRICTION) == {
         "contact.mu_kinetic": (0.4,),
+        "contact.mu_static": (pytest.approx(0.36), pytest.approx(0.44)),
         "contact.weakening_m": (0.005,),
         "contact.stribeck_velocity_m_s": (0.3,),
-        "motion.start": ("rest",),
+        "support.kind": ("flat",),
+        "container.centroid_m": (pytest.approx(0.49), pytest.approx(0.51)),
+        "container.eccentricity_m": (pytest.approx(-0.011), pytest.approx(0.011)),
+        "support.effective_width": (0.97,),
+        "floor.slope_percent": (-0.5, 0.5),
         "motion.ramp_cycles": (2.0,),
         "contact.normal_penalty_Pa_m": (pytest.approx(PENALTY / 9.0), 3.0 * PENALTY),
         "contact.damping_ratio": (1.0, 4.0),
@@ -40,18 +45,33 @@ def test_defaults_follow_the_case():
 @pytest.mark.parametrize(
     ("name", "values", "missing"),
     [
-        ("harmonic", {}, {"contact.mu_kinetic", "contact.weakening_m", "contact.stribeck_velocity_m_s"}),
-        ("pulse", FRICTION, {"motion.start", "motion.ramp_cycles"}),
+        ("harmonic", {}, set()),
+        (
+            "harmonic",
+            {"uncertainty.mu_kinetic": "held"},
+            {"contact.mu_kinetic", "contact.weakening_m", "contact.stribeck_velocity_m_s"},
+        ),
+        ("pulse", FRICTION, {"motion.ramp_cycles"}),
         ("harmonic", FRICTION | {"solver.model": "rigid"}, {"container.damping_ratio"}),
         ("harmonic", FRICTION | {"contact.damping_ratio": 0.0}, {"contact.damping_ratio"}),
-        ("harmonic", FRICTION | {"motion.phase_rad": np.pi / 2}, {"motion.start"}),
+        ("harmonic", FRICTION | {"container.joints": "loose", "container.boxes": 2}, {"support.kind"}),
+        ("harmonic", FRICTION | {"support.kind": "feet"}, {"support.kind"}),
         (
             "harmonic",
             FRICTION | {"contact.friction": "regularised"},
             {"contact.weakening_m", "contact.stribeck_velocity_m_s"},
         ),
     ],
-    ids=["one friction", "a pulse", "rigid", "no dashpot", "a floor that starts at rest", "regularised"],
+    ids=[
+        "one friction",
+        "one friction that is known",
+        "a pulse",
+        "rigid",
+        "no dashpot",
+        "loose",
+        "feet",
+        "regularised",
+    ],
 )
 def test_what_makes_no_difference_is_not_varied(name, values, missing):
     given = ends("harmonic", FRICTION)
@@ -65,8 +85,9 @@ def test_a_slab_is_tried_at_half_and_twice_its_strength_and_stiffness_in_place_o
     slab, rigid = ends("harmonic", SLAB), ends("harmonic", FRICTION)
     assert slab["floor.bearing_strength_Pa"] == (25e6, 100e6)
     assert slab["floor.youngs_modulus_Pa"] == (15.5e9, 62e9)
-    assert set(rigid) - set(slab) == {"contact.normal_penalty_Pa_m", "contact.damping_ratio"}
-    assert len(slab) == len(rigid)
+    castings = {"support.kind"}  # of 0.2 m under a base 1.1 m deep
+    assert set(rigid) - set(slab) == castings | {"contact.normal_penalty_Pa_m", "contact.damping_ratio"}
+    assert len(slab) == len(rigid) - 1
 
 
 def test_ranges_of_a_slab_may_be_stated_and_its_damping_where_it_is_given():
@@ -99,6 +120,70 @@ def test_the_numerics_are_always_tried():
         assert changes(name)[-1] == "solver.energy_tolerance = 0.1"
 
 
+GEOMETRY = ["mu_static", "support", "centroid_m", "eccentricity_m", "effective_width", "slope_percent"]
+
+
+def test_the_floor_jumps_only_where_it_is_asked_for():
+    asked = {"uncertainty.start": True}
+    assert "motion.start" not in ends("harmonic", FRICTION)
+    assert ends("harmonic", FRICTION | asked)["motion.start"] == ("rest",)
+    at_rest = {"motion.phase_rad": np.pi / 2}  # its velocity does not jump
+    assert "motion.start" not in ends("harmonic", FRICTION | asked | at_rest)
+
+
+def test_the_phase_of_a_vertical_harmonic_may_be_any():
+    vertical = {
+        "vertical.kind": "harmonic",
+        "vertical.peak_acceleration_m_s2": 2.0,
+        "vertical.frequency_Hz": 1.0,
+    }
+    case = named_case("harmonic", FRICTION | vertical | {"vertical.phase_rad": 0.5})
+    (one,) = [one for one in ranges_of(case, PENALTY) if one.key == "vertical.phase_rad"]
+    tried = sorted((*one.between, *one.ends))
+    assert tried == pytest.approx([0.5 - np.pi, 0.5 - np.pi / 2, 0.5 + np.pi / 2])
+    drawn = [case.with_values(one.values).vertical.phase_rad for one in draws_of(case, PENALTY)]
+    assert max(drawn) - min(drawn) > 0.9 * 2 * np.pi
+    assert "vertical.phase_rad" not in ends("pulse", FRICTION | vertical)
+
+
+def test_a_range_of_static_friction_stands_for_its_middle():
+    case = named_case("harmonic", {"contact.mu_static": [0.3, 0.4]})
+    assert case.contact.mu_static == 0.35 and case.contact.mu_kinetic == 0.35
+    (one,) = [one for one in ranges_of(case, PENALTY) if one.key == "contact.mu_static"]
+    assert one.ends == (0.3, 0.4)
+    assert read_case(to_toml(case)).uncertainty.mu_static == [0.3, 0.4]
+
+
+@pytest.mark.parametrize(
+    ("given", "changed", "expected"),
+    [
+        (FRICTION, {"contact.mu_static": 0.36}, (0.36, 0.18)),
+        ({}, {"contact.mu_static": 0.36}, (0.36, 0.36)),
+        (FRICTION, {"contact.mu_kinetic": 0.3}, (0.4, 0.3)),
+        (FRICTION, {"contact.mu_static": 0.36, "contact.mu_kinetic": 0.4}, (0.36, 0.36)),
+    ],
+)
+def test_kinetic_friction_keeps_its_share_of_the_static_and_is_never_larger(given, changed, expected):
+    case = named_case("harmonic", given)
+    contact = case.with_values(as_changed(case, changed)).contact
+    assert (contact.mu_static, contact.mu_kinetic) == pytest.approx(expected)
+
+
+def test_a_base_that_touches_otherwise_has_another_patch_on_a_slab():
+    walls = {"floor.preset": "concrete C25/30", "floor.corner_patch_m": [0.008, 1.1]}
+    case = named_case("harmonic", FRICTION | walls)
+    assert ends("harmonic", FRICTION | walls)["support.kind"] == ("flat",)
+    flat = case.with_values(as_changed(case, {"support.kind": "flat"}))
+    assert (flat.support.kind, flat.floor.corner_patch_m) == ("flat", [0.55, 1.1])
+
+
+def test_a_stated_range_that_excludes_the_value_is_refused(tmp_path):
+    path = tmp_path / "case.toml"
+    path.write_text(to_toml(named_case("harmonic", FRICTION)), encoding="utf-8")
+    with pytest.raises(CaseError, match=r"mu_kinetic = \[0.25, 0.3\] excludes the value of the case"):
+        load_case(path, ["uncertainty.mu_kinetic=[0.25,0.3]"])
+
+
 def test_a_stated_range_replaces_the_default_and_known_leaves_it_out():
     stated = FRICTION | {
         "uncertainty.mu_kinetic": [0.1, 0.3],
@@ -107,8 +192,8 @@ def test_a_stated_range_replaces_the_default_and_known_leaves_it_out():
         "uncertainty.normal_penalty_Pa_m": [1e8, PENALTY],
         "uncertainty.damping_ratio": "known",
         "uncertainty.material_damping_ratio": [0.02, 0.02],
-        "uncertainty.start": "known",
         "uncertainty.ramp": False,
+        **dict.fromkeys([f"uncertainty.{name}" for name in GEOMETRY], "held"),
     }
     assert ends("harmonic", stated) == {
         "contact.mu_kinetic": (0.1, 0.3),
@@ -130,7 +215,8 @@ def test_pairs_join_a_smaller_fall_of_friction_with_a_slower_one():
         "contact.mu_kinetic = 0.3, contact.weakening_m = 0.005",
         "contact.mu_kinetic = 0.3, contact.stribeck_velocity_m_s = 0.3",
     ]
-    assert pairs_of(named_case("harmonic")) == ()
+    held = {"uncertainty.mu_kinetic": "held"}
+    assert pairs_of(named_case("harmonic", held)) == ()
 
 
 def test_draws_fill_every_range_and_make_cases_that_can_be_read():
@@ -140,12 +226,15 @@ def test_draws_fill_every_range_and_make_cases_that_can_be_read():
     assert draws == draws_of(case, PENALTY)
     drawn = [case.with_values(one.values) for one in draws]
     friction = [one.contact.mu_kinetic for one in drawn]
-    assert 0.2 < min(friction) < 0.21 and 0.39 < max(friction) < 0.4
+    static = np.array([one.contact.mu_static for one in drawn])
+    share = np.array(friction) / static
+    assert 0.36 < static.min() < 0.365 and 0.435 < static.max() < 0.44
+    assert 0.5 < share.min() < 0.52 and 0.98 < share.max() < 1.0
     stiffness = np.log([one.contact.normal_penalty_Pa_m for one in drawn])
     assert np.mean(stiffness) == pytest.approx(np.log(PENALTY / np.sqrt(3.0)), abs=0.1)
     assert sum(one.contact.weakening_m < 1e-3 for one in drawn) > 16
-    for read in (lambda one: one.motion.start == "rest", lambda one: one.motion.ramp_cycles == 2.0):
-        assert sum(map(read, drawn)) == 16
+    assert sum(one.motion.ramp_cycles == 2.0 for one in drawn) == 16
+    assert {one.support.kind for one in drawn} == {"corners"}
     assert len(draws_of(case, PENALTY, 5)) == 5
     assert draws_of(named_case("harmonic", {"uncertainty.draws": 0}), PENALTY) == ()
 
@@ -182,17 +271,17 @@ def of_joints(values=None):
 def test_friction_between_loose_boxes_is_unknown_apart_from_that_of_the_floor():
     assert of_joints() == dict(zip(JOINTS, ((0.2, 0.8), (0.4,), (0.005,)), strict=True))
     assert of_joints({"joints.mu_static": 0.3}) == {
-        "joints.mu_kinetic": (0.3,),
+        "joints.mu_kinetic": (0.15, 0.3),
         "joints.weakening_m": (0.005,),
     }
-    assert of_joints({"joints.mu_static": 0.2}) == {}
+    assert of_joints({"joints.mu_static": 0.2})["joints.mu_kinetic"] == (0.1,)
     known = dict.fromkeys(("uncertainty.joints_mu_static", "uncertainty.joints_mu_kinetic"), "known")
     assert of_joints(known) == {"joints.weakening_m": (0.005,)}
     stated = {"uncertainty.joints_mu_static": [0.3, 0.5], "uncertainty.joints_weakening_m": [0.0, 1e-3]}
     assert of_joints(stated)["joints.mu_static"] == (0.3, 0.5)
     assert of_joints(stated)["joints.weakening_m"] == (1e-3,)
     # where the floor's friction does not fall, that of the joints may, and with the slip velocity, too
-    kept = {"contact.mu_kinetic": 0.4, "joints.mu_kinetic": 0.2}
+    kept = {"contact.mu_kinetic": 0.4, "joints.mu_kinetic": 0.2, "uncertainty.mu_kinetic": "held"}
     assert "contact.stribeck_velocity_m_s" in ends("harmonic", LOOSE | kept)
     assert "contact.weakening_m" not in ends("harmonic", LOOSE | kept)
 
@@ -251,7 +340,6 @@ def test_a_ramp_fits_the_motion():
     assert ends("harmonic", short)["motion.ramp_cycles"] == (pytest.approx(1.5),)
     ramped = FRICTION | {"motion.ramp_cycles": 1.0}
     assert ends("harmonic", ramped)["motion.ramp_cycles"] == (0.0,)
-    assert "motion.start" not in ends("harmonic", ramped)
     for values in (short, ramped, {"solver.duration_s": 0.5}):
         case = named_case("harmonic", values)
         for one in changes_of(case, PENALTY):
@@ -272,21 +360,16 @@ def test_a_stiff_floor_is_thirty_times_as_stiff():
             [0.3, 0.2],
             "must be [low, high] with low at most high, got [0.3, 0.2]; write [0.2, 0.3]",
         ),
-        (
-            "mu_kinetic",
-            [0.2, 0.5],
-            "must be at most contact.mu_static = 0.4, got up to 0.5; end the range there",
-        ),
         ("mu_kinetic", [-0.1, 0.2], "must be between 0 and 5, got -0.1; steel on concrete has 0.3 to 0.4"),
-        ("mu_kinetic", 0.3, 'must be [low, high] or "known", got 0.3'),
-        ("mu_kinetic", [0.3], 'must be [low, high] or "known", got a list'),
-        ("mu_kinetic", ["a", 0.3], 'must be [low, high] or "known", got a list'),
-        ("mu_kinetic", "unknown", "must be [low, high] or \"known\", got the text 'unknown'"),
+        ("mu_kinetic", 0.3, 'must be [low, high] or "held", got 0.3'),
+        ("mu_kinetic", [0.3], 'must be [low, high] or "held", got a list'),
+        ("mu_kinetic", ["a", 0.3], 'must be [low, high] or "held", got a list'),
+        ("mu_kinetic", "unknown", "must be [low, high] or \"held\", got the text 'unknown'"),
         ("weakening_m", [0.0, 5.0], "must be between 0 and 0.1 m, got 5 m; looks like micrometres: 5e-06 m?"),
         ("damping_ratio", [0.0, 1e9], "must be between 0 and 1000, got 1e+09; 2 is usual"),
-        ("start", "rest", "must be true, false or \"known\", got the text 'rest'"),
+        ("start", "rest", "must be true, false or \"held\", got the text 'rest'"),
         ("draws", -1, "must be between 0 and 1024, got -1; 32 is usual"),
-        ("mu", [0.1, 0.2], "unknown key 'mu'; did you mean 'mu_kinetic'?"),
+        ("mu", [0.1, 0.2], "unknown key 'mu'; did you mean 'mu_static'?"),
     ],
 )
 def test_bad_ranges_are_refused_with_a_way_out(key, value, said):
