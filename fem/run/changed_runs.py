@@ -135,22 +135,19 @@ def _run_changed(run: Model, change: InputChange, shared: Shared, stop: Callable
         if change.kind == "draw" or SUPPORT in change.values:  # a flat base takes twenty times as long
             values[TOLERANCE] = max(DRAWN_TOLERANCE, run.case.solver.energy_tolerance)
         case = run.case.with_values(as_changed(run.case, values))
-        if case.support.kind == run.case.support.kind:
-            model = build_model(case, with_mass_of(case, run.container, run.case))
-        else:
-            model = build_model(case)
-            shared = replace(
-                shared,
-                recovery=recovery_of(model) if shared.recovery else None,
-                joints=joints_of(model) if shared.joints else None,
-            )
+        same_base = case.support.kind == run.case.support.kind
+        model = build_model(case, with_mass_of(case, run.container, run.case) if same_base else None)
+        recovery = shared.recovery if same_base or shared.recovery is None else recovery_of(model)
+        # its forces follow from mass and weight
+        same_load = model.container is run.container and case.floor.slope == run.case.floor.slope
+        joints = shared.joints if same_load or shared.joints is None else joints_of(model)
         if shared.short and (change.kind != "one" or case.container.bolted_joints == 0):
-            verdict, error = run_without_history(model, shared.recovery)
+            verdict, error = run_without_history(model, recovery)
             status = "overturned" if verdict.outcome == Outcome.OVERTURNED else "completed"
             if error is not None:
                 return _without_outcome(change, "failed", error)
             return changed_run(change, model, status, verdict, None)
-        recorder = Recorder(model, shared.recovery, joints=shared.joints)
+        recorder = Recorder(model, recovery, joints=joints)
         ending = simulate(model, recorder, stop=stop)
     # bad input, no equilibrium, a singular matrix
     except (ValueError, ArithmeticError, RuntimeError) as problem:
@@ -159,8 +156,8 @@ def _run_changed(run: Model, change: InputChange, shared: Shared, stop: Callable
         return _without_outcome(change, ending.status, ending.error)
     history = recorder.history()
     verdict = verdict_of(model, history, recorder.largest_von_mises)
-    joints = joint_demands(model, history) if shared.short else None
-    return changed_run(change, model, ending.status, verdict, joints)
+    demands = joint_demands(model, history) if shared.short else None
+    return changed_run(change, model, ending.status, verdict, demands)
 
 
 def changed_run(
