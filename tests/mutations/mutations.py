@@ -297,9 +297,21 @@ MUTATIONS = (
     ),
     Mutation(
         name="a band that does not try mu_kinetic up to mu_static",
-        old="return own, case.contact.mu_static",
-        new="return own, case.contact.mu_kinetic",
+        old="static = case.contact.mu_static\n    return short(min(own, LEAST_KINETIC * static)), static",
+        new="static = case.contact.mu_static\n    return short(min(own, LEAST_KINETIC * static)), own",
         tests=("verification/sureness/test_sure_verdicts.py", "unit/case/test_case_uncertainty.py"),
+    ),
+    Mutation(
+        name="a mass beside the axis that adds to both sides",
+        old="factor[own] += distance * mass[own].sum()",
+        new="factor[own] += abs(distance) * mass[own].sum()",
+        tests=("unit/mesh/test_mass_beside.py",),
+    ),
+    Mutation(
+        name="a member of an effective width that rocks about the corners of the mesh",
+        old="factor[:count, 0] = case.support.effective_width",
+        new="factor[:count, 0] = 1.0",
+        tests=("unit/model/test_effective_width.py",),
     ),
     Mutation(
         name="a material damping of a member that stays the run's",

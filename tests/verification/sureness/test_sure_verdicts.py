@@ -9,15 +9,24 @@ from cases import named_case
 from fem.run.run import RunOptions, run_case
 
 QUICK = {"floor.kind": "rigid", "output.fields_s": 0.0, "output.figures": False, "uncertainty.draws": 4}
-FLAT = {
+#: mass centre, base and floor are those of the case
+GEOMETRY = dict.fromkeys(
+    [
+        f"uncertainty.{name}"
+        for name in ("support", "centroid_m", "eccentricity_m", "effective_width", "slope_percent")
+    ],
+    "held",
+)
+FLAT = GEOMETRY | {
     "support.kind": "flat",
     "contact.mu_kinetic": 0.4,
     "solver.duration_s": 15.0,
     "uncertainty.normal_penalty_Pa_m": "known",
     "uncertainty.damping_ratio": "known",
     "uncertainty.material_damping_ratio": "known",
-    "uncertainty.start": "known",
-    "uncertainty.ramp": "known",
+    "uncertainty.mu_kinetic": "held",
+    "uncertainty.mu_static": "held",
+    "uncertainty.ramp": "held",
 }
 UPLIFT = 2.698  # m/s2, of the stack as a rigid block: g a/h
 
@@ -94,8 +103,8 @@ def test_corners_below_uplift_rest_and_are_sure(tmp_path):
         "solver.model": "rigid",
         "contact.mu_kinetic": 0.4,
         "motion.peak_acceleration_m_s2": 0.95 * UPLIFT,
-        "uncertainty.start": "known",
+        "uncertainty.mu_kinetic": "held",
     }
-    verdict = verdict_of(tmp_path, "seed_stack_plateau", values).verdict
+    verdict = verdict_of(tmp_path, "seed_stack_plateau", GEOMETRY | values).verdict
     assert (verdict.outcome, verdict.sure, verdict.decided_by) == ("rest", "sure", ())
     assert verdict.band.draws_overturned == 0
