@@ -77,7 +77,7 @@ def _part_rows(typing: Any, numbers: Any, begin: Any, rows: Any, columns: Any) -
 
 _of_constants: Any = intrinsic(prefer_literal=True)
 local_row: Any = _of_constants(_row)  #: an array (size,) of zeros
-local_rows: Any = _of_constants(_rows)  #: .. (rows, columns)
-local_counts: Any = _of_constants(_counts)  #: .. (size,) of whole numbers
+local_rows: Any = _of_constants(_rows)  #: an array (rows, columns) of zeros
+local_counts: Any = _of_constants(_counts)  #: an array (size,) of whole numbers, zeros
 part_row: Any = _of_constants(_part_row)  #: the part (size,) of an array (n,) from `begin` on
-part_rows: Any = _of_constants(_part_rows)  #: .. as rows (rows, columns)
+part_rows: Any = _of_constants(_part_rows)  #: the same as rows (rows, columns)

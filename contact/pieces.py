@@ -52,10 +52,10 @@ class PieceLibrary(KernelLibrary):
     """Code for the libraries that link it."""
 
     def _optimize_final_module(self) -> None:
-        """Left to these."""
+        """No-op: the callers optimise it."""
 
     def _finalize_final_module(self) -> None:
-        """Without machine code."""
+        """Finalise without emitting machine code."""
         self._finalized = True
 
 

@@ -4,7 +4,7 @@ from contact.arrays import FloatArray, IntArray
 from contact.jit import compiled
 
 SMALL = 8  #: size up to which columns are eliminated one by one
-TINY = 4  #: .. up to which rows are exchanged by constant indices, see `contact.local_arrays`
+TINY = 4  #: size up to which rows are exchanged by constant indices, see `contact.local_arrays`
 
 
 @compiled(inline=True)

@@ -55,7 +55,7 @@ def advance_on(body: ModalBody | LooseStack, run: RunState, until: float) -> int
 
 @implements(advance_on, ModalBody, LooseStack, inline=True)
 def advance_in_memory(body: ModalBody | LooseStack, run: RunState, until: float) -> int:
-    """.. on the arrays of the run."""
+    """`advance` on the arrays of the run."""
     return int(advance_kernel(body, run, until))
 
 
@@ -73,7 +73,7 @@ def has_two_points(state: State) -> bool:
 
 @implements(advance_on, BodyOnCorners)
 def advance_on_corners(body: BodyOnCorners, run: RunState, until: float) -> int:
-    """.. of two points: from each comparison with a constant the compiler infers a size, and unrolls loops."""
+    """`advance` of two points: from each comparison with a constant the compiler infers a size, and unrolls loops."""
     work = run.work
     if body.point.shape[0] != 2 or run.problem.control.base_points != 2 or run.joints.shape[0] != 1:
         return FAILED
@@ -107,7 +107,7 @@ def copy_pair(target: FloatArray, source: FloatArray, columns: int) -> None:
 
 @implements(advance_on, BlockOnCorners)
 def advance_in_registers(body: BlockOnCorners, run: RunState, until: float) -> int:
-    """.. on arrays of constant shape; the work of the last attempt is copied back as far as its residual needs."""
+    """`advance` on arrays of constant shape; of the last attempt what the residual needs is copied back."""
     if body.stiffness.size != 0 or body.point.shape[0] != 2 or run.problem.control.base_points != 2:
         return FAILED
     if run.joints.shape[0] != 1 or run.old.numbers.size != NUMBERS or run.attempt.new.numbers.size != NUMBERS:

@@ -46,7 +46,9 @@ class State(NamedTuple):
     ]  #: base points over the floor, indented where it has been crushed [m]
     force: Annotated[FloatArray, "n", 2]  #: contact forces on the container, tangential and normal [N]
     descent: Annotated[FloatArray, "n", 2]  #: downward velocity of the base points [m/s] and its rate [m/s2]
-    drift: Annotated[FloatArray, "n", 2]  #: .. tangential velocity over the floor and its rate
+    drift: Annotated[
+        FloatArray, "n", 2
+    ]  #: tangential velocity of the base points over the floor and its rate
     stick: Annotated[FloatArray, "n"]  #: elongation of the stuck tangential springs [m]
     #: permanent indentation; a base point is above the floor by its height and this [m]
     crushed: Annotated[FloatArray, "n"]

@@ -23,8 +23,8 @@ from contact.stepping.state import RunState
 OBSERVED, EVALUATED = 2.0 * math.pi / 20.0, 2.0 * math.pi / 60.0
 #: rows of `RunState.contents`: position and velocity at the last observation, filtered velocity, its rate
 POSITION, VELOCITY, FILTERED, ACCELERATION = 0, 1, 2, 3
-#: .. and scratch: slope and bend of the velocity within the interval, and at its beginning its excess over the filtered
-#: velocity and the acceleration
+#: rows of scratch: slope and bend of the velocity within the interval, and at its beginning its excess over the
+#: filtered velocity and the acceleration
 SLOPE, BEND, APART, BEGINNING = 4, 5, 6, 7
 
 

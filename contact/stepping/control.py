@@ -18,13 +18,13 @@ STEPS_PER_OCTAVE = 3  #: sizes per factor of two
 OCTAVE = tuple(2.0 ** (-level / STEPS_PER_OCTAVE) for level in range(STEPS_PER_OCTAVE))  #: the first of them
 #: levels by which a step may grow at once; of a loose stack, whose corners rattle
 GROWTH, GROWTH_OF_STACK = 3, 6
-#: .. where steps are eager, and the share of the allowed imbalance up to which they then grow
+#: levels where steps are eager, and the share of the allowed imbalance up to which they then grow
 EAGER_GROWTH, EAGER_SHARE = 6, 0.5
 AT_LIMIT = 1e-6  #: share of static friction that is left, below which the support has reached its limit
 NEIGHBOUR = 0.25  #: base points nearer than this, over the width, close together
-#: the whole ledger aims at these shares of the final limits of gain and loss; above `AIM_SHARE` of the aim, one step ..
+#: the whole ledger aims at these shares of the final limits of gain and loss; above `AIM_SHARE` of the aim, a step uses
 GAIN_AIM, LOSS_AIM, AIM_SHARE = 0.3, 0.9, 0.4
-#: .. may use this share of the remainder, and always this share of the allowance of any step
+#: at most this share of the remainder, and always this share of the allowance of any step
 REMAINDER_SHARE, LEAST_ALLOWANCE = 0.1, 1e-4
 #: a run that tries more steps than this per 1/p, and per largest step, makes no progress
 ATTEMPTS_OF_ROCKING, ATTEMPTS_OF_STEP, ATTEMPTS_SPARE = 1e6, 100.0, 1e6

@@ -20,9 +20,9 @@ from contact.stepping.body import CENTRE_Z
 BASE_WORK, FRICTION, CONTACT_DAMPING, MATERIAL_DAMPING, CRUSHING, IMBALANCE = 0, 1, 2, 3, 4, 5
 ROWS = 6
 
-#: limits of the final imbalance over the energy to overturn: gain ..
+#: limit of the energy gained at the end, over the energy to overturn
 GAIN_LIMIT = 1e-4
-#: .. and loss; or loss over the dissipation, if that is larger
+#: limit of the energy lost, likewise; or of that over the dissipation, if that is larger
 LOSS_LIMIT, LOSS_SHARE_LIMIT = 1e-3, 1e-2
 
 

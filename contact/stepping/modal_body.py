@@ -18,7 +18,7 @@ from contact.arrays import FloatArray, IntArray
 from contact.structs import struct
 
 STEP_SLOTS = 16  #: number of step sizes whose effective masses are cached
-SLOTS_OF_MODES = 64  #: .. and the compliance of the modes: about as many as a run has step sizes
+SLOTS_OF_MODES = 64  #: number whose compliance of the modes is cached: about as many as a run has
 
 
 @struct
@@ -132,7 +132,7 @@ class BlockOnCorners(ModalBody):
 
 
 class LocalBlock(BlockOnCorners):
-    """.. whose arrays are in registers, see `contact.stepping.block_on_corners`."""
+    """A rigid body on two contact points whose arrays are in registers, see `contact.stepping.block_on_corners`."""
 
 
 MODAL = (ModalBody, BodyOnCorners, BlockOnCorners, LocalBlock)

@@ -217,7 +217,7 @@ class RunProblem(NamedTuple):
     scheme: Scheme
     contact: Contact
     motion: FloorMotion  #: of the floor along x
-    vertical: FloorMotion  #: .. and upward; of the kind UNIFORM the floor stays at its height
+    vertical: FloorMotion  #: of the floor upward; of the kind UNIFORM the floor stays at its height
     breaks: FloatArray  #: instants at which a step must end [s], sorted, the last one infinite
     control: Control
 
@@ -253,7 +253,7 @@ class RunState(NamedTuple):
     old: State  #: at the end of the last accepted step
     work: Workspace  #: the contact of the last attempted step: the next one begins with its factors
     floor: FloatArray  #: (2, 3) displacement, velocity, acceleration of the floor before and after the step, along x
-    lift: FloatArray  #: .. and upward
+    lift: FloatArray  #: the same upward
     ledger: FloatArray  #: (6,) [J]
     clock: Any  #: (1,) of STEP_RECORD
     joints: Any  #: (N,) of JOINT_RECORD

@@ -7,7 +7,7 @@ from fem.results.run_result import Band, JointDemand, Numerics, RunResult, Stati
 from fem.runtime.units import KILONEWTONS, Reach, figures_of, in_figures
 
 IMPACT = "impact, not for design unless the floor is known"
-#: .. of a floor that crushes, whose strength and stiffness nothing has varied
+#: note for a floor that crushes, whose strength and stiffness nothing has varied
 UNTRIED = "impact; the band tries other floors (--band)"
 
 

@@ -102,7 +102,7 @@ ALIASES: dict[str, PresetName] = {"concrete": "concrete C25/30", "steel": "steel
 
 #: keys of [floor] that a slab alone has
 SLAB_KEYS = ("preset", "youngs_modulus_Pa", "poisson_ratio", "bearing_strength_Pa", "corner_patch_m")
-#: .. and those that a preset gives
+#: keys of [floor] that a preset gives
 PRESET_KEYS = ("youngs_modulus_Pa", "poisson_ratio", "bearing_strength_Pa")
 #: keys of [contact] that belong to the numerical penalty of a rigid floor
 PENALTY_KEYS = ("normal_penalty_Pa_m", "tangential_ratio", "restitution_over_housner")

@@ -28,7 +28,7 @@ class BoxQuantity(NamedTuple):
     unit: str  #: behind a number of the title
     figure: str  #: the largest, of `BOX_FIGURES`
     lowest: str  #: column of the lowest box
-    further: str  #: .. of a box above it, whose number takes the place of the braces
+    further: str  #: column of a box above it, whose number takes the place of the braces
 
     @property
     def factor(self) -> float:

@@ -50,7 +50,7 @@ class Container:
     free_modes: int  #: of the basis, the lowest so many are those of the free container
     first: float  #: lowest elastic angular frequency; infinite for a rigid container [rad/s]
     boxes: tuple[BoxModel, ...] = ()  #: of a loose stack, from the floor up
-    box_nodes: tuple[IntArray, ...] = ()  #: .. the node of the container for each node of a box
+    box_nodes: tuple[IntArray, ...] = ()  #: the node of the container for each node of each box
 
     @property
     def corners(self) -> IntArray:

@@ -39,7 +39,7 @@ from fem.solid.nodal_stack import FullStack
 from fem.solid.reduction import StaticResponse
 
 HISTORY_CHUNK, FRAME_CHUNK = 1024, 64
-#: .. of the full model, whose coordinates are many
+#: the same of the full model, whose coordinates are many
 FULL_HISTORY_CHUNK, FULL_FRAME_CHUNK = 16, 4
 
 
@@ -51,7 +51,7 @@ class Model:
     container: Container
     equilibrium: Equilibrium
     motion: BaseMotion  #: of the floor along x
-    vertical: BaseMotion  #: .. and upward
+    vertical: BaseMotion  #: of the floor upward
     static: StaticChecks
     run: RunState
     duration: float  #: simulated time, at most [s]

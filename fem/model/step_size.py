@@ -30,15 +30,15 @@ SMALLEST_SHARE = 1e-7
 CLOSING_SHARE_OF_TIME = 0.02
 #: tolerances of the energy balance of a step: see `contact.stepping.state.Control`
 ENERGY_RATE, ENERGY_FLOOR, ENERGY_SHARE = 1e-5, 2e-7, 4e-3
-#: .. at a first contact, over the energy that a rigid block would lose there
+#: the same at a first contact: over the energy that a rigid block would lose there, of which the least is given
 CLOSING_SHARE, LEAST_LOSS = 2e-3, 0.02
 TRAIL_SHARE, TRAIL_TIME = 2e-2, 0.1
-#: .. with the loosest tolerance: the audit judges the loss over the dissipated energy at the end
+#: shares with the loosest tolerance: the audit judges the loss over the dissipated energy at the end
 MOST_SHARE, MOST_TRAIL = 8e-3, 3e-2
-#: .. of a rigid container: it does not ring, and loses energy once, at the impact itself
+#: the same of a rigid container: it does not ring, and loses energy once, at the impact itself
 MOST_RIGID_SHARE, MOST_RIGID_TRAIL = 1e-1, 4e-1
 EAGER_TOLERANCE = 2.0  #: above which its steps are eager: for maps
-#: .. and of a loose stack of rigid boxes, which rattle
+#: the same of a loose stack of rigid boxes, which rattle
 MOST_RATTLING_SHARE = 4e-2
 #: energy of a contact, over the energy to overturn, below which the energy balance alone controls the step
 SOFT_CLOSING = 1e-6

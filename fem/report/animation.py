@@ -50,9 +50,9 @@ COLUMNS = {
     "normal": "normal_force_N",
     "shear": "shear_force_N",
 }
-#: .. of a floor that moves up and down
+#: columns of a floor that moves up and down
 LIFT = {"lift": "base_vertical_displacement_m"}
-#: .. of a further box of a loose stack, whose number takes the place of the braces
+#: columns of a further box of a loose stack, whose number takes the place of the braces
 BOX = {
     "rotation_{}": "box_{}_rotation_rad",
     "slip_{}": "box_{}_slip_m",

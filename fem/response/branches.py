@@ -12,7 +12,7 @@ from fem.results.json_block import JsonBlock
 APART = 0.02  #: difference of rotation ratios that counts at least
 APART_STROKE = 0.05  #: of slip strokes, over the floor's amplitude
 JUMP = 0.05  #: change of the rotation ratio from one frequency to the next that is a jump at least
-JUMP_SHARE = 4.0  #: .. and so many times the changes before and after it: a steep curve does not jump
+JUMP_SHARE = 4.0  #: a jump is also so many times the changes before and after it: a steep curve does not jump
 
 
 @dataclass(frozen=True, kw_only=True)

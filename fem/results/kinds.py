@@ -28,7 +28,7 @@ class ResultKind:
     results: str  #: where to look for the numbers
     #: patterns of the files that are removed before a new result is computed; nothing else ever is
     own: tuple[str, ...]
-    #: .. those of them that serve to continue, and go when it is finished
+    #: those of them that serve to continue, and go when it is finished
     temporary: tuple[str, ...] = ()
     #: statuses after which there is nothing left to compute
     finished: frozenset[str] = frozenset({"completed"})

@@ -38,7 +38,7 @@ class Preview:
 
     @property
     def vertical_peak(self) -> float | None:
-        """.. up or down; None where it does not move so."""
+        """Largest |acceleration| of the floor upward or downward in the run; None without such a motion [m/s2]."""
         return None if self.motion.vertical is None else self.motion.vertical.peak_in_run_m_s2
 
     @cached_property

@@ -34,7 +34,7 @@ from fem.solid.nodal_stack import FullStack
 
 #: length of a slice in simulated seconds
 SLICE_REDUCED, SLICE_FULL = 1.0, 0.01
-#: .. and in attempted steps
+#: length of a slice in attempted steps
 LOOK_REDUCED, LOOK_FULL = 100_000, 2000
 #: wall time between pauses [s]; attempted steps until the first one; how many times more until the next, at most
 PAUSE_S, FIRST_PAUSE, LONGER = 5.0, 16, 8

@@ -20,7 +20,7 @@ PRESETS = {"concrete": "concrete C25/30", "rubber": "rubber mat"}
 DENSITY = 2400.0  #: of a block of concrete [kg/m3]
 WIDTHS = tuple(np.round(np.arange(0.1, 1.001, 0.02), 2).tolist())  #: tried [m]
 STRIPS = (0.05, 0.1, 0.25)  #: of the width that bears at each edge
-STRIP = 0.1  #: .. where one is taken
+STRIP = 0.1  #: the one taken where only one is
 MODULI = (2.0e6, 7.1e6)  #: the range of the preset's Young's modulus [Pa]
 WITHIN = 0.03
 
