@@ -12,6 +12,7 @@ from contact.layout import exchanging, parts_of, room_of
 from contact.local_arrays import local_counts, local_row, local_rows
 from contact.stepping.body import State, implements
 from contact.stepping.integrator import FAILED, advance, advance_kernel
+from contact.stepping.ledger import ROWS as LEDGER_ROWS
 from contact.stepping.loose_stack import LooseStack
 from contact.stepping.modal_body import BlockOnCorners, BodyOnCorners, LocalBlock, ModalBody
 from contact.stepping.state import AttemptedStep, RunState
@@ -113,7 +114,7 @@ def advance_in_registers(body: BlockOnCorners, run: RunState, until: float) -> i
     if run.joints.shape[0] != 1 or run.old.numbers.size != NUMBERS or run.attempt.new.numbers.size != NUMBERS:
         return FAILED
     before, after, point, nothing = local_row(NUMBERS), local_row(NUMBERS), local_rows(2, 2), local_row(0)
-    floor, lift, ledger, none = local_rows(2, 3), local_rows(2, 3), local_row(6), local_counts(0)
+    floor, lift, ledger, none = local_rows(2, 3), local_rows(2, 3), local_row(LEDGER_ROWS), local_counts(0)
     work = local_work(run.work, local_row(NUMBERS_OF_WORK), local_counts(COUNTS_OF_WORK))
     block = local_block(
         body,
@@ -126,7 +127,9 @@ def advance_in_registers(body: BlockOnCorners, run: RunState, until: float) -> i
         arm=local_rows(2, 2),
         free_change=local_row(3),
     )
-    attempt = LocalAttempt(local_state(run.attempt.new, after, none), slip=local_row(2), change=local_row(6))
+    attempt = LocalAttempt(
+        local_state(run.attempt.new, after, none), slip=local_row(2), change=local_row(LEDGER_ROWS)
+    )
     own = local_run(
         run,
         attempt=attempt,
@@ -141,13 +144,13 @@ def advance_in_registers(body: BlockOnCorners, run: RunState, until: float) -> i
     copy_row(after, run.attempt.new.numbers, NUMBERS)
     copy_pair(floor, run.floor, 3)
     copy_pair(lift, run.lift, 3)
-    copy_row(ledger, run.ledger, 6)
+    copy_row(ledger, run.ledger, LEDGER_ROWS)
     status = advance(block, own, until)
     copy_row(run.old.numbers, before, NUMBERS)
     copy_row(run.attempt.new.numbers, after, NUMBERS)
     copy_pair(run.floor, floor, 3)
     copy_pair(run.lift, lift, 3)
-    copy_row(run.ledger, ledger, 6)
+    copy_row(run.ledger, ledger, LEDGER_ROWS)
     copy_pair(run.work.law, work.law, 2)
     copy_pair(run.work.force, work.force, 2)
     return status

@@ -139,9 +139,9 @@ def observe(body: Any, state: State, floor: float, lift: float) -> None:
     body.observe(state, floor, lift)
 
 
-def shift_velocity(body: Any, state: State, velocity: float, lift_velocity: float) -> None:
-    """Change to a frame that moves with these velocities, along x and upward [m/s]."""
-    body.shift_velocity(state, velocity, lift_velocity)
+def shift_velocity(body: Any, state: State, velocity: float, lift_velocity: float, spin: float) -> None:
+    """Subtract the velocities of a frame: at x = z = 0 along x and upward [m/s], and its angular velocity [rad/s]."""
+    body.shift_velocity(state, velocity, lift_velocity, spin)
 
 
 def prepared(body: Any, step: float) -> bool:

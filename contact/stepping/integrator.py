@@ -28,6 +28,7 @@ from contact.stepping.control import (
     next_step,
     step_level,
 )
+from contact.stepping.impact import lose_at_impact
 from contact.stepping.joints import (
     begin_friction,
     settle_friction,
@@ -37,7 +38,7 @@ from contact.stepping.joints import (
 )
 from contact.stepping.ledger import FRICTION, IMBALANCE, dissipation, spring_energy
 from contact.stepping.ledger import ROWS as LEDGER_ROWS
-from contact.stepping.observables import FALLEN, NEVER, update_observables
+from contact.stepping.observables import FALLEN, NEVER, exchanges_pivot, update_observables
 from contact.stepping.sampling import sample
 from contact.stepping.state import RunState
 from contact.stepping.step import account, attempt, copy_state, indent
@@ -97,7 +98,7 @@ def enter_floor_frame(body: Any, run: RunState, floor_velocity: float, lift_velo
 
     The floor is at rest in this frame; the container gets no impulse.
     """
-    shift_velocity(body, run.old, floor_velocity, lift_velocity)
+    shift_velocity(body, run.old, floor_velocity, lift_velocity, 0.0)
     shift_contents(run.contents, (floor_velocity, lift_velocity))
     complete(body, run.old, run.floor[0, 0], run.lift[0, 0], 0.0)
     indent(run.old.point, run.old.crushed)
@@ -175,6 +176,10 @@ def advance(body: Any, run: RunState, until: float) -> int:
         follow_contents(body, run, step)
         clock.samples = sample(run, run.buffers.history, clock.samples, clock.samples_drained, step, loose)
         clock.frames = sample(run, run.buffers.frames, clock.frames, clock.frames_drained, step, loose)
+        if control.impact_share != 1.0:
+            landed = exchanges_pivot(track, control, run.attempt.new)
+            if landed != 0:
+                lose_at_impact(body, run, landed, loose)
         close_step(run, step, iterations)
         # The imbalance of one step may vanish by chance while it changes sign: remember the last steps.
         stacked = run.joints.shape[0] > 1

@@ -1,7 +1,7 @@
 """The energy ledger: energy terms of the container, and the energy error of the time stepping.
 
     change of (kinetic + strain + gravity + contact springs)
-        = base work - friction - contact damping - material damping - crushing - imbalance
+        = base work - friction - contact damping - material damping - crushing - impacts - imbalance
 
 Heights and vertical velocities are relative to the floor: in the frame that moves up and down with it gravity is
 g + a_v, and the work of the vertical floor motion is that of -m a_v. Along x the frame is at rest, and the work of the
@@ -17,8 +17,8 @@ from contact.jit import compiled
 from contact.stepping.body import CENTRE_Z
 
 #: rows of the ledger [J]
-BASE_WORK, FRICTION, CONTACT_DAMPING, MATERIAL_DAMPING, CRUSHING, IMBALANCE = 0, 1, 2, 3, 4, 5
-ROWS = 6
+BASE_WORK, FRICTION, CONTACT_DAMPING, MATERIAL_DAMPING, CRUSHING, IMPACTS, IMBALANCE = 0, 1, 2, 3, 4, 5, 6
+ROWS = 7
 
 #: limit of the energy gained at the end, over the energy to overturn
 GAIN_LIMIT = 1e-4
@@ -99,5 +99,5 @@ def crushing_work(
 
 @compiled(inline=True)
 def dissipation(terms: FloatArray) -> float:
-    """Sum of the dissipated energy among the terms of a ledger (6,) [J]."""
+    """Sum of the dissipated energy among the terms of a ledger (7,) [J], but for what restitution was asked to take."""
     return terms[FRICTION] + terms[CONTACT_DAMPING] + terms[MATERIAL_DAMPING] + terms[CRUSHING]

@@ -133,9 +133,11 @@ def observe(stack: LooseStack, state: State, floor: float, lift: float) -> None:
 
 
 @implements(interface.shift_velocity, LooseStack, inline=True)
-def shift_velocity(stack: LooseStack, state: State, velocity: float, lift_velocity: float) -> None:
-    """Subtract the velocity of a new frame."""
-    interface.shift_velocity(stack.body, state, velocity, lift_velocity)
+def shift_velocity(
+    stack: LooseStack, state: State, velocity: float, lift_velocity: float, spin: float
+) -> None:
+    """Subtract the velocities of a frame."""
+    interface.shift_velocity(stack.body, state, velocity, lift_velocity, spin)
 
 
 @implements(interface.prepared, LooseStack, inline=True)

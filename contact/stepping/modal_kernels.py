@@ -301,10 +301,11 @@ def observe(body: ModalBody, new: State, floor: float, lift: float) -> None:
 
 
 @implements(interface.shift_velocity, *MODAL, inline=True)
-def shift_velocity(body: ModalBody, state: State, velocity: float, lift_velocity: float) -> None:
-    """Subtract the velocity of a new frame."""
-    state.velocity[0] -= velocity
-    state.velocity[1] -= lift_velocity
+def shift_velocity(body: ModalBody, state: State, velocity: float, lift_velocity: float, spin: float) -> None:
+    """Subtract the velocities of a frame; the modes are orthogonal to them."""
+    state.velocity[0] -= velocity + spin * state.position[1]
+    state.velocity[1] -= lift_velocity - spin * state.position[0]
+    state.velocity[2] -= spin
 
 
 @implements(interface.prepared, *MODAL, inline=True)

@@ -3,7 +3,9 @@
 A side is open, and the body turns about the other one, when only the outer part of the base at the other side is in
 contact: a flat base on an elastic bed opens at one edge long before that. The corners are the first and the last
 base point. An impact counts if the container has rocked and a corner closes whose gap had exceeded a thousandth of
-width times slenderness angle while the other corner was the pivot.
+width times slenderness angle while the other corner was the pivot. With it the pivot is exchanged, as soon as the
+container, while it still turns the same way, has lifted the other corner: once for every impact, whatever bounces or
+chatters on the way.
 """
 
 import math
@@ -23,6 +25,9 @@ NEVER = math.inf  #: time of an event that has not happened
 OPENING = 1e-9
 #: gap whose closing counts as an impact, over width times slenderness angle
 IMPACT_GAP = 1e-3
+#: angular velocity over that at the landing of a corner, at least, with which the other corner leaves the floor; a
+#: container that turns less has come to lie on its base
+TURNING_ON = 0.05
 #: averaging time of corner forces, over 1/p: dashpots make the instantaneous force meaningless
 FORCE_WINDOW = 0.01
 #: outer part of the base about which the body turns when the rest is open, over the width
@@ -65,6 +70,8 @@ OBSERVABLES = np.dtype(
         ("right_open", "i8"),
         ("left_gap", "f8"),  # largest gap of this corner since it opened with the other as pivot
         ("right_gap", "f8"),
+        ("landed", "i8"),  # corner of an impact that may exchange the pivot: -1 left, 1 right, 0 none
+        ("landing_rate", "f8"),  # angular velocity with which it landed, > 0 onto this corner
         (
             "turning_energy",
             "f8",
@@ -207,14 +214,35 @@ def has_impact(track: Any, control: Any, old: State, new: State) -> bool:
         track.left_gap = max(track.left_gap, left)
     if right > 0.0 and left <= 0.0:
         track.right_gap = max(track.right_gap, right)
-    struck = False
+    struck = 0
     if left <= 0.0 and old.point[0, 1] > 0.0:
-        struck = track.left_gap > counts
+        struck = -1 if track.left_gap > counts else 0
         track.left_gap = 0.0
     if right <= 0.0 and old.point[last, 1] > 0.0:
-        struck = struck or track.right_gap > counts
+        struck = 1 if track.right_gap > counts else struck
         track.right_gap = 0.0
-    return struck and track.modes & (1 << ROCK | 1 << SLIDE_ROCK) != 0
+    if struck == 0 or track.modes & (1 << ROCK | 1 << SLIDE_ROCK) == 0:
+        return False
+    track.landed, track.landing_rate = struck, struck * old.pose[ANGULAR_VELOCITY]
+    return True
+
+
+@inlined
+def exchanges_pivot(track: Any, control: Any, new: State) -> int:
+    """The corner that becomes the pivot with this step: -1 left, 1 right, 0 none; called at every step.
+
+    The last landing exchanges the pivot when the container, which still turns, has lifted its other corner.
+    """
+    landed = track.landed
+    if landed == 0:
+        return 0
+    rate = landed * new.pose[ANGULAR_VELOCITY]
+    turns = track.landing_rate > 0.0 and rate > TURNING_ON * track.landing_rate
+    lifted = new.point[0 if landed == 1 else control.base_points - 1, 1] > 0.0
+    if turns and not lifted:
+        return 0
+    track.landed = 0
+    return landed if turns else 0
 
 
 @compiled(inline=True)

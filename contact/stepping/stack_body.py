@@ -249,10 +249,12 @@ def observe(stack: StackBody, state: State, floor: float, lift: float) -> None:
 
 
 @implements(interface.shift_velocity, StackBody, inline=True)
-def shift_velocity(stack: StackBody, state: State, velocity: float, lift_velocity: float) -> None:
-    """Subtract the velocity of a new frame."""
+def shift_velocity(
+    stack: StackBody, state: State, velocity: float, lift_velocity: float, spin: float
+) -> None:
+    """Subtract the velocities of a frame."""
     for b in range(stack.energy.shape[0]):
-        interface.shift_velocity(box_of(stack, b), state_of(stack, state, b), velocity, lift_velocity)
+        interface.shift_velocity(box_of(stack, b), state_of(stack, state, b), velocity, lift_velocity, spin)
 
 
 @implements(interface.prepared, StackBody, inline=True)

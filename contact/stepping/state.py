@@ -30,7 +30,8 @@ ROWS = (
     *("rotation_rad", "angular_velocity_rad_s", "slip_m", "uplift_m", "centre_x_m", "centre_z_m"),
     *("normal_force_N", "shear_force_N", "kinetic_J", "strain_J", "potential_J"),
     # this and the following in the order of the ledger
-    *("base_work_J", "friction_J", "contact_damping_J", "material_damping_J", "crushing_J", "imbalance_J"),
+    *("base_work_J", "friction_J", "contact_damping_J", "material_damping_J", "crushing_J", "impact_J"),
+    "imbalance_J",
 )
 (
     ROW_ROTATION,
@@ -78,6 +79,9 @@ class Control(NamedTuple):
     contents_cutoff: float  #: of the filter of the acceleration of the contents [rad/s]
     top_monitors: int  #: number of monitored points at the top; they come first
     base_points: int  #: number of contact points of the base; they come first
+    impact_share: (
+        float  #: of the angular momentum that an exchange of the pivot leaves, see `stepping.impact` [-]
+    )
     eager: bool  #: steps grow as soon and as far as their imbalance allows: of a rigid container, for maps
 
 
@@ -228,7 +232,7 @@ class AttemptedStep(NamedTuple):
 
     new: State  #: at the end of the step
     slip: FloatArray  #: (n,) sliding of the points in the step [m]
-    change: FloatArray  #: (6,) contribution of the step to the ledger [J]
+    change: FloatArray  #: (7,) contribution of the step to the ledger [J]
 
 
 @struct
@@ -254,7 +258,7 @@ class RunState(NamedTuple):
     work: Workspace  #: the contact of the last attempted step: the next one begins with its factors
     floor: FloatArray  #: (2, 3) displacement, velocity, acceleration of the floor before and after the step, along x
     lift: FloatArray  #: the same upward
-    ledger: FloatArray  #: (6,) [J]
+    ledger: FloatArray  #: (7,) [J]
     clock: Any  #: (1,) of STEP_RECORD
     joints: Any  #: (N,) of JOINT_RECORD
     track: Any  #: (1,) of `observables.OBSERVABLES`

@@ -30,6 +30,7 @@ from contact.stepping.ledger import (
     CRUSHING,
     FRICTION,
     IMBALANCE,
+    IMPACTS,
     MATERIAL_DAMPING,
     contact_losses,
     crushing_work,
@@ -183,6 +184,7 @@ def account(run: RunState, step: float) -> float:
     change[CONTACT_DAMPING] = damping
     change[MATERIAL_DAMPING] = material
     change[CRUSHING] = crushing_work(old.force, new.force, old.crushed, new.crushed)
+    change[IMPACTS] = 0.0
     change[IMBALANCE] = change[BASE_WORK] - friction - damping - material - change[CRUSHING] - stored
     return friction + damping + material
 

@@ -16,6 +16,7 @@ from contact.stepping.ledger import (
     FRICTION,
     GAIN_LIMIT,
     IMBALANCE,
+    IMPACTS,
     LOSS_LIMIT,
     LOSS_SHARE_LIMIT,
     MATERIAL_DAMPING,
@@ -167,6 +168,7 @@ def energy_of(model: Model) -> Energy:
         contact_damping_J=float(ledger[CONTACT_DAMPING]),
         material_damping_J=float(ledger[MATERIAL_DAMPING]),
         crushing_J=float(ledger[CRUSHING]),
+        impact_J=float(ledger[IMPACTS]),
         numerical_J=float(ledger[IMBALANCE]),
         base_work_J=float(ledger[BASE_WORK]),
     )

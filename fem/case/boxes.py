@@ -207,11 +207,6 @@ JOINT_RULES = (
         'does not apply to container.joints = "loose": a loose stack starts settled; leave it out, or take "bolted"',
     ),
     _of_one_body(
-        "contact.restitution_over_housner",
-        lambda case: case.contact.restitution_over_housner is not None,
-        'does not apply to container.joints = "loose": it is that of one rigid body; give damping_ratio',
-    ),
-    _of_one_body(
         "output.stop_when_overturned",
         lambda case: not case.output.stop_when_overturned,
         'must be true with container.joints = "loose": what a fallen box strikes is not modelled; leave it out',

@@ -68,6 +68,11 @@ ALWAYS = ColumnGroup(
 CRUSHING = ColumnGroup(
     lambda case: range(case.floor.kind == "slab"), (HistoryColumn("crushing_J", "J", START),)
 )
+#: a restitution that was asked for: what the impacts lost by it, < 0 where they return energy
+IMPACTS = ColumnGroup(
+    lambda case: range(case.contact.restitution_over_housner is not None),
+    (HistoryColumn("impact_J", "J", START),),
+)
 #: a floor that moves up and down; positive upward
 VERTICAL = ColumnGroup(
     lambda case: range(case.vertical.kind != "none"),
@@ -99,7 +104,7 @@ BOXES = ColumnGroup(
 )
 #: a run that was compared with the rigid block (`fem.assessment.rigid_check`): nan where that is not followed
 ANALYTIC = ColumnGroup(lambda case: (), (HistoryColumn("analytic_rotation_rad", "rad", GROUND),))
-GROUPS = (ALWAYS, CRUSHING, VERTICAL, JOINTS, BOXES, ANALYTIC)
+GROUPS = (ALWAYS, CRUSHING, IMPACTS, VERTICAL, JOINTS, BOXES, ANALYTIC)
 
 
 def history_columns(case: Any, joints: int | None = None) -> tuple[str, ...]:

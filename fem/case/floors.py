@@ -105,7 +105,7 @@ SLAB_KEYS = ("preset", "youngs_modulus_Pa", "poisson_ratio", "bearing_strength_P
 #: keys of [floor] that a preset gives
 PRESET_KEYS = ("youngs_modulus_Pa", "poisson_ratio", "bearing_strength_Pa")
 #: keys of [contact] that belong to the numerical penalty of a rigid floor
-PENALTY_KEYS = ("normal_penalty_Pa_m", "tangential_ratio", "restitution_over_housner")
+PENALTY_KEYS = ("normal_penalty_Pa_m", "tangential_ratio")
 
 
 def _of_preset(name: str) -> Any:
@@ -240,10 +240,5 @@ FLOOR_CASE_RULES = (
         "contact.tangential_ratio",
         lambda case: case.floor.kind != "slab" or case.contact.tangential_ratio == 1.0,
         'belongs to floor.kind = "rigid": a slab has its own tangential stiffness; leave it out',
-    ),
-    Rule(
-        "contact.restitution_over_housner",
-        lambda case: case.floor.kind != "slab" or case.contact.restitution_over_housner is None,
-        'belongs to floor.kind = "rigid": of a slab it follows from stiffness and strength; leave it out',
     ),
 )

@@ -105,10 +105,6 @@ def _replace_alternatives(data: dict[str, Any], dotted: Any) -> None:
     if isinstance(container, dict):
         for group in (("weight_N", "mass_kg", "density_kg_m3"), ("boxes", "box")):
             _drop_others(container, group, _keys_set("container", dotted))
-    contact = data.get("contact")
-    if isinstance(contact, dict):
-        for other in ("damping_ratio", "normal_penalty_Pa_m"):
-            _drop_others(contact, ("restitution_over_housner", other), _keys_set("contact", dotted))
     _replace_floor(data, dotted)
     for table in ("motion", "vertical"):
         motion, explicit = data.get(table), _keys_set(table, dotted)

@@ -100,18 +100,6 @@ CONTACT_RULES = (
         lambda contact: contact.mu_kinetic <= contact.mu_static,
         "must be at most mu_static = {mu_static:g}, got {mu_kinetic:g}; leave it out where the two are equal",
     ),
-    Rule(
-        "contact.restitution_over_housner",
-        lambda contact: contact.restitution_over_housner is None or contact.damping_ratio is None,
-        ", damping_ratio: one of the two is given, got {restitution_over_housner:g} and {damping_ratio:g}; keep one "
-        "of them",
-    ),
-    Rule(
-        "contact.restitution_over_housner",
-        lambda contact: contact.restitution_over_housner is None or contact.normal_penalty_Pa_m == "auto",
-        "is found through the contact, so normal_penalty_Pa_m cannot be given as well, got {normal_penalty_Pa_m:g} "
-        "Pa/m; leave that out",
-    ),
 )
 
 SOLVER_RULES = (

@@ -179,14 +179,12 @@ class ContactTable(CaseTable):
         only=("friction", "elastic-stick"),
     )
     restitution_over_housner: Annotated[float, q.RESTITUTION] | None = case_key(
-        "of the first impact of a rigid container, over Housner's; in place of damping_ratio and normal_penalty_Pa_m",
+        "factor on the angular velocity that an impact leaves, which on corners is Housner's",
         None,
         example=0.95,
     )
-    damping_ratio: Annotated[float, q.CONTACT_DAMPING] | None = case_key(
-        "c/(2 sqrt(k m)), the whole mass m on the spring k of one corner; default: 2",
-        follows=lambda values: None if values["restitution_over_housner"] else USUAL_DASHPOT,
-        example=USUAL_DASHPOT,
+    damping_ratio: Annotated[float, q.CONTACT_DAMPING] = case_key(
+        "c/(2 sqrt(k m)), the whole mass m on the spring k of one corner", USUAL_DASHPOT
     )
 
     rules = CONTACT_RULES
@@ -206,17 +204,6 @@ class ContactTable(CaseTable):
         """Whether mu_static falls to mu_kinetic at once when the support breaks loose."""
         gradual = self.weakening_m > 0.0 or self.stribeck_velocity_m_s > 0.0
         return self.mu_kinetic < self.mu_static and self.sticks and not gradual
-
-    @property
-    def dashpot(self) -> float:
-        """The damping ratio of a contact whose restitution is not given, or has been turned into one.
-
-        Raises:
-            ValueError: the restitution has not been turned into one (`fem.model.model.with_found_contact`).
-        """
-        if self.damping_ratio is None:
-            raise ValueError("contact.restitution_over_housner has not been turned into a damping ratio")
-        return self.damping_ratio
 
 
 class JointsTable(CaseTable):

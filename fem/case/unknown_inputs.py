@@ -174,8 +174,6 @@ def short(value: float) -> float:
 def _own(case: Any, key: str, penalty: float | None) -> Any:
     """What a case has of an input, with what follows where the case itself says nothing; None: nothing."""
     table, _, name = key.partition(".")
-    if key in (PENALTY, DASHPOT) and case.contact.restitution_over_housner is not None:
-        return None  # they follow from it
     if key == PENALTY:
         return None if case.floor.is_slab else penalty
     if key == DASHPOT:  # that of a slab matters little where it crushes

@@ -39,20 +39,14 @@ def check(
 def preview_of(case: Case) -> Preview:
     """What is known of a run of the case.
 
-    A motion is evaluated, and the contact of a stated restitution found, only where it must be: compiled functions take
-    long to load.
+    A motion is evaluated only where it must be: compiled functions take long to load.
     """
     summary, mesh, duration = summary_from_keys(case), build_container(case), longest_time(case)
     if summary is None:
         module = importlib.import_module("fem.model.motion")
         motions = module.build_motions(case)
         summary, duration = module.motion_result(case, *motions), module.longest_run(case, *motions)
-    settled = case
-    if case.contact.restitution_over_housner is not None:
-        rigid = case.with_values({"solver.model": "rigid"})
-        container = importlib.import_module("fem.model.container").discretise(rigid, mesh)
-        settled = importlib.import_module("fem.model.model").with_found_contact(case, container)
-    return Preview(case=case, settled=settled, mesh=mesh, motion=summary, duration=duration)
+    return Preview(case=case, mesh=mesh, motion=summary, duration=duration)
 
 
 def numerics_lines(numerics: Mapping[str, Any]) -> list[str]:
@@ -137,12 +131,12 @@ def _motion_lines(name: str, more: str, keys: FloorMotionTable, motion: MotionRe
 
 
 def _restitution_of_contact(case: Case, document: Mapping[str, Any]) -> str:
-    """From the calibration of the contact damping."""
-    value, ratio = document["contact_restitution"], case.contact.restitution_over_housner
-    if ratio is not None:
-        damping = f"by damping ratio {document['numerics']['contact_damping_ratio']:.4g}"
-        return f"{value:8.4f} if rigid, {ratio:g} of Housner's, {damping} and the penalty below"
+    """From the calibration of the contact damping, and the factor on it."""
+    value, factor = document["contact_restitution"], case.contact.restitution_over_housner
+    of_it = "" if factor is None else f", of which {factor:g} is asked for"
     if case.floor.is_slab:
-        return "of the slab: where it crushes about Housner's"
-    given = f"damping ratio {case.contact.dashpot:g} on {case.support.kind}"
-    return f"{value:8.4f} if rigid, with {given}" if value is not None else f"not calibrated for {given}"
+        return f"of the slab: where it crushes about Housner's{of_it}"
+    given = f"damping ratio {case.contact.damping_ratio:g} on {case.support.kind}"
+    if value is None:
+        return f"not calibrated for {given}{of_it}"
+    return f"{value / (factor or 1.0):8.4f} if rigid, with {given}{of_it}"

@@ -11,7 +11,11 @@ from fem.results.history import History
 from fem.results.reader import OpenedRun
 from fem.results.run_result import Energy, StaticResult
 
-CRUSHING = "crushing_J"  #: of a floor that crushes
+#: columns of a floor that crushes, and of a restitution that was asked for: words, colour, line
+SOMETIMES = {
+    "crushing_J": ("crushing of the floor", style.PURPLE, "-"),
+    "impact_J": ("restitution asked of the impacts", style.BLACK, ":"),
+}
 DISSIPATED = ("friction_J", "contact_damping_J", "material_damping_J")  #: columns of a history
 SMALL = 1e3  #: largest energy below which J is the unit, not kJ [J]
 DECIMALS = 3  #: of an energy in a legend
@@ -61,9 +65,8 @@ def _draw_stored(axes: Axes, run: OpenedRun, reference: float | None, unit: str,
 
 def _draw_supplied(axes: Axes, history: History, unit: str, size: float) -> None:
     """Energies since the start; the rest of the floor's work is stored, also in the springs of the contact."""
-    crushing = history[CRUSHING] if CRUSHING in history else np.zeros(len(history))
-    stored = history["base_work_J"] - sum(history[name] for name in (*DISSIPATED, "imbalance_J")) - crushing
-    crushed = [(crushing, "crushing of the floor", style.PURPLE, "-")] if CRUSHING in history else []
+    others = [name for name in SOMETIMES if name in history]
+    stored = history["base_work_J"] - sum(history[name] for name in (*DISSIPATED, *others, "imbalance_J"))
     curves = []
     for values, name, colour, line in (
         (history["base_work_J"], "work of the floor", style.BLUE, "-"),
@@ -71,7 +74,7 @@ def _draw_supplied(axes: Axes, history: History, unit: str, size: float) -> None
         (history["friction_J"], "friction", style.VERMILLION, "--"),
         (history["contact_damping_J"], "contact damping", style.GREEN, "-."),
         (history["material_damping_J"], "material damping", style.ORANGE, ":"),
-        *crushed,
+        *((history[name], *SOMETIMES[name]) for name in others),
     ):
         end = round(float(values[-1]) / size, DECIMALS) + 0.0  # no minus zero
         curves.append((values / size, colour, line, f"{name}, {rounded(end)} {unit}"))
@@ -83,7 +86,7 @@ def _imbalance_limits(energy: Energy) -> str:
     text, reference = "lost (> 0) or gained by the time stepping", energy.reference_J
     if not reference:
         return text
-    dissipated = sum(getattr(energy, key) or 0.0 for key in (*DISSIPATED, CRUSHING))
+    dissipated = sum(getattr(energy, key) or 0.0 for key in (*DISSIPATED, "crushing_J"))
     loss = max(LOSS_SHARE_LIMIT * dissipated, LOSS_LIMIT * reference)
     gain = rounded(GAIN_LIMIT * reference, 2)
     return f"{text}; a loss of {rounded(loss)} J or a gain of {gain} J fails the run"

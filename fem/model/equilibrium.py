@@ -47,9 +47,6 @@ def find_equilibrium(case: Case, container: Container, gravity: float) -> Equili
 
     Models of one equilibrium share the scratch arrays of its body: step one at a time.
 
-    Args:
-        case: with numbers for its contact (`fem.model.model.with_found_contact`).
-
     Raises:
         CaseError: no equilibrium at the start, or one that sinks or crushes the container.
     """
@@ -143,7 +140,7 @@ def _contact(case: Case, mesh: ContainerMesh, springs: FloatArray, base: int) ->
         cap = slab.cap * springs / corner
     else:
         ratio, cap = chosen.tangential_ratio, np.full(springs.size, math.inf)
-        relaxation = relaxation_time(chosen.dashpot, mesh.mass, 2.0 * corner)
+        relaxation = relaxation_time(chosen.damping_ratio, mesh.mass, 2.0 * corner)
     return Contact(
         normal_stiffness=springs,
         tangential_stiffness=ratio * springs,

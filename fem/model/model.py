@@ -16,20 +16,18 @@ from contact.motion.base_motion import BaseMotion
 from contact.motion.kernel import floor_motion
 from contact.stepping import modal_kernels
 from contact.stepping.body import State, make_state
-from contact.stepping.integrator import REACHED
 from contact.stepping.ledger import spring_energy
 from contact.stepping.loose_stack import LooseStack
 from contact.stepping.modal_body import ModalBody
 from contact.stepping.observables import record_start
-from contact.stepping.outcome import run_to_end
 from contact.stepping.state import RunState, make_run, make_samples
-from fem.case.case import Case, CaseError
-from fem.model.calibration import found_contact
+from fem.case.case import Case
 from fem.model.container import Container, discretise, modes_of_a_body
 from fem.model.equilibrium import Equilibrium, find_equilibrium
 from fem.model.floor import slab_of
 from fem.model.loose_stack import joints_of_stack, make_stack_state, own_stiffness, settle
 from fem.model.motion import build_motions, longest_run, peaks_in_run, rest_sought_from
+from fem.model.restitution import require_loss
 from fem.model.static_checks import StaticChecks, static_checks_of
 from fem.model.step_size import control_of, largest_step_of, scheme_of
 from fem.model.validity import require_stiff_corner
@@ -127,11 +125,12 @@ def build_model(
     z, velocity_z, acceleration_z = floor_motion(compiled_vertical, 0.0)
     container, gravity = container or discretise(case), case.gravity_toward_floor + acceleration_z
     if equilibrium is None or equilibrium.gravity != gravity:
-        equilibrium = find_equilibrium(with_found_contact(case, container), container, gravity)
+        equilibrium = find_equilibrium(case, container, gravity)
     mesh, nodes = container.mesh, container.nodes
     contact, body = equilibrium.contact, equilibrium.body
     duration = longest_run(case, motion, vertical)
     static = static_checks_of(case, mesh, *peaks_in_run(case, motion, vertical))
+    require_loss(case, static, mesh.width)
     largest, breaks = largest_step_of(case, static, motion, vertical)
     control = control_of(case, container, static, largest, contact)
     scheme = scheme_of(case, container, equilibrium.penalty, control, contact)
@@ -198,28 +197,6 @@ def build_model(
         duration=duration,
         rest_from=rest_sought_from(case, motion, vertical),
     )
-
-
-def with_found_contact(case: Case, container: Container) -> Case:
-    """The case with the penalty and damping ratio that give its `restitution_over_housner`, if it has one.
-
-    Raises:
-        CaseError: its support does not give that restitution.
-    """
-    if case.contact.restitution_over_housner is None:
-        return case
-    return found_contact(case, container, _first_restitution)
-
-
-def _first_restitution(case: Case, container: Container) -> float:
-    """Of the first impact of a rigid container; nan where there is none, or no equilibrium to start from."""
-    try:
-        model = build_model(case, container)
-    except CaseError:
-        return math.nan
-    assert isinstance(model.body, ModalBody)
-    status = run_to_end(model.body, model.run, model.duration).status
-    return float(model.run.track[0].restitution) if status == REACHED else math.nan
 
 
 def _chunk(wanted: int, largest_step: float, interval: float) -> int:

@@ -1,4 +1,6 @@
-"""Restitution that follows from a contact damping ratio, by a shipped calibration table.
+"""Restitution of a rigid container on its floor: what its contact leaves, and the factor on that which a case asks for.
+
+What a contact damping ratio amounts to follows from a shipped calibration table:
 
 `data/contact_damping_restitution.csv` says how the table was computed, for rigid homogeneous blocks. Other
 distributions of mass are treated through the share of Housner's loss, (1 - e)/(1 - e_H), which varies slowly. A
@@ -6,12 +8,15 @@ container that deforms at an impact loses more.
 """
 
 import csv
+import math
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
 
 import numpy as np
 
+from fem.case.case import Case, CaseError
+from fem.model.static_checks import StaticChecks
 from fem.runtime.arrays import FloatArray
 
 TABLE = "contact_damping_restitution.csv"
@@ -43,6 +48,37 @@ class Calibration:
             else:
                 values = (1.0 - share) * values[first] + share * values[first + 1]
         return None if np.isnan(values) else float(values)
+
+
+def contact_restitution(case: Case, static: StaticChecks, width: float) -> float | None:
+    """Restitution of a rigid container of this width [m] on the floor of a case; None on a slab, outside the table."""
+    if case.floor.is_slab:
+        return None
+    own = apparent_restitution(
+        support=case.support.kind,
+        foot_over_width=None if case.support.foot is None else case.support.foot / width,
+        slenderness=static.centroid / (0.5 * width),
+        damping_ratio=case.contact.damping_ratio,
+        housner=static.housner_restitution,
+    )
+    return None if own is None else own * (case.contact.restitution_over_housner or 1.0)
+
+
+def require_loss(case: Case, static: StaticChecks, width: float) -> None:
+    """Refuse impacts that would leave more than there was before them, of a container of this width [m].
+
+    Raises:
+        CaseError: with the largest factor.
+    """
+    factor = case.contact.restitution_over_housner or 1.0
+    asked = contact_restitution(case, static, width) or factor * static.housner_restitution
+    if factor <= 1.0 or asked <= 1.0:
+        return
+    raise CaseError(
+        f"[contact] restitution_over_housner = {factor:g}: impacts that leave {asked / factor:.4g} of the angular "
+        f"velocity by themselves would leave {asked:.4g} of it, more than there was; take at most "
+        f"{math.floor(1e4 * factor / asked) / 1e4:g}"
+    )
 
 
 def apparent_restitution(

@@ -152,13 +152,15 @@ def _duration(case: Case) -> str:
 
 
 def _dashpot(case: Case, numerics: Numerics) -> str:
-    """The damping of the contact, and the restitution by which it was chosen."""
+    """The damping of the contact, and what the impacts are asked to leave."""
     ratio = numerics.contact_damping_ratio or case.contact.damping_ratio
     words = "damping" if ratio is None else f"damping ratio {short(ratio)}"
     stated = case.contact.restitution_over_housner
     if stated is None:
         return words
-    return f"{words}, both found so that the rigid container has {short(stated)} of Housner's restitution"
+    return (
+        f"{words}, and every impact leaves {short(stated)} of the angular velocity that it would leave alone"
+    )
 
 
 def limits_section(case: Case, result: RunResult | None = None) -> html.PageSection:

@@ -55,6 +55,7 @@ ENERGIES = {
     "contact_damping_J": "contact damping",
     "material_damping_J": "material damping",
     "crushing_J": "crushing of the floor",
+    "impact_J": "restitution asked of the impacts",
     "numerical_J": "error at the end, > 0 lost",
 }
 
@@ -279,10 +280,14 @@ def _energies(view: RunView) -> list[tuple[str, str]]:
     """The energy balance at the end: name and value."""
     energy = view.result.energy or Energy()
     error = f"{number(energy.closure_error, figures=3)} of the energy to overturn"
+    absent = {
+        "crushing_J": not view.case.floor.is_slab,
+        "impact_J": view.case.contact.restitution_over_housner is None,
+    }
     rows = [
         (words, quantity(getattr(energy, key), "J"))
         for key, words in ENERGIES.items()
-        if key != "crushing_J" or view.case.floor.is_slab
+        if not absent.get(key, False)
     ]
     return [*rows, ("largest error", error)]
 

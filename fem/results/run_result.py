@@ -244,6 +244,7 @@ class Energy(JsonBlock):
     contact_damping_J: float | None = None
     material_damping_J: float | None = None
     crushing_J: float | None = None  #: plastic work on the floor
+    impact_J: float | None = None  #: lost by the restitution that was asked for; < 0 returned
     numerical_J: float | None = None  #: final imbalance; > 0 lost, < 0 gained
     base_work_J: float | None = None
 

@@ -12,7 +12,7 @@ from fem.case.case import Case
 from fem.case.rules import ends_at_rest
 from fem.model.floor import floor_result, slab_of
 from fem.model.geometry import node_count
-from fem.model.restitution import apparent_restitution
+from fem.model.restitution import contact_restitution, require_loss
 from fem.model.static_checks import StaticChecks, static_checks_of
 from fem.model.support import build_support, normal_penalty
 from fem.model.validity import require_bearing, require_stiff_contact
@@ -26,7 +26,6 @@ class Preview:
     """A case with its mesh, before its run."""
 
     case: Case
-    settled: Case  #: with numbers for its contact, where it states a restitution
     mesh: ContainerMesh
     motion: MotionResult
     duration: float  #: simulated time, at most [s]
@@ -69,12 +68,13 @@ class Preview:
         Raises:
             CaseError: the contact is too soft to carry the container.
         """
-        case, mesh, solver = self.settled, self.mesh, self.case.solver
+        case, mesh, solver = self.case, self.mesh, self.case.solver
         nodes = node_count(mesh, solver.order)
         penalty = normal_penalty(case, mesh)
         springs = build_support(case, mesh).normal_stiffness(penalty)
         stiffness = float(springs.sum())
         require_stiff_contact(case, mesh, stiffness)
+        require_loss(case, self.static, mesh.width)
         if case.floor.is_slab:
             share = 1.0 if case.initial.rotation_rad else 0.5 + abs(mesh.centroid[0]) / mesh.width
             require_bearing(case, mesh, share * self.static.weight / slab_of(case, mesh.mass).cap)
@@ -87,7 +87,7 @@ class Preview:
             "elastic_modes": {"rigid": 0, "reduced": solver.elastic_modes}.get(solver.model),
             "contact_nodes": len(springs),
             "normal_penalty_Pa_m": None if case.floor.is_slab else penalty,
-            "contact_damping_ratio": self.floor.damping_ratio or case.contact.dashpot,
+            "contact_damping_ratio": self.floor.damping_ratio or case.contact.damping_ratio,
             "contact_frequency_Hz": contact_frequency(mesh.mass, stiffness),
             "static_penetration_m": mesh.mass * case.gravity_m_s2 / stiffness,
             "duration_s": self.duration,
@@ -101,23 +101,6 @@ class Preview:
     def floor(self) -> FloorNumbers:
         """What the floor amounts to; of a rigid one its slope alone."""
         return floor_result(self.case, self.mesh, self.static) or FloorNumbers(kind="rigid")
-
-    @property
-    def contact_restitution(self) -> float | None:
-        """Restitution of a rigid container on this contact; None on a slab, and outside the table of calibration."""
-        given, housner = self.case.contact.restitution_over_housner, self.static.housner_restitution
-        if given is not None:
-            return given * housner
-        if self.case.floor.is_slab:
-            return None
-        foot = self.case.support.foot
-        return apparent_restitution(
-            support=self.case.support.kind,
-            foot_over_width=None if foot is None else foot / self.mesh.width,
-            slenderness=self.static.centroid / (0.5 * self.mesh.width),
-            damping_ratio=self.case.contact.dashpot,
-            housner=housner,
-        )
 
     @property
     def notes(self) -> list[str]:
@@ -178,7 +161,7 @@ class Preview:
             "motion": self.motion.to_json(),
             "floor": self.floor.to_json(),
             "static": self.static.to_result().to_json(),
-            "contact_restitution": self.contact_restitution,
+            "contact_restitution": contact_restitution(self.case, self.static, self.mesh.width),
             "numerics": self.numerics,
             "notes": self.notes,
         }

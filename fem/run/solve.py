@@ -38,9 +38,7 @@ def resolve(case: Case, mesh: ContainerMesh, motions: tuple[BaseMotion, BaseMoti
         CaseError: a motion that the given step would step over.
     """
     chosen: dict[str, Any] = {}
-    # a contact that follows from a slab or a stated restitution stays so
-    numerical = not case.floor.is_slab and case.contact.restitution_over_housner is None
-    if case.contact.normal_penalty_Pa_m == "auto" and numerical:
+    if case.contact.normal_penalty_Pa_m == "auto" and not case.floor.is_slab:  # of a slab it follows
         chosen["contact.normal_penalty_Pa_m"] = normal_penalty(case, mesh)
     if case.solver.duration_s == "auto" and not ends_at_rest(case):
         chosen["solver.duration_s"] = longest_time(case)

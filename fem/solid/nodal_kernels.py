@@ -333,11 +333,11 @@ def observe(body: NodalBody, new: State, floor: float, lift: float) -> None:
 
 @compiled(sources=SOURCES)
 @implements(interface.shift_velocity, NodalBody)
-def shift_velocity(body: NodalBody, state: State, velocity: float, lift_velocity: float) -> None:
-    """Subtract the velocity of a new frame."""
+def shift_velocity(body: NodalBody, state: State, velocity: float, lift_velocity: float, spin: float) -> None:
+    """Subtract the velocities of a frame."""
     for i in range(body.nodal_mass.size):
-        state.velocity[2 * i] -= velocity
-        state.velocity[2 * i + 1] -= lift_velocity
+        state.velocity[2 * i] -= velocity + spin * state.position[2 * i + 1]
+        state.velocity[2 * i + 1] -= lift_velocity - spin * state.position[2 * i]
 
 
 advance_nodal = compiled(advance, sources=SOURCES)

@@ -152,10 +152,12 @@ def observe(stack: NodalStack, new: State, floor: float, lift: float) -> None:
 
 @compiled(sources=SOURCES)
 @implements(interface.shift_velocity, NodalStack)
-def shift_velocity(stack: NodalStack, state: State, velocity: float, lift_velocity: float) -> None:
-    """Subtract the velocity of a new frame."""
+def shift_velocity(
+    stack: NodalStack, state: State, velocity: float, lift_velocity: float, spin: float
+) -> None:
+    """Subtract the velocities of a frame."""
     for b in range(len(stack.boxes)):
-        nodal_kernels.shift_velocity(stack.boxes[b], state_of(stack, state, b), velocity, lift_velocity)
+        nodal_kernels.shift_velocity(stack.boxes[b], state_of(stack, state, b), velocity, lift_velocity, spin)
 
 
 @compiled(sources=SOURCES)

@@ -5,6 +5,7 @@ Signs, factors, dropped terms, one coefficient for another, tangents, the ledger
 
 from mutation import Mutation
 from mutations_of_floor import FLOOR_FAULTS
+from mutations_of_impacts import IMPACTS
 from mutations_of_loose_stacks import LOOSE_STACKS
 from mutations_of_vertical_motion import VERTICAL_MOTION
 
@@ -225,8 +226,8 @@ MUTATIONS = (
     ),
     Mutation(
         name="impacts counted in a run that rests",
-        old="return struck and track.modes & (1 << ROCK | 1 << SLIDE_ROCK) != 0",
-        new="return struck",
+        old="if struck == 0 or track.modes & (1 << ROCK | 1 << SLIDE_ROCK) == 0:",
+        new="if struck == 0:",
         tests=("verification/against_block/test_first_impact.py", "-k", "rests or flutter"),
     ),
     Mutation(
@@ -339,5 +340,6 @@ MUTATIONS = (
     ),
     *VERTICAL_MOTION,
     *FLOOR_FAULTS,
+    *IMPACTS,
     *LOOSE_STACKS,
 )

@@ -47,6 +47,7 @@ class Block:
     stribeck_velocity: float = 0.0  #: [m/s]
     cap: float = math.inf  #: of the normal force of a corner [N]
     slope: float = 0.0  #: angle of the floor, > 0: it falls toward +x [rad]
+    impact_share: float = 1.0  #: of the angular momentum that an exchange of the pivot leaves
 
     @property
     def rigid(self) -> RigidBlock:
@@ -274,5 +275,6 @@ def limits_of(block: Block, largest_step: float, fixed_step: bool, energy_scale:
         contents_cutoff=200.0,
         top_monitors=0,
         base_points=2,
+        impact_share=block.impact_share,
         eager=False,
     )

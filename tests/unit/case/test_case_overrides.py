@@ -53,18 +53,6 @@ def test_one_frequency_replaces_the_other():
     assert case.nominal_peak_acceleration == pytest.approx(0.05 * (2.0 * 3.141592653589793) ** 2)
 
 
-def test_a_restitution_replaces_damping_and_penalty_and_is_replaced_by_them():
-    stated = "contact.restitution_over_housner=0.95"
-    contact = load_case(BASE, ["contact.damping_ratio=1", "contact.normal_penalty_Pa_m=1e9"]).contact
-    assert (contact.damping_ratio, contact.normal_penalty_Pa_m) == (1.0, 1e9)
-    contact = load_case(BASE, [stated]).contact
-    assert (contact.damping_ratio, contact.restitution_over_housner) == (None, 0.95)
-    for key, value in (("damping_ratio", 1.0), ("normal_penalty_Pa_m", 1e9)):
-        contact = load_case(BASE, [stated]).with_values({f"contact.{key}": value}).contact
-        assert (contact.restitution_over_housner, getattr(contact, key)) == (None, value)
-    assert contact.damping_ratio == 2.0
-
-
 def test_amplitude_and_peak_acceleration_set_together_replace_the_frequency():
     case = load_case(BASE, ["motion.amplitude_m=0.04", "motion.peak_acceleration_m_s2=1.0"])
     assert case.angular_frequency == pytest.approx(5.0)

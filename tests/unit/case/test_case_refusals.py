@@ -129,10 +129,6 @@ least    | contact.mu_kinetic=0.5 | [contact] mu_kinetic must be at most mu_stat
 least    | contact.restitution_over_housner=97 |
            restitution_over_housner must be between 0.5 and 2, got 97; looks like per cent: 0.97?
 least    | contact.restitution_over_housner=0.2 | got 0.2; measured on concrete: 0.93 to 1.05
-least    | contact.restitution_over_housner=0.95 & contact.damping_ratio=2.0 | restitution_over_housner, damping_ratio:
-           one of the two is given, got 0.95 and 2; keep one of them
-least    | contact.restitution_over_housner=0.95 & contact.normal_penalty_Pa_m=1e9 |
-           normal_penalty_Pa_m cannot be given as well, got 1e+09 Pa/m; leave that out
 least    | contact.normal_penalty_Pa_m=automatic | must be a number or "auto", got the text 'automatic'
 least    | contact.normal_penalty_Pa_m=0.0 | normal_penalty_Pa_m must be between 1 and 1e+20 Pa/m, got 0 Pa/m
 least    | contact.regularisation_velocity_m_s=0.0 | about 1e-3 of the largest slip velocity is usual

@@ -92,11 +92,6 @@ def test_a_resolved_stack_and_its_template_are_the_same_case(boxes):
         assert (again.stack, again.resolved()) == (case.stack, case.resolved())
 
 
-def test_a_restitution_of_one_body_is_refused_for_loose_boxes():
-    with pytest.raises(CaseError, match="restitution_over_housner does not apply to container"):
-        stack(f"boxes = 2\n{LOOSE}").with_values({"contact.restitution_over_housner": 0.9})
-
-
 def test_joints_of_a_bolted_stack_play_no_part():
     given = stack("boxes = 2\njoints = 'bolted'", more="[joints]\nmu_static = 0.3\n")
     assert case_hash(given) == case_hash(stack("boxes = 2"))

@@ -189,7 +189,6 @@ WITHOUT_GROUPS = sorted(
         for key in ("amplitude_m", "peak_acceleration_m_s2", "angular_frequency_rad_s", "frequency_Hz")
     }
     - {"container.weight_N", "container.mass_kg", "container.density_kg_m3"}
-    - {"contact.restitution_over_housner"}
 )
 
 

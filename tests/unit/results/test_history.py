@@ -48,11 +48,12 @@ def test_columns_are_the_documented_ones_in_their_order_and_come_back_to_the_las
         history["joint_3_shear_N"]
 
 
-def case_of(*, boxes=1, joints="bolted", vertical=False, crushing=False):
+def case_of(*, boxes=1, joints="bolted", vertical=False, crushing=False, restitution=None):
     """The tables of a case that decide on its columns."""
     return SimpleNamespace(
         container=SimpleNamespace(boxes=boxes, joints=joints),
         floor=SimpleNamespace(kind="slab" if crushing else "rigid"),
+        contact=SimpleNamespace(restitution_over_housner=restitution),
         vertical=SimpleNamespace(kind="pulse" if vertical else "none"),
     )
 
@@ -61,13 +62,14 @@ def case_of(*, boxes=1, joints="bolted", vertical=False, crushing=False):
 @pytest.mark.parametrize("joints", ["bolted", "loose"])
 @pytest.mark.parametrize("vertical", [False, True])
 @pytest.mark.parametrize("crushing", [False, True])
+@pytest.mark.parametrize("restitution", [None, 0.95])
 @pytest.mark.parametrize("analytic", [False, True])
-def test_crushing_vertical_motion_joints_boxes_and_rigid_block_follow_in_this_order(
-    tmp_path, boxes, joints, vertical, crushing, analytic
+def test_crushing_impacts_vertical_motion_joints_boxes_and_rigid_block_follow_in_this_order(
+    tmp_path, boxes, joints, vertical, crushing, restitution, analytic
 ):
     of_box = ("rotation_rad", "slip_m", "opening_m", "x_m", "z_m")
     of_joint = ("normal_N", "shear_N", "moment_Nm")
-    names = ["crushing_J"] * crushing
+    names = ["crushing_J"] * crushing + ["impact_J"] * (restitution is not None)
     names += [
         f"base_vertical_{name}" for name in ("displacement_m", "velocity_m_s", "acceleration_m_s2")
     ] * vertical
@@ -75,7 +77,7 @@ def test_crushing_vertical_motion_joints_boxes_and_rigid_block_follow_in_this_or
         names += [f"box_{box}_{name}" for box in range(2, boxes + 1) for name in of_box]
     else:
         names += [f"joint_{joint}_{name}" for joint in range(1, boxes) for name in of_joint]
-    case = case_of(boxes=boxes, joints=joints, vertical=vertical, crushing=crushing)
+    case = case_of(boxes=boxes, joints=joints, vertical=vertical, crushing=crushing, restitution=restitution)
     path, rows = tmp_path / "history.csv", np.hstack([ROWS, ROWS[:, : len(names)]])
     with HistoryWriter(path, history_columns(case)) as writer:
         writer.append(rows, MODES)
@@ -89,7 +91,7 @@ def test_crushing_vertical_motion_joints_boxes_and_rigid_block_follow_in_this_or
 
 
 def test_the_stepper_fills_every_column_but_time_floor_joints_and_rigid_block():
-    declared = set(history_columns(case_of(boxes=3, joints="loose", crushing=True)))
+    declared = set(history_columns(case_of(boxes=3, joints="loose", crushing=True, restitution=0.95)))
     added = {
         "time_s",
         MODE,

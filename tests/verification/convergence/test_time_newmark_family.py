@@ -84,4 +84,4 @@ def test_a_thrown_rigid_block_flies_on_its_parabola_and_spins_evenly():
     expected = [1.5 * t, 14.0 + 4.0 * t - 0.5 * GRAVITY * t**2, 0.1 + 0.7 * t]
     assert run.run.old.position == pytest.approx(expected, rel=1e-12)
     assert run.run.old.velocity == pytest.approx([1.5, 4.0 - GRAVITY * t, 0.7], rel=1e-12)
-    assert run.run.ledger == pytest.approx(np.zeros(6), abs=1e-9 * run.block.mass)
+    assert run.run.ledger == pytest.approx(np.zeros(7), abs=1e-9 * run.block.mass)
