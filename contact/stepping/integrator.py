@@ -39,7 +39,7 @@ from contact.stepping.joints import (
 from contact.stepping.ledger import FRICTION, IMBALANCE, dissipation, spring_energy
 from contact.stepping.ledger import ROWS as LEDGER_ROWS
 from contact.stepping.observables import FALLEN, NEVER, exchanges_pivot, update_observables
-from contact.stepping.sampling import sample
+from contact.stepping.sampling import keep_most_strained_step, sample
 from contact.stepping.state import RunState
 from contact.stepping.step import account, attempt, copy_state, indent
 
@@ -180,6 +180,7 @@ def advance(body: Any, run: RunState, until: float) -> int:
             landed = exchanges_pivot(track, control, run.attempt.new)
             if landed != 0:
                 lose_at_impact(body, run, landed, loose)
+        keep_most_strained_step(run)
         close_step(run, step, iterations)
         # The imbalance of one step may vanish by chance while it changes sign: remember the last steps.
         stacked = run.joints.shape[0] > 1

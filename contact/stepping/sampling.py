@@ -8,6 +8,7 @@ from contact.stepping.body import (
     CENTRE_X,
     CENTRE_Z,
     ROTATION,
+    STRAIN,
     VELOCITY_X,
     VELOCITY_Z,
     State,
@@ -103,6 +104,16 @@ def write_coordinates(samples: Samples, at: int, old: State, new: State, s: floa
             )
         if j < samples.velocity.shape[1]:
             samples.velocity[at, j] = (1.0 - s) * old.velocity[j] + s * new.velocity[j]
+
+
+@inlined
+def keep_most_strained_step(run: RunState) -> None:
+    """Keep the coordinates at the end of the accepted step, where it strains the body more than the one kept."""
+    kept, new = run.strained, run.attempt.new
+    if kept.size > 0 and new.energy[STRAIN] > kept[0]:
+        kept[0] = new.energy[STRAIN]
+        for j in range(new.position.size):
+            kept[1 + j] = new.position[j]
 
 
 @inlined

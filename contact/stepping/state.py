@@ -263,6 +263,8 @@ class RunState(NamedTuple):
     joints: Any  #: (N,) of JOINT_RECORD
     track: Any  #: (1,) of `observables.OBSERVABLES`
     contents: FloatArray  #: (8, 2 n_m) filter of the contents, see `contact.stepping.contents`
+    #: (1 + n_d or 0,) strain energy [J] and coordinates of the most strained step since the caller looked; -1: none
+    strained: FloatArray
 
     def with_problem(self, **parts: Any) -> "RunState":
         """The same run with other parts of its problem."""
@@ -291,10 +293,12 @@ def make_run(
     history: Samples,
     frames: Samples,
     joints: Any = None,
+    strained: bool = False,
 ) -> RunState:
     """Assemble a run at t = 0.
 
-    `old` is the initial state, completed; `joints` those of a loose stack, see `make_joints`.
+    `old` is the initial state, completed; `joints` those of a loose stack, see `make_joints`; `strained`: keep the most
+    strained step.
 
     Raises:
         ValueError: the kernels do not handle the law of friction.
@@ -330,4 +334,5 @@ def make_run(
         joints=make_joints(control.mass, control.inertia, control.width) if joints is None else joints,
         track=make_observables(),
         contents=np.zeros((8, 2 * (monitors - control.top_monitors))),
+        strained=np.full(1 + old.position.size if strained else 0, -1.0),
     )

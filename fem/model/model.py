@@ -16,6 +16,7 @@ from contact.motion.base_motion import BaseMotion
 from contact.motion.kernel import floor_motion
 from contact.stepping import modal_kernels
 from contact.stepping.body import State, make_state
+from contact.stepping.control import step_level
 from contact.stepping.ledger import spring_energy
 from contact.stepping.loose_stack import LooseStack
 from contact.stepping.modal_body import ModalBody
@@ -184,7 +185,10 @@ def build_model(
             velocity=coordinates if fields > 0.0 else 0,
         ),
         joints=joints_of_stack(container) if container.boxes else None,
+        strained=full,
     )
+    if full:  # its first steps settle vibrations of the mesh, which a large step would turn into a jump off the floor
+        run.clock.level = step_level(control.largest_step, control.event_step)
     record_start(run.track[0], control, old)
     return Model(
         case=case,

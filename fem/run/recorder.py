@@ -19,6 +19,8 @@ from fem.results.history import History, numbers_of
 from fem.results.outcome import MODES
 from fem.runtime.arrays import FloatArray
 
+#: share of the largest strain energy from which the stress of a step is looked at
+STRAINED = 0.1
 #: decimals of times that people write [s]; relative error of multiplication
 DECIMALS, ROUNDING = 12, 4.0 * float(np.finfo(float).eps)
 
@@ -55,7 +57,10 @@ class Recorder:
         self._rows: list[FloatArray] = []
         self._modes: list[str] = []
         self._area = model.contact_areas
-        self.largest_von_mises: float | None = None  #: over frames and samples, if any [Pa]
+        self.largest_von_mises: float | None = (
+            None  #: over frames, samples and most strained steps, if any [Pa]
+        )
+        self._most_strain = 0.0  #: of the steps looked at [J]
         #: of the joints at the last sample (J, 8), see `fem.model.joints`; the next forces follow from its change
         self.joint_motion = np.zeros((0, 0))
         self._joint_forces = np.zeros((0, len(JOINTS.columns)))
@@ -75,6 +80,7 @@ class Recorder:
         """Empty the run's arrays of samples."""
         self._drain_history(run)
         self._drain_frames(run)
+        self._look_at_most_strained(run)
 
     def history(self) -> History:
         """Everything sampled so far."""
@@ -91,6 +97,7 @@ class Recorder:
         stress = self.largest_von_mises
         return {
             "largest_von_mises": np.array([] if stress is None else [stress]),
+            "most_strain": np.array([self._most_strain]),
             "joint_motion": self.joint_motion,
             "joint_forces": self._joint_forces,
         }
@@ -99,6 +106,7 @@ class Recorder:
         """Restore the memory of an earlier recorder of the same run."""
         stress = memory["largest_von_mises"]
         self.largest_von_mises = float(stress[0]) if stress.size else None
+        self._most_strain = float(memory["most_strain"][0])
         self.joint_motion, self._joint_forces = memory["joint_motion"], memory["joint_forces"]
 
     def resume(self, history: History) -> None:
@@ -147,6 +155,19 @@ class Recorder:
             forces[0] = self._joint_forces
         self.joint_motion = motion[-1]
         return forces.reshape(count, -1)
+
+    def _look_at_most_strained(self, run: RunState) -> None:
+        """Note the stress at the most strained step of a slice, unless it is far below that of an earlier slice."""
+        if self._recovery is None or not run.strained.size:
+            return
+        energy = float(run.strained[0])
+        if energy >= STRAINED * self._most_strain:
+            position = run.strained[1:]
+            frame = self._recovery.frame(position, np.zeros_like(position))
+            if frame.von_mises is not None:
+                self._note_stress(float(np.max(frame.von_mises)))
+        self._most_strain = max(self._most_strain, energy)
+        run.strained[0] = -1.0
 
     def _note_stress(self, stress: float) -> None:
         self.largest_von_mises = max(self.largest_von_mises or 0.0, stress)

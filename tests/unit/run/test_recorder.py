@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+import fem
 from fem.case.case import load_case
 from fem.model.model import build_model
 from fem.model.recovery import recovery_of
@@ -36,3 +37,25 @@ def test_no_sample_and_no_frame_of_a_run_has_a_tail_or_a_minus_zero():
     assert values[:, 0].tolist() == [k / 200 for k in range(81)]
     assert not np.signbit(values[values == 0.0]).any()
     assert np.array_equal(recorder.history().values, values)
+
+
+def test_the_largest_stress_of_the_full_model_is_that_of_its_steps_whatever_is_recorded():
+    """It begins with small steps: a large one would lift the container off the floor, at thirty times the stress."""
+    coarse = ["solver.model=full", "solver.element_size_m=0.4", "solver.duration_s=0.3"]
+    found = [
+        fem.compute(
+            fem.load_case("rocking", [*coarse, f"output.fields_s={fields}", f"output.history_s={history}"]),
+            band=False,
+        ).verdict.max_von_mises_Pa
+        for fields, history in ((0.0, 0.05), (0.05, 0.005), (0.005, 0.001))
+    ]
+    assert found[0] == found[1]
+    assert found[0] <= found[2] <= 1.02 * found[0]  # frames between the steps
+    still = fem.compute(
+        fem.load_case(
+            "rocking", [*coarse, "motion.kind=none", "output.fields_s=0.3", "solver.duration_s=0.3"]
+        ),
+        band=False,
+    )
+    at_rest = float(still.frame(0.0).von_mises.max())
+    assert still.verdict.max_von_mises_Pa == pytest.approx(at_rest, rel=0.05)

@@ -18,7 +18,8 @@ CASES = [(section, kind) for section in SECTIONS for kind in ("corners", "feet",
 
 @cache
 def rocking(section: str, kind: str, model: str) -> Finished:
-    return run(stack(section, support__kind=kind, solver__model=model))
+    # Their steps differ: at a tolerance of 1 those of the thin shell alone make 0.0015 of difference.
+    return run(stack(section, support__kind=kind, solver__model=model, solver__energy_tolerance=0.3))
 
 
 @pytest.mark.parametrize(("section", "kind"), CASES)
@@ -26,7 +27,7 @@ def test_reduced_follows_full_until_the_first_impact(section: str, kind: str) ->
     reduced, full = rocking(section, kind, "reduced"), rocking(section, kind, "full")
     first = min(first_impact(reduced), first_impact(full))
     assert first < 0.75
-    assert difference(reduced, full, until=first) <= 1e-3
+    assert difference(reduced, full, until=first) <= 5e-4
     assert first_impact(reduced) == pytest.approx(first_impact(full), rel=1e-3)
 
 
