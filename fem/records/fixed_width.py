@@ -5,7 +5,7 @@ import re
 import numpy as np
 
 from fem.records.record import RecordError
-from fem.records.source import LARGEST_NUMBER, MOST_SAMPLES, MotionText, as_numbers
+from fem.records.source import LARGEST_NUMBER, MOST_SAMPLES, MotionText, as_numbers, read_rows
 from fem.runtime.arrays import FloatArray
 
 #: such as (8f10.6), (5E15.7), (10I8), (1P8E10.3)
@@ -60,7 +60,7 @@ def read_block(
             )
     if len(rows) < behind - first:
         raise source.refused(f"the header says {count} values, found {sum(map(len, rows))}")
-    return _checked(source, rows, first, largest), behind
+    return read_rows(source, enumerate(rows, start=first), largest), behind
 
 
 def read_separated(source: MotionText, first: int, count: int) -> tuple[FloatArray, int]:
@@ -72,8 +72,8 @@ def read_separated(source: MotionText, first: int, count: int) -> tuple[FloatArr
     found = sum(len(line.split()) for line in lines)
     if found != count:
         raise source.refused(f"the header says {count} values, found {found}")
-    rows = [line.split() for line in lines]
-    return _checked(source, rows, first, LARGEST_NUMBER), len(source.lines) + 1
+    rows = ((number, line.split()) for number, line in enumerate(lines, start=first))
+    return read_rows(source, rows), len(source.lines) + 1
 
 
 def require_end(source: MotionText, line: int, count: int) -> None:
@@ -81,16 +81,6 @@ def require_end(source: MotionText, line: int, count: int) -> None:
     for number in range(line, len(source.lines) + 1):
         if source.line(number).strip():
             raise source.refused(f"the header says {count} values, and more content follows them", number)
-
-
-def _checked(source: MotionText, rows: list[list[str]], first: int, largest: float) -> FloatArray:
-    numbers = as_numbers([field for row in rows for field in row], largest)
-    if numbers is None:
-        wrong = next(
-            number for number, row in enumerate(rows, start=first) if as_numbers(row, largest) is None
-        )
-        raise source.refused("a field is not a number, or too large for one", wrong)
-    return numbers
 
 
 def whole_number(source: MotionText, text: str, what: str, number: int | None = None) -> int:

@@ -4,7 +4,9 @@ Messages name the line and never quote it: a file that is no motion may hold con
 """
 
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
@@ -12,9 +14,10 @@ import numpy as np
 from fem.records.record import RecordError
 from fem.runtime.arrays import FloatArray
 
-LARGEST_FILE = 64 * 2**20  #: [bytes]
+LARGEST_FILE = 32 * 2**20  #: [bytes]
 LONGEST_LINE = 1000  #: [bytes]
 MOST_SAMPLES = 1_000_000  #: of a component, and lines of a file: more than an hour at 200 samples in a second
+BLOCK = 10_000  #: rows that are read together
 LARGEST_NUMBER = 1e12  #: of seconds or of any unit: above it the integrals of the motion are meaningless
 CONTROL = re.compile(r"[\x00-\x08\x0e-\x19\x1b-\x1f\x7f]")
 NUMERIC = re.compile(r"[-+.0-9eE \t]*", re.ASCII)
@@ -62,9 +65,11 @@ def read_source(path: Path) -> MotionText:
             f"{path.name}: a motion file may have at most {MOST_SAMPLES} lines of {LONGEST_LINE} characters each"
         )
     text = _decoded(content)
+    del content  # a file may be large
     if text is None or CONTROL.search(text):
         raise RecordError(f"{path.name}: not a text file; a motion file holds numbers as text")
-    return MotionText(path.name, text.replace("\r\n", "\n").replace("\r", "\n").rstrip("\x1a \n").split("\n"))
+    text = text.replace("\r\n", "\n").replace("\r", "\n").rstrip("\x1a \n")
+    return MotionText(path.name, text.split("\n"))
 
 
 def _has_long_line(content: bytes) -> bool:
@@ -99,7 +104,28 @@ def as_numbers(fields: list[str], largest: float = LARGEST_NUMBER) -> FloatArray
             return None
         fields = [field.replace("D", "E").replace("d", "e") for field in fields]
     try:
-        numbers = np.array([float(field) for field in fields], dtype=np.float64)
+        numbers = np.fromiter(map(float, fields), np.float64, len(fields))
     except ValueError:
         return None
     return numbers if (np.abs(numbers) <= largest).all() else None
+
+
+def read_rows(
+    source: MotionText, rows: Iterable[tuple[int, list[str]]], largest: float = LARGEST_NUMBER
+) -> FloatArray:
+    """The numbers of rows of fields, each with its line, in one array of shape (n,).
+
+    They are read by blocks: the fields of a long file do not fit into little memory, and a bad one is looked for in
+    its block only.
+
+    Raises:
+        RecordError: with its line: a field is no number, or larger than it may be.
+    """
+    remaining, blocks = iter(rows), [np.empty(0)]
+    while block := list(islice(remaining, BLOCK)):
+        numbers = as_numbers([field for _, row in block for field in row], largest)
+        if numbers is None:
+            wrong = next(number for number, row in block if as_numbers(row, largest) is None)
+            raise source.refused("not a number, or too large for one (no unit, no text)", wrong)
+        blocks.append(numbers)
+    return np.concatenate(blocks)

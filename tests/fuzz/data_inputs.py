@@ -10,6 +10,7 @@ from mesh_writer import mesh_of
 from record_files import WRITTEN, synthetic_motion
 
 from fem.case.toml import toml_value
+from fem.records.source import MOST_SAMPLES
 from mesh.untrusted import FORMATS
 
 Draw = Any
@@ -130,10 +131,18 @@ HOSTILE: dict[str, Callable[[int], str]] = {
     "columns": lambda size: ("1," * 490 + "\n") * (size // 981),
     "lines of nothing": lambda size: "\n" * size + "1",
     "lines of words": lambda size: "a\n" * (size // 2),
-    "words behind numbers": lambda size: "0,1\n" * (size // 8) + "a",
+    "a word behind numbers": lambda size: "0.005,-0.123456\n" * min(size // 16, MOST_SAMPLES - 1) + "a",
+    "a word behind three columns": lambda size: (
+        "1,-0.12345678,0.12345678\n" * min(size // 26, 990_000) + "1,1,a"
+    ),
+    "a word behind those of ESM": lambda size: (
+        record_text("ESM").replace("NDATA: 200", f"NDATA: {200 + size // 64}").rstrip("\n")
+        + "\n-0.12345678" * (size // 64 - 1)
+        + "\na"
+    ),
     "comments": lambda size: "#\n" * (size // 2),
 }
-SIZES = (40, 40_000, 2_000_000, 60_000_000)
+SIZES = (40, 40_000, 2_000_000, 33_000_000, 60_000_000)
 ENDLESS = ("/proc/kmsg", "/dev/zero", "/dev/tty", "/proc/self/mem", "/proc/kcore")
 
 
@@ -141,23 +150,27 @@ def record_text(name: str) -> str:
     return record_of(name).decode()
 
 
+def check_of(motion: str, /, **files: bytes) -> Input:
+    """A motion to be refused in little time and memory."""
+    case = CASE.format(motion='kind = "none"\n').encode()
+    return Input(
+        arguments=("check", "case.toml", "--motion", motion, "--set", "motion.unit=g"),
+        files={"case.toml": case} | files,
+        bounded=True,
+    )
+
+
+def hostile(name: str, size: int) -> Input:
+    """A file of `HOSTILE`."""
+    return check_of("motion", motion=HOSTILE[name](size).encode())
+
+
 @st.composite
 def hostile_records(draw: Draw) -> Input:
     """A small file that asks for much memory or time, a large one that is no motion, or one without an end."""
-    case = {"case.toml": CASE.format(motion='kind = "none"\n').encode()}
-    said = ("--set", "motion.unit=g")
     if draw(st.integers(0, 3)) == 0:
-        return Input(
-            arguments=("check", "case.toml", "--motion", draw(st.sampled_from(ENDLESS)), *said),
-            files=case,
-            bounded=True,
-        )
-    content = HOSTILE[draw(st.sampled_from(sorted(HOSTILE)))](draw(st.sampled_from(SIZES)))
-    return Input(
-        arguments=("check", "case.toml", "--motion", "motion", *said),
-        files=case | {"motion": content.encode()},
-        bounded=True,
-    )
+        return check_of(draw(st.sampled_from(ENDLESS)))
+    return hostile(draw(st.sampled_from(sorted(HOSTILE))), draw(st.sampled_from(SIZES)))
 
 
 @st.composite

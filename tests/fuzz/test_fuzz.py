@@ -1,6 +1,7 @@
 """A small set of the fuzz and of the soak, the same every time, for the suite; the large ones are scripts."""
 
 import pytest
+from data_inputs import HOSTILE, SIZES, hostile
 from fuzz import KINDS, warm_up
 from fuzz import end_of as answer_to
 from hypothesis import HealthCheck, given, settings
@@ -43,6 +44,12 @@ def test_any_input_is_refused_with_words_or_computed(kind, count):
     feed()
     # Some of it is wrong, and found to be; some of it is computed: of cases a half, of all else a fifth or less.
     assert codes >= ({0, 2} if kind == "case" else {2})
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_a_large_file_is_refused_as_soon_as_a_small_one(name):
+    end = answer_to(hostile(name, SIZES[-2]))
+    assert end.code == 2 and not end.broken, (end.cpu_s, end.words)
 
 
 def test_every_key_of_the_schema_is_fuzzed():

@@ -151,7 +151,7 @@ def test_missing_files_folders_and_oversized_files_are_refused_before_reading(tm
     large = tmp_path / "large.csv"
     with large.open("wb") as file:
         file.truncate(LARGEST_FILE + 1)  # sparse: takes no room
-    with pytest.raises(ValueError, match="may have at most 64 MB"):
+    with pytest.raises(ValueError, match="may have at most 32 MB"):
         read_record(large)
 
 

@@ -114,7 +114,7 @@ def test_what_is_no_number_is_refused_with_its_line(tmp_path, name, wrong):
     lines = text.rstrip("\n").split("\n")
     last = next(k for k in range(len(lines) - 1, 0, -1) if lines[k][-1].isdigit())
     lines[last] = lines[last][: -len(wrong)] + wrong
-    with pytest.raises(ValueError, match=f"line {last + 1}: a field is not a number"):
+    with pytest.raises(ValueError, match=f"line {last + 1}: not a number"):
         read(tmp_path, "\n".join(lines))
 
 
