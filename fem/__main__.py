@@ -21,6 +21,7 @@ from typing import Literal, NoReturn
 from cyclopts import App, CycloptsError, Group, MissingArgumentError, UnusedCliTokensError
 
 from fem.runtime.late_modules import load_late
+from fem.runtime.memory import shortage
 from fem.runtime.signals import INTERRUPTED, interruptions, raise_on_signal
 from fem.runtime.threads import use_one_blas_thread
 
@@ -71,6 +72,7 @@ GROUPS = {
     },
 }
 COMMANDS = [name for commands in GROUPS.values() for name in commands]
+READING = {"check", "init", "list", "completion", "schema", "doctor"}  #: commands that compute nothing
 #: import strings of commands that are not `fem.cli.NAME:NAME`
 PLACES = {"list": "fem.cli.list_cases:list_cases", "completion": "fem.__main__:completion"}
 
@@ -116,6 +118,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     tokens = list(sys.argv[1:] if arguments is None else arguments)
     if tokens and tokens[0] not in COMMANDS and tokens[0] not in FLAGS:
         return _refuse(_unknown_command(tokens[0]))
+    if tokens and (short := shortage(computing=tokens[0] in set(COMMANDS) - READING)):
+        return _refuse(short, FAILED)
     try:
         result = build_app()(tokens, exit_on_error=False, print_error=False)
         sys.stdout.flush()

@@ -4,6 +4,8 @@ import json
 import os
 import re
 import signal
+import subprocess
+import sys
 
 import pytest
 from small_sweep import SMALL
@@ -180,6 +182,42 @@ def test_an_interrupted_study_says_what_is_missing_in_place_of_an_answer(tmp_pat
     assert run(folder, resume=True).state == "finished"
     found = json.loads((folder / mark).read_text())
     assert found["state"] == "finished" and found["answer"]
+
+
+@STUDIES
+def test_the_report_of_a_killed_study_gives_no_answer(tmp_path, capsys, study, mark, log):
+    """A map is drawn from the rows that there are; of the others nothing but the way on can be said."""
+    run, folder = study(tmp_path), tmp_path / "out"
+    with pytest.raises(KeyboardInterrupt):
+        run(folder, reporter=Interrupting(1))
+    code, said = main(["report", str(folder)]), capsys.readouterr()
+    if study is sweep:
+        page = (folder / "report.html").read_text()
+        assert code == 0 and 'class="sentence">No answer yet: ' in page
+        assert 'id="signature"' not in page and "signature</div>" not in page
+        return
+    ending = "give that of a run" if study is size else "is not finished; continue it with --resume"
+    assert code == 2 and len(said.err.splitlines()) == 1 and ending in said.err
+    assert not said.out and not (folder / "report.html").exists()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="process groups of POSIX")
+@pytest.mark.parametrize("reports", [1, 2])
+def test_sigterm_to_all_processes_of_an_assessment_ends_it_in_a_sentence(tmp_path, reports):
+    """As a batch scheduler ends a job: the workers get the signal with the process that started them."""
+    (tmp_path / "hall.toml").write_text(SITE.replace("count = 3", "count = 7"), encoding="utf-8")
+    command = [sys.executable, "-m", "fem", "assess", "hall.toml", "-j", "2", "--out", "out"]
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+    with subprocess.Popen(command, cwd=tmp_path, text=True, start_new_session=True, **pipes) as process:
+        told = [process.stderr.readline() for _ in range(reports)]
+        os.killpg(process.pid, signal.SIGTERM)
+        out, err = process.communicate(timeout=120)
+    assert process.returncode == 4 and told[-1], err
+    assert out.splitlines()[-1].startswith("no answer yet: ")
+    assert "stopping after the current step" in err
+    assert not re.search("Traceback|Error|pool|worker|concurrent|multiprocessing|leaked", err)
+    found = json.loads((tmp_path / "out" / "assess.json").read_text())
+    assert (found["state"], found["answer"]) == ("interrupted", None)
 
 
 @STUDIES

@@ -3,6 +3,7 @@
 import errno
 import json
 import os
+import re
 import subprocess
 import sys
 import time
@@ -173,6 +174,19 @@ def test_too_little_memory_is_told_in_a_line(monkeypatch, capsys):
     monkeypatch.setattr(command_line, "build_app", lambda: fail)
     assert command_line.main(["list"]) == 3
     assert capsys.readouterr().err.startswith("out of memory; ")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="limits of POSIX")
+@pytest.mark.parametrize(
+    ("kilobytes", "command", "needed"), [(500_000, "run rocking", 700), (60_000, "list", 250)]
+)
+def test_a_limit_on_memory_that_is_too_low_is_told_at_once(kilobytes, command, needed):
+    """With 500 MB, OpenBLAS asks for ever for a buffer; with less, a module cannot be loaded."""
+    code, out, err = run_in_shell(f"ulimit -v {kilobytes}; {{python}} -m fem {command}")
+    words = (
+        rf"memory is limited to \d+ MB, and this needs {needed} MB or more; raise the limit \(ulimit -v\)\n"
+    )
+    assert (code, out) == (3, "") and re.fullmatch(words, err)
 
 
 def test_work_goes_on_when_nobody_reads_its_progress_any_more():

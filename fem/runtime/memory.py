@@ -1,0 +1,21 @@
+"""The memory that the process may have, where a limit is set: by `ulimit -v`, or by a batch scheduler."""
+
+import sys
+
+if sys.platform != "win32":
+    import resource
+
+#: address space of a command that computes, and of one that does not [MB]. Libraries take 550 and 130 of it before the
+#: first step; with less, a module fails to load, or OpenBLAS asks again and again for a buffer.
+COMPUTING, READING = 700, 250
+
+
+def shortage(computing: bool) -> str:
+    """What the limit on memory gives and the program needs, in words; empty where it is enough or none is set."""
+    if sys.platform == "win32":
+        return ""
+    limit, _ = resource.getrlimit(resource.RLIMIT_AS)
+    needed = COMPUTING if computing else READING
+    if limit == resource.RLIM_INFINITY or limit >= needed << 20:
+        return ""
+    return f"memory is limited to {limit >> 20} MB, and this needs {needed} MB or more; raise the limit (ulimit -v)"
