@@ -14,8 +14,8 @@ from fem.runtime.signals import exit_on_signal
 if TYPE_CHECKING:
     from fem.batch.compute_many import compute_many
     from fem.case.case import case_from, load_case
-    from fem.results.reader import open_run
     from fem.run.compute import compute
+    from fem.run.opened import open_run
 
 __all__ = ["case_from", "compute", "compute_many", "load_case", "open_run"]
 
@@ -25,7 +25,7 @@ PLACES = {
     "compute": "fem.run.compute",
     "compute_many": "fem.batch.compute_many",
     "load_case": "fem.case.case",
-    "open_run": "fem.results.reader",
+    "open_run": "fem.run.opened",
 }
 
 # so it is while Python looks for the module of `python -m fem`, and never in a library

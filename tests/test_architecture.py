@@ -95,6 +95,7 @@ LOADING_LATE = {
     "fem/__init__.py",
     "fem/case/uncertainty.py",
     "fem/figures/cache.py",
+    "fem/run/opened.py",
     "fem/results/fields.py",
     "fem/results/history.py",
     "fem/results/reader.py",

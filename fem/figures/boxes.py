@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from fem.figures import style
 from fem.html.units import rounded
 from fem.results.figures import BOX_FIGURES, BoxResult
-from fem.results.reader import OpenedRun
+from fem.results.reader import RunData
 
 #: of so many boxes; of more, those of a colour map
 COLOURS = (style.BLUE, style.VERMILLION, style.GREEN, style.ORANGE, style.PURPLE, style.SKY)
@@ -55,7 +55,7 @@ OPENING = BoxQuantity(
 )
 
 
-def box_figure(run: OpenedRun, quantity: BoxQuantity, boxes: tuple[BoxResult, ...]) -> Figure:
+def box_figure(run: RunData, quantity: BoxQuantity, boxes: tuple[BoxResult, ...]) -> Figure:
     """A curve over time for each box of a loose stack, with the states of motion below."""
     history, verdict = run.history, run.verdict
     names = [quantity.lowest, *(quantity.further.format(k) for k in range(2, len(boxes) + 1))]

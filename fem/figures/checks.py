@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from fem.case.unknown_inputs import WORDS
 from fem.figures import style
 from fem.results.outcome import Outcome
-from fem.results.reader import OpenedRun
+from fem.results.reader import RunData
 from fem.results.run_result import ChangedRun, RigidCheckResult, RunAndBlock, Verdict
 from fem.runtime.units import RATIO
 
@@ -17,7 +17,7 @@ FALLEN_ROW = 1.18  #: rotation ratio at which overturned members are drawn
 LINE_LENGTH = 105  #: characters of a line of text in a figure
 
 
-def rigid_check_figure(run: OpenedRun) -> Figure | None:
+def rigid_check_figure(run: RunData) -> Figure | None:
     """Rotation of run and analytic block with peaks, first impacts and difference; None without a check."""
     check, table = run.typed_result.rigid_check, run.rigid_check
     if table is None or check is None:
@@ -58,7 +58,7 @@ def rigid_check_figure(run: OpenedRun) -> Figure | None:
     return figure
 
 
-def band_figure(run: OpenedRun) -> Figure | None:
+def band_figure(run: RunData) -> Figure | None:
     """Largest rotation and slip of each run of the band, by what it changes; None without a band."""
     verdict = run.typed_result.verdict or Verdict()
     band = verdict.band

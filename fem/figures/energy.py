@@ -8,7 +8,7 @@ from fem.assessment.verdict import GAIN_LIMIT, LOSS_LIMIT, LOSS_SHARE_LIMIT
 from fem.figures import style
 from fem.html.units import rounded
 from fem.results.history import History
-from fem.results.reader import OpenedRun
+from fem.results.reader import RunData
 from fem.results.run_result import Energy, StaticResult
 
 #: columns of a floor that crushes, and of a restitution that was asked for: words, colour, line
@@ -21,7 +21,7 @@ SMALL = 1e3  #: largest energy below which J is the unit, not kJ [J]
 DECIMALS = 3  #: of an energy in a legend
 
 
-def energy_figure(run: OpenedRun) -> Figure:
+def energy_figure(run: RunData) -> Figure:
     """Energy stored; supplied and dissipated since the start; imbalance of the time stepping."""
     history, energy = run.history, run.typed_result.energy or Energy()
     figure, axes = style.time_panels((1.7, 1.9, 0.9), gaps=(style.LEGEND_GAP + style.LINE, style.LEGEND_GAP))
@@ -43,7 +43,7 @@ def energy_figure(run: OpenedRun) -> Figure:
     return figure
 
 
-def _draw_stored(axes: Axes, run: OpenedRun, reference: float | None, unit: str, size: float) -> None:
+def _draw_stored(axes: Axes, run: RunData, reference: float | None, unit: str, size: float) -> None:
     """Kinetic, gravitational and strain energy, and the energy to overturn [J]; drawn in units of `size` [J]."""
     history = run.history
     # From the mass centre of the standing container: the work that its weight can still do.

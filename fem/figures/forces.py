@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from fem.figures import style
 from fem.html.units import rounded
-from fem.results.reader import OpenedRun
+from fem.results.reader import RunData
 from fem.runtime.arrays import FloatArray
 
 LARGE_FORCE = 2.5  #: times weight, or its static friction: larger forces are those of impacts
@@ -18,7 +18,7 @@ OFF_SCALE = 1.3  #: over the limit of the scale: larger forces are cut off
 MARKS = 300  #: of cut-off forces, that fit side by side
 
 
-def forces_figure(run: OpenedRun) -> Figure:
+def forces_figure(run: RunData) -> Figure:
     """Normal and shear force of the floor on the container."""
     history, contact = run.history, run.case.contact
     time, normal, shear = history["time_s"], 1e-3 * history["normal_force_N"], 1e-3 * history["shear_force_N"]

@@ -16,7 +16,7 @@ from fem.case.boxes import shared_face
 from fem.case.columns import JOINTS
 from fem.figures import style
 from fem.html.units import rounded
-from fem.results.reader import OpenedRun
+from fem.results.reader import RunData
 from fem.results.run_result import Verdict
 from fem.runtime.arrays import FloatArray
 
@@ -27,7 +27,7 @@ THICK = 0.5  #: of a bar, over the height of a box
 LEAST_FORCE = 1.0  #: on the axes of bolt forces [kN]
 
 
-def joints_figure(run: OpenedRun) -> Figure | None:
+def joints_figure(run: RunData) -> Figure | None:
     """Ranges of normal force, shear and moment over the height; bolt forces over time; None for one box."""
     history, case = run.history, run.case
     if history.joints == 0:

@@ -13,7 +13,7 @@ from fem.html.units import rounded
 from fem.records.processing import motion_of
 from fem.records.record import Component
 from fem.records.spectrum import Spectrum, evenly_sampled, log_spaced_periods, response_spectrum
-from fem.results.reader import OpenedRun
+from fem.results.reader import RunData
 
 COLOURS = (style.BLUE, style.VERMILLION, style.GREEN)
 LINES = ("-", "--", ":")
@@ -26,7 +26,7 @@ def spectrum_of(component: Component) -> Spectrum:
     return response_spectrum(step, values, log_spaced_periods(component.step))
 
 
-def spectrum_figure(run: OpenedRun) -> Figure | None:
+def spectrum_figure(run: RunData) -> Figure | None:
     """Response spectra of the records that move the floor of a run; None where none does, or its file is gone."""
     case = run.case
     tables: dict[MotionKey, str] = {"motion": "along x", "vertical": "upward"}

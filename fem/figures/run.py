@@ -23,7 +23,7 @@ from fem.figures.modes import modes_figure
 from fem.figures.recorded import spectrum_figure
 from fem.html.units import rounded
 from fem.model.container import Container
-from fem.results.reader import OpenedRun
+from fem.results.reader import RunData
 from fem.results.run_result import StaticResult, Verdict
 from fem.runtime.arrays import FloatArray
 from fem.runtime.units import DEGREES, RATIO
@@ -32,7 +32,7 @@ from fem.solid.modes import FEW
 LEAST_MOTION = 1e-3  #: of the floor, on its axes [mm, m/s, m/s2]
 
 
-def figures_of(run: OpenedRun) -> dict[str, Figure]:
+def figures_of(run: RunData) -> dict[str, Figure]:
     """All figures of this run by name, in the order of reading.
 
     Raises:
@@ -45,7 +45,21 @@ def figures_of(run: OpenedRun) -> dict[str, Figure]:
     return {name: figure for name, figure in drawn.items() if figure is not None}
 
 
-def draw_all(run: OpenedRun, container: Container) -> list[style.Drawing]:
+def figure_of(run: RunData, name: str) -> Figure:
+    """The figure of this name.
+
+    Raises:
+        ValueError: this run has no such figure; with those that it has.
+        FolderError: the history is missing or damaged.
+    """
+    with style.house_style():
+        figure = FIGURES[name](run) if name in FIGURES and len(run.history) > 1 else None
+    if figure is None:
+        raise ValueError(f"no figure {name!r} of this run; there are {', '.join(figures_of(run)) or 'none'}")
+    return figure
+
+
+def draw_all(run: RunData, container: Container) -> list[style.Drawing]:
     """The figures of a run as SVG, with the elastic modes of its container whatever the model.
 
     Raises:
@@ -68,7 +82,7 @@ def draw_all(run: OpenedRun, container: Container) -> list[style.Drawing]:
     return drawings
 
 
-def base_motion_figure(run: OpenedRun) -> Figure:
+def base_motion_figure(run: RunData) -> Figure:
     """Displacement, velocity and acceleration of the floor, along x and upward."""
     history, static = run.history, run.typed_result.static or StaticResult()
     displacement, acceleration = 1e3 * history["base_displacement_m"], history["base_acceleration_m_s2"]
@@ -114,7 +128,7 @@ def base_motion_figure(run: OpenedRun) -> Figure:
     return figure
 
 
-def rotation_figure(run: OpenedRun) -> Figure:
+def rotation_figure(run: RunData) -> Figure:
     """Rotation with the slenderness angle marked, the rigid block's beside it where there is one; of each loose box."""
     if boxes := run.verdict.boxes:
         return box_figure(run, ROTATION, boxes)
@@ -153,7 +167,7 @@ def rotation_figure(run: OpenedRun) -> Figure:
     return figure
 
 
-def slip_figure(run: OpenedRun) -> Figure:
+def slip_figure(run: RunData) -> Figure:
     """Sliding of the loaded contact points over the floor; of each loose box over what is below it."""
     if boxes := run.verdict.boxes:
         return box_figure(run, SLIP, boxes)
@@ -176,7 +190,7 @@ def slip_figure(run: OpenedRun) -> Figure:
     return figure
 
 
-def uplift_figure(run: OpenedRun) -> Figure:
+def uplift_figure(run: RunData) -> Figure:
     """Uplift of the higher side of the base; of each loose box from what is below it."""
     if boxes := run.verdict.boxes:
         return box_figure(run, OPENING, boxes)
@@ -194,7 +208,7 @@ def uplift_figure(run: OpenedRun) -> Figure:
     return figure
 
 
-def phase_portrait_figure(run: OpenedRun) -> Figure | None:
+def phase_portrait_figure(run: RunData) -> Figure | None:
     """Angular velocity over rotation, with the curve within which a free rigid block returns.
 
     Of a loose stack that of its lowest box; none where this does not rock.
@@ -229,7 +243,7 @@ def phase_portrait_figure(run: OpenedRun) -> Figure | None:
     return figure
 
 
-FIGURES: dict[str, Callable[[OpenedRun], Figure | None]] = {
+FIGURES: dict[str, Callable[[RunData], Figure | None]] = {
     "base_motion": base_motion_figure,
     "spectrum": spectrum_figure,
     "rotation": rotation_figure,
@@ -245,7 +259,7 @@ FIGURES: dict[str, Callable[[OpenedRun], Figure | None]] = {
 
 
 def _panel(
-    run: OpenedRun,
+    run: RunData,
     values: FloatArray,
     label: str,
     name: str | None = None,

@@ -8,7 +8,7 @@ import importlib
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -167,6 +167,27 @@ def open_run(folder: str | Path) -> OpenedRun:
             )
     place = RunFiles(path)
     return OpenedRun(place=place, result=read_result(place.result))
+
+
+class RunData(Protocol):
+    """What the figures show: of a run in a folder, or in memory."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def status(self) -> str: ...
+    @property
+    def case(self) -> Case: ...
+    @property
+    def typed_result(self) -> RunResult: ...
+    @property
+    def verdict(self) -> Verdict: ...
+    @property
+    def history(self) -> History: ...
+    @property
+    def slenderness_angle(self) -> float: ...
+    @property
+    def rigid_check(self) -> dict[str, FloatArray] | None: ...
 
 
 def pyvista_grid(frame: Frame) -> "UnstructuredGrid":

@@ -18,6 +18,7 @@ from fem.results.history import History
 from fem.results.reader import pyvista_grid
 from fem.results.run_result import RunResult, Verdict
 from fem.run.checks import WantedChecks, add_checks
+from fem.run.opened import plotted
 from fem.run.output import Stopwatch
 from fem.run.recorder import Recorder
 from fem.run.solve import begun, in_words, resolve, stepped
@@ -27,6 +28,8 @@ from fem.runtime.threads import use_one_blas_thread
 from fem.solid.nodal_body import advance_body
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from fem.results.reader import UnstructuredGrid
 
 
@@ -65,6 +68,26 @@ class Run:
             FieldError: there is none of that time; a ValueError.
         """
         return self.fields.frame(self.fields.index_at(time))
+
+    @property
+    def name(self) -> str:
+        """Name of the case."""
+        return self.case.name
+
+    @property
+    def slenderness_angle(self) -> float:
+        """Slenderness angle: beyond it the container falls if left alone [rad]."""
+        static = self.typed_result.static
+        assert static is not None and static.slenderness_angle_rad is not None
+        return static.slenderness_angle_rad
+
+    @property
+    def rigid_check(self) -> None:
+        """The table of the analytic block, which is in a folder only."""
+
+    def plot(self, name: str = "rotation") -> "Figure":
+        """A figure of the run, see `plotted`: `run.plot("slip").savefig("slip.png")`."""
+        return plotted(self, name)
 
     def grid(self, time: float) -> "UnstructuredGrid":
         """The frame nearest to a time [s] as a pyvista grid in the x-y plane, where the container stood.

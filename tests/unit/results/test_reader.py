@@ -6,6 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import matplotlib.figure
 import numpy as np
 import pytest
 import pyvista
@@ -13,6 +14,8 @@ import pyvista
 import fem
 from fem.case.case import load_case
 from fem.case.columns import ALWAYS
+from fem.figures import style
+from fem.figures.run import FIGURES
 from fem.results.errors import FolderError
 from fem.results.fields import FieldError
 from fem.run.run import RunOptions, run_case
@@ -67,6 +70,24 @@ def test_the_rigid_check_comes_by_column(folder):
     assert set(check) >= {"time_s", "rotation_rad", "analytic_rotation_rad"}
     assert check["rotation_rad"] == pytest.approx(fem.open_run(folder).history["rotation_rad"], abs=0.0)
     assert np.abs(check["analytic_rotation_rad"] - check["rotation_rad"])[:100].max() < 1e-5
+
+
+@pytest.mark.parametrize("name", ["rotation", "slip", "energy", "rigid_check"])
+def test_a_figure_is_that_of_the_page(folder, name):
+    run = fem.open_run(folder)
+    drawn = run.plot(name)
+    assert isinstance(drawn, matplotlib.figure.Figure)
+    with style.house_style():
+        expected = FIGURES[name](run)
+    assert [one.get_text() for one in drawn.texts] == [one.get_text() for one in expected.texts]
+
+
+def test_a_figure_that_there_is_not_is_refused_with_those_that_there_are(folder):
+    for name in ("spectrum", "rotations"):
+        with pytest.raises(
+            ValueError, match=f"no figure '{name}' of this run; there are base_motion, rotation, "
+        ):
+            fem.open_run(folder).plot(name)
 
 
 def test_frames_hold_the_rigid_motion_of_the_history(folder):

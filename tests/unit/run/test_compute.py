@@ -61,6 +61,8 @@ def test_what_a_run_in_memory_offers():
         run.verdict["outcomes"]
     with pytest.raises(FieldError, match="frames lie from 0 to 1 s, not at 7 s"):
         run.grid(7.0)
+    assert "slip" in run.plot("slip").texts[0].get_text().lower()
+    assert run.history.units["rotation_rad"] == "rad"
     without = fem.compute(run.case.replace({"output.fields_s": 0.0}), band=False)
     assert len(without.fields) == 0
     with pytest.raises(ValueError, match=r"there are no frames; compute the case with output\.fields_s > 0"):
