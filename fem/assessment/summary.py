@@ -292,11 +292,14 @@ def _rigid_rows(check: run_result.RigidCheckResult | None, angle: float | None) 
     rows = []
     for pair, name, unit in (
         (check.first_impact_s or run_result.RunAndBlock(), "first impact", " s"),
-        (check.velocity_ratio or run_result.RunAndBlock(), "velocity ratio", ""),
+        (check.velocity_ratio or run_result.RunAndBlock(), "restitution", ""),
     ):
         if pair != run_result.RunAndBlock():
-            run, block = visible_number(pair.run, 1.0, ".4f"), visible_number(pair.block, 1.0, ".4f")
-            rows.append((f"rigid check, {name}", f"{run}{unit} (block {block})"))
+            run, block = (
+                "no impact" if one is None else visible_number(one, 1.0, ".4f") + unit
+                for one in (pair.run, pair.block)
+            )
+            rows.append((f"rigid check, {name}", f"{run} (block {block})"))
     if check.peaks and angle:
         run = ", ".join(f"{peak.run_rad / angle:.3f}" for peak in check.peaks[:4])
         block = ", ".join(f"{peak.block_rad / angle:.3f}" for peak in check.peaks[:4])
@@ -336,7 +339,11 @@ def _files(folder: Path) -> list[str]:
     """What to open; never wrapped, since people copy paths."""
     fields = folder / "fields" / "run.pvd"
     paraview = (
-        ["ParaView: open this file, Apply, Warp By Vector displacement_m", f"  {fields}"]
+        [
+            "ParaView: open this file, Apply, Warp By Vector displacement_m",
+            "  (a smaller output.fields_s keeps more frames)",
+            f"  {fields}",
+        ]
         if fields.exists()
         else ["ParaView: no fields were written; output.fields_s > 0 writes them"]
     )

@@ -236,7 +236,7 @@ def _too_many_samples(case: Any) -> str:
 
 def _frames(case: Any) -> float:
     interval = case.output.fields_s
-    return longest_time(case) / float(interval) + 1.0 if interval else 0.0
+    return longest_time(case) / float(interval) + 1.0 if interval not in (0.0, "auto") else 0.0
 
 
 CASE_RULES = (

@@ -294,8 +294,9 @@ class OutputTable(CaseTable):
     """Files to write, and their intervals."""
 
     history_s: Annotated[float, q.SAMPLING] = case_key("interval of the history", 0.005)
-    fields_s: Annotated[float, q.FRAME_INTERVAL] = case_key(
-        "interval of the fields for ParaView; 0: none", 0.05
+    fields_s: Annotated[float, q.FRAME_INTERVAL] | Literal["auto"] = case_key(
+        'interval of the fields for ParaView and films; 0: none; "auto": 0.05 or longer, so that they take 16 MB',
+        "auto",
     )
     contents_filter_Hz: Annotated[float, q.CONTENTS_FILTER] = case_key(  # noqa: N815
         "acceleration of the contents: cut-off of its low-pass filter, Butterworth of two poles", 33.0

@@ -26,6 +26,7 @@ from fem.case.case import Case
 from fem.model.container import Container, discretise, modes_of_a_body
 from fem.model.equilibrium import Equilibrium, find_equilibrium
 from fem.model.floor import slab_of
+from fem.model.frames import frame_interval
 from fem.model.loose_stack import joints_of_stack, make_stack_state, own_stiffness, settle
 from fem.model.motion import build_motions, longest_run, peaks_in_run, rest_sought_from
 from fem.model.restitution import require_loss
@@ -158,7 +159,8 @@ def build_model(
         depth=float(-old.point[:, 1].min()),
         stored=float(spring_energy(contact, old.point, old.stick)) / control.reference_energy,
     )
-    interval, fields = case.output.history_s, case.output.fields_s
+    interval = case.output.history_s
+    fields = frame_interval(case, len(container.elements.nodes), duration)
     stacked = case.container.bolted_joints > 0  # the forces in its joints follow from the motion
     run = make_run(
         scheme=scheme,

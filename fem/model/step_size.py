@@ -10,6 +10,7 @@ from contact.stepping.scheme import Scheme, generalised_alpha, newmark
 from contact.stepping.state import Control
 from fem.case.case import Case, CaseError
 from fem.model.container import Container
+from fem.model.frames import INTERVALS
 from fem.model.loose_stack import struck_mass
 from fem.model.motion import longest_run
 from fem.model.static_checks import StaticChecks
@@ -74,7 +75,8 @@ def largest_step_of(case: Case, static: StaticChecks, *motions: BaseMotion) -> t
                 f'is {motion.time_scale:.3g} s; take at most {COARSE_STEP * motion.time_scale:.2g} s, or "auto"'
             )
         ends.update(inside[(inside > 0.0) & (inside < duration)].tolist())
-    interval = min(output.history_s, output.fields_s or math.inf)
+    frames = INTERVALS[0] if output.fields_s == "auto" else output.fields_s
+    interval = min(output.history_s, frames or math.inf)
     largest = min(largest, duration, MOST_SAMPLES_A_STEP * interval)
     return largest, _apart(sorted(ends), duration, SMALLEST_SHARE * largest)
 

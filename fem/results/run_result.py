@@ -321,6 +321,7 @@ class RunResult(JsonBlock):
     status: str  #: completed | overturned | failed | interrupted | running
     case: str | None = None
     title: str | None = None
+    overrides: tuple[str, ...] | None = None  #: changes by the command line, as `table.key=value`
     case_hash: str | None = None
     static: StaticResult | None = None
     motion: MotionResult | None = None

@@ -1,7 +1,7 @@
 """A frame as a VTU file, written straight: meshio, which reads it, spends 5 ms on what takes 0.3 ms here.
 
-The arrays follow the XML as raw bytes, each one block of zlib. Fields that vary from node to node are only wrapped:
-to compress them takes ten times as long and saves a sixth of a frame. What all frames share is compressed once, well.
+The arrays follow the XML as raw bytes, each one block of zlib, fast for what varies from frame to frame (2 ms a frame
+of 2600 nodes, which saves a quarter of it). What all frames share is compressed once, well.
 https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html
 """
 
@@ -81,13 +81,8 @@ def _shared(values: Array) -> tuple[str, bytes]:
     return _coded(values, level=9)
 
 
-def _coded(values: Array, level: int | None = None) -> tuple[str, bytes]:
-    """Attributes of an array, and its bytes: one block of zlib behind its sizes.
-
-    Without a level, rows are compressed where most are equal to the one before.
-    """
-    if level is None:
-        level = int(np.mean(values[1:] == values[:-1]) > 0.5)
+def _coded(values: Array, level: int = 1) -> tuple[str, bytes]:
+    """Attributes of an array, and its bytes: one block of zlib behind its sizes."""
     kind = f'type="{TYPES[values.dtype.name]}"'
     if values.ndim == 2:
         kind += f' NumberOfComponents="{values.shape[1]}"'

@@ -128,7 +128,7 @@ def open_output(files: RunFiles, model: Model, start: Start) -> Iterator[RunOutp
         history = stack.enter_context(
             HistoryWriter(files.history, history_columns(case), position=start.history_bytes)
         )
-        if case.output.fields_s > 0.0:
+        if case.output.fields_s != 0.0:
             fields = FieldWriter(
                 files.fields,
                 points=elements.nodes,

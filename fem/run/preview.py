@@ -93,7 +93,7 @@ class Preview:
             "duration_s": self.duration,
             "ends_at_rest": ends_at_rest(case),
             "history_samples": samples_of(case, self.duration),
-            "field_frames": frames_of(case, self.duration),
+            "field_frames": frames_of(case, nodes, self.duration),
             "output_bytes": required_disk(case, nodes, self.duration),
         }
 

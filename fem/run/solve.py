@@ -15,8 +15,10 @@ from fem.assessment.warnings import warnings_for
 from fem.case.case import Case
 from fem.case.rules import ends_at_rest, longest_time
 from fem.model.floor import floor_result
+from fem.model.frames import frame_interval
+from fem.model.geometry import node_count
 from fem.model.model import Model
-from fem.model.motion import motion_result, peaks_in_run
+from fem.model.motion import longest_run, motion_result, peaks_in_run
 from fem.model.static_checks import static_checks_of
 from fem.model.step_size import largest_step_of
 from fem.model.support import normal_penalty
@@ -45,6 +47,9 @@ def resolve(case: Case, mesh: ContainerMesh, motions: tuple[BaseMotion, BaseMoti
     if case.solver.step_s == "auto":
         static = static_checks_of(case, mesh, *peaks_in_run(case, *motions))
         chosen["solver.step_s"], _ = largest_step_of(case, static, *motions)
+    if case.output.fields_s == "auto":
+        nodes = node_count(mesh, case.solver.order)
+        chosen["output.fields_s"] = frame_interval(case, nodes, longest_run(case, *motions))
     return case.with_values(chosen) if chosen else case
 
 
@@ -55,6 +60,7 @@ def begun(model: Model, case_hash: str) -> RunResult:
         status="running",
         case=case.name,
         title=case.title,
+        overrides=case.overrides or None,
         case_hash=case_hash,
         static=model.static.to_result(),
         motion=motion_result(case, model.motion, model.vertical),

@@ -50,7 +50,7 @@ def test_least_case_has_the_documented_defaults():
         },
         "output": {
             "history_s": 0.005,
-            "fields_s": 0.05,
+            "fields_s": "auto",
             "contents_filter_Hz": 33.0,
             "figures": True,
             "stop_when_overturned": True,
