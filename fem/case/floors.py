@@ -9,7 +9,9 @@ import math
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
-from pydantic import Field
+from pydantic import Field, GetJsonSchemaHandler
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema
 
 from fem.case import quantities as q
 from fem.case.boxes import boxes_of
@@ -179,6 +181,13 @@ class FloorTable(CaseTable):
     slope_percent: Annotated[float, q.SLOPE] = case_key("of the floor, > 0: it falls toward +x", 0.0)
 
     rules = FLOOR_RULES
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, core: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
+        """The schema of the table; an editor takes the short names of presets, too."""
+        schema = handler.resolve_ref_schema(handler(core))
+        schema["properties"]["preset"]["anyOf"][0]["enum"].extend(ALIASES)
+        return schema
 
     @classmethod
     def as_meant(cls, given: dict[str, Any]) -> dict[str, Any]:

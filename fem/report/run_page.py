@@ -3,6 +3,8 @@
 import datetime as dt
 from collections.abc import Callable, Iterator
 
+from markupsafe import Markup
+
 from fem.assessment.code_note import code_note
 from fem.assessment.floor_words import floor_rows
 from fem.assessment.loose_boxes import largest_joint_slip
@@ -110,6 +112,7 @@ def _page(view: RunView, signature: Signature | None, varied: VariationTable | N
         kind=f"{'Short report' if view.brief else 'Report'} of a run",
         title=view.case.title or view.run.name,
         name=view.run.name,
+        introduction=_changes(view),
         hash=str(view.result.case_hash or ""),
         signature=(signature or Signature()).completed(view.case.named),
         sections=[
@@ -122,6 +125,14 @@ def _page(view: RunView, signature: Signature | None, varied: VariationTable | N
         scripts=["player.js"] if view.played else [],
         data={"run": view.played} if view.played else {},
     )
+
+
+def _changes(view: RunView) -> list[html.Block]:
+    """What the command line changed in the case file, whose title may say otherwise."""
+    if not view.result.overrides:
+        return []
+    keys = Markup(", ").join(map(html.code, view.result.overrides))
+    return [html.Paragraph(html.joined("Changed on the command line: ", keys), "changed")]
 
 
 def verdict_section(view: RunView, variations: VariationTable | None) -> html.PageSection:

@@ -339,10 +339,21 @@ def block_section(view: RunView) -> html.PageSection:
 
 def _block_table(check: RigidCheckResult) -> html.Table:
     first, ratio, apart = check.first_impact_s, check.velocity_ratio, check.largest_difference_before_impact
+    none = "no impact"
     rows = (
-        [("first impact [s]", number(first.run, figures=5), number(first.block, figures=5))] if first else []
+        [
+            (
+                "first impact [s]",
+                *(none if one is None else number(one, figures=5) for one in (first.run, first.block)),
+            )
+        ]
+        if first
+        else []
     )
-    rows += [("velocity ratio there", number(ratio.run), number(ratio.block))] if ratio else []
+    if ratio:
+        rows.append(
+            ("restitution there", *(none if one is None else number(one) for one in (ratio.run, ratio.block)))
+        )
     rows += [
         (f"peak {k} [°]", number(peak.run_rad, DEGREES), number(peak.block_rad, DEGREES))
         for k, peak in enumerate(check.peaks, 1)

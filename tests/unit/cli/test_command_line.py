@@ -308,6 +308,12 @@ class TestSchema:
         assert schema["additionalProperties"] is False
         assert schema["$defs"]["MotionTable"]["required"] == ["kind"]
 
+    def test_takes_every_name_of_a_preset_that_a_case_takes(self, capsys):
+        listed = self.schema(capsys)["$defs"]["FloorTable"]["properties"]["preset"]["anyOf"][0]["enum"]
+        assert {"concrete", "asphalt", "steel"} <= set(listed)
+        for name in listed:
+            assert load_case("rocking", [f"floor.preset={name}"]).floor.is_slab
+
     @pytest.mark.parametrize("collection", COLLECTIONS, ids=lambda collection: collection.kind)
     def test_knows_every_table_and_key_of_the_shipped_files(self, capsys, collection):
         schema = self.schema(capsys, collection.kind)

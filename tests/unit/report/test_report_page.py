@@ -46,6 +46,11 @@ def test_the_page_has_every_part_in_the_order_of_reading(page):
     assert page.index("Result: ") < page.index("The case")
 
 
+def test_what_the_command_line_changed_stands_under_the_title(page):
+    above = page[: page.index("<main")]
+    assert all(f"<code>{override}</code>" in above for override in [*COARSE, "floor.kind=rigid"])
+
+
 def test_the_page_loads_nothing_and_fits_into_a_mail(page):
     assert len(page.encode()) < 5_000_000
     assert not re.search(r"""(?:src|href)=["'](?!#|data:,["'])""", page)
