@@ -34,6 +34,7 @@ from fem.results.figures import FIGURES, Place, keys_of
 from fem.runtime import units
 from fem.sweep.answers import AnswerRow, SweepAnswer, sweep_answer
 from fem.sweep.maps import SHARE_COLOURS, shares_of
+from fem.sweep.perturbation import input_in_words
 from fem.sweep.result import SweepResult
 from fem.sweep.table import SweepTable, open_sweep
 
@@ -70,7 +71,7 @@ def sweep_report(folder: Path, *, signature: Signature | None = None) -> str:
     """
     table = open_sweep(folder)
     info, case = table.info, load_case(str(folder / "base.toml"))
-    data, drawn = map_data(table, folder), studies.drawings(folder, table.info.maps, "sweep")
+    data, drawn = map_data(table, folder), studies.drawings(folder, on_screen(table), "sweep")
     answer, name = sweep_answer(table, folder), info.sweep or folder.name
     given = html.Pairs(asked_rows(case), caption="Base case, where no axis changes it", look="asked")
     return studies.study_html(
@@ -86,6 +87,7 @@ def sweep_report(folder: Path, *, signature: Signature | None = None) -> str:
         sections=[
             found_section(table, answer.sentence if answer else None),
             html.section("Maps", "drawn", *drawn),
+            html.section("How sure", "sure", *_sure_lines(table)),
             html.section("Cell by cell", "map-title", cell_map(table, data), look="screen" if drawn else ""),
             html.section(
                 "The answer for each value of the other axes",
@@ -113,8 +115,13 @@ def sweep_report(folder: Path, *, signature: Signature | None = None) -> str:
     )
 
 
+def on_screen(table: SweepTable) -> list[str]:
+    """The maps but for those without colours, which are for print."""
+    return [name for name in table.info.maps if not name.endswith("_print.svg")]
+
+
 def found_section(table: SweepTable, answer: str | None) -> html.PageSection:
-    """The answer, how many cells have which outcome, and how sure they are."""
+    """The answer, and how many cells have which outcome."""
     info, computed = table.info, int((table["status"] != "").sum())
     counted = ", ".join(f"{count} {label}" for label, _, count, _ in counts(table))
     return studies.answer_section(
@@ -122,7 +129,6 @@ def found_section(table: SweepTable, answer: str | None) -> html.PageSection:
         answer,
         f"{computed} of {info.cells} cells{studies.unfinished(info)}: {counted}.",
         *([f"Held fixed: {info.held}."] if info.held else []),
-        *_sure_lines(table),
         note="What happened under these motions, in a study. Nothing is known between the cells: a region of "
         "overturning that is smaller than a cell is missed.",
     )
@@ -153,8 +159,8 @@ def _sure_lines(table: SweepTable) -> Iterator[str]:
         "A copy changes one input over its range in [uncertainty], a pair of them or all at once, or the motion, "
         f"friction or damping a little: {info.copies} copies of {info.perturbed} cells.{left_out}"
     )
-    if found := [html.joined(html.code(key), f" ({count})") for key, count in deciding(table)]:
-        yield html.joined("Unsure cells are decided by ", Markup(", ").join(found), ".")
+    if found := [f"{input_in_words(key)} ({count})" for key, count in deciding(table)]:
+        yield f"Unsure cells are decided by {', '.join(found)}."
 
 
 def cell_map(table: SweepTable, data: Mapping[str, Any]) -> html.CellMap:

@@ -14,7 +14,7 @@ from fem.case.quantities import CONTACT_DAMPING, DRAWS, Quantity
 from fem.case.strength import scaled_motion
 from fem.case.tables import CaseTable
 from fem.case.uncertainty import InputChange
-from fem.case.unknown_inputs import DASHPOT, HELD
+from fem.case.unknown_inputs import DASHPOT, HELD, WORDS
 
 SHARE = Quantity(unit="", least=0.0, most=0.5, advice="0.02 is two per cent")
 FRICTION_STEP = Quantity(unit="", least=0.0, most=1.0, advice="0.02 is usual")
@@ -98,3 +98,10 @@ class Perturbation(CaseTable):
 def _rounded(value: float) -> float:
     """Fifteen digits: 0.4 + 0.02 is 0.42."""
     return float(f"{value:.15g}")
+
+
+def input_in_words(key: str) -> str:
+    """What a copy changes, by its key, for people: an unknown input, or the motion."""
+    return WORDS.get(key) or (
+        "phase of the motion" if key.endswith("phase_rad") else "strength of the motion"
+    )

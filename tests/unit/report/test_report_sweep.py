@@ -102,7 +102,7 @@ def test_the_page_says_what_is_held_and_what_decides(folder):
     page = sweep_report(folder)
     assert "with mu_k = mu_s/2 falling at once" in page
     assert "1 are <strong>regime unsure</strong>" in page and "2 are <strong>unsure</strong>" in page
-    assert "<code>contact.mu_kinetic</code> (1), <code>motion.start</code> (1)" in page
+    assert "Unsure cells are decided by kinetic friction (1), start (1)." in page
     assert "Left out: pairs." in page
 
 
