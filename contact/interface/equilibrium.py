@@ -13,6 +13,8 @@ from contact.arrays import FloatArray
 
 #: contact force over the weight below which a point of the settled base counts as open
 ROUNDING = 1e-12
+ROUNDING_OF_CAMBER = 1e-9  #: .. of a cambered one, whose springs are stiff beside its heights
+MOST_ROUNDS = 100
 
 
 class SettlingError(ArithmeticError):
@@ -60,6 +62,7 @@ def standing(
     point: FloatArray,
     compliance: FloatArray,
     normal_stiffness: FloatArray,
+    camber: FloatArray,
     shear_ratio: float = 0.0,
 ) -> Stance:
     """Rest under gravity on unilateral springs; without friction on a level floor.
@@ -69,6 +72,7 @@ def standing(
         point: (n, 2) base points relative to the centroid [m].
         compliance: (2n, 2n) elastic compliance in the body's frame, inertia relief [m/N].
         normal_stiffness: (n,) [N/m].
+        camber: (n,) height of the points above the lowest one of an upright base [m].
         shear_ratio: friction uphill over the normal force: the slope of a floor that falls toward +x.
 
     Raises:
@@ -76,7 +80,10 @@ def standing(
     """
     n = point.shape[0]
     vertical = compliance[1::2, 1::2] - shear_ratio * compliance[1::2, 0::2]
-    carrying = np.ones(n, dtype=bool)
+    carrying, rounding = np.ones(n, dtype=bool), ROUNDING
+    if camber.any():  # the load is on few of many points: begin with those beside the mass centre
+        beside = np.searchsorted(point[:, 0], 0.0, side="right")
+        carrying, rounding = np.isin(np.arange(n), (beside - 1, beside)), ROUNDING_OF_CAMBER
     for _ in range(2 * n + 2):
         chosen = np.flatnonzero(carrying)
         m = chosen.size
@@ -88,7 +95,7 @@ def standing(
         system[m:, :m] = system[:m, m:].T
         system[m + 1, :m] -= shear_ratio * point[chosen, 1]
         right = np.zeros(m + 2)
-        right[:m] = -(point[chosen, 1] + centroid[1])
+        right[:m] = -(point[chosen, 1] + camber[chosen] + centroid[1])
         right[m] = weight
         try:
             solution = np.linalg.solve(system, right)
@@ -96,9 +103,16 @@ def standing(
             break
         normal = np.zeros(n)
         normal[chosen] = solution[:m]
-        gap = point[:, 1] + centroid[1] + solution[m] - solution[m + 1] * point[:, 0] + vertical @ normal
+        gap = (
+            point[:, 1]
+            + camber
+            + centroid[1]
+            + solution[m]
+            - solution[m + 1] * point[:, 0]
+            + vertical @ normal
+        )
         # A point that just touches keeps its state within rounding; it would otherwise change state for ever.
-        wrong = np.where(carrying, normal < -ROUNDING * weight, gap < -ROUNDING * weight / normal_stiffness)
+        wrong = np.where(carrying, normal < -rounding * weight, gap < -rounding * weight / normal_stiffness)
         if not wrong.any():
             normal = np.maximum(normal, 0.0)
             force = np.column_stack([np.zeros(n) - shear_ratio * normal, normal])
@@ -125,46 +139,106 @@ def tilted(
     corner_x: float,
     compliance: FloatArray,
     normal_stiffness: FloatArray,
+    camber: FloatArray,
     mu_static: float,
 ) -> Stance:
     """Tilted about one corner, with the force that keeps this corner from accelerating; right corner for rotation > 0.
+
+    A cambered base touches elsewhere, at one point or two, until it has rolled to its edge; it is held there.
 
     Args:
         rotation: not 0 [rad]; angular_velocity: about that corner [rad/s].
         mass, inertia: [kg, kg m2].
         gravity: toward the floor; downhill: along a floor that falls toward +x [m/s2].
         point: (n, 2) base points relative to the mass centre, sorted by x [m].
-        corner_x: position of that corner on the floor [m].
+        corner_x: position of that corner of a level base on the floor [m].
         compliance: (2n, 2n) elastic compliance in the body's frame, inertia relief [m/N].
         normal_stiffness: (n,) [N/m]; mu_static: limits the friction at the corner.
+        camber: (n,) height of the points above the lowest one of an upright base [m].
 
     Raises:
         SettlingError: the corner would have to pull.
     """
-    corner = point.shape[0] - 1 if rotation > 0.0 else 0
     cosine, sine = math.cos(rotation), math.sin(rotation)
-    x, z = point[corner]
-    arm = np.array([cosine * x + sine * z, -sine * x + cosine * z])
-    # Acceleration of the corner: J M^-1 (weight + J^T f) - omega^2 arm = 0.
-    jacobian = np.array([[1.0, 0.0, arm[1]], [0.0, 1.0, -arm[0]]])
-    inverse = np.diag([1.0 / mass, 1.0 / mass, 1.0 / inertia])
-    free = np.array([downhill, -gravity]) - angular_velocity**2 * arm
-    force = np.linalg.solve(jacobian @ inverse @ jacobian.T, -free)
-    if force[1] <= 0.0:
-        raise SettlingError(
-            f"the corner would have to pull: at an angular velocity of {angular_velocity} rad/s the container "
-            "leaves the floor"
-        )
-    force[0] = np.clip(force[0], -mu_static * force[1], mu_static * force[1])
-    forces = np.zeros_like(point)
-    forces[corner] = force
     turn = np.array([[cosine, sine], [-sine, cosine]])
-    own = compliance[2 * corner : 2 * corner + 2, 2 * corner : 2 * corner + 2]
-    strained = arm + turn @ own @ turn.T @ force  # position of the corner after elastic deformation
+
+    def held(arm: FloatArray) -> FloatArray:
+        # Acceleration of the place that is held: J M^-1 (weight + J^T f) - omega^2 arm = 0.
+        jacobian = np.array([[1.0, 0.0, arm[1]], [0.0, 1.0, -arm[0]]])
+        inverse = np.diag([1.0 / mass, 1.0 / mass, 1.0 / inertia])
+        free = np.array([downhill, -gravity]) - angular_velocity**2 * arm
+        force = np.linalg.solve(jacobian @ inverse @ jacobian.T, -free)
+        if force[1] <= 0.0:
+            raise SettlingError(
+                f"the corner would have to pull: at an angular velocity of {angular_velocity} rad/s the container "
+                "leaves the floor"
+            )
+        force[0] = np.clip(force[0], -mu_static * force[1], mu_static * force[1])
+        return np.asarray(force)
+
+    corner = point.shape[0] - 1 if rotation > 0.0 else 0
+    forces = np.zeros_like(point)
+    if camber.any():
+        share, rise = np.zeros(len(point)), 0.0
+        share[corner] = 1.0
+        turned, arms = np.kron(np.eye(len(point)), turn), point @ turn.T
+        own = turned @ compliance @ turned.T
+        for _ in range(MOST_ROUNDS):
+            arm, before = share @ arms, share
+            force = held(arm)
+            vertical = own[1::2, 1::2] + force[0] / force[1] * own[1::2, 0::2]
+            normal, rise = pressed(float(force[1]), arms[:, 1] + camber, vertical, normal_stiffness)
+            share = normal / force[1]
+            if np.abs(share - before).max() <= ROUNDING_OF_CAMBER:
+                break
+        forces[:] = share[:, None] * force
+        place = corner_x + share @ (point[:, 0] - point[corner, 0])  # on the floor, after it has rolled there
+        centre = place - share @ (arms[:, 0] + (own @ forces.ravel())[0::2]), rise
+    else:
+        x, z = point[corner]
+        arm = np.array([cosine * x + sine * z, -sine * x + cosine * z])
+        force = held(arm)
+        forces[corner] = force
+        own = compliance[2 * corner : 2 * corner + 2, 2 * corner : 2 * corner + 2]
+        strained = arm + turn @ own @ turn.T @ force  # position of the corner after elastic deformation
+        centre = corner_x - strained[0], -force[1] / normal_stiffness[corner] - strained[1]
     return Stance(
-        centre=(corner_x - strained[0], -force[1] / normal_stiffness[corner] - strained[1]),
+        centre=centre,
         rotation=rotation,
         velocity=(-angular_velocity * arm[1], angular_velocity * arm[0]),
         angular_velocity=angular_velocity,
         force=forces,
     )
+
+
+def pressed(
+    load: float, height: FloatArray, compliance: FloatArray, stiffness: FloatArray
+) -> tuple[FloatArray, float]:
+    """Normal forces (n,) [N] on unilateral springs under a load that moves up and down alone, and its rise [m].
+
+    Args:
+        load: downward [N].
+        height: (n,) of the points above the load's own place [m].
+        compliance: (n, n) elastic, of the points [m/N]; stiffness: (n,) of their springs [N/m].
+
+    Raises:
+        SettlingError: no state is found.
+    """
+    carrying = height <= height.min()
+    for _ in range(MOST_ROUNDS):
+        chosen = np.flatnonzero(carrying)
+        m = chosen.size
+        system = np.ones((m + 1, m + 1))
+        system[:m, :m] = compliance[np.ix_(chosen, chosen)] + np.diag(1.0 / stiffness[chosen])
+        system[m, m] = 0.0
+        solution = np.linalg.solve(system, np.append(-height[chosen], load))
+        normal = np.zeros(height.size)
+        normal[chosen] = solution[:m]
+        gap = height + solution[m] + compliance @ normal
+        wrong = np.where(
+            carrying, normal < -ROUNDING_OF_CAMBER * load, gap < -ROUNDING_OF_CAMBER * load / stiffness
+        )
+        if not wrong.any():
+            return np.maximum(normal, 0.0), float(solution[m])
+        carrying = carrying ^ wrong
+    raise SettlingError("the tilted base does not settle on its points")

@@ -6,6 +6,7 @@ point that carries a stiffness in N/m (its share of the penalty).
 
 Normal: spring and dashpot that never pull (Kelvin-Voigt with a cut-off; Wriggers, Computational Contact
 Mechanics, 2006, sec. 6), in series with a plastic slider where the floor crushes at a largest force.
+Rolling: the resultant of a cambered base runs ahead of the place where it touches, which takes energy at every speed.
 Friction: Coulomb with an elastic stick - a Kelvin-Voigt element in series with a slider, solved by return
 mapping - or Coulomb regularised in velocity.
 """
@@ -61,6 +62,22 @@ def normal_force(
     if force >= cap:
         return cap, 0.0, 0.0
     return force, slope, by_rate
+
+
+@compiled(inline=True)
+def rolling_lead(rotation: float, rate: float, time: float, radius: float, reach: float) -> float:
+    """How far the resultant of a base that rolls is ahead of the place where it touches [m].
+
+    A base of radius R touches at x = R theta from its middle, at most at its edge. The resultant is where it would
+    touch a time `time` later, so that small rocking has the moment N R (theta + time theta'): a viscous damping of the
+    rolling, which vanishes about an edge and never takes the resultant out of the base.
+
+    Args:
+        rotation: theta [rad]; rate: theta' [rad/s].
+        time: [s]; radius: R [m]; reach: half the width of the base [m].
+    """
+    here = min(max(radius * rotation, -reach), reach)
+    return min(max(radius * (rotation + time * rate), -reach), reach) - here
 
 
 @compiled(inline=True)

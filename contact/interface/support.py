@@ -4,9 +4,14 @@
 points. The spring of a point of a foot or of a flat base is the penalty times its tributary length (the integral of its
 shape function, so that elements of first and second order reproduce a uniform pressure exactly); the spring of each
 corner is half the penalty times the whole base.
+
+The base may be cambered: its edges stand higher than its middle, by a parabola. As it rolls, its load passes from point
+to point; heights and springs of the points are such that under the weight the resultant then moves as on the parabola
+itself (`cambered`).
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -23,6 +28,9 @@ class Support:
     index: IntArray  #: (n,) indices of the supporting points among the base points given
     length: FloatArray  #: (n,) share of the base of each [m]
     depth: float  #: of the container [m]
+    camber: FloatArray  #: (n,) height above the lowest point of an upright base [m]
+    #: (n,) of a cambered base: sinking of each point under the whole weight at which it rolls evenly [m]
+    sinking: FloatArray
 
     def normal_stiffness(self, normal_penalty: float) -> FloatArray:
         """Spring of each point under a penalty in Pa/m, shape (n,) [N/m]."""
@@ -59,10 +67,22 @@ def choose_support(
     width = float(x[-1] - x[0])
     if kind == "corners":
         return Support(
-            kind=kind, index=np.array([0, x.size - 1]), length=np.full(2, 0.5 * width), depth=depth
+            kind=kind,
+            index=np.array([0, x.size - 1]),
+            length=np.full(2, 0.5 * width),
+            depth=depth,
+            camber=np.zeros(2),
+            sinking=np.zeros(2),
         )
     if kind == "flat":
-        return Support(kind=kind, index=np.arange(x.size), length=tributary_lengths(x, order), depth=depth)
+        return Support(
+            kind=kind,
+            index=np.arange(x.size),
+            length=tributary_lengths(x, order),
+            depth=depth,
+            camber=np.zeros(x.size),
+            sinking=np.zeros(x.size),
+        )
     if not (min(feet) > 0.0 and sum(feet) < width):
         raise ValueError(
             f"[support] foot_m must be positive and below half the width, got {feet} m of {width} m"
@@ -77,4 +97,69 @@ def choose_support(
         index=np.concatenate([left, right]),
         length=np.concatenate([tributary_lengths(x[left], order), tributary_lengths(x[right], order)]),
         depth=depth,
+        camber=np.zeros(left.size + right.size),
+        sinking=np.zeros(left.size + right.size),
     )
+
+
+#: points nearer to the edge than this share of the usual distance are left out, where the base is cambered
+LEAST_DISTANCE = 0.75
+#: of the differences between springs and those of evenly spaced points, beside the error of the resultant
+EVENNESS = 1e-6
+
+
+def cambered(support: Support, x: FloatArray, camber: float) -> Support:
+    """The support on a base whose edges stand higher than its middle by `camber` [m].
+
+    Args:
+        support: feet, or a flat base.
+        x: (n,) of its points, symmetric about the middle of the base [m].
+        camber: d > 0 [m].
+
+    The base is z = d (x/b)^2, of curvature k = 2 d/b^2, and turned by theta it touches at theta/k. On springs it
+    touches with two neighbours at a distance s. Where each of them sinks by c under the whole weight, its part of the
+    load rises from 0 to all while the base turns by 2 c/s. With c = k s^2/2 that is the turn from one side of the
+    polygon to the next, and the resultant is at theta/k throughout, whatever s is. Where distances differ, it is
+    c + c' = k s^2 for each two neighbours, and the heights follow.
+    """
+    edge = float(x[-1])
+    curvature = 2.0 * camber / edge**2
+    kept = _kept(x)
+    x, index = x[kept], support.index[kept]
+    distance = np.diff(x)
+    touching = distance < 2.0 * float(np.median(distance))  # not across the gap between feet
+    pairs = np.flatnonzero(touching)
+    system = np.zeros((pairs.size, x.size))
+    system[np.arange(pairs.size), pairs] = system[np.arange(pairs.size), pairs + 1] = 1.0
+    beside = np.where(touching, distance, np.median(distance)) ** 2
+    usual = 0.25 * curvature * (np.append(beside[0], beside) + np.append(beside, beside[-1]))
+    root = np.sqrt(EVENNESS)
+    sinking = np.linalg.lstsq(
+        np.vstack([system, root * np.eye(x.size)]),
+        np.append(curvature * distance[pairs] ** 2, root * usual),
+        rcond=None,
+    )[0]
+    sinking = np.maximum(0.5 * (sinking + sinking[::-1]), LEAST_DISTANCE**2 * 0.5 * usual)
+    height = 0.5 * curvature * x**2
+    for side in (1.0, -1.0):  # outwards from the innermost point
+        order = np.flatnonzero(side * x >= 0.0)[:: int(side)]
+        slope = curvature * side * x[order[0]]
+        for here, there in pairwise(order):
+            s, both = abs(x[there] - x[here]), sinking[here] + sinking[there]
+            height[there] = height[here] + slope * s + sinking[here]
+            slope += both / s
+    share = 1.0 / sinking
+    return replace(
+        support,
+        index=index,
+        length=support.length.sum() / share.sum() * share,
+        camber=height - height.min(),
+        sinking=sinking,
+    )
+
+
+def _kept(x: FloatArray) -> IntArray:
+    """The points (n,) without those that crowd at the edge."""
+    usual = float(np.median(np.diff(x)))
+    crowded = (x[-1] - np.abs(x) < LEAST_DISTANCE * usual) & (np.abs(x) < x[-1])
+    return np.flatnonzero(~crowded)

@@ -20,6 +20,7 @@ class Contact(NamedTuple):
     mu_kinetic: FloatArray  #: (n,)
     weakening: FloatArray  #: (n,) slip over which static falls to kinetic friction [m]
     stribeck_velocity: float  #: slip velocity over which it falls; 0: not with velocity [m/s]
+    camber: FloatArray  #: (n,) height of the points above the lowest one of an upright base [m]
     friction: int  #: one of `laws.FRICTION_LAWS`
     regularisation_velocity: float  #: [m/s]
     force_scale: float  #: weight of the container [N], the scale of negligible forces
@@ -28,6 +29,10 @@ class Contact(NamedTuple):
     held_step: float = 0.0
     #: Newton steps in which points that have turned from one limit to the other are spared the line search
     turned_steps: int = 40
+    #: of a base that rolls, see `laws.rolling_lead`: how far it leads in time [s]; 0: no rolling resistance
+    rolling_time: float = 0.0
+    rolling_radius: float = 0.0  #: of its camber [m]
+    rolling_reach: float = 0.0  #: half its width [m]
 
 
 @struct

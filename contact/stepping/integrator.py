@@ -66,6 +66,7 @@ def close_step(run: RunState, step: float, iterations: int) -> None:
         clock.dissipated = dissipation(run.ledger)
     for j in range(run.joints.shape[0]):
         run.joints[j].slip += run.joints[j].slip_step
+    clock.rolling_before = clock.rolling
     clock.time += step
     clock.steps += 1
     clock.iterations += iterations
@@ -101,7 +102,7 @@ def enter_floor_frame(body: Any, run: RunState, floor_velocity: float, lift_velo
     shift_velocity(body, run.old, floor_velocity, lift_velocity, 0.0)
     shift_contents(run.contents, (floor_velocity, lift_velocity))
     complete(body, run.old, run.floor[0, 0], run.lift[0, 0], 0.0)
-    indent(run.old.point, run.old.crushed)
+    indent(run.problem.contact, run.old.point, run.old.crushed)
     for side in range(2):
         run.floor[side, 1], run.floor[side, 2] = 0.0, 0.0
         run.lift[side, 1], run.lift[side, 2] = 0.0, 0.0
@@ -163,6 +164,7 @@ def advance(body: Any, run: RunState, until: float) -> int:
         update_observables(
             track,
             control,
+            run.problem.contact.camber,
             run.old,
             run.attempt.new,
             clock.time + step,

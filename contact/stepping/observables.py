@@ -1,11 +1,12 @@
 """Observables of a run, updated at every step: extremes, events, impacts, restitution.
 
 A side is open, and the body turns about the other one, when only the outer part of the base at the other side is in
-contact: a flat base on an elastic bed opens at one edge long before that. The corners are the first and the last
-base point. An impact counts if the container has rocked and a corner closes whose gap had exceeded a thousandth of
-width times slenderness angle while the other corner was the pivot. With it the pivot is exchanged, as soon as the
-container, while it still turns the same way, has lifted the other corner: once for every impact, whatever bounces or
-chatters on the way.
+contact: a flat base on an elastic bed opens at one edge long before that. Of a base that rolls a side is open where all
+of it is, and there are no impacts. The corners are the first and the last base point. An impact counts if the container
+has rocked and a corner closes whose gap had exceeded a thousandth of width times slenderness angle while the other
+corner was the pivot. With it the pivot is exchanged, as soon as the container, while it still turns the same way, has
+lifted the other corner: once for every impact, whatever bounces or chatters on the way. Uplift and opening are above
+the place of a point at rest.
 """
 
 import math
@@ -32,6 +33,7 @@ TURNING_ON = 0.05
 FORCE_WINDOW = 0.01
 #: outer part of the base about which the body turns when the rest is open, over the width
 PIVOT = 0.15
+ROLLING_PIVOT = 0.5  #: .. of a base that rolls: the side away from where it touches carries nothing
 #: rotation ratio above which motion with an open side is rocking
 ROCKING = 0.01
 
@@ -95,14 +97,15 @@ def make_observables() -> Any:
     return track
 
 
-def record_start(track: Any, control: Any, state: State) -> None:
-    """Record the initial state: a container may start tilted, with an open side."""
+def record_start(track: Any, control: Any, camber: FloatArray, state: State) -> None:
+    """Record the initial state: a container may start tilted, with an open side; `camber` of its points (n,) [m]."""
     n = control.base_points
     gap, x = state.point[:n, 1], state.point[:n, 0]
     closed = gap <= 0.0
-    left_open = int(not np.any(closed & (x < x[-1] - PIVOT * control.width)))
-    right_open = int(not np.any(closed & (x > x[0] + PIVOT * control.width)))
-    rotation, highest = float(abs(state.pose[ROTATION])), float(gap.max())
+    pivot = (ROLLING_PIVOT if control.rolls else PIVOT) * control.width
+    left_open = int(not np.any(closed & (x < x[-1] - pivot)))
+    right_open = int(not np.any(closed & (x > x[0] + pivot)))
+    rotation, highest = float(abs(state.pose[ROTATION])), float((gap - camber[:n]).max())
     middle = 0.5 * (x[0] + x[-1])
     left = float(state.force[:n][x < middle, 1].sum())
     right = float(state.force[:n][x >= middle, 1].sum())
@@ -132,6 +135,7 @@ def record_start(track: Any, control: Any, state: State) -> None:
 def update_observables(
     track: Any,
     control: Any,
+    camber: FloatArray,
     old: State,
     new: State,
     time: float,
@@ -146,6 +150,7 @@ def update_observables(
     Args:
         track: record of OBSERVABLES.
         control: the stepping's `Control`: constants of the container.
+        camber: height of the points above the lowest one of an upright base, (n,) [m].
         old, new: states at both ends of the step.
         time: at its end [s]; step: its length [s].
         sliding: every loaded point slides.
@@ -163,19 +168,21 @@ def update_observables(
         track.max_rotation = max(track.max_rotation, abs(peak))
     left_open, right_open, uplift, left_force, right_force = 1, 1, 0.0, 0.0, 0.0
     first, last = new.point[0, 0], new.point[n - 1, 0]
+    pivot = (ROLLING_PIVOT if control.rolls else PIVOT) * control.width
     for i in range(n):
         gap, x = new.point[i, 1], new.point[i, 0]
-        uplift = max(uplift, gap)
+        rise = gap - camber[i]
+        uplift = max(uplift, rise)
         track.max_penetration = max(track.max_penetration, -gap)
-        if gap > OPENING * control.width and time < track.first_opening:
+        if rise > OPENING * control.width and time < track.first_opening:
             track.first_opening = time
         if x < 0.5 * (first + last):
             left_force += new.force[i, 1]
         else:
             right_force += new.force[i, 1]
-        if gap <= 0.0 and x < last - PIVOT * control.width:
+        if gap <= 0.0 and x < last - pivot:
             left_open = 0
-        if gap <= 0.0 and x > first + PIVOT * control.width:
+        if gap <= 0.0 and x > first + pivot:
             right_open = 0
     track.max_uplift = max(track.max_uplift, uplift)
     track.left_impulse += 0.5 * step * (track.left_force + left_force)
@@ -207,6 +214,8 @@ def update_observables(
 @inlined
 def has_impact(track: Any, control: Any, old: State, new: State) -> bool:
     """Whether an impact that counts falls in this step."""
+    if control.rolls:
+        return False
     last = control.base_points - 1
     counts = IMPACT_GAP * control.width * control.slenderness_angle
     left, right = new.point[0, 1], new.point[last, 1]

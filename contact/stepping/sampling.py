@@ -66,7 +66,8 @@ def write_columns(
     begin, end = points_of(run, 0)
     for i in range(begin, end):
         if i < run.problem.control.base_points:
-            row[ROW_UPLIFT] = max(row[ROW_UPLIFT], (1.0 - s) * old.point[i, 1] + s * new.point[i, 1])
+            gap = (1.0 - s) * old.point[i, 1] + s * new.point[i, 1]
+            row[ROW_UPLIFT] = max(row[ROW_UPLIFT], gap - run.problem.contact.camber[i])
         row[ROW_SHEAR] += force[i, 0]
         row[ROW_NORMAL] += force[i, 1]
     if loose is not None:

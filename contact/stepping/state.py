@@ -82,6 +82,7 @@ class Control(NamedTuple):
     impact_share: (
         float  #: of the angular momentum that an exchange of the pivot leaves, see `stepping.impact` [-]
     )
+    rolls: bool  #: the base is cambered from edge to edge: it has no impacts
     eager: bool  #: steps grow as soon and as far as their imbalance allows: of a rigid container, for maps
 
 
@@ -107,6 +108,8 @@ STEP_RECORD = np.dtype(
         ("growth_hold", "i8"),  # accepted steps until the step may grow freely again
         ("lag_step", "f8"),  # step that the lag of the old acceleration belongs to
         ("unprepared_step", "f8"),  # step that the body was not prepared for
+        ("rolling", "f8"),  # resistance of a base that rolls, see `step.rolling_share`: of the attempted step
+        ("rolling_before", "f8"),  # .. and of the one before
         ("next_break", "i8"),
         ("attempt_limit", "i8"),  # of steps, accepted and rejected, at which `advance` returns
         # counts

@@ -8,14 +8,16 @@ where the forces were computed. Then the sliding of the base and the terms of th
 from typing import Any
 
 from contact.arrays import FloatArray
-from contact.interface.laws import relaxed_stick, stribeck_mu
+from contact.interface.laws import relaxed_stick, rolling_lead, stribeck_mu
 from contact.interface.solver import solve_contact
 from contact.interface.workspace import Contact, Workspace
 from contact.jit import compiled, inlined
 from contact.motion.kernel import UNIFORM, floor_motion, rare_motion
 from contact.stepping.body import (
+    CENTRE_Z,
     KINETIC,
     POTENTIAL,
+    ROTATION,
     STRAIN,
     State,
     complete,
@@ -40,6 +42,7 @@ from contact.stepping.ledger import (
 from contact.stepping.scheme import Scheme
 from contact.stepping.state import RunState
 
+FLIGHT = 1e-3  #: gap over half the width from which a base that rolls has left the floor
 ITERATION_LIMIT = 12  #: of free motion, contact, response within one step
 
 
@@ -78,10 +81,10 @@ def store_rates(step: float, old: State, new: State, work: Workspace) -> None:
 
 
 @compiled(inline=True)
-def indent(point: FloatArray, crushed: FloatArray) -> None:
-    """Make heights above the undamaged floor gaps above the indented one: points (n, 2), indentations (n,) [m]."""
+def indent(contact: Contact, point: FloatArray, crushed: FloatArray) -> None:
+    """Make heights of nodes gaps of a cambered base above the indented floor: (n, 2), indentations (n,) [m]."""
     for i in range(point.shape[0]):
-        point[i, 1] += crushed[i]
+        point[i, 1] += contact.camber[i] + crushed[i]
 
 
 @compiled(inline=True)
@@ -93,6 +96,7 @@ def crush(contact: Contact, step: float, old: State, new: State, work: Workspace
     """
     for i in range(new.point.shape[0]):
         indented = old.crushed[i]
+        new.point[i, 1] += contact.camber[i]
         if work.law[i, 1] >= contact.cap[i]:
             elastic = relaxed_stick(
                 max(0.0, -old.point[i, 1]),
@@ -104,6 +108,85 @@ def crush(contact: Contact, step: float, old: State, new: State, work: Workspace
             indented = max(indented, -new.point[i, 1] - elastic)
         new.crushed[i] = indented
         new.point[i, 1] += indented
+
+
+@compiled(inline=True)
+def rolling_share(run: RunState, step: float) -> float:
+    """Resistance of a base that rolls at the end of a step, as normal forces on its points over their lever arms [N/m].
+
+    A couple, from the motion extrapolated over the step: rotation and rate of the base by a fit to its points. The load
+    is that of a rigid body that rolls, whose mass centre rises by (R - z) theta'^2: from point to point the normal
+    forces chatter. A base that has left the floor has none.
+    """
+    contact, control, old = run.problem.contact, run.problem.control, run.old
+    n = control.base_points
+    middle, lowest = middle_of(old.point, n), old.point[0, 1]
+    square, rate, rise = 0.0, 0.0, 0.0
+    for i in range(n):
+        arm = old.point[i, 0] - middle
+        lowest = min(lowest, old.point[i, 1])
+        square += arm * arm
+        rate += arm * old.descent[i, 0]
+        rise += arm * old.descent[i, 1]
+    rate, rise = rate / square, rise / square
+    rotation = old.pose[ROTATION] + step * (rate + 0.5 * step * rise)
+    lead = rolling_lead(
+        rotation,
+        rate + step * rise,
+        contact.rolling_time,
+        contact.rolling_radius,
+        contact.rolling_reach,
+    )
+    if lowest > FLIGHT * contact.rolling_reach:
+        return 0.0
+    upward = run.lift[1, 2]
+    if abs(contact.rolling_radius * rotation) < contact.rolling_reach:
+        upward += (contact.rolling_radius - (old.pose[CENTRE_Z] - run.lift[0, 0])) * rate * rate
+    return control.mass * (control.gravity + upward) * lead / square
+
+
+@compiled(inline=True)
+def middle_of(point: FloatArray, n: int) -> float:
+    """Mean place of the first n points (n, 2) along x [m]."""
+    middle = 0.0
+    for i in range(n):
+        middle += point[i, 0]
+    return middle / n
+
+
+@compiled(inline=True)
+def push_rolling(run: RunState, share: float, slope: float) -> None:
+    """Move the points without contact force by the couple of rolling; `slope` is that of their velocities [1/s]."""
+    work, point, n = run.work, run.old.point, run.problem.control.base_points
+    middle = middle_of(point, n)
+    for i in range(work.free.shape[0]):
+        for a in range(2):
+            moved = 0.0
+            for j in range(n):
+                moved += work.compliance[2 * i + a, 2 * j + 1] * share * (point[j, 0] - middle)
+            work.free[i, a] += moved
+            work.free_velocity[i, a] += slope * moved
+
+
+@compiled(inline=True)
+def add_rolling(run: RunState, share: float, force: FloatArray) -> None:
+    """Add the couple of rolling to the forces on the points, (n, 2) [N]."""
+    point, n = run.old.point, run.problem.control.base_points
+    middle = middle_of(point, n)
+    for i in range(n):
+        force[i, 1] += share * (point[i, 0] - middle)
+
+
+@compiled(inline=True)
+def rolling_loss(run: RunState) -> float:
+    """Energy that the couple of rolling takes in the attempted step [J]."""
+    clock, old, new, n = run.clock[0], run.old, run.attempt.new, run.problem.control.base_points
+    middle, loss = middle_of(old.point, n), 0.0
+    share = 0.5 * (clock.rolling_before + clock.rolling)
+    for i in range(n):
+        sunk = (old.point[i, 1] - old.crushed[i]) - (new.point[i, 1] - new.crushed[i])
+        loss += share * (old.point[i, 0] - middle) * sunk
+    return loss
 
 
 @inlined
@@ -132,17 +215,28 @@ def attempt(body: Any, run: RunState, step: float) -> int:
             work.mu[i] = stribeck_mu(
                 run.joints[j].mu, contact.mu_kinetic[i], contact.stribeck_velocity, velocity
             )
+    rolls = contact.rolling_time > 0.0
+    clock.rolling = rolling_share(run, step) if rolls else 0.0
     for iteration in range(ITERATION_LIMIT):
         release(body, scheme, step, old, new, work, floor, floor_velocity, lift, lift_velocity)
-        indent(work.free, old.crushed)
+        indent(contact, work.free, old.crushed)
+        if rolls:
+            push_rolling(run, clock.rolling, slope)
         solved = solve_contact(contact, step, slope, work.mu, old.point, old.stick, work)
         if solved < 0:
             return -1
         clock.contact_iterations += solved
-        if respond(body, scheme, step, old, new, work) <= 1.0:
+        if rolls:
+            add_rolling(run, clock.rolling, work.force)
+        converged = respond(body, scheme, step, old, new, work) <= 1.0
+        if converged:
             copy_rows(new.force, work.force)
             store_rates(step, old, new, work)
             complete(body, new, floor, lift, lift_velocity)
+        if rolls:
+            add_rolling(run, -clock.rolling, work.force)
+            copy_rows(new.force, work.force)
+        if converged:
             crush(contact, step, old, new, work)
             return iteration + 1
     return -1
@@ -173,6 +267,8 @@ def account(run: RunState, step: float) -> float:
     if run.joints.shape[0] > 1:  # what the springs of a corner lose as it leaves its face
         damping += run.clock[0].spring_energy - before
         before = run.clock[0].spring_energy
+    if run.problem.contact.rolling_time > 0.0:
+        damping += rolling_loss(run)
     stored = spring_energy(run.problem.contact, new.point, new.stick) - before
     for row in (KINETIC, STRAIN, POTENTIAL):
         stored += new.energy[row] - old.energy[row]

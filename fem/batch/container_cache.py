@@ -22,7 +22,7 @@ def container_key(case: Case, *, mass: bool = True) -> Hashable:
     places = {} if mass else {"centroid_m": 0.0, "eccentricity_m": 0.0}
     return (
         case.container.model_copy(update={"damping_ratio": 0.0, **places}),
-        case.support.model_copy(update={"effective_width": 1.0}),
+        case.support.model_copy(update={"effective_width": 1.0, "rocking_damping_ratio": 0.0}),
         case.gravity_m_s2,
         case.folder,
         solver.model,

@@ -197,6 +197,12 @@ JOINT_RULES = (
         "floor; leave it out",
     ),
     _of_one_body(
+        "support.camber_m",
+        lambda case: case.support.camber_m > 0.0,
+        'does not apply to container.joints = "loose": every box touches with its corners; leave it out, or take '
+        '"bolted"',
+    ),
+    _of_one_body(
         "initial.rotation_rad",
         lambda case: case.initial.rotation_rad != 0.0,
         'does not apply to container.joints = "loose": a loose stack starts settled; leave it out, or take "bolted"',

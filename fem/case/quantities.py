@@ -117,6 +117,7 @@ TONNES = {"t/m3 (g/cm3)": 1e3}
 
 LENGTH = Quantity(unit="m", least=1e-3, most=100.0, typical=1.0, slips=MILLI_AND_CENTI)
 WALL = Quantity(unit="m", least=1e-6, most=50.0, typical=0.01, slips=MILLI_AND_CENTI)
+CAMBER = Quantity(unit="m", least=0.0, most=1.0, typical=5e-3, slips=MILLI_AND_CENTI)
 FOOT = Quantity(unit="m", least=1e-6, most=100.0, typical=0.1, slips=MILLI_AND_CENTI)
 ELEMENT_SIZE = Quantity(unit="m", least=1e-5, most=100.0, typical=0.1, slips=MILLI_AND_CENTI)
 OFFSET = Quantity(unit="m", least=-100.0, most=100.0, typical=0.1, slips=MILLI_AND_CENTI)
@@ -135,6 +136,7 @@ STIFFNESS = Quantity(
 )
 POISSON = Quantity(unit="", least=0.0, most=0.5, advice="steel has 0.3")
 MATERIAL_DAMPING = Quantity(unit="", least=0.0, below=1.0, typical=0.02, slips=PER_CENT)
+ROCKING_DAMPING = Quantity(unit="", least=0.0, below=1.0, typical=0.05, slips=PER_CENT)
 CONTACT_DAMPING = Quantity(unit="", least=0.0, most=1e3, advice="2 is usual")
 RESTITUTION = Quantity(
     unit="",

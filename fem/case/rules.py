@@ -246,6 +246,12 @@ CASE_RULES = (
     _plausible_density("weight_N"),
     _plausible_density("mass_kg"),
     Rule(
+        "contact.restitution_over_housner",
+        lambda case: case.contact.restitution_over_housner is None or not case.support.rolls,
+        "does not apply to support.camber_m > 0: a cambered base rolls and has no impacts; give "
+        "support.rocking_damping_ratio",
+    ),
+    Rule(
         "support.foot_m",
         lambda case: case.support.kind != "feet" or case.support.foot_m < 0.5 * _base_width(case),
         lambda case: (

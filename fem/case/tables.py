@@ -146,6 +146,18 @@ class SupportTable(CaseTable):
         1.0,
     )
 
+    camber_m: Annotated[float, q.CAMBER] = case_key(
+        "how far the edges of the base stand higher than its middle, along a parabola; 0: sharp corners", 0.0
+    )
+    rocking_damping_ratio: Annotated[float, q.ROCKING_DAMPING] = case_key(
+        "of small rocking on a cambered base; not of feet, whose inner ends strike", 0.05
+    )
+
+    @property
+    def rolls(self) -> bool:
+        """Whether the base is cambered from edge to edge: it touches wherever it has rolled to."""
+        return self.camber_m > 0.0 and self.kind != "feet"
+
     @property
     def foot(self) -> float | None:
         """Length of each foot [m]; None where the base does not stand on feet."""
@@ -325,6 +337,12 @@ class UncertaintyTable(CaseTable):
     joints_weakening_m: Unknown = case_key("loose joints: default: 0 to 5 mm", None, example=[0.0, 0.005])
     joints_damping_ratio: Unknown = case_key(
         "loose joints: default: 0.1 to 2, and as given", None, example=[0.1, 2.0]
+    )
+    camber_m: Unknown = case_key(
+        "of the support, where it is cambered; default: half to twice", None, example=[0.002, 0.008]
+    )
+    rocking_damping_ratio: Unknown = case_key(
+        "of the support, where it is cambered; default: 0.02 to 0.1, and as given", None, example=[0.02, 0.1]
     )
     weakening_m: Unknown = case_key("of the contact; default: 0 to 5 mm", None, example=[0.0, 0.005])
     stribeck_velocity_m_s: Unknown = case_key(

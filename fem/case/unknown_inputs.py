@@ -34,6 +34,8 @@ CENTROID = (0.98, 1.02)  #: height of the mass centre over that of the case
 BESIDE = 0.01  #: of the mass centre from the axis, over the width
 EFFECTIVE_WIDTH = 0.97  #: over that of the case, at least
 SLOPE_PERCENT = 0.5  #: more or less than that of the case
+CAMBERS = (0.5, 2.0)  #: camber of a base over that of the case
+ROCKING_DAMPING = (0.02, 0.1)  #: damping of small rocking on it, as far as the case has none beyond
 LOSS = (0.8, 1.5)  #: loss at an impact, 1 - e, over that of the case where its restitution is given
 WEAKENING_M, STRIBECK_M_S = 5e-3, 0.3  #: largest slip and velocity over which friction falls
 WEAKENINGS_BETWEEN_M = (1e-4, 1e-3)
@@ -54,6 +56,7 @@ PENALTY, DASHPOT, RESTITUTION, MATERIAL = (
     "contact.restitution_over_housner",
     "container.damping_ratio",
 )
+CAMBER, ROCKING = "support.camber_m", "support.rocking_damping_ratio"
 STRENGTH, MODULUS = "floor.bearing_strength_Pa", "floor.youngs_modulus_Pa"
 
 Value = float | str
@@ -240,6 +243,25 @@ def _joints_dashpot(case: Any, own: float) -> Ends:
     return min(JOINTS_DASHPOTS[0], own), max(JOINTS_DASHPOTS[1], own)
 
 
+def _rolls(case: Any) -> bool:
+    return bool(case.support.rolls)
+
+
+def _rocking_damping(case: Any, own: float) -> Ends:
+    return min(ROCKING_DAMPING[0], own), max(ROCKING_DAMPING[1], own)
+
+
+def _is_cambered(case: Any) -> bool:
+    return bool(case.support.camber_m > 0.0)
+
+
+def _cambers(case: Any, own: float) -> Ends:
+    """At most a base of a radius twice as high as the mass centre."""
+    box, low, high = case.stack[0], CAMBERS[0] * own, CAMBERS[1] * own
+    height = sum(one.mass * (one.bottom + one.centroid) for one in case.stack) / case.mass
+    return low, max(own, min(high, short((case.support.effective_width * box.width) ** 2 / (16.0 * height))))
+
+
 def _restitutions(case: Any, ratio: float) -> Ends:
     """By the loss at an impact of a homogeneous block."""
     box = case.container
@@ -300,7 +322,7 @@ def other_patch(case: Any, kind: str) -> list[float] | None:
 def _other_support(case: Any) -> Value | None:
     """Corners and flat stand for one another; feet, castings and the boxes of a loose stack stay."""
     kind = {"corners": "flat", "flat": "corners"}.get(case.support.kind)
-    if kind is None or case.container.is_loose or case.container.box is not None:
+    if kind is None or case.support.rolls or case.container.is_loose or case.container.box is not None:
         return None
     if case.floor.is_slab:
         stated = case.floor.corner_patch_m
@@ -356,6 +378,9 @@ UNKNOWN: tuple[UnknownNumber | UnknownChoice, ...] = (
            matters=_joints_may_fall, power=3.0, between=_weakenings, alone=_joints_fall),
     Number(JOINTS_DASHPOT, "joints_damping_ratio", "damping of the joints", q.CONTACT_DAMPING, _joints_dashpot,
            matters=_is_loose),
+    Number(CAMBER, "camber_m", "camber of the base", q.CAMBER, _cambers, matters=_is_cambered),
+    Number(ROCKING, "rocking_damping_ratio", "damping of rocking", q.ROCKING_DAMPING, _rocking_damping,
+           matters=_rolls),
     Choice(SUPPORT, "support", "what of the base touches", _other_support, drawn=False),
     Number(CENTROID_KEY, "centroid_m", "height of the mass centre", q.LENGTH, CENTROID,
            matters=_equal_boxes, power=1.0),

@@ -16,7 +16,7 @@ from fem.case.case import Case, CaseError
 from fem.model.container import Container
 from fem.model.floor import slab_of
 from fem.model.loose_stack import make_stack_state, own_stiffness, settle, stack_of, with_joints
-from fem.model.support import normal_penalty, steel_penalty
+from fem.model.support import Rolling, normal_penalty, steel_penalty
 from fem.model.validity import require_bearing, require_stiff_contact, require_stiff_container
 from fem.runtime.arrays import FloatArray
 from fem.solid.assembly import FiniteElements
@@ -24,10 +24,10 @@ from fem.solid.elasticity import least_principal_strain
 from fem.solid.nodal_body import Body, FullBody, rotation_matrix
 from fem.solid.nodal_stack import FullStack
 from fem.solid.reduction import StaticResponse
-from mesh.container import ContainerMesh
 
 #: error of a base point at which the iterations of a step stop, over the static penetration
 POINT_TOLERANCE = 1e-6
+POINT_SHARE = 0.1  #: of the resistance to rolling that the dashpots of the points may have
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -61,7 +61,7 @@ def find_equilibrium(case: Case, container: Container, gravity: float) -> Equili
     require_stiff_contact(case, container.mesh, float(springs.sum()))
     if not container.boxes:
         springs = np.concatenate([springs, np.full(container.nodes.size - base, 0.5 * springs.sum())])
-    contact = _contact(case, container.mesh, springs, base)
+    contact = _contact(case, container, springs)
     stance: Stance | None = None
     body: Body
     try:
@@ -106,6 +106,7 @@ def same_equilibrium(case: Case, other: Case) -> bool:
     """Whether two cases of one container share an equilibrium, if their floors begin with one vertical acceleration."""
     return (
         case.contact == other.contact
+        and case.support == other.support
         and case.joints == other.joints
         and case.floor == other.floor
         and case.initial == other.initial
@@ -131,9 +132,14 @@ def _strain(elements: FiniteElements, response: StaticResponse, force: FloatArra
     return -least_principal_strain(elements.displacement_gradient(displacement))
 
 
-def _contact(case: Case, mesh: ContainerMesh, springs: FloatArray, base: int) -> Contact:
-    """The floor under so many springs, those of the base first."""
-    chosen, corner = case.contact, 0.5 * float(springs[:base].sum())
+def _contact(case: Case, container: Container, springs: FloatArray) -> Contact:
+    """The floor under so many springs, those of the base first.
+
+    Raises:
+        CaseError: the base is so round that the container does not stand on it.
+    """
+    mesh, chosen, camber = container.mesh, case.contact, container.support.camber
+    corner = 0.5 * float(springs[: camber.size].sum())
     if case.floor.is_slab:
         slab = slab_of(case, mesh.mass)
         ratio, relaxation = slab.tangential_stiffness / slab.normal_stiffness, slab.relaxation_time
@@ -141,6 +147,9 @@ def _contact(case: Case, mesh: ContainerMesh, springs: FloatArray, base: int) ->
     else:
         ratio, cap = chosen.tangential_ratio, np.full(springs.size, math.inf)
         relaxation = relaxation_time(chosen.damping_ratio, mesh.mass, 2.0 * corner)
+    rolling = Rolling.of(case, mesh)
+    if rolling is not None:  # the dashpots of the points resist slow rolling, too, but hardly a fast one
+        relaxation = min(relaxation, POINT_SHARE * rolling.time)
     return Contact(
         normal_stiffness=springs,
         tangential_stiffness=ratio * springs,
@@ -150,10 +159,14 @@ def _contact(case: Case, mesh: ContainerMesh, springs: FloatArray, base: int) ->
         mu_kinetic=np.full(springs.size, chosen.mu_kinetic),
         weakening=np.full(springs.size, chosen.weakening_m),
         stribeck_velocity=chosen.stribeck_velocity_m_s,
+        camber=np.concatenate([camber, np.zeros(springs.size - camber.size)]),
         friction=FRICTION_LAWS[chosen.friction],
         regularisation_velocity=chosen.regularisation_velocity_m_s,
         force_scale=mesh.mass * case.gravity_m_s2,
         resolution=1e-15 * (mesh.width + mesh.height),
+        rolling_time=0.0 if rolling is None else rolling.time - relaxation,
+        rolling_radius=0.0 if rolling is None else rolling.radius,
+        rolling_reach=0.5 * case.support.effective_width * mesh.width,
     )
 
 
@@ -208,6 +221,7 @@ def _stance(case: Case, container: Container, contact: Contact, gravity: float) 
             point=point,
             compliance=compliance,
             normal_stiffness=contact.normal_stiffness[:base],
+            camber=contact.camber[:base],
             shear_ratio=min(max(downhill / gravity, -mu), mu),
         )
         if initial.angular_velocity_rad_s != 0.0:
@@ -225,6 +239,7 @@ def _stance(case: Case, container: Container, contact: Contact, gravity: float) 
             corner_x=float(placed[corner, 0]),
             compliance=compliance,
             normal_stiffness=contact.normal_stiffness[:base],
+            camber=contact.camber[:base],
             mu_static=mu,
         )
     return stance.with_points(container.nodes.size).moving(initial.velocity_m_s)

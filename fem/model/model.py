@@ -191,7 +191,7 @@ def build_model(
     )
     if full:  # its first steps settle vibrations of the mesh, which a large step would turn into a jump off the floor
         run.clock.level = step_level(control.largest_step, control.event_step)
-    record_start(run.track[0], control, old)
+    record_start(run.track[0], control, contact.camber, old)
     return Model(
         case=case,
         container=container,
@@ -228,3 +228,4 @@ def _place(
     else:
         modal_kernels.place(body, state, stance)
         modal_kernels.start(body, state, *floor)
+    state.point[:, 1] += contact.camber

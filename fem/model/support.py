@@ -1,7 +1,10 @@
 """The contact nodes of a case's container, and their penalty."""
 
-from contact.interface.penalty import choose_normal_penalty
-from contact.interface.support import Support, choose_support
+import math
+from dataclasses import dataclass
+
+from contact.interface.penalty import STIFFEST, choose_normal_penalty
+from contact.interface.support import Support, cambered, choose_support
 from fem.case.case import Case, CaseError
 from fem.model.floor import slab_penalty
 from fem.model.geometry import base_positions
@@ -16,22 +19,70 @@ def build_support(case: Case, mesh: ContainerMesh) -> Support:
         CaseError: the feet do not fit the mesh.
         MeshError: no mesh line ends a foot.
     """
-    feet = (0.0, 0.0) if case.support.foot is None else mesh.foot_widths(case.support.foot)
+    chosen, x = case.support, base_positions(mesh, case.solver.order)
+    feet = (0.0, 0.0) if chosen.foot is None else mesh.foot_widths(chosen.foot)
     try:
-        return choose_support(
-            case.support.kind,
-            base_positions(mesh, case.solver.order),
+        level = choose_support(
+            "flat" if chosen.rolls else chosen.kind,
+            x,
             depth=case.container.depth_m,
             order=case.solver.order,
             feet=feet,
         )
     except ValueError as error:
         raise CaseError(str(error)) from error
+    if chosen.camber_m == 0.0:
+        return level
+    return cambered(level, x[level.index], chosen.camber_m)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Rolling:
+    """Small rocking on a base that is cambered from edge to edge: it rolls on an arc."""
+
+    radius: float  #: of the base, b^2/(2 d) [m]
+    time: float  #: by which the resultant is ahead of the place that touches, of the damping ratio [s]
+
+    @classmethod
+    def of(cls, case: Case, mesh: ContainerMesh) -> "Rolling | None":
+        """That of a case; None where the base does not roll.
+
+        A body on an arc of radius R swings with I theta'' + M g (R - z_c) theta = 0, I about the place that touches.
+        A resultant that is ahead by the time tau adds M g R tau theta', so a damping ratio zeta of these small swings
+        is tau = 2 zeta (R - z_c)/(R omega).
+
+        Raises:
+            CaseError: the base is so round that the container does not stand on it.
+        """
+        support, height = case.support, mesh.centroid[1]
+        if not support.rolls:
+            return None
+        width = support.effective_width * mesh.width
+        radius = 0.125 * width**2 / support.camber_m
+        if radius <= height:
+            raise CaseError(
+                f"[support] camber_m = {support.camber_m:g} m: the base is an arc of {radius:.3g} m under a mass "
+                f"centre at {height:.3g} m, on which the container does not stand; it must be less than "
+                f"{0.125 * width**2 / height:.3g} m"
+            )
+        inertia = mesh.inertia + mesh.mass * height**2
+        frequency = math.sqrt(mesh.mass * case.gravity_m_s2 * (radius - height) / inertia)
+        lead = 2.0 * support.rocking_damping_ratio * (radius - height) / (radius * frequency)
+        return cls(radius=radius, time=lead)
+
+
+def _rolling_penalty(case: Case, mesh: ContainerMesh) -> float:
+    """Normal penalty with which the load of a cambered base passes evenly from point to point [Pa/m]."""
+    support, weight = build_support(case, mesh), mesh.mass * case.gravity_m_s2
+    return weight * float((1.0 / support.sinking).sum()) / (float(support.length.sum()) * support.depth)
 
 
 def normal_penalty(case: Case, mesh: ContainerMesh) -> float:
     """Normal penalty of the case; a slab has its own, "auto" chooses it for the mesh [Pa/m]."""
-    return slab_penalty(case, mesh) if case.floor.is_slab else steel_penalty(case, mesh)
+    if case.floor.is_slab:
+        softest = slab_penalty(case, mesh)
+        return min(softest, _rolling_penalty(case, mesh)) if case.support.camber_m > 0.0 else softest
+    return steel_penalty(case, mesh)
 
 
 def steel_penalty(case: Case, mesh: ContainerMesh) -> float:
@@ -39,6 +90,9 @@ def steel_penalty(case: Case, mesh: ContainerMesh) -> float:
     given = case.contact.normal_penalty_Pa_m
     if given != "auto":
         return given
+    if case.support.camber_m > 0.0:
+        stiffest = STIFFEST * case.container.youngs_modulus_Pa / case.solver.element_size_m
+        return min(_rolling_penalty(case, mesh), stiffest)
     return choose_normal_penalty(
         case.support.kind,
         weight=mesh.mass * case.gravity_m_s2,

@@ -6,7 +6,39 @@ LANDING = ("verification/test_verification_checks.py", "-k", "landing")
 FLOOR = "verification/closed_forms/test_floor.py"
 SOLVER = "unit/contact/test_contact_solver.py"
 
+CAMBER = "verification/closed_forms/test_camber.py"
+
 FLOOR_FAULTS = (
+    Mutation(
+        name="camber of the other sign",
+        old="point[i, 1] += contact.camber[i] + crushed[i]",
+        new="point[i, 1] += crushed[i] - contact.camber[i]",
+        tests=(CAMBER, "-k", "loses_nothing"),
+    ),
+    Mutation(
+        name="points of a cambered base twice as stiff",
+        old="curvature * distance[pairs] ** 2",
+        new="0.5 * curvature * distance[pairs] ** 2",
+        tests=(CAMBER, "-k", "closed_form"),
+    ),
+    Mutation(
+        name="a resultant that lags behind the place of touch",
+        old="max(radius * (rotation + time * rate), -reach)",
+        new="max(radius * (rotation - time * rate), -reach)",
+        tests=(CAMBER, "-k", "pulse"),
+    ),
+    Mutation(
+        name="rolling resistance that is not in the ledger",
+        old="damping += rolling_loss(run)",
+        new="damping += 0.0 * rolling_loss(run)",
+        tests=(CAMBER, "-k", "pulse"),
+    ),
+    Mutation(
+        name="a mass centre that does not rise as the base rolls",
+        old="* rate * rate\n    return control.mass",
+        new="* 0.0 * rate\n    return control.mass",
+        tests=(CAMBER, "-k", "pulse"),
+    ),
     Mutation(
         name="a cap on the spring alone, not on the dashpot",
         old="    if force >= cap:\n        return cap, 0.0, 0.0\n",

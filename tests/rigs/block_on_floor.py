@@ -89,6 +89,7 @@ class Block:
             mu_static=np.full(2, self.mu_static),
             mu_kinetic=np.full(2, self.mu_kinetic),
             weakening=np.full(2, self.weakening),
+            camber=np.zeros(2),
             stribeck_velocity=self.stribeck_velocity,
             friction=ELASTIC_STICK,
             regularisation_velocity=1e-3,
@@ -104,6 +105,7 @@ class Block:
             point=self.point,
             compliance=np.zeros((4, 4)),
             normal_stiffness=self.contact().normal_stiffness,
+            camber=np.zeros(2),
             shear_ratio=min(math.tan(self.slope), self.mu_static),
         )
 
@@ -276,5 +278,6 @@ def limits_of(block: Block, largest_step: float, fixed_step: bool, energy_scale:
         top_monitors=0,
         base_points=2,
         impact_share=block.impact_share,
+        rolls=False,
         eager=False,
     )

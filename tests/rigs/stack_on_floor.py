@@ -123,6 +123,7 @@ def stack_rig(
         normal_stiffness=springs.copy(),
         tangential_stiffness=springs.copy(),
         cap=np.full(points, math.inf),
+        camber=np.zeros(points),
         relaxation_time=np.full(points, whole.relaxation_time),
         mu_static=mus,
         mu_kinetic=mus.copy() if mu_kinetic is None else np.full(points, mu_kinetic),

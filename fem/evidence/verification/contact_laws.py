@@ -45,6 +45,7 @@ def patch_test() -> Findings:
             point=elements.nodes[elements.base_nodes] - np.asarray(mesh.centroid),
             compliance=static_response(elements, elements.base_nodes).compliance,
             normal_stiffness=support.normal_stiffness(1e9),
+            camber=support.camber,
         )
         pressure = stance.force[:, 1] / (support.length * support.depth)
         exact = weight / (mesh.width * support.depth)

@@ -87,6 +87,7 @@ def random_problem(seed: int, points: int, *, friction: int = ELASTIC_STICK) -> 
         mu_static=np.full(points, mu),
         mu_kinetic=np.full(points, mu),
         weakening=np.zeros(points),
+        camber=np.zeros(points),
         stribeck_velocity=0.0,
         friction=friction,
         regularisation_velocity=1e-3,

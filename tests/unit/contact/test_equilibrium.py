@@ -42,6 +42,7 @@ def settle(
         point=point,
         compliance=flexible,
         normal_stiffness=np.full(points, STIFFNESS),
+        camber=np.zeros(points),
     )
     gap = (
         stance.centre[1]

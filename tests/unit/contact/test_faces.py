@@ -59,6 +59,7 @@ def contact_of(faces: Faces) -> Contact:
         mu_static=np.ones(n),
         mu_kinetic=np.ones(n),
         weakening=np.zeros(n),
+        camber=np.zeros(n),
         stribeck_velocity=0.0,
         friction=ELASTIC_STICK,
         regularisation_velocity=1e-3,

@@ -15,6 +15,7 @@ CONTACT = Contact(
     mu_static=np.full(2, 0.4),
     mu_kinetic=np.full(2, 0.2),
     weakening=np.zeros(2),
+    camber=np.zeros(2),
     stribeck_velocity=0.0,
     friction=ELASTIC_STICK,
     regularisation_velocity=1e-3,

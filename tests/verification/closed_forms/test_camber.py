@@ -1,0 +1,183 @@
+"""Containers on a cambered base, against closed forms and an independent rigid block that rolls on an arc.
+
+The block is integrated here from Lagrange's equation of one coordinate, with nothing of the program: the height of its
+mass centre is that of a body that touches at x = R sin theta, and it rolls without slip.
+"""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import fem
+from contact.interface.equilibrium import pressed
+from contact.reference.closed_forms_rocking import cambered_frequency, cambered_moment
+from contact.reference.rigid_block import RigidBlock
+from fem.case.case import Case
+from fem.model.model import Model, build_model
+
+MASS, WIDTH, HEIGHT, GRAVITY = 1e4, 1.1, 4.0, 9.81
+BLOCK = RigidBlock.homogeneous(width=WIDTH, height=HEIGHT, gravity=GRAVITY)
+EDGE = 0.5 * WIDTH
+
+
+def cambered(camber: float, *more: str) -> Case:
+    """The solid stack of `free_rocking`, rigid unless said, from rest."""
+    return fem.load_case("free_rocking", ["solver.model=rigid", f"support.camber_m={camber}", *more])
+
+
+def lead_time(damping_ratio: float, camber: float) -> float:
+    """Of the resultant [s], from the damping ratio of small rocking."""
+    radius = EDGE**2 / (2.0 * camber)
+    frequency = cambered_frequency(BLOCK, camber)
+    return 2.0 * damping_ratio * (radius - 0.5 * HEIGHT) / (radius * frequency)
+
+
+def rolled(camber: float, damping_ratio: float, start: float, until: float, floor=lambda t: 0.0):
+    """Times [s] and rotations of the independent block under an acceleration of the floor [m/s2]."""
+    radius, z, lead = EDGE**2 / (2.0 * camber), 0.5 * HEIGHT, lead_time(damping_ratio, camber)
+
+    def touch(rotation: float) -> float:
+        return min(max(radius * rotation, -EDGE), EDGE)
+
+    def rates(t, state):
+        theta, rate = state
+        sine, cosine = math.sin(theta), math.cos(theta)
+        x, moves = touch(sine), radius * cosine if abs(radius * sine) < EDGE else 0.0
+        inertia = MASS * ((WIDTH**2 + HEIGHT**2) / 12.0 + x * x + z * z)
+        rise = x * cosine - z * sine  # of the mass centre, over the rotation
+        bend = moves * cosine - x * sine - z * cosine
+        ahead = touch(theta + lead * rate) - touch(theta)
+        moment = -MASS * floor(t) * (x * sine + z * cosine) - MASS * x * moves * rate**2
+        moment -= MASS * GRAVITY * rise + MASS * (GRAVITY + rate**2 * bend) * ahead
+        return [rate, moment / (inertia + MASS * rise * ahead)]
+
+    times = np.linspace(0.0, until, 2001)
+    found = solve_ivp(rates, (0.0, until), [start, 0.0], rtol=1e-9, atol=1e-11, max_step=1e-3, t_eval=times)
+    return times, found.y[0]
+
+
+def moments(model: Model, rotations) -> np.ndarray:
+    """Restoring moments over weight and half width, of a rigid container pressed down at these rotations."""
+    contact, mesh = model.run.problem.contact, model.container.mesh
+    n = model.container.support.index.size
+    x, z = model.container.elements.nodes[model.container.nodes[:n], 0], mesh.centroid[1]
+    weight, found = mesh.mass * GRAVITY, []
+    for theta in rotations:
+        sine, cosine = math.sin(theta), math.cos(theta)
+        height = contact.camber[:n] - sine * x - cosine * z
+        normal, _ = pressed(weight, height, np.zeros((n, n)), contact.normal_stiffness[:n])
+        found.append(float(normal @ (cosine * x - sine * z)) / (weight * EDGE))
+    return np.array(found)
+
+
+@pytest.mark.parametrize("camber", [0.0005, 0.008, 0.02])
+@pytest.mark.parametrize(
+    "more",
+    [(), ("support.kind=flat", "container.wall_m=0.008", "container.section=shell"), ("solver.order=1",)],
+)
+def test_the_moment_of_a_cambered_base_rises_as_its_closed_form(camber, more):
+    rotations = np.linspace(1e-4, 3.0 * camber / EDGE, 101)
+    exact = np.array([cambered_moment(BLOCK, theta, camber) for theta in rotations]) / EDGE
+    assert exact[0] < 0.2 and exact.max() > 0.7  # uplift is gradual
+    np.testing.assert_allclose(moments(build_model(cambered(camber, *more)), rotations), exact, atol=2e-5)
+
+
+def test_cambered_feet_roll_from_their_inner_to_their_outer_ends():
+    foot, camber = 0.15, 0.008
+    rotations = np.linspace(1e-3, 3.0 * camber / EDGE, 101)
+    exact = np.array([cambered_moment(BLOCK, theta, camber, EDGE - foot) for theta in rotations]) / EDGE
+    model = build_model(cambered(camber, "support.kind=feet", f"support.foot_m={foot}"))
+    np.testing.assert_allclose(moments(model, rotations), exact, atol=2e-5)
+
+
+@pytest.mark.parametrize("model", ["rigid", "reduced", "full"])
+def test_small_rocking_has_period_and_damping_as_given(model):
+    camber, ratio, start = 0.008, 0.05, 0.003
+    case = cambered(
+        camber,
+        f"solver.model={model}",
+        f"support.rocking_damping_ratio={ratio}",
+        f"initial.rotation_rad={start}",
+        "solver.duration_s=1.5",
+        "solver.element_size_m=0.275",
+    )
+    run = fem.compute(case)
+    time, rotation = np.array(run.history["time_s"]), np.array(run.history["rotation_rad"])
+    half = math.pi / (cambered_frequency(BLOCK, camber) * math.sqrt(1.0 - ratio**2))
+    turning = [np.abs(rotation[np.abs(time - k * half) < 0.2 * half]).max() for k in (1, 2)]
+    crossing = time[:-1][np.diff(np.sign(rotation)) != 0.0]
+    assert np.diff(crossing) == pytest.approx(half, abs=0.006)  # samples every 5 ms
+    decay = math.exp(-math.pi * ratio / math.sqrt(1.0 - ratio**2))
+    assert turning == pytest.approx([start * decay, start * decay**2], rel=0.01)
+
+
+def test_a_base_that_rolls_without_damping_loses_nothing():
+    run = fem.compute(cambered(0.008, "support.rocking_damping_ratio=0", "solver.duration_s=6"))
+    rotation, start = np.array(run.history["rotation_rad"]), 0.5 * BLOCK.slenderness_angle
+    assert np.abs(rotation[-300:]).max() > 0.999 * start  # after four half swings; sharp corners: 0.34
+    assert run.verdict.impacts == 0 and run.verdict.restitution_first is None
+
+
+@pytest.mark.parametrize(
+    ("camber", "ratio", "peak", "pulse"),
+    [(0.02, 0.1, 3.0, 0.8), (0.008, 0.05, 3.0, 1.0), (0.002, 0.02, 3.2, 0.9)],
+)
+def test_a_pulse_rolls_the_container_as_the_independent_block(camber, ratio, peak, pulse):
+    case = cambered(
+        camber,
+        f"support.rocking_damping_ratio={ratio}",
+        *("initial.rotation_rad=0", "motion.kind=pulse", "motion.shape=sine", "solver.duration_s=4"),
+        *(f"motion.pulse_s={pulse}", f"motion.peak_acceleration_m_s2={peak}"),
+    )
+    run = fem.compute(case)
+
+    def floor(t: float) -> float:
+        return peak * math.sin(2.0 * math.pi * t / pulse) if t < pulse else 0.0
+
+    times, exact = rolled(camber, ratio, 0.0, 4.0, floor)
+    found = np.interp(times, run.history["time_s"], run.history["rotation_rad"])
+    assert np.abs(found).max() == pytest.approx(np.abs(exact).max(), rel=0.01)
+    assert run.result["energy"]["closure_error"] < 3e-3
+
+
+def test_a_mirrored_start_is_the_mirror_image():
+    right, left = (
+        fem.compute(cambered(0.008, f"initial.rotation_rad={start}", "solver.duration_s=3"))
+        for start in (0.1, -0.1)
+    )
+    np.testing.assert_allclose(
+        left.history["rotation_rad"], -np.array(right.history["rotation_rad"]), atol=1e-7
+    )
+
+
+def test_the_swing_converges_with_the_energy_tolerance():
+    last = [
+        np.array(
+            fem.compute(cambered(0.008, f"solver.energy_tolerance={one}", "solver.duration_s=3")).history[
+                "rotation_rad"
+            ]
+        )
+        for one in (1.0, 0.1, 0.01)
+    ]
+    coarse, fine = (np.abs(one - last[-1]).max() for one in last[:2])
+    assert fine < 0.5 * coarse and coarse < 1e-3
+
+
+@pytest.mark.parametrize(
+    ("more", "says"),
+    [
+        (
+            ("support.camber_m=0.08",),
+            r"camber_m = 0.08 m: the base is an arc of 1.89 m under a mass centre at 2 m",
+        ),
+        (("support.camber_m=0.008", "contact.restitution_over_housner=0.95"), "a cambered base rolls"),
+        (("support.camber_m=0.008", "container.joints=loose"), "does not apply to container.joints"),
+        (("support.camber_m=8",), "looks like millimetres"),
+        (("support.rocking_damping_ratio=5",), "per cent"),
+    ],
+)
+def test_what_makes_no_sense_on_a_cambered_base_is_refused(more, says):
+    with pytest.raises(ValueError, match=says):
+        build_model(fem.load_case("free_rocking", ["initial.rotation_rad=0", *more]))
