@@ -35,8 +35,8 @@ FLOOR_FAULTS = (
     ),
     Mutation(
         name="a mass centre that does not rise as the base rolls",
-        old="* rate * rate\n    return control.mass",
-        new="* 0.0 * rate\n    return control.mass",
+        old="(contact.rolling_radius - (old.pose",
+        new="0.0 * (contact.rolling_radius - (old.pose",
         tests=(CAMBER, "-k", "pulse"),
     ),
     Mutation(
@@ -71,7 +71,7 @@ FLOOR_FAULTS = (
     ),
     Mutation(
         name="points above the undamaged floor in the contact problem",
-        old="        indent(work.free, old.crushed)\n",
+        old="        indent(contact, work.free, old.crushed)\n",
         new="",
         tests=LANDING,
     ),
@@ -83,7 +83,7 @@ FLOOR_FAULTS = (
     ),
     Mutation(
         name="points above the undamaged floor in the frame of the floor",
-        old="    indent(run.old.point, run.old.crushed)\n",
+        old="    indent(run.problem.contact, run.old.point, run.old.crushed)\n",
         new="",
         tests=(FLOOR, "-k", "frame"),
     ),

@@ -90,6 +90,7 @@ def lean(rotation: float, rate: float = 0.0, mu: float = 10.0, compliance: np.nd
         corner_x=math.copysign(0.5 * WIDTH, rotation),
         compliance=compliance,
         normal_stiffness=np.full(2, STIFFNESS),
+        camber=np.zeros(2),
         mu_static=mu,
     )
 
