@@ -1,8 +1,8 @@
 """The perturbed copies of a sweep's cells: which cells have which, and what they show.
 
 A change is tried on a coarse grid of all cells and near changes of outcome, and then around every cell whose outcome it
-turns, until no further cell has another outcome. The draws of all unknown inputs follow, on that grid and around what
-the others turned. Which copies there are depends on the outcomes alone, not on the order in which they are computed.
+turns, until no further cell has another outcome. The draws of all unknown inputs follow where nothing else turned a
+cell over. Which copies there are depends on the outcomes alone, not on the order in which they are computed.
 """
 
 from collections import Counter
@@ -114,14 +114,15 @@ class PerturbedRows:
     def overturned_share(self, cell: int) -> float | None:
         """Share of a cell and all its copies that overturn; None of a cell that failed.
 
-        Copies that were not tried, because they turned no cell around it, and those that failed count as the cell.
+        A copy that was not tried, because it turned no cell around this one, counts as the cell, and so does one that
+        failed; draws count where some were tried.
         """
         if not self._cells.decided[cell]:
             return None
-        own = self._cells.kind[cell]
-        others = (one.shown.kind for one in self.rows.get(cell, {}).values())
-        turned = sum(kind not in (own, Ending.FAILED) for kind in others)
-        share = turned / (1 + len(self.copies.of(cell)))
+        own, tried = self._cells.kind[cell], self.rows.get(cell, {}).values()
+        turned = sum(one.shown.kind not in (own, Ending.FAILED) for one in tried)
+        drawn = any(one.copy.drawn for one in tried)
+        share = turned / (1 + sum(drawn or not copy.drawn for copy in self.copies.of(cell)))
         return 1.0 - share if own == Ending.OVERTURNED else share
 
 
@@ -189,10 +190,8 @@ def _missing(sweep: Sweep, cells: CellRows, perturbed: PerturbedRows) -> Iterato
         case "auto":
             begin |= coarse_cells(axes)
     yield from _closing_in(sweep, perturbed, decided, drawn=False, begin=begin, small=near)
-    unsure = perturbed.unsure(drawn=False).reshape(shape)
-    yield from _closing_in(
-        sweep, perturbed, decided, drawn=True, begin=begin | around(axes, unsure), small=near
-    )
+    sure = decided & ~perturbed.unsure(drawn=False).reshape(shape)
+    yield from _closing_in(sweep, perturbed, sure, drawn=True, begin=begin | around(axes, ~sure), small=near)
 
 
 def _closing_in(
