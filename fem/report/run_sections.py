@@ -409,9 +409,9 @@ def joints_section(view: RunView) -> html.PageSection:
     return html.section(
         f"Joints between the boxes{impact_note(view.verdict)}",
         "joints",
+        *view.figures("joints"),
         html.table_of("joints between the boxes", columns, view.result.joints),
         html.Note(joints_note(view.verdict)),
-        *view.figures("joints"),
     )
 
 
