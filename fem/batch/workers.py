@@ -17,7 +17,7 @@ from concurrent.futures import (
     ThreadPoolExecutor,
     wait,
 )
-from contextlib import ExitStack
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from itertools import islice
 from multiprocessing import get_context
@@ -28,6 +28,7 @@ from typing import Self, TypeVar
 #: number of cases from which processes, which take some seconds to start, pay off for the compiled models
 WORTH_PROCESSES = {"rigid": 500, "reduced": 100, "full": 1}
 IN_THREADS = dict.fromkeys(WORTH_PROCESSES, math.inf)  #: no number: threads alone
+ENDING = (signal.SIGINT, signal.SIGTERM)  #: signals that end a process
 STDIN = "<stdin>"  #: file of a script that Python reads from its standard input
 #: chunks handed out for every worker, so that none waits for the next
 AHEAD = 2
@@ -149,7 +150,8 @@ def hand_out(
                     chunk = list(islice(remaining, at_a_time))
                     if not chunk:
                         break
-                    waiting[pool.executor.submit(work, chunk)] = pool, chunk
+                    with _signals_held():  # it may start a process
+                        waiting[pool.executor.submit(work, chunk)] = pool, chunk
                     pool.given += 1
             if not waiting:
                 break
@@ -175,6 +177,22 @@ def hand_out(
     finally:
         for future in waiting:
             future.cancel()
+
+
+@contextmanager
+def _signals_held() -> Iterator[None]:
+    """Hold back what ends this process, and in processes that are started now for good.
+
+    A signal to the whole group, as Ctrl-C sends it, would else meet them before `_end_with_parent` does.
+    """
+    if sys.platform == "win32":
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, ENDING)
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def unguarded_script() -> str | None:
@@ -209,7 +227,7 @@ def _is_main(name: str, variables: Mapping[str, object]) -> bool:
 
 def _end_with_parent(parent: int, over: Semaphore) -> None:
     """End this worker when the work is over, or when the process that started it has ended."""
-    for number in (signal.SIGINT, signal.SIGTERM):  # of a whole process group: the parent handles them
+    for number in ENDING:  # of a whole process group: the parent handles them
         signal.signal(number, signal.SIG_IGN)
 
     def watch() -> None:

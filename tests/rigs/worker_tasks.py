@@ -17,6 +17,11 @@ def hear_the_group_end(chunk) -> int:
     return who_works(chunk)
 
 
+def held_back(chunk) -> set[int]:
+    """Signals that this process has not let through from its first moment on."""
+    return {int(one) for one in signal.pthread_sigmask(signal.SIG_BLOCK, ())}
+
+
 def end_the_process(chunk) -> None:
     """Die, as for want of memory."""
     os._exit(9)
