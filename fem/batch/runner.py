@@ -5,7 +5,8 @@ status "failed" and the reason; it never has an outcome.
 """
 
 import time
-from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
 from operator import itemgetter
@@ -23,6 +24,7 @@ from fem.model.recovery import recovery_of
 from fem.results.figures import BOXES, SCALARS
 from fem.results.outcome import Outcome
 from fem.results.run_result import Verdict
+from fem.run.expected import expected_s, say_expected
 from fem.run.outcome import run_without_history
 from fem.run.recorder import Recorder
 from fem.run.simulation import simulate
@@ -71,6 +73,7 @@ class Runner:
         for item in items:
             by_model.setdefault(model_of(item), []).append(item)
         total, done, failed = sum(map(len, by_model.values())), 0, 0
+        self._say_expected(f"{total} {what}", by_model, make)
         self.reporter.start(0.0)
         began = time.perf_counter()
 
@@ -93,6 +96,16 @@ class Runner:
                 failed += sum(row["status"] == "failed" for row in rows)
                 self.reporter.tell(progress)
         self.reporter.finish()
+
+    def _say_expected(
+        self, what: str, by_model: Mapping[str, Sequence[ItemT]], make: Callable[[ItemT], Case]
+    ) -> None:
+        """How long the cases take, by the first of each model."""
+        seconds = 0.0
+        for some in by_model.values():
+            with suppress(ValueError):  # a case that cannot be computed is told in its row
+                seconds += len(some) * expected_s(make(some[0]))
+        say_expected(self.reporter, what, seconds / self.jobs, self.jobs)
 
     def each(self, what: str, items: Sequence[ItemT], work: Callable[[ItemT], FoundT]) -> list[FoundT]:
         """Let the workers do some work for each item; it must be picklable.

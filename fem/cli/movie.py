@@ -12,6 +12,10 @@ from fem.cli.console import ELSEWHERE_TO, Quiet, RunFolder
 from fem.render.opengl import require_rendering
 from fem.results.errors import writing_into
 from fem.results.reader import open_run
+from fem.run.expected import say_expected
+from fem.runtime.progress import ScreenReporter
+
+OF_A_FRAME_S = 0.09  #: to draw it, without a graphics card [s]
 
 
 def movie(
@@ -39,6 +43,9 @@ def movie(
     film = importlib.import_module("fem.render.movie")
     with writing_into(to.parent if to else run, ELSEWHERE_TO):
         cut = film.Cut(begin=begin, until=until, rate=fps, width=width)
+        count = len(cut.frames(opened.fields.times)[0])
+        if not quiet:
+            say_expected(ScreenReporter(), f"{count} frames", OF_A_FRAME_S * count)
         print(film.write_movie(opened, path=to, cut=cut, progress=_ignore if quiet else _show))
 
 

@@ -38,6 +38,7 @@ from fem.results.folder import ResultFolder
 from fem.results.kinds import RESPONSE
 from fem.results.outcome import MODES
 from fem.run.checkpoint import changing, require_same
+from fem.run.expected import of_a_second, say_expected
 
 STATE = "state.npz"
 #: numbers of a period and of a sample in their tables and twice in the state, of a point in its files
@@ -79,6 +80,7 @@ def _compute(
 ) -> ResponseResult:
     """Add the points that are missing, and write their tables and figures."""
     records, saved = read_state(place)
+    say_expected(runner.reporter, f"{2 * request.count} points", _expected_s(request))
     status = _sweep(request, place, records, saved, runner)
     place.write_text("response.csv", csv_of_rows(records))
     place.write_text("sections.csv", csv_of_sections(records))
@@ -97,6 +99,14 @@ def _compute(
     if status == INTERRUPTED:
         return replace(result, missing=f"{len(records)} of {2 * request.count} points are computed")
     return replace(result, answer=response_answer(result))
+
+
+def _expected_s(request: ResponseRequest) -> float:
+    """Time of all points, each of which is driven for as many periods [s]."""
+    periods = request.settle + request.observe
+
+    simulated = 2 * request.count * periods / (0.5 * (request.first_Hz + request.last_Hz))
+    return simulated * of_a_second(request.case)
 
 
 def read_state(place: ResultFolder) -> tuple[list[PointRecord], dict[str, np.ndarray]]:

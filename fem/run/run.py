@@ -28,12 +28,14 @@ from fem.results.run_result import RunResult
 from fem.run.changed_runs_file import ChangedRunsFile
 from fem.run.checkpoint import CheckpointWriter
 from fem.run.checks import WantedChecks, add_checks, lacks_band, lacks_checks, lacks_margin
+from fem.run.expected import expected_s, say_expected, with_band_s
 from fem.run.output import Start, Stopwatch, open_output, read_start
 from fem.run.size import required_disk, size_in_words
 from fem.run.solve import begun, in_words, resolve, stepped
 from fem.runtime.compilation import compilation_announced
 from fem.runtime.progress import Reporter, SilentReporter
 from fem.runtime.signals import ending_at_once, interruptible
+from fem.runtime.threads import cores
 from fem.solid.nodal_body import advance_body
 from mesh.container import ContainerMesh
 
@@ -86,6 +88,10 @@ def run_case(
             longest = longest_run(case, *motions)
             size = size_in_words(case, nodes, longest)
             place.require_room(required_disk(case, nodes, longest), size, way_out)
+        if known is None:
+            alone = options.band is False or (case.solver.model == "full" and not options.band)
+            seconds = expected_s(case) if alone else with_band_s(case, cores())
+            say_expected(reporter, "the run", seconds)
         model = set_up(case, mesh, motions, reporter)
         with interruptible(reporter) as stop:
             result = known

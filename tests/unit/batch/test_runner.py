@@ -1,13 +1,17 @@
 """A list of cases on all cores: each row is the run of its case, whatever runs beside it."""
 
 import os
+import re
+import signal
+import sys
+from dataclasses import dataclass, field
 
 import pytest
-from worker_tasks import end_the_process, hear_the_group_end, who_works
+from worker_tasks import end_the_process, hear_the_group_end, held_back, who_works
 
 from fem.assessment.verdict import verdict_of
 from fem.batch.container_cache import container_key
-from fem.batch.runner import run_cases
+from fem.batch.runner import Runner, run_cases
 from fem.batch.workers import WORTH_PROCESSES, LocalWorkers, WorkersLostError, hand_out
 from fem.case.case import load_case
 from fem.model.model import build_model
@@ -15,6 +19,7 @@ from fem.model.recovery import recovery_of
 from fem.results.figures import SCALARS
 from fem.run.recorder import Recorder
 from fem.run.simulation import simulate
+from fem.runtime.progress import SilentReporter
 
 SHORT = ["solver.duration_s=2", "output.fields_s=0"]
 CHANGES = (
@@ -79,6 +84,49 @@ def test_workers_that_end_with_the_job_are_not_lost():
             list(hand_out(range(4), end_the_process, pools, at_a_time=1, stop=lambda: next(asked, True)))
             == []
         )
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
+def test_what_ends_the_group_does_not_meet_a_worker_that_is_starting():
+    """Else its interpreter would print a traceback of its imports."""
+    with LocalWorkers(2) as workers_of:
+        found = list(hand_out(range(2), held_back, workers_of("full", 2), at_a_time=1))
+    assert all(held >= {signal.SIGINT, signal.SIGTERM} for _, held in found)
+    assert held_back([]).isdisjoint({signal.SIGINT, signal.SIGTERM})
+
+
+@dataclass
+class Told(SilentReporter):
+    """Keeps what is said."""
+
+    messages: list[str] = field(default_factory=list)
+
+    def message(self, text):
+        self.messages.append(text)
+
+
+@pytest.mark.parametrize(
+    ("model", "count", "words"),
+    [
+        ("rigid", 100, None),
+        ("rigid", 100_000, r"100000 cases: roughly \d+ min .* on 2 cores"),
+        ("full", 3, "3 cases: "),
+    ],
+)
+def test_what_takes_long_is_said_before_it_begins(model, count, words):
+    told = Told()
+    runner = Runner(workers_of=None, reporter=told, jobs=2)
+    items = range(count)
+    with pytest.raises(TypeError):  # it has no workers: nothing has begun
+        next(
+            runner.rows(
+                "cases",
+                items,
+                lambda item: load_case("rocking", [f"solver.model={model}"]),
+                lambda item: model,
+            )
+        )
+    assert [bool(re.match(words, one)) for one in told.messages] == ([True] if words else [])
 
 
 def test_many_cases_are_shared_by_this_process_and_others():

@@ -1,0 +1,43 @@
+"""How long a computation will take, roughly, said before it begins where that is long."""
+
+from fem.case.case import Case
+from fem.case.rules import ends_at_rest, longest_time
+from fem.runtime.progress import Reporter, clock_time
+
+LONG_S = 20.0  #: from which it is said
+#: processor time of a run, and of each of its simulated seconds, on corners [s]: the shipped stack on one core
+OF_A_RUN = {"rigid": 0.012, "reduced": 0.02, "full": 1.0}
+OF_A_SECOND = {"rigid": 0.0008, "reduced": 0.0035, "full": 8.0}
+#: factor of a base, whose contact has more points (of the full model the mesh costs more than they do)
+OF_A_BASE = {"corners": 1.0, "feet": 3.0, "flat": 15.0}
+OF_LOOSE_BOXES = 20.0
+USUAL_RECORD_S = 25.0  #: simulated, of a record until the container is at rest
+BAND_RUNS, MOST_OF_BAND_S = 60, 45.0  #: of band and margin
+
+
+def of_a_second(case: Case) -> float:
+    """Processor time of a simulated second, within a factor of three or so [s]."""
+    model = case.solver.model
+    factor = 1.0 if model == "full" else OF_A_BASE[case.support.kind]
+    if case.container.joints == "loose":
+        factor *= OF_LOOSE_BOXES
+    return factor * OF_A_SECOND[model]
+
+
+def expected_s(case: Case) -> float:
+    """Processor time of one run of a case, within a factor of three or so [s]."""
+    simulated = USUAL_RECORD_S if ends_at_rest(case) else longest_time(case)
+    return OF_A_RUN[case.solver.model] + of_a_second(case) * simulated
+
+
+def with_band_s(case: Case, cores: int) -> float:
+    """Wall time of a run with its band and margin [s]."""
+    one = expected_s(case)
+    return one + min(BAND_RUNS * one, MOST_OF_BAND_S) / cores
+
+
+def say_expected(reporter: Reporter, what: str, seconds: float, cores: int = 1) -> None:
+    """Tell how long something takes on these cores, where that is long; `seconds` of wall time."""
+    if seconds > LONG_S:
+        on = f" on {cores} cores" if cores > 1 else ""
+        reporter.message(f"{what}: roughly {clock_time(float(f'{seconds:.1g}'))}{on}")
