@@ -12,9 +12,12 @@ from fem.case.case import CaseError
 from fem.case.validation import did_you_mean
 from fem.cli.console import EXIT_CODES, Jobs, Quiet, flag
 from fem.results.files import to_json
+from fem.run.expected import say_expected
 from fem.runtime.progress import ScreenReporter
+from fem.runtime.threads import cores
 
 STUDIES = ("seed",)
+OF_A_CLAIM_S = 3.3  #: processor time, on average [s]
 
 
 def study(
@@ -66,6 +69,8 @@ def _checked(
     signals = importlib.import_module("fem.runtime.signals")
     compilation = importlib.import_module("fem.runtime.compilation")
     reporter = ScreenReporter(quiet=quiet)
+    workers = jobs or cores()
+    say_expected(reporter, f"{len(claims)} claims", OF_A_CLAIM_S * len(claims) / workers, workers)
     in_place = not quiet and sys.stderr.isatty()
 
     def progress(done: int, total: int) -> None:

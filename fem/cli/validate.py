@@ -10,8 +10,11 @@ from cyclopts import Parameter
 
 from fem.cli.console import AsJson, Quiet
 from fem.cli.evidence import compute_into
+from fem.run.expected import say_expected
+from fem.runtime.progress import ScreenReporter
 
 FOLDER = Path("outputs") / "validate"
+ALL_S = 60.0  #: without rock motions
 
 
 def validate(
@@ -30,6 +33,8 @@ def validate(
             print(name, file=sys.stderr, flush=True)
 
     suite.require(data)  # refused before a folder is made
+    if not quiet:
+        say_expected(ScreenReporter(), "the experiments, once kernels are compiled", ALL_S)
     return compute_into(
         out, "validate", partial(suite.run_validation, data, before=report), pages, as_json=as_json
     )

@@ -10,8 +10,11 @@ from cyclopts import Parameter
 
 from fem.cli.console import AsJson, Quiet, flag
 from fem.cli.evidence import compute_into
+from fem.run.expected import say_expected
+from fem.runtime.progress import ScreenReporter
 
 FOLDER = Path("outputs") / "verify"
+QUICK_S, ALL_S = 30.0, 100.0  #: on one core
 
 
 def verify(
@@ -31,6 +34,9 @@ def verify(
         if not quiet:
             print(f"[{number}/{count}] {check.topic}: {check.title}", file=sys.stderr, flush=True)
 
+    if not (quiet or topic):
+        seconds = QUICK_S if quick else ALL_S
+        say_expected(ScreenReporter(), "the checks, once kernels are compiled", seconds)
     return compute_into(
         out,
         "verify",

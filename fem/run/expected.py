@@ -5,12 +5,12 @@ from fem.case.rules import ends_at_rest, longest_time
 from fem.runtime.progress import Reporter, clock_time
 
 LONG_S = 20.0  #: from which it is said
-#: processor time of a run, and of each of its simulated seconds, on corners [s]: the shipped stack on one core
+#: processor time of a run, and of each of its simulated seconds, on corners [s]: the shipped stack, tests/README.md
 OF_A_RUN = {"rigid": 0.012, "reduced": 0.02, "full": 1.0}
-OF_A_SECOND = {"rigid": 0.0008, "reduced": 0.0035, "full": 8.0}
+OF_A_SECOND = {"rigid": 0.0008, "reduced": 0.003, "full": 3.0}
 #: factor of a base, whose contact has more points (of the full model the mesh costs more than they do)
-OF_A_BASE = {"corners": 1.0, "feet": 3.0, "flat": 15.0}
-OF_LOOSE_BOXES = 20.0
+OF_A_BASE = {"corners": 1.0, "feet": 3.0, "flat": 8.0}
+OF_LOOSE_BOXES = 15.0
 USUAL_RECORD_S = 25.0  #: simulated, of a record until the container is at rest
 BAND_RUNS, MOST_OF_BAND_S = 60, 45.0  #: of band and margin
 
