@@ -37,6 +37,8 @@ CASES_AT_A_TIME = {"rigid": 16, "reduced": 4, "full": 1}
 #: worker has fewer chunks than that
 MANY_WORKERS, LEAST_CHUNKS = 64, 4
 
+TOLD_S = 5.0  #: work that has taken so long ends with a line of what was done
+
 _CONTAINERS = ContainerCache()
 
 Row = dict[str, Any]
@@ -96,6 +98,8 @@ class Runner:
                 failed += sum(row["status"] == "failed" for row in rows)
                 self.reporter.tell(progress)
         self.reporter.finish()
+        if total and done == total and time.perf_counter() - began > TOLD_S:
+            self.reporter.message(progress())  # the last line does not stand at a time left
 
     def _say_expected(
         self, what: str, by_model: Mapping[str, Sequence[ItemT]], make: Callable[[ItemT], Case]
@@ -275,6 +279,8 @@ def _row_without_outcome(status: str, reason: str | None) -> Row:
 
 def _progress(what: str, done: int, total: int, failed: int, elapsed: float) -> str:
     """The line of progress."""
-    rate = done / elapsed if elapsed > 0.0 else 0.0
+    rate, lost = done / elapsed if elapsed > 0.0 else 0.0, f", {failed} failed" if failed else ""
+    if done == total:
+        return f"{total} {what} in {clock_time(elapsed)}{lost}"
     left = f"{clock_time((total - done) / rate)} left" if rate > 0.0 else "time left unknown"
-    return f"{done} of {total} {what}, {rate:.3g} per s, {left}" + (f", {failed} failed" if failed else "")
+    return f"{done} of {total} {what}, {rate:.3g} per s, {left}{lost}"

@@ -205,7 +205,7 @@ def _floor(case: Case, numerics: Numerics) -> str:
     lies = (
         "level" if not slope else f"{short(abs(slope))} % falling to the {'right' if slope > 0.0 else 'left'}"
     )
-    bounces = f" (bounce at {quantity(bounce, 'Hz', figures=3)})" if bounce is not None else ""
+    bounces = f" (contact frequency {quantity(bounce, 'Hz', figures=3)})" if bounce is not None else ""
     if case.floor.is_slab:
         return (
             f"Floor {lies}: an elastic half-space under each corner{bounces} that crushes at its bearing strength and "

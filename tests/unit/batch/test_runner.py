@@ -129,6 +129,18 @@ def test_what_takes_long_is_said_before_it_begins(model, count, words):
     assert [bool(re.match(words, one)) for one in told.messages] == ([True] if words else [])
 
 
+def test_long_work_ends_with_a_line_of_what_was_done(monkeypatch):
+    monkeypatch.setattr("fem.batch.runner.TOLD_S", 0.0)
+    told, case = Told(), load_case("rocking", ["solver.model=rigid", *SHORT])
+    with LocalWorkers(1) as workers_of:
+        list(
+            Runner(workers_of=workers_of, reporter=told).rows(
+                "cells", range(2), lambda _: case, lambda _: "rigid"
+            )
+        )
+    assert [bool(re.fullmatch(r"2 cells in \d+ s", one)) for one in told.messages] == [True]
+
+
 def test_many_cases_are_shared_by_this_process_and_others():
     with LocalWorkers(2) as workers_of:
         pools = workers_of("rigid", WORTH_PROCESSES["rigid"])
