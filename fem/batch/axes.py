@@ -98,12 +98,12 @@ def point_of(axes: Sequence[Axis], number: int) -> dict[str, Any]:
 
 def with_following(axes: Iterable[Axis], point: Mapping[str, Any]) -> dict[str, Any]:
     """Values at a point, those of the keys that follow the axes added."""
-    found = dict(point)
+    values = dict(point)
     for axis in axes:
         if axis.following:
             place = axis.values.index(point[axis.key])
-            found |= {key: some[place] for key, some in axis.following.items() if some[place] is not None}
-    return found
+            values |= {key: some[place] for key, some in axis.following.items() if some[place] is not None}
+    return values
 
 
 def set_axis(axes: Iterable[Axis]) -> Axis | None:

@@ -66,15 +66,15 @@ def with_derived(values: Mapping[str, Any], derived: Iterable[Derived], base: Ca
     Raises:
         CaseError: an expression has no value.
     """
-    found = dict(values)
+    complete = dict(values)
     for one in derived:
-        known = {key: number_of(key, found, base) for key in one.expression.keys}
+        known = {key: number_of(key, complete, base) for key in one.expression.keys}
         try:
             value = one.expression.value(known)
         except ExpressionError as error:
             raise CaseError(f"[derived] {one.key} {error}") from None
-        found[one.key] = int(value) if one.key in _WHOLE_KEYS and value == int(value) else value
-    return found
+        complete[one.key] = int(value) if one.key in _WHOLE_KEYS and value == int(value) else value
+    return complete
 
 
 def number_of(key: str, values: Mapping[str, Any], base: Case) -> float:

@@ -75,7 +75,7 @@ class Expression:
             ExpressionError: a division by zero, a root of a negative number, a value that is not finite.
         """
         try:
-            found = _value(self.tree, values)
+            value = _value(self.tree, values)
         except ZeroDivisionError:
             reason = "it divides by zero"
         except OverflowError:
@@ -83,9 +83,9 @@ class Expression:
         except (ArithmeticError, ValueError, TypeError) as error:
             reason = str(error)
         else:
-            if not isinstance(found, complex) and math.isfinite(found):
-                return float(found)
-            reason = f"it is {found}, not a finite number"
+            if not isinstance(value, complex) and math.isfinite(value):
+                return float(value)
+            reason = f"it is {value}, not a finite number"
         raise ExpressionError(
             f"= {self.text!r} has no value: {reason}; change it, or the values of the keys that it refers to"
         )

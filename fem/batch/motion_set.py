@@ -111,7 +111,7 @@ def read_motion_set(
     """
     keys = _keys_of(axes)
     make = CaseMaker(base)
-    found: list[FloorMotionPair] = []
+    pairs: list[FloorMotionPair] = []
     contents: dict[str, str] = {}
     owners: dict[Path, str] = {}
     for some, facts in zip(keys, _each(runner, "motions read", keys, partial(_read, make)), strict=True):
@@ -130,8 +130,8 @@ def read_motion_set(
                     "set must differ: leave one out"
                 )
             contents[content] = component.name
-        found.append(pair)
-    return tuple(found)
+        pairs.append(pair)
+    return tuple(pairs)
 
 
 def motions_left_out(base: Case, motions: Sequence[FloorMotionPair]) -> str | None:

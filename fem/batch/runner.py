@@ -133,21 +133,21 @@ class Runner:
             at_a_time=_chunk_size("rigid", len(numbered), pools),
             stop=self.stop,
         )
-        found: list[FoundT] = []
+        results: list[FoundT] = []
         for chunk, some in chunks:
             ready[chunk[0][0]] = some
             while place in ready:  # in order, so that the first error does not depend on the workers
                 for one in ready.pop(place):
                     if isinstance(one, ValueError):
                         raise one
-                    found.append(one)
-                place = len(found)
+                    results.append(one)
+                place = len(results)
             done += len(chunk)
             self.reporter.tell(partial(_progress, what, done, len(numbered), 0, time.perf_counter() - began))
         self.reporter.finish()
-        if len(found) < len(numbered):
+        if len(results) < len(numbered):
             raise KeyboardInterrupt
-        return found
+        return results
 
 
 def _chunk_size(model: str, count: int, pools: Sequence[Pool]) -> int:
@@ -161,13 +161,13 @@ def _chunk_size(model: str, count: int, pools: Sequence[Pool]) -> int:
 def _work_on(
     work: Callable[[ItemT], FoundT], items: Sequence[tuple[int, ItemT]]
 ) -> list[FoundT | ValueError]:
-    found: list[FoundT | ValueError] = []
+    results: list[FoundT | ValueError] = []
     for _, item in items:
         try:
-            found.append(work(item))
+            results.append(work(item))
         except ValueError as error:
-            return [*found, error]
-    return found
+            return [*results, error]
+    return results
 
 
 def run_cases(

@@ -71,7 +71,7 @@ def flat(name: str, content: Mapping[str, Any]) -> dict[str, Any]:
     Raises:
         CaseError: one is given in both ways.
     """
-    found: dict[str, Any] = {}
+    keys: dict[str, Any] = {}
     for key, value in content.items():
         # A table is a range of one key, but for `vertical.scale = [1, -1]`, which TOML reads as a table, too.
         is_range = isinstance(value, dict) and (
@@ -82,10 +82,10 @@ def flat(name: str, content: Mapping[str, Any]) -> dict[str, Any]:
         else:
             inner = {key: value}
         for dotted, what in inner.items():
-            if dotted in found:
+            if dotted in keys:
                 raise CaseError(f"[{name}] {dotted} is given twice")
-            found[dotted] = what
-    return found
+            keys[dotted] = what
+    return keys
 
 
 def base_case(

@@ -74,15 +74,17 @@ def ensemble_answer(result: EnsembleResult) -> EnsembleAnswer | None:
         lines[tuple(point[one.key] for one in others)].append(point)
     rows = []
     for values in sorted(lines):
-        found = half_point(axis, lines[values])
-        rows.append((lines[values][0], found, _sentence(result, axis, lines[values], found, rising=rising)))
+        crossing = half_point(axis, lines[values])
+        rows.append(
+            (lines[values][0], crossing, _sentence(result, axis, lines[values], crossing, rising=rising))
+        )
     safest = min if rising else max
-    reached = [(found.value, k) for k, (_, found, _) in enumerate(rows) if found.value is not None]
-    few = [found.few_to for _, found, _ in rows if found.few_to is not None]
+    reached = [(crossing.value, k) for k, (_, crossing, _) in enumerate(rows) if crossing.value is not None]
+    few = [crossing.few_to for _, crossing, _ in rows if crossing.few_to is not None]
     sentence = rows[0][2]
     if others and reached:
-        point, found, _ = rows[safest(reached)[1]]
-        half = _half(result, axis, lines[tuple(point[one.key] for one in others)], found, rising=rising)
+        point, crossing, _ = rows[safest(reached)[1]]
+        half = _half(result, axis, lines[tuple(point[one.key] for one in others)], crossing, rising=rising)
         sentence = f"{half}, first with {place_in_words(others, point)}"
     elif others:
         sentence = f"fewer than half of {draws_in_words(result)} overturned at every point"
@@ -131,38 +133,40 @@ def _is_rising(axis: Axis, points: Sequence[Row]) -> bool:
     return axis.key in STRENGTHS or sum(high) >= sum(low)
 
 
-def interval_in_words(axis: Axis, found: HalfPoint, *, rising: bool) -> str:
+def interval_in_words(axis: Axis, crossing: HalfPoint, *, rising: bool) -> str:
     """The interval of the value in words; an end outside the points lies "beyond" them."""
     ends = [axis.values[0], axis.values[-1]]
     first, last = (in_words(axis, [end]) for end in (ends if rising else reversed(ends)))
     before, after = ("below", "beyond") if rising else ("beyond", "below")
-    low, high = ("" if end is None else in_words(axis, [end]) for end in (found.low, found.high))
+    low, high = ("" if end is None else in_words(axis, [end]) for end in (crossing.low, crossing.high))
     words = [f"{before} {first}" if low == first else low, high or f"{after} {last}"]
     return " to ".join(words if rising else reversed(words))
 
 
 def _sentence(
-    result: EnsembleResult, axis: Axis, points: Sequence[Row], found: HalfPoint, *, rising: bool
+    result: EnsembleResult, axis: Axis, points: Sequence[Row], crossing: HalfPoint, *, rising: bool
 ) -> str:
-    few = "" if found.few_to is None else _few(result, axis, found.few_to, rising=rising)
-    return _half(result, axis, points, found, rising=rising) + few
+    few = "" if crossing.few_to is None else _few(result, axis, crossing.few_to, rising=rising)
+    return _half(result, axis, points, crossing, rising=rising) + few
 
 
 def _half(
-    result: EnsembleResult, axis: Axis, points: Sequence[Row], found: HalfPoint, *, rising: bool
+    result: EnsembleResult, axis: Axis, points: Sequence[Row], crossing: HalfPoint, *, rising: bool
 ) -> str:
     half = f"half of {draws_in_words(result)} overturned"
-    if found.at_once:
+    if crossing.at_once:
         end = "least" if rising else "largest"
         return f"{half} or more at the {end} tried, {in_words(axis, [points[0][axis.key]])}"
-    if found.value is None:
+    if crossing.value is None:
         most = max(points, key=lambda point: point["probability"] or 0.0)
         share = f"{100.0 * (most['probability'] or 0.0):.2g} %"
         return (
             f"fewer than {half} at every value tried, at most {share} at {in_words(axis, [most[axis.key]])}"
         )
-    interval = interval_in_words(axis, found, rising=rising)
-    return f"{half} at {in_words(axis, [found.value])} ({100.0 * result.confidence:g} % interval {interval})"
+    interval = interval_in_words(axis, crossing, rising=rising)
+    return (
+        f"{half} at {in_words(axis, [crossing.value])} ({100.0 * result.confidence:g} % interval {interval})"
+    )
 
 
 def _few(result: EnsembleResult, axis: Axis, few_to: float, *, rising: bool) -> str:
@@ -176,24 +180,24 @@ def fragility_lines(result: EnsembleResult) -> Iterator[tuple[str, str]]:
     fragility = result.fragility
     if fragility is None:
         return
-    for fall in fragility["falls"]:
+    for fall in fragility.falls:
         yield (
             "falls",
-            f"from {fall['probability_weaker']:.3f} at {fall['weaker']:g} to {fall['probability_stronger']:.3f} at "
-            f"{fall['stronger']:g}: a stronger motion overturns less often",
+            f"from {fall.probability_weaker:.3f} at {fall.weaker:g} to {fall.probability_stronger:.3f} at "
+            f"{fall.stronger:g}: a stronger motion overturns less often",
         )
-    fitted = fragility["lognormal"]
+    fitted = fragility.lognormal
     if fitted is None:
-        yield "lognormal", f"none: {fragility['no_lognormal']}"
+        yield "lognormal", f"none: {fragility.no_lognormal}"
         return
     parts = []
     for name, unit in (("median", result.axes[0].unit), ("deviation", "")):
         ends = fitted[f"{name}_interval"]
         interval = f" ({ends[0]:.3g} to {ends[1]:.3g})" if ends else ""
         parts.append(f"{name} {fitted[name]:.3g}{interval} {unit}".rstrip())
-    fit = "" if fitted["adequate"] else "; the lognormal curve does not describe the counts"
+    fit = "" if fitted.adequate else "; the lognormal curve does not describe the counts"
     yield (
         "lognormal",
-        f"{', '.join(parts)}; misses {fitted['levels_missed']} of {fitted['levels']} intervals of "
-        f"{100.0 * result.confidence:g} % ({fitted['missed_by_chance']} by chance){fit}",
+        f"{', '.join(parts)}; misses {fitted.levels_missed} of {fitted.levels} intervals of "
+        f"{100.0 * result.confidence:g} % ({fitted.missed_by_chance} by chance){fit}",
     )

@@ -1,9 +1,8 @@
 """Figures of an ensemble: the fragility curve, or the boundary between points, with their intervals."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from textwrap import fill
-from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -12,6 +11,7 @@ from fem.batch.axes import MOTION_FILE
 from fem.batch.labels import axis_label
 from fem.ensemble.fragility import Lognormal
 from fem.ensemble.plan import Ensemble
+from fem.ensemble.result import Fragility, Resampled
 from fem.ensemble.statistics import PointResult
 from fem.ensemble.unknown import UnknownInputs
 from fem.figures import style
@@ -30,12 +30,12 @@ def ensemble_figures(
     ensemble: Ensemble,
     unknown: UnknownInputs,
     points: Sequence[PointResult],
-    fragility: Mapping[str, Any] | None,
+    fragility: Fragility | None,
 ) -> dict[str, str]:
     """Figures as SVG documents, by name."""
     with style.house_style():
         if len(ensemble.axes) == 1:
-            return {"fragility": style.svg_of(draw_fragility(ensemble, unknown, points, fragility or {}))}
+            return {"fragility": style.svg_of(draw_fragility(ensemble, unknown, points, fragility))}
         return {"boundary": style.svg_of(draw_boundary(ensemble, unknown, points))}
 
 
@@ -43,23 +43,22 @@ def draw_fragility(
     ensemble: Ensemble,
     unknown: UnknownInputs,
     points: Sequence[PointResult],
-    fragility: Mapping[str, Any],
+    fragility: Fragility | None,
 ) -> Figure:
     """Counts with their intervals, and the lognormal curve with its band."""
     statement = fill(_statement(ensemble, unknown), SMALL_LINE)
     figure, (axes,) = style.panels((3.2,), header=3 + statement.count("\n"))
     axis = ensemble.axes[0]
     style.head(figure, ensemble.title or ensemble.name, statement)
-    fitted = fragility.get("lognormal")
-    if fitted is not None:
+    if fragility is not None and (fitted := fragility.lognormal) is not None:
         strengths = np.linspace(float(axis.values[0]), float(axis.values[-1]), FINE)
-        curve = Lognormal(median=fitted["median"], deviation=fitted["deviation"])
-        if "resampled" in fitted:
-            low, high = band_of(fitted["resampled"], strengths, ensemble.confidence)
+        curve = Lognormal(median=fitted.median, deviation=fitted.deviation)
+        if fitted.resampled is not None:
+            low, high = band_of(fitted.resampled, strengths, ensemble.confidence)
             axes.fill_between(
                 strengths, low, high, color=style.BLUE, alpha=0.18, linewidth=0, label="bootstrap band"
             )
-        word = "lognormal fitted" if fitted["adequate"] else "lognormal, which does not fit"
+        word = "lognormal fitted" if fitted.adequate else "lognormal, which does not fit"
         axes.plot(strengths, curve.probability(strengths), color=style.BLUE, linestyle="--", label=word)
     known = [point for point in points if point.estimate.value is not None]
     value = np.array([point.estimate.value for point in known], dtype=float)
@@ -119,14 +118,12 @@ def draw_boundary(ensemble: Ensemble, unknown: UnknownInputs, points: Sequence[P
     )
 
 
-def band_of(
-    resampled: Mapping[str, Any], strengths: FloatArray, confidence: float
-) -> tuple[FloatArray, FloatArray]:
+def band_of(resampled: Resampled, strengths: FloatArray, confidence: float) -> tuple[FloatArray, FloatArray]:
     """Pointwise ends of the bootstrapped curves, shapes (n,)."""
     curves = np.array(
         [
             Lognormal(median=median, deviation=deviation).probability(strengths)
-            for median, deviation in zip(resampled["median"], resampled["deviation"], strict=True)
+            for median, deviation in zip(resampled.median, resampled.deviation, strict=True)
         ]
     )
     outside = 50.0 * (1.0 - confidence)

@@ -120,7 +120,7 @@ def _random(content: Mapping[str, Any], axes: tuple[Axis, ...]) -> tuple[RandomQ
         raise CaseError(
             f"[random] must hold one to {MOST_RANDOM} keys, got {len(content)}; for instance {example}"
         )
-    found: list[RandomQuantity | RandomChoice] = []
+    quantities: list[RandomQuantity | RandomChoice] = []
     for key, value in content.items():
         try:
             _check_key(key)
@@ -131,8 +131,8 @@ def _random(content: Mapping[str, Any], axes: tuple[Axis, ...]) -> tuple[RandomQ
             raise CaseError(
                 f"[random] {key!r} is an axis as well; give the scatter about its values with relative = true"
             )
-        found.append(one)
-    return tuple(found)
+        quantities.append(one)
+    return tuple(quantities)
 
 
 def _derived(content: Mapping[str, Any], varied: Collection[str]) -> tuple[Derived, ...]:

@@ -9,6 +9,7 @@ import numpy as np
 from scipy.special import ndtr
 from scipy.stats import binom
 
+from fem.ensemble.result import Fall
 from fem.runtime.arrays import FloatArray
 
 BOOTSTRAPS = 1000
@@ -28,16 +29,6 @@ class Lognormal:
     def probability(self, strengths: FloatArray) -> FloatArray:
         """Of overturning, shape as given."""
         return np.asarray(ndtr(np.log(strengths / self.median) / self.deviation))
-
-
-@dataclass(frozen=True, kw_only=True)
-class Fall:
-    """A stronger motion that overturns less often than a weaker one, beyond what the intervals allow."""
-
-    weaker: float
-    stronger: float
-    probability_weaker: float
-    probability_stronger: float
 
 
 def fit_lognormal(strengths: FloatArray, overturned: FloatArray, draws: FloatArray) -> Lognormal | None:
@@ -89,11 +80,11 @@ def bootstrap_fits(
 
 def falls(strengths: FloatArray, values: FloatArray, low: FloatArray, high: FloatArray) -> list[Fall]:
     """Where the curve falls: for each level, the weaker one whose interval lies highest above its own."""
-    found = []
+    drops = []
     for k in range(1, len(strengths)):
         before = int(np.argmax(low[:k]))
         if high[k] < low[before]:
-            found.append(
+            drops.append(
                 Fall(
                     weaker=float(strengths[before]),
                     stronger=float(strengths[k]),
@@ -101,7 +92,7 @@ def falls(strengths: FloatArray, values: FloatArray, low: FloatArray, high: Floa
                     probability_stronger=float(values[k]),
                 )
             )
-    return found
+    return drops
 
 
 def misses(curve: Lognormal, strengths: FloatArray, low: FloatArray, high: FloatArray) -> int:

@@ -6,6 +6,54 @@ from typing import Any
 
 from fem.batch.axes import Axis, AxisResult
 from fem.batch.study import StudyResult
+from fem.results.json_block import JsonBlock
+
+
+@dataclass(frozen=True, kw_only=True)
+class Fall(JsonBlock):
+    """A stronger motion that overturns less often than a weaker one, beyond what the intervals allow."""
+
+    weaker: float
+    stronger: float
+    probability_weaker: float
+    probability_stronger: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Resampled(JsonBlock):
+    """The curves of the resamples."""
+
+    median: tuple[float, ...]
+    deviation: tuple[float, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class FittedLognormal(JsonBlock):
+    """The fitted curve, and how well it describes the counts."""
+
+    median: float
+    deviation: float
+    levels: int
+    levels_missed: int
+    missed_by_chance: int
+    adequate: bool
+    median_interval: tuple[float, ...] | None = None  #: None where too few resamples have a curve
+    deviation_interval: tuple[float, ...] | None = None
+    resampled: Resampled | None = None
+
+    written_where_given = frozenset({"resampled"})
+
+
+@dataclass(frozen=True, kw_only=True)
+class Fragility(JsonBlock):
+    """What the only axis of an ensemble shows."""
+
+    axis: str  #: its key
+    falls: tuple[Fall, ...]
+    lognormal: FittedLognormal | None = None
+    no_lognormal: str | None = None  #: why there is none
+
+    written_where_given = frozenset({"no_lognormal"})
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,7 +84,7 @@ class EnsembleResult(StudyResult):
     points: tuple[Mapping[str, Any], ...] = ()  #: by the keys of the axes and `statistics.POINT_COLUMNS`
     regions: dict[str, int] = field(default_factory=dict)
     failed: int = 0
-    fragility: dict[str, Any] | None = None
+    fragility: Fragility | None = None
 
     @property
     def point_axes(self) -> tuple[Axis, ...]:

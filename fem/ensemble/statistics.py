@@ -1,7 +1,7 @@
 """The results of an ensemble: a row a point, and the fragility curve of all points."""
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -9,12 +9,14 @@ import numpy as np
 from fem.batch.intervals import Estimate, estimate
 from fem.ensemble.fragility import BOOTSTRAPS, bootstrap_fits, falls, fit_lognormal, misses, misses_by_chance
 from fem.ensemble.plan import Ensemble
+from fem.ensemble.result import FittedLognormal, Fragility, Resampled
 from fem.results.outcome import COUNTED, Ending
 from fem.runtime.arrays import FloatArray
 
 #: columns of `points.csv` behind those of the axes
 POINT_COLUMNS = ("draws", *COUNTED, "probability", "low", "high", "region")
 FEWEST_FITTED = 4  #: levels from which a curve is fitted
+NO_CURVE = "the counts are a step, fall, or hold nothing that overturned or nothing that stood"
 FEWEST_RESAMPLED = 0.9  #: share of the resamples that must have a curve, else there is no band
 
 
@@ -46,7 +48,7 @@ class PointResult:
 def count_point(ensemble: Ensemble, cell: int, codes: np.ndarray) -> PointResult:
     """The result of a point from the endings (draws,) of its draws."""
     overturned, failed = codes == Ending.OVERTURNED, codes == Ending.FAILED
-    found = estimate(
+    share = estimate(
         overturned,
         failed,
         replicates=ensemble.replicates,
@@ -54,23 +56,21 @@ def count_point(ensemble: Ensemble, cell: int, codes: np.ndarray) -> PointResult
         independent=None if ensemble.motions is None else ensemble.replicates,
     )
     region = "undecided"
-    if found.high <= ensemble.probability:
+    if share.high <= ensemble.probability:
         region = "below"
-    elif found.low > ensemble.probability:
+    elif share.low > ensemble.probability:
         region = "above"
     return PointResult(
         values=ensemble.point(cell),
         stood=int((codes == Ending.STANDING).sum()),
         overturned=int(overturned.sum()),
         failed=int(failed.sum()),
-        estimate=found,
+        estimate=share,
         region=region,
     )
 
 
-def fragility_of(
-    ensemble: Ensemble, codes: np.ndarray, points: Sequence[PointResult]
-) -> dict[str, Any] | None:
+def fragility_of(ensemble: Ensemble, codes: np.ndarray, points: Sequence[PointResult]) -> Fragility | None:
     """The curve over the only axis: where it falls, the fitted lognormal, its band; None with more axes.
 
     Args:
@@ -84,19 +84,15 @@ def fragility_of(
         for name in ("low", "high", "value")
     )
     known = np.isfinite(values)
-    result: dict[str, Any] = {
-        "axis": ensemble.axes[0].key,
-        "falls": [asdict(one) for one in falls(strengths[known], values[known], low[known], high[known])],
-        "lognormal": None,
-    }
-    if strengths[0] <= 0.0 or known.sum() < FEWEST_FITTED:
-        result["no_lognormal"] = (
-            "the axis goes through zero" if strengths[0] <= 0.0 else f"fewer than {FEWEST_FITTED} levels"
-        )
-        return result
+    fallen = falls(strengths[known], values[known], low[known], high[known])
+    fragility = Fragility(axis=ensemble.axes[0].key, falls=tuple(fallen))
+    if strengths[0] <= 0.0:
+        return replace(fragility, no_lognormal="the axis goes through zero")
+    if known.sum() < FEWEST_FITTED:
+        return replace(fragility, no_lognormal=f"fewer than {FEWEST_FITTED} levels")
     counts, sizes = _by_replicate(ensemble, codes[known])
-    result |= _lognormal(ensemble, strengths[known], counts, sizes, low[known], high[known])
-    return result
+    fitted = _lognormal(ensemble, strengths[known], counts, sizes, low[known], high[known])
+    return replace(fragility, lognormal=fitted, no_lognormal=None if fitted else NO_CURVE)
 
 
 def _lognormal(
@@ -106,12 +102,10 @@ def _lognormal(
     sizes: FloatArray,
     low: FloatArray,
     high: FloatArray,
-) -> dict[str, Any]:
+) -> FittedLognormal | None:
     curve = fit_lognormal(strengths, counts.sum(axis=1), sizes.sum(axis=1))
     if curve is None:
-        return {
-            "no_lognormal": "the counts are a step, fall, or hold nothing that overturned or nothing that stood"
-        }
+        return None
     medians, deviations = bootstrap_fits(
         strengths,
         counts,
@@ -120,18 +114,28 @@ def _lognormal(
         independent=ensemble.replicates == 1,
         common=ensemble.motions is not None,
     )
+    missed, by_chance = (
+        misses(curve, strengths, low, high),
+        misses_by_chance(len(strengths), ensemble.confidence),
+    )
+    fitted = FittedLognormal(
+        median=curve.median,
+        deviation=curve.deviation,
+        levels=len(strengths),
+        levels_missed=missed,
+        missed_by_chance=by_chance,
+        adequate=missed <= by_chance,
+    )
+    if len(medians) < FEWEST_RESAMPLED * BOOTSTRAPS:
+        return fitted
     outside = 50.0 * (1.0 - ensemble.confidence)
-    fitted: dict[str, Any] = {"median": curve.median, "deviation": curve.deviation, "levels": len(strengths)}
-    fitted["levels_missed"] = misses(curve, strengths, low, high)
-    fitted["missed_by_chance"] = misses_by_chance(len(strengths), ensemble.confidence)
-    fitted["adequate"] = fitted["levels_missed"] <= fitted["missed_by_chance"]
-    enough = len(medians) >= FEWEST_RESAMPLED * BOOTSTRAPS
-    for name, found in (("median", medians), ("deviation", deviations)):
-        ends = np.percentile(found, [outside, 100.0 - outside]).tolist() if enough else None
-        fitted[f"{name}_interval"] = ends
-    if enough:
-        fitted["resampled"] = {"median": medians.tolist(), "deviation": deviations.tolist()}
-    return {"lognormal": fitted}
+    ends = [outside, 100.0 - outside]
+    return replace(
+        fitted,
+        median_interval=tuple(np.percentile(medians, ends).tolist()),
+        deviation_interval=tuple(np.percentile(deviations, ends).tolist()),
+        resampled=Resampled(median=tuple(medians.tolist()), deviation=tuple(deviations.tolist())),
+    )
 
 
 def _by_replicate(ensemble: Ensemble, codes: np.ndarray) -> tuple[FloatArray, FloatArray]:

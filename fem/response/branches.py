@@ -79,7 +79,7 @@ def differ(one: PointRecord, other: PointRecord) -> bool:
 
 def jumps(records: Sequence[PointRecord]) -> list[Jump]:
     """Changes of kind or of size between neighbouring frequencies through which a motion was carried."""
-    found = []
+    jumped = []
     for direction in ("up", "down"):
         swept = [record for record in records if record.row.direction == direction]
         carried = [
@@ -93,7 +93,7 @@ def jumps(records: Sequence[PointRecord]) -> list[Jump]:
             beside = max([*changes[max(k - 1, 0) : k], *changes[k + 1 : k + 2]], default=0.0)
             if kinds[0] == kinds[1] and change <= max(JUMP, JUMP_SHARE * beside):
                 continue
-            found.append(
+            jumped.append(
                 Jump(
                     direction=direction,
                     from_Hz=before.row.frequency_Hz,
@@ -102,18 +102,18 @@ def jumps(records: Sequence[PointRecord]) -> list[Jump]:
                     rotation_ratio=(before.number("rotation_ratio"), after.number("rotation_ratio")),
                 )
             )
-    return found
+    return jumped
 
 
 def drop_outs(records: Sequence[PointRecord]) -> list[DropOut]:
     """Ranges of neighbouring frequencies, along each sweep, at which the container overturned."""
-    found = []
+    falls = []
     for (direction, status), run in groupby(
         records, lambda record: (record.row.direction, record.row.status)
     ):
         if status == "overturned":
             rows = [record.row for record in run]
-            found.append(
+            falls.append(
                 DropOut(
                     direction=direction,
                     from_Hz=rows[0].frequency_Hz,
@@ -122,7 +122,7 @@ def drop_outs(records: Sequence[PointRecord]) -> list[DropOut]:
                     carried=rows[0].began == "carried",
                 )
             )
-    return found
+    return falls
 
 
 def _coexistence(pairs: Sequence[tuple[PointRecord, PointRecord]]) -> Coexistence:

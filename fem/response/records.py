@@ -87,9 +87,9 @@ def record_of(point: CurvePoint) -> PointRecord:
     """What is kept of a point."""
     case, orbit, long_time, decay = point.case, point.orbit, point.long_time, point.decay
     extremes = orbit.extremes
-    found: dict[str, Any] = {}
+    judged: dict[str, Any] = {}
     if long_time is not None:
-        found = {
+        judged = {
             "long_time": long_time.kind,
             "period_n": long_time.period,
             "scatter": long_time.scatter,
@@ -106,7 +106,7 @@ def record_of(point: CurvePoint) -> PointRecord:
             "growth": point.growth,
         }
     if decay is not None:
-        found |= {"undriven": decay.fate, "undriven_s": decay.time}
+        judged |= {"undriven": decay.fate, "undriven_s": decay.time}
     row = PointRow(
         direction=point.direction,
         number=point.number,
@@ -120,7 +120,7 @@ def record_of(point: CurvePoint) -> PointRecord:
         bounded=point.bounded,
         stable=point.stable,
         reason=orbit.reason,
-        **found,
+        **judged,
     )
     kept = PORTRAYED if long_time is None else {"rest": 1}.get(long_time.kind, long_time.period or PORTRAYED)
     portrait = orbit.portrait[-kept * SAMPLES_PER_PERIOD :]

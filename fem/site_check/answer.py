@@ -16,11 +16,11 @@ CONFIDENCE = 0.95
 def answer_of(
     request: SiteRequest,
     motions: result.MotionSet,
-    found: Mapping[RunKey, result.SiteRun],
+    runs: Mapping[RunKey, result.SiteRun],
     confirmed: Sequence[result.ConfirmedRun] = (),
 ) -> result.SiteAnswer:
     """The answer, from all runs."""
-    own = [run for key, run in found.items() if key.stage == SET]
+    own = [run for key, run in runs.items() if key.stage == SET]
     rule = rule_in_words(motions.count)
     if not motions.valid:
         reasons = "; ".join(motions.reasons)
@@ -49,9 +49,9 @@ def answer_of(
         rotation_fulfilled=None if failed and not overturned else not overturned and within,
         slip_fulfilled=None if failed or overturned else short,
         governing=governing_run(request, own),
-        factor_at_first_overturning=_first_overturning(found),
-        scan=_scan(found),
-        further=_further(request, found),
+        factor_at_first_overturning=_first_overturning(runs),
+        scan=_scan(runs),
+        further=_further(request, runs),
         confirmed=tuple(confirmed),
     )
 
@@ -101,18 +101,18 @@ def _largest(groups: Iterable[RunGroup]) -> result.ByRule:
     )
 
 
-def _first_overturning(found: Mapping[RunKey, result.SiteRun]) -> float | None:
+def _first_overturning(runs: Mapping[RunKey, result.SiteRun]) -> float | None:
     factors = [
         key.factor
-        for key, run in found.items()
+        for key, run in runs.items()
         if key.stage in (SET, SCAN, REFINED) and run.outcome == Outcome.OVERTURNED
     ]
     return min(factors, default=None)
 
 
-def _scan(found: Mapping[RunKey, result.SiteRun]) -> tuple[result.ScanPoint, ...]:
+def _scan(runs: Mapping[RunKey, result.SiteRun]) -> tuple[result.ScanPoint, ...]:
     by_factor: dict[float, list[result.SiteRun]] = {}
-    for key, run in found.items():
+    for key, run in runs.items():
         if key.stage in (SET, SCAN):
             by_factor.setdefault(key.factor, []).append(run)
     points = []

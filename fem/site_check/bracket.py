@@ -72,16 +72,16 @@ class SizeResult(StudyResult):
     points: tuple[SizePoint, ...] = ()  #: by rising value
 
 
-def next_values(axis: SizeAxis, found: Mapping[float, SiteAnswer]) -> list[float]:
+def next_values(axis: SizeAxis, answers: Mapping[float, SiteAnswer]) -> list[float]:
     """Values to be tried next: those of the scan, then values within every bracket wider than 1 % of the value.
 
     Args:
-        found: answers so far, by value. None is asked for again; empty: all is found.
+        answers: so far, by value. None is asked for again; empty: all is found.
     """
-    missing = [value for value in axis.values if value not in found]
+    missing = [value for value in axis.values if value not in answers]
     if missing or axis.whole:
         return missing
-    outcomes = {value: str(answer.fulfilled) for value, answer in found.items()}
+    outcomes = {value: str(answer.fulfilled) for value, answer in answers.items()}
     return values_to_try(
         outcomes, resolution=RESOLUTION, inner=INNER, least=least_width(axis.values, RESOLUTION)
     )
@@ -100,10 +100,10 @@ def size_asked(axis: SizeAxis, followers: tuple[str, ...] = (), command: str = "
 
 
 def size_result(
-    axis: SizeAxis, found: Mapping[float, SiteAnswer], asked: SizeResult | None = None
+    axis: SizeAxis, answers: Mapping[float, SiteAnswer], asked: SizeResult | None = None
 ) -> SizeResult:
     """Which values fulfil the rule, from the answers by value."""
-    points = tuple(_point(value, found[value]) for value in sorted(found))
+    points = tuple(_point(value, answers[value]) for value in sorted(answers))
     intervals, words = fulfilled_intervals(points), sentence(axis, points)
     return replace(
         asked or size_asked(axis),

@@ -11,9 +11,9 @@ from fem.site_check.runs import SET, RunCases, RunKey
 MODEL = "reduced"
 
 
-def deciding(found: Mapping[RunKey, SiteRun], governing: SiteRun | None) -> list[RunKey]:
+def deciding(runs: Mapping[RunKey, SiteRun], governing: SiteRun | None) -> list[RunKey]:
     """The runs that decide: what governs, and the largest rotation and slip among the runs that stood."""
-    own = {key: run for key, run in found.items() if key.stage == SET and run.outcome is not None}
+    own = {key: run for key, run in runs.items() if key.stage == SET and run.outcome is not None}
     if governing is None or not own:
         return []
     keys = [next(key for key, run in own.items() if run is governing)]
@@ -25,7 +25,7 @@ def deciding(found: Mapping[RunKey, SiteRun], governing: SiteRun | None) -> list
 
 
 def confirmed(
-    cases: RunCases, found: Mapping[RunKey, SiteRun], keys: list[RunKey], jobs: int | None
+    cases: RunCases, runs: Mapping[RunKey, SiteRun], keys: list[RunKey], jobs: int | None
 ) -> list[ConfirmedRun]:
     """These runs with the reduced model, each with its band unless it rests far below the static limits.
 
@@ -38,7 +38,7 @@ def confirmed(
         verdict = run.verdict
         results.append(
             ConfirmedRun(
-                run=found[key],
+                run=runs[key],
                 model=MODEL,
                 outcome=verdict.outcome,
                 **verdict.figures(Place.KEY),

@@ -125,15 +125,15 @@ class SiteRequest:
         masses = {FULL: self.container}
         if self.heading.empty_mass_kg is not None:
             masses[EMPTY] = self._empty(self.heading.empty_mass_kg)
-        found = [Variant(mass=mass, elevation="width", case=case) for mass, case in masses.items()]
+        variants = [Variant(mass=mass, elevation="width", case=case) for mass, case in masses.items()]
         box = self.container.container
         if box.width_m != box.depth_m:
             turned = {"container.width_m": box.depth_m, "container.depth_m": box.width_m}
-            found += [
+            variants += [
                 Variant(mass=mass, elevation="depth", case=case.with_values(turned))
                 for mass, case in masses.items()
             ]
-        return found
+        return variants
 
     @property
     def wind_pressure(self) -> tuple[float, str] | None:

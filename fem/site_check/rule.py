@@ -63,10 +63,10 @@ class RunGroup:
 
 def groups_of(runs: Iterable[SiteRun]) -> list[RunGroup]:
     """Runs by weight, elevation, building period and frictions, in the order of their first runs."""
-    found: dict[Key, list[SiteRun]] = {}
+    groups: dict[Key, list[SiteRun]] = {}
     for run in runs:
-        found.setdefault(_key(run), []).append(run)
-    return [RunGroup(runs=tuple(members)) for members in found.values()]
+        groups.setdefault(_key(run), []).append(run)
+    return [RunGroup(runs=tuple(members)) for members in groups.values()]
 
 
 def _key(run: SiteRun) -> Key:
@@ -82,7 +82,7 @@ def both_directions(groups: Sequence[RunGroup]) -> list[tuple[RunGroup, float]]:
     Returns:
         The group of the elevation along the width, and the larger of the two combinations.
     """
-    found = []
+    combined = []
     for along in groups:
         for across in groups:
             same = replace(across.first, elevation=along.first.elevation)
@@ -91,8 +91,8 @@ def both_directions(groups: Sequence[RunGroup]) -> list[tuple[RunGroup, float]]:
             one, other = along.by_rule.slip_m, across.by_rule.slip_m
             if _key(same) == _key(along.first) and one is not None and other is not None:
                 pairs = ((one, other), (other, one))
-                found.append((along, max(math.hypot(whole, SHARE * part) for whole, part in pairs)))
-    return found
+                combined.append((along, max(math.hypot(whole, SHARE * part) for whole, part in pairs)))
+    return combined
 
 
 def rule_in_words(motions: int) -> str:

@@ -163,11 +163,11 @@ class _Verification:
                 values=rows.values,
                 note=rows.note,
             ).run(runner, self._batches(place, runner, rows))
-            found = rows.in_order()
-            keys = deciding(found, governing_run(self.request, rows.of(self.plan.of_set())))
+            runs = rows.in_order()
+            keys = deciding(runs, governing_run(self.request, rows.of(self.plan.of_set())))
             if not runner.stop() and keys:
                 runner.reporter.message("repeating the deciding runs with the reduced model")
-                again = confirmed(cases, found, keys, runner.jobs)
+                again = confirmed(cases, runs, keys, runner.jobs)
         return None if runner.stop() else answer_of(self.request, motions, rows.in_order(), again)
 
     def _result(

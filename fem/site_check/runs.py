@@ -96,12 +96,10 @@ class RunPlan:
         """All of these at the other factors."""
         return [key._replace(stage=SCAN, factor=factor) for factor in SCANNED for key in self.of_set()]
 
-    def refined(self, found: Mapping[RunKey, SiteRun]) -> list[RunKey]:
+    def refined(self, runs: Mapping[RunKey, SiteRun]) -> list[RunKey]:
         """Those that overturned at the least factor, at factors between it and the one below."""
         fell = [
-            key
-            for key, run in found.items()
-            if run.outcome == Outcome.OVERTURNED and key.stage in (SET, SCAN)
+            key for key, run in runs.items() if run.outcome == Outcome.OVERTURNED and key.stage in (SET, SCAN)
         ]
         first = min((key.factor for key in fell), default=0.0)
         to_first = {factor: "" for factor in (1.0, *SCANNED) if factor < first} | {first: "overturned"}

@@ -123,8 +123,8 @@ def _value(request: SiteRequest, key: str) -> float | None:
     content = getattr(request, table)
     if content is None:
         raise CaseError(f"--over {key}: the site file has no [{table}]")
-    found = getattr(content, name)
-    return None if found is None else float(found)
+    given = getattr(content, name)
+    return None if given is None else float(given)
 
 
 def _around(key: str, value: float | None, quantity: Quantity) -> tuple[float, float]:

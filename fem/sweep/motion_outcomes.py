@@ -71,16 +71,16 @@ def motions_at(
         )
 
 
-def set_row(found: Sequence[MotionOutcome]) -> dict[str, Any]:
+def set_row(outcomes: Sequence[MotionOutcome]) -> dict[str, Any]:
     """The outcome of a set of motions at a point, by `SET_COLUMNS`."""
-    kinds = np.array([one.kind for one in found])
+    kinds = np.array([one.kind for one in outcomes])
     share = estimate(kinds == Ending.OVERTURNED, kinds == Ending.FAILED, replicates=1, confidence=CONFIDENCE)
-    computed = [one for one in found if one.kind != Ending.FAILED]
+    computed = [one for one in outcomes if one.kind != Ending.FAILED]
     standing = [one for one in computed if one.kind == Ending.STANDING]
     worst = max(computed, key=severity, default=None)
     slipped = max(computed, key=lambda one: one.slipped, default=None)
     return {
-        "motions": len(found),
+        "motions": len(outcomes),
         "stood": len(standing),
         "overturned": int((kinds == Ending.OVERTURNED).sum()),
         "failed": int((kinds == Ending.FAILED).sum()),
@@ -125,15 +125,15 @@ def set_in_words(row: Mapping[str, Any]) -> str:
 
 def by_motion(points: Sequence[Sequence[MotionOutcome]]) -> dict[str, dict[str, Any]]:
     """Counts and largest figures of each motion over all points, by its name; the figures where it stood."""
-    found: dict[str, dict[str, Any]] = {}
+    rows: dict[str, dict[str, Any]] = {}
     for outcomes in zip(*points, strict=True):
         standing = [one for one in outcomes if one.kind == Ending.STANDING]
         counts = {word: sum(one.kind == kind for one in outcomes) for word, kind in COUNTED.items()}
-        found[outcomes[0].motion] = counts | {
+        rows[outcomes[0].motion] = counts | {
             "max_rotation_ratio": max((one.turned for one in standing), default=None),
             "max_slip_m": max((one.slipped for one in standing), default=None),
         }
-    return found
+    return rows
 
 
 def _worst(motion: str, signs: Sequence[RunShown]) -> MotionOutcome:

@@ -79,12 +79,12 @@ class PerturbedRows:
 
     def unsure(self, *, drawn: bool = True) -> BoolArray:
         """Which cells are unsure, (n_cells,): those that failed, or have a copy that ends otherwise or fails."""
-        found = ~self._cells.decided
+        unsure = ~self._cells.decided
         for cell, copies in self.rows.items():
-            found[cell] |= any(
+            unsure[cell] |= any(
                 one.level == OTHER_END for one in copies.values() if drawn or not one.copy.drawn
             )
-        return found
+        return unsure
 
     def sureness(self, cell: int) -> tuple[str, tuple[str, ...]]:
         """How sure a cell is, and the inputs that decide: the smallest change that turns its outcome first.
@@ -107,9 +107,9 @@ class PerturbedRows:
     def ratios(self, cell: int) -> tuple[float | None, float | None]:
         """Least and largest rotation ratio of a cell and its copies; None where there is none."""
         copies = self.rows.get(cell, {}).values()
-        found = [one.shown.rotation_ratio for one in copies if one.shown.rotation_ratio is not None]
+        ratios = [one.shown.rotation_ratio for one in copies if one.shown.rotation_ratio is not None]
         own = float(self._cells.ratio[cell])
-        return (min(own, *found), max(own, *found)) if found and np.isfinite(own) else (None, None)
+        return (min(own, *ratios), max(own, *ratios)) if ratios and np.isfinite(own) else (None, None)
 
     def overturned_share(self, cell: int) -> float | None:
         """Share of a cell and all its copies that overturn; None of a cell that failed.
@@ -136,24 +136,24 @@ def band_rows(
         values of `table.band_columns`.
     """
     everywhere = sweep.perturbation.cells != "near"
-    found = [perturbed.sureness(cell) for cell in range(sweep.count)]
-    unsure = np.array([word == UNSURE for word, _ in found])
+    sureness = [perturbed.sureness(cell) for cell in range(sweep.count)]
+    unsure = np.array([word == UNSURE for word, _ in sureness])
     grid = unsure.reshape(sweep.shape)
     widths = [band_width(sweep.axes, grid, k).ravel() for k, axis in enumerate(sweep.axes) if axis.is_numeric]
 
     def sure(cell: int) -> str:
         """Nothing is known of a cell that was left out."""
-        return found[cell][0] if everywhere or unsure[cell] or cell in perturbed.rows else ""
+        return sureness[cell][0] if everywhere or unsure[cell] or cell in perturbed.rows else ""
 
     def values(cell: int) -> tuple[Any, ...]:
         copies = len(perturbed.rows.get(cell, {}))
-        by = " ".join(found[cell][1])
+        by = " ".join(sureness[cell][1])
         ratios = perturbed.ratios(cell)
         share = perturbed.overturned_share(cell) if sure(cell) else None
         return copies, unsure[cell], sure(cell), by, *ratios, share, *(width[cell] for width in widths)
 
     counts = Counter(word for cell in range(sweep.count) if (word := sure(cell)))
-    return counts, Counter(key for word, by in found if word == UNSURE for key in by), values
+    return counts, Counter(key for word, by in sureness if word == UNSURE for key in by), values
 
 
 def perturb_cells(runner: Runner, sweep: Sweep, cells: CellRows, log: Path) -> PerturbedRows | None:
@@ -242,13 +242,13 @@ def _items(
     sweep: Sweep, perturbed: PerturbedRows, cells: BoolArray, wants: Callable[[int, Copy], bool]
 ) -> list[CopyItem]:
     """Copies of cells that are not there yet: of one container together, and within it of one change."""
-    found = []
+    items = []
     for cell in np.flatnonzero(cells).tolist():
         known, container = perturbed.rows.get(cell, {}), sweep.container_of(cell)
         for number, copy in enumerate(perturbed.copies.of(cell)):
             if number not in known and wants(cell, copy):
-                found.append((container, copy.name, CopyItem(cell, number, copy.change.values)))
-    return [item for _, _, item in sorted(found, key=lambda one: (*one[:2], one[2].cell))]
+                items.append((container, copy.name, CopyItem(cell, number, copy.change.values)))
+    return [item for _, _, item in sorted(items, key=lambda one: (*one[:2], one[2].cell))]
 
 
 def _values(item: CopyItem, row: Row) -> Iterator[Any]:

@@ -124,11 +124,11 @@ class Sweep:
 
     def ends(self) -> list[Case]:
         """The cases at the ends of each axis, those that can be made."""
-        found = []
+        cases = []
         for corner in product(*((axis.values[0], axis.values[-1]) for axis in self.axes)):
             with suppress(CaseError):
-                found.append(self.case_at(dict(zip((axis.key for axis in self.axes), corner, strict=True))))
-        return found
+                cases.append(self.case_at(dict(zip((axis.key for axis in self.axes), corner, strict=True))))
+        return cases
 
     def copy_case(self, item: CopyItem) -> Case:
         """The case of a copy of a cell, whose loose boxes keep the friction that they have in the cell."""

@@ -167,14 +167,16 @@ def _progress(sweep: Sweep, folder: Path) -> str:
     return f"{rows} of {sweep.count} rows" if rows > 0 else ""
 
 
-def _again(sweep: Sweep, asked: SweepResult, place: ResultFolder, found: SweepResult) -> SweepResult | None:
+def _again(
+    sweep: Sweep, asked: SweepResult, place: ResultFolder, finished: SweepResult
+) -> SweepResult | None:
     """A finished sweep, with maps over the axes that are asked for; None where its band is to be another."""
-    if found.band_hash != asked.band_hash or not (place.path / TABLE).is_file():
+    if finished.band_hash != asked.band_hash or not (place.path / TABLE).is_file():
         return None
-    if found.map_axes != asked.map_axes:
-        found = replace(found, map_axes=asked.map_axes, maps=_draw(place, sweep))
-        place.write_result(found.to_json())
-    return found
+    if finished.map_axes != asked.map_axes:
+        finished = replace(finished, map_axes=asked.map_axes, maps=_draw(place, sweep))
+        place.write_result(finished.to_json())
+    return finished
 
 
 def _draw(place: ResultFolder, sweep: Sweep) -> tuple[str, ...]:
@@ -235,12 +237,12 @@ def _write_table(
     place: ResultFolder, sweep: Sweep, cells: CellRows, copies: PerturbedRows | None
 ) -> dict[str, Any]:
     """Write `table.csv` and the copies; returns what they add to `sweep.json`."""
-    columns, found = band_columns(sweep.axes), dict[str, Any]()
+    columns, added = band_columns(sweep.axes), dict[str, Any]()
     bands = [line_of([None] * len(columns))] * sweep.count
     if copies is not None:
         counts, deciding, values = band_rows(sweep, cells, copies)
         bands = [line_of(values(cell)) for cell in range(sweep.count)]
-        found = {
+        added = {
             "unsure": counts[UNSURE],
             "sure": {word: counts[word] for word in (SURE, REGIME_UNSURE, UNSURE)},
             "decided_by": dict(deciding.most_common()),
@@ -248,7 +250,7 @@ def _write_table(
         place.write_text(MEMBERS, table_of_lines(perturbed.COLUMNS, copies.lines()))
     lines = (f"{cells.lines[cell]},{band}" for cell, band in enumerate(bands))
     place.write_text(TABLE, table_of_lines((*cells.columns, *columns), lines))
-    return found
+    return added
 
 
 @dataclass(kw_only=True, eq=False)

@@ -27,9 +27,9 @@ def write_set(
 ) -> dict[str, Any]:
     """Write the files of the set; returns its part of `sweep.json`."""
     points = list(motions_at(sweep.axes, cells.shown))
-    outcomes = by_motion([found for _, found in points])
+    outcomes = by_motion([at_point for _, at_point in points])
     measures = [one.numbers() | outcomes[one.name] for one in motions]
-    rows = [values | set_row(found) for values, found in points]
+    rows = [values | set_row(at_point) for values, at_point in points]
     others = [axis for axis in sweep.axes if axis.key in rows[0]]
     columns = (*(axis.key for axis in others), *SET_COLUMNS)
     place.write_text("motion_set.csv", table_text(columns, (row.values() for row in rows)))
