@@ -14,7 +14,7 @@ LOOSE = ("container.joints=loose", "container.boxes=3")
 STEPPED = {
     "loose": LOOSE,
     "corners": (),
-    "outcome": (),
+    "outcome": ("solver.model=rigid",),
     "full loose": ("solver.model=full", *LOOSE),
     "full": ("solver.model=full",),
     "flat": ("support.kind=flat",),
