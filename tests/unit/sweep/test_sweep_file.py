@@ -69,7 +69,7 @@ def test_derived_keys_follow_axes_defaults_and_one_another(sweep_of):
     [
         ('[axes]\n"contact.mu_statik" = [0.2]\n', ["contact.mu_statik", "did you mean 'mu_static'"]),
         ('[axes]\n"contacts.mu_static" = [0.2]\n', ["names no table", "did you mean 'contact'"]),
-        ("[axes]\nmu_static = [0.2]\n", ["write 'contact.mu_static or joints.mu_static'"]),
+        ("[axes]\nmu_static = [0.2]\n", ["write 'contact.mu_static or joints.mu_static or"]),
         ("[axes]\n", ["one to 4 keys, got 0", "for instance"]),
         ('[axes]\n"contact.mu_static" = []\n', ["the list is empty"]),
         ('[axes]\n"contact.mu_static" = { from = 0.2, count = 3 }\n', ["has no 'to'", "a range is"]),
