@@ -37,20 +37,23 @@ ROLLING_PIVOT = 0.5  #: .. of a base that rolls: the side away from where it tou
 #: rotation ratio above which motion with an open side is rocking
 ROCKING = 0.01
 
-#: path over the width that counts as sliding
-SLIDING = 1e-4
+#: path over the width that counts as sliding, and gap of a whole base over the width that counts as a hop
+SLIDING = HOPPING = 1e-4
+LEAST_SLIDE = 1e-3  #: .. and that path at least [m]
 #: friction heat between the turning points around an impact, over the energy before it, from which it slides: unloading
 #: points slip a little at every impact
 SLIDING_HEAT = 0.02
 
 #: modes of motion as stored in a history, and as bits in `modes`
 REST, SLIDE, ROCK, SLIDE_ROCK, FALLEN = 0, 1, 2, 3, 4
+HOP = 5  #: an outcome alone: see `max_flight`
 
 OBSERVABLES = np.dtype(
     [
         ("max_rotation", "f8"),
         ("max_rocking", "f8"),  # largest rotation while a side carries nothing
         ("max_uplift", "f8"),
+        ("max_flight", "f8"),  # largest gap of the base point nearest to the floor
         ("max_penetration", "f8"),
         ("max_corner_force", "f8"),  # mean over a short time
         ("peak_corner_force", "f8"),  # the instantaneous one
@@ -167,12 +170,14 @@ def update_observables(
         peak = hermite(share, step, old.pose[ROTATION], before, rotation, after)
         track.max_rotation = max(track.max_rotation, abs(peak))
     left_open, right_open, uplift, left_force, right_force = 1, 1, 0.0, 0.0, 0.0
+    lowest = math.inf
     first, last = new.point[0, 0], new.point[n - 1, 0]
     pivot = (ROLLING_PIVOT if control.rolls else PIVOT) * control.width
     for i in range(n):
         gap, x = new.point[i, 1], new.point[i, 0]
         rise = gap - camber[i]
         uplift = max(uplift, rise)
+        lowest = min(lowest, gap)
         track.max_penetration = max(track.max_penetration, -gap)
         if rise > OPENING * control.width and time < track.first_opening:
             track.first_opening = time
@@ -185,6 +190,7 @@ def update_observables(
         if gap <= 0.0 and x > first + pivot:
             right_open = 0
     track.max_uplift = max(track.max_uplift, uplift)
+    track.max_flight = max(track.max_flight, lowest)
     track.left_impulse += 0.5 * step * (track.left_force + left_force)
     track.right_impulse += 0.5 * step * (track.right_force + right_force)
     track.left_force, track.right_force = left_force, right_force

@@ -6,9 +6,10 @@ from collections.abc import Iterator, Sequence
 from rich.console import RenderableType
 from rich.text import Text
 
-from contact.stepping.observables import ROCKING, SLIDING
+from contact.stepping.observables import ROCKING
 from fem.assessment.joint_tables import titled_table
 from fem.results.figures import BOX_FIGURES, BoxResult
+from fem.results.outcome import least_slide
 from fem.results.run_result import BoxReach, RunResult, StaticResult, Verdict
 from fem.runtime.units import JOINT_MILLIMETRES, SHORT_MILLIMETRES
 
@@ -69,7 +70,7 @@ def limits(static: StaticResult) -> tuple[float, float]:
     if centroid is None or angle is None:
         return SHORT_MILLIMETRES.least, SHORT_MILLIMETRES.least
     width = 2.0 * centroid * math.tan(angle)
-    return SLIDING * width, ROCKING * angle * width
+    return least_slide(width), ROCKING * angle * width
 
 
 def box_rows(result: RunResult) -> list[tuple[str, ...]]:

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 from fem.assessment.loose_boxes import largest_joint_slip, limits
 from fem.assessment.sureness import below_uplift, rests_on_stiff_floor
-from fem.case.unknown_inputs import MU_KINETIC, STRIBECK, WEAKENING
+from fem.case.unknown_inputs import MU_KINETIC, STRIBECK, WEAKENING, WORDS, in_words
 from fem.results.outcome import ROCKING, SLIDING, Outcome
 from fem.results.run_result import ChangedRun, RunResult, StaticResult, Verdict
 
@@ -54,11 +54,11 @@ def _on_sliding(members: Sequence[ChangedRun], least: float) -> str:
     laws = [
         member for member in members if member.values and member.outcome and set(member.values) <= FRICTION
     ]
-    holding = [member.change for member in laws if not _slides(member, least)]
+    holding = [in_words(member.values or {}) for member in laws if not _slides(member, least)]
     if holding:
         return (
             f". The rule governs: with {holding[0]} the container does not slide. The run slid because friction "
-            "dropped to mu_kinetic in a moment of vibration and stayed there."
+            "dropped to the kinetic one in a moment of vibration and stayed there."
         )
     tried = f"it slides with every friction law tried ({len(laws)})" if laws else "its friction does not drop"
     return f". The run governs: {tried}."
@@ -78,11 +78,12 @@ def _on_rocking(members: Sequence[ChangedRun]) -> str:
             "thirty times as stiff, because it opens from the edge of its own base."
         )
     standing = [
-        member.change
+        member
         for member in members[1:]
         if member.kind == "one" and member.outcome in (Outcome.REST, Outcome.SLIDE)
     ]
     if standing:
-        key = standing[0].partition(" = ")[0]
-        return f". Inconclusive: rocking depends on {key} (with {standing[0]} it does not rock)."
+        values = standing[0].values or {}
+        named = ", ".join(WORDS.get(key, key) for key in values)
+        return f". Inconclusive: rocking depends on {named} (with {in_words(values)} it does not rock)."
     return ". The run governs: it rocks with every single change tried."

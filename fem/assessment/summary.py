@@ -20,15 +20,16 @@ from fem.assessment.joint_tables import joint_tables, titled_table
 from fem.assessment.loose_boxes import box_table, fall_in_words, joints_in_words, largest_joint_slip
 from fem.assessment.margin_words import margin_in_words
 from fem.assessment.motion_words import covered_in_words, missing_peak, motion_in_words
-from fem.assessment.ranges import bolt_forces, crushes, in_words, largest_ratio, largest_slip
+from fem.assessment.ranges import bolt_forces, crushes, in_words, largest_ratio, largest_slip, of_band
 from fem.assessment.rule_or_run import governing
-from fem.assessment.sureness import sureness_in_words
+from fem.assessment.sure_words import sureness_in_words
 from fem.results import run_result
 from fem.results.figures import BRIEF, FIGURES, SUMMARY, Place, summary_order
 from fem.results.outcome import ROCKING, SLIDING, Outcome
-from fem.runtime.units import INVISIBLE, visible_number
+from fem.runtime.units import DEGREES, INVISIBLE, visible_number
 
 TEXT_WIDTH = 80
+LEANING = 0.01  #: tilt at the end over the slenderness angle from which it is said
 BAND_NOTE = (
     "The band repeats the run with changed inputs: one at a time to the ends of the ranges that [uncertainty] states "
     "or that follow from the case, and with all of them drawn at once. Numbers in parentheses are the least and the "
@@ -118,11 +119,20 @@ def _found(result: run_result.RunResult) -> str:
     if verdict.outcome == Outcome.OVERTURNED:
         at = verdict.overturned_at_s
         return fall_in_words(verdict) or "overturned" + (f" at t = {at:.3f} s" if at is not None else "")
-    restored = ", returned upright" if verdict.restored else ""
+    restored = ", returned upright" if verdict.restored else _leaning(verdict, result.static)
     under = f"{covered_in_words(motion)}{missing_peak(motion)}"
     found = f"{Outcome(verdict.outcome).verb}{restored} and did not overturn under {under}"
     joints = joints_in_words(verdict, result.static)
     return f"{found}; {joints}" if joints else found
+
+
+def _leaning(verdict: run_result.Verdict, static: run_result.StaticResult | None) -> str:
+    """How a container that stands again is left leaning, and what that takes of its capacity; empty if it stands."""
+    angle, tilt = (static or run_result.StaticResult()).slenderness_angle_rad, verdict.tilt_rad
+    if not angle or tilt is None or abs(tilt) < LEANING * angle:
+        return ""
+    leaning = DEGREES.text(abs(tilt), figures=2)
+    return f", left leaning by {leaning}: {abs(tilt) / angle:.0%} less capacity on that side,"
 
 
 def _static_table(static: run_result.StaticResult, verdict: run_result.Verdict) -> Table:
@@ -149,6 +159,10 @@ def _static_table(static: run_result.StaticResult, verdict: run_result.Verdict) 
             )
             use, check = action.utilisation_overturning, "overturning"
             table.add_row("", check, demand, visible_number(use, 1.0, ".3f"), rule_says(check, use), tilted)
+            if (use := action.utilisation_lifting) is not None and use > 1.0:
+                found, weight = run_lifted(verdict), visible_number(static.weight_N, 1e-3)
+                demand = f"{visible_number(static.weight_N, 1e-3 * use)} / {weight} kN"
+                table.add_row("", "lifting", demand, f"{use:.3f}", rule_says("lifting", use), found)
     return table
 
 
@@ -171,9 +185,11 @@ def own_motion_name(static: run_result.StaticResult) -> str:
 
 
 def rule_says(check: str, utilisation: float | None) -> str:
-    """What the static rule concludes from a utilisation, for `sliding` or `overturning`."""
+    """What the static rule concludes from a utilisation, for `sliding`, `overturning` or `lifting`."""
     if utilisation is None:
         return "-"
+    if check == "lifting":
+        return "lifts off" if utilisation > 1.0 else "stays"
     if check == "sliding":
         return "slides" if utilisation > 1.0 else "holds"
     return "overturns" if utilisation > 1.0 else "stands"
@@ -189,6 +205,12 @@ def run_slid(verdict: run_result.Verdict) -> str:
         return f"{'slid' if sliding else 'held'}, slip {slip}"
     between, _ = largest_joint_slip(verdict)
     return f"slip {slip}" + (f", {between} between boxes" if between else "")
+
+
+def run_lifted(verdict: run_result.Verdict) -> str:
+    """Whether all of the base left the floor at once."""
+    hopped = Outcome.HOP in {verdict.outcome, *verdict.modes}
+    return f"{'hopped' if hopped else 'stayed'}, uplift {of_band(verdict, 'max_uplift_m')}"
 
 
 def run_tilted(verdict: run_result.Verdict) -> str:

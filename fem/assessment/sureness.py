@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from fem.case.uncertainty import InputChange
-from fem.case.unknown_inputs import INPUTS
+from fem.case.unknown_inputs import INPUTS, TOLERANCE
 from fem.results.figures import BOX_FIGURES, Place, RunFigures, keys_of
 from fem.results.outcome import ROCKING, Outcome
 from fem.results.run_result import Band, BoxReach, ChangedRun, RunResult, StaticResult, Verdict
@@ -48,6 +48,7 @@ def judged(
     """
     own, others = members[0], members[1:]
     levels = [difference(own, one, width) for one in others]
+    numerically = OTHER_END in (level for level, one in zip(levels, changes, strict=True) if numerical(one))
     missing = [one for one in left_out if one.kind != "draw"]
     no_outcome = any(one.outcome is None for one in others)
     if no_outcome or missing or OTHER_END in levels or below_uplift(members):
@@ -55,7 +56,7 @@ def judged(
     else:
         sure = REGIME_UNSURE if OTHER_REGIME in levels else SURE
     found = {one.outcome for one in members}
-    alike = [one for one in members if _stands(one) == _stands(own) and one.outcome is not None]
+    alike = [one for one in members if stands(one) == stands(own) and one.outcome is not None]
     draws = [one for one in others if one.kind == "draw"]
     ranges: dict[str, Any] = {key: _reach(one[key] for one in alike) for key in keys_of(Place.BAND)}
     band = Band(
@@ -71,7 +72,13 @@ def judged(
     )
     stiff = [key for change in changes if change.kind == "floor" for key in change.inputs]
     deciding = [*deciding_inputs(levels, changes), *(stiff if below_uplift(members) else [])]
-    return replace(verdict, sure=sure, decided_by=tuple(dict.fromkeys(deciding)), band=band)
+    return replace(
+        verdict,
+        sure=sure,
+        numerically_unsure=numerically,
+        decided_by=tuple(key for key in dict.fromkeys(deciding) if key != TOLERANCE),
+        band=band,
+    )
 
 
 def below_uplift(members: Sequence[ChangedRun]) -> bool:
@@ -86,50 +93,21 @@ def rests_on_stiff_floor(members: Sequence[ChangedRun]) -> bool:
 
 
 def static_use(result: RunResult) -> float | None:
-    """The larger utilisation of the static rule under the peak of this run; None where it is not known."""
+    """The larger utilisation of the static rule under the peaks of this run; None where it is not known."""
     own = (result.static or StaticResult()).ruling
     if own.utilisation_sliding is None or own.utilisation_overturning is None:
         return None
     return max(own.utilisation_sliding, own.utilisation_overturning)
 
 
-def sureness_in_words(result: RunResult) -> str:
-    """One sentence; empty if the band was not computed."""
-    verdict = result.verdict or Verdict()
-    band = verdict.band
-    if verdict.sure is None:  # no band, or one of a former version
-        return "Unsure: see the band." if band is not None and band.unsure else ""
-    if band is None:
-        return f"Sure: the static rule is used to {static_use(result) or 0.0:.2f}, so nothing else was tried."
-    if verdict.sure == SURE:
-        return f"Sure: it ends in the same way in all {len(band.members)} runs of the band, {_drawn(band)}."
-    reasons = []
-    if verdict.decided_by:
-        named = ", ".join(verdict.decided_by[:4]) + (" and others" if len(verdict.decided_by) > 4 else "")
-        reasons.append(f"what decides is {named}")
-    if below_uplift(band.members):
-        found = "rests" if rests_on_stiff_floor(band.members) else "still rocks"
-        reasons.append(
-            f"it is below uplift of a rigid block, and on a floor thirty times as stiff it {found}"
-        )
-    failed = sum(one.outcome is None for one in band.members)
-    if failed:
-        reasons.append(f"{failed} of {len(band.members)} runs of the band failed")
-    if band.left_out:
-        reasons.append(f"{len(band.left_out)} changes were left out for time")
-    return f"{verdict.sure.capitalize()}: {'; '.join([_drawn(band), *reasons])}."
+def stands(one: RunFigures) -> bool:
+    """True if it did not overturn."""
+    return one.outcome != Outcome.OVERTURNED
 
 
-def _drawn(band: Band) -> str:
-    if not band.draws:
-        overturned = sum(one.outcome == Outcome.OVERTURNED for one in band.members)
-        return f"overturned in {overturned} of {len(band.members)} runs"
-    left_out = f" ({band.draws_left_out} more left out for time)" if band.draws_left_out else ""
-    return f"overturned in {band.draws_overturned} of {band.draws} draws{left_out}"
-
-
-def _stands(member: RunFigures) -> bool:
-    return member.outcome != Outcome.OVERTURNED
+def numerical(one: ChangedRun | InputChange) -> bool:
+    """True if it changes how the run is computed, and no input."""
+    return TOLERANCE in (one.values or {})
 
 
 def difference(own: RunFigures, other: RunFigures, width: float) -> int:
@@ -141,9 +119,9 @@ def difference(own: RunFigures, other: RunFigures, width: float) -> int:
     """
     if other.outcome is None:
         return SAME
-    if _stands(own) != _stands(other):
+    if stands(own) != stands(other):
         return OTHER_END
-    if not _stands(own):
+    if not stands(own):
         return SAME if own.fell_box == other.fell_box else OTHER_REGIME
     pairs = zip(_sizes(own, width), _sizes(other, width), strict=True)
     another = any(high > 1.0 and high > ANOTHER_SIZE * low for low, high in map(sorted, pairs))

@@ -21,13 +21,13 @@ from contact.stepping.ledger import (
     LOSS_SHARE_LIMIT,
     MATERIAL_DAMPING,
 )
-from contact.stepping.observables import FORCE_WINDOW, ROCKING, SLIDING
+from contact.stepping.observables import FORCE_WINDOW, HOPPING, ROCKING
 from fem.case.case import Case
 from fem.model.floor import YIELD_STRENGTH, is_steel_shell, plastic_work, steel_capacity
 from fem.model.model import Model
 from fem.results.figures import BOX_FIGURES, FIGURES, BoxResult, Shown
 from fem.results.history import History
-from fem.results.outcome import Outcome
+from fem.results.outcome import Outcome, least_slide
 from fem.results.run_result import Energy, Numerics, Verdict
 from fem.runtime.arrays import FloatArray
 from fem.runtime.units import SECONDS
@@ -47,15 +47,20 @@ def outcome_of(model: Model) -> Outcome:
     rocks = track.max_rocking > angle
     for joint in model.run.joints[1:]:  # of a loose stack, what its other boxes do counts as well
         rocks = rocks or min(joint.max_rotation, joint.max_opening / joint.width) > angle
-    return Outcome.of(slides=_slides(model), rocks=rocks)
+    return Outcome.of(slides=_slides(model), rocks=rocks, hops=_hops(model))
 
 
 def _slides(model: Model) -> bool:
     """True if it slid by more than the limit; in a loose stack, if any box did."""
     lowest, *further = model.run.joints
-    if lowest.max_slip > SLIDING * model.container.mesh.width:
+    if lowest.max_slip > least_slide(model.container.mesh.width):
         return True
-    return any(joint.max_slip > SLIDING * joint.width for joint in further)
+    return any(joint.max_slip > least_slide(joint.width) for joint in further)
+
+
+def _hops(model: Model) -> bool:
+    """True if all of the base left the floor at once."""
+    return bool(model.run.track[0].max_flight > HOPPING * model.container.mesh.width)
 
 
 def relative_rotation(rotation: RotationT, slenderness_angle: float) -> RotationT:
@@ -91,11 +96,12 @@ def verdict_from(
     return Verdict(
         **_recorded(FIGURES, track=track, joint=joint),
         outcome=outcome,
-        modes=_modes_seen(track.modes, outcome, slides=_slides(model)),
+        modes=_modes_seen(track.modes | _hops(model) << Outcome.HOP.code, outcome, slides=_slides(model)),
         max_rotation_rad=rotation,
         rotation_ratio=relative_rotation(rotation, angle),
         slip_peak_to_peak_m=_peak_to_peak(model, end, time, slip),
         max_indentation_m=_indentation(model),
+        tilt_rad=None if outcome == Outcome.OVERTURNED else _tilt(run.old, track),
         restored=rocked and _largest_rotation(run.old) < ROCKING * angle,
         at_rest_s=_finite(float(run.clock[0].rest_since)),
         restitution_first=_restitution(track),
@@ -141,6 +147,13 @@ def first_fallen_box(model: Model) -> int | None:
 def _largest_rotation(state: State) -> float:
     """|rotation| of a container, or of the box of a loose stack that is turned most [rad]."""
     return float(np.abs(state.boxes[:, ROTATION] if len(state.boxes) else state.pose[ROTATION]).max())
+
+
+def _tilt(state: State, track: SimpleNamespace) -> float | None:
+    """Rotation, of a loose stack that of its lowest box [rad]; None while it turns about one side."""
+    if track.left_open + track.right_open > 0:
+        return None
+    return float(state.boxes[0, ROTATION] if len(state.boxes) else state.pose[ROTATION])
 
 
 def _indentation(model: Model) -> float | None:

@@ -9,10 +9,12 @@ from collections.abc import Callable
 
 from fem.assessment.motion_words import doubts
 from fem.assessment.ranges import plastic_corner
-from fem.assessment.sureness import SURE, sureness_in_words
+from fem.assessment.sure_words import sureness_in_words
+from fem.assessment.sureness import UNSURE
 from fem.assessment.verdict import GAIN_LIMIT, LOSS_LIMIT, LOSS_SHARE_LIMIT
 from fem.case.case import Case
 from fem.case.rules import MOST_FREE_MOTION, ends_at_rest, longest_time
+from fem.case.unknown_inputs import in_words
 from fem.results import run_result
 from fem.results.outcome import Outcome
 
@@ -37,9 +39,11 @@ def verdict_is_unsure(result: run_result.RunResult, case: Case) -> str | None:
     """The outcome changes within the uncertainty of the inputs."""
     verdict = _verdict(result)
     found = sureness_in_words(result)
-    if verdict.band is None or verdict.sure == SURE or not found:
+    if verdict.band is None or verdict.sure not in (UNSURE, None) or not found:
         return None
-    failed = "; ".join(member.change for member in verdict.band.members if member.outcome is None)
+    failed = "; ".join(
+        in_words(member.values or {}) for member in verdict.band.members if member.outcome is None
+    )
     failures = f" No outcome, because the solution failed, with {failed}." if failed else ""
     return f"{found[0].lower()}{found[1:]}{failures}"
 

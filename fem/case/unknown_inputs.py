@@ -12,7 +12,7 @@ its fall as on the floor.
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, NamedTuple
@@ -366,15 +366,15 @@ Number, Choice = UnknownNumber, UnknownChoice
 UNKNOWN: tuple[UnknownNumber | UnknownChoice, ...] = (
     Number(MU_KINETIC, "mu_kinetic", "kinetic friction", q.FRICTION, _kinetic, power=1.0, between=_middle),
     Number(MU_STATIC, "mu_static", "static friction", q.FRICTION, STATIC, power=1.0),
-    Number(WEAKENING, "weakening_m", "slip over which friction falls", q.WEAKENING, _slower,
+    Number(WEAKENING, "weakening_m", "fall of friction with slip", q.WEAKENING, _slower,
            matters=_may_fall, power=3.0, between=_weakenings, alone=_falls),
-    Number(STRIBECK, "stribeck_velocity_m_s", "velocity over which friction falls", q.STRIBECK_VELOCITY, _faster,
+    Number(STRIBECK, "stribeck_velocity_m_s", "fall of friction with velocity", q.STRIBECK_VELOCITY, _faster,
            matters=_any_may_fall, power=2.0, alone=_any_falls),
     Number(JOINTS_MU_STATIC, "joints_mu_static", "static friction of the joints", q.FRICTION, _joints_mu_static,
            matters=_is_loose),
     Number(JOINTS_MU_KINETIC, "joints_mu_kinetic", "kinetic friction of the joints", q.FRICTION, _joints_kinetic,
            matters=_is_loose, power=1.0, between=_middle),
-    Number(JOINTS_WEAKENING, "joints_weakening_m", "slip over which friction of the joints falls", q.WEAKENING, _slower,
+    Number(JOINTS_WEAKENING, "joints_weakening_m", "fall of friction of the joints with slip", q.WEAKENING, _slower,
            matters=_joints_may_fall, power=3.0, between=_weakenings, alone=_joints_fall),
     Number(JOINTS_DASHPOT, "joints_damping_ratio", "damping of the joints", q.CONTACT_DAMPING, _joints_dashpot,
            matters=_is_loose),
@@ -412,6 +412,16 @@ def _ends_hold(one: UnknownNumber) -> Rule:
 
 
 UNCERTAINTY_RULES = tuple(_ends_hold(one) for one in UNKNOWN if isinstance(one, UnknownNumber))
+
+
+def in_words(values: Mapping[str, Value]) -> str:
+    """Values of inputs by dotted key, for people: "kinetic friction 0.3, slope of the floor 0.5 per cent"."""
+    units = {key: one.unit for key, one in QUANTITIES.items()}
+    shown = (
+        f"{WORDS.get(key, key)} {one if isinstance(one, str) else f'{one:.4g} {units.get(key, str())}'}".rstrip()
+        for key, one in values.items()
+    )
+    return ", ".join(shown)
 
 
 def excluded_values(case: Any) -> list[str]:

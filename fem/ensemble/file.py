@@ -14,12 +14,12 @@ from pydantic import Field, Strict
 from fem.batch import study_file
 from fem.batch.axes import MOTION_FILE, Axis, AxisError, check_varied, first_motion, read_axis
 from fem.batch.derived import FREE, Derived, read_derived
-from fem.batch.intervals import least_draws
 from fem.case.files import DEFAULT_CASE, ENSEMBLES, Origin
 from fem.case.tables import CaseTable
 from fem.case.validation import CaseError
 from fem.ensemble.distributions import RandomChoice, RandomQuantity, Sampling, read_random
 from fem.ensemble.plan import Ensemble, Unknown
+from fem.runtime.intervals import least_draws
 
 TABLES = ("set", "axes", "random", "derived")
 MOST_AXES, MOST_RANDOM = 3, 8

@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from fem.batch.intervals import Estimate, estimate
 from fem.ensemble.fragility import BOOTSTRAPS, bootstrap_fits, falls, fit_lognormal, misses, misses_by_chance
 from fem.ensemble.plan import Ensemble
 from fem.ensemble.result import FittedLognormal, Fragility, Resampled
 from fem.results.outcome import COUNTED, Ending
 from fem.runtime.arrays import FloatArray
+from fem.runtime.intervals import Estimate, estimate
 
 #: columns of `points.csv` behind those of the axes
 POINT_COLUMNS = ("draws", *COUNTED, "probability", "low", "high", "region")

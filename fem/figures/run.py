@@ -12,7 +12,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from contact.stepping.observables import ROCKING
-from fem.assessment.verdict import SLIDING
 from fem.figures import style
 from fem.figures.boxes import OPENING, ROTATION, SLIP, box_figure
 from fem.figures.checks import band_figure, rigid_check_figure
@@ -23,6 +22,7 @@ from fem.figures.modes import modes_figure
 from fem.figures.recorded import spectrum_figure
 from fem.html.units import rounded
 from fem.model.container import Container
+from fem.results.outcome import least_slide
 from fem.results.reader import RunData
 from fem.results.run_result import StaticResult, Verdict
 from fem.runtime.arrays import FloatArray
@@ -172,7 +172,7 @@ def slip_figure(run: RunData) -> Figure:
     if boxes := run.verdict.boxes:
         return box_figure(run, SLIP, boxes)
     verdict, slip = run.typed_result.verdict or Verdict(), 1e3 * run.history["slip_m"]
-    limit = 1e3 * SLIDING * run.case.container.width_m
+    limit = 1e3 * least_slide(run.case.container.width_m)
     small = bool(np.abs(slip).max() < 10.0 * limit)
     figure, axes = _panel(run, slip, "slip [mm]", zero=True, legend=small)
     style.keep_visible(axes, 1.5 * limit)

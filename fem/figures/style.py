@@ -32,6 +32,7 @@ ORANGE, SKY, PURPLE = "#E69F00", "#56B4E9", "#CC79A7"
 STATE_COLOURS: dict[str, str] = {
     Outcome.REST: "#BBBBBB",
     Outcome.SLIDE: SKY,
+    Outcome.HOP: GREEN,
     Outcome.ROCK: ORANGE,
     Outcome.SLIDE_ROCK: PURPLE,
     Outcome.OVERTURNED: BLACK,

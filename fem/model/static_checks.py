@@ -181,7 +181,7 @@ class StaticChecks:
 
     def to_result(self) -> StaticResult:
         """The checks as the result of a run holds them."""
-        upward = self.own_motion_vertical
+        upward, peak = self.own_motion_vertical, self.peak_vertical_acceleration or 0.0
         found = StaticResult(
             weight_N=self.weight,
             centroid_m=self.centroid,
@@ -197,7 +197,11 @@ class StaticChecks:
             housner_restitution=self.housner_restitution,
             housner_credible=self.housner_credible,
             own_motion=self.own_motion.to_result(),
-            own_motion_vertical=None if upward is None else upward.to_result(),
+            own_motion_vertical=None
+            if upward is None
+            else replace(
+                upward.to_result(), utilisation_lifting=peak / (self.gravity * math.cos(self.slope))
+            ),
             downhill_m_s2=self.downhill or None,
         )
         return found if self.by_code is None else self.by_code.added_to(found)

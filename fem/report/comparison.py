@@ -6,7 +6,7 @@ from typing import NamedTuple, assert_never
 
 from markupsafe import Markup
 
-from fem.assessment.summary import own_motion_name, rule_says, run_slid, run_tilted
+from fem.assessment.summary import own_motion_name, rule_says, run_lifted, run_slid, run_tilted
 from fem.case.boxes import Box
 from fem.case.case import Case
 from fem.case.motion_tables import FloorMotionTable
@@ -42,9 +42,9 @@ def compared_rows(static: StaticChecks, verdict: Verdict, case: Case) -> list[Co
     own = [action for action, _ in actions]
     if (code := static.by_code) is not None:
         q = code.values.behaviour_factor
-        rows = [(code.as_given, f"code, q = {short(q)}"), (code.q1, "code, q = 1")]
-        actions += rows if q != 1.0 else rows[:1]
-    return [
+        codes = [(code.as_given, f"code, q = {short(q)}"), (code.q1, "code, q = 1")]
+        actions += codes if q != 1.0 else codes[:1]
+    rows = [
         Compared(
             check=check,
             action=name,
@@ -62,6 +62,22 @@ def compared_rows(static: StaticChecks, verdict: Verdict, case: Case) -> list[Co
             ("overturning", action.overturning, run_tilted),
         )
     ]
+    lifting = static.to_result().ruling.utilisation_lifting
+    if lifting is not None and lifting > 1.0:
+        rows.append(
+            Compared(
+                check="lifting",
+                action="own peak, vertical",
+                demand=quantity(lifting * static.weight, "kN", 1e-3),
+                capacity=quantity(static.weight, "kN", 1e-3),
+                utilisation=number(lifting),
+                exceeded=True,
+                clause="",
+                rule=rule_says("lifting", lifting),
+                run=typeset(run_lifted(verdict)) if verdict.outcome else "",
+            )
+        )
+    return rows
 
 
 def compared_table(rows: Sequence[Compared], *, loose: bool) -> html.Table:

@@ -17,6 +17,7 @@ from fem.assessment.ranges import (
 from fem.assessment.rule_or_run import governing
 from fem.assessment.summary import MARGIN_NOTE, outcome_sentence, result_rows
 from fem.case.case import Case
+from fem.case.unknown_inputs import WORDS
 from fem.figures.cache import drawings_of
 from fem.html import sections as html
 from fem.html.page import Page, Signature, html_of
@@ -183,7 +184,8 @@ def _words(text: str | None) -> str:
 def _sure(verdict: Verdict) -> tuple[str, str]:
     """How sure the outcome is, and why."""
     if (band := verdict.band) is not None:
-        decided = f"; decided by {', '.join(verdict.decided_by)}" if verdict.decided_by else ""
+        named = ", ".join(WORDS.get(key, key) for key in verdict.decided_by)
+        decided = f"; decided by {named}" if named else ""
         known = verdict.sure or ("unsure" if band.unsure else "same outcome")
         return known, f"{', '.join(band.outcomes)}{decided}"
     if verdict.sure:

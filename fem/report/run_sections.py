@@ -223,8 +223,8 @@ def variations_section(view: RunView, variations: VariationTable | None) -> html
         ),
         _varied_table(variations, loose=bool(view.boxes)),
         html.Note(
-            "* the outcome differs from the first line. Sliding counts from 10⁻⁴ of the width, rocking from 10⁻² of "
-            f"the slenderness angle.{harmless}"
+            "* the outcome differs from the first line. Sliding counts from 1 mm and 10⁻⁴ of the width, rocking from "
+            f"10⁻² of the slenderness angle.{harmless}"
         ),
         *_left_out(variations),
         *noted,

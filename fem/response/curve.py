@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from contact.stepping.observables import ROCKING
-from fem.assessment.verdict import SLIDING, relative_rotation
+from fem.assessment.verdict import relative_rotation
 from fem.case.case import Case
 from fem.model.container import Container
 from fem.response.decay import Decay, follow_decay
@@ -18,7 +18,7 @@ from fem.response.model import DrivenModel, begin_drive, carry_drive, driven_cas
 from fem.response.orbit import Orbit, Progress, follow_periods, no_progress, step_until
 from fem.response.request import ResponseRequest
 from fem.response.stability import LongTime, amplitude_growth, amplitudes_diverge, classify
-from fem.results.outcome import Outcome
+from fem.results.outcome import Outcome, least_slide
 from fem.runtime.arrays import FloatArray
 
 PORTRAYED = 16  #: last periods whose phase portrait is kept; of a periodic motion, one of its periods
@@ -182,5 +182,5 @@ def motion_of(driven: DrivenModel, orbit: Orbit) -> str:
     if orbit.status == "overturned":
         return Outcome.OVERTURNED
     rocks = orbit.extremes[:, 3].max() > ROCKING * driven.run.problem.control.slenderness_angle
-    slides = orbit.extremes[:, 4].max() > SLIDING * driven.run.problem.control.width
+    slides = orbit.extremes[:, 4].max() > least_slide(driven.run.problem.control.width)
     return Outcome.of(slides=slides, rocks=rocks)

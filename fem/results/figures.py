@@ -137,6 +137,11 @@ class Figures(JsonBlock, Generic[ValueT]):
     max_indentation_m: Annotated[
         ValueT | None, Shown("indentation of the floor", MM, BAND | SUMMARY | BRIEF)
     ] = None
+    #: rotation at the end; None of what overturned, or still turns about one side
+    tilt_rad: Annotated[
+        ValueT | None,
+        Shown("tilt at the end", units.DEGREES, COLUMN | BAND | SUMMARY, signed=True, lowest=True),
+    ] = None
     impacts: Annotated[
         int | None, Shown("impacts", units.COUNT, COLUMN | READ, "track.impacts", below="first_uplift_s")
     ] = None

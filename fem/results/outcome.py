@@ -13,6 +13,7 @@ class Outcome(StrEnum):
 
     REST = "rest", observables.REST, "rested"
     SLIDE = "slide", observables.SLIDE, "slid"
+    HOP = "hop", observables.HOP, "hopped"
     ROCK = "rock", observables.ROCK, "rocked"
     SLIDE_ROCK = "slide-rock", observables.SLIDE_ROCK, "slid, rocked"
     OVERTURNED = "overturned", observables.FALLEN, "overturned"
@@ -28,9 +29,16 @@ class Outcome(StrEnum):
         return member
 
     @classmethod
-    def of(cls, *, slides: bool, rocks: bool) -> Self:
-        """The outcome of what did not overturn."""
-        return (cls.SLIDE_ROCK if slides else cls.ROCK) if rocks else cls.SLIDE if slides else cls.REST
+    def of(cls, *, slides: bool, rocks: bool, hops: bool = False) -> Self:
+        """The outcome of what did not overturn; a hop counts where nothing rocks."""
+        if rocks:
+            return cls.SLIDE_ROCK if slides else cls.ROCK
+        return cls.HOP if hops else cls.SLIDE if slides else cls.REST
+
+
+def least_slide(width: float) -> float:
+    """The path from which a container of this width counts as sliding [m]."""
+    return max(observables.SLIDING * width, observables.LEAST_SLIDE)
 
 
 #: by the code of the kernel

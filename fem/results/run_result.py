@@ -23,8 +23,10 @@ class ActionResult(JsonBlock):
     utilisation_sliding: float | None = None  #: demand over capacity; None without capacity
     utilisation_overturning: float | None = None
     least_weight_N: float | None = None  #: m (g - a_v), where the rule has it in place of the weight
+    #: likewise, a_v over g: more than 1 lifts off
+    utilisation_lifting: float | None = None
 
-    written_where_given = frozenset({"least_weight_N"})
+    written_where_given = frozenset({"least_weight_N", "utilisation_lifting"})
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -199,7 +201,9 @@ class Verdict(RunFigures):
     plastic_work_J: float | None = None
     basis: str = "study"
     first_line: str | None = None  #: the verdict in one sentence, as on the page
-    sure: str | None = None  #: sure | regime unsure | unsure; None: not tried
+    #: sure | regime unsure: it stands, or falls, in all variations, but may move otherwise | unsure; None: not tried
+    sure: str | None = None
+    numerically_unsure: bool = False  #: more accurate steps change whether it stands
     decided_by: tuple[str, ...] = ()  #: inputs that change the outcome, the one of the smallest change first
     band: Band | None = None
     margin: Margin | None = None

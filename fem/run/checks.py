@@ -72,7 +72,7 @@ def add_checks(
         judged = with_band(model, result, stop=stop, kept_in=members)
         if judged is not None:
             result = replace(result, verdict=judged)
-    elif verdict.sure is None and wanted.band is None and rests_far_below_limits(result):
+    elif verdict.sure is None and wanted.band is None and rests_far_below_limits(model.case, result):
         result = replace(result, verdict=replace(verdict, sure=SURE))
     if lacks_margin(result, model.case, wanted) and not stop():
         reporter.message("margin: repeating the run under stronger and weaker motions")

@@ -53,6 +53,15 @@ class DisplayUnit:
             words = shown if low == high else f"{shown} ({low} to {high})"
         return words if bare else f"{words} {self.name}".rstrip()
 
+    def range_text(self, reach: Reach | None) -> str:
+        """A range alone, such as "0.6 to 32 mm"; its one number where the ends are shown alike, empty without one."""
+        if reach is None:
+            return ""
+        low, high = (self.in_figures(end, figures_of(reach, self.figures)) for end in reach)
+        if 0.0 <= reach[0] < self.least < reach[1]:
+            return f"up to {high} {self.name}".rstrip()
+        return f"{low if low == high else f'{low} to {high}'} {self.name}".rstrip()
+
     def in_figures(self, value: float, figures: int) -> str:
         """A number [SI] with so many significant figures, or the limit that it is below."""
         return in_figures(value, figures, self.factor, self.least, self.under)

@@ -2,8 +2,8 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from fem.batch.intervals import binomial_interval
 from fem.results.outcome import Outcome
+from fem.runtime.intervals import binomial_interval
 from fem.runtime.units import RATIO, SHORT_MILLIMETRES
 from fem.site_check import result
 from fem.site_check.file import SiteRequest

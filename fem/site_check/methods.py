@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from contact.reference.rigid_block import RigidBlock
-from contact.stepping.observables import ROCKING, SLIDING
-from fem.results.outcome import Outcome
+from contact.stepping.observables import ROCKING
+from fem.results.outcome import Outcome, least_slide
 from fem.runtime.arrays import FloatArray
 from fem.seismic.action import DAMPING_RATIO, SiteAction, damping_correction
 from fem.seismic.body import FloorAction, Limits, LooseBody
@@ -142,8 +142,8 @@ def found_by_runs(row: MethodRow, runs: Sequence[SiteRun], *, width: float, limi
     if not slips:
         return Found(words="no runs")
     most = max(slips)
-    least_slip, slides = min(slips), most > SLIDING * width
-    ends = f"{length_in_words(least_slip)} to" if least_slip > SLIDING * width else "up to"
+    least_slip, slides = min(slips), most > least_slide(width)
+    ends = f"{length_in_words(least_slip)} to" if least_slip > least_slide(width) else "up to"
     words = f"{ends} {length_in_words(most)}" if slides else "none slides"
     if row.quantity is MethodQuantity.SLIDING:
         return Found(words=words, compared=_compared(refused=not row.fulfilled, failed=slides))

@@ -48,10 +48,20 @@ SHARE_COLOURS = {
 GREYS = (style.WHITE, "#DDDDDD", "#AAAAAA", style.GREY, style.BLACK)
 PRINTED_SHARES = dict(zip(SHARES, GREYS, strict=True)) | {"no outcome": style.WHITE}
 PRINTED_OUTCOMES = dict(
-    zip(style.STATE_COLOURS, (style.WHITE, "#DDDDDD", "#DDDDDD", "#AAAAAA", style.BLACK), strict=True)
+    zip(
+        style.STATE_COLOURS,
+        (style.WHITE, "#DDDDDD", "#EEEEEE", "#DDDDDD", "#AAAAAA", style.BLACK),
+        strict=True,
+    )
 )
 PRINTED_OUTCOMES |= {"failed": style.WHITE, "": style.WHITE}
-HATCHES = {Outcome.SLIDE: "---", Outcome.ROCK: "///", Outcome.SLIDE_ROCK: "xxx", "failed": "oo"}
+HATCHES = {
+    Outcome.SLIDE: "---",
+    Outcome.HOP: "..",
+    Outcome.ROCK: "///",
+    Outcome.SLIDE_ROCK: "xxx",
+    "failed": "oo",
+}
 MOST_PANELS = 12
 LEAST_SLIP_MM = 1e-2  #: less is no slip
 JOINT_SLIP = "max_joint_slip_m"

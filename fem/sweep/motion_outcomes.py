@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 
 from fem.batch.axes import MOTION_FILE, Axis, point_of, shape_of
-from fem.batch.intervals import estimate
 from fem.results.outcome import COUNTED, Ending
 from fem.runtime.arrays import IntArray
+from fem.runtime.intervals import estimate
 from fem.runtime.units import RATIO, SHORT_MILLIMETRES
 from fem.sweep.cells import RunShown
 

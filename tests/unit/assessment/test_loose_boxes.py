@@ -32,7 +32,7 @@ def result(*changed: tuple[int, dict], **verdict) -> run_result.RunResult:
         ([], "; the boxes moved as one."),
         ([(1, {"max_slip_m": 0.3, "max_opening_m": 0.2})], "; the boxes moved as one."),  # over the floor
         ([(3, {"max_slip_m": 1.0e-4, "max_opening_m": 2.9e-3})], "; the boxes moved as one."),
-        ([(3, {"max_slip_m": 1.2e-4})], "; box 3 slid under 1 mm on box 2."),
+        ([(3, {"max_slip_m": 1.2e-3})], "; box 3 slid 1.20 mm on box 2."),
         ([(2, {"max_slip_m": 0.2194}), (4, {"max_slip_m": 0.1})], "; box 2 slid 219 mm on box 1."),
         (
             [(2, {"max_slip_m": 0.05}), (4, {"max_opening_m": 0.012})],

@@ -6,7 +6,8 @@ import pytest
 
 from fem.assessment.ranges import IMPACT, largest_stress, of_band
 from fem.assessment.rule_or_run import governing
-from fem.assessment.sureness import judged, sureness_in_words
+from fem.assessment.sure_words import sureness_in_words
+from fem.assessment.sureness import judged
 from fem.case.uncertainty import InputChange
 from fem.results.figures import BoxResult
 from fem.results.run_result import ActionResult, Band, ChangedRun, RunResult, StaticResult, Verdict
@@ -17,6 +18,7 @@ HALF = InputChange(kind="one", values={MU: 0.3}, share=0.5)
 EQUAL = InputChange(kind="one", values={MU: 0.4}, share=1.0)
 SLOW = InputChange(kind="one", values={SLIP: 1e-3}, share=0.2)
 STIFF = InputChange(kind="one", values={PENALTY: 3e9}, share=1.0)
+FINE = InputChange(kind="one", values={"solver.energy_tolerance": 0.1}, share=1.0)
 FLOOR = InputChange(kind="floor", values={PENALTY: 3e10}, share=1.0)
 BOTH = InputChange(kind="pair", values={MU: 0.3, SLIP: 5e-3}, share=1.0)
 
@@ -168,11 +170,57 @@ def test_ranges_are_those_of_the_members_that_end_as_the_run():
     assert fallen.rotation_ratio == (5.9, 5.9)
 
 
-def test_draws_that_overturn_are_counted():
-    found = verdict((draw(0.1, 0.1), FELL), (draw(0.9, 0.9), {}), (HALF, FELL))
-    assert (found.band.draws, found.band.draws_overturned) == (2, 1)
-    words = sureness_in_words(RunResult(status="completed", verdict=found))
-    assert words == f"Unsure: overturned in 1 of 2 draws; what decides is {MU}."
+def words(*found, **own):
+    return sureness_in_words(RunResult(status="completed", verdict=verdict(*found, **own)))
+
+
+def test_draws_that_overturn_are_counted_with_their_interval_and_the_value_that_decides():
+    places = [0.1, 0.2, 0.3, 0.6, 0.65, 0.7, 0.75, 0.8]
+    draws = [(draw(place, 0.5), FELL if place in (0.1, 0.3) else {}) for place in places]
+    found = verdict(*draws, (HALF, FELL), (STIFF, {}))
+    assert (found.band.draws, found.band.draws_overturned) == (8, 2)
+    # Clopper and Pearson's interval of 2 of 8
+    assert words(*draws, (HALF, FELL), (STIFF, {})) == (
+        "Unsure: overturns with kinetic friction 0.3; overturned in 2 of 8 draws (95 %: 3 to 65 %); stands in all 5 "
+        "of them with kinetic friction above 0.3."
+    )
+    alone = words(*((draw(place, 0.5), {}) for place in places), (HALF, FELL))
+    assert alone == "Unsure: overturns with kinetic friction 0.3; not in 8 draws of all inputs at once."
+
+
+@pytest.mark.parametrize(
+    ("found", "own", "said"),
+    [
+        ([(HALF, {}), (STIFF, {})], {}, "Sure: stands in all 2 variations."),
+        ([(HALF, FELL)], FELL, "Sure: overturns in all 1 variations."),
+        (
+            [(HALF, {"outcome": "slide", "max_slip_m": 0.5, "rotation_ratio": 1e-4}), (STIFF, {})],
+            {"outcome": "rock", "max_slip_m": 6e-4},
+            "Stands in all 2 variations. It may slide instead of rock: slip 0.60 to 500 mm, rotation ratio up to 0.20, "
+            "depending on kinetic friction.",
+        ),
+        (
+            [(HALF, {"max_slip_m": 0.032}), (STIFF, {})],
+            {"max_slip_m": 6e-4},
+            "Stands in all 2 variations. How far it moves is not known: slip 0.60 to 32 mm, rotation ratio 0.2, "
+            "depending on kinetic friction.",
+        ),
+        (
+            [(FINE, FELL), (HALF, {})],
+            {},
+            "Unsure: numerically, for it overturns with steps ten times as accurate.",
+        ),
+    ],
+)
+def test_the_words_say_what_the_variations_showed(found, own, said):
+    assert words(*found, **own) == said
+    assert not any(key in said for key in ("contact.", "mu_", "solver."))
+
+
+def test_a_step_that_decides_is_no_input():
+    found = verdict((FINE, FELL), (HALF, {}))
+    assert (found.sure, found.numerically_unsure, found.decided_by) == ("unsure", True, ())
+    assert not verdict((FINE, {}), (HALF, FELL)).numerically_unsure
 
 
 def test_a_slip_whose_sign_changes_is_about_zero():
@@ -198,7 +246,7 @@ def test_an_elastic_stress_beyond_yield_is_no_bare_number():
     ("own", "members", "words"),
     [
         ({"outcome": "slide"}, None, "only the band can tell"),
-        ({"outcome": "slide"}, [(EQUAL, RESTS)], "The rule governs: with contact.mu_kinetic = 0.4"),
+        ({"outcome": "slide"}, [(EQUAL, RESTS)], "The rule governs: with kinetic friction 0.4"),
         (
             {"outcome": "slide"},
             [(EQUAL, {})],
@@ -216,7 +264,7 @@ def test_an_elastic_stress_beyond_yield_is_no_bare_number():
         (
             {"outcome": "rock"},
             [(STIFF, RESTS)],
-            "Inconclusive: rocking depends on contact.normal_penalty_Pa_m",
+            "Inconclusive: rocking depends on stiffness of the contact",
         ),
         ({"outcome": "rest"}, [(STIFF, {})], None),
     ],

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import binom, qmc
 
-from fem.batch.intervals import binomial_interval, estimate, least_draws, replicate_interval
+from fem.runtime.intervals import binomial_interval, estimate, least_draws, replicate_interval
 
 
 @pytest.mark.parametrize(

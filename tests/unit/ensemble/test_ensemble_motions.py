@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from motion_files import write_motion, write_pair
 
-from fem.batch.intervals import binomial_interval, estimate
 from fem.case.case import CaseError
 from fem.ensemble.file import load_ensemble
 from fem.ensemble.fragility import bootstrap_fits
 from fem.ensemble.run import ensemble_hash, run_ensemble
 from fem.report.ensemble_page import ensemble_report
+from fem.runtime.intervals import binomial_interval, estimate
 
 HEAD = """
 case = "seed_stack_plateau"

@@ -19,7 +19,7 @@ def test_an_outcome_is_its_word():
 def test_every_mode_of_the_kernel_is_an_outcome():
     assert MODES[observables.REST] == "rest" and MODES[observables.FALLEN] == "overturned"
     assert MODES[observables.ROCK + observables.SLIDE] == "slide-rock"
-    assert len(MODES) == len(Outcome) == observables.FALLEN + 1
+    assert len(MODES) == len(Outcome) == observables.HOP + 1
 
 
 @pytest.mark.parametrize(

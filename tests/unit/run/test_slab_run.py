@@ -104,3 +104,19 @@ def test_pressure_in_a_frame_is_the_force_of_a_corner_on_its_patch(boxes):
         upper = (run.fields.frame(0).points[:, 1] == 1.0) & (run.fields.frame(0).contact_pressure > 0.0)
         pressed = patch * run.fields.frame(0).contact_pressure[upper].sum()
         assert pressed == pytest.approx(run.case.weight / 2.0, rel=1e-5)
+
+
+def test_a_container_left_leaning_on_its_hole_is_said_to_lean():
+    pulse = [
+        "motion.kind=pulse",
+        "motion.shape=half-sine",
+        "motion.peak_acceleration_m_s2=6.0",
+        "motion.pulse_s=0.4",
+    ]
+    weak = ["contact.mu_static=0.6", "contact.mu_kinetic=0.6", "floor.bearing_strength_Pa=20e6"]
+    run = fem.compute(load_case("seed_stack_plateau", ["solver.model=rigid", *pulse, *weak]), band=False)
+    verdict, angle = run.verdict, run.typed_result.static.slenderness_angle_rad
+    assert abs(verdict.tilt_rad) > 0.01 * angle and not verdict.restored
+    assert verdict.tilt_rad == pytest.approx(run.history["rotation_rad"][-1], rel=1e-6)
+    share = f"{abs(verdict.tilt_rad) / angle:.0%} less capacity on that side"
+    assert "left leaning by" in verdict.first_line and share in verdict.first_line

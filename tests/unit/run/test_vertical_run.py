@@ -2,11 +2,14 @@
 
 import json
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from fem import compute
 from fem.__main__ import main
+from fem.assessment.summary import plain_summary
 from fem.case.case import CaseError, load_case
 from fem.figures.run import figures_of
 from fem.model.model import build_model
@@ -160,6 +163,34 @@ def test_variations_try_the_other_sign_and_strengthen_both_motions():
     changed = [one.values for one in further_changes(load_case("seed_stack_plateau", VERTICAL))]
     assert {"vertical.scale": 1.0} in changed
     assert {"vertical.kind": "none"} in changed
-    assert {"motion.peak_acceleration_m_s2": 8.0, "vertical.peak_acceleration_m_s2": 6.0} in changed
+    (stronger,) = (one for one in changed if one.get("vertical.peak_acceleration_m_s2", 0.0) > 3.0)
+    assert stronger["motion.peak_acceleration_m_s2"] == pytest.approx(1.1 * 4.0)
+    assert stronger["vertical.peak_acceleration_m_s2"] == pytest.approx(1.1 * 3.0)
     plain = [one.values for one in further_changes(load_case("seed_stack_plateau"))]
     assert not [values for values in plain if any(key.startswith("vertical") for key in values)]
+
+
+def test_a_container_that_leaves_its_floor_hops_and_its_verdict_is_tried():
+    values = ["solver.model=rigid", "floor.kind=rigid", "motion.kind=none", "solver.duration_s=2"]
+    strong = [
+        "vertical.kind=harmonic",
+        "vertical.peak_acceleration_m_s2=15",
+        "vertical.frequency_Hz=3",
+        "uncertainty.draws=0",
+    ]
+    run = compute(load_case("seed_stack_plateau", [*values, *strong]), margin=False)
+    verdict, static = run.verdict, run.typed_result.static
+    assert verdict.outcome == "hop" and "hop" in verdict.modes and verdict.max_uplift_m > 1e-3
+    assert static.own_motion_vertical.utilisation_lifting == pytest.approx(15.0 / 9.81, rel=1e-6)
+    assert verdict.band is not None and "Result: hopped and did not overturn" in verdict.first_line
+    summary = plain_summary(run.typed_result, folder=Path("run"))
+    assert "lifts off" in summary and "hopped" in summary
+
+
+def test_a_rest_under_a_strong_vertical_motion_is_not_sure_untried():
+    values = ["solver.model=rigid", "floor.kind=rigid", "motion.kind=none", "solver.duration_s=1"]
+    weak = ["vertical.kind=harmonic", "vertical.frequency_Hz=3", "uncertainty.draws=0"]
+    for peak, tried in ((4.0, True), (1.0, False)):
+        case = load_case("seed_stack_plateau", [*values, *weak, f"vertical.peak_acceleration_m_s2={peak}"])
+        verdict = compute(case, margin=False).verdict
+        assert (verdict.outcome, verdict.sure, verdict.band is not None) == ("rest", "sure", tried)

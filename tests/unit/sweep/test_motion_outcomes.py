@@ -3,8 +3,8 @@
 import pytest
 
 from fem.batch.axes import read_axis
-from fem.batch.intervals import binomial_interval
 from fem.results.outcome import Ending
+from fem.runtime.intervals import binomial_interval
 from fem.sweep.cells import RunShown
 from fem.sweep.motion_outcomes import MotionOutcome, by_motion, motions_at, set_in_words, set_row, sign_axes
 

@@ -1,0 +1,143 @@
+"""How sure a verdict is, in words: what its variations showed, and what decides.
+
+Every sentence is made from the members of the band: how many of them stand, what those do that move in another way, and
+for what decides between standing and falling the value at which the draws change.
+"""
+
+from collections.abc import Iterator, Sequence
+
+from fem.assessment.sureness import (
+    SURE,
+    UNSURE,
+    below_uplift,
+    numerical,
+    rests_on_stiff_floor,
+    stands,
+    static_use,
+)
+from fem.case.unknown_inputs import WORDS, in_words
+from fem.results.figures import FIGURES
+from fem.results.outcome import ROCKING, SLIDING, Outcome
+from fem.results.run_result import Band, ChangedRun, RunResult, Verdict
+from fem.runtime.intervals import binomial_interval
+
+CONFIDENCE = 0.95
+LEAST_SHARE, LEAST_DRAWS = 0.25, 4  #: of the draws, on one side of a value from which that value is named
+MOST_NAMED = 2  #: inputs in a sentence
+
+
+def sureness_in_words(result: RunResult) -> str:
+    """One to three sentences; empty if the band was not computed."""
+    verdict = result.verdict or Verdict()
+    band = verdict.band
+    if verdict.sure is None:  # no band, or one of a former version
+        return "Unsure: see the band." if band is not None and band.unsure else ""
+    if band is None:
+        used = static_use(result) or 0.0
+        return (
+            f"Sure: the static rule is used to {used:.2f} and nothing else acts, so nothing else was tried."
+        )
+    tried = [one for one in band.members[1:] if one.outcome is not None]
+    if not tried:
+        return (
+            "Nothing was varied: all inputs are held."
+            if len(band.members) == 1
+            else "Unsure: no variation ended."
+        )
+    if verdict.sure == UNSURE:
+        return f"Unsure: {'; '.join(_doubts(verdict, band, tried))}."
+    ending = "Stands" if stands(band.members[0]) else "Overturns"
+    if verdict.sure == SURE:
+        return f"Sure: {ending.lower()} in all {len(tried)} variations."
+    return f"{ending} in all {len(tried)} variations. {_other_regime(verdict, band)}{_depending(verdict)}."
+
+
+def _doubts(verdict: Verdict, band: Band, tried: Sequence[ChangedRun]) -> Iterator[str]:
+    """Why it is not sure whether it stands."""
+    own = band.members[0]
+    crossing = [one for one in tried if stands(one) != stands(own) and not numerical(one)]
+    draws = [one for one in tried if one.kind == "draw"]
+    verb = "overturns" if stands(own) else "stands"
+    if crossing:
+        drawn = [one for one in draws if one in crossing]
+        alone = [one for one in crossing if one.kind != "draw"]
+        if alone:
+            named = [in_words(one.values or {}) for one in alone[:MOST_NAMED]]
+            more = f" and {len(alone) - len(named)} other changes" if len(alone) > len(named) else ""
+            yield f"{verb} with {' and with '.join(named)}{more}"
+        if drawn:
+            yield _counted(draws) + _value_that_decides(draws)
+        elif draws:
+            yield f"not in {len(draws)} draws of all inputs at once"
+    if verdict.numerically_unsure:
+        yield f"numerically, for it {verb} with steps ten times as accurate"
+    if below_uplift(band.members):
+        found = "rests" if rests_on_stiff_floor(band.members) else "still rocks"
+        yield f"it is below uplift of a rigid block, and on a floor thirty times as stiff it {found}"
+    if failed := sum(one.outcome is None for one in band.members):
+        yield f"{failed} of {len(band.members) - 1} variations failed"
+    if band.left_out:
+        yield f"{len(band.left_out)} changes were left out for time"
+
+
+def _counted(draws: Sequence[ChangedRun]) -> str:
+    """How many draws overturned, with the interval of their share."""
+    count = sum(not stands(one) for one in draws)
+    low, high = binomial_interval(count, len(draws), CONFIDENCE)
+    return f"overturned in {count} of {len(draws)} draws (95 %: {100.0 * low:.0f} to {100.0 * high:.0f} %)"
+
+
+def _value_that_decides(draws: Sequence[ChangedRun]) -> str:
+    """The input and its value beyond which most draws end in one way; empty if no value tells enough of them apart."""
+    found: list[tuple[int, str]] = []
+    for key in draws[0].values or {}:
+        values = [(one.values or {}).get(key) for one in draws]
+        known = [
+            (value, stands(one)) for value, one in zip(values, draws, strict=True) if isinstance(value, float)
+        ]
+        for ending, word in ((True, "stands"), (False, "overturns")):
+            same = [value for value, one in known if one is ending]
+            others = [value for value, one in known if one is not ending]
+            if not same or not others:
+                continue
+            for beyond, limit, side in (
+                ([value for value in same if value > max(others)], max(others), "above"),
+                ([value for value in same if value < min(others)], min(others), "below"),
+            ):
+                if len(beyond) >= max(LEAST_DRAWS, LEAST_SHARE * len(draws)):
+                    words = f"; {word} in all {len(beyond)} of them with {WORDS[key]} {side} {limit:.3g}"
+                    found.append((len(beyond), words))
+    return max(found)[1] if found else ""
+
+
+def _other_regime(verdict: Verdict, band: Band) -> str:
+    """What variations do otherwise, with the ranges of slip and rotation."""
+    own = band.members[0].outcome
+    others = {one.outcome for one in band.members if one.outcome is not None} - {own}
+    if own == Outcome.OVERTURNED:
+        return "Another box may fall first"
+    slides, rocks = own in SLIDING, own in ROCKING
+    may = ""
+    if others & {*ROCKING} and not rocks:
+        may = "rock instead of slide" if slides and Outcome.ROCK in others else "rock"
+    elif others & {*SLIDING} and not slides:
+        may = "slide instead of rock" if rocks and Outcome.SLIDE in others else "slide"
+    elif Outcome.SLIDE in others and rocks:
+        may = "slide without rocking"
+    elif Outcome.HOP in others:
+        may = "hop"
+    elif others:
+        may = "rest" if others == {Outcome.REST} else f"not {'rock' if rocks else 'slide'}"
+    lead = f"It may {may}" if may else "How far it moves is not known"
+    slip = FIGURES["max_slip_m"].unit.range_text(band.max_slip_m)
+    ratio = FIGURES["rotation_ratio"].unit.range_text(band.rotation_ratio)
+    return f"{lead}: slip {slip}, rotation ratio {ratio}"
+
+
+def _depending(verdict: Verdict) -> str:
+    if not verdict.decided_by:
+        return ""
+    named = [WORDS.get(key, key) for key in verdict.decided_by[:MOST_NAMED]]
+    if len(verdict.decided_by) > MOST_NAMED:
+        return f", depending on {', '.join(named)} and others"
+    return f", depending on {' and '.join(named)}"
