@@ -202,7 +202,7 @@ def test_draws_that_overturn_are_counted_with_their_interval_and_the_value_that_
         (
             [(HALF, {"max_slip_m": 0.032}), (STIFF, {})],
             {"max_slip_m": 6e-4},
-            "Stands in all 2 variations. How far it moves is not known: slip 0.60 to 32 mm, rotation ratio 0.2, "
+            "Stands in all 2 variations. How far it moves is not known: slip 0.60 to 32 mm, rotation ratio 0.200, "
             "depending on kinetic friction.",
         ),
         (
