@@ -40,6 +40,8 @@ def _demands_of(model: Model, history: History, joint: int, standing: NDArray[np
     time = history["time_s"][standing]
     normal, shear, moment = (history[name][standing] for name in JOINTS.names((joint,)))
     left, right = edge_forces(normal, moment, width)
+    tension = max(0.0, -float(left.min())), max(0.0, -float(right.min()))
+    capacity = model.case.joints.bolt_capacity_N
     carried = mu * np.maximum(normal, 0.0)
     return JointDemand(
         joint=joint,
@@ -48,8 +50,9 @@ def _demands_of(model: Model, history: History, joint: int, standing: NDArray[np
         max_normal_N=float(normal.max()),
         max_shear_N=float(np.abs(shear).max()),
         max_moment_Nm=float(np.abs(moment).max()),
-        bolt_tension_left_N=max(0.0, -float(left.min())),
-        bolt_tension_right_N=max(0.0, -float(right.min())),
+        bolt_tension_left_N=tension[0],
+        bolt_tension_right_N=tension[1],
+        bolt_utilisation=None if capacity is None else max(tension) / capacity,
         bolt_shear_N=max(0.0, float((np.abs(shear) - carried).max())),
         friction_needed=_friction_needed(normal, shear),
         partly_opens_at_s=_first(time, np.abs(moment) > normal * width / 6.0),

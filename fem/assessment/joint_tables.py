@@ -56,12 +56,17 @@ def joint_tables(every: Sequence[JointDemand], verdict: Verdict) -> Iterator[Ren
     for joint in joints:
         place, normal = f"{joint.height_m:.4g} m", (joint.min_normal_N, joint.max_normal_N)
         tension = (joint.bolt_tension_left_N, joint.bolt_tension_right_N)
+        used = "" if joint.bolt_utilisation is None else f" ({joint.bolt_utilisation:.2g})"
         needed = "no mu" if joint.friction_needed is None else f"{joint.friction_needed:.3g}"
         forces.add_row(
             place, " .. ".join(map(kilo, normal)), kilo(joint.max_shear_N), kilo(joint.max_moment_Nm)
         )
-        bolts.add_row(place, ", ".join(map(kilo, tension)), kilo(joint.bolt_shear_N), needed, unbolted(joint))
+        bolts.add_row(
+            place, ", ".join(map(kilo, tension)) + used, kilo(joint.bolt_shear_N), needed, unbolted(joint)
+        )
     yield from (forces, bolts)
+    if any(joint.bolt_utilisation is not None for joint in joints):
+        yield Text("In parentheses: the larger tension over joints.bolt_capacity_N.\n")
     left_out = len(every) - len(joints)
     yield Text(
         joints_note(verdict) + (f" {left_out} more joints are in run.json." if left_out else "") + "\n"

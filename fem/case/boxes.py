@@ -228,6 +228,11 @@ JOINT_RULES = (
         "is friction between boxes, but a stack of one has no joints; remove the table, or give boxes or "
         "[[container.box]]",
     ),
+    _of_one_body(
+        "joints.bolt_capacity_N",
+        lambda case: case.joints.bolt_capacity_N is not None,
+        'does not apply to container.joints = "loose", which have no bolts; leave it out, or take "bolted"',
+    ),
     Rule(
         "joints.mu_kinetic",
         lambda case: _friction(case)["mu_kinetic"] <= _friction(case)["mu_static"],

@@ -106,6 +106,11 @@ class Case(CaseHeading):
         return boxes_of(self.container, self.gravity_m_s2)
 
     @property
+    def effective_width(self) -> float:
+        """Width between the points about which it rocks, over that of the base: castings may stand inside its sides."""
+        return self.support.effective_width * (1.0 - 2.0 * self.support.inset / self.stack[0].width)
+
+    @property
     def joint_friction(self) -> dict[str, float]:
         """mu_static, mu_kinetic and weakening_m between loose boxes."""
         return joint_friction(self.joints, self.contact)

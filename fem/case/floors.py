@@ -234,6 +234,7 @@ FLOOR_CASE_RULES = (
         lambda case: (
             case.floor.kind != "slab"
             or case.floor.corner_patch_m is not None
+            or case.support.casting_m is not None
             or case.support.kind != "corners"
             or case.container.section == "shell"
         ),

@@ -26,6 +26,8 @@ def resolved_tables(case: Any) -> dict[str, Any]:
         }
     if not case.container.is_loose:
         del document["container"]["joints"]
+        if case.joints.bolt_capacity_N is not None and case.container.bolted_joints:
+            document["joints"] = {"bolt_capacity_N": case.joints.bolt_capacity_N}
     if case.container.eccentricity_m == 0.0:
         del document["container"]["eccentricity_m"]
     if case.support.camber_m == 0.0:

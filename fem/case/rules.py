@@ -239,6 +239,24 @@ def _frames(case: Any) -> float:
     return longest_time(case) / float(interval) + 1.0 if interval not in (0.0, "auto") else 0.0
 
 
+def _casting_does_not_fit(case: Any) -> str:
+    """Why castings do not fit below the base, empty where they do."""
+    width, depth, inset = case.support.casting_m
+    if case.support.kind != "corners":
+        return f'belongs to support.kind = "corners", got "{case.support.kind}"; leave it out'
+    if width <= 0.0 or depth <= 0.0:
+        return f"must be [width, depth, inset] with a positive width and depth, got {case.support.casting_m}"
+    if case.floor.corner_patch_m is not None:
+        return "and floor.corner_patch_m both say what bears under a corner; keep one of them"
+    half = 0.5 * _base_width(case)
+    if inset + width > half or 2.0 * depth > case.container.depth_m:
+        return (
+            f"= {case.support.casting_m} does not fit under the base: inset and width at most half of width_m = "
+            f"{half:g} m, two depths at most depth_m = {case.container.depth_m:g} m"
+        )
+    return ""
+
+
 CASE_RULES = (
     *FLOOR_CASE_RULES,
     *BOX_RULES,
@@ -250,6 +268,16 @@ CASE_RULES = (
         lambda case: case.contact.restitution_over_housner is None or not case.support.rolls,
         "does not apply to support.camber_m > 0: a cambered base rolls and has no impacts; give "
         "support.rocking_damping_ratio",
+    ),
+    Rule(
+        "support.casting_m",
+        lambda case: case.support.casting_m is None or not _casting_does_not_fit(case),
+        lambda case: _casting_does_not_fit(case),
+    ),
+    Rule(
+        "container.corner_post_N",
+        lambda case: case.container.corner_post_N is None or case.support.kind == "corners",
+        'belongs to support.kind = "corners", where a post stands above each; leave it out, or take "corners"',
     ),
     Rule(
         "support.foot_m",
@@ -294,8 +322,9 @@ CASE_RULES = (
     ),
     Rule(
         "support.effective_width",
-        lambda case: case.solver.model != "full" or case.support.effective_width == 1.0,
-        "belongs to the rigid and the reduced model: the full model bears where its nodes are; change width_m",
+        lambda case: case.solver.model != "full" or case.effective_width == 1.0,
+        "(or an inset of casting_m) belongs to the rigid and the reduced model: the full model bears where its nodes "
+        "are; change width_m",
     ),
     Rule(
         "output.history_s",

@@ -88,6 +88,11 @@ class ContainerTable(CaseTable):
     damping_ratio: Annotated[float, q.MATERIAL_DAMPING] = case_key(
         "of the first elastic mode; it grows with frequency, zeta_n = zeta f_n/f_1", 0.02
     )
+    corner_post_N: Annotated[float, q.CORNER_FORCE] | None = case_key(  # noqa: N815
+        "strength of the post above each bottom corner, of which two stand behind each other; default: the wall yields",
+        None,
+        example=848e3,
+    )
     mesh_file: str | None = case_key(
         "a mesh to use in place of the structured one", None, example="container.msh"
     )
@@ -146,12 +151,25 @@ class SupportTable(CaseTable):
         1.0,
     )
 
+    casting_m: Annotated[list[Annotated[float, q.CASTING]], Field(min_length=3, max_length=3)] | None = (
+        case_key(
+            "[width, depth, inset from the side] of a corner casting, two behind each other; corners only",
+            None,
+            example=[0.162, 0.178, 0.0],
+            only=("kind", "corners"),
+        )
+    )
     camber_m: Annotated[float, q.CAMBER] = case_key(
         "how far the edges of the base stand higher than its middle, along a parabola; 0: sharp corners", 0.0
     )
     rocking_damping_ratio: Annotated[float, q.ROCKING_DAMPING] = case_key(
         "of small rocking on a cambered base; not of feet, whose inner ends strike", 0.05
     )
+
+    @property
+    def inset(self) -> float:
+        """Distance of the outer edge of the castings from the side of the box [m]."""
+        return self.casting_m[2] if self.casting_m is not None and self.kind == "corners" else 0.0
 
     @property
     def rolls(self) -> bool:
@@ -234,6 +252,10 @@ class JointsTable(CaseTable):
         "loose joints: c/(2 sqrt(k m)), all boxes' mass m on the spring k of a corner on a rigid floor; default: 2",
         None,
         example=0.5,
+    )
+
+    bolt_capacity_N: Annotated[float, q.CORNER_FORCE] | None = case_key(  # noqa: N815
+        "bolted joints: tension that all bolts along one edge carry, as two twistlocks", None, example=500e3
     )
 
     @property

@@ -327,6 +327,7 @@ def _other_support(case: Any) -> Value | None:
     if case.floor.is_slab:
         stated = case.floor.corner_patch_m
         castings = stated is not None and stated[1] < 0.99 * case.container.depth_m
+        castings = castings or case.support.casting_m is not None
         if castings or other_patch(case, kind) is None:
             return None
     return kind

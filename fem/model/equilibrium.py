@@ -166,7 +166,7 @@ def _contact(case: Case, container: Container, springs: FloatArray) -> Contact:
         resolution=1e-15 * (mesh.width + mesh.height),
         rolling_time=0.0 if rolling is None else rolling.time - relaxation,
         rolling_radius=0.0 if rolling is None else rolling.radius,
-        rolling_reach=0.5 * case.support.effective_width * mesh.width,
+        rolling_reach=0.5 * case.effective_width * mesh.width,
     )
 
 
@@ -197,10 +197,10 @@ def _body(case: Case, container: Container, contact: Contact) -> ModalBody | Ful
 
 def base_points(case: Case, place: FloatArray, count: int) -> FloatArray:
     """Points of a container (n, 2), the first of which bear at the effective width of the base [m]."""
-    if case.support.effective_width == 1.0:
+    if case.effective_width == 1.0:
         return place
     factor = np.ones_like(place)
-    factor[:count, 0] = case.support.effective_width
+    factor[:count, 0] = case.effective_width
     return factor * place
 
 

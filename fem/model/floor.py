@@ -60,9 +60,12 @@ def is_steel_shell(case: Case) -> bool:
 def steel_capacity(case: Case) -> float | None:
     """Force at which the wall over one corner yields, yield strength x wall x depth of the patch [N].
 
-    None where no wall of steel carries a corner: solid blocks, feet, a flat base.
+    Where a container has corner posts, that of the two above the castings of a corner. None where no wall of steel
+    carries a corner: solid blocks, feet, a flat base.
     """
-    wall = case.stack[0].wall
+    wall, post = case.stack[0].wall, case.container.corner_post_N
+    if post is not None:
+        return 2.0 * post
     if not is_steel_shell(case) or wall is None or case.support.kind != "corners":
         return None
     return YIELD_STRENGTH * wall * corner_patch(case)[1]
@@ -72,6 +75,8 @@ def corner_patch(case: Case) -> tuple[float, float]:
     """What bears under one corner of the elevation, along x and out of plane [m]."""
     if case.floor.corner_patch_m is not None:
         return case.floor.corner_patch_m[0], case.floor.corner_patch_m[1]
+    if case.support.casting_m is not None:
+        return case.support.casting_m[0], 2.0 * case.support.casting_m[1]
     lowest = case.stack[0]
     touching = {"corners": lowest.wall, "feet": case.support.foot, "flat": 0.5 * lowest.width}
     along = touching[case.support.kind]

@@ -103,7 +103,7 @@ def _modal_body(case: Case, container: Container, number: int, tolerance: float)
     watched = _watched(container, number)
     corner = box.elements.nodes[box.corners].copy()
     if number == 0:
-        corner[:2, 0] *= case.support.effective_width
+        corner[:2, 0] *= case.effective_width
     return make_modal_body(
         mass=box.mesh.mass,
         inertia=box.mesh.inertia,

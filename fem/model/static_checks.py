@@ -330,7 +330,7 @@ def static_checks_of(
         mass=mesh.mass,
         centroid=mesh.centroid[1],
         inertia=mesh.inertia,
-        width=case.support.effective_width * mesh.width,
+        width=case.effective_width * mesh.width,
         beside=distance_beside(mesh),
         gravity=case.gravity_m_s2,
         mu_static=case.contact.mu_static,

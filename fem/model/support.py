@@ -57,7 +57,7 @@ class Rolling:
         support, height = case.support, mesh.centroid[1]
         if not support.rolls:
             return None
-        width = support.effective_width * mesh.width
+        width = case.effective_width * mesh.width
         radius = 0.125 * width**2 / support.camber_m
         if radius <= height:
             raise CaseError(

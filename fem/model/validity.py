@@ -64,6 +64,10 @@ def require_bearing(case: Case, mesh: ContainerMesh, use: float) -> None:
     patch, force = f"{slab.patch[0]:g} x {slab.patch[1]:g} m", use * slab.cap
     carries = f"a corner carries {1e-3 * force:.4g} kN on a patch of {patch} and would sink in without end"
     if slab.yields_first:
+        if case.container.corner_post_N is not None:
+            raise CaseError(
+                f"[container] corner_post_N = {case.container.corner_post_N:g} N: {carries}; its posts yield"
+            )
         raise CaseError(f"[container] wall_m = {case.stack[0].wall:g} m: {carries}, because its wall yields")
     raise CaseError(
         f"[floor] bearing_strength_Pa = {case.floor.bearing_strength_Pa:g} Pa: {carries}; the least patch has "

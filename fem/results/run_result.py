@@ -232,6 +232,7 @@ class JointDemand(JsonBlock):
     bolt_tension_left_N: float
     bolt_tension_right_N: float
     bolt_shear_N: float
+    bolt_utilisation: float | None = None  #: largest tension over joints.bolt_capacity_N; None: not given
     friction_needed: float | None = None  #: None: unloaded under shear
     partly_opens_at_s: float | None = None
     opens_at_s: float | None = None
