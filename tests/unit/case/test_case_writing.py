@@ -23,6 +23,10 @@ SHIPPED = {
     "sliding",
     "rocking",
     "overturning",
+    "iso_20ft",
+    "iso_20ft_empty",
+    "iso_20ft_two_locked",
+    "iso_20ft_two_loose",
 }
 
 
