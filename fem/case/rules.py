@@ -265,7 +265,11 @@ CASE_RULES = (
     _plausible_density("mass_kg"),
     Rule(
         "contact.restitution_over_housner",
-        lambda case: case.contact.restitution_over_housner is None or not case.support.rolls,
+        lambda case: (
+            case.contact.restitution_over_housner is None
+            or case.support.camber_m == 0.0
+            or case.support.kind == "feet"
+        ),
         "does not apply to support.camber_m > 0: a cambered base rolls and has no impacts; give "
         "support.rocking_damping_ratio",
     ),
@@ -322,7 +326,10 @@ CASE_RULES = (
     ),
     Rule(
         "support.effective_width",
-        lambda case: case.solver.model != "full" or case.effective_width == 1.0,
+        lambda case: (
+            case.solver.model != "full"
+            or (case.support.effective_width == 1.0 and (case.support.casting_m or (0.0,))[-1] == 0.0)
+        ),
         "(or an inset of casting_m) belongs to the rigid and the reduced model: the full model bears where its nodes "
         "are; change width_m",
     ),

@@ -310,7 +310,7 @@ MUTATIONS = (
     ),
     Mutation(
         name="a member of an effective width that rocks about the corners of the mesh",
-        old="factor[:count, 0] = case.support.effective_width",
+        old="factor[:count, 0] = case.effective_width",
         new="factor[:count, 0] = 1.0",
         tests=("unit/model/test_effective_width.py",),
     ),

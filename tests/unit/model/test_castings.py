@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import fem
+from fem.case.case import CaseError
 from fem.model.floor import slab_of
 from fem.model.model import build_model
 
@@ -69,5 +70,5 @@ def test_the_bolts_of_locked_containers_have_a_utilisation():
     ],
 )
 def test_castings_that_make_no_sense_are_refused(values, says):
-    with pytest.raises(ValueError, match=says):
+    with pytest.raises(CaseError, match=says):
         fem.load_case("iso_20ft", values)
