@@ -304,10 +304,13 @@ def make_run(
     strained step.
 
     Raises:
-        ValueError: the kernels do not handle the law of friction.
+        ValueError: the kernels do not handle the law of friction; what the contact has of its points is not of all.
     """
     require_known_friction(contact.friction)
     n, monitors = old.point.shape[0], old.monitor.shape[0]
+    for name, part in contact._asdict().items():
+        if isinstance(part, np.ndarray) and part.shape != (n,):  # the kernels do not look
+            raise ValueError(f"contact: {name} has the shape {part.shape}, of {n} points")
     clock = np.zeros(1, STEP_RECORD).view(np.recarray)
     clock["smallest_step"] = NEVER
     clock["attempt_limit"] = UNLIMITED

@@ -57,6 +57,7 @@ def with_joints(case: Case, floor: Contact, mass: float, penalty: float) -> Cont
         mu_static=extended(floor.mu_static, friction["mu_static"]),
         mu_kinetic=extended(floor.mu_kinetic, friction["mu_kinetic"]),
         weakening=extended(floor.weakening, friction["weakening_m"]),
+        camber=extended(floor.camber, 0.0),
         held_step=HELD_SHARE
         * math.sqrt(floor.force_scale / case.gravity_m_s2 / float(floor.normal_stiffness.sum())),
         turned_steps=TURNED_STEPS,
