@@ -149,14 +149,19 @@ def with_mass_beside(mesh: ContainerMesh, distance: float) -> ContainerMesh:
     The density of each box gets a linear part along x, so that its mass and the height of its centre stay.
 
     Raises:
-        MeshError: so far that a density would be negative.
+        MeshError: so far that a density would be negative; a box of one column of elements.
     """
     area, centre = areas_and_centroids(mesh.points, mesh.quads)
     mass, factor = area * mesh.areal_density, np.ones(len(mesh.quads))
     for box in range(int(mesh.box.max()) + 1):
         own = mesh.box == box
         beside = centre[own, 0] - np.average(centre[own, 0], weights=mass[own])
-        factor[own] += distance * mass[own].sum() / np.sum(mass[own] * beside**2) * beside
+        spread = np.sum(mass[own] * beside**2)
+        if spread == 0.0:
+            raise MeshError(
+                "a box of one column of elements has its mass centre on its axis; take smaller elements"
+            )
+        factor[own] += distance * mass[own].sum() / spread * beside
     if factor.min() < 0.0:
         raise MeshError(f"the mass centre cannot lie {distance:g} m beside the axis of a box")
     return replace(mesh, areal_density=mesh.areal_density * factor)

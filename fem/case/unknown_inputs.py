@@ -37,6 +37,7 @@ SLOPE_PERCENT = 0.5  #: more or less than that of the case
 CAMBERS = (0.5, 2.0)  #: camber of a base over that of the case
 ROCKING_DAMPING = (0.02, 0.1)  #: damping of small rocking on it, as far as the case has none beyond
 LOSS = (0.8, 1.5)  #: loss at an impact, 1 - e, over that of the case where its restitution is given
+RESTITUTIONS = (0.95, 1.06)  #: over Housner's, of sharp corners whose restitution is not given
 WEAKENING_M, STRIBECK_M_S = 5e-3, 0.3  #: largest slip and velocity over which friction falls
 WEAKENINGS_BETWEEN_M = (1e-4, 1e-3)
 RAMP_CYCLES = 2.0
@@ -183,6 +184,8 @@ def _own(case: Any, key: str, penalty: float | None) -> Any:
         return case.contact_damping_ratio
     if key == JOINTS_DASHPOT:
         return case.joints.dashpot
+    if key == RESTITUTION:
+        return case.contact.restitution_over_housner or 1.0
     return case.joint_friction[name] if table == "joints" else getattr(getattr(case, table), name)
 
 
@@ -262,12 +265,20 @@ def _cambers(case: Any, own: float) -> Ends:
     return low, max(own, min(high, short((case.support.effective_width * box.width) ** 2 / (16.0 * height))))
 
 
+def _has_impacts(case: Any) -> bool:
+    """Whether an impact exchanges the pivot as Housner's does, or leaves a restitution that is given."""
+    given = case.contact.restitution_over_housner is not None
+    return given or (case.support.kind == "corners" and not case.support.rolls)
+
+
 def _restitutions(case: Any, ratio: float) -> Ends:
-    """By the loss at an impact of a homogeneous block."""
+    """By the loss at an impact of a homogeneous block where it is given; never more than was there before."""
     box = case.container
     height = 0.5 * (box.total_height - box.height_m) + box.centroid_m
     block = RigidBlock(half_width=0.5 * box.width_m, centroid_height=height, gravity=case.gravity_m_s2)
     housner = block.housner_restitution
+    if case.contact.restitution_over_housner is None:
+        return RESTITUTIONS[0], min(RESTITUTIONS[1], short(0.999 / housner))
     less, more = ((1.0 - share * (1.0 - ratio * housner)) / housner for share in (LOSS[1], LOSS[0]))
     return short(max(q.RESTITUTION.least or 0.0, less)), short(more)
 
@@ -309,6 +320,12 @@ def _two_harmonics(case: Any) -> bool:
 
 def _equal_boxes(case: Any) -> bool:
     return case.container.box is None and case.container.mesh_file is None
+
+
+def _has_columns(case: Any) -> bool:
+    """Whether every box has two columns of elements, which a mass centre beside the axis needs."""
+    widest = case.solver.element_size_m
+    return all(box.wall is not None or widest < box.width for box in case.stack)
 
 
 def other_patch(case: Any, kind: str) -> list[float] | None:
@@ -385,7 +402,8 @@ UNKNOWN: tuple[UnknownNumber | UnknownChoice, ...] = (
     Choice(SUPPORT, "support", "what of the base touches", _other_support, drawn=False),
     Number(CENTROID_KEY, "centroid_m", "height of the mass centre", q.LENGTH, CENTROID,
            matters=_equal_boxes, power=1.0),
-    Number(ECCENTRICITY, "eccentricity_m", "eccentricity of the mass centre", q.OFFSET, _beside, power=1.0),
+    Number(ECCENTRICITY, "eccentricity_m", "eccentricity of the mass centre", q.OFFSET, _beside,
+           matters=_has_columns, power=1.0),
     Number(EFFECTIVE, "effective_width", "effective width of the base", q.EFFECTIVE_WIDTH, (EFFECTIVE_WIDTH, 1.0),
            matters=_not_full, power=1.0),
     Number(SLOPE, "slope_percent", "slope of the floor", q.SLOPE, _slopes, power=1.0),
@@ -398,7 +416,7 @@ UNKNOWN: tuple[UnknownNumber | UnknownChoice, ...] = (
     Number(MODULUS, "floor_youngs_modulus_Pa", "stiffness of the floor", q.FLOOR_STIFFNESS, SLAB),
     Number(DASHPOT, "damping_ratio", "damping of the contact", q.CONTACT_DAMPING, DAMPING),
     Number(RESTITUTION, "restitution_over_housner", "restitution over Housner's", q.RESTITUTION, _restitutions,
-           power=1.0),
+           matters=_has_impacts, power=1.0),
     Number(MATERIAL, "material_damping_ratio", "damping of the container", q.MATERIAL_DAMPING, DAMPING,
            matters=_is_elastic),
 )

@@ -110,7 +110,7 @@ class TestFreeRocking:
         kept = json.loads((tmp_path / "r" / "run.json").read_text())["rigid_check"]
         assert kept["meaningful"] is True
         page = (tmp_path / "r" / "summary.txt").read_text()
-        for words in ("rigid check, first impact", "(block 0.7007)", "a fair comparison"):
+        for words in ("rigid check, first impact", "(block 0.7007 s)", "a fair comparison"):
             assert words in page
 
 

@@ -38,8 +38,17 @@ def test_defaults_follow_the_case():
         "motion.ramp_cycles": (2.0,),
         "contact.normal_penalty_Pa_m": (pytest.approx(PENALTY / 9.0), 3.0 * PENALTY),
         "contact.damping_ratio": (1.0, 4.0),
+        "contact.restitution_over_housner": (0.95, 1.06),
         "container.damping_ratio": (0.01, 0.04),
     }
+
+
+def test_an_impact_never_gives_more_than_there_was():
+    """Of a slender container, which loses next to nothing, and of a low one; not on a base without Housner's impact."""
+    slender = ends("harmonic", FRICTION | {"container.width_m": 0.4, "container.boxes": 6})
+    assert 1.0 < slender["contact.restitution_over_housner"][1] < 1.01
+    flat = ends("harmonic", FRICTION | {"support.kind": "flat"})
+    assert "contact.restitution_over_housner" not in flat
 
 
 @pytest.mark.parametrize(
@@ -55,7 +64,11 @@ def test_defaults_follow_the_case():
         ("harmonic", FRICTION | {"solver.model": "rigid"}, {"container.damping_ratio"}),
         ("harmonic", FRICTION | {"contact.damping_ratio": 0.0}, {"contact.damping_ratio"}),
         ("harmonic", FRICTION | {"container.joints": "loose", "container.boxes": 2}, {"support.kind"}),
-        ("harmonic", FRICTION | {"support.kind": "feet"}, {"support.kind"}),
+        (
+            "harmonic",
+            FRICTION | {"support.kind": "feet"},
+            {"support.kind", "contact.restitution_over_housner"},
+        ),
         (
             "harmonic",
             FRICTION | {"contact.friction": "regularised"},
@@ -193,6 +206,7 @@ def test_a_stated_range_replaces_the_default_and_known_leaves_it_out():
         "uncertainty.damping_ratio": "known",
         "uncertainty.material_damping_ratio": [0.02, 0.02],
         "uncertainty.ramp": False,
+        "uncertainty.restitution_over_housner": "held",
         **dict.fromkeys([f"uncertainty.{name}" for name in GEOMETRY], "held"),
     }
     assert ends("harmonic", stated) == {

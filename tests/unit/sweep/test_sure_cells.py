@@ -53,6 +53,7 @@ def test_the_copies_of_the_shipped_case_try_all_unknown_inputs(sweep_of):
         "contact.stribeck_velocity_m_s",
         "contact.normal_penalty_Pa_m",
         "contact.damping_ratio",
+        "contact.restitution_over_housner",
         "motion.phase_rad",
         "motion.ramp_cycles",
         "container.centroid_m",

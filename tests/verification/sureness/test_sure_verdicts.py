@@ -74,6 +74,7 @@ def test_a_pull_beyond_stiction_slides_and_friction_decides_how_far(tmp_path):
 @pytest.mark.parametrize("section", ["shell", "solid"])
 def test_the_default_motion_hangs_on_the_fall_of_friction(tmp_path, section):
     values = {"container.section": section, "solver.duration_s": 8.0}
+    values["uncertainty.restitution_over_housner"] = "held"
     verdict = verdict_of(tmp_path, "seed_stack_plateau", values).verdict
     assert verdict.sure == "regime unsure" and verdict.decided_by[0] == "contact.mu_kinetic"
     low, high = verdict.band.rotation_ratio
