@@ -202,7 +202,7 @@ def _reading(view: RunView, variations: VariationTable | None) -> Iterator[str]:
     if view.verdict.outcome in ROCKING and view.verdict.margin is None:
         yield f"{MARGIN_NOTE} "
     if variations is not None and (count := len(variations.lines) - 1):
-        yield html.link(f"{variations.changed} of {count} variations", "variations")
+        yield html.link(f"{variations.changed} of {count} variations of one input", "variations")
         yield f" change{'s' if variations.changed == 1 else ''} the outcome. "
     if warnings := len(view.result.warnings or ()):
         yield f"{warnings} warning{'' if warnings == 1 else 's'}: see "
