@@ -58,9 +58,9 @@ def _cap(floor: FloorNumbers) -> str:
         return ""
     other = ""
     if floor.governs == "container":
-        other = f", where its wall or posts yield; the floor bears {_in_units(bearing, KILONEWTON)}"
+        other = f", where the steel above it yields; the floor bears {_in_units(bearing, KILONEWTON)}"
     elif floor.steel_capacity_N is not None:
-        other = f"; wall or posts yield at {_in_units(floor.steel_capacity_N, KILONEWTON)}"
+        other = f"; the steel above it yields at {_in_units(floor.steel_capacity_N, KILONEWTON)}"
     return f"{_in_units(cap, KILONEWTON)} a corner, {in_figures(times, FEW)} times the weight{other}"
 
 

@@ -8,7 +8,7 @@ FACTOR = DisplayUnit(figures=3)
 
 
 def margin_in_words(verdict: Verdict | None) -> str:
-    """The sentence; empty if no margin was looked for."""
+    """The margin of a verdict as a sentence; empty if none was computed."""
     if verdict is None or verdict.margin is None:
         return ""
     margin, stands = verdict.margin, verdict.outcome != Outcome.OVERTURNED

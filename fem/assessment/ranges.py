@@ -106,7 +106,7 @@ def plastic_corner(verdict: Verdict) -> str:
     capacity, force, work = verdict.corner_capacity_N, verdict.max_corner_force_N, verdict.plastic_work_J
     if capacity is None or force is None or work is None:
         return ""
-    yields = f"wall or posts over a corner yield at {KILONEWTONS.text(capacity, figures=3)}"
+    yields = f"the steel above a corner yields at {KILONEWTONS.text(capacity, figures=3)}"
     if work == 0.0:
         return f"{yields}, more than the largest corner force, so a rigid-plastic corner would take no work"
     return (

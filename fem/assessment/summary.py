@@ -33,8 +33,7 @@ LEANING = 0.01  #: tilt at the end over the slenderness angle from which it is s
 BAND_NOTE = (
     "The band repeats the run with changed inputs: one at a time to the ends of the ranges that [uncertainty] states "
     "or that follow from the case, and with all of them drawn at once. Numbers in parentheses are the least and the "
-    "largest of the runs with the same outcome as this one. If outcomes differ, the verdict depends on the named "
-    "inputs, not on this run."
+    "largest of the runs that stand, or overturn, as this one does."
 )
 MARGIN_NOTE = (
     "The rotation ratio is not a margin. The margin is the factor on the motion at which the container overturns; "
@@ -312,13 +311,13 @@ def _rigid_rows(check: run_result.RigidCheckResult | None, angle: float | None) 
     if check is None:
         return []
     rows = []
-    for pair, name, unit in (
-        (check.first_impact_s or run_result.RunAndBlock(), "first impact", " s"),
-        (check.velocity_ratio or run_result.RunAndBlock(), "restitution", ""),
+    for pair, name, unit, none in (
+        (check.first_impact_s or run_result.RunAndBlock(), "first impact", " s", "none"),
+        (check.velocity_ratio or run_result.RunAndBlock(), "restitution", "", "not measured"),
     ):
         if pair != run_result.RunAndBlock():
             run, block = (
-                "no impact" if one is None else visible_number(one, 1.0, ".4f") + unit
+                none if one is None else visible_number(one, 1.0, ".4f") + unit
                 for one in (pair.run, pair.block)
             )
             rows.append((f"rigid check, {name}", f"{run} (block {block})"))

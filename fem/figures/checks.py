@@ -14,6 +14,7 @@ from fem.results.run_result import ChangedRun, RigidCheckResult, RunAndBlock, Ve
 from fem.runtime.units import RATIO
 
 FALLEN_ROW = 1.18  #: rotation ratio at which overturned members are drawn
+LABELS = 2.1  #: height of the longest words for an input, upright, and the label below them [inch]
 LINE_LENGTH = 105  #: characters of a line of text in a figure
 
 
@@ -67,7 +68,7 @@ def band_figure(run: RunData) -> Figure | None:
     groups: dict[str, list[ChangedRun]] = {}
     for member in band.members:
         groups.setdefault(_group_of(member), []).append(member)
-    figure, (above, below) = style.panels((2.2, 1.5), header=3)
+    figure, (above, below) = style.panels((2.2, 1.5), header=3, below=LABELS)
     for place, members in enumerate(groups.values()):
         spread = np.linspace(-0.3, 0.3, len(members)) if len(members) > 1 else np.zeros(1)
         for offset, member in zip(spread, members, strict=True):
@@ -92,7 +93,7 @@ def band_figure(run: RunData) -> Figure | None:
     below.set_ylim(bottom=0.0)
     below.set_ylabel("largest slip of a box [mm]" if run.verdict.boxes else "largest slip [mm]")
     above.set_xticks(range(len(groups)), [])
-    below.set_xticks(range(len(groups)), list(groups), fontsize=6.5)
+    below.set_xticks(range(len(groups)), list(groups), fontsize=7.0, rotation=90.0)
     below.set_xlabel("changed input, or several at once [-]")
     for axes in (above, below):
         axes.set_xlim(-0.6, len(groups) - 0.4)

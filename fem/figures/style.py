@@ -103,6 +103,7 @@ def panels(
     header: int = 2,
     width: float = WIDTH,
     above: float = 0.0,
+    below: float = FOOTER,
 ) -> tuple[Figure, list[Axes]]:
     """A figure of panels of equal width, one below the other, at fixed positions.
 
@@ -112,9 +113,10 @@ def panels(
         header: lines of text above the first panel, title included.
         width: of the figure [inch].
         above: space between header and first panel, for other panels [inch].
+        below: space under the last panel, for its labels [inch].
     """
     gaps = gaps or [GAP] * (len(heights) - 1)
-    tall = 0.08 + header * LINE + above + sum(heights) + sum(gaps) + FOOTER
+    tall = 0.08 + header * LINE + above + sum(heights) + sum(gaps) + below
     figure = Figure(figsize=(width, tall))
     axes, top = [], tall - 0.08 - header * LINE - above
     for height, gap in zip(heights, [*gaps, 0.0], strict=True):

@@ -339,12 +339,11 @@ def block_section(view: RunView) -> html.PageSection:
 
 def _block_table(check: RigidCheckResult) -> html.Table:
     first, ratio, apart = check.first_impact_s, check.velocity_ratio, check.largest_difference_before_impact
-    none = "no impact"
     rows = (
         [
             (
                 "first impact [s]",
-                *(none if one is None else number(one, figures=5) for one in (first.run, first.block)),
+                *("none" if one is None else number(one, figures=5) for one in (first.run, first.block)),
             )
         ]
         if first
@@ -352,7 +351,10 @@ def _block_table(check: RigidCheckResult) -> html.Table:
     )
     if ratio:
         rows.append(
-            ("restitution there", *(none if one is None else number(one) for one in (ratio.run, ratio.block)))
+            (
+                "restitution there",
+                *("not measured" if one is None else number(one) for one in (ratio.run, ratio.block)),
+            )
         )
     rows += [
         (f"peak {k} [°]", number(peak.run_rad, DEGREES), number(peak.block_rad, DEGREES))

@@ -15,9 +15,9 @@ from fem.run.run import RunOptions, run_case
 
 #: changes of the default case, and CPU seconds that its band may take
 CASES: dict[str, tuple[list[str], float | None]] = {
-    "rigid": (["solver.model=rigid"], 1.0),
-    "shell on corners": ([], 4.0),
-    "solid on corners": (["container.section=solid"], 4.0),
+    "rigid": (["solver.model=rigid"], 1.5),
+    "shell on corners": ([], 6.0),
+    "solid on corners": (["container.section=solid"], 6.0),
     "shell on feet": (["support.kind=feet"], None),
     "shell on a flat base": (["support.kind=flat"], None),
 }

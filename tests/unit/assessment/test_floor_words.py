@@ -34,7 +34,7 @@ def test_check_says_what_a_slab_amounts_to(capsys):
     for words in (
         "slab concrete C25/30: E = 31 GPa, nu = 0.2, strength 50 MPa",
         "corner 0.008 x 1.1 m: 8142 kN/mm, contact frequency 203.1 Hz, sinks in by 6.024 um at rest",
-        "crushes at 440 kN a corner, 4.5 times the weight; wall or posts yield at 2068 kN",
+        "crushes at 440 kN a corner, 4.5 times the weight; the steel above it yields at 2068 kN",
         "slope 2 %, it falls to the right (+x)",
         "one impact back from 0.2 of the slenderness angle: 0.33 m/s, 510 J crush 1.2 mm",
         "contact frequency 203.1 Hz, static penetration 6.02 um",
@@ -45,7 +45,7 @@ def test_check_says_what_a_slab_amounts_to(capsys):
 
 def test_the_side_that_gives_way_first_is_named():
     assert (
-        "where its wall or posts yield; the floor bears 1000 kN"
+        "where the steel above it yields; the floor bears 1000 kN"
         in rows("floor.corner_patch_m=[0.1, 0.2]")["crushes at"]
     )
     hit = rows("floor.preset=rubber mat", "floor.corner_patch_m=[0.2, 1.1]")["one impact"]
@@ -76,7 +76,7 @@ def test_beyond_yield_the_work_of_a_rigid_plastic_corner_is_stated_and_the_shell
     words = largest_stress(YIELDED)
     assert "the shell stays elastic and has 300 MPa" in words
     assert (
-        "wall or posts over a corner yield at 1000 kN; a rigid-plastic corner would take 1500 J there, 1.5 mm"
+        "the steel above a corner yields at 1000 kN; a rigid-plastic corner would take 1500 J there, 1.5 mm"
         in words
     )
 
