@@ -146,7 +146,8 @@ def _nearest_line(distances: FloatArray, foot: float) -> float:
 def with_mass_beside(mesh: ContainerMesh, distance: float) -> ContainerMesh:
     """The mesh with the mass centre of every box moved by a distance along x [m].
 
-    The density of each box gets a linear part along x, so that its mass and the height of its centre stay.
+    The density of each box gets a linear part along x, so that its mass stays, and the height of its
+    centre where its mass is symmetric about its axis.
 
     Raises:
         MeshError: so far that a density would be negative; a box of one column of elements.
@@ -156,12 +157,11 @@ def with_mass_beside(mesh: ContainerMesh, distance: float) -> ContainerMesh:
     for box in range(int(mesh.box.max()) + 1):
         own = mesh.box == box
         beside = centre[own, 0] - np.average(centre[own, 0], weights=mass[own])
-        spread = np.sum(mass[own] * beside**2)
-        if spread == 0.0:
+        if np.abs(beside).max() <= 1e-9 * mesh.width:
             raise MeshError(
                 "a box of one column of elements has its mass centre on its axis; take smaller elements"
             )
-        factor[own] += distance * mass[own].sum() / spread * beside
+        factor[own] += distance * mass[own].sum() / np.sum(mass[own] * beside**2) * beside
     if factor.min() < 0.0:
         raise MeshError(f"the mass centre cannot lie {distance:g} m beside the axis of a box")
     return replace(mesh, areal_density=mesh.areal_density * factor)

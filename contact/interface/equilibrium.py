@@ -13,7 +13,7 @@ from contact.arrays import FloatArray
 
 #: contact force over the weight below which a point of the settled base counts as open
 ROUNDING = 1e-12
-ROUNDING_OF_CAMBER = 1e-9  #: .. of a cambered one, whose springs are stiff beside its heights
+ROUNDING_OF_CAMBER = 1e-9  #: the same of a cambered base, whose springs are stiff beside its heights
 MOST_ROUNDS = 100
 
 
@@ -191,6 +191,8 @@ def tilted(
             share = normal / force[1]
             if np.abs(share - before).max() <= ROUNDING_OF_CAMBER:
                 break
+        else:
+            raise SettlingError("the tilted base does not settle on its points")
         forces[:] = share[:, None] * force
         place = corner_x + share @ (point[:, 0] - point[corner, 0])  # on the floor, after it has rolled there
         centre = place - share @ (arms[:, 0] + (own @ forces.ravel())[0::2]), rise

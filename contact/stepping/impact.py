@@ -40,7 +40,7 @@ def lose_at_impact(body: Any, run: RunState, landed: int, loose: bool | None) ->
     new, control, change = run.attempt.new, run.problem.control, run.attempt.change
     corner = 0 if landed == -1 else control.base_points - 1
     x = new.point[corner, 0] + run.floor[1, 0]
-    z = new.point[corner, 1] - new.crushed[corner] - run.problem.contact.camber[corner] + run.lift[1, 0]
+    z = new.point[corner, 1] - new.crushed[corner] + run.lift[1, 0]
     momentum, inertia, moment = 0.0, 0.0, 0.0
     for j in range(run.joints.shape[0]):
         pose = new.pose
@@ -56,11 +56,11 @@ def lose_at_impact(body: Any, run: RunState, landed: int, loose: bool | None) ->
     kinetic = new.energy[KINETIC]
     shift_velocity(body, new, -turn * z, turn * x, turn)
     complete(body, new, run.floor[1, 0], run.lift[1, 0], run.lift[1, 1])
-    indent(run.problem.contact, new.point, new.crushed)
     begin, end = points_of(run, 0)
     for i in range(begin, end):
         new.drift[i, 0] -= turn * (new.point[i, 1] - new.point[corner, 1])
         new.descent[i, 0] -= turn * (new.point[i, 0] - new.point[corner, 0])
+    indent(run.problem.contact, new.point, new.crushed)  # behind the arms, which are of heights, not of gaps
     lost = (1.0 - control.impact_share**2) * momentum * momentum / (2.0 * inertia)
     work = -turn * moment * run.floor[1, 1]
     change[IMPACTS] += lost

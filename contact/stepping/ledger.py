@@ -99,5 +99,5 @@ def crushing_work(
 
 @compiled(inline=True)
 def dissipation(terms: FloatArray) -> float:
-    """Sum of the dissipated energy among the terms of a ledger (7,) [J], but for what restitution was asked to take."""
+    """Sum of the dissipated energy among the terms of a ledger (7,) [J], but for the row of impacts."""
     return terms[FRICTION] + terms[CONTACT_DAMPING] + terms[MATERIAL_DAMPING] + terms[CRUSHING]

@@ -304,13 +304,16 @@ def make_run(
     strained step.
 
     Raises:
-        ValueError: the kernels do not handle the law of friction; what the contact has of its points is not of all.
+        ValueError: the kernels do not handle the law of friction; an array of the contact does not have one
+            entry for each point.
     """
     require_known_friction(contact.friction)
     n, monitors = old.point.shape[0], old.monitor.shape[0]
     for name, part in contact._asdict().items():
         if isinstance(part, np.ndarray) and part.shape != (n,):  # the kernels do not look
-            raise ValueError(f"contact: {name} has the shape {part.shape}, of {n} points")
+            raise ValueError(
+                f"contact: {name} must have one entry for each of the {n} points, got the shape {part.shape}"
+            )
     clock = np.zeros(1, STEP_RECORD).view(np.recarray)
     clock["smallest_step"] = NEVER
     clock["attempt_limit"] = UNLIMITED

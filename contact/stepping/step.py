@@ -82,7 +82,7 @@ def store_rates(step: float, old: State, new: State, work: Workspace) -> None:
 
 @compiled(inline=True)
 def indent(contact: Contact, point: FloatArray, crushed: FloatArray) -> None:
-    """Make heights of nodes gaps of a cambered base above the indented floor: (n, 2), indentations (n,) [m]."""
+    """Add camber and indentations (n,) to the heights of points (n, 2), which makes them gaps [m]."""
     for i in range(point.shape[0]):
         point[i, 1] += contact.camber[i] + crushed[i]
 
@@ -112,11 +112,11 @@ def crush(contact: Contact, step: float, old: State, new: State, work: Workspace
 
 @compiled(inline=True)
 def rolling_share(run: RunState, step: float) -> float:
-    """Resistance of a base that rolls at the end of a step, as normal forces on its points over their lever arms [N/m].
+    """Couple that resists the rolling at the end of a step, over the sum of squared lever arms [N/m].
 
-    A couple, from the motion extrapolated over the step: rotation and rate of the base by a fit to its points. The load
-    is that of a rigid body that rolls, whose mass centre rises by (R - z) theta'^2: from point to point the normal
-    forces chatter. A base that has left the floor has none.
+    Times its arm it is the normal force on a point. It follows from the motion extrapolated over the step: rotation and
+    rate of the base by a fit to its points. The load is that of a rigid body that rolls, whose mass centre rises by
+    (R - z) theta'^2: from point to point the normal forces chatter. A base that has left the floor has none.
     """
     contact, control, old = run.problem.contact, run.problem.control, run.old
     n = control.base_points

@@ -14,15 +14,17 @@ def margin_in_words(verdict: Verdict | None) -> str:
     margin, stands = verdict.margin, verdict.outcome != Outcome.OVERTURNED
     lead = "Stands" if stands else "Overturns"
     if margin.factor is None:
-        most = f"{margin.largest_tried:.3g}"
-        words = f"{lead}; none of {margin.runs} other motions up to {most} times as strong overturns it"
+        most, others = f"{margin.largest_tried:.3g}", f"other motion{'s' * (margin.runs != 1)}"
+        none = f"none of {margin.runs}" if margin.runs > 1 else "not one"
+        words = f"{lead}; {none} {others} up to {most} times as strong overturns it"
     elif margin.stands_up_to is None:
-        words = f"{lead}; overturns at {margin.factor:.3g} times this motion, too, the weakest tried"
-    elif stands:
-        words = f"{lead}; overturns first at {FACTOR.text(margin.factor)} times this motion"
+        still = "overturns" if stands else "still does"
+        words = f"{lead}; {still} at {margin.factor:.3g} times this motion, the weakest tried"
     else:
-        words = f"{lead}; stands up to {FACTOR.text(margin.stands_up_to)} times this motion"
-    return f"{words}{_range(margin)}{_islands(margin)}."
+        up_to = "" if stands else f"stands up to {FACTOR.text(margin.stands_up_to)} times this motion, "
+        times = " times this motion" if stands else ""
+        words = f"{lead}; {up_to}overturns first at {FACTOR.text(margin.factor)}{times}"
+    return f"{words}{_range(margin)}{_islands(margin)}{_failed(margin)}."
 
 
 def _range(margin: Margin) -> str:
@@ -33,9 +35,8 @@ def _range(margin: Margin) -> str:
         return f", nor in any of {margin.draws} draws of what is not known"
     low = FACTOR.in_figures(margin.low, 2)
     if margin.high is not None:
-        high = FACTOR.in_figures(margin.high, 2)
-        return f" ({low} to {high} over what is not known)"
-    standing = f"{margin.draws_standing} of {margin.draws} draws stand up to {margin.largest_tried:.3g}"
+        return f" ({low} to {FACTOR.in_figures(margin.high, 2)} over what is not known)"
+    standing = f"{margin.draws_standing} of {margin.draws} draws stand up to {margin.draws_tried_to:.3g}"
     return f" (from {low} on over what is not known; {standing})"
 
 
@@ -46,3 +47,8 @@ def _islands(margin: Margin) -> str:
         for low, high in margin.islands
     ]
     return f", stands again at {' and at '.join(again)}" if again else ""
+
+
+def _failed(margin: Margin) -> str:
+    count = margin.draws_failed
+    return f"; {count} draw{'s' * (count != 1)} failed" if count else ""

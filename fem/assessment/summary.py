@@ -2,7 +2,8 @@
 
 Made from the result of a run alone, in units for people (kN, kNm, mm, degrees). Only the static rule under
 this run's own peak floor acceleration is compared with the run. The code's base shear answers another question
-and is shown below it. A summary states what happened under this motion and nothing beyond.
+and is shown below it. A summary states what happened under this motion, and under multiples of it where there is a
+margin.
 """
 
 import io
@@ -91,13 +92,20 @@ def _parts(result: run_result.RunResult, folder: Path) -> Iterator[RenderableTyp
     yield from box_table(result)
     if result.joints:
         yield from joint_tables(result.joints, verdict)
-    if verdict.outcome in ROCKING and verdict.margin is None:
+    if lacks_margin(result):
         yield Text(f"{MARGIN_NOTE}\n")
     if verdict.band is not None:
         yield Text(f"{BAND_NOTE}\n")
     if result.warnings:
         yield Text("".join(f"Warning: {warning}\n" for warning in result.warnings))
     yield from _table_of_pairs("Numerics", numerics_rows(result))
+
+
+def lacks_margin(result: run_result.RunResult) -> bool:
+    """Whether a run that rocked under a motion has no margin: its rotation ratio is none."""
+    verdict, motion = result.verdict or run_result.Verdict(), result.motion or run_result.MotionResult()
+    moves = motion.kind != "none" or motion.vertical is not None
+    return moves and verdict.outcome in ROCKING and verdict.margin is None
 
 
 def outcome_sentence(result: run_result.RunResult) -> str:

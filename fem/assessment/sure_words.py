@@ -4,7 +4,7 @@ Every sentence is made from the members of the band: how many of them stand, wha
 for what decides between standing and falling the value at which the draws change.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Sequence, Set
 
 from fem.assessment.sureness import (
     SURE,
@@ -35,7 +35,8 @@ def sureness_in_words(result: RunResult) -> str:
     if band is None:
         used = static_use(result) or 0.0
         return (
-            f"Sure: the static rule is used to {used:.2f} and nothing else acts, so nothing else was tried."
+            f"Sure: the static rule is used to {used:.2f} and nothing else acts, so this motion was not repeated with "
+            "other inputs."
         )
     tried = [one for one in band.members[1:] if one.outcome is not None]
     if not tried:
@@ -48,7 +49,8 @@ def sureness_in_words(result: RunResult) -> str:
         return f"Unsure: {'; '.join(_doubts(verdict, band, tried))}."
     ending = "Stands" if stands(band.members[0]) else "Overturns"
     if verdict.sure == SURE:
-        return f"Sure: {ending.lower()} in all {len(tried)} variations."
+        all_of_them = f"all {len(tried)} variations" if len(tried) > 1 else "the one variation"
+        return f"Sure: {ending.lower()} in {all_of_them}."
     return f"{ending} in all {len(tried)} variations. {_other_regime(verdict, band)}{_depending(verdict)}."
 
 
@@ -68,7 +70,8 @@ def _doubts(verdict: Verdict, band: Band, tried: Sequence[ChangedRun]) -> Iterat
         if drawn:
             yield _counted(draws) + _value_that_decides(draws)
         elif draws:
-            yield f"not in {len(draws)} draws of all inputs at once"
+            undrawn = any(not set(one.values or {}) <= set(draws[0].values or {}) for one in alone)
+            yield f"not in {len(draws)} draws of {'the other' if undrawn else 'all'} inputs at once"
     if verdict.numerically_unsure:
         yield f"numerically, for it {verb} with steps ten times as accurate"
     if below_uplift(band.members):
@@ -116,22 +119,31 @@ def _other_regime(verdict: Verdict, band: Band) -> str:
     others = {one.outcome for one in band.members if one.outcome is not None} - {own}
     if own == Outcome.OVERTURNED:
         return "Another box may fall first"
-    slides, rocks = own in SLIDING, own in ROCKING
-    may = ""
-    if others & {*ROCKING} and not rocks:
-        may = "rock instead of slide" if slides and Outcome.ROCK in others else "rock"
-    elif others & {*SLIDING} and not slides:
-        may = "slide instead of rock" if rocks and Outcome.SLIDE in others else "slide"
-    elif Outcome.SLIDE in others and rocks:
-        may = "slide without rocking"
-    elif Outcome.HOP in others:
-        may = "hop"
-    elif others:
-        may = "rest" if others == {Outcome.REST} else f"not {'rock' if rocks else 'slide'}"
+    may = _may(Outcome(own), {Outcome(one) for one in others}) if own else ""
     lead = f"It may {may}" if may else "How far it moves is not known"
     slip = FIGURES["max_slip_m"].unit.range_text(band.max_slip_m)
     ratio = FIGURES["rotation_ratio"].unit.range_text(band.rotation_ratio)
     return f"{lead}: slip {slip}, rotation ratio {ratio}"
+
+
+def _may(own: Outcome, others: Set[Outcome]) -> str:
+    """What those that stand do otherwise: first what the run does not do, else what they leave out."""
+    if own == Outcome.SLIDE and Outcome.ROCK in others:
+        return "rock instead of slide"
+    if own == Outcome.ROCK and Outcome.SLIDE in others:
+        return "slide instead of rock"
+    further = [
+        word
+        for word, doing in (("slide", SLIDING), ("rock", ROCKING))
+        if own not in doing and not others.isdisjoint(doing)
+    ]
+    less = {
+        Outcome.SLIDE: "slide without rocking",
+        Outcome.ROCK: "rock without sliding",
+        Outcome.HOP: "hop",
+        Outcome.REST: "rest",
+    }
+    return " or ".join(further or [words for one, words in less.items() if one in others])
 
 
 def _depending(verdict: Verdict) -> str:

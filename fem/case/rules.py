@@ -265,13 +265,9 @@ CASE_RULES = (
     _plausible_density("mass_kg"),
     Rule(
         "contact.restitution_over_housner",
-        lambda case: (
-            case.contact.restitution_over_housner is None
-            or case.support.camber_m == 0.0
-            or case.support.kind == "feet"
-        ),
-        "does not apply to support.camber_m > 0: a cambered base rolls and has no impacts; give "
-        "support.rocking_damping_ratio",
+        lambda case: case.contact.restitution_over_housner is None or case.support.camber_m == 0.0,
+        "does not apply to support.camber_m > 0: a cambered base rolls, and its feet do not strike at their corners; "
+        "leave it out",
     ),
     Rule(
         "support.casting_m",

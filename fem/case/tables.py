@@ -275,6 +275,11 @@ class InitialTable(CaseTable):
     )
     velocity_m_s: Annotated[float, q.VELOCITY] = case_key("relative to the floor, added", 0.0)
 
+    @property
+    def is_pushed(self) -> bool:
+        """Whether the container starts tilted or in motion."""
+        return any((self.rotation_rad, self.angular_velocity_rad_s, self.velocity_m_s))
+
 
 class StaticTable(CaseTable):
     """The lateral force method, EN 1998-1:2004, 4.3.3.2, beside the run; without this table it is left out."""

@@ -399,7 +399,7 @@ UNKNOWN: tuple[UnknownNumber | UnknownChoice, ...] = (
     Number(CAMBER, "camber_m", "camber of the base", q.CAMBER, _cambers, matters=_is_cambered),
     Number(ROCKING, "rocking_damping_ratio", "damping of rocking", q.ROCKING_DAMPING, _rocking_damping,
            matters=_rolls),
-    Choice(SUPPORT, "support", "what of the base touches", _other_support, drawn=False),
+    Choice(SUPPORT, "support", "contact of the base", _other_support, drawn=False),
     Number(CENTROID_KEY, "centroid_m", "height of the mass centre", q.LENGTH, CENTROID,
            matters=_equal_boxes, power=1.0),
     Number(ECCENTRICITY, "eccentricity_m", "eccentricity of the mass centre", q.OFFSET, _beside,
@@ -437,7 +437,7 @@ def in_words(values: Mapping[str, Value]) -> str:
     """Values of inputs by dotted key, for people: "kinetic friction 0.3, slope of the floor 0.5 per cent"."""
     units = {key: one.unit for key, one in QUANTITIES.items()}
     shown = (
-        f"{WORDS.get(key, key)} {one if isinstance(one, str) else f'{one:.4g} {units.get(key, str())}'}".rstrip()
+        f"{WORDS.get(key, key)} {q.with_unit(one if isinstance(one, str) else float(f'{one:.4g}'), units.get(key, ''))}"
         for key, one in values.items()
     )
     return ", ".join(shown)

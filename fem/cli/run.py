@@ -36,7 +36,7 @@ def run(
         bool | None,
         Parameter(
             show_default=False,
-            help="Find the factor on the motion at which it overturns; default: unless --no-band or dear.",
+            help="Find the factor on the motion at which it overturns; default: as a band, where it takes seconds.",
         ),
     ] = None,
     resume: console.Resume = False,

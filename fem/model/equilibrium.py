@@ -16,7 +16,7 @@ from fem.case.case import Case, CaseError
 from fem.model.container import Container
 from fem.model.floor import slab_of
 from fem.model.loose_stack import make_stack_state, own_stiffness, settle, stack_of, with_joints
-from fem.model.support import Rolling, normal_penalty, steel_penalty
+from fem.model.support import Rolling, base_points, normal_penalty, steel_penalty
 from fem.model.validity import require_bearing, require_stiff_contact, require_stiff_container
 from fem.runtime.arrays import FloatArray
 from fem.solid.assembly import FiniteElements
@@ -110,7 +110,6 @@ def same_equilibrium(case: Case, other: Case) -> bool:
         and case.joints == other.joints
         and case.floor == other.floor
         and case.initial == other.initial
-        and case.support == other.support
         and case.container.centroid_m == other.container.centroid_m
         and case.container.eccentricity_m == other.container.eccentricity_m
         and case.container.damping_ratio == other.container.damping_ratio
@@ -193,15 +192,6 @@ def _body(case: Case, container: Container, contact: Contact) -> ModalBody | Ful
         monitor_shape=np.moveaxis(basis.shapes[:, monitors], 0, -1),
         tolerance=POINT_TOLERANCE * penetration,
     )
-
-
-def base_points(case: Case, place: FloatArray, count: int) -> FloatArray:
-    """Points of a container (n, 2), the first of which bear at the effective width of the base [m]."""
-    if case.effective_width == 1.0:
-        return place
-    factor = np.ones_like(place)
-    factor[:count, 0] = case.effective_width
-    return factor * place
 
 
 def _stance(case: Case, container: Container, contact: Contact, gravity: float) -> Stance:

@@ -21,6 +21,7 @@ from contact.stepping.state import make_joints
 from fem.case.boxes import shared_face
 from fem.case.case import Case
 from fem.model.container import BoxModel, Container
+from fem.model.support import base_points
 from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid.nodal_body import FullBody
 from fem.solid.nodal_stack import FullStack
@@ -58,8 +59,7 @@ def with_joints(case: Case, floor: Contact, mass: float, penalty: float) -> Cont
         mu_kinetic=extended(floor.mu_kinetic, friction["mu_kinetic"]),
         weakening=extended(floor.weakening, friction["weakening_m"]),
         camber=extended(floor.camber, 0.0),
-        held_step=HELD_SHARE
-        * math.sqrt(floor.force_scale / case.gravity_m_s2 / float(floor.normal_stiffness.sum())),
+        held_step=HELD_SHARE * math.sqrt(mass / float(floor.normal_stiffness.sum())),
         turned_steps=TURNED_STEPS,
     )
 
@@ -102,9 +102,7 @@ def _modal_body(case: Case, container: Container, number: int, tolerance: float)
     centroid = np.asarray(box.mesh.centroid)
     damping = container.damping(case.container.damping_ratio)
     watched = _watched(container, number)
-    corner = box.elements.nodes[box.corners].copy()
-    if number == 0:
-        corner[:2, 0] *= case.effective_width
+    corner = base_points(case, box.elements.nodes[box.corners], 2 if number == 0 else 0)
     return make_modal_body(
         mass=box.mesh.mass,
         inertia=box.mesh.inertia,

@@ -1,8 +1,7 @@
 """Restitution of a rigid container on its floor: what its contact leaves, and the factor on that which a case asks for.
 
-What a contact damping ratio amounts to follows from a shipped calibration table:
-
-`data/contact_damping_restitution.csv` says how the table was computed, for rigid homogeneous blocks. Other
+What a contact damping ratio amounts to follows from a shipped calibration table;
+`data/contact_damping_restitution.csv` says how it was computed, for rigid homogeneous blocks. Other
 distributions of mass are treated through the share of Housner's loss, (1 - e)/(1 - e_H), which varies slowly. A
 container that deforms at an impact loses more.
 """
@@ -51,8 +50,12 @@ class Calibration:
 
 
 def contact_restitution(case: Case, static: StaticChecks, width: float) -> float | None:
-    """Restitution of a rigid container of this width [m] on the floor of a case; None on a slab, outside the table."""
-    if case.floor.is_slab:
+    """Restitution of a rigid container on the floor of a case; None on a slab, a cambered base, outside the table.
+
+    Args:
+        width: between the points about which it rocks [m].
+    """
+    if case.floor.is_slab or case.support.camber_m > 0.0:
         return None
     own = apparent_restitution(
         support=case.support.kind,
@@ -65,7 +68,7 @@ def contact_restitution(case: Case, static: StaticChecks, width: float) -> float
 
 
 def require_loss(case: Case, static: StaticChecks, width: float) -> None:
-    """Refuse impacts that would leave more than there was before them, of a container of this width [m].
+    """Refuse impacts that would leave more than there was before them; `width` as for `contact_restitution`.
 
     Raises:
         CaseError: with the largest factor.

@@ -3,20 +3,25 @@
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
 from contact.interface.penalty import STIFFEST, choose_normal_penalty
 from contact.interface.support import Support, cambered, choose_support
 from fem.case.case import Case, CaseError
 from fem.model.floor import slab_penalty
 from fem.model.geometry import base_positions
 from fem.model.static_checks import distance_beside, slenderness_angle
+from fem.runtime.arrays import FloatArray
 from mesh.container import ContainerMesh
+
+LEAST_POINTS = 5  #: of a base that rolls: fewer are a polygon of two or three sides
 
 
 def build_support(case: Case, mesh: ContainerMesh) -> Support:
     """The base nodes that can touch the floor, each with its share of the base.
 
     Raises:
-        CaseError: the feet do not fit the mesh.
+        CaseError: the feet do not fit the mesh, or a cambered base has too few points to roll.
         MeshError: no mesh line ends a foot.
     """
     chosen, x = case.support, base_positions(mesh, case.solver.order)
@@ -33,6 +38,11 @@ def build_support(case: Case, mesh: ContainerMesh) -> Support:
         raise CaseError(str(error)) from error
     if chosen.camber_m == 0.0:
         return level
+    if chosen.rolls and level.index.size < LEAST_POINTS:
+        raise CaseError(
+            f"[solver] element_size_m = {case.solver.element_size_m:g} m: a cambered base of {level.index.size} points "
+            f"does not roll; take at most {0.25 * float(x[-1] - x[0]):.2g} m"
+        )
     return cambered(level, x[level.index], chosen.camber_m)
 
 
@@ -106,3 +116,12 @@ def steel_penalty(case: Case, mesh: ContainerMesh) -> float:
         element_size=case.solver.element_size_m,
         foot=case.support.foot or 0.0,
     )
+
+
+def base_points(case: Case, place: FloatArray, count: int) -> FloatArray:
+    """Points of a container (n, 2), the first of which bear at the effective width of the base [m]."""
+    if case.effective_width == 1.0:
+        return place
+    factor = np.ones_like(place)
+    factor[:count, 0] = case.effective_width
+    return factor * place

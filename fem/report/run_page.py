@@ -15,7 +15,7 @@ from fem.assessment.ranges import (
     of_band,
 )
 from fem.assessment.rule_or_run import governing
-from fem.assessment.summary import MARGIN_NOTE, outcome_sentence, result_rows
+from fem.assessment.summary import MARGIN_NOTE, lacks_margin, outcome_sentence, result_rows
 from fem.case.case import Case
 from fem.case.unknown_inputs import WORDS
 from fem.figures.cache import drawings_of
@@ -41,7 +41,7 @@ from fem.results.errors import FolderError
 from fem.results.fields import Fields
 from fem.results.history import History
 from fem.results.kinds import RUN
-from fem.results.outcome import ROCKING, Outcome
+from fem.results.outcome import Outcome
 from fem.results.reader import OpenedRun
 from fem.results.run_result import Energy, Numerics, Verdict
 
@@ -196,10 +196,10 @@ def _sure(verdict: Verdict) -> tuple[str, str]:
 def _reading(view: RunView, variations: VariationTable | None) -> Iterator[str]:
     """How the answer is to be read, and where there is more."""
     yield (
-        "What happened under this one motion. This is a study, not a verification, and says nothing about other "
-        "motions. "
+        "What happened under this motion; a margin is that of the same motion made stronger or weaker. This is a "
+        "study, not a verification, and says nothing about motions of another form. "
     )
-    if view.verdict.outcome in ROCKING and view.verdict.margin is None:
+    if lacks_margin(view.result):
         yield f"{MARGIN_NOTE} "
     if variations is not None and (count := len(variations.lines) - 1):
         yield html.link(f"{variations.changed} of {count} variations of one input", "variations")

@@ -178,11 +178,14 @@ class Margin(JsonBlock):
     stands_up_to: float | None = (
         None  #: the largest factor below it that was tried; None: none stood, or none fell
     )
-    #: least and largest factor of the first overturning over the draws and the run; `high` None: not in all of them
+    #: least and largest factor of the first overturning over the draws and the run; at a tenth below `low` none of
+    #: them overturns; `high` None: not all overturn
     low: float | None = None
     high: float | None = None
-    draws: int = 0  #: in which all unknown inputs are drawn
-    draws_standing: int = 0  #: those that stand under the largest factor, too
+    draws: int = 0  #: in which all unknown inputs are drawn, without those that failed
+    draws_standing: int = 0  #: those that stand up to `draws_tried_to`
+    draws_failed: int = 0
+    draws_tried_to: float | None = None  #: largest factor of the draws; None without draws
     islands: tuple[tuple[float, float], ...] = ()  #: [from, to] beyond `factor` where it stands again
     least_tried: float
     largest_tried: float
@@ -200,7 +203,7 @@ class Verdict(RunFigures):
     corner_capacity_N: float | None = None
     plastic_work_J: float | None = None
     basis: str = "study"
-    first_line: str | None = None  #: the verdict in one sentence, as on the page
+    first_line: str | None = None  #: the verdict in a few sentences, as on the page
     #: sure | regime unsure: it stands, or falls, in all variations, but may move otherwise | unsure; None: not tried
     sure: str | None = None
     numerically_unsure: bool = False  #: more accurate steps change whether it stands

@@ -51,9 +51,7 @@ def rests_far_below_limits(case: Case, result: RunResult) -> bool:
     It does not cover the joints of a loose stack, a push at the start, or a floor that moves up by a part of gravity.
     """
     used, lifting = static_use(result), (result.static or StaticResult()).ruling.utilisation_lifting or 0.0
-    initial = case.initial
-    pushed = initial.rotation_rad or initial.angular_velocity_rad_s or initial.velocity_m_s
-    if case.container.is_loose or pushed or lifting > MOST_LIFTING or used is None:
+    if case.container.is_loose or case.initial.is_pushed or lifting > MOST_LIFTING or used is None:
         return False
     return (result.verdict or Verdict()).outcome == Outcome.REST and used < NEAR_LIMIT
 

@@ -58,6 +58,14 @@ def cost_of(numerics: Numerics) -> float:
     return COST * step * max(1, (numerics.steps or 0) + (numerics.rejected or 0))
 
 
+def workers_for(model: Model, runs: int) -> int:
+    """How many runs of a model are stepped side by side: as many as cores and, of the full model, memory allow."""
+    workers = min(cores(), max(1, runs))
+    if model.case.solver.model != "full":
+        return workers
+    return runs_in_memory(workers, full_model_memory(len(model.container.elements.nodes)))
+
+
 def run_changes(
     model: Model,
     changes: Sequence[InputChange],
@@ -119,10 +127,7 @@ def run_changes(
             raise
         return one
 
-    workers = min(cores(), max(1, len(changes)))
-    if case.solver.model == "full":
-        workers = runs_in_memory(workers, full_model_memory(len(model.container.elements.nodes)))
-    with ThreadPoolExecutor(max_workers=workers) as pool:
+    with ThreadPoolExecutor(max_workers=workers_for(model, len(changes))) as pool:
         runs = list(pool.map(run_of, changes))
     if kept_in and unstored:
         kept_in.store(list(kept.values()))

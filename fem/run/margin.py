@@ -6,27 +6,24 @@ done near the first one with all unknown inputs drawn at once. An island narrowe
 """
 
 import math
-from collections.abc import Callable, Mapping
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Executor, ThreadPoolExecutor
 from functools import cache
 
-from fem.case.case import Case
+from fem.case.case import Case, CaseError
 from fem.case.strength import scaled_motion
 from fem.case.uncertainty import as_changed, draws_of
 from fem.case.unknown_inputs import TOLERANCE, Value
 from fem.model.container import Container, with_mass_of
 from fem.model.equilibrium import same_equilibrium
 from fem.model.model import Model, build_model
-from fem.model.validity import runs_in_memory
 from fem.results.outcome import Ending, ending_of
 from fem.results.run_result import Margin, Numerics, RunResult, StaticResult, Verdict
 from fem.run.bracket import Change, changes_of
-from fem.run.changed_runs import DRAWN_TOLERANCE, cost_of
+from fem.run.changed_runs import DRAWN_TOLERANCE, cost_of, workers_for
 from fem.run.outcome import run_without_history
 from fem.run.recorder import Recorder
 from fem.run.simulation import simulate
-from fem.runtime.threads import cores
-from fem.solid.nodal_body import full_model_memory
 
 LARGEST = 4.0
 #: of the scan: least ratio of neighbouring factors, most factors; largest number of runs with those that locate changes
@@ -34,7 +31,7 @@ STEP, MOST_SCANNED, MOST_RUNS = 1.15, 15, 25
 #: width of a located change over its upper end; of the same change with drawn inputs, and the ratio of factors tried
 RESOLUTION, DRAWN_RESOLUTION, DRAWN_STEP = 0.02, 0.04, 1.1
 #: share of the uplift acceleration below which nothing rocks, however soft and whatever is not known
-BELOW_UPLIFT = 0.6
+SURELY_AT_REST = 0.6
 LEAST = 0.05  #: smallest factor
 #: draws, of a model whose runs are cheap; at least; runs that one takes; processor time for all, and for the scan [s]
 DRAWS, LEAST_DRAWS, RUNS_A_DRAW, DRAWN_S, SCAN_S = 16, 6, 5, 2.5, 12.0
@@ -71,53 +68,66 @@ def margin_of(model: Model, result: RunResult, *, drawn: bool, stop: Callable[[]
     verdict = result.verdict or Verdict()
     own = ending_of(result.status, verdict.outcome)
     least = _least(model.case, result)
-    workers = cores()
-    if model.case.solver.model == "full":
-        workers = runs_in_memory(workers, full_model_memory(len(model.container.elements.nodes)))
+    most = _largest(model.case)
     trial = _trial(model, {}, stop)
     try:
-        with ThreadPoolExecutor(max_workers=workers) as pool:
-            largest = 1.0 if own == Ending.OVERTURNED else LARGEST
+        with ThreadPoolExecutor(max_workers=workers_for(model, MOST_SCANNED)) as pool:
+            largest = 1.0 if own == Ending.OVERTURNED else most
             scanned = _scanned(least, largest)
             known = {1.0: own} | dict(zip(scanned, pool.map(trial, scanned), strict=True))
             while own == Ending.OVERTURNED and known[least] == Ending.OVERTURNED and least > LEAST:
                 least = max(LEAST, least / STEP**2)
                 known[least] = trial(least)
             _locate(known, trial)
-            first = _first(known)
+            first, ended = _first(known), [one for one in known if known[one] != Ending.FAILED]
             ends: list[float | None] = []
+            lowest = None
             if drawn:
-                start = first.high if first else largest
+                start = first.high if first else max(ended)
                 changes = draws_of(model.case, model.penalty, _draws(model.case, result))
-                near = [
-                    pool.submit(_near, _trial(model, change.values, stop), start, least) for change in changes
-                ]
+                trials = [_trial(model, change.values, stop) for change in changes]
+                near = [pool.submit(_near, one, start, least, most) for one in trials]
                 ends = [one.result() for one in near]
+                lowest = _lowest(pool, trials, [*ends, first.high if first else None], least)
     except StoppedError:
         return None
     factor = None if first is None else first.high
-    tried = [one for one in (factor, *ends) if one is not None]
+    found = [one for one in ends if one is None or not math.isnan(one)]
     return Margin(
         factor=factor,
         stands_up_to=None if first is None or first.low == 0.0 else first.low,
-        low=min(tried) if ends and tried else None,
-        high=max(tried) if ends and None not in (factor, *ends) else None,
-        draws=len(ends),
-        draws_standing=ends.count(None),
+        low=lowest,
+        high=_highest([factor, *found]) if found else None,
+        draws=len(found),
+        draws_standing=found.count(None),
+        draws_failed=len(ends) - len(found),
+        draws_tried_to=most if ends else None,
         islands=_islands(known),
-        least_tried=min(known),
-        largest_tried=max(known),
-        runs=len(known) - 1,
+        least_tried=min(ended),
+        largest_tried=max(ended),
+        runs=len(ended) - 1,
     )
 
 
 def _least(case: Case, result: RunResult) -> float:
     """The least factor that may overturn; what is pushed or tilted at the start may fall at any."""
-    initial = case.initial
-    if initial.rotation_rad or initial.angular_velocity_rad_s or initial.velocity_m_s:
+    if case.initial.is_pushed:
         return LEAST
     use = (result.static or StaticResult()).ruling.utilisation_overturning
-    return LEAST if not use or use < 0.0 else min(LARGEST, max(LEAST, BELOW_UPLIFT / use))
+    return LEAST if not use or use < 0.0 else min(LARGEST, max(LEAST, SURELY_AT_REST / use))
+
+
+def _largest(case: Case) -> float:
+    """The largest factor that the keys of the motion allow, in steps of the scan, at least 1."""
+    factor = LARGEST
+    while factor > 1.0:
+        try:
+            case.with_values(scaled_motion(case, factor))
+        except CaseError:
+            factor /= STEP
+        else:
+            return factor
+    return 1.0
 
 
 def _scanned(least: float, largest: float) -> list[float]:
@@ -133,11 +143,15 @@ def _scanned(least: float, largest: float) -> list[float]:
 def _locate(known: dict[float, Ending], trial: Trial) -> None:
     """Halve the changes that are too wide, the lowest first, until all are narrow or no run is left."""
     while len(known) <= MOST_RUNS:
-        wide = [one for one in _changes(known) if one.high - one.low > RESOLUTION * one.high]
-        if not wide:
+        middles = [
+            math.sqrt(one.low * one.high)
+            for one in _changes(known)
+            if one.high - one.low > RESOLUTION * one.high
+        ]
+        left = [middle for middle in middles if middle not in known]  # those that failed are
+        if not left:
             return
-        middle = math.sqrt(wide[0].low * wide[0].high)
-        known[middle] = trial(middle)
+        known[left[0]] = trial(left[0])
 
 
 def _changes(known: dict[float, Ending]) -> list[Change]:
@@ -168,21 +182,49 @@ def _islands(known: dict[float, Ending]) -> tuple[tuple[float, float], ...]:
     return tuple((island[0], island[-1]) for island in found if island)
 
 
-def _near(trial: Trial, start: float, least: float) -> float | None:
-    """The factor near `start` from which a changed case overturns; None: none up to the largest."""
+def _near(trial: Trial, start: float, least: float, most: float) -> float | None:
+    """The factor near `start` from which a changed case overturns; None: none up to `most`; nan: a trial failed."""
+    failed = False
+
+    def falls(factor: float) -> bool:
+        nonlocal failed
+        ending = trial(factor)
+        failed = failed or ending == Ending.FAILED
+        return ending == Ending.OVERTURNED
+
     low, high = start, start
-    if trial(start) == Ending.OVERTURNED:
-        while low > least and (low := max(least, low / DRAWN_STEP)) and trial(low) == Ending.OVERTURNED:
+    if falls(start):
+        while low > least and falls(low := max(least, low / DRAWN_STEP)):
             high = low
     else:
-        while low < LARGEST and trial(high := min(LARGEST, low * DRAWN_STEP)) != Ending.OVERTURNED:
+        while low < most and not falls(high := min(most, low * DRAWN_STEP)):
             low = high
-        if low >= LARGEST:
-            return None
+        if low >= most:
+            return math.nan if failed else None
     while high - low > DRAWN_RESOLUTION * high:
         middle = math.sqrt(low * high)
-        low, high = (low, middle) if trial(middle) == Ending.OVERTURNED else (middle, high)
-    return high
+        low, high = (low, middle) if falls(middle) else (middle, high)
+    return math.nan if failed else high
+
+
+def _lowest(
+    pool: Executor, trials: Sequence[Trial], ends: Sequence[float | None], least: float
+) -> float | None:
+    """The least of the factors found, or one below it at which a draw overturns as well, one step after the other."""
+    known = [one for one in ends if one is not None and not math.isnan(one)]
+    low = min(known, default=None)
+    while trials and low is not None and low > least:
+        below = max(least, low / DRAWN_STEP)
+        if Ending.OVERTURNED not in pool.map(lambda one, factor=below: one(factor), trials):
+            break
+        low = below
+    return low
+
+
+def _highest(ends: Sequence[float | None]) -> float | None:
+    """The largest; None where there is none for one of them."""
+    known = [one for one in ends if one is not None]
+    return max(known) if len(known) == len(ends) else None
 
 
 def _draws(case: Case, result: RunResult) -> int:

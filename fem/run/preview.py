@@ -74,7 +74,7 @@ class Preview:
         springs = build_support(case, mesh).normal_stiffness(penalty)
         stiffness = float(springs.sum())
         require_stiff_contact(case, mesh, stiffness)
-        require_loss(case, self.static, mesh.width)
+        require_loss(case, self.static, case.effective_width * mesh.width)
         if case.floor.is_slab:
             share = 1.0 if case.initial.rotation_rad else 0.5 + abs(mesh.centroid[0]) / mesh.width
             require_bearing(case, mesh, share * self.static.weight / slab_of(case, mesh.mass).cap)
@@ -161,7 +161,9 @@ class Preview:
             "motion": self.motion.to_json(),
             "floor": self.floor.to_json(),
             "static": self.static.to_result().to_json(),
-            "contact_restitution": contact_restitution(self.case, self.static, self.mesh.width),
+            "contact_restitution": contact_restitution(
+                self.case, self.static, self.case.effective_width * self.mesh.width
+            ),
             "numerics": self.numerics,
             "notes": self.notes,
         }

@@ -60,7 +60,7 @@ def run_case(
 ) -> OpenedRun:
     """Compute a case into a folder.
 
-    A finished run of the same case is not computed again; a band or a rigid check that it lacks is added.
+    A finished run of the same case is not computed again; a rigid check, a band or a margin that it lacks is added.
 
     Returns:
         The run, read from its folder; `was_stopped` says whether it was interrupted.
@@ -88,7 +88,6 @@ def run_case(
             longest = longest_run(case, *motions)
             size = size_in_words(case, nodes, longest)
             place.require_room(required_disk(case, nodes, longest), size, way_out)
-        if known is None:
             alone = options.band is False or (case.solver.model == "full" and not options.band)
             seconds = expected_s(case) if alone else with_band_s(case, cores())
             say_expected(reporter, "the run", seconds)

@@ -31,7 +31,7 @@ def left_out(sweep: Sweep) -> str:
     if chosen == "none" or (chosen == "auto" and sweep.base.solver.model == "full"):
         return "all"
     cells = "cells away from a change of outcome" if chosen == "near" else ""
-    return ", ".join(filter(None, (cells, "what of the base touches", "" if rigid else LEFT_OUT)))
+    return ", ".join(filter(None, (cells, "contact of the base", "" if rigid else LEFT_OUT)))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -192,7 +192,7 @@ def test_draws_that_overturn_are_counted_with_their_interval_and_the_value_that_
     ("found", "own", "said"),
     [
         ([(HALF, {}), (STIFF, {})], {}, "Sure: stands in all 2 variations."),
-        ([(HALF, FELL)], FELL, "Sure: overturns in all 1 variations."),
+        ([(HALF, FELL)], FELL, "Sure: overturns in the one variation."),
         (
             [(HALF, {"outcome": "slide", "max_slip_m": 0.5, "rotation_ratio": 1e-4}), (STIFF, {})],
             {"outcome": "rock", "max_slip_m": 6e-4},
@@ -215,6 +215,26 @@ def test_draws_that_overturn_are_counted_with_their_interval_and_the_value_that_
 def test_the_words_say_what_the_variations_showed(found, own, said):
     assert words(*found, **own) == said
     assert not any(key in said for key in ("contact.", "mu_", "solver."))
+
+
+@pytest.mark.parametrize(
+    ("own", "others", "may"),
+    [
+        ("slide-rock", ["rock"], "rock without sliding"),
+        ("slide-rock", ["rest", "rock"], "rock without sliding or rest"),
+        ("slide-rock", ["slide"], "slide without rocking"),
+        ("rest", ["rock", "slide"], "slide or rock"),
+        ("rest", ["hop"], "hop"),
+        ("slide", ["rock"], "rock instead of slide"),
+        ("slide", ["slide-rock"], "rock"),
+        ("rock", ["slide", "rest"], "slide instead of rock"),
+        ("rock", ["rest"], "rest"),
+    ],
+)
+def test_what_it_may_do_is_what_the_variations_did(own, others, may):
+    changes = [HALF, EQUAL][: len(others)]
+    found = [(one, {"outcome": word}) for one, word in zip(changes, others, strict=True)]
+    assert f" It may {may}: slip " in words(*found, outcome=own)
 
 
 def test_a_step_that_decides_is_no_input():

@@ -1,5 +1,6 @@
 """The margin of a run: the factor on its motion at which it overturns, with islands, draws and words."""
 
+import math
 from dataclasses import replace
 
 import pytest
@@ -10,7 +11,10 @@ from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import first_swing_threshold
 from fem.assessment.margin_words import margin_in_words
 from fem.case.strength import scaled_motion
+from fem.case.uncertainty import as_changed, draws_of
+from fem.results.outcome import Ending
 from fem.results.run_result import Margin, Verdict
+from fem.run import changed_runs
 from fem.run import margin as search
 from fem.run.compute import Run
 
@@ -59,6 +63,8 @@ def test_the_factors_are_those_of_runs_on_their_own(peak):
     assert outcome_at(run, margin.stands_up_to) != "overturned"
     for low, high in margin.islands:
         assert "overturned" not in (outcome_at(run, low), outcome_at(run, high))
+        between = [factor for factor in (margin.factor, 0.98 * low) if factor < low]
+        assert "overturned" in [outcome_at(run, factor) for factor in between]
     assert margin.runs <= search.MOST_RUNS
 
 
@@ -66,19 +72,53 @@ def test_islands_are_named():
     run = computed("solver.model=reduced")
     assert run.verdict.margin.islands
     assert "stands again at" in run.verdict.first_line
-    assert all(run.verdict.margin.factor < low for low, _ in run.verdict.margin.islands)
 
 
 def test_draws_give_the_range_and_the_margin_repeats_itself(monkeypatch):
     both = []
     for count in (1, 2):
-        monkeypatch.setattr(search, "cores", lambda count=count: count)
+        monkeypatch.setattr(changed_runs, "cores", lambda count=count: count)
         both.append(computed(band=None).verdict.margin)
     first, again = both
     assert first == again
     assert first.draws > 0
-    assert first.low <= first.factor
-    assert first.high is None or first.factor <= first.high
+    assert first.draws_failed == 0
+
+
+def test_the_low_end_is_that_of_a_draw():
+    run = computed(band=None)
+    margin, own = run.verdict.margin, run.case
+    case = fem.load_case("rocking", RIGID)
+    coarse = {"solver.energy_tolerance": search.DRAWN_TOLERANCE}
+    assert margin.low < margin.factor
+
+    def falls(factor: float) -> bool:
+        runs = [
+            fem.compute(
+                own.replace(as_changed(own, {**draw.values, **scaled_motion(own, factor), **coarse})),
+                band=False,
+            )
+            for draw in draws_of(case, search.build_model(case).penalty, margin.draws)
+        ]
+        return any(one.verdict.outcome == "overturned" for one in runs)
+
+    assert falls(margin.low)
+    assert not falls(margin.low / search.DRAWN_STEP)
+
+
+def test_a_motion_is_made_as_strong_as_its_keys_allow():
+    margin = computed("motion.peak_acceleration_m_s2=40", "motion.angular_frequency_rad_s=50").verdict.margin
+    assert margin is not None
+    assert 2.1 < margin.largest_tried <= 2.5  # 100 m/s2
+    assert margin.draws_failed == 0
+
+
+def test_failed_trials_say_nothing_and_the_search_ends():
+    known = {1.0: Ending.STANDING, 1.2: Ending.OVERTURNED}
+    search._locate(known, lambda factor: Ending.FAILED)
+    assert len(known) == 3
+    found = search._near(lambda factor: Ending.FAILED if factor > 1.1 else Ending.STANDING, 1.0, 0.5, 4.0)
+    assert math.isnan(found)
 
 
 def test_a_floor_at_rest_has_no_margin():
@@ -97,7 +137,9 @@ def test_a_request_to_stop_ends_the_search():
     assert search.margin_of(model, run.typed_result, drawn=False, stop=lambda: True) is None
 
 
-MARGIN = Margin(factor=1.504, stands_up_to=1.487, least_tried=0.25, largest_tried=4.0, runs=20)
+MARGIN = Margin(
+    factor=1.504, stands_up_to=1.487, least_tried=0.25, largest_tried=4.0, runs=20, draws_tried_to=4.0
+)
 
 
 @pytest.mark.parametrize(
@@ -140,12 +182,30 @@ MARGIN = Margin(factor=1.504, stands_up_to=1.487, least_tried=0.25, largest_trie
         (
             {"factor": 0.81, "stands_up_to": 0.799, "largest_tried": 1.0},
             "overturned",
-            "Overturns; stands up to 0.799 times this motion.",
+            "Overturns; stands up to 0.799 times this motion, overturns first at 0.810.",
+        ),
+        (
+            {
+                "factor": 0.81,
+                "stands_up_to": 0.799,
+                "low": 0.72,
+                "draws": 16,
+                "draws_standing": 3,
+                "draws_failed": 2,
+            },
+            "overturned",
+            "Overturns; stands up to 0.799 times this motion, overturns first at 0.810 (from 0.72 on over what is not "
+            "known; 3 of 16 draws stand up to 4); 2 draws failed.",
+        ),
+        (
+            {"factor": None, "stands_up_to": None, "runs": 1},
+            "rest",
+            "Stands; not one other motion up to 4 times as strong overturns it.",
         ),
         (
             {"factor": 0.05, "stands_up_to": None, "largest_tried": 1.0},
             "overturned",
-            "Overturns; overturns at 0.05 times this motion, too, the weakest tried.",
+            "Overturns; still does at 0.05 times this motion, the weakest tried.",
         ),
     ],
 )

@@ -123,7 +123,7 @@ def test_a_deformable_container_leaves_out_what_takes_long(sweep_of):
     assert {copy.change.kind for copy in copies} == {"one"}
     assert "container.damping_ratio" in {key for copy in copies for key in copy.change.values}
     assert "draws" in left_out(sweep)
-    assert left_out(sweep_of(SMALL)) == "what of the base touches"
+    assert left_out(sweep_of(SMALL)) == "contact of the base"
     assert "away from a change" in left_out(sweep_of(SMALL + '[perturbation]\ncells = "near"\n'))
 
 

@@ -155,8 +155,9 @@ def test_less_restitution_rocks_less_under_a_pulse(floor, peak, asked):
             restitution=factor * block.housner_restitution,
         )
         exact.append(reference.largest_rotation)
-    # near overturning a little decides more
-    assert found == pytest.approx(exact, rel=0.01 if peak < 4.0 else 0.03)
+    assert found == pytest.approx(
+        exact, rel=0.01 if peak < 4.0 else 0.03
+    )  # 2.2 % near overturning, on the slab
     assert found == sorted(found)
 
 
@@ -211,7 +212,7 @@ def with_share(run_state, share):
 
 def test_impacts_that_would_leave_more_than_there_was_are_refused_with_the_most():
     keys = {"contact.restitution_over_housner": 1.2}
-    with pytest.raises(
-        CaseError, match=r"would leave 1\.07.* of it, more than there was; take at most 1\.1183"
-    ):
+    with pytest.raises(CaseError, match="more than there was") as error:
         build_model(STACK.with_values(keys))
+    housner = RigidBlock.homogeneous(width=1.1, height=4.0, gravity=9.81).housner_restitution
+    assert float(str(error.value).rsplit(" ", 1)[1]) == pytest.approx(1.0 / housner, rel=1e-3)
