@@ -75,6 +75,9 @@ def _brief_parts(result: run_result.RunResult, folder: Path) -> Iterator[Rendera
     rows = [("floor motion", motion_in_words(motion)), *_figure_rows(result, BRIEF)]
     rows.append(("outcomes of the band", _band(verdict.band)))
     yield from _table_of_pairs("The run", [row for row in rows if row[1]])
+    of_record = (*motion.notes, *(motion.vertical.notes if motion.vertical else ()))
+    if of_record:  # what was read is no detail
+        yield Text("".join(f"Warning: {note}\n" for note in of_record))
     if result.static is not None:
         yield _static_table(replace(result.static, code=None, code_q1=None), verdict)
 

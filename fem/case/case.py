@@ -18,7 +18,7 @@ from pydantic import ConfigDict, Field, PrivateAttr
 from fem.case import data_files
 from fem.case.boxes import Box, boxes_of, joint_friction
 from fem.case.files import CASES, DEFAULT_CASE, Origin, parse_case
-from fem.case.overrides import naming_overrides, parse_override, with_overrides
+from fem.case.overrides import kinds_of, naming_overrides, parse_override, with_overrides
 from fem.case.resolved import resolved_tables
 from fem.case.rules import CASE_RULES
 from fem.case.tables import (
@@ -299,6 +299,7 @@ def load_case(
     *,
     motion: str | None = None,
     allow_outside: bool = False,
+    allow_baseline: bool = False,
 ) -> Case:
     """Read a case file or a shipped case, changed by overrides of the form `table.key=value`.
 
@@ -309,6 +310,7 @@ def load_case(
         overrides: changes; files that they name may lie anywhere.
         motion: file of a recorded motion in place of the case's, relative to the current folder.
         allow_outside: let the case name files outside its folder.
+        allow_baseline: take baselines of its records that change a peak by more than 20 %.
 
     Raises:
         CaseError: with one line for each reason why the case cannot be used.
@@ -319,6 +321,11 @@ def load_case(
         recorded = {"motion.kind": "table", "motion.file": data_files.as_named_from(found.folder, motion)}
         values = recorded | {key: value for key, value in values.items() if key not in recorded}
         overrides = (*(f"{key}={value}" for key, value in recorded.items()), *overrides)
+    if allow_baseline:
+        kinds = kinds_of(with_overrides(parse_case(found), values))
+        allowed = [f"{table}.allow_baseline" for table, kind in kinds.items() if kind == "table"]
+        values |= dict.fromkeys(allowed, True)
+        overrides = (*overrides, *(f"{key}=true" for key in allowed))
     trusted = frozenset(data_files.FILE_KEYS if allow_outside else values.keys() & set(data_files.FILE_KEYS))
     origin = replace(found, overrides=tuple(overrides), trusted=trusted, allow_outside=allow_outside)
     case = _read(with_overrides(parse_case(origin), values), origin, values)

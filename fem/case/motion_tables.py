@@ -115,6 +115,12 @@ class PulseAndTableKeys(CaseTable):
         "none",
         only=("kind", "table"),
     )
+    allow_baseline: Literal[True] | None = case_key(
+        "table: true takes a baseline that changes a peak by more than 20 %",
+        None,
+        example=True,
+        only=("kind", "table"),
+    )
 
 
 class FloorMotionTable(PulseAndTableKeys, HarmonicKeys):

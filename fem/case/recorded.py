@@ -10,7 +10,7 @@ from fem.case.case import Case
 from fem.case.motion_tables import MotionTable, VerticalTable
 from fem.case.validation import CaseError
 from fem.records.files import read_record
-from fem.records.processing import Processing, motion_of, processed
+from fem.records.processing import DOUBTFUL, Processing, baseline_change, motion_of, processed
 from fem.records.record import Component, Record, RecordError, require_together
 from fem.records.units import STANDARD_GRAVITY, UNITS
 
@@ -20,6 +20,10 @@ MOST_PEAK = 30.0
 #: peaks of a motion that moves a container, and is not beyond almost all records [m/s2]
 USUAL_PEAKS = (0.5, 20.0)
 WAYS_OUT = ', or set gaps = "bridge" where the motion is meant to go straight on between these samples'
+ALLOW_BASELINE = (
+    f"a change above {100.0 * DOUBTFUL:.2g} % is refused; take another baseline, or set allow_baseline = true "
+    "(--allow-baseline)"
+)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -64,17 +68,20 @@ def _recorded(case: Case, table: MotionKey) -> RecordedMotion:
     scale = keys.scale
     if keys is not shared and keys.scale_to_m_s2 is None:
         scale *= _factor_to_peak(case)
-    made = processed(
-        component,
-        Processing(
-            start=keys.start_s if keys.start_s is not None else shared.start_s,
-            end=keys.end_s if keys.end_s is not None else shared.end_s,
-            scale=scale,
-            peak=keys.scale_to_m_s2,
-            baseline=keys.baseline,
-        ),
+    processing = Processing(
+        start=keys.start_s if keys.start_s is not None else shared.start_s,
+        end=keys.end_s if keys.end_s is not None else shared.end_s,
+        scale=scale,
+        peak=keys.scale_to_m_s2,
+        baseline=keys.baseline,
     )
+    made = processed(component, processing)
     notes = record.notes
+    change = baseline_change(component, processing)
+    if change is not None and change.is_said:
+        if change.is_doubtful and not keys.allow_baseline:
+            raise RecordError(f"{record.name}: baseline {change.in_words}; {ALLOW_BASELINE}")
+        notes += (f"{table}.baseline: {change.in_words}",)
     if keys.scale_to_m_s2 is None:
         peak = float(np.abs(motion_of(made)[2]).max())
         _require_plausible(record, component, peak, scale)

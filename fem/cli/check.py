@@ -12,7 +12,7 @@ from fem.assessment.motion_words import covered_in_words, is_cut, missing_peak, 
 from fem.case.case import Case, case_hash, load_case
 from fem.case.motion_tables import FloorMotionTable
 from fem.case.rules import longest_time
-from fem.cli.console import WIDTH, AllowOutside, AsJson, CaseName, Motion, Overrides
+from fem.cli.console import WIDTH, AllowBaseline, AllowOutside, AsJson, CaseName, Motion, Overrides
 from fem.model.geometry import build_container
 from fem.model.motion_summary import summary_from_keys
 from fem.results.disk import in_units
@@ -27,10 +27,13 @@ def check(
     overrides: Overrides = (),
     motion: Motion = None,
     allow_outside: AllowOutside = False,
+    allow_baseline: AllowBaseline = False,
     as_json: AsJson = False,
 ) -> None:
     """Print static checks, derived numbers and numerical settings of a case; nothing is computed or written."""
-    loaded = load_case(case, overrides, motion=motion, allow_outside=allow_outside)
+    loaded = load_case(
+        case, overrides, motion=motion, allow_outside=allow_outside, allow_baseline=allow_baseline
+    )
     preview = preview_of(loaded)
     document = {"case": loaded.name, "asked_hash": case_hash(loaded)} | preview.to_json()
     print(json.dumps(document, indent=2) if as_json else _page(preview, document))

@@ -60,6 +60,9 @@ Motion = Annotated[
     Parameter(name="--motion", help="A record in place of motion.file, anywhere; FILE#CHANNEL of several."),
 ]
 AllowOutside = Annotated[bool, flag("Let the case file name files outside its folder.", "--allow-outside")]
+AllowBaseline = Annotated[
+    bool, flag("Take a baseline that changes a peak of a record by more than 20 %.", "--allow-baseline")
+]
 Jobs = Annotated[
     int | None,
     Parameter(

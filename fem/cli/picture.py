@@ -10,7 +10,7 @@ from fem.case.data_files import split_channel
 from fem.case.validation import CaseError
 from fem.cli.console import ELSEWHERE_TO
 from fem.records.files import read_record
-from fem.records.processing import Baseline, Processing, processed
+from fem.records.processing import Baseline, Processing, baseline_change, processed
 from fem.records.record import Component
 from fem.render.opengl import require_rendering
 from fem.results.errors import writing_into
@@ -63,7 +63,12 @@ def picture(
         )
         if not shown:
             record.component("horizontal", quantity=quantity)  # raises, with what it holds
-        print(_write_motion([processed(one, Processing(baseline=baseline)) for one in shown], path, to))
+        processing = Processing(baseline=baseline)
+        print(_write_motion([processed(one, processing) for one in shown], path, to))
+        for one in shown:
+            change = baseline_change(one, processing)
+            if change is not None and change.is_said:
+                print(f"{one.name or path.name}: {change.in_words}")
         return
     if not path.exists():
         raise CaseError(f"{run}: no such file or folder; give the folder of a run, or a motion file")

@@ -24,6 +24,7 @@ def run(
     overrides: console.Overrides = (),
     motion: console.Motion = None,
     allow_outside: console.AllowOutside = False,
+    allow_baseline: console.AllowBaseline = False,
     check_rigid: Annotated[bool, console.flag("Compare with the analytic rigid block.")] = False,
     band: Annotated[
         bool | None,
@@ -50,7 +51,9 @@ def run(
     """Compute a case: does the container rest, slide, rock, slide-rock or overturn?"""
     if quiet and verbose:
         raise CaseError("-q and -v contradict each other; give one of them")
-    loaded = load_case(case, overrides, motion=motion, allow_outside=allow_outside)
+    loaded = load_case(
+        case, overrides, motion=motion, allow_outside=allow_outside, allow_baseline=allow_baseline
+    )
     folder = out if out is not None else Path("outputs") / loaded.name
     if dry_run or verbose:
         plan = plan_of(loaded, folder)

@@ -16,6 +16,8 @@ from fem.runtime.arrays import FloatArray
 
 Baseline = Literal["none", "mean", "linear", "zero-end"]
 BASELINES: tuple[Baseline, ...] = get_args(Baseline)
+#: changes of the peaks by a baseline that are said, and that are refused, over the peaks
+SAID_ACCELERATION, SAID_VELOCITY, DOUBTFUL = 0.01, 0.03, 0.2
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,6 +35,43 @@ class Processing:
     scale: float = 1.0  #: factor
     peak: float | None = None  #: that the largest |acceleration| is scaled to, behind the baseline [m/s2]
     baseline: Baseline = "none"
+
+
+@dataclass(frozen=True, kw_only=True)
+class BaselineChange:
+    """Peaks of a motion without its baseline and with it.
+
+    A velocity left at the end of a record is a drift, no motion of the ground. So the velocity is compared with that
+    of the motion that `mean` brings to rest: of the two, a pulse is in both and a drift in neither.
+    """
+
+    baseline: Baseline
+    accelerations: tuple[float, float]  #: largest |a|, of the record and with the baseline removed [m/s2]
+    velocities: tuple[float, float]  #: largest |v|, with `mean` and with the baseline removed [m/s]
+
+    @property
+    def is_said(self) -> bool:
+        """Whether a user must know of it."""
+        return _share(self.accelerations) > SAID_ACCELERATION or _share(self.velocities) > SAID_VELOCITY
+
+    @property
+    def is_doubtful(self) -> bool:
+        """Whether it is refused unless it is allowed."""
+        return max(_share(self.accelerations), _share(self.velocities)) > DOUBTFUL
+
+    @property
+    def in_words(self) -> str:
+        """What it changes, with both values."""
+        before, after = self.accelerations
+        said = f"{self.baseline!r} changes the peak acceleration from {before:.3g} to {after:.3g} m/s2"
+        said += _per_cent(self.accelerations)
+        if self.baseline == "mean":
+            return said
+        before, after = self.velocities
+        return (
+            f"{said}, and the peak velocity from {before:.3g} m/s with 'mean', which only brings the floor to rest and "
+            f"keeps pulses, to {after:.3g} m/s{_per_cent(self.velocities)}"
+        )
 
 
 def processed(component: Component, processing: Processing) -> Component:
@@ -60,6 +99,29 @@ def processed(component: Component, processing: Processing) -> Component:
             raise RecordError("its accelerations are all zero, so they cannot be scaled to a peak")
         values = values * (processing.peak / largest)
     return replace(component, times=times, readings=values, factor=1.0)
+
+
+def baseline_change(component: Component, processing: Processing) -> BaselineChange | None:
+    """What the baseline changes, in the scale of the motion used; None without one.
+
+    Raises:
+        RecordError: as `processed`.
+    """
+    if processing.baseline == "none":
+        return None
+    plain, level, made = (
+        motion_of(processed(component, replace(processing, baseline=baseline, peak=None)))
+        for baseline in ("none", "mean", processing.baseline)
+    )
+    (_, record), (still, _), (velocity, acceleration) = (
+        (float(np.abs(v).max()), float(np.abs(a).max())) for _, v, a in (plain, level, made)
+    )
+    factor = 1.0 if processing.peak is None else abs(processing.peak) / acceleration
+    return BaselineChange(
+        baseline=processing.baseline,
+        accelerations=(factor * record, factor * acceleration),
+        velocities=(factor * still, factor * velocity),
+    )
 
 
 def motion_of(component: Component) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -112,3 +174,14 @@ def _baseline(times: FloatArray, a: FloatArray, kind: Baseline) -> FloatArray:
     middle = (a[:-1] + a[1:]) * (s[:-1] + s[1:])
     m_1 = math.fsum(steps / 6.0 * (a[:-1] * s[:-1] + middle + a[1:] * s[1:]))
     return 0.5 * m_0 + 1.5 * m_1 * s
+
+
+def _share(peaks: tuple[float, float]) -> float:
+    """Change of a peak over its first value."""
+    before, after = peaks
+    return abs(after / before - 1.0) if before else 0.0
+
+
+def _per_cent(peaks: tuple[float, float]) -> str:
+    before, after = peaks
+    return f" ({100.0 * (after / before - 1.0):+.2g} %)" if before else ""

@@ -10,7 +10,7 @@ from fem.assessment.warnings import warnings_for
 from fem.case.case import Case, load_case
 from fem.model.geometry import build_container
 from fem.model.model import static_checks_of
-from fem.results.run_result import ActionResult, Band, Energy, Numerics, RunResult, Verdict
+from fem.results.run_result import ActionResult, Band, Energy, MotionResult, Numerics, RunResult, Verdict
 
 # The stack of four under 4.0 m/s2: 40 kN against 39.24 kN, 80 kNm against 53.955 kNm (the paper, g = 9.81).
 CASE = load_case("seed_stack_plateau")
@@ -217,6 +217,8 @@ def test_the_terminal_shows_at_most_forty_lines_and_where_the_rest_is(tmp_path):
     assert outcome_sentence(RESULT).split(".")[0][:30] in text
     assert "largest rotation" in text and "own peak" in text and "code, q" not in text
     assert f"Whole summary, with 2 warnings: {tmp_path / 'summary.txt'}" in text
+    read = changed(motion=MotionResult(notes=("what was read",)))
+    assert "Warning: what was read" in brief_summary(read, folder=tmp_path)
 
 
 def test_titles_and_warnings_are_never_read_as_markup():

@@ -7,7 +7,7 @@ from cases import BLOCK
 from record_files import STEP, G, synthetic_motion
 
 from fem.__main__ import main
-from fem.case.case import CaseError, load_case
+from fem.case.case import CaseError, load_case, read_case, to_toml
 from fem.case.recorded import recorded_motion
 
 FIRST, SECOND, THIRD = synthetic_motion(801)
@@ -123,7 +123,7 @@ def test_gal_is_a_unit_and_no_slip():
 
 
 def test_check_tells_length_interval_peaks_and_what_is_left(capsys):
-    changes = ["--set", "vertical.kind=table", "--set", "motion.baseline=zero-end"]
+    changes = ["--set", "vertical.kind=table", "--set", "motion.baseline=zero-end", "--allow-baseline"]
     assert main(["check", "case.toml", "--motion", "pair.csv", *changes]) == 0
     said = capsys.readouterr().out
     assert f"4 s, 801 samples of {STEP:g} s; peaks " in said
@@ -139,3 +139,23 @@ def test_a_path_outside_is_the_users_to_allow(folder, tmp_path, capsys):
     assert main(["check", "inner/case.toml", "--allow-outside"]) == 0
     assert main(["check", "inner/case.toml", "--motion", "h.at2"]) == 0
     assert main(["check", "inner/case.toml", "--set", f"motion.file={tmp_path / 'h.at2'}"]) == 0
+
+
+def test_a_baseline_that_takes_a_pulse_is_refused_unless_it_is_allowed(folder, capsys):
+    times = np.arange(0.0, 5.005, 0.01)
+    pulse = np.where(times < 0.8, 3.4 * np.sin(2.0 * np.pi * times / 0.8), 0.0)
+    np.savetxt(folder / "pulse.csv", np.column_stack([times, pulse]), delimiter=",")
+    asked = ["check", "case.toml", "--motion", "pulse.csv", "--set", "motion.unit=m/s2"]
+    baseline = ["--set", "motion.baseline=zero-end"]
+    assert main([*asked, *baseline]) == 2
+    said = capsys.readouterr().err
+    assert "peak velocity from 0.865 m/s with 'mean'" in said and "--allow-baseline" in said
+    for allowed in (["--allow-baseline"], ["--set", "motion.allow_baseline=true"]):
+        assert main([*asked, *baseline, *allowed]) == 0
+        assert "motion.baseline: 'zero-end' changes the peak" in " ".join(capsys.readouterr().out.split())
+    assert main([*asked, "--set", "motion.baseline=mean", "--allow-baseline"]) == 0
+    assert "motion.baseline" not in capsys.readouterr().out
+    held = load_case(
+        "case.toml", [*asked[-1:], "motion.baseline=zero-end"], motion="pulse.csv", allow_baseline=True
+    )
+    assert read_case(to_toml(held), folder=folder).motion.allow_baseline

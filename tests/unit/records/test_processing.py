@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from fem.records.processing import Processing, motion_of, processed
+from fem.records.processing import Processing, baseline_change, motion_of, processed
 from fem.records.record import Component
 
 RNG = np.random.default_rng(7)
@@ -130,3 +130,30 @@ def test_scales_are_a_factor_and_a_peak_behind_the_baseline():
 def test_what_cannot_be_done_is_refused(options, words):
     with pytest.raises(ValueError, match=words):
         made(**options)
+
+
+PULSE_TIMES = np.arange(0.0, 5.005, 0.01)
+
+
+def pulse(drift=0.0):
+    """One cycle of a sine of 3.4 m/s2 and 0.8 s: 3.4 * 0.8 / pi = 0.866 m/s, a displacement stays."""
+    moving = np.where(PULSE_TIMES < 0.8, 3.4 * np.sin(2.0 * np.pi * PULSE_TIMES / 0.8), 0.0)
+    return component(moving + drift, PULSE_TIMES)
+
+
+def test_what_a_baseline_takes_from_a_pulse_is_told_with_both_values():
+    change = baseline_change(pulse(), Processing(baseline="zero-end"))
+    used = motion_of(processed(pulse(), Processing(baseline="zero-end")))
+    assert change.velocities == pytest.approx((3.4 * 0.8 / np.pi, np.abs(used[1]).max()), rel=1e-3)
+    assert change.accelerations == pytest.approx((3.4, np.abs(used[2]).max()), rel=1e-3)
+    assert change.is_said and change.is_doubtful
+    assert "from 0.865 m/s with 'mean'" in change.in_words
+    halved = baseline_change(pulse(), Processing(baseline="zero-end", peak=0.5 * change.accelerations[1]))
+    assert halved.velocities == pytest.approx([0.5 * one for one in change.velocities])
+
+
+def test_a_drift_is_no_part_of_the_velocity_that_a_baseline_changes():
+    drift = 0.02  # 0.1 m/s at the end, a ninth of the largest velocity
+    change = baseline_change(pulse(drift), Processing(baseline="mean"))
+    assert not change.is_said and change.velocities[0] == pytest.approx(0.865, abs=0.02)
+    assert baseline_change(pulse(), Processing()) is None
