@@ -2,7 +2,8 @@
 
 In a script or a notebook, `fem.load_case(name)` and `fem.case_from(mapping)` give a case, `case.replace({key: value})`
 changes it, `fem.compute(case)` and `fem.compute_many(cases)` run it in memory, and `fem.open_run(folder)` opens the
-results of `python -m fem run`. What is wrong with the input is a `ValueError` in words (`fem.case.case.CaseError`).
+results of `python -m fem run`. `fem.slide_in_plane(..)` gives the path of a sliding body under two horizontal
+components. What is wrong with the input is a `ValueError` in words (`fem.case.case.CaseError`).
 """
 
 import importlib
@@ -16,8 +17,9 @@ if TYPE_CHECKING:
     from fem.case.case import case_from, load_case
     from fem.run.compute import compute
     from fem.run.opened import open_run
+    from fem.seismic.two_directions import slide_in_plane
 
-__all__ = ["case_from", "compute", "compute_many", "load_case", "open_run"]
+__all__ = ["case_from", "compute", "compute_many", "load_case", "open_run", "slide_in_plane"]
 
 #: name -> where it is
 PLACES = {
@@ -26,6 +28,7 @@ PLACES = {
     "compute_many": "fem.batch.compute_many",
     "load_case": "fem.case.case",
     "open_run": "fem.run.opened",
+    "slide_in_plane": "fem.seismic.two_directions",
 }
 
 # so it is while Python looks for the module of `python -m fem`, and never in a library

@@ -66,7 +66,7 @@ NARROW = {
     },
     "fem.records": {"contact.arrays", "contact.jit", "contact.motion", "fem.runtime"},
     # what the package offers by name
-    "fem": {"fem.runtime", "fem.case", "fem.results", "fem.run", "fem.batch"},
+    "fem": {"fem.runtime", "fem.seismic", "fem.case", "fem.results", "fem.run", "fem.batch"},
     "fem.__main__": {"fem.runtime", "fem.cli"},
 }
 MOST_FILES = 25  #: in one folder

@@ -186,6 +186,7 @@ def artificial_motions(
     stationary: float = 12.0,
     longest: float = LAST_PERIOD_S,
     vertical: bool = True,
+    second: float = 0.0,
     first: int = 1,
 ) -> list[GroundMotion]:
     """Motions that match the elastic spectra of a site, each with phases of its own and by itself.
@@ -195,6 +196,7 @@ def artificial_motions(
         stationary: stationary part of their envelope, at least 10 s.
         longest: period up to which they are matched [s].
         vertical: with a vertical component of other phases, matched to the vertical spectrum.
+        second: with a second horizontal component of other phases, matched to this share of the spectrum; 0: without.
         first: number of the first one. Motion k of a seed does not depend on how many are made.
 
     Raises:
@@ -207,6 +209,7 @@ def artificial_motions(
             step=STEP_S,
             horizontal=shaper.motion(action.horizontal, (seed, number, 0)),
             vertical=shaper.motion(action.vertical, (seed, number, 1)) if vertical else None,
+            second=second * shaper.motion(action.horizontal, (seed, number, 2)) if second else None,
             origin=f"artificial, seed {seed}, number {number}",
             stationary=stationary,
         )
@@ -222,6 +225,7 @@ def artificial_set(
     stationary: float = 12.0,
     longest: float = LAST_PERIOD_S,
     vertical: bool = True,
+    second: float = 0.0,
 ) -> list[GroundMotion]:
     """Motions to be used together: a motion that is correlated with one before is left out, and the next one taken.
 
@@ -239,6 +243,7 @@ def artificial_set(
             stationary=stationary,
             longest=longest,
             vertical=vertical,
+            second=second,
             first=number,
         )
         if largest_correlation([*kept, motion]) <= MOST_CORRELATION:

@@ -58,13 +58,16 @@ def floor_motion(
     def extended(component: FloatArray) -> FloatArray:
         return np.concatenate([sampled_at(step, ground.step, component), longer])
 
-    base = extended(ground.horizontal)
-    absolute = oscillator_response(step, base, period, damping_ratio).acceleration_m_s2
-    floor = (1.0 - share) * base + share * absolute
-    floor -= ZeroEnd(times=np.arange(floor.size, dtype=np.float64) * step).baseline(floor)
+    def swung(component: FloatArray) -> FloatArray:
+        base = extended(component)
+        absolute = oscillator_response(step, base, period, damping_ratio).acceleration_m_s2
+        floor = (1.0 - share) * base + share * absolute
+        return floor - ZeroEnd(times=np.arange(floor.size, dtype=np.float64) * step).baseline(floor)
+
     return replace(
         ground,
         step=step,
-        horizontal=floor,
+        horizontal=swung(ground.horizontal),
         vertical=None if ground.vertical is None else extended(ground.vertical),
+        second=None if ground.second is None else swung(ground.second),
     )

@@ -1,4 +1,4 @@
-"""A motion of the ground or of a floor: two components sampled together, linear between samples, SI units.
+"""A motion of the ground or of a floor: components sampled together, linear between samples, SI units.
 
 Its values are float64 in g times 9.80665, by a rounding, so that a file in m/s2 and one in g hold the same motion.
 """
@@ -16,7 +16,7 @@ from fem.seismic.motion_files import in_whole_g
 
 @dataclass(frozen=True, kw_only=True, eq=False)  # arrays have no single truth value
 class GroundMotion:
-    """A horizontal and a vertical acceleration.
+    """A horizontal acceleration, a vertical one, and a second horizontal one across the first.
 
     Raises:
         ValueError: components of different length, fewer than two samples, numbers that are not finite, no step.
@@ -26,6 +26,7 @@ class GroundMotion:
     step: float  #: between samples [s]
     horizontal: FloatArray  #: (n,) [m/s2]
     vertical: FloatArray | None = None  #: upward positive, (n,) [m/s2]
+    second: FloatArray | None = None  #: horizontal, at right angles to the first, (n,) [m/s2]
     origin: str = ""  #: seed or files
     factor: float = 1.0  #: by which both components of the origin were multiplied
     event: str = ""  #: of a record, where its file names it
@@ -34,21 +35,27 @@ class GroundMotion:
     def __post_init__(self) -> None:
         if not 0.0 < self.step < 1.0:
             raise ValueError(f"{self.name}: the step must be positive and below 1 s, got {self.step:g} s")
-        for name in ("horizontal", "vertical"):
+        for name in ("horizontal", "vertical", "second"):
             if (component := getattr(self, name)) is not None:
                 object.__setattr__(self, name, in_whole_g(component))
         for component in self.components:
             if component.shape != self.horizontal.shape or component.ndim != 1 or component.size < 2:
                 raise ValueError(
-                    f"{self.name}: two components of one length, with two samples or more, are needed"
+                    f"{self.name}: components of one length, with two samples or more, are needed"
                 )
             if not np.isfinite(component).all():
                 raise ValueError(f"{self.name}: a sample is not a finite number")
 
     @property
+    def lettered(self) -> dict[str, FloatArray]:
+        """The components that there are, by the letter that the names of their files end with."""
+        parts = {"h": self.horizontal, "v": self.vertical, "t": self.second}
+        return {letter: part for letter, part in parts.items() if part is not None}
+
+    @property
     def components(self) -> tuple[FloatArray, ...]:
-        """Horizontal, and vertical if there is one."""
-        return (self.horizontal,) if self.vertical is None else (self.horizontal, self.vertical)
+        """Horizontal, vertical and second horizontal, as far as there are."""
+        return tuple(self.lettered.values())
 
     @property
     def times(self) -> FloatArray:
@@ -66,9 +73,9 @@ class GroundMotion:
         return float(np.abs(self.horizontal).max())
 
     @property
-    def intensities(self) -> tuple[Intensity, ...]:
-        """Of each component."""
-        return tuple(intensity(self.times, component) for component in self.components)
+    def intensities(self) -> dict[str, Intensity]:
+        """Of each component, by its letter."""
+        return {letter: intensity(self.times, component) for letter, component in self.lettered.items()}
 
     @property
     def ends(self) -> tuple[float, float]:
@@ -77,7 +84,7 @@ class GroundMotion:
         return max(abs(float(v[-1])) for _, v, _ in moved), max(abs(float(x[-1])) for x, _, _ in moved)
 
     def scaled(self, horizontal: float, vertical: float | None = None) -> "GroundMotion":
-        """The motion with its components multiplied; one factor for both unless a second one is given."""
+        """The motion with its components multiplied; one factor for all unless the vertical has its own."""
         upward = None
         if self.vertical is not None:
             upward = self.vertical * (horizontal if vertical is None else vertical)
@@ -85,6 +92,7 @@ class GroundMotion:
             self,
             horizontal=self.horizontal * horizontal,
             vertical=upward,
+            second=None if self.second is None else self.second * horizontal,
             factor=self.factor * horizontal,
         )
 

@@ -183,8 +183,15 @@ def periods_of_check(longest: float) -> FloatArray:
 def largest_correlation(motions: Sequence[GroundMotion]) -> float:
     """Largest |correlation coefficient| at no shift: between horizontal components, and within a motion [-]."""
     pairs = [(one, one.horizontal, other, other.horizontal) for one, other in combinations(motions, 2)]
-    pairs += [(one, one.horizontal, one, one.vertical) for one in motions if one.vertical is not None]
-    return max((_correlation(one.step, a, other.step, b) for one, a, other, b in pairs), default=0.0)
+    within = [
+        (one, a, one, b)
+        for one in motions
+        for a, b in combinations((one.horizontal, one.vertical, one.second), 2)
+        if a is not None and b is not None
+    ]
+    return max(
+        (_correlation(one.step, a, other.step, b) for one, a, other, b in [*pairs, *within]), default=0.0
+    )
 
 
 def copy_correlation(one: GroundMotion, other: GroundMotion) -> float:

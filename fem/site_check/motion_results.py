@@ -16,6 +16,7 @@ from fem.seismic.motion_set import LEAST_MOTIONS, LEAST_SHARE, MOST_CORRELATION,
 from fem.site_check.file import SiteRequest
 from fem.site_check.result import MOTIONS, FloorResult, MotionSet, SetCheck, SiteActionResult, SiteMotion
 
+HEADINGS = {"h": "HORIZONTAL", "v": "UP", "t": "SECOND HORIZONTAL"}
 CLAUSE = "EN 1998-1:2004, 3.2.3.1.2 (4) "
 
 
@@ -140,9 +141,9 @@ def write_ground(folder: Path, ground: Sequence[GroundMotion]) -> list[SiteMotio
     described = []
     for number, motion in enumerate(ground, start=1):
         files = write_csv_files(folder, motion, motion.name)
-        for letter, component in zip("hv", motion.components, strict=False):
+        for letter, component in motion.lettered.items():
             name = f"{MOTIONS}/{motion.name}_{letter}.at2"
-            heading = f"UNANCHORED, , {motion.name}, {'UP' if letter == 'v' else 'HORIZONTAL'}"
+            heading = f"UNANCHORED, , {motion.name}, {HEADINGS[letter]}"
             write_at2(folder / name, motion.step, component, heading)
             files.append(name)
         measures, ends = motion.intensities, motion.ends
@@ -151,11 +152,11 @@ def write_ground(folder: Path, ground: Sequence[GroundMotion]) -> list[SiteMotio
                 number=number,
                 origin=motion.origin,
                 scale=motion.factor,
-                pga_m_s2=measures[0].peak_acceleration_m_s2,
-                pgv_m_s=measures[0].peak_velocity_m_s,
-                pgd_m=measures[0].peak_displacement_m,
-                d5_95_s=measures[0].significant_s,
-                vertical_pga_m_s2=measures[1].peak_acceleration_m_s2 if len(measures) == 2 else None,
+                pga_m_s2=measures["h"].peak_acceleration_m_s2,
+                pgv_m_s=measures["h"].peak_velocity_m_s,
+                pgd_m=measures["h"].peak_displacement_m,
+                d5_95_s=measures["h"].significant_s,
+                vertical_pga_m_s2=measures["v"].peak_acceleration_m_s2 if "v" in measures else None,
                 end_velocity_m_s=ends[0],
                 end_displacement_m=ends[1],
                 spectrum_m_s2=(),
@@ -169,10 +170,10 @@ def write_ground(folder: Path, ground: Sequence[GroundMotion]) -> list[SiteMotio
 def write_csv_files(folder: Path, motion: GroundMotion, stem: str) -> list[str]:
     """Write the components of a motion for the runs; returns the names in the folder of results."""
     (folder / MOTIONS).mkdir(exist_ok=True)
-    names = [f"{MOTIONS}/{stem}_{letter}.csv" for letter, _ in zip("hv", motion.components, strict=False)]
-    for name, component in zip(names, motion.components, strict=True):
+    files = {f"{MOTIONS}/{stem}_{letter}.csv": component for letter, component in motion.lettered.items()}
+    for name, component in files.items():
         write_csv(folder / name, motion.step, component)
-    return names
+    return list(files)
 
 
 def floor_result(
@@ -193,7 +194,7 @@ def floor_result(
         building_periods_s=tuple(varied),
         damping_ratio=request.building.damping_ratio,
         peak_m_s2=peaks[worst],
-        peak_velocity_m_s=float(np.mean([one.intensities[0].peak_velocity_m_s for one in motions])),
+        peak_velocity_m_s=float(np.mean([one.intensities["h"].peak_velocity_m_s for one in motions])),
         mean_m_s2=_numbers(np.mean(spectra, axis=0)),
     )
 

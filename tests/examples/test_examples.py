@@ -81,3 +81,9 @@ def test_opened_results_begin_with_the_release(example, monkeypatch):
     assert names["largest"] == pytest.approx(0.5, rel=1e-9)
     assert names["rotation"][0] == max(names["rotation"])
     assert len(names["run"].fields) == 5  # at 0, 0.5 .. 2 s
+
+
+def test_two_components_of_a_circle_slide_on_a_circle(example):
+    both, alone = example("slide_in_two_directions")["across"]
+    assert both == pytest.approx(2.0 * math.sqrt(0.1**2 - (0.2 * GRAVITY / 49.0) ** 2), rel=1e-3)
+    assert alone < 0.9 * both

@@ -7,8 +7,33 @@ FLOOR = "verification/closed_forms/test_floor.py"
 SOLVER = "unit/contact/test_contact_solver.py"
 
 CAMBER = "verification/closed_forms/test_camber.py"
+PLANE = "unit/contact/test_plane_slider.py"
 
 FLOOR_FAULTS = (
+    Mutation(
+        name="a slider that a rising floor makes lighter",
+        old="            n = gravity + acceleration[2, i] + s * dn\n",
+        new="            n = gravity - acceleration[2, i] + s * dn\n",
+        tests=(PLANE, "-k", "planar"),
+    ),
+    Mutation(
+        name="a turn of the path that no step looks for",
+        old="error = max(error, h * early)",
+        new="error = max(error, 0.0 * early)",
+        tests=(PLANE, "-k", "planar"),
+    ),
+    Mutation(
+        name="a slider that never sticks again",
+        old="state, w, q = STICKS, 0.0, 0.0",
+        new="state, w, q = SLIDES, 0.0, 0.0",
+        tests=(PLANE, "-k", "planar"),
+    ),
+    Mutation(
+        name="a landing without friction",
+        old="_shrunk(w, q, mu_kinetic * max(-rising, 0.0))",
+        new="_shrunk(w, q, 0.0 * max(-rising, 0.0))",
+        tests=(PLANE, "-k", "landing"),
+    ),
     Mutation(
         name="camber of the other sign",
         old="point[i, 1] += contact.camber[i] + crushed[i]",

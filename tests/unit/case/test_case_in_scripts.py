@@ -69,6 +69,7 @@ def test_the_package_gives_away_its_interface_and_nothing_else():
         "compute_many",
         "load_case",
         "open_run",
+        "slide_in_plane",
     ]
     for name in fem.__all__:
         assert getattr(fem, name).__doc__.strip()

@@ -68,7 +68,7 @@ def test_the_stationary_part_is_as_long_as_asked():
     short, long = (artificial_motions(ACTION, count=1, seed=3, stationary=s)[0] for s in (10.0, 20.0))
     assert short.duration == pytest.approx(18.0)
     assert long.duration == pytest.approx(28.0)
-    assert long.intensities[0].significant_s - short.intensities[0].significant_s == pytest.approx(
+    assert long.intensities["h"].significant_s - short.intensities["h"].significant_s == pytest.approx(
         10.0, abs=3.0
     )
     envelope = Shaper(stationary=10.0).envelope

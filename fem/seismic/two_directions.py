@@ -1,0 +1,143 @@
+"""Slip of a body that does not rock, under both horizontal components of a motion at once: a friction circle.
+
+Friction resists along the path, whatever its direction, so a second component takes away what resists the first.
+Rocking is not in it: a body that rocks or turns about its vertical axis slides otherwise. The motion is that of
+`contact.stepping.plane_slider`, exact to 0.1 um for accelerations that are linear between samples.
+"""
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from contact.stepping.plane_slider import slide_over
+from fem.runtime.arrays import FloatArray
+from fem.seismic.ground_motion import GroundMotion
+
+GRAVITY = 9.81
+
+
+def slide_in_plane(
+    time_s: FloatArray,
+    ax_m_s2: FloatArray,
+    ay_m_s2: FloatArray,
+    vertical_m_s2: FloatArray | None = None,
+    *,
+    mu_static: float,
+    mu_kinetic: float | None = None,
+    gravity_m_s2: float = GRAVITY,
+) -> FloatArray:
+    """Displacement of a sliding body over its floor, shape (n, 2) [m]; at first both have one velocity.
+
+    Args:
+        time_s: of the samples, increasing, shape (n,).
+        ax_m_s2, ay_m_s2: acceleration of the floor along x and y, linear between samples, shape (n,).
+        vertical_m_s2: upward, shape (n,); None: none. A floor that falls with more than g leaves the body, which flies
+            and lands without rebound.
+        mu_static, mu_kinetic: friction; kinetic is static unless given. Equal in all directions.
+        gravity_m_s2: [m/s2].
+
+    Raises:
+        ValueError: lengths that differ, fewer than two samples, times that do not increase, numbers that are not
+            finite, mu_static not positive, mu_kinetic negative or above it, gravity not positive.
+    """
+    kinetic = mu_static if mu_kinetic is None else mu_kinetic
+    slip, _ = _slid(time_s, ax_m_s2, ay_m_s2, vertical_m_s2, (mu_static, kinetic), gravity_m_s2)
+    return slip
+
+
+@dataclass(frozen=True, kw_only=True)
+class SlipInTwoDirections:
+    """Largest slips over a set of motions with two horizontal components."""
+
+    mean: float  #: of the largest slips of the motions, for the friction with the largest mean [m]
+    largest: float  #: of all [m]
+    mu_static: float  #: friction with the largest slip
+    mu_kinetic: float
+    motion: int  #: with the largest slip, from 1
+    mean_in_plane: float  #: the largest mean without the second component [m]
+
+
+def slip_in_two_directions(
+    motions: Sequence[GroundMotion],
+    frictions: Iterable[tuple[float, float]],
+    *,
+    gravity: float = GRAVITY,
+) -> SlipInTwoDirections | None:
+    """Mean and largest slip of a set: for each motion the worse sign of its vertical, then the worst friction.
+
+    Args:
+        motions: of the floor, with a second horizontal component.
+        frictions: pairs of static and kinetic friction.
+
+    Returns:
+        None where a motion has no second component.
+    """
+    if any(motion.second is None for motion in motions):
+        return None
+    slips = {
+        pair: np.array([_largest(motion, pair, gravity, both=True) for motion in motions])
+        for pair in frictions
+    }
+    plain = {
+        pair: np.mean([_largest(motion, pair, gravity, both=False) for motion in motions]) for pair in slips
+    }
+    worst = max(slips, key=lambda pair: float(slips[pair].max()))
+    return SlipInTwoDirections(
+        mean=max(float(one.mean()) for one in slips.values()),
+        largest=float(slips[worst].max()),
+        mu_static=worst[0],
+        mu_kinetic=worst[1],
+        motion=1 + int(np.argmax(slips[worst])),
+        mean_in_plane=float(max(plain.values())),
+    )
+
+
+def _largest(motion: GroundMotion, friction: tuple[float, float], gravity: float, *, both: bool) -> float:
+    """Largest distance from where the body stood, with the worse sign of the vertical [m]."""
+    second = motion.second if both and motion.second is not None else np.zeros_like(motion.horizontal)
+    ups = [None] if motion.vertical is None else [motion.vertical, -motion.vertical]
+    found = 0.0
+    for up in ups:
+        slip, velocity = _slid(motion.times, motion.horizontal, second, up, friction, gravity)
+        speed = math.hypot(*velocity)
+        # after the last sample the floor moves on at constant velocity, and the body stops on a straight line
+        rest = slip[-1] + velocity * speed / (2.0 * friction[1] * gravity) if speed > 0.0 else slip[-1]
+        found = max(found, float(np.hypot(slip[:, 0], slip[:, 1]).max()), math.hypot(*rest))
+    return found
+
+
+def _slid(
+    times: FloatArray,
+    x: FloatArray,
+    y: FloatArray,
+    up: FloatArray | None,
+    friction: tuple[float, float],
+    gravity: float,
+) -> tuple[FloatArray, FloatArray]:
+    """Displacements (n, 2) [m] and the last velocity (2,) [m/s] over the floor."""
+    samples = np.array(times, dtype=np.float64)
+    rows = [np.array(one, dtype=np.float64) for one in (x, y, np.zeros_like(samples) if up is None else up)]
+    if samples.ndim != 1 or samples.size < 2 or any(row.shape != samples.shape for row in rows):
+        shapes = ", ".join(str(row.shape) for row in (samples, *rows))
+        raise ValueError(
+            f"times and accelerations must be columns of one length, two samples or more, got {shapes}"
+        )
+    if not all(np.isfinite(row).all() for row in (samples, *rows)):
+        raise ValueError("times and accelerations must be finite numbers")
+    if not (np.diff(samples) > 0.0).all():
+        raise ValueError("times must increase from sample to sample")
+    if not 0.0 < friction[0] < math.inf:
+        raise ValueError(f"mu_static must be positive and finite, got {friction[0]}")
+    if not 0.0 <= friction[1] <= friction[0]:
+        raise ValueError(
+            f"mu_kinetic must lie between 0 and mu_static = {friction[0]:g}, got {friction[1]:g}"
+        )
+    if not 0.0 < gravity < math.inf:
+        raise ValueError(f"gravity must be positive and finite, got {gravity} m/s2")
+    slip, velocity = np.zeros((samples.size, 2)), np.zeros(2)
+    slide_over(
+        samples, np.array(rows), (float(friction[0]), float(friction[1])), float(gravity), slip, velocity
+    )
+    return slip, velocity

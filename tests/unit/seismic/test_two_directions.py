@@ -1,0 +1,107 @@
+"""Slip under two horizontal components: the public function, and sets of motions."""
+
+import math
+
+import numpy as np
+import pytest
+
+import fem
+from fem.seismic.action import SiteAction, eurocode_shape
+from fem.seismic.artificial import artificial_motions, artificial_set
+from fem.seismic.ground_motion import GroundMotion
+from fem.seismic.motion_set import largest_correlation
+from fem.seismic.two_directions import slip_in_two_directions
+
+STRONG = SiteAction(shape=eurocode_shape(1, "D"), reference_acceleration=2.8)
+TIMES = np.arange(0.0, 1.0, 0.01)
+STILL = np.zeros_like(TIMES)
+
+
+@pytest.fixture(scope="module")
+def motions():
+    return artificial_set(STRONG, count=7, seed=1, second=1.0)
+
+
+@pytest.mark.parametrize(
+    ("changed", "words"),
+    [
+        ({"ax_m_s2": STILL[1:]}, "one length"),
+        ({"time_s": TIMES[::-1]}, "increase"),
+        ({"ay_m_s2": np.where(TIMES > 0.5, np.nan, 0.0)}, "finite"),
+        ({"mu_static": 0.0}, "mu_static must be positive"),
+        ({"mu_kinetic": 0.4}, "mu_kinetic"),
+        ({"gravity_m_s2": 0.0}, "gravity"),
+    ],
+)
+def test_what_cannot_be_is_refused(changed, words):
+    given = {"time_s": TIMES, "ax_m_s2": STILL, "ay_m_s2": STILL, "mu_static": 0.3} | changed
+    with pytest.raises(ValueError, match=words):
+        fem.slide_in_plane(**given)
+
+
+def test_a_second_component_leaves_the_others_as_they_are_and_is_independent_of_them(motions):
+    (alone,) = artificial_motions(STRONG, count=1, seed=1)
+    np.testing.assert_array_equal(motions[0].horizontal, alone.horizontal)
+    np.testing.assert_array_equal(motions[0].vertical, alone.vertical)
+    assert largest_correlation(motions) <= 0.3
+    for motion in motions:
+        assert np.abs(motion.second).max() == pytest.approx(STRONG.surface_acceleration, rel=0.11)
+        assert abs(np.corrcoef(motion.horizontal, motion.second)[0, 1]) < 0.3
+
+
+def test_a_copy_of_the_first_component_is_not_independent(motions):
+    copied = GroundMotion(
+        name="copied", step=0.005, horizontal=motions[0].horizontal, second=motions[0].horizontal
+    )
+    assert largest_correlation([copied]) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(
+    ("mu", "plane", "factor"), [(0.15, 102.0, 1.7), (0.20, 45.0, 2.1), (0.25, 16.0, 2.9)]
+)
+def test_two_components_slide_two_to_four_times_as_far_as_one(motions, mu, plane, factor):
+    """Against an independent block under the same first components and other second ones, mean of seven [mm]."""
+    found = slip_in_two_directions(motions, [(mu, mu)])
+    assert 1e3 * found.mean_in_plane == pytest.approx(plane, rel=0.01)
+    assert found.mean / found.mean_in_plane == pytest.approx(factor, rel=0.15)
+
+
+def test_the_largest_slip_is_that_of_the_worst_friction_motion_and_sign(motions):
+    pairs = [(0.3, 0.15), (0.3, 0.3)]
+    found = slip_in_two_directions(motions[:3], pairs)
+    slips = {
+        (pair, number): max(
+            np.hypot(
+                *fem.slide_in_plane(
+                    one.times,
+                    one.horizontal,
+                    one.second,
+                    sign * one.vertical,
+                    mu_static=pair[0],
+                    mu_kinetic=pair[1],
+                ).T
+            ).max()
+            for sign in (1.0, -1.0)
+        )
+        for pair in pairs
+        for number, one in enumerate(motions[:3], start=1)
+    }
+    (pair, number) = max(slips, key=slips.get)
+    assert (found.mu_static, found.mu_kinetic, found.motion) == (*pair, number)
+    assert found.largest == pytest.approx(slips[pair, number], rel=1e-6)
+    assert found.mean == pytest.approx(np.mean([slips[pairs[0], k] for k in (1, 2, 3)]), rel=1e-6)
+
+
+def test_without_a_second_component_there_is_no_answer(motions):
+    alone = GroundMotion(name="alone", step=0.005, horizontal=motions[0].horizontal)
+    assert slip_in_two_directions([*motions, alone], [(0.3, 0.3)]) is None
+
+
+def test_a_body_that_slides_when_the_motion_ends_is_followed_until_it_stops():
+    times = np.arange(0.0, 0.2 + 1e-9, 0.01)
+    motion = GroundMotion(
+        name="push", step=0.01, horizontal=np.full(times.size, 6.0), second=np.full(times.size, 2.0)
+    )
+    found = slip_in_two_directions([motion], [(0.3, 0.3)])
+    speed = (math.hypot(6.0, 2.0) - 0.3 * 9.81) * 0.2
+    assert found.largest == pytest.approx(0.1 * speed + speed**2 / (2.0 * 0.3 * 9.81), rel=1e-6)
