@@ -18,6 +18,7 @@ from fem.case import quantities as q
 from fem.case.case import Case
 from fem.case.quantities import with_unit
 from fem.case.unknown_inputs import (
+    CAMBER,
     JOINTS_MU_KINETIC,
     JOINTS_MU_STATIC,
     MODULUS,
@@ -157,7 +158,8 @@ def as_changed(case: Case, values: Mapping[str, Value]) -> dict[str, Any]:
     """The values that change a case, with those that follow from them.
 
     Where a static friction changes alone, the kinetic one keeps its share of it, and is never larger. Friction between
-    loose boxes does not follow the floor's. A base that touches otherwise has another patch on a slab.
+    loose boxes does not follow the floor's. A base that touches otherwise has another patch on a slab, and on a rigid
+    floor another penalty, which is chosen for it.
     """
     changed: dict[str, Any] = dict(values)
     own = {f"contact.{key}": getattr(case.contact, key) for key in ("mu_static", "mu_kinetic")}
@@ -173,6 +175,8 @@ def as_changed(case: Case, values: Mapping[str, Value]) -> dict[str, Any]:
             changed[kinetic] = min(follows, limit)
     if SUPPORT in values and case.floor.is_slab:
         changed["floor.corner_patch_m"] = other_patch(case, str(values[SUPPORT]))
+    elif not values.keys().isdisjoint((SUPPORT, CAMBER)) and not case.floor.is_slab:
+        changed.setdefault(PENALTY, "auto")
     return changed
 
 

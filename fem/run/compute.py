@@ -146,7 +146,7 @@ def compute_on(container: Container | None, case: Case, wanted: WantedChecks) ->
     use_one_blas_thread()
     watch, silent = Stopwatch(), SilentReporter()
     mesh, motions = build_container(case), build_motions(case)
-    resolved = resolve(case, mesh, motions)
+    case = resolve(case, mesh, motions)  # what is changed later on is this case, too
     with compilation_announced(lambda text: print(text, file=sys.stderr)):
         model = build_model(case, container or discretise(case, mesh), motions=motions)
         advance_body(model.body, model.run, 0.0)  # no step: compiles
@@ -158,7 +158,7 @@ def compute_on(container: Container | None, case: Case, wanted: WantedChecks) ->
         box=1 + elements.box.astype(np.int64),
     )
     recorder = Recorder(model, recovery_of(model), frame_sink=keeper.keep)
-    result = begun(model, case_hash(resolved))
+    result = begun(model, case_hash(case))
     result, history = stepped(model, result, recorder, reporter=silent, stop=lambda: False)
     result, block = add_checks(
         result, model, lambda: history, wanted, None, reporter=silent, stop=lambda: False
@@ -166,4 +166,4 @@ def compute_on(container: Container | None, case: Case, wanted: WantedChecks) ->
     if block is not None:
         history = history.with_analytic(block.analytic_rotation)
     result = in_words(replace(result, **watch.spent()), case)
-    return Run(case=resolved, typed_result=result, history=history, fields=keeper.fields)
+    return Run(case=case, typed_result=result, history=history, fields=keeper.fields)

@@ -73,8 +73,8 @@ def run_case(
     files, mesh = RunFiles(folder), build_container(case)
     files.require_free_names(case)
     motions = build_motions(case)
-    resolved = resolve(case, mesh, motions)
-    request = case_hash(resolved)
+    case = resolve(case, mesh, motions)  # what is changed later on is this case, too
+    request = case_hash(case)
     known = finished_result(folder, request, options, reporter)
     if known is not None and not lacks_checks(known, case, options) and not _lacks_figures(files, case):
         return open_run(folder)
@@ -95,7 +95,7 @@ def run_case(
         with interruptible(reporter) as stop:
             result = known
             if result is None:
-                texts = {files.case.name: case_text, files.resolved.name: to_toml(resolved)}
+                texts = {files.case.name: case_text, files.resolved.name: to_toml(case)}
                 result = compute_into(
                     place, model, request, texts=texts, watch=watch, reporter=reporter, stop=stop
                 )

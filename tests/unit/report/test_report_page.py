@@ -105,9 +105,7 @@ def test_variations_that_take_long_are_named_and_computed_when_asked_for(folder,
     result["verdict"]["band"] = None
     (copied / "run.json").write_text(json.dumps(result))
     fresh = variation_table(open_run(copied), every=True)
-    assert [(one.run.change, one.run.outcome) for one in fresh.lines] == [
-        (one.run.change, one.run.outcome) for one in full.lines
-    ]
+    assert [one.run for one in fresh.lines[1:]] == [one.run for one in full.lines[1:]]
 
 
 def test_variations_of_a_full_run_begin_with_the_run_as_reduced(folder, tmp_path, monkeypatch):

@@ -14,6 +14,7 @@ from fem.case.uncertainty import as_changed, changes_of, draws_of, pairs_of
 from fem.model.model import build_model
 from fem.model.recovery import recovery_of
 from fem.results.kinds import read_result
+from fem.results.reader import open_run
 from fem.results.run_result import ActionResult, Numerics, RunResult, StaticResult, Verdict
 from fem.run import band
 from fem.run.band import plan_of, wants_band
@@ -86,6 +87,7 @@ def test_members_side_by_side_are_the_runs_one_by_one(tmp_path, model):
     ]
     case = load_case("rocking", changes)
     members = verdict_with_band(tmp_path, case).band.members
+    case = open_run(tmp_path).case  # with the step and penalty chosen for the run
     assert len(members) >= 10
     for one in members[1:]:
         coarse = one.kind == "draw" or "support.kind" in one.values
