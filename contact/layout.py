@@ -6,6 +6,7 @@
 What else lists the fields follows from the declaration: the arrays, and functions that make a tuple from another one.
 """
 
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,7 @@ from contact.arrays import IntArray
 from contact.jit import inlined
 
 
+@cache  # asked for each run of a map
 def shapes_of(layout: type, **sizes: int) -> dict[str, tuple[Any, ...]]:
     """Shapes of the arrays of a layout, field by field, for sizes by name; one that is not given stays a name."""
     return {

@@ -39,29 +39,35 @@ class ContainerCache:
     def __init__(self, most: int = 8) -> None:
         self._most = most
         self._lock = threading.Lock()
-        self._held: dict[Hashable, tuple[Case, Future[Container]]] = {}
+        self._held: dict[Hashable, Future[Container]] = {}
+        #: containers that serve others as well, with their cases: rigid ones share all but their mass
+        self._alike: dict[Hashable, tuple[Case, Future[Container]]] = {}
         self._recoveries = WeakKeyDictionary[Container, Recovery]()
 
     def container_of(self, case: Case) -> Container:
-        """The container of a case, built if it is missing; rigid ones share all but their mass.
+        """The container of a case, built if it is missing; from one that differs in its mass alone, where that does.
 
         Raises:
             CaseError, MeshError: bad input.
         """
-        key = container_key(case, mass=case.solver.model != "rigid")
+        key = container_key(case)
+        alike = container_key(case, mass=False) if case.solver.model == "rigid" else key
         with self._lock:
             found = self._held.pop(key, None)
-            mine = found is None
-            own, promise = (case, Future[Container]()) if found is None else found
-            self._held[key] = own, promise  # the one used last is last
-            while len(self._held) > self._most:
-                del self._held[next(iter(self._held))]
-        if mine:
+            promise = found or Future[Container]()
+            self._held[key] = promise  # the one used last is last
+            own, first = self._alike.setdefault(alike, (case, promise))
+            for held in (self._held, self._alike):
+                while len(held) > self._most:
+                    del held[next(iter(held))]
+        if found is None:
             try:
-                promise.set_result(discretise(case))
+                unlike = first is promise or first.exception() is not None
+                built = discretise(case) if unlike else with_mass_of(case, first.result(), own)
+                promise.set_result(built)
             except BaseException as error:
                 promise.set_exception(error)
-        return with_mass_of(case, promise.result(), own)
+        return promise.result()
 
     def recovery_of(self, model: Model) -> Recovery:
         """What recovers the stresses of a model's container; built once a container."""

@@ -34,6 +34,16 @@ from mesh.container import ContainerMesh
 def resolve(case: Case, mesh: ContainerMesh, motions: tuple[BaseMotion, BaseMotion]) -> Case:
     """The case with every "auto" replaced by the value chosen; running it again gives the same result.
 
+    Raises:
+        CaseError: a motion that the given step would step over.
+    """
+    chosen = chosen_values(case, mesh, motions)
+    return case.with_values(chosen) if chosen else case
+
+
+def chosen_values(case: Case, mesh: ContainerMesh, motions: tuple[BaseMotion, BaseMotion]) -> dict[str, Any]:
+    """What is chosen for a case where it says "auto", by dotted key.
+
     A duration that depends on when the container comes to rest stays "auto".
 
     Raises:
@@ -50,7 +60,7 @@ def resolve(case: Case, mesh: ContainerMesh, motions: tuple[BaseMotion, BaseMoti
     if case.output.fields_s == "auto":
         nodes = node_count(mesh, case.solver.order)
         chosen["output.fields_s"] = frame_interval(case, nodes, longest_run(case, *motions))
-    return case.with_values(chosen) if chosen else case
+    return chosen
 
 
 def begun(model: Model, case_hash: str) -> RunResult:

@@ -5,15 +5,21 @@ Small changes of motion and contact (`perturbation`), and the changes by which a
 """
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Hashable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
-from fem.batch.container_cache import PenaltyCache
+from fem.batch.container_cache import container_key
 from fem.case.case import Case
-from fem.case.uncertainty import InputChange, changes_of, draws_of, pairs_of
+from fem.case.uncertainty import InputChange, as_changed, changes_of, draws_of, pairs_of
 from fem.case.unknown_inputs import SUPPORT, TOLERANCE
+from fem.model.geometry import build_container
+from fem.model.motion import build_motions
+from fem.model.support import normal_penalty
+from fem.run.solve import chosen_values
 from fem.sweep.perturbation import SMALL
 from fem.sweep.plan import Sweep
+from mesh.container import ContainerMesh
 
 #: cells of which the copies are remembered
 REMEMBERED = 4096
@@ -40,6 +46,9 @@ class Copy:
 
     name: str  #: of the change, the same in all cells: its keys, and which one of these it is
     change: InputChange
+    values: Mapping[
+        str, Any
+    ]  #: that make its case of that of the cell: the change, and what a run of the cell chose
 
     @property
     def drawn(self) -> bool:
@@ -59,7 +68,7 @@ class CellCopies:
         self._sweep = sweep
         self._axes = {axis.key for axis in sweep.axes}
         self._known: dict[int, tuple[float, tuple[Copy, ...]]] = {}
-        self._penalties = PenaltyCache()
+        self._mesh: tuple[Hashable, ContainerMesh] | None = None  #: the last one, and its key
 
     def of(self, cell: int) -> tuple[Copy, ...]:
         """The copies of a cell: each change once, the draws last."""
@@ -80,16 +89,25 @@ class CellCopies:
     def _copies(self, case: Case) -> Iterator[Copy]:
         seen: list[object] = []
         count = Counter[str]()
-        for change in (*self._sweep.perturbation.changes(case), *self._over_ranges(case)):
+        mesh = self._mesh_of(case)
+        chosen = chosen_values(case, mesh, build_motions(case))
+        penalty = None if case.floor.is_slab else normal_penalty(case, mesh)
+        for change in (*self._sweep.perturbation.changes(case), *self._over_ranges(case, penalty)):
             if change.values and change.values not in seen:
                 seen.append(change.values)
                 keys = "draw" if change.kind == "draw" else " ".join(change.values)
-                yield Copy(name=f"{keys} {count[keys]}", change=change)
+                values = chosen | as_changed(case, change.values)
+                yield Copy(name=f"{keys} {count[keys]}", change=change, values=values)
                 count[keys] += 1
 
-    def _over_ranges(self, case: Case) -> Iterator[InputChange]:
+    def _mesh_of(self, case: Case) -> ContainerMesh:
+        key = container_key(case)
+        if self._mesh is None or self._mesh[0] != key:
+            self._mesh = key, build_container(case)
+        return self._mesh[1]
+
+    def _over_ranges(self, case: Case, penalty: float | None) -> Iterator[InputChange]:
         """The changes of a run's band, without the inputs that are axes."""
-        penalty = self._penalties.of(case)
         changes = changes_of(case, penalty)
         if case.solver.model == "rigid":
             draws = self._sweep.perturbation.draws

@@ -247,10 +247,10 @@ def _items(
         known, container = perturbed.rows.get(cell, {}), sweep.container_of(cell)
         for number, copy in enumerate(perturbed.copies.of(cell)):
             if number not in known and wants(cell, copy):
-                items.append((container, copy.name, CopyItem(cell, number, copy.change.values)))
+                items.append((container, copy.name, CopyItem(cell, number, copy.values, copy.change.values)))
     return [item for _, _, item in sorted(items, key=lambda one: (*one[:2], one[2].cell))]
 
 
 def _values(item: CopyItem, row: Row) -> Iterator[Any]:
-    yield from (item.cell, item.number, " ".join(f"{key}={value!r}" for key, value in item.values.items()))
+    yield from (item.cell, item.number, " ".join(f"{key}={value!r}" for key, value in item.change.items()))
     yield from (row[name] for name in COLUMNS[3:])

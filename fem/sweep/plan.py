@@ -19,7 +19,6 @@ from fem.batch.derived import Derived, with_derived
 from fem.case.case import Case
 from fem.case.quantities import Quantity
 from fem.case.tables import CaseTable
-from fem.case.uncertainty import as_changed
 from fem.case.validation import CaseError
 from fem.sweep.perturbation import Perturbation
 
@@ -66,7 +65,8 @@ class CopyItem(NamedTuple):
 
     cell: int
     number: int  #: of the copy
-    values: Mapping[str, Any]  #: that it changes
+    values: Mapping[str, Any]  #: that make its case of that of the cell
+    change: Mapping[str, Any]  #: what it changes, for the log
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -131,11 +131,8 @@ class Sweep:
         return cases
 
     def copy_case(self, item: CopyItem) -> Case:
-        """The case of a copy of a cell, whose loose boxes keep the friction that they have in the cell."""
-        point, values = self.point(item.cell), item.values
-        if self.values(point).get("container.joints", self.base.container.joints) == "loose":
-            values = as_changed(self.case_at(point), values)
-        return self.case_at(point, values)
+        """The case of a copy of a cell."""
+        return self.case_at(self.point(item.cell), item.values)
 
     def tried_case(self, item: tuple[int, float]) -> Case:
         """The case between cells that a threshold tries: a cell of the line, and the value on the axis."""

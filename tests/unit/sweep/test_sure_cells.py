@@ -9,6 +9,10 @@ from small_sweep import SMALL
 from fem.batch.axes import Axis
 from fem.batch.held import held_inputs
 from fem.case.case import load_case
+from fem.model.model import build_model
+from fem.run.changed_runs_file import key_of
+from fem.run.compute import compute
+from fem.run.outcome import run_without_history
 from fem.sweep.copies import CellCopies, left_out
 from fem.sweep.file import load_sweep
 from fem.sweep.neighbours import around, coarse_cells
@@ -64,6 +68,25 @@ def test_the_copies_of_the_shipped_case_try_all_unknown_inputs(sweep_of):
     }
 
 
+def test_a_copy_of_a_cell_is_the_member_of_the_band_of_its_run(sweep_of):
+    # Kinetic friction follows the static one, and step and penalty are those chosen for the cell.
+    given = '"contact.mu_kinetic" = 0.4\n"contact.mu_static" = 0.4\n[axes]'
+    sweep = sweep_of(SMALL.split("[derived]")[0].replace("[axes]", given))
+    band = compute(sweep.case(0), band=True, margin=False).verdict.band
+    members = {key_of(one.values): one for one in band.members if one.kind == "one"}
+    found = {}
+    for number, copy in enumerate(CellCopies(sweep).of(0)):
+        if key_of(copy.change.values) in members:
+            model = build_model(sweep.copy_case(CopyItem(0, number, copy.values, copy.change.values)))
+            found[key_of(copy.change.values)] = run_without_history(model, None)[0]
+    assert {"contact.mu_static", "container.eccentricity_m"} <= {key for some in found for key, _ in some}
+    for key, verdict in found.items():
+        assert (verdict.outcome, verdict.rotation_ratio) == (
+            members[key].outcome,
+            members[key].rotation_ratio,
+        )
+
+
 LOOSE = SMALL.replace("[axes]", '"container.joints" = "loose"\n[axes]')
 
 
@@ -72,7 +95,7 @@ def test_copies_of_a_loose_cell_change_floor_and_joints_apart(sweep_of):
     copies = CellCopies(sweep).of(0)
     own = sweep.case(0).joint_friction
     for number, copy in enumerate(copies):
-        case = sweep.copy_case(CopyItem(0, number, copy.change.values))
+        case = sweep.copy_case(CopyItem(0, number, copy.values, copy.change.values))
         kept = not any(f"joints.{key}" in copy.change.values for key in own)
         assert (case.joint_friction == own) == kept
     assert keys_of(sweep) >= {*(f"joints.{key}" for key in own), "joints.damping_ratio"}
