@@ -49,6 +49,10 @@ GROUPS = {
             "rocking --from 0.5 --to 2",
         ),
         "assess": ("Verify a container at a site by EN 1998-1, time histories and rules.", "site -j 4"),
+        "batch": (
+            "Compute a list of containers, and give it back with results.",
+            "hall.csv --case my-stack.toml",
+        ),
         "size": (
             "Find the least width, tallest stack or strongest action that a site allows.",
             "site --over container.width_m",

@@ -36,6 +36,7 @@ LAYERS = (
     ("fem.ensemble",),
     ("fem.report",),
     ("fem.site_check",),
+    ("fem.hall",),
     ("fem.evidence",),
     ("fem.evidence.verification",),
     ("fem.evidence.paper", "fem.evidence.validation"),

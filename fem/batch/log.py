@@ -17,7 +17,7 @@ from typing import Any, Generic
 
 import numpy as np
 
-from fem.batch.runner import ItemT, Row, Runner
+from fem.batch.runner import ChunkWork, ItemT, Row, Runner
 from fem.case.case import Case
 
 
@@ -30,10 +30,12 @@ def line_of(values: Iterable[Any]) -> str:
 
 def fields_of(line: str) -> list[str]:
     """The fields of one line."""
-    return [
-        field[1:] if field[:1] == "'" and _is_computed(field[1:]) else field
-        for field in next(csv.reader([line]))
-    ]
+    return [plain_text(field) for field in next(csv.reader([line]))]
+
+
+def plain_text(field: str) -> str:
+    """A field without the apostrophe before what a spreadsheet would compute."""
+    return field[1:] if field[:1] == "'" and _is_computed(field[1:]) else field
 
 
 def number_in(field: str) -> float | None:
@@ -111,6 +113,7 @@ class LoggedRuns(Generic[ItemT]):
     model_of: Callable[[ItemT], str]
     values: Callable[[ItemT, Row], Iterable[Any]]  #: of the columns, from an item and its row
     note: Callable[[str], None]  #: called with every line of the log, old and new
+    work: ChunkWork | None = None  #: what is done with some items in place of their runs
 
     def run(self, runner: Runner, batches: Iterable[Sequence[ItemT]]) -> None:
         """Note the rows of earlier attempts, then run the items that are missing.
@@ -125,7 +128,7 @@ class LoggedRuns(Generic[ItemT]):
             for items in batches:
                 if runner.stop():
                     break
-                for chunk, rows in runner.rows(self.what, items, self.make, self.model_of):
+                for chunk, rows in runner.rows(self.what, items, self.make, self.model_of, self.work):
                     lines = [line_of(self.values(*pair)) for pair in zip(chunk, rows, strict=True)]
                     log.append(lines)
                     for line in lines:

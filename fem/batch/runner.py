@@ -42,6 +42,8 @@ TOLD_S = 5.0  #: work that has taken so long ends with a line of what was done
 _CONTAINERS = ContainerCache()
 
 Row = dict[str, Any]
+#: from what makes the case of an item, and some items, to a row each
+ChunkWork = Callable[[Callable[[Any], Case], Sequence[Any]], list[Row]]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,6 +64,7 @@ class Runner:
         items: Iterable[ItemT],
         make: Callable[[ItemT], Case],
         model_of: Callable[[ItemT], str],
+        work: ChunkWork | None = None,
     ) -> Iterator[tuple[list[ItemT], list[Row]]]:
         """Run one case for each item; yields items and their rows as they are ready, in any order.
 
@@ -70,12 +73,15 @@ class Runner:
             items: in an order in which those of one container are neighbours.
             make: the case of an item; for processes it must be picklable.
             model_of: the model of its case.
+            work: what is done with some items at a time, picklable; default: their runs. Other work takes seconds, so
+                that it is handed out one by one, and no time is expected.
         """
         by_model: dict[str, list[ItemT]] = {}
         for item in items:
             by_model.setdefault(model_of(item), []).append(item)
         total, done, failed = sum(map(len, by_model.values())), 0, 0
-        self._say_expected(f"{total} {what}", by_model, make)
+        if work is None:
+            self._say_expected(f"{total} {what}", by_model, make)
         self.reporter.start(0.0)
         began = time.perf_counter()
 
@@ -86,9 +92,9 @@ class Runner:
             pools = self.workers_of(model, len(some))
             chunks = hand_out(
                 some,
-                partial(run_chunk, make),
+                partial(work or run_chunk, make),
                 pools,
-                at_a_time=_chunk_size(model, len(some), pools),
+                at_a_time=1 if work else _chunk_size(model, len(some), pools),
                 stop=self.stop,
                 finish=model != "full",  # one of these may take an hour
             )

@@ -20,6 +20,7 @@ PAGES = {
     "response.json": "fem.report.response_page:response_report",
     "study.json": "fem.evidence.paper.page:paper_report",
     "assess.json": "fem.site_check.site_page:site_report",
+    "hall.json": "fem.hall.page:hall_report",
 }
 
 

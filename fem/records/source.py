@@ -64,7 +64,7 @@ def read_source(path: Path) -> MotionText:
         raise RecordError(
             f"{path.name}: a motion file may have at most {MOST_SAMPLES} lines of {LONGEST_LINE} characters each"
         )
-    text = _decoded(content)
+    text = decoded(content)
     del content  # a file may be large
     if text is None or CONTROL.search(text):
         raise RecordError(f"{path.name}: not a text file; a motion file holds numbers as text")
@@ -81,7 +81,7 @@ def _has_long_line(content: bytes) -> bool:
     return False
 
 
-def _decoded(content: bytes) -> str | None:
+def decoded(content: bytes) -> str | None:
     """UTF-16 with a byte order mark, UTF-8, else Latin-1, which any bytes can be."""
     encodings = [TWO_BYTES[content[:2]]] if content[:2] in TWO_BYTES else ["utf-8-sig", "latin-1"]
     for encoding in encodings:

@@ -122,6 +122,23 @@ SIZE = ResultKind(
     results="size.json",
     own=("runs.csv", "site.toml", "container.toml", "figures/size.svg"),
 )
+HALL = ResultKind(
+    name="hall",
+    asked="hall",
+    mark="hall.json",
+    request="asked",
+    results="hall.csv",
+    own=(
+        "hall.csv",
+        "hall.geojson",
+        "runs.csv",
+        "checks.csv",
+        "list.csv",
+        "base.toml",
+        "report.html",
+        "report.pdf",
+    ),
+)
 PAPER = ResultKind(
     name="study",
     asked="study",
@@ -139,7 +156,7 @@ VERIFICATION = ResultKind(
     results="verify.json",
     own=(),
 )
-KINDS = (RUN, SWEEP, ENSEMBLE, RESPONSE, SITE, SIZE, PAPER, VERIFICATION)
+KINDS = (RUN, SWEEP, ENSEMBLE, RESPONSE, SITE, SIZE, HALL, PAPER, VERIFICATION)
 
 
 def read_result(path: Path, kind: ResultKind = RUN) -> dict[str, Any]:

@@ -15,6 +15,8 @@ from fem.case.case import load_case
 from fem.cli.console import print_result
 from fem.ensemble.file import load_ensemble
 from fem.ensemble.run import run_ensemble
+from fem.hall.file import read_hall
+from fem.hall.run import run_hall
 from fem.response.request import ResponseRequest
 from fem.response.run import run_response
 from fem.results import kinds
@@ -54,6 +56,7 @@ mu_kinetic_over_static = [1.0]
 [limits]
 slip_m = 0.1
 """
+HALL = "name,width_m,boxes\n" + "".join(f"{k},{0.6 + 0.02 * k:.2f},2\n" for k in range(40))
 RIGID = ("solver.model=rigid", "contact.mu_static=1", "contact.mu_kinetic=1", "solver.element_size_m=1")
 
 
@@ -113,6 +116,13 @@ def size(tmp_path, other=False):
     return lambda folder, **options: run_size(asked, axis, folder, **options)
 
 
+def hall(tmp_path, other=False):
+    path = tmp_path / "hall.csv"
+    path.write_text(HALL.replace("0.60", "0.59") if other else HALL, encoding="utf-8")
+    asked, base = read_hall(path), load_case("seed_stack_plateau", (*RIGID, "solver.duration_s=1.5"))
+    return lambda folder, **options: run_hall(asked, base, folder, checks="none", **options)
+
+
 STUDIES = pytest.mark.parametrize(
     ("study", "mark", "log"),
     [
@@ -121,8 +131,9 @@ STUDIES = pytest.mark.parametrize(
         (response, "response.json", "state.npz"),
         (site, "assess.json", "runs.csv"),
         (size, "size.json", "runs.csv"),
+        (hall, "hall.json", "runs.csv"),
     ],
-    ids=["sweep", "ensemble", "response", "site", "size"],
+    ids=["sweep", "ensemble", "response", "site", "size", "hall"],
 )
 
 

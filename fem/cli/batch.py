@@ -1,0 +1,110 @@
+"""`batch`: a list of containers, from a CSV file to the same list with results."""
+
+import importlib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+from cyclopts import Parameter
+
+from fem.batch.answers import table_lines
+from fem.case.case import load_case
+from fem.cli.console import STUDY, AllowOutside, StudyFlags, flag, print_result
+from fem.results.kinds import HALL
+
+if TYPE_CHECKING:
+    from fem.hall.result import HallResult
+
+
+def batch(
+    hall: Path,
+    /,
+    *,
+    case: Annotated[str, Parameter(help="The case that the rows change: a case file or a shipped case.")],
+    motion: Annotated[
+        tuple[str, ...],
+        Parameter(
+            name="--motion",
+            consume_multiple=True,
+            negative=(),
+            show_default=False,
+            help="Records in place of the motion of the case, anywhere, or pairs H,V; each container undergoes all.",
+        ),
+    ] = (),
+    margins: Annotated[
+        Literal["weakest", "all", "none"],
+        Parameter(
+            help="Whose run is repeated for sure and margin: the weakest tenth (at least 30), all, none."
+        ),
+    ] = "weakest",
+    strict: Annotated[bool, flag("Refuse the list if one of its rows is bad.")] = False,
+    allow_outside: AllowOutside = False,
+    pdf: Annotated[bool, flag("Print the page to report.pdf, by Chromium or Chrome.")] = False,
+    flags: StudyFlags = STUDY,
+) -> int:
+    """Compute a list of containers: which rest, slide, rock or overturn, and which is the weakest?
+
+    The header names keys of a case (width_m, mass_kg, mu_static, container.wall_m), name, count, tag, x_m and y_m, or
+    lon and lat; other columns are kept. A bad row is a row with its reason. Writes hall.csv, hall.json, report.html.
+
+    Parameters
+    ----------
+    hall:
+        The list, as CSV.
+    """
+    listed = importlib.import_module("fem.hall.file").read_hall(hall)
+    base = load_case(case, allow_outside=allow_outside)
+    folder = flags.folder(listed.name)
+    # Loaded late: bad input is refused before anything is compiled.
+    study = importlib.import_module("fem.hall.run")
+    with flags.options() as options:
+        result = study.run_hall(
+            listed, base, folder, motions=motion, checks=margins, strict=strict, **options
+        )
+    if pdf and result.status == "completed":
+        printing = importlib.import_module("fem.report.printing")
+        print(printing.print_page(folder / study.PAGE) or printing.BY_HAND)
+    return print_result(result, HALL, folder, page_of(result, folder), as_json=flags.as_json)
+
+
+def page_of(result: "HallResult", folder: Path) -> Iterator[str]:
+    """The lines of a hall, for people."""
+    yield result.hall
+    motions = f" under {len(result.motions)} motions" if len(result.motions) > 1 else ""
+    yield (
+        f"  {result.rows} rows, {result.containers} containers, {result.distinct} that differ{motions}: "
+        f"{result.runs} runs, model {result.model}, {result.status}"
+    )
+    if result.kept:
+        yield f"  kept       {', '.join(result.kept)}"
+    for outcome, count in result.outcomes.items():
+        yield f"  {outcome:12} {count:>8}"
+    bad = [
+        (f"row {one['row']} {one['name']}", one["reason"])
+        for one in result.table
+        if one["status"] == "refused"
+    ]
+    if bad:
+        yield f"  refused    {len(bad)} of {result.rows} rows"
+        yield from table_lines(bad, "hall.csv")
+    if result.state == "finished":
+        ranked = sorted(
+            (one for one in result.table if one["rank"]), key=lambda one: (one["rank"], one["row"])
+        )
+        yield f"  sure and margin of the weakest {result.checked}" * bool(result.checked)
+        yield from table_lines([(one["name"], _shown(one)) for one in ranked[:10]])
+    yield f"  files      {folder}: hall.csv, hall.json, report.html"
+
+
+def _shown(row: dict[str, object]) -> str:
+    """A container in a line."""
+    words = [str(row["outcome"] or row["reason"])]
+    if isinstance(row["margin"], float):
+        words.append(f"overturns from {row['margin']:.3g} times the motion on")
+    elif isinstance(row["margin_tried_to"], float):
+        words.append(f"stands up to {row['margin_tried_to']:.3g} times the motion")
+    if isinstance(row["rotation_ratio"], float) and row["outcome"] != "overturned":
+        words.append(f"rotation ratio {row['rotation_ratio']:.2g}")
+    if isinstance(row["max_slip_m"], float):
+        words.append(f"slip {1e3 * row['max_slip_m']:.3g} mm")
+    return ", ".join(words)

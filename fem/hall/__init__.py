@@ -1,0 +1,1 @@
+"""A hall of containers: a list in, a list out."""

@@ -1,0 +1,151 @@
+"""What the runs of a hall show, container by container, and which containers are the weakest."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from fem.batch.container_cache import ContainerCache
+from fem.batch.log import fields_of, number_in
+from fem.batch.runner import Row
+from fem.hall.plan import Hall, HallItem
+from fem.hall.result import CHECKED, OF_A_RUN, STATIC
+from fem.model.geometry import build_container
+from fem.model.motion import build_motions, peaks_in_run
+from fem.model.static_checks import static_checks_of
+from fem.results.outcome import Ending, ending_of
+from fem.run.checks import WantedChecks
+from fem.run.compute import compute_on
+
+RUN_COLUMNS = ("container", "motion", *OF_A_RUN)
+CHECK_COLUMNS = ("container", *CHECKED)
+#: rotation ratio below which containers are ranked by the static rule: nothing rocks
+ROCKS = 0.01
+#: share of the containers, the weakest first, whose run is repeated under stronger motions and with other inputs; at
+#: least so many
+SHARE, LEAST = 0.1, 30
+
+_CONTAINERS = ContainerCache()
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunFound:
+    """A run as it is in the log."""
+
+    line: str
+    ending: Ending
+    ratio: float
+    slip: float
+
+    @property
+    def weakness(self) -> tuple[float, ...]:
+        """Smaller for the worse: overturned, without an outcome, the larger rotation, the larger slip."""
+        order = (Ending.OVERTURNED, Ending.FAILED).index(self.ending) if self.ending != Ending.STANDING else 2
+        return order, -self.ratio if order == 2 else 0.0, -self.slip
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class HallRuns:
+    """The runs so far, and what their repetition showed."""
+
+    hall: Hall
+    found: dict[int, dict[int, RunFound]] = field(default_factory=dict)  #: by container and motion
+    checked: dict[int, Mapping[str, str]] = field(
+        default_factory=dict
+    )  #: fields of the repetition, by container
+
+    def values(self, item: HallItem, row: Row) -> tuple[Any, ...]:
+        """The line of a run."""
+        return (item.container, item.motion, *(row[name] for name in OF_A_RUN))
+
+    def note(self, line: str) -> None:
+        """Add a line of the log of the runs."""
+        fields = dict(zip(RUN_COLUMNS, fields_of(line), strict=True))
+        run = RunFound(
+            line=line,
+            ending=ending_of(fields["status"], fields["outcome"]),
+            ratio=number_in(fields["rotation_ratio"]) or 0.0,
+            slip=number_in(fields["max_slip_m"]) or 0.0,
+        )
+        self.found.setdefault(int(fields["container"]), {})[int(fields["motion"])] = run
+
+    def note_check(self, line: str) -> None:
+        """Add a line of the log of the repetitions."""
+        number, *fields = fields_of(line)
+        self.checked[int(number)] = dict(zip(CHECKED, fields, strict=True))
+
+    def missing(self) -> list[HallItem]:
+        """Runs that have no line."""
+        return [one for one in self.hall.items() if one.motion not in self.found.get(one.container, {})]
+
+    def lines(self) -> list[str]:
+        """`runs.csv`, in the order of containers and motions."""
+        return [run.line for _, some in sorted(self.found.items()) for _, run in sorted(some.items())]
+
+    def governing(self, container: int) -> int:
+        """The motion under which a container does worst, the first of equals."""
+        runs = self.found[container]
+        return min(sorted(runs), key=lambda motion: runs[motion].weakness)
+
+    def to_check(self, wanted: str, order: Sequence[int]) -> list[HallItem]:
+        """The governing runs that are to be repeated, those that were not yet.
+
+        Args:
+            wanted: weakest | all | none.
+            order: of the containers, the weakest first, before any is repeated.
+        """
+        count = {"none": 0, "all": len(order)}.get(wanted, max(math.ceil(SHARE * len(order)), LEAST))
+        items = [self.hall.item(number, self.governing(number)) for number in order]
+        ended = [one for one in items if self.found[one.container][one.motion].ending != Ending.FAILED]
+        able = [one for one in ended if self.hall.model_of(one) != "full"]
+        return [one for one in able[:count] if one.container not in self.checked]
+
+
+def static_use(hall: Hall, item: HallItem) -> tuple[float | None, float | None]:
+    """Utilisations of the static rules for sliding and overturning under the peak of a run's own motion."""
+    case = hall.cases(item)
+    checks = static_checks_of(case, build_container(case), *peaks_in_run(case, *build_motions(case)))
+    found = checks.ruling.to_result()
+    return found.utilisation_sliding, found.utilisation_overturning
+
+
+def weakest_first(runs: HallRuns, static: Mapping[int, Mapping[str, float | None]]) -> list[int]:
+    """The containers in the order of their weakness.
+
+    What overturned comes first, then what has no outcome, then what stood; within these what has a margin before what
+    has none, by the margin; then by rotation or, where nothing rocks, by the static rule; then by slip.
+    """
+
+    def place(number: int) -> tuple[float, ...]:
+        run = runs.found[number][runs.governing(number)]
+        order, _, slip = run.weakness
+        check = runs.checked.get(number, {})
+        margin = number_in(check.get("margin", "")) or number_in(check.get("margin_tried_to", ""))
+        turned = -run.ratio if run.ratio > ROCKS and order == 2 else 0.0
+        known = margin is None, margin or 0.0
+        return order, *known, turned, -(static[number][STATIC[1]] or 0.0), slip, number
+
+    return sorted(runs.found, key=place)
+
+
+def check_chunk(make: Any, items: Sequence[HallItem]) -> list[Row]:
+    """Repeat runs as the command `run` does: with other inputs, and under stronger and weaker motions."""
+    rows = []
+    for item in items:
+        row: Row = dict.fromkeys(CHECKED) | {"status": "failed"}
+        try:
+            case = make(item)
+            run = compute_on(_CONTAINERS.container_of(case), case, WantedChecks())
+            verdict, margin = run.verdict, run.verdict.margin
+            row |= {"status": run.status, "sure": verdict.sure, "decided_by": " ".join(verdict.decided_by)}
+            if margin is not None:
+                row |= {
+                    "margin": margin.factor,
+                    "margin_low": margin.low,
+                    "margin_high": margin.high,
+                    "margin_tried_to": margin.largest_tried if margin.factor is None else None,
+                }
+        except (ValueError, ArithmeticError, RuntimeError):  # its run ended, the row has its outcome
+            pass
+        rows.append(row)
+    return rows

@@ -1,0 +1,216 @@
+"""The page of a hall: what the containers did, the weakest first, by tag, and the command of each."""
+
+import shlex
+from collections.abc import Mapping
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from markupsafe import Markup
+
+from fem.batch.study import read_study
+from fem.case.case import load_case
+from fem.hall.result import REFUSED, HallResult, TagCount
+from fem.html import sections as html
+from fem.html.page import Signature
+from fem.html.units import ABSENT, figure_cell, figure_head, number
+from fem.report import studies
+from fem.report.comparison import asked_rows, limits_section
+from fem.results.figures import FIGURES
+from fem.results.kinds import HALL
+
+#: figures of a container on the page
+SHOWN = ("rotation_ratio", "max_slip_m")
+MOST_INPUTS = 3  #: of those that decide
+LOOKS = {"overturned": "bad", "failed": "bad"}
+MARGIN = "Margin: the factor on the whole motion of the run from which it overturns, with the range that all unknown "
+MARGIN += (
+    "inputs together give it. Utilisation: of the static rule for overturning, under the peak of the motion."
+)
+A_ROW = Mapping[str, Any]
+
+
+def hall_report(folder: Path, *, signature: Signature | None = None, result: HallResult | None = None) -> str:
+    """The page, as the text of an HTML file.
+
+    Args:
+        folder: of the hall.
+        signature: author, checker, revision.
+        result: what its marking file is to hold; default: what it holds.
+
+    Raises:
+        FolderError: it is no folder of a hall, it is damaged, or it is not finished.
+        CaseError: the base case in it cannot be read.
+    """
+    info = result or read_study(folder, HALL, HallResult)
+    case = load_case(str(folder / "base.toml"), allow_outside=True)
+    ranked = sorted((row for row in info.table if row["rank"]), key=lambda row: (row["rank"], row["row"]))
+    refused = [row for row in info.table if row["status"] == REFUSED]
+    motions = [html.Bullets(info.motions)] if info.motions else []
+    return studies.study_html(
+        "a hall",
+        info=info,
+        title="",
+        name=info.hall,
+        case=case,
+        signature=signature,
+        hash=info.asked,
+        sections=[
+            found_section(info),
+            html.section("By tag", "tags", *([tags_table(info)] if info.tags else [])),
+            html.section("The weakest first", "weakest", weakest_table(info, ranked), html.Note(MARGIN)),
+            html.section("Refused rows", "refused", *([refused_table(refused)] if refused else [])),
+            html.section(
+                "What the rows start from",
+                "asked",
+                html.columns(
+                    html.Pairs(
+                        asked_rows(case), caption="Base case, where a row changes nothing", look="asked"
+                    ),
+                    html.Group("", [html.Heading("Motions of every container"), *motions]) if motions else "",
+                ),
+            ),
+            html.section("One container by itself", "commands", commands_table(ranked)),
+            limits_section(case),
+            studies.repeat_section(
+                [("hall", f"{info.hall}, {info.status}, model {info.model}"), ("hash", info.asked)],
+                info,
+                studies.Again(
+                    words="With the two files of this folder, and the motions:",
+                    command=again(info),
+                    files=[("base.toml", studies.text_of(folder / "base.toml"))],
+                ),
+            ),
+        ],
+    )
+
+
+def again(info: HallResult) -> str:
+    """The command that computes the hall."""
+    words = ["python", "-m", "fem", "batch", "list.csv", "--case", "base.toml"]
+    motions = ["--motion", *info.motions] if info.motions else []
+    return shlex.join([*words, *motions, *(["--margins", info.checks] * (info.checks != "weakest"))])
+
+
+def found_section(info: HallResult) -> html.PageSection:
+    """The answer, and what was computed."""
+    under = f" under {len(info.motions)} motions" if len(info.motions) > 1 else ""
+    count = (
+        f"{info.rows} rows, {info.containers} containers, {info.distinct} that differ{under}: {info.runs} "
+        f"runs{studies.unfinished(info)}."
+    )
+    if info.checked:
+        which = "all" if info.checked == info.distinct else f"the weakest {info.checked}"
+        count += f" Sure, deciding inputs and margin are those of {which}, each under its governing motion."
+    elif info.state == "finished":
+        count += " No run was repeated: nothing is known of sureness and margins."
+    outcomes = ", ".join(f"{word}: {number}" for word, number in info.outcomes.items())
+    note = "A container under several motions has the outcome of the one that does worst, the governing motion: one "
+    note += "that overturns it, else the largest rotation. The margin under another motion may be less."
+    return studies.answer_section(
+        info,
+        info.answer,
+        count,
+        *([f"{outcomes[0].upper()}{outcomes[1:]}."] if outcomes else []),
+        note=note
+        if under
+        else "Each container by itself; neighbours and the floor between them play no part.",
+    )
+
+
+def tags_table(info: HallResult) -> html.Table:
+    """What the containers of each tag did."""
+    columns: list[html.Column[TagCount]] = [
+        html.Column("tag", lambda one: one.tag or ABSENT),
+        html.Column("containers", lambda one: str(one.containers), html.NUMBER),
+        *(
+            html.Column(word, partial(_count, word), html.NUMBER)
+            for word in ("stood", "overturned", "failed", "refused")
+        ),
+        html.Column("least margin", lambda one: number(one.margin, figures=3), html.NUMBER),
+    ]
+    return html.table_of("tags", columns, info.tags, file="hall.csv")
+
+
+def weakest_table(info: HallResult, rows: list[dict[str, Any]]) -> html.Table:
+    """A row a container, the weakest first; its name leads to its command."""
+
+    def figure(name: str, row: A_ROW) -> str:
+        return figure_cell(FIGURES[name], row[name])
+
+    columns: list[html.Column[A_ROW]] = [
+        html.Column("container", lambda row: html.Cell(html.link(row["name"], f"row-{row['row']}"))),
+        html.Column("line", lambda row: str(row["line"]), html.NUMBER),
+        html.Column(
+            "count", lambda row: "" if row["count"] == 1 else str(row["count"]), html.NUMBER, optional=True
+        ),
+        html.Column("tag", lambda row: row["tag"], optional=True),
+        html.Column("outcome", lambda row: row["outcome"] or f"none: {row['reason']}"),
+        html.Column("margin", margin_words, html.NUMBER),
+        html.Column("sure", lambda row: row["sure"] or "", optional=True),
+        html.Column("decided by", _deciding, optional=True),
+        *(html.Column(figure_head(FIGURES[name]), partial(figure, name), html.NUMBER) for name in SHOWN),
+        html.Column(
+            "utilisation", lambda row: number(row["utilisation_overturning"], figures=3), html.NUMBER
+        ),
+        html.Column("motion", lambda row: row["motion"] or "", optional=True),
+        html.Column("of the motions, overturned", _share, html.NUMBER, optional=True),
+    ]
+    return html.table_of(
+        "containers",
+        columns,
+        rows,
+        row_look=lambda row: LOOKS.get(row["outcome"] or "failed", ""),
+        file="hall.csv",
+    )
+
+
+def margin_words(row: A_ROW) -> str:
+    """A margin with its range: "1.8 (1.5 to 2.1)", "1.8 (from 1.5)" where not all overturn, "> 4"; empty without."""
+    margin, low, high, tried = (
+        row[name] for name in ("margin", "margin_low", "margin_high", "margin_tried_to")
+    )
+    if margin is None:
+        return "" if tried is None else f"> {number(tried, figures=3)}"
+    if low is None:
+        return number(margin, figures=3)
+    reach = (
+        f"from {number(low, figures=2)}"
+        if high is None
+        else f"{number(low, figures=2)} to {number(high, figures=2)}"
+    )
+    return f"{number(margin, figures=3)} ({reach})"
+
+
+def refused_table(rows: list[dict[str, Any]]) -> html.Table:
+    """The rows that were not computed, and why."""
+    columns = html.in_order("container", "line", "reason")
+    return html.table_of(
+        "refused rows", columns, ([row["name"], str(row["line"]), row["reason"]] for row in rows)
+    )
+
+
+def commands_table(rows: list[dict[str, Any]]) -> html.Table:
+    """The command that computes each container by itself, under its governing motion."""
+    columns: list[html.Column[A_ROW]] = [
+        html.Column(
+            "container",
+            lambda row: html.Cell(Markup('<span id="row-{}">{}</span>').format(row["row"], row["name"])),
+        ),
+        html.Column("command", lambda row: html.Cell(html.code(row["command"]))),
+    ]
+    return html.table_of("commands", columns, rows, file="hall.json")
+
+
+def _deciding(row: A_ROW) -> str:
+    keys = (row["decided_by"] or "").split()
+    more = len(keys) - MOST_INPUTS
+    return ", ".join(keys[:MOST_INPUTS]) + (f" and {more} more" if more > 0 else "")
+
+
+def _count(word: str, one: TagCount) -> str:
+    return str(getattr(one, word) or "")
+
+
+def _share(row: A_ROW) -> str:
+    return "" if row["motions_overturned"] is None else str(row["motions_overturned"])

@@ -1,0 +1,62 @@
+"""The result of a hall as typed data: what `hall.json` holds, and the columns that it adds to a list."""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+from fem.batch.study import StudyResult
+from fem.results.figures import BOXES, SCALARS
+from fem.results.json_block import JsonBlock
+
+REFUSED = "refused"  #: status of a row that cannot be computed
+#: columns of a run, as in its log
+OF_A_RUN = ("status", *SCALARS, *BOXES, "reason")
+#: what the repetition of a run with other inputs and motions adds, as `run` does; empty where it was not made
+CHECKED = ("sure", "decided_by", "margin", "margin_low", "margin_high", "margin_tried_to")
+STATIC = ("utilisation_sliding", "utilisation_overturning")
+#: of a container under several motions
+OF_MOTIONS = ("motion", "motions_overturned", "motions_failed", "largest_slip_m", "largest_slip_motion")
+FIRST = ("status", "reason", "outcome", *CHECKED[:3], "rotation_ratio", "max_slip_m", "tilt_rad")
+#: behind the columns of the list
+RESULT_COLUMNS = tuple(dict.fromkeys((*FIRST, *STATIC, *OF_MOTIONS, *CHECKED, *SCALARS, *BOXES, "rank")))
+
+
+@dataclass(frozen=True, kw_only=True)
+class TagCount(JsonBlock):
+    """What the containers of one tag did."""
+
+    tag: str
+    containers: int  #: rows times their counts
+    stood: int = 0
+    overturned: int = 0
+    failed: int = 0  #: without an outcome
+    refused: int = 0
+    margin: float | None = None  #: the least that was found
+
+
+@dataclass(frozen=True, kw_only=True)
+class HallResult(StudyResult):
+    """Everything about a hall."""
+
+    hall: str
+    case: str
+    asked: str  #: hash of what is computed
+    listed: str = ""  #: hash of the list
+    model: str
+    motions: tuple[str, ...] = ()  #: files; empty: the motion of the case
+    motion_covered: str | None = None
+    rows: int  #: of the list
+    containers: int  #: rows times their counts
+    distinct: int  #: containers that were computed
+    refused: int = 0  #: rows
+    runs: int = 0
+    checks: str = "weakest"  #: which runs are repeated: weakest | all | none
+    checked: int = 0  #: containers whose run was repeated
+    outcomes: dict[str, int] = field(
+        default_factory=dict
+    )  #: of containers, by count; "failed", "refused" too
+    tags: tuple[TagCount, ...] = ()
+    kept: tuple[str, ...] = ()  #: columns of the list that set nothing
+    columns: tuple[str, ...] = ()  #: of the list
+    table: tuple[
+        dict[str, Any], ...
+    ] = ()  #: a row of `hall.csv` each, with `row`, `name`, `count`, `command`

@@ -1,0 +1,221 @@
+"""A hall of containers: what a list may look like, what its rows show, and that each is the run by itself."""
+
+import csv
+import io
+import json
+import shlex
+
+import pytest
+
+from fem.__main__ import main
+from fem.case.case import load_case
+from fem.case.validation import CaseError
+from fem.hall.file import read_hall
+from fem.hall.run import run_hall
+from fem.results.figures import SCALARS
+from fem.run.compute import compute
+
+BASE = """
+[container]
+width_m = 1.0
+height_m = 3.0
+mass_kg = 2000.0
+[contact]
+mu_static = 0.5
+[motion]
+kind = "pulse"
+shape = "sine"
+peak_acceleration_m_s2 = 5.0
+pulse_s = 1.0
+[solver]
+model = "rigid"
+[uncertainty]
+draws = 2
+"""
+LIST = """name,count,tag,width_m,mass_kg,mu_static,owner
+A,2,north,1.0,2000,0.5,ACME
+=B,1,north,0.6,2000,,
+bad,1,south,-1,2000,,
+C,3,south,1.0,2000.0,0.5,x
+D,1,,2.4,,0.2,y
+"""
+
+
+@pytest.fixture
+def base(tmp_path):
+    path = tmp_path / "base.toml"
+    path.write_text(BASE, encoding="utf-8")
+    return path
+
+
+def listed(tmp_path, text, name="hall.csv", encoding="utf-8"):
+    path = tmp_path / name
+    path.write_bytes(text.encode(encoding))
+    return path
+
+
+def rows_of(path):
+    return list(csv.DictReader(io.StringIO(path.read_text(encoding="utf-8"))))
+
+
+def test_a_row_is_the_run_by_itself_bit_for_bit(tmp_path, base, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["batch", str(listed(tmp_path, LIST)), "--case", "base.toml", "--out", "out", "-q"]) == 0
+    said = capsys.readouterr().out
+    assert "1 rows were refused" in said and "refused    1 of 5 rows" in said
+    found = json.loads((tmp_path / "out" / "hall.json").read_text(encoding="utf-8"))
+    assert (found["rows"], found["containers"], found["distinct"], found["refused"]) == (5, 8, 3, 1)
+    assert found["kept"] == ["owner"] and found["runs"] == 3
+    texts = rows_of(tmp_path / "out" / "hall.csv")
+    assert [one["name"] for one in texts] == ["A", "'=B", "bad", "C", "D"]
+    assert [one["owner"] for one in texts] == ["ACME", "", "", "x", "y"]
+    assert [one["status"] for one in texts] == [*["overturned"] * 2, "refused", "overturned", "completed"]
+    assert "[container] width_m must be" in texts[2]["reason"] and "--set" not in texts[2]["reason"]
+    for row, text in zip(found["table"], texts, strict=True):
+        if row["status"] == "refused":
+            assert not row["outcome"] and not row["rank"]
+            continue
+        *_, case = words = shlex.split(row["command"])[:5]
+        assert words[:4] == ["python", "-m", "fem", "run"] and case == "base.toml"
+        alone = compute(load_case(case, shlex.split(row["command"])[6::2])).verdict
+        for name in SCALARS:
+            assert row[name] == getattr(alone, name), name
+            if isinstance(row[name], float):
+                assert text[name] == repr(row[name])
+        assert row["sure"] == alone.sure and row["decided_by"] == (" ".join(alone.decided_by) or None)
+        assert row["margin"] == alone.margin.factor and row["margin_low"] == alone.margin.low
+        assert row["margin_high"] == alone.margin.high
+    ranks = {row["name"]: row["rank"] for row in found["table"]}
+    assert ranks == {"=B": 1, "A": 2, "C": 2, "D": 3, "bad": None}
+    tags = {one["tag"]: one for one in found["tags"]}
+    assert (tags["north"]["overturned"], tags["south"]["overturned"], tags["south"]["refused"]) == (3, 3, 1)
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert "7 of 7" not in page and "6 of 7 containers overturned" in page and 'href="#row-2"' in page
+    assert main(["report", "out", "-q"]) == 0
+
+
+def test_equal_rows_are_computed_once_and_labels_cost_nothing(tmp_path, base):
+    """A list of which names alone changed is written again from the runs that are there."""
+    case = load_case(base)
+    text = "name,width_m,boxes\na,1,1\nb,1.00,\nc,,\nd,1.5,1\n"
+    result = run_hall(read_hall(listed(tmp_path, text)), case, tmp_path / "out", checks="none")
+    assert (result.distinct, result.runs, result.checked) == (2, 2, 0)
+    runs = (tmp_path / "out" / "runs.csv").stat().st_mtime_ns
+    again = run_hall(
+        read_hall(listed(tmp_path, text.replace("a,", "renamed,"))), case, tmp_path / "out", checks="none"
+    )
+    assert [row["name"] for row in again.table] == ["renamed", "b", "c", "d"]
+    lines = (tmp_path / "out" / "runs.csv").read_text(encoding="utf-8").splitlines()
+    assert len(lines) == 3 and runs
+    assert rows_of(tmp_path / "out" / "hall.csv")[0]["name"] == "renamed"
+
+
+def test_under_several_motions_the_worst_governs_and_the_largest_slip_is_told(tmp_path, base, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for name, half, peak in (("weak", 3, 2.0), ("strong", 8, 9.0), ("middle", 5, 2.5)):
+        samples = [
+            f"{0.1 * k},{peak if 1 <= k <= half else -peak if half < k <= 2 * half else 0.0}"
+            for k in range(20)
+        ]
+        listed(tmp_path, "\n".join(["time_s,acceleration_m_s2", *samples]), f"{name}.csv")
+    text = "name,width_m,mu_static\nwide,3,0.3\nslim,0.8,0.9\n"
+    motions = ("weak.csv", "strong.csv", "middle.csv")
+    result = run_hall(
+        read_hall(listed(tmp_path, text)), load_case("base.toml"), tmp_path / "out", motions=motions
+    )
+    assert (result.runs, result.motions) == (6, motions)
+    wide, slim = result.table
+    assert (slim["outcome"], slim["motions_overturned"]) == ("overturned", 1) and slim[
+        "motion"
+    ] == "strong.csv"
+    assert wide["largest_slip_motion"] == "strong.csv" and wide["largest_slip_m"] >= wide["max_slip_m"] > 0.1
+    assert (slim["rank"], wide["rank"]) == (1, 2)
+    words = shlex.split(slim["command"])
+    assert words[5:7] == ["--motion", "strong.csv"]
+    alone = compute(load_case("base.toml", words[8::2], motion="strong.csv")).verdict
+    assert slim["rotation_ratio"] == alone.rotation_ratio and slim["margin"] == alone.margin.factor
+
+
+@pytest.mark.parametrize(
+    ("text", "encoding"),
+    [
+        ("name;width_m;mass_kg\nBehälter;1,25;2000\n", "utf-8-sig"),
+        ("name;width_m;mass_kg\r\nBehälter;1,25;2000\r\n", "latin-1"),
+        ("sep=;\nName;WIDTH_M;mass_kg\nBehälter;1,25;2000\n", "utf-8"),
+        ("name\twidth_m\tmass_kg\t\nBehälter\t1.25\t2e3\t\n\n", "utf-16"),
+        ('name,container.width_m,mass_kg\n"Behälter","1,25",2000\n', "utf-8"),
+    ],
+)
+def test_lists_of_every_spreadsheet_are_read(tmp_path, text, encoding):
+    (row,) = read_hall(listed(tmp_path, text, encoding=encoding)).rows
+    assert row.name == "Behälter" and row.values == {"container.width_m": 1.25, "container.mass_kg": 2000.0}
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("1.0,2000\n2.0,3000\n", "so there is no header"),
+        ("", "the list is empty"),
+        ("name,width_m\n", "a header and no rows"),
+        ("name,widht_m\na,1\n", "'widht_m' is no key of a case; did you mean 'width_m'"),
+        ("name,width [mm]\na,1\n", "did you mean 'width_m'"),
+        ("name,Weight (kN)\na,1\n", "did you mean 'weight_N'"),
+        ("name,container.colour\na,1\n", "'container.colour' is no key of a case file"),
+        ("name,damping_ratio\na,1\n", "may be container.damping_ratio or contact.damping_ratio"),
+        ("name,width_m,container.width_m\na,1,1\n", "are both 'container.width_m'"),
+        ("name,width_m,width_m\na,1,1\n", "'width_m' is there 2 times"),
+        ("name,margin,width_m\na,1,1\n", "'margin' has the name of a result"),
+        ("name,x_m,width_m\na,1,1\n", "there is x_m alone"),
+        ("name,width_m,\na,1,lost\n", "line 2: column 3 has values and no name"),
+        ("name;width_m\na;1,5\nb;1.5\n", "decimal commas (line 2) and decimal points (line 3)"),
+        ("\0\1", "not a text file"),
+    ],
+)
+def test_a_list_that_cannot_be_read_is_refused_in_a_sentence(tmp_path, text, words):
+    with pytest.raises(CaseError) as error:
+        _ = read_hall(listed(tmp_path, text)).rows
+    assert words in str(error.value) and str(error.value).startswith(str(tmp_path / "hall.csv"))
+
+
+def test_a_bad_row_has_its_reason_and_strict_refuses(tmp_path, base, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    text = (
+        "name,count,width_m,x_m,y_m,wall_m,mass_kg\nfine,1,1,0,0,,\ncount,1.5,1,0,0,,\nplace,1,1,here,0,,\n"
+        "short,1,1\nunit,1,1 m,0,0,,\nheavy,1,1,0,0,0.2,100\n"
+    )
+    path = listed(tmp_path, text)
+    assert main(["batch", str(path), "--case", "base.toml", "--margins", "none", "-q"]) == 0
+    reasons = {one["name"]: one["reason"] for one in rows_of(tmp_path / "outputs" / "hall" / "hall.csv")}
+    for name, words in {
+        "fine": "",
+        "count": "count must be a whole number",
+        "place": "x_m must be a number",
+        "short": "3 fields, and the header names 7 columns",
+        "unit": "width_m must be a number",
+        "heavy": "the walls of one box weigh",
+    }.items():
+        assert words in reasons[name] and bool(reasons[name]) == (name != "fine")
+    capsys.readouterr()
+    assert main(["batch", str(path), "--case", "base.toml", "--strict", "--out", "strict", "-q"]) == 2
+    assert "hall, line 3 (count): count must be" in capsys.readouterr().err
+    assert not (tmp_path / "strict").exists()
+    none = listed(tmp_path, "name,width_m\na,-1\n", "none.csv")
+    assert main(["batch", str(none), "--case", "base.toml", "--out", "none", "-q"]) == 2
+    assert "no row can be computed" in capsys.readouterr().err
+
+
+def test_too_many_rows_are_told_the_time_before_any_is_looked_at(tmp_path, base):
+    file = read_hall(listed(tmp_path, "width_m\n" + "1.0\n" * 250_000))
+    with pytest.raises(CaseError, match=r"250000 rows, 250000 runs: roughly \d+ .* or say --force"):
+        run_hall(file, load_case(base), tmp_path / "out")
+
+
+def test_a_result_may_be_the_list_of_the_next_hall(tmp_path, base):
+    case = load_case(base)
+    run_hall(read_hall(listed(tmp_path, LIST)), case, tmp_path / "out", checks="none")
+    again = read_hall(tmp_path / "out" / "hall.csv")
+    assert again.columns == tuple(LIST.splitlines()[0].split(","))
+    assert [row.name for row in again.rows] == ["A", "=B", "bad", "C", "D"]
+    run_hall(again, case, tmp_path / "next", checks="none")
+    first, second = ((tmp_path / name / "hall.csv").read_bytes() for name in ("out", "next"))
+    assert first == second
