@@ -64,6 +64,7 @@ def test_what_cannot_be_is_refused_in_the_words_of_the_command(make, words):
 
 def test_the_package_gives_away_its_interface_and_nothing_else():
     assert [name for name in dir(fem) if not name.startswith("_")] == [
+        "annual_rate",
         "case_from",
         "compute",
         "compute_many",
