@@ -66,17 +66,22 @@ def page_of(result: "SiteResult", folder: Path) -> Iterator[str]:
         f"{motions.largest_correlation:.2f}: {'valid' if motions.valid else 'not valid'}"
     )
     yield f"  runs       {answer.runs}, {answer.overturned} overturned"
+    for one in answer.actions:
+        used = "" if one.utilisation is None else f", utilisation {one.utilisation:.3g}"
+        yield f"  {one.name:<10} {one.answer or 'no answer'}{used}"
     if answer.scan:
-        first = answer.factor_at_first_overturning
-        most = max(point.factor for point in answer.scan)
-        found = f"{first:.3g}" if first is not None else f"none up to {most:g}"
-        yield f"  factor     on the motions at the first overturning: {found}"
-    if answer.further:
-        further = answer.further
-        low, high = (100.0 * end for end in further.interval)
+        fails, first = (
+            "none" if factor is None else f"{factor:.3g}"
+            for factor in (answer.margin_factor, answer.factor_at_first_overturning)
+        )
         yield (
-            f"  further    {further.overturned} of {further.motions} motions overturn it (95 %: {low:.1f} to "
-            f"{high:.1f} %)"
+            f"  factor     on the motions at which the rule first fails: {fails}, first overturning: {first}; tried "
+            f"up to {max(point.factor for point in answer.scan):g}"
+        )
+    for further in answer.further:
+        yield (
+            f"  further    {further.overturned} of {further.motions} motions overturn it, {further.beyond_limits} go "
+            f"beyond a limit of one motion ({further.mass}, friction {further.mu_static:.3g}/{further.mu_kinetic:.3g})"
         )
     yield f"  rule       {answer.rule}"
     yield f"  files      {folder}"

@@ -1,27 +1,44 @@
-"""The answer to a verification, from its runs: what counts by the rule, what governs, where it first overturns."""
+"""The answer to a verification, from its runs: what counts by the rule, what speaks against it, and the margin."""
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 
 from fem.results.outcome import Outcome
 from fem.runtime.intervals import binomial_interval
 from fem.runtime.units import RATIO, SHORT_MILLIMETRES
 from fem.site_check import result
 from fem.site_check.file import SiteRequest
-from fem.site_check.rule import RunGroup, groups_of, rule_in_words
-from fem.site_check.runs import FURTHER, REFINED, SCAN, SET, RunKey
+from fem.site_check.reasons import CONFIDENCE, NOT_FULFILLED, NOT_SURE, Evidence, Reason
+from fem.site_check.rule import RuleFound, RunGroup, groups_of, rule_in_words
+from fem.site_check.runs import FURTHER, REFINED, REPEATED, SCAN, SET, RunKey
 
-CONFIDENCE = 0.95
+FULFILLED = "fulfilled"
+EARTHQUAKE, WIND = "earthquake", "wind"
+NO_FURTHER = "No further motions were asked for: how often such motions overturn it is not known."
+FIGURES = ("rotation_ratio", "rotation_ratio_largest", "slip_m")  #: of the rule, of which the range is given
+
+
+@dataclass(frozen=True, kw_only=True)
+class Beside:
+    """What the answer rests on beside the runs of its stages."""
+
+    confirmed: Sequence[result.ConfirmedRun] = ()  #: the deciding runs, repeated
+    wind: float | None = None  #: utilisation under wind; None: it was not asked for
+    still: int = 0  #: runs that the rigid bound made superfluous
+    moves_at: float | None = None  #: factor on the motions at which a rigid body first uplifts or slips
+    left_out: str = ""  #: stages that were not asked for, in words
 
 
 def answer_of(
     request: SiteRequest,
     motions: result.MotionSet,
     runs: Mapping[RunKey, result.SiteRun],
-    confirmed: Sequence[result.ConfirmedRun] = (),
+    beside: Beside | None = None,
 ) -> result.SiteAnswer:
-    """The answer, from all runs."""
+    """The answer, from all runs and from what is beside them."""
+    beside, limits = beside or Beside(), request.limits
     own = [run for key, run in runs.items() if key.stage == SET]
-    rule = rule_in_words(motions.count)
+    rule = rule_in_words(motions.count, limits)
     if not motions.valid:
         reasons = "; ".join(motions.reasons)
         return result.SiteAnswer(
@@ -30,34 +47,77 @@ def answer_of(
             overturned=0,
             runs=0,
         )
-    groups, limits = groups_of(own), request.limits
-    overturned, failed = sum(one.overturned for one in groups), sum(one.failed for one in groups)
-    found_by_rule = _largest(groups)
-    within, short = (
-        found_by_rule[name] is not None and found_by_rule[name] <= getattr(limits, name)
-        for name in result.LIMITED
+    groups = groups_of(own)
+    found = RuleFound.of(groups)
+    span, failed = rule_range(groups, runs)
+    evidence = Evidence(
+        limits=limits,
+        motions=motions.count,
+        groups=groups,
+        rule=found,
+        range=span,
+        repetitions_failed=failed,
+        further=further_motions(request, runs),
+        confirmed=beside.confirmed,
     )
-    fulfilled = None if failed and not overturned else not overturned and within and short
+    against = list(evidence.reasons())
+    if not request.motions.further and not beside.left_out:
+        against.append(Reason(NOT_SURE, NO_FURTHER))
+    if beside.left_out:
+        against.append(Reason(NOT_SURE, beside.left_out))
+    unknown = found.failed > 0 and not found.overturned
+    actions = [
+        result.ActionAnswer(
+            name=EARTHQUAKE,
+            answer=None if unknown else gravest(against),
+            utilisation=found.utilisation(limits),
+        )
+    ]
+    if beside.wind is not None:
+        actions.append(wind_answer(beside.wind))
+        if beside.wind > 1.0:
+            words = f"Wind uses {beside.wind:.2f} of the resistance of the lightest container."
+            against.append(Reason(NOT_FULFILLED, words))
+    answer = None if unknown else gravest(against)
+    against.sort(key=lambda reason: reason.answer != NOT_FULFILLED)
     return result.SiteAnswer(
-        answer={None: None, True: "fulfilled", False: "not fulfilled"}[fulfilled],
-        fulfilled=fulfilled,
+        answer=answer,
+        fulfilled={FULFILLED: True, NOT_FULFILLED: False}.get(answer or ""),
+        reasons=tuple(reason.sentence for reason in against),
         rule=rule,
-        sentence=_sentence(request, fulfilled, groups, overturned=overturned, failed=failed),
-        overturned=overturned,
+        sentence=_sentence(request, answer, found, against, runs=len(own)),
+        overturned=found.overturned,
         runs=len(own),
-        **vars(found_by_rule),
-        rotation_fulfilled=None if failed and not overturned else not overturned and within,
-        slip_fulfilled=None if failed or overturned else short,
+        still=beside.still,
+        **vars(found.by_rule),
+        exceeded=tuple(found.exceeded(limits)),
         governing=governing_run(request, own),
+        actions=tuple(actions),
+        margin_factor=margin_factor(request, runs),
         factor_at_first_overturning=_first_overturning(runs),
+        factor_at_first_movement=beside.moves_at,
+        rule_range=span,
         scan=_scan(runs),
-        further=_further(request, runs),
-        confirmed=tuple(confirmed),
+        further=tuple(evidence.further),
+        confirmed=tuple(beside.confirmed),
+    )
+
+
+def gravest(reasons: Iterable[Reason]) -> str:
+    """The answer that some reasons leave."""
+    answers = {reason.answer for reason in reasons}
+    return next((answer for answer in (NOT_FULFILLED, NOT_SURE) if answer in answers), FULFILLED)
+
+
+def wind_answer(utilisation: float) -> result.ActionAnswer:
+    """The answer for the wind, a static check."""
+    return result.ActionAnswer(
+        name=WIND, answer=NOT_FULFILLED if utilisation > 1.0 else FULFILLED, utilisation=utilisation
     )
 
 
 def no_answer_yet(
-    motions: result.MotionSet, own: Sequence[result.SiteRun], missing: str
+    request: SiteRequest, motions: result.MotionSet, own: Sequence[result.SiteRun], missing: str
 ) -> result.SiteAnswer:
     """What stands in place of the answer of an interrupted verification.
 
@@ -66,7 +126,7 @@ def no_answer_yet(
         missing: what is not, in words.
     """
     return result.SiteAnswer(
-        rule=rule_in_words(motions.count),
+        rule=rule_in_words(motions.count, request.limits),
         sentence=f"No answer yet: {missing}.",
         overturned=sum(run.outcome == Outcome.OVERTURNED for run in own),
         runs=len(own),
@@ -93,12 +153,80 @@ def governing_run(request: SiteRequest, runs: Sequence[result.SiteRun]) -> resul
     return max(group.runs, key=lambda run: run[result.LIMITED[name]] or 0.0)
 
 
-def _largest(groups: Iterable[RunGroup]) -> result.ByRule:
-    """The largest figures of all groups; None where one has none."""
-    figures = {name: [group.by_rule[name] for group in groups] for name in result.LIMITED}
-    return result.ByRule(
-        **{name: None if None in some else max(some, default=None) for name, some in figures.items()}
+def rule_range(
+    groups: Sequence[RunGroup], runs: Mapping[RunKey, result.SiteRun]
+) -> tuple[result.RuleRange | None, int]:
+    """The rule over the set and its repetitions, and how many of their runs failed; None: there are no repetitions.
+
+    In each repetition the groups that were run again take the place of their own.
+    """
+    again: dict[float, list[result.SiteRun]] = {}
+    for key, run in runs.items():
+        if key.stage == REPEATED:
+            again.setdefault(key.factor, []).append(run)
+    if not again:
+        return None, 0
+    found = [RuleFound.of(groups)]
+    for some in again.values():
+        repeated = {group.key: group for group in groups_of(some)}
+        found.append(RuleFound.of([repeated.get(group.key, group) for group in groups]))
+    ranges = {}
+    for name in FIGURES:
+        known = [one.by_rule[name] for one in found if one.by_rule[name] is not None]
+        ranges[name] = (min(known), max(known)) if known else ()
+    repetitions = found[1:]
+    span = result.RuleRange(
+        **ranges, repetitions=len(repetitions), overturned=sum(one.overturned > 0 for one in repetitions)
     )
+    return span, sum(run.outcome is None for some in again.values() for run in some)
+
+
+def further_motions(
+    request: SiteRequest, runs: Mapping[RunKey, result.SiteRun]
+) -> tuple[result.FurtherMotions, ...]:
+    """Of the further motions, how many overturn each container, or go beyond a limit, with the worse sign."""
+    limits = request.limits
+    counted = []
+    for group in groups_of(run for key, run in runs.items() if key.stage == FURTHER):
+        failed = {run.motion for run in group.runs if run.outcome is None}
+        known = RunGroup(runs=tuple(run for run in group.runs if run.motion not in failed))
+        fell = known.beyond_any({})
+        first = group.first
+        counted.append(
+            result.FurtherMotions(
+                mass=first.mass,
+                elevation=first.elevation,
+                building_period_s=first.building_period_s,
+                mu_static=first.mu_static,
+                mu_kinetic=first.mu_kinetic,
+                motions=known.motions,
+                overturned=fell,
+                beyond_limits=known.beyond_any(
+                    {"rotation_ratio": limits.single_rotation_ratio, "max_slip_m": limits.slip_m}
+                ),
+                interval=binomial_interval(fell, known.motions, CONFIDENCE) if known.motions else (),
+                failed=len(failed),
+            )
+        )
+    return tuple(counted)
+
+
+def margin_factor(request: SiteRequest, runs: Mapping[RunKey, result.SiteRun]) -> float | None:
+    """The least factor on the motions, of those tried, at which the rule fails; None: it fails at none."""
+    by_factor: dict[float, list[result.SiteRun]] = {}
+    for key, run in runs.items():
+        if key.stage in (SET, SCAN, REFINED):
+            by_factor.setdefault(key.factor, []).append(run)
+    whole = max((len(group.runs) for group in groups_of(by_factor.get(1.0, ()))), default=0)
+
+    def fails(factor: float) -> bool:
+        # Between factors some runs of a group may be there alone: they have no mean.
+        return any(
+            group.overturned or (len(group.runs) == whole and RuleFound.of([group]).fails(request.limits))
+            for group in groups_of(by_factor[factor])
+        )
+
+    return min((factor for factor in by_factor if fails(factor)), default=None)
 
 
 def _first_overturning(runs: Mapping[RunKey, result.SiteRun]) -> float | None:
@@ -117,56 +245,33 @@ def _scan(runs: Mapping[RunKey, result.SiteRun]) -> tuple[result.ScanPoint, ...]
             by_factor.setdefault(key.factor, []).append(run)
     points = []
     for factor in sorted(by_factor):
-        groups = groups_of(by_factor[factor])
+        found = RuleFound.of(groups_of(by_factor[factor]))
         points.append(
             result.ScanPoint(
                 factor=factor,
                 runs=len(by_factor[factor]),
-                overturned=sum(group.overturned for group in groups),
-                **vars(_largest(groups)),
+                overturned=found.overturned,
+                **vars(found.by_rule),
             )
         )
     return tuple(points) if len(points) > 1 else ()
 
 
-def _further(request: SiteRequest, found: Mapping[RunKey, result.SiteRun]) -> result.FurtherMotions | None:
-    """Of the further motions, how many overturn the container, with the worse sign."""
-    by_motion: dict[int, list[result.SiteRun]] = {}
-    for key, run in found.items():
-        if key.stage == FURTHER and run.outcome is not None:
-            by_motion.setdefault(key.motion, []).append(run)
-    if not by_motion:
-        return None
-    fell = sum(any(run.outcome == Outcome.OVERTURNED for run in runs) for runs in by_motion.values())
-    beyond = sum(any(_beyond(request, run) for run in runs) for runs in by_motion.values())
-    return result.FurtherMotions(
-        motions=len(by_motion),
-        overturned=fell,
-        interval=binomial_interval(fell, len(by_motion), CONFIDENCE),
-        not_fulfilled=beyond,
-    )
-
-
-def _beyond(request: SiteRequest, run: result.SiteRun) -> bool:
-    limited = ((run[figure] or 0.0, getattr(request.limits, name)) for name, figure in result.LIMITED.items())
-    return run.outcome == Outcome.OVERTURNED or any(value > limit for value, limit in limited)
-
-
 def _sentence(
-    request: SiteRequest, fulfilled: bool | None, groups: Iterable[RunGroup], *, overturned: int, failed: int
+    request: SiteRequest, answer: str | None, found: RuleFound, against: Sequence[Reason], *, runs: int
 ) -> str:
-    groups, limits = list(groups), request.limits
-    runs = sum(len(group.runs) for group in groups)
-    if fulfilled is None:
-        return f"No answer: {failed} of {runs} runs failed."
-    if overturned:
-        return f"Not fulfilled under the rule below: {overturned} of {runs} runs overturned."
-    rotation, slip = (_largest(groups)[name] or 0.0 for name in result.LIMITED)
-    figures = (
-        f"none of {runs} runs overturned; rotation {RATIO.text(rotation)} of the slenderness angle (limit "
-        f"{limits.rotation_ratio:g}), slip {_slip_in_words(slip)} (limit {1e3 * limits.slip_m:g} mm)"
+    """The answer in words: what it rests on, or what speaks against it."""
+    if answer is None:
+        return f"No answer: {found.failed} of {runs} runs failed."
+    if answer != FULFILLED:
+        gravest_ones = [reason.sentence for reason in against if reason.answer == answer]
+        return f"{answer.capitalize()}. {' '.join(gravest_ones)}"
+    limits, figures = request.limits, found.by_rule
+    return (
+        f"Fulfilled under the rule below: none of {runs} runs overturned; rotation "
+        f"{RATIO.text(figures.rotation_ratio)} of the slenderness angle (limit {limits.rotation_ratio:g}), "
+        f"largest slip {_slip_in_words(figures.slip_m or 0.0)} (limit {1e3 * limits.slip_m:g} mm)."
     )
-    return f"{'Fulfilled' if fulfilled else 'Not fulfilled'} under the rule below: {figures}."
 
 
 def _slip_in_words(slip: float) -> str:

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from itertools import pairwise
 from typing import Literal
 
@@ -10,9 +10,15 @@ import numpy as np
 
 from fem.batch.study import COMPLETED, StudyResult
 from fem.run.bracket import least_width, values_to_try
-from fem.site_check.result import LIMITED, ByRule, SiteAnswer
+from fem.site_check.result import ByRule, SiteAnswer
 
 RESOLUTION = 0.01  #: largest width of a bracket over the value
+#: the keys of the limits
+LIMITS_IN_WORDS = {
+    "rotation_ratio": "rotation",
+    "single_rotation_ratio": "the rotation of one motion",
+    "slip_m": "slip",
+}
 INNER = 3  #: values tried within a bracket at a time
 #: which values a user looks for: the least, the largest, or all
 Wanted = Literal["least", "largest", "window"]
@@ -39,6 +45,7 @@ class SizePoint(ByRule):
     """The answer at one value."""
 
     value: float
+    answer: str | None = None  #: fulfilled | not fulfilled | not sure
     fulfilled: bool | None = None
     overturned: int
     runs: int
@@ -81,7 +88,7 @@ def next_values(axis: SizeAxis, answers: Mapping[float, SiteAnswer]) -> list[flo
     missing = [value for value in axis.values if value not in answers]
     if missing or axis.whole:
         return missing
-    outcomes = {value: str(answer.fulfilled) for value, answer in answers.items()}
+    outcomes = {value: str(bool(answer.fulfilled)) for value, answer in answers.items()}
     return values_to_try(
         outcomes, resolution=RESOLUTION, inner=INNER, least=least_width(axis.values, RESOLUTION)
     )
@@ -199,10 +206,11 @@ def _inward(value: float, figures: int, *, up: bool) -> float:
 def _point(value: float, answer: SiteAnswer) -> SizePoint:
     return SizePoint(
         value=value,
+        answer=answer.answer,
         fulfilled=answer.fulfilled,
         overturned=answer.overturned,
         runs=answer.runs,
-        **{name: answer[name] for name in LIMITED},
+        **{one.name: answer[one.name] for one in fields(ByRule)},
         fails=_reason(answer),
     )
 
@@ -210,12 +218,15 @@ def _point(value: float, answer: SiteAnswer) -> SizePoint:
 def _reason(answer: SiteAnswer) -> str:
     if answer.fulfilled:
         return ""
-    if answer.fulfilled is None:
+    if answer.answer is None:
         return "there is no answer"
+    if answer.fulfilled is None:
+        return "it is not sure"
     if answer.overturned:
         return "it overturns"
-    limited = (("rotation", answer.rotation_fulfilled), ("slip", answer.slip_fulfilled))
-    names = [name for name, kept in limited if kept is False]
+    names = [LIMITS_IN_WORDS[key] for key in answer.exceeded]
+    if not names:
+        return "the wind moves it"
     return f"{' and '.join(names)} {'are' if len(names) > 1 else 'is'} beyond the limit"
 
 

@@ -32,7 +32,7 @@ def confirmed(
     Raises:
         CaseError, MeshError: one of them cannot be computed.
     """
-    again = compute_many([cases(key._replace(model=MODEL)) for key in keys], jobs)
+    again = compute_many([cases(key._replace(model=MODEL)) for key in keys], jobs, margin=False)
     results = []
     for key, run in zip(keys, again, strict=True):
         verdict = run.verdict

@@ -8,6 +8,7 @@ import numpy as np
 
 from contact.reference.rigid_block import RigidBlock
 from contact.stepping.observables import ROCKING
+from fem.case.validation import CaseError
 from fem.results.outcome import Outcome, least_slide
 from fem.runtime.arrays import FloatArray
 from fem.seismic.action import DAMPING_RATIO, SiteAction, damping_correction
@@ -61,13 +62,35 @@ def site_methods(
             for row, capacity in zip(method_rows(methods, action), capacities, strict=True)
         ]
     if inputs.wind_pressure_Pa is not None:
-        lightest = min(bodies, key=lambda one: one.mass_kg * one.support_width_m)
-        body = loose_body(lightest, inputs)
+        lightest = lightest_of(bodies)
         rows += [
             _result(row, lightest, Found(words="no run: wind"), None)
-            for row in wind_rows(body, inputs.wind_pressure_Pa, gamma_mu=inputs.gamma_mu)
+            for row in wind_rows(
+                loose_body(lightest, inputs), inputs.wind_pressure_Pa, gamma_mu=inputs.gamma_mu
+            )
         ]
     return tuple(rows)
+
+
+def lightest_of(bodies: Sequence[SiteBody]) -> SiteBody:
+    """The body that the wind is on."""
+    return min(bodies, key=lambda one: one.mass_kg * one.support_width_m)
+
+
+def wind_utilisation(bodies: Sequence[SiteBody], inputs: SiteInputs) -> float | None:
+    """The largest utilisation under wind; None where it was not asked for.
+
+    Raises:
+        CaseError: the container is higher than the rule for the wind holds.
+    """
+    if inputs.wind_pressure_Pa is None:
+        return None
+    body = loose_body(lightest_of(bodies), inputs)
+    try:
+        rows = wind_rows(body, inputs.wind_pressure_Pa, gamma_mu=inputs.gamma_mu)
+    except ValueError as error:
+        raise CaseError(f"[wind] {error}; leave the table out") from None
+    return max(row.utilisation for row in rows)
 
 
 def loose_body(body: SiteBody, inputs: SiteInputs) -> LooseBody:

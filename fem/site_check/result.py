@@ -128,7 +128,7 @@ class SiteBody(JsonBlock):
 class SiteRun(RunFigures):
     """One run."""
 
-    stage: str = "set"  #: set | scan | refined | further: what it is for
+    stage: str = "set"  #: set | repeated | scan | refined | further: what it is for
     motion: int
     vertical_sign: int  #: 1, -1; 0: no vertical component
     mu_static: float
@@ -144,14 +144,27 @@ class SiteRun(RunFigures):
 
 @dataclass(frozen=True, kw_only=True)
 class ByRule(JsonBlock):
-    """What counts by the rule, under the names of its limits; None where a run overturned or failed."""
+    """What counts by the rule; None where a run overturned or failed."""
 
-    rotation_ratio: float | None = None
-    slip_m: float | None = None
+    rotation_ratio: float | None = None  #: of seven and more motions the mean, of fewer the largest
+    rotation_ratio_largest: float | None = None  #: of a single motion
+    slip_m: float | None = None  #: of a single motion, the largest: a clearance is used up once
+    slip_mean_m: float | None = None
 
 
-#: the figure of a run that each limit is on
+#: the figure of a run that each of these is on
 LIMITED = {"rotation_ratio": "rotation_ratio", "slip_m": "max_slip_m"}
+
+
+@dataclass(frozen=True, kw_only=True)
+class RuleRange(JsonBlock):
+    """The rule over the set and its repetitions with changes that nobody can tell apart: [low, high] of each figure."""
+
+    rotation_ratio: tuple[float, ...] = ()
+    rotation_ratio_largest: tuple[float, ...] = ()
+    slip_m: tuple[float, ...] = ()
+    repetitions: int = 0
+    overturned: int = 0  #: repetitions in which a run overturned, of which the ranges know nothing
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -165,12 +178,18 @@ class ScanPoint(ByRule):
 
 @dataclass(frozen=True, kw_only=True)
 class FurtherMotions(JsonBlock):
-    """Motions beyond the set: how often the container overturned."""
+    """Motions beyond the set for one container and friction: how often, with the worse sign, it overturned."""
 
+    mass: str
+    elevation: str = "width"
+    building_period_s: float | None = None
+    mu_static: float
+    mu_kinetic: float
     motions: int
     overturned: int
-    interval: tuple[float, ...]  #: of the probability, 95 %, two-sided
-    not_fulfilled: int | None = None  #: beyond a limit, or overturned
+    beyond_limits: int  #: overturned, or beyond a limit of a single motion
+    interval: tuple[float, ...]  #: of the probability of overturning, 95 %, two-sided
+    failed: int = 0  #: motions without an outcome, which are none of `motions`
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -186,21 +205,42 @@ class ConfirmedRun(RunFigures):
 
 
 @dataclass(frozen=True, kw_only=True)
+class ActionAnswer(JsonBlock):
+    """The answer for one action that was asked for."""
+
+    name: str  #: earthquake | wind
+    answer: str | None = None
+    utilisation: float | None = (
+        None  #: the largest over all checks; None where a run overturned, or without answer
+    )
+    words: str = ""  #: what it rests on
+
+
+@dataclass(frozen=True, kw_only=True)
 class SiteAnswer(ByRule):
     """The answer, under the rule that is printed with it."""
 
-    answer: str | None = None  #: fulfilled | not fulfilled
-    fulfilled: bool | None = None  #: None: the set is not valid, or runs failed, or are not there yet
+    answer: str | None = None  #: fulfilled | not fulfilled | not sure; None: there is none (yet)
+    fulfilled: bool | None = None  #: None also where it is not sure
+    reasons: tuple[str, ...] = ()  #: why it is not fulfilled, or not sure: sentences, the gravest first
     rule: str
     sentence: str
     overturned: int
     runs: int
-    rotation_fulfilled: bool | None = None
-    slip_fulfilled: bool | None = None
+    still: int = 0  #: runs below uplift and slip by the rigid bound, which were not computed
+    exceeded: tuple[str, ...] = ()  #: keys of the limits that the set exceeds
     governing: SiteRun | None = None
+    actions: tuple[ActionAnswer, ...] = ()
+    margin_factor: float | None = (
+        None  #: least factor on the motions, of those tried, at which the rule fails
+    )
     factor_at_first_overturning: float | None = None
+    factor_at_first_movement: float | None = (
+        None  #: at which a rigid body first uplifts or slips; None: not known
+    )
+    rule_range: RuleRange | None = None
     scan: tuple[ScanPoint, ...] = ()
-    further: FurtherMotions | None = None
+    further: tuple[FurtherMotions, ...] = ()
     confirmed: tuple[ConfirmedRun, ...] = ()
 
 
@@ -234,6 +274,7 @@ class SiteInputs(JsonBlock):
     mu_static: tuple[float, ...]
     mu_kinetic_over_static: tuple[float, ...]
     rotation_ratio_limit: float
+    single_rotation_ratio_limit: float = 0.8
     slip_limit_m: float
     wind_pressure_Pa: float | None = None
     wind_pressure_source: str = ""

@@ -1,21 +1,30 @@
-"""The rule of a verification: from the runs of a set of motions to one number for each limit.
+"""The rule of a verification: from the runs of a set of motions to the figures that its limits are on.
 
 For each weight, elevation, building period and pair of frictions: of each motion the worse sign of the vertical; then
-the largest of fewer than seven motions, or the mean of seven and more (EN 1998-1:2004, 4.3.3.4.3 (3), by analogy). Of
-these groups the largest counts. Any overturning means not fulfilled: the code is silent
-there, so this is the rule of this program.
+of rotations the largest of fewer than seven motions, or the mean of seven and more (EN 1998-1:2004, 4.3.3.4.3 (3), by
+analogy), and of slips the largest, since a clearance is used up by one motion. Of these groups the largest counts. Any
+overturning means not fulfilled, and no single motion may turn the container further than a second limit: the code is
+silent there, so these are the rules of this program.
 """
 
 import math
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
+from typing import Self
 
 from fem.results.outcome import Outcome
-from fem.site_check.result import LIMITED, ByRule, SiteRun
+from fem.site_check.result import ByRule, SiteRun
+from fem.site_check.tables import LimitsTable
 
 MEAN_FROM = 7  #: motions from which the mean counts
 SHARE = 0.3  #: of the other horizontal component
+#: the figure that each limit is on
+FIGURE_OF = {
+    "rotation_ratio": "rotation_ratio",
+    "single_rotation_ratio": "rotation_ratio_largest",
+    "slip_m": "slip_m",
+}
 Key = tuple[str, str, float | None, float, float]
 
 
@@ -29,6 +38,11 @@ class RunGroup:
     def first(self) -> SiteRun:
         """One of them: weight, elevation, period and frictions are those of all."""
         return self.runs[0]
+
+    @property
+    def key(self) -> Key:
+        """Weight, elevation, period and frictions."""
+        return _key(self.first)
 
     @property
     def motions(self) -> int:
@@ -48,9 +62,34 @@ class RunGroup:
     @cached_property
     def by_rule(self) -> ByRule:
         """What counts."""
-        return ByRule(**{limit: self._counted(figure) for limit, figure in LIMITED.items()})
+        rotations, slips = self._worst("rotation_ratio"), self._worst("max_slip_m")
+        if rotations is None or slips is None:
+            return ByRule()
+        mean = sum(rotations) / len(rotations)
+        return ByRule(
+            rotation_ratio=mean if len(rotations) >= MEAN_FROM else max(rotations),
+            rotation_ratio_largest=max(rotations),
+            slip_m=max(slips),
+            slip_mean_m=sum(slips) / len(slips),
+        )
 
-    def _counted(self, figure: str) -> float | None:
+    def beyond(self, figure: str, limit: float) -> int:
+        """Motions of which a figure is beyond a limit with the worse sign, or which overturn it."""
+        return self.beyond_any({figure: limit})
+
+    def beyond_any(self, limits: Mapping[str, float]) -> int:
+        """Motions that overturn it, or of which one of some figures is beyond its limit, with the worse sign."""
+        return len(
+            {
+                run.motion
+                for run in self.runs
+                if run.outcome == Outcome.OVERTURNED
+                or any((run[figure] or 0.0) > limit for figure, limit in limits.items())
+            }
+        )
+
+    def _worst(self, figure: str) -> list[float] | None:
+        """Of each motion the worse sign; None where a run has no such figure."""
         if self.overturned or self.failed:
             return None
         worst: dict[int, float] = {}
@@ -58,7 +97,45 @@ class RunGroup:
             if run[figure] is None:
                 return None
             worst[run.motion] = max(worst.get(run.motion, 0.0), run[figure])
-        return sum(worst.values()) / len(worst) if len(worst) >= MEAN_FROM else max(worst.values())
+        return list(worst.values())
+
+
+@dataclass(frozen=True, kw_only=True)
+class RuleFound:
+    """What the rule finds in the runs of some groups."""
+
+    overturned: int
+    failed: int
+    by_rule: ByRule  #: over the groups the largest; None where one has none
+
+    @classmethod
+    def of(cls, groups: Sequence[RunGroup]) -> Self:
+        """From the runs of groups."""
+        found = {one.name: [group.by_rule[one.name] for group in groups] for one in fields(ByRule)}
+        return cls(
+            overturned=sum(group.overturned for group in groups),
+            failed=sum(group.failed for group in groups),
+            by_rule=ByRule(
+                **{name: None if None in some else max(some, default=None) for name, some in found.items()}
+            ),
+        )
+
+    def exceeded(self, limits: LimitsTable) -> list[str]:
+        """The limits that are exceeded, by their keys; where a run overturned none is known to be kept."""
+        return [key for key, name in FIGURE_OF.items() if (self.by_rule[name] or 0.0) > getattr(limits, key)]
+
+    def fails(self, limits: LimitsTable) -> bool:
+        """Whether the rule is not fulfilled."""
+        return self.overturned > 0 or bool(self.exceeded(limits))
+
+    def utilisation(self, limits: LimitsTable) -> float | None:
+        """The largest share of a limit; None where a run overturned or failed."""
+        used = [
+            None if self.by_rule[name] is None else self.by_rule[name] / getattr(limits, key)
+            for key, name in FIGURE_OF.items()
+        ]
+        known = [one for one in used if one is not None]
+        return max(known) if len(known) == len(used) else None
 
 
 def groups_of(runs: Iterable[SiteRun]) -> list[RunGroup]:
@@ -89,16 +166,38 @@ def both_directions(groups: Sequence[RunGroup]) -> list[tuple[RunGroup, float]]:
             if along.first.elevation != "width" or across.first.elevation == "width":
                 continue
             one, other = along.by_rule.slip_m, across.by_rule.slip_m
-            if _key(same) == _key(along.first) and one is not None and other is not None:
+            if _key(same) == along.key and one is not None and other is not None:
                 pairs = ((one, other), (other, one))
                 combined.append((along, max(math.hypot(whole, SHARE * part) for whole, part in pairs)))
     return combined
 
 
-def rule_in_words(motions: int) -> str:
+def governing_groups(groups: Sequence[RunGroup]) -> list[RunGroup]:
+    """Of each weight the group that governs rotation and the one that governs slip, in the order of the groups."""
+
+    def rotation(group: RunGroup) -> tuple[int, float]:
+        return group.overturned, max(run.turned for run in group.runs)
+
+    def slip(group: RunGroup) -> float:
+        return max(run.slipped for run in group.runs if run.outcome != Outcome.OVERTURNED)
+
+    chosen: set[int] = set()
+    for mass in dict.fromkeys(group.first.mass for group in groups):
+        own = [group for group in groups if group.first.mass == mass and not group.failed]
+        standing = [group for group in own if group.overturned < len(group.runs)]
+        chosen |= {id(max(some, key=key)) for some, key in ((own, rotation), (standing, slip)) if some}
+    return [group for group in groups if id(group) in chosen]
+
+
+def rule_in_words(motions: int, limits: LimitsTable) -> str:
     """The rule in words, for a number of motions."""
     share = "the mean" if motions >= MEAN_FROM else "the largest"
+    single = (
+        f"no single rotation above {limits.single_rotation_ratio:g} of the slenderness angle; "
+        if motions >= MEAN_FROM or limits.single_rotation_ratio < limits.rotation_ratio
+        else ""
+    )
     return (
-        f"for each motion the worse sign of the vertical, then {share} over the {motions} motions; the largest over "
-        "all weights and frictions; any overturning means not fulfilled"
+        f"for each motion the worse sign of the vertical; of rotations {share} over the {motions} motions, of slips "
+        f"the largest; of these the largest over all weights and frictions; {single}any overturning means not fulfilled"
     )

@@ -9,28 +9,24 @@ import shlex
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import Unpack
 
 from fem.batch.log import LoggedRuns
 from fem.batch.runner import Runner
 from fem.batch.study import COMPLETED, INTERRUPTED, Study, StudyOptions, hash_of, run_study
-from fem.batch.workers import hand_out
 from fem.case.case import case_hash
 from fem.results.disk import BYTES_BESIDE, table_bytes
 from fem.results.folder import ResultFolder
 from fem.results.kinds import SITE
 from fem.runtime.identity import versions
-from fem.seismic.artificial import artificial_motions
-from fem.seismic.floor import floor_motion
 from fem.seismic.ground_motion import GroundMotion
 from fem.seismic.motion_set import MotionSetCheck, check_set
 from fem.site_check.answer import answer_of, governing_run, no_answer_yet
 from fem.site_check.bodies import body_of
 from fem.site_check.confirm import confirmed, deciding
 from fem.site_check.file import SiteRequest
-from fem.site_check.methods import site_methods
+from fem.site_check.methods import site_methods, wind_utilisation
 from fem.site_check.motion_results import (
     action_result,
     floor_result,
@@ -48,15 +44,15 @@ from fem.site_check.result import (
     SiteInputs,
     SiteProvenance,
     SiteResult,
+    SiteRun,
 )
-from fem.site_check.runs import COLUMNS, SET, RunCases, RunKey, RunPlan, RunRows, motion_stem
+from fem.site_check.runs import COLUMNS, RunCases, RunKey, motion_stem
 from fem.site_check.site_page import site_report
+from fem.site_check.stages import Stages
 
 RUNS, PAGE = "runs.csv", "report.html"
 OF_A_MOTION = 75_000  #: numbers, in three files
-STAGES = 14  #: runs of all stages over those of the set
-#: numbers of the artificial motions beyond the set begin behind those of any set
-FIRST_FURTHER = 10_000
+TIMES_THE_SET = 20  #: runs of all stages over those of the set
 
 
 def run_site(
@@ -72,18 +68,16 @@ def run_site(
     longest = longest_period([body.frequency_parameter_1_s for body in bodies])
     ground = ground_motions(request, longest, allow_outside=allow_outside)
     floors = floor_motions(request, ground)
-    plan = RunPlan(
-        request=request, motions=len(ground), vertical=ground[0].vertical is not None, periods=tuple(floors)
-    )
+    stages = Stages.of(request, floors, longest=longest, folder=folder)
     files = len(ground) * (1 + len(floors)) + request.motions.further
     asked = site_hash(request, ground)
     work = _Verification(
         request=request,
-        plan=plan,
+        stages=stages,
         bodies=bodies,
         ground=ground,
         floors=floors,
-        longest=longest,
+        wind=wind_utilisation(bodies, inputs_of(request)),
         asked=asked,
         began=began,
     )
@@ -94,7 +88,7 @@ def run_site(
         compute=work.compute,
         texts={"site.toml": request.origin.text, "container.toml": request.container.text},
         size=table_bytes(files, OF_A_MOTION)
-        + table_bytes(STAGES * len(plan.of_set()), len(COLUMNS))
+        + table_bytes(TIMES_THE_SET * len(stages.plan.of_set()), len(COLUMNS))
         + BYTES_BESIDE,
         subject="the verification",
         way_out="take fewer motions",
@@ -120,38 +114,35 @@ class _Verification:
     """What is asked, and its motions."""
 
     request: SiteRequest
-    plan: RunPlan
+    stages: Stages
     bodies: tuple[SiteBody, ...]
     ground: Sequence[GroundMotion]  #: motions of the set
     floors: Mapping[float | None, Sequence[GroundMotion]]  #: by building period
-    longest: float  #: period of the band [s]
+    wind: float | None  #: the largest utilisation under it
     asked: str  #: its hash
     began: float  #: when it was asked for [s]
 
     def compute(self, place: ResultFolder, runner: Runner) -> SiteResult:
         """Write the motions, compute what is missing, and write runs and page."""
-        checked = check_set(self.ground, self.request.action, longest=self.longest)
+        checked = check_set(self.ground, self.request.action, longest=self.stages.longest)
         written = write_ground(place.path, self.ground)
         motions = set_result(self.request, checked, self.ground, written)
         for period, moved in self.floors.items():
             for number, motion in enumerate(moved, start=1):
                 if period is not None:
                     write_csv_files(place.path, motion, motion_stem(number, period))
-        rows = RunRows()
-        answer = self._answer(place, runner, motions, rows)
+        answer = self._answer(place, runner, motions)
         place.check()
-        result = self._result(checked, motions, rows, answer)
+        result = self._result(checked, motions, answer)
         if result.status == COMPLETED:
-            if rows.found:
-                place.write_text(RUNS, rows.table())
+            if self.stages.rows.found:
+                place.write_text(RUNS, self.stages.rows.table())
             place.write_text(PAGE, site_report(place.path, result))
         return result
 
-    def _answer(
-        self, place: ResultFolder, runner: Runner, motions: MotionSet, rows: RunRows
-    ) -> SiteAnswer | None:
+    def _answer(self, place: ResultFolder, runner: Runner, motions: MotionSet) -> SiteAnswer | None:
         """Compute the runs that are missing; None where it was interrupted."""
-        again = []
+        again, stages, rows = [], self.stages, self.stages.rows
         if motions.valid:
             cases = RunCases.of(self.request, place.path)
             LoggedRuns(
@@ -162,20 +153,25 @@ class _Verification:
                 model_of=lambda key: key.model,
                 values=rows.values,
                 note=rows.note,
-            ).run(runner, self._batches(place, runner, rows))
+            ).run(runner, self._batches(runner))
             runs = rows.in_order()
-            keys = deciding(runs, governing_run(self.request, rows.of(self.plan.of_set())))
+            keys = [key for key in self._deciding(runs) if key not in rows.still]
             if not runner.stop() and keys:
                 runner.reporter.message("repeating the deciding runs with the reduced model")
                 again = confirmed(cases, runs, keys, runner.jobs)
-        return None if runner.stop() else answer_of(self.request, motions, rows.in_order(), again)
+        if runner.stop():
+            return None
+        return answer_of(self.request, motions, rows.in_order(), stages.beside(again, self.wind))
 
-    def _result(
-        self, checked: MotionSetCheck, motions: MotionSet, rows: RunRows, answer: SiteAnswer | None
-    ) -> SiteResult:
+    def _deciding(self, runs: Mapping[RunKey, SiteRun]) -> list[RunKey]:
+        own = self.stages.rows.of(self.stages.plan.of_set())
+        return deciding(runs, governing_run(self.request, own))
+
+    def _result(self, checked: MotionSetCheck, motions: MotionSet, answer: SiteAnswer | None) -> SiteResult:
         """Everything that was found; without an answer what there is, and what is missing."""
-        request, inputs, own = self.request, inputs_of(self.request), rows.of(self.plan.of_set())
-        missing = None if answer else self._missing(rows)
+        request, inputs, rows = self.request, inputs_of(self.request), self.stages.rows
+        own = rows.of(self.stages.plan.of_set())
+        missing = None if answer else self._missing()
         action = action_result(request.action, checked)
         floor = floor_result(request, self.floors, checked.periods)
         document = request.document.model_dump(exclude_none=True) if request.document else None
@@ -190,7 +186,7 @@ class _Verification:
             set=motions,
             bodies=self.bodies,
             runs=tuple(rows.in_order().values()),
-            result=answer or no_answer_yet(motions, own, missing or ""),
+            result=answer or no_answer_yet(request, motions, own, missing or ""),
             methods=site_methods(
                 bodies=self.bodies,
                 inputs=inputs,
@@ -210,65 +206,18 @@ class _Verification:
             document=None if document is None else SiteDocument(**document),
         )
 
-    def _missing(self, rows: RunRows) -> str:
+    def _missing(self) -> str:
         """What an interrupted verification has not come to, in words."""
-        wanted = self.plan.of_set()
+        rows, plan = self.stages.rows, self.stages.plan
+        wanted = plan.of_set()
         if left := len(rows.missing(wanted)):
             return f"{len(wanted) - left} of {len(wanted)} runs of the set are computed"
-        scan = self.plan.of_scan()
-        if left := len(rows.missing(scan)):
-            return f"{len(scan) - left} of {len(scan)} runs at other factors on the motions are computed"
-        return "further motions, or the repetition of the deciding runs, are missing"
+        return "repetitions, further motions, other factors on the motions or the deciding runs are missing"
 
-    def _batches(self, place: ResultFolder, runner: Runner, rows: RunRows) -> Iterator[Sequence[RunKey]]:
+    def _batches(self, runner: Runner) -> Iterator[Sequence[RunKey]]:
         """The runs of each stage that are missing; a stage is asked for when the one before is there."""
-        yield rows.missing(self.plan.of_set())
-        yield rows.missing(self.plan.of_scan())
-        yield rows.missing(self.plan.refined(rows.found))
-        yield self._further(place, runner, rows)
-
-    def _further(self, place: ResultFolder, runner: Runner, rows: RunRows) -> Sequence[RunKey]:
-        """The runs of the further motions, whose files are written."""
-        own = {key: run for key, run in rows.in_order().items() if key.stage == SET}
-        governing = governing_run(self.request, list(own.values()))
-        if governing is None or not self.request.motions.further:
-            return []
-        key = next(key for key, run in own.items() if run is governing)
-        wanted = rows.missing(self.plan.of_further(key, self.request.motions.further))
-        numbers = sorted({one.motion for one in wanted})
-        make = partial(further_motions, self.request, self.plan.vertical, self.longest, key.building_period_s)
-        pools = runner.workers_of(key.model, len(wanted))
-        for chunk, made in hand_out(numbers, make, pools, at_a_time=4, stop=runner.stop):
-            for number, motion in zip(chunk, made, strict=True):
-                stem = motion_stem(number, key.building_period_s, further=True)
-                write_csv_files(place.path, motion, stem)
-        return [] if runner.stop() else wanted
-
-
-def further_motions(
-    request: SiteRequest, vertical: bool, longest: float, period: float | None, numbers: Sequence[int]
-) -> list[GroundMotion]:
-    """Artificial motions beyond the set, on the floor of a building of this period or on the ground (None)."""
-    asked, made = request.motions, []
-    for number in numbers:
-        (motion,) = artificial_motions(
-            request.action,
-            count=1,
-            seed=asked.seed,
-            stationary=asked.stationary_s,
-            longest=longest,
-            vertical=vertical,
-            first=FIRST_FURTHER + number,
-        )
-        if period is not None and request.building is not None:
-            motion = floor_motion(
-                motion,
-                height_ratio=request.building.z_over_h,
-                period=period,
-                damping_ratio=request.building.damping_ratio,
-            )
-        made.append(motion)
-    return made
+        yield from self.stages.of_the_answer(runner)
+        yield from self.stages.of_the_margin()
 
 
 def inputs_of(request: SiteRequest) -> SiteInputs:
@@ -279,6 +228,7 @@ def inputs_of(request: SiteRequest) -> SiteInputs:
         mu_static=tuple(request.friction.mu_static),
         mu_kinetic_over_static=tuple(request.friction.mu_kinetic_over_static),
         rotation_ratio_limit=request.limits.rotation_ratio,
+        single_rotation_ratio_limit=request.limits.single_rotation_ratio,
         slip_limit_m=request.limits.slip_m,
         wind_pressure_Pa=wind[0] if wind else None,
         wind_pressure_source=wind[1] if wind else "",

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from fem.batch.case_maker import CaseMaker
-from fem.batch.log import fields_of, number_in, table_of_lines
+from fem.batch.log import fields_of, line_of, number_in, table_of_lines
 from fem.batch.runner import Row
 from fem.case.case import Case, read_case
 from fem.case.data_files import FILE_KEYS
@@ -18,12 +18,17 @@ from fem.results.outcome import Outcome
 from fem.run.bracket import values_to_try
 from fem.site_check.file import FULL, SiteRequest
 from fem.site_check.result import MOTIONS, SiteRun
+from fem.site_check.rule import RuleFound, RunGroup, groups_of
 
-SET, SCAN, REFINED, FURTHER = "set", "scan", "refined", "further"
+SET, REPEATED, SCAN, REFINED, FURTHER = "set", "repeated", "scan", "refined", "further"
+STAGES = (SET, REPEATED, SCAN, REFINED, FURTHER)  #: in the order of the rows
 WIDTH = "width"  #: the elevation that a case file shows
-#: factors on the motions beside 1, and values tried between the first that overturns and the one below it
+#: factors on the motions beside 1, and values tried below the first that fails and below the first that overturns
 SCANNED = (0.5, 0.75, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0, 3.5, 4.0)
 BETWEEN = 3
+NOT_COMPUTED = "below uplift and slip of a rigid body: not computed"
+#: factors of the repetitions: nobody can tell such motions from those of the set, rocking can
+REPETITIONS = (1.0 - 1e-4, 1.0 - 1e-5, 1.0 + 1e-6, 1.0 + 1e-5, 1.0 + 1e-4)
 
 
 class RunKey(NamedTuple):
@@ -46,6 +51,11 @@ class RunKey(NamedTuple):
         return motion_stem(self.motion, self.building_period_s, further=self.stage == FURTHER)
 
 
+def key_of(run: SiteRun) -> RunKey:
+    """What a run is made of."""
+    return RunKey(*(run[name] for name in RunKey._fields))
+
+
 COLUMNS = (*RunKey._fields, "outcome", *keys_of(Place.RUNS), "reason")
 
 
@@ -63,6 +73,11 @@ class RunPlan:
     motions: int  #: of the set
     vertical: bool  #: whether they have a vertical component
     periods: tuple[float | None, ...]  #: of the building
+
+    @property
+    def factors(self) -> list[float]:
+        """Of the scan, rising; that of the set is not among them."""
+        return sorted(SCANNED)
 
     def of_set(self) -> list[RunKey]:
         """Every motion with both signs, over weights, elevations, periods and frictions.
@@ -92,29 +107,57 @@ class RunPlan:
             )
         ]
 
-    def of_scan(self) -> list[RunKey]:
-        """All of these at the other factors."""
-        return [key._replace(stage=SCAN, factor=factor) for factor in SCANNED for key in self.of_set()]
+    def repeated(self, groups: Iterable[RunGroup]) -> list[RunKey]:
+        """The runs of some groups with changes that nobody can tell apart."""
+        own = [key for group in groups for key in map(key_of, group.runs)]
+        return [key._replace(stage=REPEATED, factor=factor) for factor in REPETITIONS for key in own]
+
+    def scanned(self, factor: float) -> list[RunKey]:
+        """All runs of the set at another factor."""
+        return [key._replace(stage=SCAN, factor=factor) for key in self.of_set()]
 
     def refined(self, runs: Mapping[RunKey, SiteRun]) -> list[RunKey]:
-        """Those that overturned at the least factor, at factors between it and the one below."""
-        fell = [
-            key for key, run in runs.items() if run.outcome == Outcome.OVERTURNED and key.stage in (SET, SCAN)
-        ]
-        first = min((key.factor for key in fell), default=0.0)
-        to_first = {factor: "" for factor in (1.0, *SCANNED) if factor < first} | {first: "overturned"}
-        return [
-            key._replace(stage=REFINED, factor=factor)
-            for factor in values_to_try(to_first, resolution=0.0, inner=BETWEEN)
-            for key in fell
-            if key.factor == first
-        ]
+        """Runs between the first factor that overturns, or fails, and the one below: what overturned or failed there.
 
-    def of_further(self, governing: RunKey, count: int) -> list[RunKey]:
-        """Further motions with both signs, for what governs the set."""
+        Of the rule, which may count a mean, all runs of the groups that fail.
+        """
+        by_factor = self.by_factor(runs)
+        wanted: dict[RunKey, None] = {}
+
+        def between(first: float, keys: Iterable[RunKey]) -> None:
+            known = {factor: str(factor == first) for factor in by_factor if factor <= first}
+            for factor in values_to_try(known, resolution=0.0, inner=BETWEEN):
+                wanted.update(dict.fromkeys(key._replace(stage=REFINED, factor=factor) for key in keys))
+
+        limits = self.request.limits
+        failing = {
+            factor: [group for group in groups_of(found) if RuleFound.of([group]).fails(limits)]
+            for factor, found in by_factor.items()
+        }
+        fell = {
+            factor: [run for run in found if run.outcome == Outcome.OVERTURNED]
+            for factor, found in by_factor.items()
+        }
+        if (first := min((factor for factor, some in failing.items() if some), default=None)) is not None:
+            between(first, [key_of(run) for group in failing[first] for run in group.runs])
+        if (first := min((factor for factor, some in fell.items() if some), default=None)) is not None:
+            between(first, list(map(key_of, fell[first])))
+        return list(wanted)
+
+    def by_factor(self, runs: Mapping[RunKey, SiteRun]) -> dict[float, list[SiteRun]]:
+        """The runs of the set and of the scan, by rising factor."""
+        found: dict[float, list[SiteRun]] = {}
+        for key, run in runs.items():
+            if key.stage in (SET, SCAN):
+                found.setdefault(key.factor, []).append(run)
+        return dict(sorted(found.items()))
+
+    def of_further(self, groups: Iterable[RunGroup], count: int) -> list[RunKey]:
+        """Further motions with both signs, for the containers and frictions of these groups."""
         signs = (1, -1) if self.vertical else (0,)
         return [
-            governing._replace(stage=FURTHER, motion=number, vertical_sign=sign, factor=1.0)
+            key_of(group.first)._replace(stage=FURTHER, motion=number, vertical_sign=sign)
+            for group in groups
             for number in range(1, count + 1)
             for sign in signs
         ]
@@ -182,6 +225,7 @@ class RunRows:
     found: dict[RunKey, SiteRun] = field(default_factory=dict)
     lines: dict[RunKey, str] = field(default_factory=dict)  #: of the log
     reasons: list[str] = field(default_factory=list)  #: why runs failed
+    still: set[RunKey] = field(default_factory=set)  #: those at rest that were not computed
 
     def values(self, key: RunKey, row: Row) -> tuple[Any, ...]:
         """The row of a run for the log."""
@@ -208,6 +252,13 @@ class RunRows:
         if fields["reason"]:
             self.reasons.append(fields["reason"])
 
+    def rest(self, key: RunKey) -> None:
+        """Add a run that is at rest and was not computed."""
+        figures: dict[str, Any] = dict.fromkeys(keys_of(Place.RUNS), 0.0)
+        self.found[key] = SiteRun(**key._asdict(), outcome=Outcome.REST, **figures)
+        self.lines[key] = line_of([*key, Outcome.REST, *figures.values(), NOT_COMPUTED])
+        self.still.add(key)
+
     def in_order(self) -> dict[RunKey, SiteRun]:
         """All of them, stage by stage: not in the order in which they were ready, which depends on the cores."""
         return dict(sorted(self.found.items(), key=lambda pair: _place(pair[0])))
@@ -227,6 +278,6 @@ class RunRows:
 
 def _place(key: RunKey) -> tuple[Any, ...]:
     """What runs are sorted by."""
-    stage = (SET, SCAN, REFINED, FURTHER).index(key.stage)
+    stage = STAGES.index(key.stage)
     container = key.mass != FULL, key.elevation != WIDTH, key.building_period_s or 0.0
     return stage, key.factor, *container, key.mu_static, key.mu_kinetic, key.motion, -key.vertical_sign

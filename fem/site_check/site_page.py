@@ -16,10 +16,15 @@ from fem.results.kinds import SITE
 from fem.results.outcome import Outcome
 from fem.runtime.arrays import FloatArray
 from fem.site_check import site_sections
+from fem.site_check.answer import FULFILLED
 from fem.site_check.figures import draw_motion, draw_spectra
+from fem.site_check.reasons import NOT_FULFILLED, unit_of, where
+from fem.site_check.reasons import span as span_in_words
 from fem.site_check.result import (
     RESULT_FILE,
+    ActionAnswer,
     MotionSet,
+    RuleRange,
     SetCheck,
     SiteBody,
     SiteDocument,
@@ -29,11 +34,12 @@ from fem.site_check.result import (
 
 COPIES = ("site.toml", "container.toml")  #: in the folder, printed on the page
 CODE = (
-    "EN 1998-1:2004, 4.4.2.4 (2) allows the equilibrium to be verified by geometrically non-linear methods with the "
-    "action of 3.2.3.1. It names no number of motions, no limit of rotation or slip and no partial factor. The motions "
-    "follow 3.2.3.1; worst or mean follow 4.3.3.4.3 (3), by analogy; the limits are those of the user. That any "
-    "overturning means not fulfilled is the rule of this program: there is no mean where a body has fallen, and the "
-    "code gives no rule."
+    "EN 1998-1:2004, 4.4.2.4 (2), for building structures in special cases and applied here by analogy, allows the "
+    "equilibrium to be verified by geometrically non-linear methods with the action of 3.2.3.1. It names no number of "
+    "motions, no limit of rotation or slip and no partial factor. The motions follow 3.2.3.1; the mean or the largest "
+    "of rotations follows 4.3.3.4.3 (3), by analogy; the limits are those of the user. A clearance is kept by the "
+    "largest slip, not by a mean. That any overturning means not fulfilled, and the limit of a single rotation, are "
+    "rules of this program: the code gives none."
 )
 SIGNING = ("prepared", "checked", "approved")
 MOST_DRAWN = 30  #: motions whose curves are on the page
@@ -102,42 +108,101 @@ def site_report(folder: Path, result: SiteResult | None = None, *, signature: Si
 
 
 def answer_section(result: SiteResult) -> html.PageSection:
-    """The answer, the numbers that it rests on, and the rule."""
+    """The answer, the numbers that it rests on, what speaks against it, and the rule."""
     answer, reasons = result.result, result.set.reasons
-    standing = {None: "open", True: "stood", False: "fell"}[answer.fulfilled]
-    repeated, doubt = confirmation(result)
+    standing = {FULFILLED: "stood", NOT_FULFILLED: "fell"}.get(answer.answer or "", "open")
+    first = (
+        f"{answer.answer.capitalize()} under the rule below."
+        if answer.reasons and answer.answer
+        else answer.sentence
+    )
     return html.section(
         "Answer",
         "verdict-title",
-        html.Paragraph(typeset(answer.sentence), "sentence"),
-        *([html.Headlines(_headlines(result))] if answer.fulfilled is not None else []),
-        *([html.Paragraph(typeset(repeated), "doubt" if doubt else "")] if repeated else []),
+        html.Paragraph(typeset(first), "sentence"),
+        *([html.Bullets([typeset(words) for words in answer.reasons], "tight")] if answer.reasons else []),
+        *(
+            [html.Pairs([(one.name, action_in_words(one)) for one in answer.actions], look="rows")]
+            if len(answer.actions) > 1
+            else []
+        ),
+        *([html.Headlines(_headlines(result))] if answer.answer is not None else []),
+        *([html.Paragraph(typeset(words)) for words in beside_the_set(result)]),
         html.Note(html.joined(html.strong("Rule:"), f" {answer.rule}. {CODE}")),
         *([html.Paragraph(typeset(f"Reasons: {'; '.join(reasons)}."), "fail")] if reasons else []),
         look=f"answer {standing}",
     )
 
 
+def action_in_words(action: ActionAnswer) -> str:
+    """The answer for one action with its utilisation."""
+    used = "" if action.utilisation is None else f", utilisation {number(action.utilisation, figures=3)}"
+    return f"{action.answer or 'no answer'}{used}"
+
+
+def beside_the_set(result: SiteResult) -> list[str]:
+    """What the further motions and the repeated deciding runs showed, and what was not computed, each in a sentence."""
+    answer, words = result.result, []
+    if answer.still:
+        count = f"{answer.still} of {answer.runs} runs stay"
+        if answer.still == answer.runs:
+            moved = answer.factor_at_first_movement
+            count = f"Nothing moves up to {short(moved, figures=3)} × the set: all {answer.runs} runs stay"
+        words.append(f"{count} below uplift and slip of a rigid body and were not computed.")
+    if answer.further:
+        words.append(f"Of {answer.further[0].motions} further motions for the same action:")
+        words[-1] += ";".join(
+            f" {one.overturned} overturned it (95 %: {short(one.interval[0], 100, 2)} to "
+            f"{short(one.interval[1], 100, 2)} % of such motions do) and {one.beyond_limits} went beyond a limit of a "
+            f"single motion, {where(one)}"
+            for one in answer.further
+            if one.motions
+        )
+        words[-1] += "."
+    if repeated := confirmation(result):
+        words.append(repeated)
+    return words
+
+
 def _headlines(result: SiteResult) -> list[html.Headline]:
-    answer, inputs, scan = result.result, result.inputs, result.result.scan
-    first = "none" if scan else ABSENT
-    if answer.factor_at_first_overturning is not None:
-        first = f"{short(answer.factor_at_first_overturning, figures=3)} × the set"
-    tried = f"factors {short(scan[0].factor)} to {short(scan[-1].factor)} tried" if scan else "not computed"
+    answer, inputs = result.result, result.inputs
+    span = answer.rule_range or RuleRange()
+    tried = [point.factor for point in answer.scan]
+    far = f"factors {short(tried[0])} to {short(tried[-1])} tried" if tried else "other factors not computed"
+    largest, mean = answer.rotation_ratio_largest, answer.slip_mean_m
+
+    def at(factor: float | None) -> str:
+        if factor is None:
+            return "none" if tried else ABSENT
+        least = "at most " if tried and factor == tried[0] else ""
+        return f"{least}{short(factor, figures=3)} × the set"
+
     return [
         html.Headline("overturned", f"{answer.overturned} of {answer.runs} runs"),
         html.Headline(
             "rotation ratio, by the rule",
-            ratio(answer.rotation_ratio),
-            f"limit {short(inputs.rotation_ratio_limit)}",
+            _with_range("rotation_ratio", answer.rotation_ratio, span.rotation_ratio),
+            f"limit {short(inputs.rotation_ratio_limit)}; a single motion "
+            f"{_with_range('rotation_ratio', largest, span.rotation_ratio_largest)}, limit "
+            f"{short(inputs.single_rotation_ratio_limit)}",
         ),
         html.Headline(
-            "slip, by the rule",
-            f"{millimetres(answer.slip_m)} mm",
-            f"limit {quantity(inputs.slip_limit_m, 'mm', 1000, 3)}",
+            "slip, largest",
+            f"{_with_range('slip_m', answer.slip_m, span.slip_m)} mm",
+            f"limit {quantity(inputs.slip_limit_m, 'mm', 1000, 3)}; mean {millimetres(mean)} mm",
         ),
-        html.Headline("first overturned at", first, tried),
+        html.Headline("the rule first fails at", at(answer.margin_factor), far),
+        html.Headline("first overturned at", at(answer.factor_at_first_overturning), far),
     ]
+
+
+def _with_range(key: str, value: float | None, span: Sequence[float]) -> str:
+    """A figure of the rule, with the range that it has over the repetitions."""
+    if value is None:
+        return ABSENT
+    shown = unit_of(key).text(value, figures=2, bare=True)
+    ends = span_in_words(key, span[0], span[-1]) if span else ""
+    return typeset(f"{shown} ({ends})" if " to " in ends else shown)
 
 
 def inputs_section(result: SiteResult) -> html.PageSection:
@@ -221,7 +286,8 @@ def container_rows(result: SiteResult) -> list[tuple[str, str]]:
         ("model", inputs.model),
         (
             "limits of the user",
-            f"rotation ratio {short(inputs.rotation_ratio_limit)}, slip {quantity(inputs.slip_limit_m, 'mm', 1e3, 3)}",
+            f"rotation ratio {short(inputs.rotation_ratio_limit)}, of a single motion "
+            f"{short(inputs.single_rotation_ratio_limit)}; slip {quantity(inputs.slip_limit_m, 'mm', 1e3, 3)}",
         ),
     ]
     if inputs.wind_pressure_Pa is not None:
@@ -232,28 +298,20 @@ def container_rows(result: SiteResult) -> list[tuple[str, str]]:
     return rows
 
 
-def confirmation(result: SiteResult) -> tuple[str, bool]:
-    """The result of the deciding runs when they are repeated, and whether it casts doubt on the answer."""
-    again, inputs = result.result.confirmed, result.inputs
+def confirmation(result: SiteResult) -> str:
+    """The result of the deciding runs when they are repeated; empty where they were not."""
+    again = result.result.confirmed
     if not again:
-        return "", False
-    models = ", ".join(dict.fromkeys(one.model for one in again))
-    words = f"The deciding runs, repeated with the {models} model over their unknown inputs"
+        return ""
+    words = f"The {len(again)} deciding runs, repeated with the elastic model over their unknown inputs"
+    if len(again) == 1:
+        words = "The deciding run, repeated with the elastic model over its unknown inputs"
     failed = sum(one.outcome is None for one in again)
     fell = sum(Outcome.OVERTURNED in (one.outcome, *one.outcomes) for one in again)
-    if failed:
-        return f"{words}: {failed} of {len(again)} runs failed.", True
-    if fell:
-        doubt = result.result.fulfilled is not False
-        return (
-            f"{words}: {fell} of {len(again)} runs can overturn{', so the answer is not sure' if doubt else ''}.",
-            doubt,
-        )
+    if failed or fell:
+        return f"{words}: {fell} can overturn, {failed} failed."
     turned, slip = max(one.turned for one in again), max(one.slipped for one in again)
-    beyond = turned > inputs.rotation_ratio_limit or slip > inputs.slip_limit_m
-    doubt = beyond and result.result.fulfilled is True
-    found = f"largest rotation ratio {ratio(turned)}, largest slip {millimetres(slip)} mm"
-    return f"{words}: none overturns, {found}{', so the answer is not sure' if doubt else ''}.", doubt
+    return f"{words}: none overturns, largest rotation ratio {ratio(turned)}, largest slip {millimetres(slip)} mm."
 
 
 def _body(body: SiteBody) -> str:

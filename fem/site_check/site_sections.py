@@ -104,12 +104,6 @@ def runs_section(view: SiteView) -> html.PageSection:
             draw_scan(result.result, result.inputs), "scan", "outcome over the factor on the motions"
         )
         blocks += [html.Heading("Margin"), drawn, html.Note(MARGIN)]
-    if further := result.result.further:
-        low, high = (short(end, 100, 2) for end in further.interval)
-        blocks.append(
-            f"Besides the set, {further.motions} further motions for the same action: {further.overturned} overturned "
-            f"it (95 % interval of the probability under such motions: {low} to {high} %)."
-        )
     return html.section("What the runs found", "found", *blocks)
 
 

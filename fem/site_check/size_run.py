@@ -22,17 +22,21 @@ from fem.results.folder import ResultFolder
 from fem.results.kinds import SIZE
 from fem.seismic.ground_motion import GroundMotion
 from fem.seismic.motion_set import check_set
-from fem.site_check.answer import answer_of
+from fem.site_check.answer import FULFILLED, answer_of, governing_run
 from fem.site_check.bodies import body_of
 from fem.site_check.bracket import SizeAxis, SizeResult, next_values, size_asked, size_result
+from fem.site_check.confirm import confirmed, deciding
 from fem.site_check.figures import draw_size
 from fem.site_check.file import SiteRequest
+from fem.site_check.methods import wind_utilisation
 from fem.site_check.motion_results import set_result, write_csv_files
 from fem.site_check.motions import floor_motions, ground_motions, longest_period
-from fem.site_check.result import MotionSet, SiteAnswer
+from fem.site_check.reasons import NOT_FULFILLED
+from fem.site_check.result import ConfirmedRun, MotionSet, SiteAnswer
 from fem.site_check.run import inputs_of, site_hash
-from fem.site_check.runs import COLUMNS, RunCases, RunKey, RunPlan, RunRows, motion_stem
+from fem.site_check.runs import COLUMNS, RunCases, RunKey, RunRows, motion_stem
 from fem.site_check.size_axis import at, followers
+from fem.site_check.stages import Stages
 
 RUNS, FIGURE = "runs.csv", "figures/size.svg"
 WORKING = ".motions"  #: of the sets, as long as they are computed
@@ -61,24 +65,37 @@ class SizeCases:
         return self.cases[key.value](key.run)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(kw_only=True, eq=False)
 class Tried:
     """The request at a value, with its set of motions."""
 
     request: SiteRequest
     motions: MotionSet
-    plan: RunPlan
-    rows: RunRows = field(default_factory=RunRows)
+    stages: Stages
+    wind: float | None  #: utilisation under it
+    confirmed: Sequence[ConfirmedRun] | None = (
+        None  #: the deciding runs, repeated; None: not yet, or not needed
+    )
 
     @property
-    def keys(self) -> list[RunKey]:
-        """The runs of the set; none of a set that is not valid."""
-        return self.plan.of_set() if self.motions.valid else []
+    def rows(self) -> RunRows:
+        """Of its runs."""
+        return self.stages.rows
 
     @property
     def answer(self) -> SiteAnswer:
         """By the rule, from all runs."""
-        return answer_of(self.request, self.motions, self.rows.found)
+        beside = self.stages.beside(self.confirmed or (), self.wind)
+        return answer_of(self.request, self.motions, self.rows.in_order(), beside)
+
+    def confirm(self, cases: RunCases, jobs: int) -> None:
+        """Repeat the deciding runs, where nothing else speaks against the value."""
+        if self.confirmed is not None or self.answer.answer != FULFILLED:
+            return
+        runs = self.rows.in_order()
+        governing = governing_run(self.request, self.rows.of(self.stages.plan.of_set()))
+        keys = [key for key in deciding(runs, governing) if key not in self.rows.still]
+        self.confirmed = confirmed(cases, runs, keys, jobs) if keys else ()
 
 
 def run_size(
@@ -138,11 +155,11 @@ class _Sizing:
                 model_of=lambda key: key.run.model,
                 values=self.values,
                 note=self.note,
-            ).run(runner, self.batches(place.path / WORKING))
+            ).run(runner, self.batches(runner, place.path / WORKING))
         finally:
             shutil.rmtree(place.path / WORKING, ignore_errors=True)
         if runner.stop():
-            done = sum(not tried.rows.missing(tried.keys) for tried in self.tried.values())
+            done = sum(not tried.rows.missing(tried.stages.plan.of_set()) for tried in self.tried.values())
             words = f"{done} values are computed, of {len(self.axis.values)} and those between them"
             return replace(self.begun, status=INTERRUPTED, missing=words)
         place.check()
@@ -151,18 +168,33 @@ class _Sizing:
         place.write_text(FIGURE, draw_size(result, inputs_of(self.request)))
         return replace(result, wall_s=time.perf_counter() - began)
 
-    def batches(self, working: Path) -> Iterator[Sequence[SizeKey]]:
-        """The missing runs of the values to be tried next, as long as there are any."""
-        while values := next_values(self.axis, self.answers()):
+    def batches(self, runner: Runner, working: Path) -> Iterator[Sequence[SizeKey]]:
+        """The missing runs of the values to be tried next, stage by stage, as long as there are any."""
+        while not runner.stop() and (values := next_values(self.axis, self.answers())):
             for value in values:
                 self._try(value, working)
-            missing = [
-                SizeKey(value, key)
-                for value in values
-                for key in self.tried[value].rows.missing(self.tried[value].keys)
-            ]
-            if missing:
-                yield missing
+            under_way = {value: self._stages(value, runner) for value in values}
+            while under_way:
+                batch: list[SizeKey] = []
+                for value, stages in list(under_way.items()):
+                    if (keys := next(stages, None)) is None:
+                        del under_way[value]
+                    else:
+                        batch += [SizeKey(value, key) for key in keys]
+                yield batch
+            for value in values:
+                if not runner.stop():
+                    self.tried[value].confirm(self.cases.cases[value], runner.jobs)
+
+    def _stages(self, value: float, runner: Runner) -> Iterator[Sequence[RunKey]]:
+        """The runs of a value, until it is known not to fulfil the rule."""
+        tried = self.tried[value]
+        if not tried.motions.valid:
+            return
+        for keys in tried.stages.of_the_answer(runner):
+            yield keys
+            if tried.answer.answer == NOT_FULFILLED:
+                return
 
     def answers(self) -> dict[float, SiteAnswer]:
         """By value, as far as they were tried."""
@@ -192,17 +224,18 @@ class _Sizing:
     def _try(self, value: float, working: Path) -> None:
         """Make the motions of a value, and the cases of its runs."""
         request = at(self.request, self.axis, value)
-        ground = _ground(request, self.allow_outside)
-        longest = _longest(request)
+        bodies = [body_of(one) for one in request.variants]
+        longest = longest_period([body.frequency_parameter_1_s for body in bodies])
+        ground = ground_motions(request, longest, allow_outside=self.allow_outside)
         floors = floor_motions(request, ground)
-        checked = check_set(ground, request.action, longest=longest)
-        vertical = ground[0].vertical is not None
+        folder = _written(floors, working)
         self.tried[value] = tried = Tried(
             request=request,
-            motions=set_result(request, checked, ground, ()),
-            plan=RunPlan(request=request, motions=len(ground), vertical=vertical, periods=tuple(floors)),
+            motions=set_result(request, check_set(ground, request.action, longest=longest), ground, ()),
+            stages=Stages.of(request, floors, longest=longest, folder=folder),
+            wind=wind_utilisation(bodies, inputs_of(request)),
         )
-        self.cases.cases[value] = RunCases.of(request, _written(floors, working))
+        self.cases.cases[value] = RunCases.of(request, folder)
         for line in self.early.pop(value, []):
             tried.rows.note(line)
 
@@ -222,12 +255,9 @@ def _written(floors: Mapping[float | None, Sequence[GroundMotion]], working: Pat
     return folder
 
 
-def _longest(request: SiteRequest) -> float:
-    return longest_period([body_of(one).frequency_parameter_1_s for one in request.variants])
-
-
 def _ground(request: SiteRequest, allow_outside: bool) -> list[GroundMotion]:
-    return ground_motions(request, _longest(request), allow_outside=allow_outside)
+    longest = longest_period([body_of(one).frequency_parameter_1_s for one in request.variants])
+    return ground_motions(request, longest, allow_outside=allow_outside)
 
 
 def _command(request: SiteRequest, axis: SizeAxis) -> str:

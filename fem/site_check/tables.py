@@ -1,5 +1,6 @@
 """The tables of a site file, one frozen model each: keys, units, defaults and what they mean."""
 
+from dataclasses import replace
 from itertools import pairwise
 from typing import Annotated, Any, Literal
 
@@ -38,7 +39,9 @@ SLIP = Quantity(unit="m", above=0.0, most=100.0, typical=0.1, slips={"millimetre
 WIND = Quantity(unit="Pa", above=0.0, most=1e4, typical=650.0, slips={"kN/m2": 1e3})
 GAMMA_MU = Quantity(unit="", least=1.0, most=3.0, advice="1.3 is usual for scaffolds")
 MOST_MOTIONS = 100
-FrictionRange = Annotated[list[Annotated[float, q.FRICTION]], Field(min_length=1, max_length=2)]
+#: the rules of thumb divide by it, so there is no container without friction
+SOME_FRICTION = replace(q.FRICTION, least=None, above=0.0)
+FrictionRange = Annotated[list[Annotated[float, SOME_FRICTION]], Field(min_length=1, max_length=2)]
 ShareRange = Annotated[list[Annotated[float, SHARE]], Field(min_length=1, max_length=2)]
 Corners = Annotated[list[Annotated[float, SPECTRUM_PERIOD]], Field(min_length=3, max_length=3)] | None
 
@@ -229,9 +232,12 @@ class LimitsTable(CaseTable):
     """The limits that the user gives."""
 
     rotation_ratio: Annotated[float, ROTATION_RATIO] = case_key(
-        "largest |rotation| over the slenderness angle", 0.5
+        "largest |rotation| over the slenderness angle, by the rule", 0.5
     )
-    slip_m: Annotated[float, SLIP] = case_key("largest slip: the clearance", example=0.1)
+    slip_m: Annotated[float, SLIP] = case_key("largest slip of any motion: the clearance", example=0.1)
+    single_rotation_ratio: Annotated[float, ROTATION_RATIO] = case_key(
+        "largest of any single motion, where the mean of seven and more counts: this program's own rule", 0.8
+    )
 
 
 class WindTable(CaseTable):

@@ -14,10 +14,12 @@ from fem.site_check.methods import site_methods
 from fem.site_check.result import (
     MOTIONS,
     RESULT_FILE,
+    ActionAnswer,
     ConfirmedRun,
     FloorResult,
     FurtherMotions,
     MotionSet,
+    RuleRange,
     ScanPoint,
     SetCheck,
     SiteActionResult,
@@ -215,6 +217,7 @@ def example(
     fulfilled = None if not valid else overturned == 0
     governing = runs[0] if overturned else max(runs, key=lambda run: run.max_slip_m)
     answer = SiteAnswer(
+        answer={None: None, True: "fulfilled", False: "not fulfilled"}[fulfilled],
         fulfilled=fulfilled,
         rule="mean over the 7 motions of the worse sign; any overturning means not fulfilled",
         sentence={
@@ -225,11 +228,23 @@ def example(
         overturned=overturned,
         runs=len(runs) if valid else 0,
         rotation_ratio=0.008,
-        slip_m=0.0024,
-        rotation_fulfilled=overturned == 0,
-        slip_fulfilled=True,
+        rotation_ratio_largest=0.014,
+        slip_m=0.0042,
+        slip_mean_m=0.0024,
         governing=governing,
+        actions=(
+            ActionAnswer(name="earthquake", answer="fulfilled" if fulfilled else None, utilisation=0.042),
+            ActionAnswer(name="wind", answer="fulfilled", utilisation=0.254),
+        ),
+        margin_factor=1.625,
         factor_at_first_overturning=1.75,
+        factor_at_first_movement=0.98,
+        rule_range=RuleRange(
+            rotation_ratio=(0.006, 0.011),
+            rotation_ratio_largest=(0.012, 0.016),
+            slip_m=(0.0042, 0.0043),
+            repetitions=5,
+        ),
         scan=tuple(
             ScanPoint(
                 factor=factor,
@@ -248,7 +263,17 @@ def example(
                 (4.0, 1.0, 70),
             )
         ),
-        further=FurtherMotions(motions=100, overturned=1, interval=(0.0003, 0.0545)),
+        further=(
+            FurtherMotions(
+                mass="full",
+                mu_static=0.4,
+                mu_kinetic=0.2,
+                motions=100,
+                overturned=0,
+                beyond_limits=2,
+                interval=(0.0, 0.0362),
+            ),
+        ),
         confirmed=(
             ConfirmedRun(
                 run=governing,

@@ -10,10 +10,11 @@ from markupsafe import Markup
 from site_example import example, write_example
 
 from fem.html.formula import formula_markup
+from fem.html.page import Page, html_of
 from fem.results.errors import FolderError
 from fem.results.files import to_json
 from fem.site_check.result import RESULT_FILE, SiteResult
-from fem.site_check.site_page import confirmation, site_report
+from fem.site_check.site_page import answer_section, confirmation, site_report
 
 ANSWERS = {
     "fulfilled": ({}, "Fulfilled under the rule below"),
@@ -37,6 +38,13 @@ def folders(tmp_path_factory):
 
 def page_of(folders, name: str) -> str:
     return (folders / name / "report.html").read_text(encoding="utf-8")
+
+
+def box_of(result: SiteResult) -> str:
+    """The page of the answer alone."""
+    return html_of(
+        Page(kind="", title="", name="", hash="", signature=None, sections=[answer_section(result)])
+    )
 
 
 def words_of(page: str) -> str:
@@ -63,10 +71,16 @@ def test_what_the_answer_rests_on_stands_on_the_page(folders):
         "T1 does not exist for a rocking body",
         "ag S = 1.778 × 1.35 = 2.400 m/s²",
         "least mean over target, 0.05 to 4 s",
-        "That any overturning means not fulfilled is the rule of this program",
+        "That any overturning means not fulfilled, and the limit of a single rotation, are rules of this program",
         "names no number of motions, no limit of rotation or slip and no partial factor",
         "two horizontal components",
-        "100 further motions for the same action: 1 overturned it",
+        "Of 100 further motions for the same action: 0 overturned it (95 %: 0 to 3.6 % of such motions do) and 2 went "
+        "beyond a limit of a single motion, full, friction 0.4/0.2.",
+        "for building structures in special cases and applied here by analogy",
+        "the rule first fails at 1.62 × the set",
+        "first overturned at 1.75 × the set",
+        "earthquake fulfilled, utilisation 0.0420",
+        "wind fulfilled, utilisation 0.254",
         "python -m fem assess site.toml",
         "prepared: name, date, signature",
         'container = "my-stack.toml"',
@@ -113,20 +127,39 @@ CONFIRMED = example()[0].result.confirmed[0]
 
 
 @pytest.mark.parametrize(
-    ("change", "words", "doubt"),
+    ("change", "words"),
     [
-        ({}, "none overturns, largest rotation ratio 0.00400, largest slip 4.10 mm.", False),
-        ({"outcomes": ("rock", "overturned")}, "1 of 1 runs can overturn, so the answer is not sure.", True),
-        ({"max_slip_m": 0.2}, "largest slip 200 mm, so the answer is not sure.", True),
-        ({"outcome": None}, "1 of 1 runs failed.", True),
+        ({}, "none overturns, largest rotation ratio 0.00400, largest slip 4.10 mm."),
+        ({"outcomes": ("rock", "overturned")}, "1 can overturn, 0 failed."),
+        ({"outcome": None}, "0 can overturn, 1 failed."),
     ],
 )
-def test_what_decides_is_confirmed_or_casts_doubt(change, words, doubt):
+def test_what_decides_is_repeated(change, words):
     result, _ = example()
     answer = replace(result.result, confirmed=(replace(CONFIRMED, **change),))
-    found = confirmation(replace(result, result=answer))
-    assert found[0].endswith(words)
-    assert found[1] == doubt
+    assert confirmation(replace(result, result=answer)).endswith(words)
+
+
+def test_what_speaks_against_the_answer_stands_in_the_box_and_the_answer_has_its_colour():
+    result, _ = example()
+    reason = "3 of 100 further motions overturned it."
+    doubted = replace(
+        result.result,
+        answer="not sure",
+        fulfilled=None,
+        reasons=("The limit lies between.", reason),
+        sentence="Not sure. The limit lies between.",
+    )
+    page = box_of(replace(result, result=doubted))
+    assert 'class="answer open"' in page
+    assert words_of(page).count("The limit lies between.") == 1 and reason in words_of(page)
+
+
+def test_a_container_that_never_moves_is_told_so():
+    result, _ = example()
+    answer = replace(result.result, still=112, factor_at_first_movement=1.9)
+    words = words_of(box_of(replace(result, result=answer)))
+    assert "Nothing moves up to 1.9 × the set: all 112 runs stay below uplift and slip" in words
 
 
 def test_text_of_users_is_escaped(folders):

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from fem.__main__ import main
+from fem.batch.runner import run_chunk
 from fem.records.files import read_record
 from fem.seismic.artificial import artificial_motions
 from fem.seismic.motion_files import write_at2, write_csv
@@ -14,7 +15,8 @@ from fem.site_check.file import load_site
 from fem.site_check.motions import ground_motions
 from fem.site_check.result import SiteResult
 from fem.site_check.run import run_site
-from fem.site_check.runs import SCANNED
+from fem.site_check.runs import NOT_COMPUTED, SCANNED, RunCases
+from fem.site_check.stages import Stages
 
 CONTAINER = """
 schema = 1
@@ -53,7 +55,7 @@ slip_m = 0.1
 """
 
 
-def site_file(folder, *, reference=2.4 / 1.35, further=4, heading="", motions="", more=""):
+def site_file(folder, *, reference=2.4 / 1.35, further=80, heading="", motions="", more=""):
     (folder / "k1.toml").write_text(CONTAINER)
     text = SITE.format(reference=reference, further=further, heading=heading, motions=motions, more=more)
     (folder / "site.toml").write_text(text)
@@ -78,25 +80,45 @@ def computed(tmp_path_factory):
 def test_every_motion_runs_with_both_signs_at_every_factor(computed):
     result, _ = computed
     assert result.status == "completed"
-    own = [run for run in result.runs if run.factor == 1.0 and run.motion <= 3]
+    own = [run for run in result.runs if run.stage == "set"]
     assert {(run.motion, run.vertical_sign) for run in own} >= {(k, s) for k in (1, 2, 3) for s in (1, -1)}
-    assert [point.factor for point in result.result.scan] == sorted([1.0, *SCANNED])
+    factors = [point.factor for point in result.result.scan]
+    assert factors == sorted([1.0, *SCANNED])[: len(factors)]
     assert all(point.runs == 6 for point in result.result.scan)
-    assert result.result.runs == 6 and result.result.further.motions == 4
-    assert result.result.confirmed and {one.model for one in result.result.confirmed} == {"reduced"}
+    assert result.result.runs == 6 and [one.motions for one in result.result.further] == [80]
 
 
 def test_the_container_of_the_example_fulfils_the_rule_and_overturns_at_a_higher_factor(computed):
     answer = computed[0].result
-    assert answer.fulfilled is True and answer.overturned == 0
+    assert (answer.answer, answer.fulfilled, answer.overturned) == ("fulfilled", True, 0)
     assert answer.rotation_ratio < 0.01 and answer.slip_m < 0.005
     assert answer.sentence.startswith("Fulfilled under the rule below: none of 6 runs overturned")
     first = answer.factor_at_first_overturning
-    assert 1.25 < first <= 4.0
-    fell = [run.factor for run in computed[0].runs if run.outcome == "overturned"]
-    assert first == min(fell)
-    # Between the first factor of the scan that overturns and the one below, others were tried.
-    assert {run.factor for run in computed[0].runs} > {1.0, *SCANNED}
+    assert 1.25 < answer.margin_factor <= first <= 4.0
+    runs = computed[0].runs
+    assert first == min(run.factor for run in runs if run.outcome == "overturned")
+    # The scan ends where a run overturns; between the last factors of the scan, others were tried.
+    assert max(run.factor for run in runs) == min(
+        point.factor for point in answer.scan if point.overturned and point.factor > 1.0
+    )
+    assert {run.factor for run in runs if run.stage == "refined"} - {1.0, *SCANNED}
+
+
+def test_runs_below_uplift_and_slip_are_not_computed_and_rest_where_they_are(computed):
+    """What the rigid bound says of a run is what the run says: the nearest one that it spares, computed."""
+    result, folder = computed
+    spared = [line for line in (folder / "out" / "runs.csv").read_text().splitlines() if NOT_COMPUTED in line]
+    assert spared and result.result.still == sum(line.startswith("set,") for line in spared)
+    request = load_site(folder / "site.toml")
+    cases = RunCases.of(request, folder / "out")
+    stages = Stages.of(request, {None: ground_motions(request, 4.0)}, longest=4.0, folder=folder / "out")
+    keys = [key for factor in SCANNED for key in stages.plan.scanned(factor)]
+    near = max((key for key in keys if stages.screening.at_rest(key)), key=stages.screening.used)
+    (row,) = run_chunk(cases, [near])
+    assert row["outcome"] == "rest" and row["rotation_ratio"] < 1e-4 and row["max_slip_m"] < 1e-6
+    beyond = min((key for key in keys if stages.screening.used(key) > 1.3), key=stages.screening.used)
+    (row,) = run_chunk(cases, [beyond])
+    assert row["rotation_ratio"] > 1e-4 or row["max_slip_m"] > 1e-6
 
 
 def test_the_file_has_the_keys_that_scripts_rely_on(computed):
@@ -122,7 +144,16 @@ def test_the_file_has_the_keys_that_scripts_rely_on(computed):
     } <= set(found["runs"][0])
     result = found["result"]
     assert {"fulfilled", "rule", "overturned", "runs", "rotation_ratio", "slip_m"} <= set(result)
-    assert set(result["further"]) >= {"motions", "overturned", "interval"}
+    assert set(result["further"][0]) >= {
+        "mass",
+        "mu_static",
+        "motions",
+        "overturned",
+        "beyond_limits",
+        "interval",
+    }
+    assert {"answer", "reasons", "margin_factor", "rule_range", "actions"} <= set(result)
+    assert {"slip_mean_m", "rotation_ratio_largest", "factor_at_first_overturning"} <= set(result)
     assert {"name", "quantity", "demand", "capacity", "utilisation", "says", "source"} <= set(
         found["methods"][0]
     )
@@ -147,11 +178,11 @@ def test_on_a_floor_the_period_of_the_building_is_varied(tmp_path, brief):
     more = "[building]\nz_over_h = 1.0\nbuilding_period_s = 0.5"
     place = site_file(tmp_path, reference=0.6, further=0, motions="vertical = false", more=more)
     result = run_site(load_site(place), tmp_path / "out", jobs=1)
-    own = [run for run in result.runs if run.factor == 1.0]
+    own = [run for run in result.runs if run.stage == "set"]
     assert {run.building_period_s for run in own} == {0.425, 0.5, 0.575}
     assert {run.vertical_sign for run in own} == {0}
     assert result.floor.peak_m_s2 > 2.0 * result.set.mean_pga_m_s2
-    assert result.result.further is None
+    assert result.result.further == ()
     assert any("4.3.5.2" in method.source for method in result.methods)
 
 

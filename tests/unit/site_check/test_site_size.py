@@ -12,9 +12,18 @@ from fem.site_check.figures import draw_size
 from fem.site_check.result import SiteAnswer
 
 ANSWER = SiteAnswer(
-    fulfilled=True, rule="", sentence="", overturned=0, runs=28, rotation_ratio=0.1, slip_m=0.01
+    answer="fulfilled",
+    fulfilled=True,
+    rule="",
+    sentence="",
+    overturned=0,
+    runs=28,
+    rotation_ratio=0.1,
+    slip_m=0.01,
 )
-FELL = replace(ANSWER, fulfilled=False, overturned=3, rotation_ratio=None, slip_m=None)
+FELL = replace(
+    ANSWER, answer="not fulfilled", fulfilled=False, overturned=3, rotation_ratio=None, slip_m=None
+)
 WIDTH = SizeAxis(
     key="container.width_m", words="width", unit="m", wanted="least", values=spaced(0.8, 2.0, 13)
 )
@@ -119,23 +128,27 @@ def test_a_least_value_needs_the_end_of_the_range():
 
 
 @pytest.mark.parametrize(
-    ("kept", "words"),
+    ("exceeded", "words"),
     [
-        ((False, True), "(above: rotation is beyond the limit)."),
-        ((True, False), "(above: slip is beyond the limit)."),
-        ((False, False), "(above: rotation and slip are beyond the limit)."),
+        (("rotation_ratio",), "(above: rotation is beyond the limit)."),
+        (("single_rotation_ratio",), "(above: the rotation of one motion is beyond the limit)."),
+        (("slip_m",), "(above: slip is beyond the limit)."),
+        (("rotation_ratio", "slip_m"), "(above: rotation and slip are beyond the limit)."),
+        ((), "(above: the wind moves it)."),
     ],
 )
-def test_what_fails_beyond_is_told(kept, words):
-    beyond = replace(ANSWER, fulfilled=False, rotation_fulfilled=kept[0], slip_fulfilled=kept[1])
+def test_what_fails_beyond_is_told(exceeded, words):
+    beyond = replace(ANSWER, answer="not fulfilled", fulfilled=False, exceeded=exceeded)
     assert size_result(BOXES, {1.0: ANSWER, 6.0: beyond}).sentence.endswith(words)
     assert "from 1 to 6: it overturns or " in size_result(BOXES, {1.0: FELL, 6.0: beyond}).sentence
 
 
-def test_no_answer_is_not_fulfilled():
-    result = size_result(BOXES, {value: replace(ANSWER, fulfilled=None) for value in BOXES.values})
-    assert result.intervals == ()
-    assert result.points[0].fulfilled is None
+@pytest.mark.parametrize(("answer", "words"), [(None, "there is no answer"), ("not sure", "it is not sure")])
+def test_only_fulfilled_is_fulfilled(answer, words):
+    found = replace(ANSWER, answer=answer, fulfilled=None)
+    result = size_result(BOXES, dict.fromkeys(BOXES.values, found))
+    assert result.intervals == () and words in result.sentence
+    assert (result.points[0].fulfilled, result.points[0].answer) == (None, answer)
 
 
 def test_the_result_survives_its_file_and_is_drawn():

@@ -13,7 +13,7 @@ ground = "D"
 reference_acceleration_m_s2 = 3.5
 [motions]
 count = 3
-further = 0
+further = 72
 [friction]
 mu_static = [0.4]
 mu_kinetic_over_static = [1.0]

@@ -1,0 +1,201 @@
+"""Why a verification is not fulfilled, or not sure: a sentence with its count for all that speaks against it."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from fem.results.outcome import Outcome
+from fem.runtime.intervals import binomial_interval, least_draws
+from fem.runtime.units import RATIO, SHORT_MILLIMETRES, DisplayUnit, plain_number
+from fem.site_check.result import ConfirmedRun, FurtherMotions, RuleRange, SiteRun
+from fem.site_check.rule import FIGURE_OF, MEAN_FROM, RuleFound, RunGroup
+from fem.site_check.tables import LimitsTable
+
+NOT_FULFILLED, NOT_SURE = "not fulfilled", "not sure"
+CONFIDENCE = 0.95
+MOST_OVERTURNING = (
+    0.05  #: probability of overturning under further motions that "fulfilled" bears, and beyond a limit
+)
+ALIKE = "in which the motions differ by 1 in 10 000 at most"
+FIGURES = 2  #: of what rocking makes of a motion; more would not be known
+
+
+class Reason(NamedTuple):
+    """What speaks against "fulfilled"."""
+
+    answer: str  #: not fulfilled | not sure
+    sentence: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Evidence:
+    """What the answer to the earthquake rests on."""
+
+    limits: LimitsTable
+    motions: int
+    groups: Sequence[RunGroup]  #: of the set
+    rule: RuleFound  #: of the set
+    range: RuleRange | None
+    repetitions_failed: int
+    further: Sequence[FurtherMotions]
+    confirmed: Sequence[ConfirmedRun]
+
+    def reasons(self) -> Iterator[Reason]:
+        """All of them, in the order of the evidence."""
+        if self.rule.overturned:
+            runs = sum(len(group.runs) for group in self.groups)
+            most = max(self.groups, key=lambda group: group.beyond_any({}))
+            yield Reason(
+                NOT_FULFILLED,
+                f"{self.rule.overturned} of {runs} runs overturned: up to {most.beyond_any({})} of "
+                f"{self.motions} motions overturn it ({where(most.first)}).",
+            )
+        else:
+            for key in FIGURE_OF:
+                yield from self._limit(key)
+            yield from self._repetitions()
+        for one in self.further:
+            yield from against(one)
+        yield from self._confirmed()
+
+    def _limit(self, key: str) -> Iterator[Reason]:
+        """Whether a limit is kept, by the set and by its repetitions."""
+        figure, limit = FIGURE_OF[key], getattr(self.limits, key)
+        value = self.rule.by_rule[figure]
+        if value is None:
+            return
+        low, high = (self.range and self.range[figure]) or (value, value)
+        if high <= limit:
+            return
+        words, bound = self._words(key)
+        places = places_of(key, limit, (value, low, high))
+        shown = in_words(key, value, places)
+        group = max(self.groups, key=lambda group: group.by_rule[figure] or 0.0)
+        if low > limit:
+            again = (
+                f", {span(key, low, high, places)} in all repetitions" if self.range and low < high else ""
+            )
+            single = "" if key == "rotation_ratio" else f"; {self._count(key, group)}"
+            yield Reason(
+                NOT_FULFILLED, f"{words} is {shown}{again}, beyond {bound} ({where(group.first)}{single})."
+            )
+        else:
+            yield Reason(
+                NOT_SURE,
+                f"{words} is {shown}, and {span(key, low, high, places)} in repetitions {ALIKE}: {bound} lies between "
+                f"({where(group.first)}).",
+            )
+
+    def _words(self, key: str) -> tuple[str, str]:
+        """A figure and its limit."""
+        limit = getattr(self.limits, key)
+        if key == "slip_m":
+            return "The largest slip", f"the clearance of {SHORT_MILLIMETRES.text(limit)}"
+        if key == "single_rotation_ratio":
+            return "The largest rotation of a single motion", f"this program's own limit of {limit:g}"
+        share = "mean" if self.motions >= MEAN_FROM else "largest"
+        return f"The {share} rotation of the {self.motions} motions", f"the limit of {limit:g}"
+
+    def _count(self, key: str, group: RunGroup) -> str:
+        beyond = group.beyond(
+            "max_slip_m" if key == "slip_m" else "rotation_ratio", getattr(self.limits, key)
+        )
+        return f"{beyond} of {self.motions} motions beyond it"
+
+    def _repetitions(self) -> Iterator[Reason]:
+        if self.range and self.range.overturned:
+            yield Reason(
+                NOT_SURE,
+                f"In {self.range.overturned} of {self.range.repetitions} repetitions {ALIKE}, a run overturned.",
+            )
+        if self.repetitions_failed:
+            yield Reason(NOT_SURE, f"{self.repetitions_failed} runs of the repetitions failed.")
+
+    def _confirmed(self) -> Iterator[Reason]:
+        """What the elastic model and the unknown inputs make of the deciding runs."""
+        again = self.confirmed
+        failed = sum(one.outcome is None for one in again)
+        fell = sum(Outcome.OVERTURNED in (one.outcome, *one.outcomes) for one in again)
+        beyond = sum(
+            one.turned > self.limits.single_rotation_ratio or one.slipped > self.limits.slip_m
+            for one in again
+        )
+        words = "deciding runs, repeated with the elastic model over their unknown inputs,"
+        if failed:
+            yield Reason(NOT_SURE, f"{failed} of {len(again)} {words} failed.")
+        if fell:
+            yield Reason(NOT_SURE, f"{fell} of {len(again)} {words} can overturn.")
+        elif beyond and not self.rule.fails(self.limits):
+            yield Reason(NOT_SURE, f"{beyond} of {len(again)} {words} go beyond a limit of a single motion.")
+
+
+def against(one: FurtherMotions) -> Iterator[Reason]:
+    """What the further motions for one container and friction say against it."""
+    if one.failed:
+        yield Reason(
+            NOT_SURE, f"{one.failed} of {one.failed + one.motions} further motions failed ({where(one)})."
+        )
+    if not one.motions:
+        return
+    per_cent = f"{100.0 * MOST_OVERTURNING:g} %"
+    beyond = f"{one.beyond_limits} went beyond a limit of a single motion"
+    least_beyond, _ = binomial_interval(one.beyond_limits, one.motions, CONFIDENCE)
+    if one.overturned and one.interval[1] > MOST_OVERTURNING:
+        low, high = (plain_number(100.0 * end, FIGURES) for end in one.interval)
+        yield Reason(
+            NOT_SURE,
+            f"{one.overturned} of {one.motions} further motions overturned it and {beyond} ({where(one)}): {low} to "
+            f"{high} % of such motions overturn it, which may be more than {per_cent}.",
+        )
+    elif least_beyond > MOST_OVERTURNING:
+        yield Reason(
+            NOT_SURE,
+            f"Of {one.motions} further motions {beyond} ({where(one)}): of such motions more than {per_cent} do.",
+        )
+    elif one.interval[1] > MOST_OVERTURNING:
+        yield Reason(
+            NOT_SURE,
+            f"{one.motions} further motions cannot show that at most {per_cent} overturn it: at least "
+            f"{least_draws(MOST_OVERTURNING, CONFIDENCE)} can.",
+        )
+
+
+def where(run: SiteRun | FurtherMotions) -> str:
+    """The container and friction of runs: "full, friction 0.4/0.2"."""
+    side = "" if run.elevation == "width" else f", {run.elevation} along the motion"
+    period = "" if run.building_period_s is None else f", building {run.building_period_s:g} s"
+    return f"{run.mass}{side}{period}, friction {run.mu_static:.3g}/{run.mu_kinetic:.3g}"
+
+
+def in_words(key: str, value: float, figures: int = FIGURES) -> str:
+    """A figure of the rule with its unit."""
+    of_it = "" if key == "slip_m" else " of the slenderness angle"
+    return unit_of(key).text(value, figures=figures) + of_it
+
+
+def span(key: str, low: float, high: float, figures: int = FIGURES) -> str:
+    """A range of a figure without its unit; nothing but its one number where the ends read alike."""
+    ends = [unit_of(key).text(end, figures=figures, bare=True) for end in (low, high)]
+    return ends[0] if ends[0] == ends[1] else " to ".join(ends)
+
+
+def places_of(key: str, limit: float, values: Sequence[float]) -> int:
+    """Figures with which no value reads as its limit."""
+    unit = unit_of(key)
+    return next(
+        (
+            figures
+            for figures in (FIGURES, FIGURES + 1)
+            if all(
+                unit.text(one, figures=figures) != unit.text(limit, figures=figures)
+                for one in values
+                if one != limit
+            )
+        ),
+        FIGURES + 2,
+    )
+
+
+def unit_of(key: str) -> DisplayUnit:
+    """The unit in which people read a figure of the rule."""
+    return SHORT_MILLIMETRES if key == "slip_m" else RATIO

@@ -1,0 +1,148 @@
+"""The runs of a verification stage by stage: each is asked for when the one before is there."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from pathlib import Path
+
+from fem.batch.runner import Runner
+from fem.batch.workers import hand_out
+from fem.seismic.artificial import artificial_motions
+from fem.seismic.floor import floor_motion
+from fem.seismic.ground_motion import GroundMotion
+from fem.site_check.answer import Beside
+from fem.site_check.file import SiteRequest
+from fem.site_check.motion_results import write_csv_files
+from fem.site_check.result import ConfirmedRun
+from fem.site_check.rule import RuleFound, governing_groups, groups_of
+from fem.site_check.runs import SET, RunKey, RunPlan, RunRows, motion_stem
+from fem.site_check.screening import Screening
+
+#: numbers of the artificial motions beyond the set begin behind those of any set
+FIRST_FURTHER = 10_000
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Stages:
+    """The runs of one request, and what is known of them."""
+
+    request: SiteRequest
+    plan: RunPlan
+    screening: Screening
+    longest: float  #: period of the band [s]
+    folder: Path  #: that holds the motions
+    rows: RunRows = field(default_factory=RunRows)
+
+    @classmethod
+    def of(
+        cls,
+        request: SiteRequest,
+        floors: Mapping[float | None, Sequence[GroundMotion]],
+        *,
+        longest: float,
+        folder: Path,
+    ) -> "Stages":
+        """For a request and the motions of its set, by building period.
+
+        Raises:
+            CaseError, MeshError: a container cannot be built.
+        """
+        any_floor = next(iter(floors.values()))
+        plan = RunPlan(
+            request=request,
+            motions=len(any_floor),
+            vertical=any_floor[0].vertical is not None,
+            periods=tuple(floors),
+        )
+        screening = Screening.of(request)
+        for period, floor in floors.items():
+            for number, motion in enumerate(floor, start=1):
+                screening.motions[motion_stem(number, period)] = motion
+        return cls(request=request, plan=plan, screening=screening, longest=longest, folder=folder)
+
+    def of_the_answer(self, runner: Runner) -> Iterator[Sequence[RunKey]]:
+        """The set, its repetitions and the further motions: all that the answer rests on but the deciding runs."""
+        yield self._left(self.plan.of_set())
+        groups = governing_groups(groups_of(self.rows.of(self.plan.of_set())))
+        yield self._left(self.plan.repeated(groups))
+        further = self.plan.of_further(groups, self.request.motions.further)
+        self._make(runner, [key for key in further if key.stem not in self.screening.motions])
+        if not runner.stop():
+            yield self._left(further)
+
+    def of_the_margin(self) -> Iterator[Sequence[RunKey]]:
+        """The set at other factors, up to the first at which the rule fails and a run overturns, and between."""
+        before = 1.0
+        for factor in self.plan.factors:
+            if factor > 1.0:
+                if self._overturns(before):
+                    break
+                before = factor
+            yield self._left(self.plan.scanned(factor))
+        yield self._left(self.plan.refined(self.rows.found))
+
+    def beside(self, confirmed: Sequence[ConfirmedRun], wind: float | None) -> Beside:
+        """What the answer rests on beside the runs.
+
+        Args:
+            confirmed: the deciding runs, repeated.
+            wind: the largest utilisation under wind; None: it was not asked for.
+        """
+        first = [self.screening.moves_at(key) for key in self.plan.of_set()]
+        return Beside(
+            confirmed=confirmed,
+            wind=wind,
+            still=sum(key.stage == SET for key in self.rows.still),
+            moves_at=None if None in first else min(one for one in first if one is not None),
+        )
+
+    def _overturns(self, factor: float) -> bool:
+        return RuleFound.of(groups_of(self.plan.by_factor(self.rows.found)[factor])).overturned > 0
+
+    def _left(self, keys: Sequence[RunKey]) -> list[RunKey]:
+        """Those that must be computed; those at rest by the rigid bound are noted."""
+        left = []
+        for key in self.rows.missing(keys):
+            if self.screening.at_rest(key):
+                self.rows.rest(key)
+            else:
+                left.append(key)
+        return left
+
+    def _make(self, runner: Runner, keys: Sequence[RunKey]) -> None:
+        """Make the further motions of these runs, and write their files."""
+        for period in dict.fromkeys(key.building_period_s for key in keys):
+            numbers = sorted({key.motion for key in keys if key.building_period_s == period})
+            make = partial(further_motions, self.request, self.plan.vertical, self.longest, period)
+            pools = runner.workers_of(self.request.heading.model, len(keys))
+            for chunk, made in hand_out(numbers, make, pools, at_a_time=4, stop=runner.stop):
+                for number, motion in zip(chunk, made, strict=True):
+                    stem = motion_stem(number, period, further=True)
+                    self.screening.motions[stem] = motion
+                    write_csv_files(self.folder, motion, stem)
+
+
+def further_motions(
+    request: SiteRequest, vertical: bool, longest: float, period: float | None, numbers: Sequence[int]
+) -> list[GroundMotion]:
+    """Artificial motions beyond the set, on the floor of a building of this period or on the ground (None)."""
+    asked, made = request.motions, []
+    for number in numbers:
+        (motion,) = artificial_motions(
+            request.action,
+            count=1,
+            seed=asked.seed,
+            stationary=asked.stationary_s,
+            longest=longest,
+            vertical=vertical,
+            first=FIRST_FURTHER + number,
+        )
+        if period is not None and request.building is not None:
+            motion = floor_motion(
+                motion,
+                height_ratio=request.building.z_over_h,
+                period=period,
+                damping_ratio=request.building.damping_ratio,
+            )
+        made.append(motion)
+    return made
