@@ -182,7 +182,7 @@ def advance(body: Any, run: RunState, until: float) -> int:
             landed = exchanges_pivot(track, control, run.attempt.new)
             if landed != 0:
                 lose_at_impact(body, run, landed, loose)
-        keep_most_strained_step(run)
+        keep_most_strained_step(run, step)
         close_step(run, step, iterations)
         # The imbalance of one step may vanish by chance while it changes sign: remember the last steps.
         stacked = run.joints.shape[0] > 1

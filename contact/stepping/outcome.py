@@ -8,8 +8,7 @@ box that comes to rest there has lost its footing, and counts as fallen. No hist
 within a slice.
 
 Of the samples that a history would have, the stepper follows the largest acceleration and the sway of the contents.
-The slip of the last cycle is kept, and the coordinates of the samples with the largest strain energy, from which
-stresses can be computed.
+The slip of the last cycle is kept.
 """
 
 import math
@@ -36,28 +35,25 @@ from contact.stepping.loose_stack import LooseStack
 from contact.stepping.modal_body import ModalBody, with_own_scratch
 from contact.stepping.observables import NEVER, lifting_energy
 from contact.stepping.stack_body import stack_with_own_scratch
-from contact.stepping.state import ROW_SLIP, ROW_STRAIN, Buffers, RunState
+from contact.stepping.state import ROW_SLIP, Buffers, RunState
 from contact.structs import struct
 
 #: energy of a container at rest, over that which it takes to overturn; and how long it must stay below [1/p]
 RESTING_ENERGY, RESTING_TIME = 1e-5, 1.0
 #: what ends a part of a run before its time: nothing but a fall; also rest; also being upright
 DRIVEN, FREE, UNDECIDED = 0, 1, 2
-SLICE, MOST_STRAINED = 0.25, 4  #: so many of the most strained samples are kept of each slice [s]
 
 
 @struct
 class KeptSamples(NamedTuple):
-    """What is kept of the samples of a run with n_d coordinates."""
+    """What is kept of the samples of a run."""
 
     slip_until: float  #: [s]
     slip: FloatArray  #: (n_k,) sample i up to `slip_until` is in column i modulo n_k [m]
-    strain: FloatArray  #: (n_s,) strain energy of the most strained samples; -1 where there is none [J]
-    position: FloatArray  #: (n_s, n_d or 0) their coordinates
 
 
 #: nothing, as where the caller drains the samples
-NOTHING_KEPT = KeptSamples(0.0, np.zeros(0), np.zeros(0), np.zeros((0, 0)))
+NOTHING_KEPT = KeptSamples(0.0, np.zeros(0))
 UNSETTLED = 4  #: as `integrator.REACHED`, but what becomes of the container is not decided yet
 
 
@@ -77,7 +73,6 @@ def run_to_end(
     aftermath: float = 0.0,
     slip_until: float = 0.0,
     cycle: float = 0.0,
-    strained: bool = False,
 ) -> SteppingEnd:
     """Step a run from t = 0 to its end, in place; the result does not depend on other runs or threads.
 
@@ -89,28 +84,17 @@ def run_to_end(
         rest_from: from here on the run ends where the container is at rest or has fallen [s].
         aftermath: how long a container beyond its slenderness angle is followed afterwards on a resting floor [s].
         slip_until, cycle: the slip is kept of the last `cycle` before `slip_until` [s].
-        strained: keep the most strained samples of every slice.
     """
     own = stack_with_own_scratch(body) if isinstance(body, LooseStack) else with_own_scratch(body)
     samples = run.buffers.history
     run.clock["attempt_limit"] = most_attempts(run.problem.control, duration + aftermath)
-    room = MOST_STRAINED * (math.ceil(duration / SLICE) + 2) if strained else 0
-    coordinates = samples.position.shape[1] if strained else 0
-    kept = KeptSamples(
-        slip_until=float(slip_until),
-        slip=np.zeros(math.ceil(cycle / samples.interval) + 2),
-        strain=np.full(room, -1.0) if strained else NOTHING_KEPT.strain,
-        position=np.zeros((room, coordinates)) if strained else NOTHING_KEPT.position,
-    )
-    if samples.position.shape[1] > coordinates or samples.velocity.shape[1] > 0:
-        samples = samples._replace(
-            position=samples.position[:, :coordinates], velocity=samples.velocity[:, :0]
-        )
+    kept = KeptSamples(slip_until=float(slip_until), slip=np.zeros(math.ceil(cycle / samples.interval) + 2))
+    if samples.position.shape[1] > 0 or samples.velocity.shape[1] > 0:
+        samples = samples._replace(position=samples.position[:, :0], velocity=samples.velocity[:, :0])
     frames = run.buffers.frames._replace(interval=math.inf)
     run = run._replace(buffers=Buffers(history=samples, frames=frames))
-    ahead = SLICE if strained else math.inf  # without slices the stepping returns where the samples are full
     step_on: Callable[..., int] = advance_in_slices.call_by_class
-    status = step_on(own, run, kept, ahead, float(rest_from), float(duration), DRIVEN)
+    status = step_on(own, run, kept, math.inf, float(rest_from), float(duration), DRIVEN)
     if status == UNSETTLED:
         since = float(run.clock[0].time)
         x, velocity_x, _ = floor_motion(run.problem.motion, since)
@@ -200,7 +184,6 @@ def advance_in_slices(
             return status
         if run.buffers.history.columns.shape[1] > 0:
             keep_slip(run, kept)
-            keep_most_strained(run, kept)
         clock.samples_drained = clock.samples
         if status != REACHED:
             return status
@@ -222,25 +205,3 @@ def keep_slip(run: RunState, kept: KeptSamples) -> None:
         index = clock.samples_drained + i
         if index * samples.interval <= kept.slip_until + 1e-9:
             kept.slip[index % kept.slip.size] = samples.columns[i, ROW_SLIP]
-
-
-@compiled
-def keep_most_strained(run: RunState, kept: KeptSamples) -> None:
-    """Keep the most strained of the new samples, each in place of the least strained one kept."""
-    clock, samples = run.clock[0], run.buffers.history
-    count = clock.samples - clock.samples_drained
-    for _ in range(min(count, MOST_STRAINED) if kept.strain.size > 0 else 0):
-        best = 0
-        for i in range(count):
-            if samples.columns[i, ROW_STRAIN] > samples.columns[best, ROW_STRAIN]:
-                best = i
-        place = 0
-        for i in range(kept.strain.size):
-            if kept.strain[i] < kept.strain[place]:
-                place = i
-        if samples.columns[best, ROW_STRAIN] <= kept.strain[place]:
-            return
-        kept.strain[place] = samples.columns[best, ROW_STRAIN]
-        for j in range(kept.position.shape[1]):
-            kept.position[place, j] = samples.position[best, j]
-        samples.columns[best, ROW_STRAIN] = -1.0  # taken

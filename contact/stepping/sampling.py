@@ -33,8 +33,10 @@ from contact.stepping.state import (
     ROW_SHEAR,
     ROW_SLIP,
     ROW_UPLIFT,
+    STRAIN_WINDOW,
     RunState,
     Samples,
+    Stresses,
 )
 
 SAME_INSTANT = 1e-12  #: difference of two times, over their size, that is rounding
@@ -108,13 +110,38 @@ def write_coordinates(samples: Samples, at: int, old: State, new: State, s: floa
 
 
 @inlined
-def keep_most_strained_step(run: RunState) -> None:
-    """Keep the coordinates at the end of the accepted step, where it strains the body more than the one kept."""
+def keep_most_strained_step(run: RunState, step: float) -> None:
+    """Keep the coordinates at the end of the accepted step, where it strains the body most in its window of time."""
     kept, new = run.strained, run.attempt.new
-    if kept.size > 0 and new.energy[STRAIN] > kept[0]:
-        kept[0] = new.energy[STRAIN]
-        for j in range(new.position.size):
-            kept[1 + j] = new.position[j]
+    if kept.shape[1] > 0:
+        window = min(int((run.clock[0].time + step) / STRAIN_WINDOW), kept.shape[1] - 1)
+        keep_if_more(kept[0, window], new.energy[STRAIN], new.position)
+        if run.problem.stress.first.size > 0:
+            keep_if_more(kept[1, window], largest_square(run.problem.stress, new.position), new.position)
+
+
+@inlined
+def keep_if_more(row: FloatArray, measure: float, position: FloatArray) -> None:
+    """Write a measure of strain and the coordinates into a row, where it exceeds that of the row."""
+    if measure > row[0]:
+        row[0] = measure
+        for j in range(position.size):
+            row[1 + j] = position[j]
+
+
+@compiled(inline=True)
+def largest_square(stress: Stresses, position: FloatArray) -> float:
+    """Largest square of the von Mises stress at these points [Pa2]."""
+    largest = 0.0
+    for i in range(stress.first.size):
+        first, along, upward, shear = stress.first[i], 0.0, 0.0, 0.0
+        for j in range(stress.of_modes.shape[2]):
+            amplitude = position[first + j]
+            along += amplitude * stress.of_modes[i, 0, j]
+            upward += amplitude * stress.of_modes[i, 1, j]
+            shear += amplitude * stress.of_modes[i, 2, j]
+        largest = max(largest, along * along - along * upward + upward * upward + 3.0 * shear * shear)
+    return largest
 
 
 @inlined

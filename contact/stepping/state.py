@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 from numpy.typing import NDArray
 
-from contact.arrays import FloatArray
+from contact.arrays import FloatArray, IntArray
 from contact.interface.laws import require_known_friction
 from contact.interface.workspace import Contact, Workspace, make_workspace
 from contact.motion.kernel import UNIFORM, FloorMotion, as_floor_motion, floor_motion
@@ -24,6 +24,7 @@ from contact.structs import struct
 
 UNLIMITED = 2**62
 AT_REST = as_floor_motion(UNIFORM, (0.0, 0.0, 0.0))  #: a floor that does not move
+STRAIN_WINDOW = 0.05  #: of each of which the most strained step is kept [s]
 
 #: columns of `Samples.columns`, as a history names them
 ROWS = (
@@ -218,6 +219,17 @@ def make_samples(
 
 
 @struct
+class Stresses(NamedTuple):
+    """The stress of k points of an elastic body, where it may be largest, from its modal amplitudes."""
+
+    first: IntArray  #: (k,) of the coordinates, the first amplitude of the body of each point
+    of_modes: FloatArray  #: (k, 3, m) xx, zz, xz for amplitudes of 1 [Pa]
+
+
+NO_STRESSES = Stresses(np.zeros(0, dtype=np.int64), np.zeros((0, 3, 0)))
+
+
+@struct
 class RunProblem(NamedTuple):
     """What does not change in a run, but for the stiffness in the `contact` of a loose stack."""
 
@@ -227,6 +239,7 @@ class RunProblem(NamedTuple):
     vertical: FloorMotion  #: of the floor upward; of the kind UNIFORM the floor stays at its height
     breaks: FloatArray  #: instants at which a step must end [s], sorted, the last one infinite
     control: Control
+    stress: Stresses
 
 
 @struct
@@ -266,7 +279,9 @@ class RunState(NamedTuple):
     joints: Any  #: (N,) of JOINT_RECORD
     track: Any  #: (1,) of `observables.OBSERVABLES`
     contents: FloatArray  #: (8, 2 n_m) filter of the contents, see `contact.stepping.contents`
-    #: (1 + n_d or 0,) strain energy [J] and coordinates of the most strained step since the caller looked; -1: none
+    #: (2, n_w, 1 + n_d) the most strained step of each `STRAIN_WINDOW` (of the last one in all time from there on) by
+    #: strain energy [J], and by the square of the von Mises stress at the points of `problem.stress` [Pa2]: that, -1
+    #: for none, and its coordinates
     strained: FloatArray
 
     def with_problem(self, **parts: Any) -> "RunState":
@@ -296,12 +311,13 @@ def make_run(
     history: Samples,
     frames: Samples,
     joints: Any = None,
-    strained: bool = False,
+    strained: int = 0,
+    stress: Stresses = NO_STRESSES,
 ) -> RunState:
     """Assemble a run at t = 0.
 
-    `old` is the initial state, completed; `joints` those of a loose stack, see `make_joints`; `strained`: keep the most
-    strained step.
+    `old` is the initial state, completed; `joints` those of a loose stack, see `make_joints`; `strained`: windows
+    of which the most strained steps are kept, by the stress at the points of `stress`, too.
 
     Raises:
         ValueError: the kernels do not handle the law of friction; an array of the contact does not have one
@@ -327,6 +343,7 @@ def make_run(
             vertical=vertical,
             breaks=np.append(np.asarray(breaks, dtype=float), NEVER),
             control=control,
+            stress=stress,
         ),
         attempt=AttemptedStep(
             new=make_state(old.position.size, n, monitors, len(old.boxes)),
@@ -343,5 +360,5 @@ def make_run(
         joints=make_joints(control.mass, control.inertia, control.width) if joints is None else joints,
         track=make_observables(),
         contents=np.zeros((8, 2 * (monitors - control.top_monitors))),
-        strained=np.full(1 + old.position.size if strained else 0, -1.0),
+        strained=np.full((2, strained, 1 + old.position.size), -1.0),
     )

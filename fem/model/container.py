@@ -168,7 +168,12 @@ def _elastic(
 
 
 def _no_modes(elements: FiniteElements) -> ReducedBasis:
-    return ReducedBasis(angular_frequencies=np.zeros(0), shapes=np.zeros((0, *elements.nodes.shape)))
+    nodes = elements.nodes
+    return ReducedBasis(
+        angular_frequencies=np.zeros(0),
+        shapes=np.zeros((0, *nodes.shape)),
+        stress=np.zeros((3, 0, len(nodes))),
+    )
 
 
 def _no_response(elements: FiniteElements) -> StaticResponse:

@@ -21,7 +21,7 @@ from contact.stepping.ledger import spring_energy
 from contact.stepping.loose_stack import LooseStack
 from contact.stepping.modal_body import ModalBody
 from contact.stepping.observables import record_start
-from contact.stepping.state import RunState, make_run, make_samples
+from contact.stepping.state import NO_STRESSES, STRAIN_WINDOW, RunState, Stresses, make_run, make_samples
 from fem.case.case import Case
 from fem.model.container import Container, discretise, modes_of_a_body
 from fem.model.equilibrium import Equilibrium, find_equilibrium
@@ -41,6 +41,7 @@ from fem.solid.reduction import StaticResponse
 HISTORY_CHUNK, FRAME_CHUNK = 1024, 64
 #: the same of the full model, whose coordinates are many
 FULL_HISTORY_CHUNK, FULL_FRAME_CHUNK = 16, 4
+MOST_STRAINED = 8192  #: steps kept of a reduced run, each the most strained one of a window of time
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -176,7 +177,7 @@ def build_model(
             nodes.size,
             columns=True,
             boxes=case.container.bodies,
-            position=0 if full and not stacked else coordinates,
+            position=coordinates if stacked else 0,
             velocity=coordinates if stacked else 0,
         ),
         frames=make_samples(
@@ -187,7 +188,8 @@ def build_model(
             velocity=coordinates if fields > 0.0 else 0,
         ),
         joints=joints_of_stack(container) if container.boxes else None,
-        strained=full,
+        strained=_strained_steps(case, duration),
+        stress=_stresses_at_contacts(container),
     )
     if full:  # its first steps settle vibrations of the mesh, which a large step would turn into a jump off the floor
         run.clock.level = step_level(control.largest_step, control.event_step)
@@ -203,6 +205,34 @@ def build_model(
         duration=duration,
         rest_from=rest_sought_from(case, motion, vertical),
     )
+
+
+def _stresses_at_contacts(container: Container) -> Stresses:
+    """The stress of a reduced model at its contact points: impacts strain it there, where the energy shows it least."""
+    if container.boxes:
+        bases = [(box.basis, box.corners) for box in container.boxes]
+    else:
+        bases = [(container.basis, container.nodes)]
+    most = max(basis.angular_frequencies.size for basis, _ in bases)
+    if most == 0:
+        return NO_STRESSES
+    first = np.concatenate([np.full(nodes.size, 3 + k * (3 + most)) for k, (_, nodes) in enumerate(bases)])
+    of_modes = np.zeros((first.size, 3, most))
+    end = 0
+    for basis, nodes in bases:
+        begin, end = end, end + nodes.size
+        of_modes[begin:end, :, : basis.angular_frequencies.size] = np.moveaxis(
+            basis.stress[:, :, nodes], -1, 0
+        )
+    return Stresses(first=first, of_modes=of_modes)
+
+
+def _strained_steps(case: Case, duration: float) -> int:
+    """How many steps are kept for the largest stress: of a full model one, of which the stress is looked at soon."""
+    if case.solver.model == "full":
+        return 1
+    windows = min(math.ceil(duration / STRAIN_WINDOW) + 1, MOST_STRAINED)
+    return windows if case.solver.model == "reduced" else 0
 
 
 def _chunk(wanted: int, largest_step: float, interval: float) -> int:

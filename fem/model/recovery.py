@@ -13,8 +13,6 @@ from fem.solid.elasticity import von_mises
 from fem.solid.nodal_body import rotation_matrix
 from fem.solid.reduction import ReducedBasis
 
-#: largest elastic displacement used to probe the stress of a mode, over the size of the container
-PROBE = 1e-6
 #: |VON_MISES_ROOT s| is the equivalent stress of s = (sx, sz, t)
 VON_MISES_ROOT = np.array([[1.0, -0.5, 0.0], [0.0, math.sqrt(0.75), 0.0], [0.0, 0.0, math.sqrt(3.0)]])
 #: relative rounding error of a stress against its bound
@@ -126,6 +124,11 @@ class Recovery:
         """Largest nodal von Mises stress over rows of coordinates (n_s, n_d) [Pa]; 0 without modes."""
         return max(one.body.largest_von_mises(position[:, one.coordinates]) for one in self.bodies)
 
+    def largest_of_steps(self, strained: FloatArray) -> float | None:
+        """Largest nodal von Mises stress of a reduced run over the steps of `RunState.strained` [Pa]; None without."""
+        rows = strained[strained[:, :, 0] >= 0.0, 1:] if strained.size else strained
+        return self.largest_von_mises(rows) if rows.size else None
+
 
 def recovery_of(model: Model) -> Recovery:
     """Recovery of the fields of this model."""
@@ -162,19 +165,11 @@ def recovery_of(model: Model) -> Recovery:
 def _of_body(
     elements: FiniteElements, basis: ReducedBasis, centroid: FloatArray, *, full: bool
 ) -> BodyRecovery:
-    shapes = basis.shapes
-    stress = np.zeros((3, len(shapes), len(elements.nodes)))
-    size = float(np.ptp(elements.nodes, axis=0).max())
-    for k, shape in enumerate(shapes):
-        probe = PROBE * size / np.abs(shape).max()
-        # The difference of both signs leaves the part of the stress that is linear in the displacement.
-        both = elements.nodal_stress(probe * shape) - elements.nodal_stress(-probe * shape)
-        stress[:, k] = both.T / (2.0 * probe)
     return BodyRecovery(
         elements=elements,
         centroid=centroid,
-        shapes=shapes,
+        shapes=basis.shapes,
         full=full,
         angular_frequencies=basis.angular_frequencies,
-        _stress=stress,
+        _stress=basis.stress,
     )

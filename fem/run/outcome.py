@@ -37,15 +37,12 @@ def run_without_history(model: Model, recovery: Recovery | None) -> tuple[Verdic
         aftermath=AFTERMATH / run.problem.control.frequency_parameter,
         slip_until=until,
         cycle=min(model.case.motion.period, duration),
-        strained=recovery is not None,
     )
     interval = run.buffers.history.interval
     count = int(run.clock[0].samples)
     last = min(count - 1, int((until + 1e-9) / interval))
     numbers = np.arange(max(0, last + 1 - kept.slip.size), last + 1)
-    stress = None
-    if recovery is not None and kept.strain.size:
-        stress = recovery.largest_von_mises(kept.position[kept.strain >= 0.0])
+    stress = None if recovery is None else recovery.largest_of_steps(run.strained)
     end = (count - 1) * interval if count else None
     verdict = verdict_from(model, end, numbers * interval, kept.slip[numbers % kept.slip.size], stress)
     if status == FAILED:

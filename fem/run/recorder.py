@@ -1,4 +1,4 @@
-"""The samples of a run: history rows, field frames, the largest stress.
+"""The samples of a run: history rows, field frames; the largest stress, which is that of steps.
 
 The stepper fills small arrays of samples. The recorder empties them between its calls and passes the rows on to files,
 so that the memory of a run does not grow with its fields.
@@ -57,10 +57,8 @@ class Recorder:
         self._rows: list[FloatArray] = []
         self._modes: list[str] = []
         self._area = model.contact_areas
-        self.largest_von_mises: float | None = (
-            None  #: over frames, samples and most strained steps, if any [Pa]
-        )
-        self._most_strain = 0.0  #: of the steps looked at [J]
+        self._stress: float | None = None  #: of a full model over frames and most strained steps, if any [Pa]
+        self._most_strain = 0.0  #: of its steps looked at [J]
         #: of the joints at the last sample (J, 8), see `fem.model.joints`; the next forces follow from its change
         self.joint_motion = np.zeros((0, 0))
         self._joint_forces = np.zeros((0, len(JOINTS.columns)))
@@ -89,14 +87,20 @@ class Recorder:
         return History(numbers=numbers, values=values, modes=tuple(self._modes))
 
     @property
+    def largest_von_mises(self) -> float | None:
+        """Largest von Mises stress over the most strained steps, of a full model also over its frames, if any [Pa]."""
+        if self._recovery is None or self._recovery.full:
+            return self._stress
+        return self._recovery.largest_of_steps(self._model.run.strained)
+
+    @property
     def _numbers(self) -> tuple[str, ...]:
         return numbers_of(history_columns(self._model.case, len(self._joint_forces)))
 
     def memory(self) -> dict[str, FloatArray]:
         """State of the recorder on which the next samples depend, by name."""
-        stress = self.largest_von_mises
         return {
-            "largest_von_mises": np.array([] if stress is None else [stress]),
+            "largest_von_mises": np.array([] if self._stress is None else [self._stress]),
             "most_strain": np.array([self._most_strain]),
             "joint_motion": self.joint_motion,
             "joint_forces": self._joint_forces,
@@ -105,7 +109,7 @@ class Recorder:
     def recall(self, memory: Mapping[str, FloatArray]) -> None:
         """Restore the memory of an earlier recorder of the same run."""
         stress = memory["largest_von_mises"]
-        self.largest_von_mises = float(stress[0]) if stress.size else None
+        self._stress = float(stress[0]) if stress.size else None
         self._most_strain = float(memory["most_strain"][0])
         self.joint_motion, self._joint_forces = memory["joint_motion"], memory["joint_forces"]
 
@@ -135,8 +139,6 @@ class Recorder:
         rows = np.column_stack([columns[name] for name in self._numbers])
         rows += 0.0  # no minus zero
         modes = [MODES[int(mode)] for mode in samples.mode[:count]]
-        if self._recovery is not None and samples.position.shape[1] > 0 and not self._recovery.full:
-            self._note_stress(self._recovery.largest_von_mises(samples.position[:count]))
         self._rows.append(rows)
         self._modes += modes
         if self._history_sink is not None:
@@ -157,20 +159,20 @@ class Recorder:
         return forces.reshape(count, -1)
 
     def _look_at_most_strained(self, run: RunState) -> None:
-        """Note the stress at the most strained step of a slice, unless it is far below that of an earlier slice."""
-        if self._recovery is None or not run.strained.size:
+        """Note the stress of a full model at the most strained step of a slice, unless far below an earlier one."""
+        if self._recovery is None or not self._recovery.full:
             return
-        energy = float(run.strained[0])
+        energy = float(run.strained[0, 0, 0])
         if energy >= STRAINED * self._most_strain:
-            position = run.strained[1:]
+            position = run.strained[0, 0, 1:]
             frame = self._recovery.frame(position, np.zeros_like(position))
             if frame.von_mises is not None:
                 self._note_stress(float(np.max(frame.von_mises)))
         self._most_strain = max(self._most_strain, energy)
-        run.strained[0] = -1.0
+        run.strained[0, 0, 0] = -1.0
 
     def _note_stress(self, stress: float) -> None:
-        self.largest_von_mises = max(self.largest_von_mises or 0.0, stress)
+        self._stress = max(self._stress or 0.0, stress)
 
     def _drain_frames(self, run: RunState) -> None:
         clock, samples = run.clock[0], run.buffers.frames
@@ -179,7 +181,7 @@ class Recorder:
             for k in range(count):
                 time = (first + k) * samples.interval
                 frame = self._recovery.frame(samples.position[k], samples.velocity[k])
-                if frame.von_mises is not None:
+                if frame.von_mises is not None and self._recovery.full:
                     self._note_stress(float(np.max(frame.von_mises)))
                 if self._frame_sink is not None:
                     pressure = np.zeros(len(frame.displacement))

@@ -18,6 +18,8 @@ from fem.solid.modes import elastic_modes, rigid_modes
 
 #: relative mass below which an attachment mode, less its projection on the others, is rounding noise
 INDEPENDENT = 1e-10
+#: largest elastic displacement used to probe the stress of a shape, over the size of the container
+PROBE = 1e-6
 #: loads solved at a time: the solver is no faster per load with more
 LOADS = 32
 #: multiplications in one product of dense rows: a few seconds
@@ -38,6 +40,7 @@ class ReducedBasis:
 
     angular_frequencies: FloatArray  #: (m,) [rad/s]
     shapes: FloatArray  #: (m, n, 2) mass-normalised [1/sqrt(kg)]
+    stress: FloatArray  #: (3, m, n) xx, zz, xz of each, linear in the amplitude [Pa/(m sqrt(kg))]
 
 
 def static_response(elements: FiniteElements, base: IntArray) -> StaticResponse:
@@ -94,7 +97,22 @@ def reduced_basis(elements: FiniteElements, response: StaticResponse, modes: int
     squares, combination = scipy.linalg.eigh(projected, gram)
     shapes = np.empty_like(columns)
     _combine(shapes, (combination.T, columns), (np.zeros((squares.size, 0)), free[:0]))
-    return ReducedBasis(angular_frequencies=np.sqrt(squares), shapes=shapes.reshape(squares.size, -1, 2))
+    shapes = shapes.reshape(squares.size, -1, 2)
+    return ReducedBasis(
+        angular_frequencies=np.sqrt(squares), shapes=shapes, stress=_stress_of(elements, shapes)
+    )
+
+
+def _stress_of(elements: FiniteElements, shapes: FloatArray) -> FloatArray:
+    """Stress of each shape at the nodes, (3, m, n)."""
+    stress = np.zeros((3, len(shapes), len(elements.nodes)))
+    size = float(np.ptp(elements.nodes, axis=0).max())
+    for k, shape in enumerate(shapes):
+        probe = PROBE * size / np.abs(shape).max()
+        # The difference of both signs leaves the part of the stress that is linear in the displacement.
+        both = elements.nodal_stress(probe * shape) - elements.nodal_stress(-probe * shape)
+        stress[:, k] = both.T / (2.0 * probe)
+    return stress
 
 
 def _products(rows: FloatArray, matrix: csc_array) -> FloatArray:
