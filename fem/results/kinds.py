@@ -66,7 +66,16 @@ SWEEP = ResultKind(
     request="sweep_hash",
     results="table.csv",
     own=(
-        *("rows.csv", "members.csv", "tried.csv", "thresholds.csv", "answers.csv", "table.csv", "maps/*.svg"),
+        *(
+            "rows.csv",
+            "members.csv",
+            "margins.csv",
+            "tried.csv",
+            "thresholds.csv",
+            "answers.csv",
+            "table.csv",
+            "maps/*.svg",
+        ),
         *("motions.csv", "motion_set.csv", "spectra.csv", "figures/*.svg"),
     ),
     temporary=("rows.csv",),

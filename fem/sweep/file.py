@@ -33,6 +33,9 @@ class SweepHeading(CaseTable):
     limit_slip_m: Annotated[float, SLIP_LIMIT] | None = Field(
         default=None, description="slip beyond which a cell does not stand in the answer"
     )
+    margin: bool = Field(
+        default=False, description="find the factor on the motion at which each cell overturns first"
+    )
 
 
 TABLES = ("set", "axes", "derived", "perturbation", "threshold", "maps")
@@ -74,6 +77,7 @@ def _read(data: Mapping[str, Any], origin: Origin) -> Sweep:
         threshold=_threshold(tables, axes),
         maps=_maps(tables.get("maps", {}), axes),
         limit_slip_m=heading.limit_slip_m,
+        margin=heading.margin,
     )
     _try_cells(sweep)
     return sweep

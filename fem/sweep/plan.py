@@ -83,6 +83,7 @@ class Sweep:
     threshold: Threshold | None
     maps: MapChoice
     limit_slip_m: float | None = None  #: beyond which a cell does not stand in the answer
+    margin: bool = False  #: find the factor on the motion at which each cell overturns first
 
     @property
     def shape(self) -> tuple[int, ...]:

@@ -5,7 +5,7 @@ Every step is logged before the next begins, so an interrupted sweep continues w
 """
 
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
@@ -34,6 +34,7 @@ from fem.sweep.answers import TRIED, sweep_answer
 from fem.sweep.cells import CellRows
 from fem.sweep.copies import left_out
 from fem.sweep.maps import draw_maps
+from fem.sweep.margins import MARGIN, find_margins
 from fem.sweep.perturbed import PerturbedRows, band_rows, perturb_cells
 from fem.sweep.plan import Sweep
 from fem.sweep.refine import refine, table_of_changes
@@ -41,10 +42,11 @@ from fem.sweep.result import SweepResult
 from fem.sweep.set_files import write_set
 from fem.sweep.table import FOUND, band_columns, open_sweep
 
-ROWS, TABLE, MEMBERS, CHANGES, ANSWERS = (
+ROWS, TABLE, MEMBERS, MARGINS, CHANGES, ANSWERS = (
     "rows.csv",
     "table.csv",
     "members.csv",
+    "margins.csv",
     "thresholds.csv",
     "answers.csv",
 )
@@ -100,7 +102,9 @@ def sweep_hash(sweep: Sweep) -> str:
 
 def band_hash(sweep: Sweep) -> str:
     """Equal for sweeps that are perturbed, refined and answered in the same way."""
-    return hash_of(repr((sweep.perturbation, sweep.base.uncertainty, sweep.threshold, sweep.limit_slip_m)))
+    return hash_of(
+        repr((sweep.perturbation, sweep.base.uncertainty, sweep.threshold, sweep.limit_slip_m, sweep.margin))
+    )
 
 
 def check_size(sweep: Sweep, jobs: int, force: bool) -> None:
@@ -193,7 +197,7 @@ def _compute(
     """Compute what is missing, and write tables and maps."""
     began, stop = time.perf_counter(), runner.stop
     if (place.found or {}).get("band_hash") != asked.band_hash:
-        place.remove(MEMBERS, TRIED, CHANGES, ANSWERS)
+        place.remove(MEMBERS, MARGINS, TRIED, CHANGES, ANSWERS)
     copy_data_files(sweep.base, place.path)
     for pair in motions:
         copy_data_files(pair.case, place.path, read=True)
@@ -203,20 +207,22 @@ def _compute(
     rows = cells.rows
     copies = None if stop() else perturb_cells(runner, sweep, rows, place.path / MEMBERS)
     changes = None if stop() else refine(runner, sweep, rows, place.path / TRIED)
+    margins = {} if stop() else find_margins(runner, sweep, place.path / MARGINS)
     result = cells.counted()
     if copies is not None:
         result = replace(result, perturbed=len(copies.rows), copies=sum(map(len, copies.rows.values())))
     if stop():
         missing = f"{result.rows} of {sweep.count} cells are computed"
         if result.rows == sweep.count:
-            missing = "all cells are computed, their copies or the changes of outcome between them are not"
+            missing = "all cells are computed, their copies, margins or the changes between them are not"
         return replace(result, status=INTERRUPTED, missing=missing, wall_s=time.perf_counter() - began)
     place.check()
     result = replace(
         result,
         status=FAILED if set(rows.outcomes) == {"failed"} else COMPLETED,
-        **_write_table(place, sweep, rows, copies),
+        **_write_table(place, sweep, rows, copies, margins),
     )
+    place.remove(MARGINS)  # they are columns of the table
     if changes is not None:
         place.write_text(CHANGES, table_of_changes(sweep, changes))
         result = replace(result, changes=len(changes))
@@ -234,7 +240,11 @@ def _compute(
 
 
 def _write_table(
-    place: ResultFolder, sweep: Sweep, cells: CellRows, copies: PerturbedRows | None
+    place: ResultFolder,
+    sweep: Sweep,
+    cells: CellRows,
+    copies: PerturbedRows | None,
+    margins: Mapping[int, Sequence[str]],
 ) -> dict[str, Any]:
     """Write `table.csv` and the copies; returns what they add to `sweep.json`."""
     columns, added = band_columns(sweep.axes), dict[str, Any]()
@@ -248,8 +258,8 @@ def _write_table(
             "decided_by": dict(deciding.most_common()),
         }
         place.write_text(MEMBERS, table_of_lines(perturbed.COLUMNS, copies.lines()))
-    lines = (f"{cells.lines[cell]},{band}" for cell, band in enumerate(bands))
-    place.write_text(TABLE, table_of_lines((*cells.columns, *columns), lines))
+    lines = (",".join([cells.lines[cell], band, *margins.get(cell, ())]) for cell, band in enumerate(bands))
+    place.write_text(TABLE, table_of_lines((*cells.columns, *columns, *(MARGIN if margins else ())), lines))
     return added
 
 
@@ -271,7 +281,8 @@ class _Cells:
         log, table = self.place.path / ROWS, self.place.path / TABLE
         columns = self.rows.columns
         if table.exists() and not log.exists():
-            lines = read_lines(table, (*columns, *band_columns(self.sweep.axes)))
+            bands = (*columns, *band_columns(self.sweep.axes))
+            lines = [*read_lines(table, bands), *read_lines(table, (*bands, *MARGIN))]
             kept = (line_of(fields_of(line)[: len(columns)]) for line in lines)
             self.place.write_text(ROWS, table_of_lines(columns, kept))
         self.place.remove(TABLE)
