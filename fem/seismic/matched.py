@@ -59,12 +59,17 @@ def scaled_records(
 
 
 def matched_records(
-    records: Sequence[GroundMotion], action: SiteAction, *, longest: float = LAST_PERIOD_S
+    records: Sequence[GroundMotion],
+    action: SiteAction,
+    *,
+    longest: float = LAST_PERIOD_S,
+    second: float = 1.0,
 ) -> list[GroundMotion]:
     """Records whose components are matched by wavelets to the horizontal and the vertical spectrum.
 
     Args:
         records: as recorded; longest: period up to which they are matched [s].
+        second: share of the horizontal spectrum for their second horizontal components, where there are any.
 
     A common factor above 1 follows where the set would miss 3.2.3.1.2(4)b or c without it.
     """
@@ -75,12 +80,17 @@ def matched_records(
         if record.vertical is not None:
             upward = _matched(step, sampled_at(step, record.step, record.vertical), action.vertical, longest)
         horizontal = sampled_at(step, record.step, record.horizontal)
+        across = None
+        if record.second is not None and second > 0.0:
+            other = sampled_at(step, record.step, record.second)
+            across = second * _matched(step, other, action.horizontal, longest)
         matched.append(
             replace(
                 record,
                 step=step,
                 horizontal=_matched(step, horizontal, action.horizontal, longest),
                 vertical=upward,
+                second=across,
                 origin=f"{record.origin}, matched",
             )
         )

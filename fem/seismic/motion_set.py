@@ -65,6 +65,8 @@ class MotionSetCheck:
     least_ratio_period: float  #: [s]
     vertical_least_ratio: float | None
     vertical_least_ratio_period: float | None
+    second_least_ratio: float | None  #: as the vertical's, of the second horizontal components
+    second_least_ratio_period: float | None
     largest_correlation: float
     stationary: float | None  #: least stationary part of artificial motions [s]; None: recorded
     reasons: tuple[str, ...]  #: why the set may not be used; empty: it may
@@ -82,8 +84,12 @@ class MotionSetCheck:
     @property
     def vertical_fulfilled(self) -> bool:
         """As (4)c, for the vertical spectrum; true without one."""
-        least = self.vertical_least_ratio
-        return least is None or least >= LEAST_SHARE * (1.0 - ROUNDING)
+        return _suffices(self.vertical_least_ratio)
+
+    @property
+    def second_fulfilled(self) -> bool:
+        """As (4)c, for the second horizontal components; true without any."""
+        return _suffices(self.second_least_ratio)
 
     @property
     def valid(self) -> bool:
@@ -91,15 +97,24 @@ class MotionSetCheck:
         return not self.reasons
 
 
+def _suffices(ratio: float | None) -> bool:
+    return ratio is None or ratio >= LEAST_SHARE * (1.0 - ROUNDING)
+
+
 def check_set(
-    motions: Sequence[GroundMotion], action: SiteAction, *, longest: float = LAST_PERIOD_S
+    motions: Sequence[GroundMotion],
+    action: SiteAction,
+    *,
+    longest: float = LAST_PERIOD_S,
+    second: float = 1.0,
 ) -> MotionSetCheck:
     """Check a set of motions against the elastic spectra of a site.
 
     Args:
         motions: at least one; longest: end of the band of periods [s].
+        second: share of the horizontal spectrum that the second horizontal components are for.
 
-    The vertical spectrum is required of artificial motions (3.2.3.1.2(1)P) and shown of recorded ones, whose
+    The spectra of the vertical and of the second component are required of artificial motions (3.2.3.1.2(1)P) and shown of recorded ones, whose
     components keep their proportion.
     """
     periods = periods_of_check(longest)
@@ -115,6 +130,12 @@ def check_set(
             target=action.vertical(periods), motions=_spectra(motions, upward, periods)
         )
         upright = vertical.least(inside)
+    across: tuple[float, int] | None = None
+    others = [motion.second for motion in motions if motion.second is not None]
+    if len(others) == len(motions):
+        across = ComponentSpectra(
+            target=second * horizontal.target, motions=_spectra(motions, others, periods)
+        ).least(inside)
     peak = float(np.mean([motion.peak for motion in motions]))
     correlation = largest_correlation(motions)
     stationary = [motion.stationary for motion in motions if motion.stationary is not None]
@@ -138,6 +159,11 @@ def check_set(
             artificial and upright is not None and upright[0] < LEAST_SHARE * (1.0 - ROUNDING),
             f"the mean vertical spectrum is {upright[0] if upright else 0.0:.2f} of its target at "
             f"{periods[upright[1]] if upright else 0.0:.3g} s, at least {LEAST_SHARE:g} is needed",
+        ),
+        (
+            artificial and across is not None and not _suffices(across[0]),
+            f"the mean spectrum of the second components is {across[0] if across else 0.0:.2f} of its target at "
+            f"{periods[across[1]] if across else 0.0:.3g} s, at least {LEAST_SHARE:g} is needed",
         ),
         (
             0 < len(upward) < len(motions),
@@ -166,6 +192,8 @@ def check_set(
         least_ratio_period=float(periods[place]),
         vertical_least_ratio=upright[0] if upright else None,
         vertical_least_ratio_period=float(periods[upright[1]]) if upright else None,
+        second_least_ratio=across[0] if across else None,
+        second_least_ratio_period=float(periods[across[1]]) if across else None,
         largest_correlation=correlation,
         stationary=min(stationary) if artificial else None,
         reasons=(

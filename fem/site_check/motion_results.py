@@ -121,6 +121,16 @@ def _checks(checked: MotionSetCheck) -> tuple[SetCheck, ...]:
                 clause="EN 1998-1:2004, 3.2.3.1.2 (1)P" if needed else "",
             )
         )
+    if checked.second_least_ratio is not None and checked.second_least_ratio_period is not None:
+        needed = checked.stationary is not None
+        checks.append(
+            SetCheck(
+                name=f"second horizontal: least mean over target, at {checked.second_least_ratio_period:.3g} s",
+                found=checked.second_least_ratio,
+                demanded=f"at least {LEAST_SHARE:g}" if needed else "shown only: recorded components",
+                fulfilled=checked.second_fulfilled or not needed,
+            )
+        )
     if checked.stationary is not None:
         checks.append(
             SetCheck(

@@ -10,14 +10,15 @@ from fem.case.data_files import split_channel
 from fem.case.problem import outside_the_folder, stays_in_the_folder
 from fem.case.validation import CaseError
 from fem.records.files import read_record
-from fem.records.record import Component, Record, RecordError, require_together
+from fem.records.record import Component, Direction, Record, RecordError, require_together
 from fem.runtime.arrays import FloatArray
 from fem.seismic.action import LAST_PERIOD_ANNEX_A_S, LAST_PERIOD_S
 from fem.seismic.artificial import artificial_set
-from fem.seismic.floor import PERIOD_FACTORS, floor_motion
+from fem.seismic.floor import PERIOD_FACTORS, floor_motion, one_mode, storey_modes
 from fem.seismic.ground_motion import GroundMotion
 from fem.seismic.matched import matched_records, scaled_records
 from fem.site_check.file import SiteRequest
+from fem.site_check.tables import BuildingTable
 
 #: largest difference of two intervals of a record that is sampled evenly, over the interval
 UNEVEN = 1e-3
@@ -50,6 +51,7 @@ def ground_motions(
                 stationary=asked.stationary_s,
                 longest=longest,
                 vertical=asked.vertical,
+                second=asked.second_component,
             )
         except ValueError as error:
             raise CaseError(f"[motions] {error}") from None
@@ -58,8 +60,9 @@ def ground_motions(
         for number, names in enumerate(asked.files or [], start=1)
     ]
     _require_independent(records)
-    fit = scaled_records if asked.source == "records" else matched_records
-    return fit(records, request.action, longest=longest)
+    if asked.source == "records":
+        return scaled_records(records, request.action, longest=longest)
+    return matched_records(records, request.action, longest=longest, second=asked.second_component)
 
 
 def floor_motions(
@@ -70,44 +73,49 @@ def floor_motions(
     if building is None or building.z_over_h == 0.0:
         return {None: list(ground)}
     return {
-        period: [
-            floor_motion(
-                motion, height_ratio=building.z_over_h, period=period, damping_ratio=building.damping_ratio
-            )
-            for motion in ground
-        ]
+        period: [on_floor(building, motion, period) for motion in ground]
         for period in (float(f"{factor * building.building_period_s:.9g}") for factor in PERIOD_FACTORS)
     }
 
 
+def on_floor(building: BuildingTable | None, ground: GroundMotion, period: float | None) -> GroundMotion:
+    """A motion of the ground on the floor of a building of this longest period; None: on the ground."""
+    if building is None or period is None:
+        return ground
+    height, storeys = building.z_over_h, building.storeys
+    if storeys is None:
+        modes = one_mode(height_ratio=height, period=period)
+    else:
+        modes = storey_modes(storeys=storeys, kind=building.kind, height_ratio=height, period=period)
+    return floor_motion(ground, modes, damping_ratio=building.damping_ratio)
+
+
 def _record(request: SiteRequest, number: int, names: Sequence[str], allow_outside: bool) -> GroundMotion:
-    asked, records, components = request.motions, list[Record](), list[Component]()
+    records, components = list[Record](), list[Component]()
+    given = dict(zip("hvt", names, strict=False))
+    if not request.motions.vertical:
+        given.pop("v", None)
     try:
-        for name, direction in zip(names, ("horizontal", "vertical"), strict=False):
-            if direction == "vertical" and not asked.vertical:
-                continue
+        for letter, name in given.items():
             record, channel = _read(request, name, allow_outside)
             records.append(record)
-            components.append(
-                record.component(
-                    "vertical" if direction == "vertical" else "horizontal",
-                    quantity="acceleration",
-                    channel=channel,
-                )
-            )
+            direction: Direction = "vertical" if letter == "v" else "horizontal"
+            components.append(record.component(direction, quantity="acceleration", channel=channel))
         for record, component in zip(records, components, strict=True):
             component.require_no_gap(record.name)
         require_together(components, [record.name for record in records])
     except RecordError as error:
         raise CaseError(f"[motions] files: {error}") from None
-    if len(components) == 2 and components[0] is components[1]:
-        raise CaseError(f"[motions] files: {records[0].name} is named for both directions")
+    if len(set(map(id, components))) < len(components):
+        raise CaseError(f"[motions] files: a component of {records[0].name} is named for two directions")
     step, values = _even(components)
+    by_letter = dict(zip(given, values, strict=True))
     return GroundMotion(
         name=f"motion_{number:02d}",
         step=step,
-        horizontal=values[0],
-        vertical=values[1] if len(values) == 2 else None,
+        horizontal=by_letter["h"],
+        vertical=by_letter.get("v"),
+        second=by_letter.get("t"),
         origin=", ".join(dict.fromkeys(record.name for record in records)),
         event=" ".join(f"{records[0].event} {records[0].date}".split()),
     )

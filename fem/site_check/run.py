@@ -124,7 +124,12 @@ class _Verification:
 
     def compute(self, place: ResultFolder, runner: Runner) -> SiteResult:
         """Write the motions, compute what is missing, and write runs and page."""
-        checked = check_set(self.ground, self.request.action, longest=self.stages.longest)
+        checked = check_set(
+            self.ground,
+            self.request.action,
+            longest=self.stages.longest,
+            second=self.request.motions.second_component or 1.0,
+        )
         written = write_ground(place.path, self.ground)
         motions = set_result(self.request, checked, self.ground, written)
         for period, moved in self.floors.items():

@@ -8,11 +8,11 @@ from pathlib import Path
 from fem.batch.runner import Runner
 from fem.batch.workers import hand_out
 from fem.seismic.artificial import artificial_motions
-from fem.seismic.floor import floor_motion
 from fem.seismic.ground_motion import GroundMotion
 from fem.site_check.answer import Beside
 from fem.site_check.file import SiteRequest
 from fem.site_check.motion_results import write_csv_files
+from fem.site_check.motions import on_floor
 from fem.site_check.result import ConfirmedRun
 from fem.site_check.rule import RuleFound, governing_groups, groups_of
 from fem.site_check.runs import SET, RunKey, RunPlan, RunRows, motion_stem
@@ -137,12 +137,5 @@ def further_motions(
             vertical=vertical,
             first=FIRST_FURTHER + number,
         )
-        if period is not None and request.building is not None:
-            motion = floor_motion(
-                motion,
-                height_ratio=request.building.z_over_h,
-                period=period,
-                damping_ratio=request.building.damping_ratio,
-            )
-        made.append(motion)
+        made.append(on_floor(request.building, motion, period))
     return made

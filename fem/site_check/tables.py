@@ -11,6 +11,7 @@ from fem.case.problem import Rule
 from fem.case.quantities import Quantity
 from fem.case.table import CaseTable, case_key
 from fem.seismic.artificial import LEAST_STATIONARY_S, MOST_STATIONARY_S
+from fem.seismic.floor import ONE_MODE_REFUSED_S, ONE_MODE_TO_S, is_a_floor, nearest_floor
 from fem.seismic.motion_set import LEAST_MOTIONS
 
 IMPORTANCE = Quantity(
@@ -34,6 +35,7 @@ STATIONARY = Quantity(
     advice="EN 1998-1:2004, 3.2.3.1.2 (3) asks for 10 s at least",
 )
 SHARE = Quantity(unit="", above=0.0, most=1.0, advice="0.5 to 1 is usual")
+SECOND = Quantity(unit="", least=0.0, most=1.5, advice="1 is the same spectrum in both directions")
 ROTATION_RATIO = Quantity(unit="", above=0.0, most=1.0, advice="0.5 is usual; 1 is on the point of falling")
 SLIP = Quantity(unit="m", above=0.0, most=100.0, typical=0.1, slips={"millimetres": 1e-3})
 WIND = Quantity(unit="Pa", above=0.0, most=1e4, typical=650.0, slips={"kN/m2": 1e3})
@@ -157,7 +159,43 @@ class BuildingTable(CaseTable):
     building_period_s: Annotated[float, BUILDING_PERIOD] = case_key(
         "T_1 in the direction of the motion; it is varied by plus and minus 15 %", example=0.5
     )
-    damping_ratio: Annotated[float, DAMPING] = case_key("of the building", 0.05)
+    storeys: Annotated[int, Strict(), Quantity(unit="", least=1, most=200)] | None = case_key(
+        "equal masses at equal heights, all modes up to 33 Hz; left out: one mode, good for low, stiff buildings "
+        f"up to T_1 = {ONE_MODE_TO_S:g} s",
+        None,
+        example=5,
+    )
+    kind: Literal["shear", "cantilever"] = case_key(
+        '"shear": equal storeys | "cantilever": bending of one stiffness; with storeys', "shear"
+    )
+    damping_ratio: Annotated[float, DAMPING] = case_key("of the building, of every mode", 0.05)
+
+    rules = (
+        Rule(
+            "building.building_period_s",
+            lambda building: (
+                building.storeys is not None
+                or building.z_over_h == 0.0
+                or building.building_period_s <= ONE_MODE_REFUSED_S
+            ),
+            f"= {{building_period_s}} s needs storeys: one mode stands for low, stiff buildings, up to "
+            f"{ONE_MODE_TO_S:g} s, and is refused beyond {ONE_MODE_REFUSED_S:g} s, where the floors of a building "
+            "move with its higher modes",
+        ),
+        Rule(
+            "building.z_over_h",
+            lambda building: building.storeys is None or is_a_floor(building.storeys, building.z_over_h),
+            lambda building: (
+                f"= {building.z_over_h:g} is no floor of {building.storeys} storeys; a floor is at "
+                f"{nearest_floor(building.storeys, building.z_over_h):.4g}"
+            ),
+        ),
+        Rule(
+            "building.kind",
+            lambda building: building.storeys is not None or building.kind == "shear",
+            "has no effect without storeys",
+        ),
+    )
 
 
 class MotionsTable(CaseTable):
@@ -174,8 +212,15 @@ class MotionsTable(CaseTable):
     )
     stationary_s: Annotated[float, STATIONARY] = case_key("stationary part of the artificial motions", 12.0)
     vertical: bool = case_key("whether the floor moves vertically, too", True)
+    second_component: Annotated[float, SECOND] = case_key(
+        "second horizontal component over the first, of artificial and matched motions: for slip in two directions; "
+        "0: none",
+        1.0,
+    )
     files: list[list[str]] | None = case_key(
-        "records: a list of pairs, horizontal and vertical", None, example=[["h1.at2", "v1.at2"]]
+        "records: a list of horizontal, vertical and, for slip in two directions, second horizontal component",
+        None,
+        example=[["h1.at2", "v1.at2"]],
     )
     unit: Literal["g", "m/s2", "cm/s2", "gal", "mm/s2"] | None = case_key(
         "of records whose files do not state it", None, example="g"
@@ -202,9 +247,9 @@ class MotionsTable(CaseTable):
             "motions.files",
             lambda motions: (
                 motions.files is None
-                or all(len(pair) in (1, 2) and all(name.strip() for name in pair) for pair in motions.files)
+                or all(len(names) in (1, 2, 3) and all(map(str.strip, names)) for names in motions.files)
             ),
-            "must hold one or two names each: horizontal, vertical",
+            "must hold one to three names each: horizontal, vertical, second horizontal",
         ),
         Rule(
             "motions.files",
@@ -212,7 +257,7 @@ class MotionsTable(CaseTable):
                 motions.source == "artificial"
                 or not motions.vertical
                 or motions.files is None
-                or all(len(pair) == 2 for pair in motions.files)
+                or all(len(names) >= 2 for names in motions.files)
             ),
             "must name a vertical record beside every horizontal one, or take vertical = false",
         ),
