@@ -114,8 +114,8 @@ def check_set(
         motions: at least one; longest: end of the band of periods [s].
         second: share of the horizontal spectrum that the second horizontal components are for.
 
-    The spectra of the vertical and of the second component are required of artificial motions (3.2.3.1.2(1)P) and shown of recorded ones, whose
-    components keep their proportion.
+    The spectra of the vertical and of the second component are required of artificial motions (3.2.3.1.2(1)P) and
+    shown of recorded ones, whose components keep their proportion.
     """
     periods = periods_of_check(longest)
     inside = (periods >= FIRST_PERIOD_S) & (periods <= longest * (1.0 + 1e-9))

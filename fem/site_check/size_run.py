@@ -229,9 +229,12 @@ class _Sizing:
         ground = ground_motions(request, longest, allow_outside=self.allow_outside)
         floors = floor_motions(request, ground)
         folder = _written(floors, working)
+        checked = check_set(
+            ground, request.action, longest=longest, second=request.motions.second_component or 1.0
+        )
         self.tried[value] = tried = Tried(
             request=request,
-            motions=set_result(request, check_set(ground, request.action, longest=longest), ground, ()),
+            motions=set_result(request, checked, ground, ()),
             stages=Stages.of(request, floors, longest=longest, folder=folder),
             wind=wind_utilisation(bodies, inputs_of(request)),
         )

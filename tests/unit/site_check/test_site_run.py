@@ -165,7 +165,7 @@ def test_the_motions_are_written_and_read_back_to_the_same_bits(computed):
     assert {motion.files for motion in result.set.motions}
     for motion in result.set.motions:
         values = {name: read_record(folder / "out" / name).components[0] for name in motion.files}
-        for letter in ("h", "v"):
+        for letter in ("h", "v", "t"):
             csv, at2 = (
                 values[f"motions/motion_{motion.number:02d}_{letter}.{end}"] for end in ("csv", "at2")
             )
@@ -195,7 +195,7 @@ def records(folder, *, twice=False, scale=1.0, event=""):
     names = []
     for number, motion in enumerate(made):
         pair = []
-        for letter, component in zip("hv", motion.components, strict=True):
+        for letter, component in motion.lettered.items():
             name = f"r{number}_{letter}.at2"
             described = (
                 f"{event or f'EVENT {number}'}, 1/1/20, STATION {number}, {'UP' if letter == 'v' else '090'}"

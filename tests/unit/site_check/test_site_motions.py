@@ -1,0 +1,120 @@
+"""The motions of a site: second horizontal components, and floors of buildings with storeys."""
+
+import json
+
+import numpy as np
+import pytest
+
+from fem.case.validation import CaseError
+from fem.seismic.artificial import artificial_motions
+from fem.seismic.floor import floor_motion, storey_modes
+from fem.seismic.motion_files import write_at2
+from fem.seismic.motion_set import check_set
+from fem.site_check.file import load_site
+from fem.site_check.motions import floor_motions, ground_motions
+
+SITE = """
+container = "seed_stack"
+[site]
+ground = "D"
+reference_acceleration_m_s2 = 1.6
+[friction]
+mu_static = [0.3, 0.4]
+[limits]
+slip_m = 0.1
+"""
+
+
+def request(folder, *tables):
+    place = folder / "hall.toml"
+    place.write_text(SITE + "\n".join(tables))
+    return load_site(place)
+
+
+def three_records(folder, letters):
+    """Files of three motions at 0.005 s, a name for each letter."""
+    action = load_site("site").action
+    names = []
+    for number, motion in enumerate(artificial_motions(action, count=3, seed=5, second=1.0)):
+        names.append([])
+        for letter in letters:
+            names[-1].append(f"r{number}_{letter}.at2")
+            described = f"EVENT {number}, 1/1/20, STATION {number}, {'UP' if letter == 'v' else '090'}"
+            write_at2(folder / names[-1][-1], motion.step, 0.5 * motion.lettered[letter], described)
+    return json.dumps(names)
+
+
+def test_artificial_motions_have_a_second_component_of_the_share_asked_for(tmp_path):
+    both, half, none = (
+        ground_motions(request(tmp_path, f"[motions]\ncount = 3\nsecond_component = {share}"), 4.0)
+        for share in (1.0, 0.5, 0.0)
+    )
+    action = load_site("site").action
+    assert check_set(both, action).valid and check_set(half, action, second=0.5).valid
+    assert any("second components" in reason for reason in check_set(half, action).reasons)
+    np.testing.assert_allclose(half[0].second, 0.5 * both[0].second, rtol=1e-12, atol=1e-12)
+    assert none[0].second is None
+    np.testing.assert_array_equal(none[0].horizontal, both[0].horizontal)
+
+
+def test_a_third_file_of_a_record_is_its_second_component(tmp_path):
+    asked = request(tmp_path, f'[motions]\nsource = "records"\nfiles = {three_records(tmp_path, "hvt")}')
+    made = artificial_motions(asked.action, count=3, seed=5, second=1.0)
+    for recorded, motion in zip(ground_motions(asked, 4.0), made, strict=True):
+        factor = recorded.factor  # one for all components
+        np.testing.assert_allclose(recorded.second, 0.5 * factor * motion.second, rtol=1e-9, atol=1e-9)
+        np.testing.assert_allclose(
+            recorded.horizontal, 0.5 * factor * motion.horizontal, rtol=1e-9, atol=1e-9
+        )
+
+
+def test_matched_records_have_their_second_component_matched_to_its_share(tmp_path):
+    names = three_records(tmp_path, "hvt")
+    asked = request(tmp_path, f'[motions]\nsource = "matched"\nsecond_component = 0.7\nfiles = {names}')
+    found = check_set(ground_motions(asked, 4.0), asked.action, second=0.7)
+    assert found.valid and found.second_least_ratio > 0.9
+
+
+def test_pairs_of_records_have_no_second_component(tmp_path):
+    asked = request(tmp_path, f'[motions]\nsource = "records"\nfiles = {three_records(tmp_path, "hv")}')
+    assert all(motion.second is None for motion in ground_motions(asked, 4.0))
+
+
+def test_one_component_is_not_two_directions(tmp_path):
+    names = json.loads(three_records(tmp_path, "hv"))
+    again = json.dumps([[*pair, pair[0]] for pair in names])
+    with pytest.raises(CaseError, match="is named for two directions"):
+        ground_motions(request(tmp_path, f'[motions]\nsource = "records"\nfiles = {again}'), 4.0)
+
+
+def test_a_building_of_storeys_moves_with_all_its_modes(tmp_path):
+    building = "[building]\nz_over_h = 0.6\nbuilding_period_s = 1.0\nstoreys = 10\nkind = 'cantilever'"
+    asked = request(tmp_path, "[motions]\ncount = 3\nvertical = false", building)
+    ground = ground_motions(asked, 4.0)[:1]
+    floors = floor_motions(asked, ground)
+    assert sorted(floors) == [0.85, 1.0, 1.15]
+    for period, (floor,) in floors.items():
+        modes = storey_modes(storeys=10, kind="cantilever", height_ratio=0.6, period=period)
+        np.testing.assert_array_equal(floor.horizontal, floor_motion(ground[0], modes).horizontal)
+        assert floor.second is not None and not np.array_equal(floor.second, floor.horizontal)
+
+
+@pytest.mark.parametrize(
+    ("building", "words"),
+    [
+        ("z_over_h = 1.0\nbuilding_period_s = 0.8", "needs storeys"),
+        (
+            "z_over_h = 0.5\nbuilding_period_s = 0.8\nstoreys = 5",
+            r"no floor of 5 storeys; a floor is at 0\.4",
+        ),
+        ('z_over_h = 1.0\nbuilding_period_s = 0.4\nkind = "cantilever"', "no effect without storeys"),
+        ("z_over_h = 1.0\nbuilding_period_s = 0.4\nstoreys = 0", "storeys"),
+    ],
+)
+def test_a_building_that_cannot_be_is_refused(tmp_path, building, words):
+    with pytest.raises(CaseError, match=words):
+        request(tmp_path, f"[building]\n{building}")
+
+
+def test_one_mode_is_taken_up_to_a_period(tmp_path):
+    assert request(tmp_path, "[building]\nz_over_h = 1.0\nbuilding_period_s = 0.7").building.storeys is None
