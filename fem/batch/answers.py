@@ -218,6 +218,12 @@ def table_lines(rows: Iterable[tuple[str, str]], file: str = "") -> Iterator[str
         yield f"  {more} more rows" + (f" in {file}" if file else "")
 
 
+def falling_in_words(limit_slip: float | None, *, past: bool = False) -> str:
+    """What does not stand, with this limit of the slip [m]: "overturning or sliding beyond 100 mm"; or what it did."""
+    fell, slid = ("overturned", "slid") if past else ("overturning", "sliding")
+    return fell if limit_slip is None else f"{fell} or {slid} beyond {slip_in_words(limit_slip)}"
+
+
 def slip_in_words(slip: float) -> str:
     """A slip [m]: "64 mm", "2.9 m"."""
     return f"{plain_number(slip)} m" if slip >= 1.0 else f"{plain_number(1e3 * slip)} mm"

@@ -233,6 +233,7 @@ SPECTRAL_RADIUS = Quantity(unit="", least=0.0, most=1.0, advice="0.5 is usual; 1
 NEWMARK_BETA = Quantity(unit="", above=0.0, most=1.0, advice="1/4 is the average acceleration")
 NEWMARK_GAMMA = Quantity(unit="", least=0.5, most=1.5, advice="1/2 is of second order and does not damp")
 ENERGY_TOLERANCE = Quantity(unit="", least=1e-3, most=30.0, advice="1 is usual, 10 is enough for maps")
+SLIP_LIMIT = Quantity(unit="m", least=0.0, most=100.0, advice="a clearance such as 0.1")
 STEP = Quantity(unit="s", least=1e-9, most=10.0, advice='"auto" chooses it')
 DURATION = Quantity(unit="s", least=1e-3, most=1e4, typical=20.0, slips={"milliseconds": 1e-3})
 SAMPLING = Quantity(unit="s", least=1e-7, most=1e4)

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fem.batch.answers import table_lines
+from fem.batch.answers import falling_in_words, table_lines
 from fem.batch.axes import MOTION_FILE
 from fem.cli.console import STUDY, StudyFlags, print_result
 from fem.results.kinds import ENSEMBLE
@@ -58,7 +58,7 @@ def page_of(result: "EnsembleResult", folder: Path) -> Iterator[str]:
         yield f"  held: {result.held}"
     limit = f"{result.probability:g}"
     regions = {
-        "below": f"probability of overturning at most {limit}",
+        "below": f"probability of {falling_in_words(result.limit_slip_m)} at most {limit}",
         "undecided": f"the {100.0 * result.confidence:g} % interval holds {limit}",
         "above": f"more than {limit}",
     }

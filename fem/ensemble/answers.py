@@ -11,11 +11,12 @@ from dataclasses import dataclass
 from itertools import pairwise, takewhile
 from typing import Any
 
-from fem.batch.answers import LARGER_IS_SAFER, STRENGTHS, answer_axis
+from fem.batch.answers import LARGER_IS_SAFER, STRENGTHS, answer_axis, falling_in_words, slip_in_words
 from fem.batch.axes import MOTION_FILE, Axis
 from fem.batch.labels import axis_name, in_words, place_in_words
 from fem.batch.study import COMPLETED
 from fem.ensemble.result import EnsembleResult
+from fem.runtime.units import MILLIMETRES
 
 HALF = 0.5
 Row = Mapping[str, Any]  #: of a point, as `ensemble.json` holds it
@@ -87,7 +88,8 @@ def ensemble_answer(result: EnsembleResult) -> EnsembleAnswer | None:
         half = _half(result, axis, lines[tuple(point[one.key] for one in others)], crossing, rising=rising)
         sentence = f"{half}, first with {place_in_words(others, point)}"
     elif others:
-        sentence = f"fewer than half of {draws_in_words(result)} overturned at every point"
+        fell = falling_in_words(result.limit_slip_m, past=True)
+        sentence = f"fewer than half of {draws_in_words(result)} {fell} at every point"
     if others and len(few) == len(rows):
         sentence += _few(result, axis, safest(few), rising=rising)
     return EnsembleAnswer(
@@ -147,13 +149,13 @@ def _sentence(
     result: EnsembleResult, axis: Axis, points: Sequence[Row], crossing: HalfPoint, *, rising: bool
 ) -> str:
     few = "" if crossing.few_to is None else _few(result, axis, crossing.few_to, rising=rising)
-    return _half(result, axis, points, crossing, rising=rising) + few
+    return _half(result, axis, points, crossing, rising=rising) + few + _slips(points, crossing)
 
 
 def _half(
     result: EnsembleResult, axis: Axis, points: Sequence[Row], crossing: HalfPoint, *, rising: bool
 ) -> str:
-    half = f"half of {draws_in_words(result)} overturned"
+    half = f"half of {draws_in_words(result)} {falling_in_words(result.limit_slip_m, past=True)}"
     if crossing.at_once:
         end = "least" if rising else "largest"
         return f"{half} or more at the {end} tried, {in_words(axis, [points[0][axis.key]])}"
@@ -167,6 +169,13 @@ def _half(
     return (
         f"{half} at {in_words(axis, [crossing.value])} ({100.0 * result.confidence:g} % interval {interval})"
     )
+
+
+def _slips(points: Sequence[Row], crossing: HalfPoint) -> str:
+    """How far the draws slid that stood, at the points at which fewer than half did not."""
+    before = takewhile(lambda point: crossing.value is None or (point["probability"] or 0.0) < HALF, points)
+    slip = max((point.get("max_slip_m") or 0.0 for point in before), default=0.0)
+    return f"; those that stood there slid up to {slip_in_words(slip)}" if slip >= MILLIMETRES.least else ""
 
 
 def _few(result: EnsembleResult, axis: Axis, few_to: float, *, rising: bool) -> str:

@@ -7,6 +7,7 @@ from textwrap import fill
 import numpy as np
 from matplotlib.figure import Figure
 
+from fem.batch.answers import falling_in_words
 from fem.batch.axes import MOTION_FILE
 from fem.batch.labels import axis_label
 from fem.ensemble.fragility import Lognormal
@@ -79,7 +80,7 @@ def draw_fragility(
     axes.axhline(ensemble.probability, color=style.GREY, linewidth=0.8, linestyle=":", label=asked)
     axes.set_ylim(-0.02, 1.02)
     axes.margins(x=0.02)
-    axes.set_ylabel("probability of overturning [-]")
+    axes.set_ylabel(f"probability of {falling_in_words(ensemble.limit_slip_m)} [-]")
     axes.set_xlabel(axis_label(axis))
     style.legend_above(axes)
     return figure
@@ -108,7 +109,10 @@ def draw_boundary(ensemble: Ensemble, unknown: UnknownInputs, points: Sequence[P
         )
         for k, held in enumerate(outside)
     ]
-    x = replace(map_axis(across), label=f"{axis_label(across)}   (numbers: % that overturned)")
+    x = replace(
+        map_axis(across),
+        label=f"{axis_label(across)}   (numbers: % that {falling_in_words(ensemble.limit_slip_m, past=True)})",
+    )
     return draw_heat_map(
         x,
         map_axis(down),

@@ -15,6 +15,7 @@ from fem.batch import study_file
 from fem.batch.axes import MOTION_FILE, Axis, AxisError, check_varied, first_motion, read_axis
 from fem.batch.derived import FREE, Derived, read_derived
 from fem.case.files import DEFAULT_CASE, ENSEMBLES, Origin
+from fem.case.quantities import SLIP_LIMIT
 from fem.case.tables import CaseTable
 from fem.case.validation import CaseError
 from fem.ensemble.distributions import RandomChoice, RandomQuantity, Sampling, read_random
@@ -43,6 +44,9 @@ class EnsembleHeading(CaseTable):
     confidence: float = Field(default=0.95, ge=0.5, le=0.9999, description="of the intervals, two-sided")
     probability: float = Field(
         default=0.05, gt=0.0, lt=1.0, description="of overturning, to which the points are compared"
+    )
+    limit_slip_m: Annotated[float, SLIP_LIMIT] | None = Field(
+        default=None, description="slip beyond which a draw does not stand, and counts as one that overturned"
     )
     unknown_inputs: Unknown = Field(
         default="drawn",
@@ -97,6 +101,7 @@ def _read(data: Mapping[str, Any], origin: Origin) -> Ensemble:
         confidence=heading.confidence,
         probability=heading.probability,
         unknown_inputs=heading.unknown_inputs,
+        limit_slip_m=heading.limit_slip_m,
         copy_motions=heading.copy_motions,
     )
     _check_draws(ensemble)

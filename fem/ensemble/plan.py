@@ -48,6 +48,7 @@ class Ensemble:
     confidence: float
     probability: float  #: of overturning, to which the points are compared
     unknown_inputs: Unknown = "drawn"
+    limit_slip_m: float | None = None  #: beyond which a draw does not stand
     copy_motions: bool | None = None  #: into the results; None: those of small sets
 
     @property

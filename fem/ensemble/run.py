@@ -13,7 +13,7 @@ from typing import Any, Unpack
 import numpy as np
 
 from fem.batch.axes import Axis, AxisResult
-from fem.batch.log import LoggedRuns, fields_of, table_of_lines, table_text
+from fem.batch.log import LoggedRuns, fields_of, number_in, table_of_lines, table_text
 from fem.batch.motion_set import (
     FloorMotionPair,
     motion_cases,
@@ -54,25 +54,38 @@ class DrawRows:
         self._following = [key for axis in sets_of(ensemble) for key in axis.following]
         keys = [f"{one.key}{' factor' if one.relative else ''}" for one in ensemble.random]
         keys += self._following
-        self.columns = ("point", "draw", "replicate", *keys, *unknown.keys, "outcome", "rotation_ratio")
+        self.columns = (
+            "point",
+            "draw",
+            "replicate",
+            *keys,
+            *unknown.keys,
+            "outcome",
+            "rotation_ratio",
+            "max_slip_m",
+        )
         self.codes = np.full((ensemble.count, ensemble.draws), Ending.UNKNOWN, dtype=np.int8)
+        self.slips = np.full(self.codes.shape, np.nan)
         self._lines: dict[tuple[int, int], str] = {}
 
     def values(self, draw: Draw, row: Row) -> tuple[Any, ...]:
         """The row of a draw: what was drawn, and its result."""
         replicate = draw.number // (self._ensemble.draws // self._ensemble.replicates)
-        ratio = row["rotation_ratio"]
-        known = ratio is not None and np.isfinite(ratio)
-        found = WORDS[ending_of(row["status"], row["outcome"])], ratio if known else None
+        figures = (row["rotation_ratio"], row["max_slip_m"])
+        known = (one if one is not None and np.isfinite(one) else None for one in figures)
+        found = WORDS[ending_of(row["status"], row["outcome"])], *known
         unknown = (draw.unknown.get(key) for key in self._unknown.keys)
         following = (draw.following.get(key) for key in self._following)
         return draw.cell, draw.number, replicate, *draw.values, *following, *unknown, *found
 
     def note(self, line: str) -> None:
         """Add a line of the log."""
-        cell, number, *_, outcome, _ = fields_of(line)
-        self.codes[int(cell), int(number)] = COUNTED[outcome]
-        self._lines[int(cell), int(number)] = line
+        cell, number, *_, outcome, _, slip = fields_of(line)
+        at, limit = (int(cell), int(number)), self._ensemble.limit_slip_m
+        self.codes[at], self.slips[at] = COUNTED[outcome], number_in(slip) or 0.0
+        if limit is not None and self.codes[at] == Ending.STANDING and self.slips[at] > limit:
+            self.codes[at] = Ending.OVERTURNED
+        self._lines[at] = line
 
     def table(self) -> str:
         """`draws.csv`: a row a draw, in their order."""
@@ -141,7 +154,7 @@ def _compute(
         note=draws.note,
     ).run(runner, iter(draws.missing, []))
     complete = (draws.codes != Ending.UNKNOWN).all(axis=1)
-    points = [count_point(ensemble, int(k), draws.codes[k]) for k in np.flatnonzero(complete)]
+    points = [count_point(ensemble, int(k), draws.codes[k], draws.slips[k]) for k in np.flatnonzero(complete)]
     place.check()
     place.write_text("points.csv", csv_of_points(ensemble, points))
     place.write_text(DRAWS, draws.table())
@@ -203,7 +216,9 @@ def ensemble_hash(ensemble: Ensemble, motions: Sequence[str] | None = None) -> s
         motions = [case_hash(case) for case in motion_cases(ensemble.base, sets_of(ensemble))]
     if motions:
         asked["motions"] = list(motions)
-    return hash_of(asked | _counted(ensemble))
+    if ensemble.limit_slip_m is None:
+        return hash_of(asked | _counted(ensemble))
+    return hash_of(asked | _counted(ensemble) | {"limit_slip_m": ensemble.limit_slip_m})
 
 
 def sets_of(ensemble: Ensemble) -> list[Axis]:
@@ -234,6 +249,7 @@ def asked_of(
         derived={one.key: one.expression.text for one in ensemble.derived},
         drawn_over_uncertainty=tuple(unknown.keys),
         held=unknown.held,
+        limit_slip_m=ensemble.limit_slip_m,
         **_counted(ensemble),
     )
 

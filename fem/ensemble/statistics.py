@@ -14,7 +14,7 @@ from fem.runtime.arrays import FloatArray
 from fem.runtime.intervals import Estimate, estimate
 
 #: columns of `points.csv` behind those of the axes
-POINT_COLUMNS = ("draws", *COUNTED, "probability", "low", "high", "region")
+POINT_COLUMNS = ("draws", *COUNTED, "probability", "low", "high", "region", "max_slip_m")
 FEWEST_FITTED = 4  #: levels from which a curve is fitted
 NO_CURVE = "the counts are a step, fall, or hold nothing that overturned or nothing that stood"
 FEWEST_RESAMPLED = 0.9  #: share of the resamples that must have a curve, else there is no band
@@ -30,6 +30,7 @@ class PointResult:
     failed: int
     estimate: Estimate
     region: str  #: below | above | undecided: the probability of overturning against the limit asked for
+    slip: float | None = None  #: largest of the draws that stood [m]
 
     def row(self) -> dict[str, Any]:
         """By the axes' keys and `POINT_COLUMNS`."""
@@ -42,11 +43,14 @@ class PointResult:
             "low": self.estimate.low,
             "high": self.estimate.high,
             "region": self.region,
+            "max_slip_m": self.slip,
         }
 
 
-def count_point(ensemble: Ensemble, cell: int, codes: np.ndarray) -> PointResult:
-    """The result of a point from the endings (draws,) of its draws."""
+def count_point(
+    ensemble: Ensemble, cell: int, codes: np.ndarray, slips: FloatArray | None = None
+) -> PointResult:
+    """The result of a point from the endings (draws,) of its draws, and their slips [m], nan for none."""
     overturned, failed = codes == Ending.OVERTURNED, codes == Ending.FAILED
     share = estimate(
         overturned,
@@ -60,13 +64,16 @@ def count_point(ensemble: Ensemble, cell: int, codes: np.ndarray) -> PointResult
         region = "below"
     elif share.low > ensemble.probability:
         region = "above"
+    standing = codes == Ending.STANDING
+    slid = np.empty(0) if slips is None else slips[standing & np.isfinite(slips)]
     return PointResult(
         values=ensemble.point(cell),
-        stood=int((codes == Ending.STANDING).sum()),
+        stood=int(standing.sum()),
         overturned=int(overturned.sum()),
         failed=int(failed.sum()),
         estimate=share,
         region=region,
+        slip=float(slid.max()) if slid.size else None,
     )
 
 

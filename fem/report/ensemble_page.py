@@ -5,6 +5,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from fem.batch.answers import falling_in_words
 from fem.batch.axes import Axis
 from fem.batch.labels import axis_label, in_words, place_in_words
 from fem.batch.study import read_study
@@ -82,7 +83,8 @@ def found_section(info: EnsembleResult, answer: EnsembleAnswer | None) -> html.P
     return studies.answer_section(
         info,
         answer.sentence if answer else None,
-        f"{len(info.points)} points of {info.draws} draws{studies.unfinished(info)}; share that overturned: {regions}.",
+        f"{len(info.points)} points of {info.draws} draws{studies.unfinished(info)}; share that "
+        f"{falling_in_words(info.limit_slip_m, past=True)}: {regions}.",
         *(typeset(f"{head}: {line}.") for head, line in fragility_lines(info)),
         *([f"Held fixed: {info.held}."] if info.held else []),
         note=f"A share of draws over the uncertain quantities listed below, under {motions}. It is not the probability "
@@ -112,7 +114,8 @@ def answer_table(answer: EnsembleAnswer, info: EnsembleResult) -> html.Table:
         ]
         for point, found, _ in answer.rows
     )
-    heads = ("", "half of the draws overturned at", f"{100.0 * info.confidence:g} % interval", few)
+    fell = falling_in_words(info.limit_slip_m, past=True)
+    heads = ("", f"half of the draws {fell} at", f"{100.0 * info.confidence:g} % interval", few)
     return html.table_of("answers", html.in_order(*heads), rows)
 
 
@@ -141,8 +144,14 @@ def points_table(info: EnsembleResult) -> html.Table:
             html.NUMBER,
         ),
         html.Column("region", lambda point: words[point["region"]]),
+        html.Column("slip of those that stood, mm", partial(_slip, "max_slip_m"), html.NUMBER),
     ]
     return html.table_of("points", columns, info.points, file="points.csv")
+
+
+def _slip(name: str, point: Mapping[str, Any]) -> str:
+    slip = point.get(name)
+    return ABSENT if slip is None else number(slip, factor=1e3, figures=3)
 
 
 def _count(name: str, point: Mapping[str, Any]) -> str:

@@ -1,7 +1,9 @@
 """The answer of a response curve in one sentence: overturning, largest rotation, coexisting motions."""
 
+from fem.batch.answers import slip_in_words
 from fem.response.branches import Coexistence, DropOut, Jump
 from fem.response.result import ResponseResult
+from fem.runtime.units import MILLIMETRES
 
 MOST_RANGES = 3  #: of frequencies that are named
 
@@ -27,6 +29,12 @@ def response_answer(result: ResponseResult) -> str | None:
         turned = f"{most.rotation_ratio:.2g} of the slenderness angle, at {most.frequency_Hz:.4g} Hz"
         resting = all(point.long_time == "rest" for point in standing)
         parts.append("at rest there" if resting else f"largest rotation {turned} going {most.direction}")
+        slid = max(standing, key=lambda point: point.slip_stroke_m or 0.0)
+        if (slid.slip_stroke_m or 0.0) >= MILLIMETRES.least:
+            stroke = slip_in_words(slid.slip_stroke_m or 0.0)
+            parts.append(
+                f"slid by up to {stroke} a period, at {slid.frequency_Hz:.4g} Hz going {slid.direction}"
+            )
     if result.coexisting:
         parts.append(f"two motions coexist at {_listed([found_at(found) for found in result.coexisting])}")
     if failed:

@@ -13,13 +13,12 @@ from fem.batch.derived import Derived, read_derived, value_in
 from fem.case.case import Case
 from fem.case.files import DEFAULT_CASE, SWEEPS, Origin
 from fem.case.overrides import keys_in_effect
-from fem.case.quantities import Quantity
+from fem.case.quantities import SLIP_LIMIT
 from fem.case.tables import CaseTable
 from fem.case.validation import CaseError
 from fem.sweep.perturbation import Perturbation
 from fem.sweep.plan import MapChoice, Sweep, Threshold
 
-SLIP_LIMIT = Quantity(unit="m", least=0.0, most=100.0, advice="a clearance such as 0.1")
 MOST_AXES = 4
 #: cells that are built to find bad values before anything is computed
 TRIED = 64

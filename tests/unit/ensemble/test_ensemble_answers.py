@@ -110,3 +110,20 @@ def test_a_boundary_has_a_row_for_each_value_of_the_other_axis():
 
 def test_an_unfinished_ensemble_has_no_answer():
     assert ensemble_answer(result_of(*over(PEAK, 0.0, 0.4, 0.8), status="interrupted")) is None
+
+
+def test_the_slip_is_named_and_what_slides_beyond_the_limit_does_not_stand():
+    rows = [
+        one | {"max_slip_m": slip}
+        for one, slip in zip(over(PEAK, 0.0, 0.4, 0.8), (0.0, 0.064, 0.3), strict=True)
+    ]
+    half = "0.45 g (95 % interval 0.4 g to 0.5 g); at most 5 % up to 0.2 g, by the upper end of the interval"
+    slid = "those that stood there slid up to 64 mm"
+    assert (
+        ensemble_answer(result_of(*rows)).sentence
+        == f"peak acceleration: half of 128 draws overturned at {half}; {slid}"
+    )
+    limited = ensemble_answer(result_of(*rows, limit_slip_m=0.1)).sentence
+    assert (
+        limited == f"peak acceleration: half of 128 draws overturned or slid beyond 100 mm at {half}; {slid}"
+    )

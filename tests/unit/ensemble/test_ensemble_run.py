@@ -178,6 +178,18 @@ def test_a_point_with_failed_draws_is_judged_with_them_against_it(tmp_path):
     assert count_point(ensemble, 0, np.array([Ending.STANDING] * 8)).region == "below"
 
 
+def test_a_draw_that_slides_beyond_the_limit_does_not_stand(tmp_path):
+    free = run_ensemble(load_ensemble(changed(tmp_path)), folder=tmp_path / "free", jobs=1)
+    limit = 0.5 * max(point["max_slip_m"] or 0.0 for point in free["points"])
+    assert limit > 0.0
+    limited = load_ensemble(changed(tmp_path, ("seed = 4", f"seed = 4\nlimit_slip_m = {limit!r}")))
+    found = run_ensemble(limited, folder=tmp_path / "limited", jobs=1)
+    pairs = zip(free["points"], found["points"], strict=True)
+    fallen = [(one["overturned"], other["overturned"]) for one, other in pairs]
+    assert all(less <= more for less, more in fallen) and any(less < more for less, more in fallen)
+    assert all((point["max_slip_m"] or 0.0) <= limit for point in found["points"])
+
+
 @pytest.mark.parametrize("name", ENSEMBLES.names)
 def test_shipped_ensembles_can_be_read(name):
     ensemble = load_ensemble(name)
