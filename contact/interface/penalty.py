@@ -59,6 +59,30 @@ def relaxation_time(damping_ratio: float, mass: float, base_stiffness: float) ->
     return 2.0 * damping_ratio * math.sqrt(mass / (0.5 * base_stiffness))
 
 
+def restitution_of(damping_ratio: float) -> float:
+    """Velocity that a mass keeps which runs against a spring with a dashpot that does not pull [-].
+
+    It leaves where the force vanishes: with zeta = sin(beta), exp(-tan(beta) (pi - 2 beta)); with zeta = cosh(y),
+    exp(-2 y coth(y)).
+    """
+    if damping_ratio < 1.0:
+        angle = math.asin(damping_ratio)
+        return math.exp(-math.tan(angle) * (math.pi - 2.0 * angle))
+    argument = math.acosh(damping_ratio)
+    return math.exp(-2.0 * argument / math.tanh(argument)) if argument > 0.0 else math.exp(-2.0)
+
+
+def damping_ratio_of(restitution: float) -> float:
+    """The damping ratio with this `restitution_of`, in (0, 1] [-]; by bisection, for it falls with the ratio."""
+    low, high = 0.0, 1.0
+    while restitution_of(high) > restitution:
+        high *= 2.0
+    for _ in range(200):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if restitution_of(middle) > restitution else (low, middle)
+    return high
+
+
 def contact_frequency(mass: float, base_stiffness: float) -> float:
     """Bounce frequency of the container on all contact points [Hz]."""
     return math.sqrt(base_stiffness / mass) / (2.0 * math.pi)

@@ -13,6 +13,7 @@ from contact.local_arrays import local_counts, local_row, local_rows
 from contact.stepping.body import State, implements
 from contact.stepping.integrator import FAILED, advance, advance_kernel
 from contact.stepping.ledger import ROWS as LEDGER_ROWS
+from contact.stepping.links import LinkedBody
 from contact.stepping.loose_stack import LooseStack
 from contact.stepping.modal_body import BlockOnCorners, BodyOnCorners, LocalBlock, ModalBody
 from contact.stepping.state import AttemptedStep, RunState
@@ -41,6 +42,7 @@ class LocalRun(RunState):
     """A run whose states and workspace are in registers."""
 
 
+FloatingBody = ModalBody | LooseStack | LinkedBody  #: what this module and those above it step
 local_state = parts_of(LocalState, State, **SIZES)
 local_work = parts_of(LocalWorkspace, Workspace, **SIZES)
 local_run = exchanging(LocalRun, "attempt", "old", "work", "floor", "lift", "ledger")
@@ -49,13 +51,13 @@ local_block = exchanging(
 )
 
 
-def advance_on(body: ModalBody | LooseStack, run: RunState, until: float) -> int:
+def advance_on(body: FloatingBody, run: RunState, until: float) -> int:
     """`integrator.advance`, compiled for the class of the body."""
     return advance(body, run, until)
 
 
-@implements(advance_on, ModalBody, LooseStack, inline=True)
-def advance_in_memory(body: ModalBody | LooseStack, run: RunState, until: float) -> int:
+@implements(advance_on, ModalBody, LooseStack, LinkedBody, inline=True)
+def advance_in_memory(body: FloatingBody, run: RunState, until: float) -> int:
     """`advance` on the arrays of the run."""
     return int(advance_kernel(body, run, until))
 
@@ -77,6 +79,8 @@ def advance_on_corners(body: BodyOnCorners, run: RunState, until: float) -> int:
     """`advance` of two points: from each comparison with a constant the compiler infers a size, and unrolls loops."""
     work = run.work
     if body.point.shape[0] != 2 or run.problem.control.base_points != 2 or run.joints.shape[0] != 1:
+        return FAILED
+    if run.links.shape[0] != 0:
         return FAILED
     if body.moved.shape[1] != 4 or body.across.shape[1] != 4:
         return FAILED
@@ -110,6 +114,8 @@ def copy_pair(target: FloatArray, source: FloatArray, columns: int) -> None:
 def advance_in_registers(body: BlockOnCorners, run: RunState, until: float) -> int:
     """`advance` on arrays of constant shape; of the last attempt what the residual needs is copied back."""
     if body.stiffness.size != 0 or body.point.shape[0] != 2 or run.problem.control.base_points != 2:
+        return FAILED
+    if run.links.shape[0] != 0:
         return FAILED
     if run.joints.shape[0] != 1 or run.old.numbers.size != NUMBERS or run.attempt.new.numbers.size != NUMBERS:
         return FAILED

@@ -25,6 +25,7 @@ from contact.stepping.body import (
 )
 from contact.stepping.joints import points_of
 from contact.stepping.ledger import BASE_WORK, IMBALANCE, IMPACTS
+from contact.stepping.links import links_of, shift_links
 from contact.stepping.state import RunState
 from contact.stepping.step import indent
 
@@ -60,6 +61,7 @@ def lose_at_impact(body: Any, run: RunState, landed: int, loose: bool | None) ->
     for i in range(begin, end):
         new.drift[i, 0] -= turn * (new.point[i, 1] - new.point[corner, 1])
         new.descent[i, 0] -= turn * (new.point[i, 0] - new.point[corner, 0])
+    shift_links(run, links_of(body), turn, new.point[corner, 0], new.point[corner, 1])
     indent(run.problem.contact, new.point, new.crushed)  # behind the arms, which are of heights, not of gaps
     lost = (1.0 - control.impact_share**2) * momentum * momentum / (2.0 * inertia)
     work = -turn * moment * run.floor[1, 1]

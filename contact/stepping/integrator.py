@@ -33,12 +33,14 @@ from contact.stepping.joints import (
     begin_friction,
     settle_friction,
     slide_joints,
+    slide_links,
     update_joints,
     weaken_friction,
 )
 from contact.stepping.ledger import FRICTION, IMBALANCE, dissipation, spring_energy
 from contact.stepping.ledger import ROWS as LEDGER_ROWS
-from contact.stepping.observables import FALLEN, NEVER, exchanges_pivot, update_observables
+from contact.stepping.links import follow_links, links_of, reach_strength
+from contact.stepping.observables import FALLEN, IMPACT_GAP, NEVER, exchanges_pivot, update_observables
 from contact.stepping.sampling import keep_most_strained_step, sample
 from contact.stepping.state import RunState
 from contact.stepping.step import account, attempt, copy_state, indent
@@ -120,6 +122,7 @@ def advance(body: Any, run: RunState, until: float) -> int:
         steps of `clock.unprepared_step` and call again.
     """
     control, clock, track, loose = run.problem.control, run.clock[0], run.track[0], stands_loose(body)
+    links = links_of(body)
     while clock.time < until and clock.steps + clock.rejected < clock.attempt_limit and not _is_full(run):
         step = next_step(run)
         if not prepared(body, step):
@@ -133,6 +136,7 @@ def advance(body: Any, run: RunState, until: float) -> int:
             if iterations < 0:
                 break
             slide_joints(run, step)
+            slide_links(run, step, links)
             if not weaken_friction(run):
                 break
         if iterations < 0:
@@ -142,8 +146,9 @@ def advance(body: Any, run: RunState, until: float) -> int:
                 return FAILED
             clock.level += STEPS_PER_OCTAVE
             continue
-        switches = settle_friction(run, step, loose)
-        dissipated = account(run, step)
+        switches = settle_friction(run, step, loose, links)
+        switches = reach_strength(run, links) or switches
+        dissipated = account(run, step, links)
         allowed = allowed_imbalance(run, step, dissipated)
         allowed = min(allowed, ledger_allowance(run, step))
         used = abs(run.attempt.change[IMBALANCE]) / allowed
@@ -161,6 +166,7 @@ def advance(body: Any, run: RunState, until: float) -> int:
             dissipated, 0.0
         )
         update_joints(run, step)
+        follow_links(run, step, links, IMPACT_GAP * control.width * control.slenderness_angle)
         update_observables(
             track,
             control,

@@ -9,6 +9,7 @@ import math
 from contact.interface.laws import ELASTIC_STICK, REGULARISED, relaxed_stick, weakened_mu
 from contact.jit import compiled, inlined
 from contact.stepping.body import ANGULAR_VELOCITY, CENTRE_X, CENTRE_Z, ROTATION, VELOCITY_X, VELOCITY_Z
+from contact.stepping.links import LinkedBody, load_of_links
 from contact.stepping.observables import SLIDING
 from contact.stepping.state import RunState
 
@@ -24,7 +25,7 @@ IMPACT_LOAD = 2.0  #: normal force over the weight from which there is an impact
 def points_of(run: RunState, j: int) -> tuple[int, int]:
     """First contact point of a joint, and the one behind its last."""
     if run.joints.shape[0] == 1:
-        return 0, run.attempt.new.point.shape[0]
+        return 0, run.attempt.new.point.shape[0] - run.links.shape[0]
     return (0, 2) if j == 0 else (4 * j - 2, 4 * j + 2)
 
 
@@ -69,7 +70,7 @@ def slide_joints(run: RunState, step: float) -> None:
 
 
 @compiled(inline=True)
-def settle_friction(run: RunState, step: float, loose: bool | None) -> bool:
+def settle_friction(run: RunState, step: float, loose: bool | None, links: LinkedBody | None) -> bool:
     """Decide which joints slide after the attempted step [s]; whether one starts to, stops or turns round in it."""
     switches = False
     for j in range(run.joints.shape[0]):
@@ -78,9 +79,9 @@ def settle_friction(run: RunState, step: float, loose: bool | None) -> bool:
         turned = False
         if run.problem.contact.friction == ELASTIC_STICK and joint.sliding == 1 and joint.motion != AIRBORNE:
             turned = joint.velocity * joint.slip_velocity < 0.0
-            every = slides_on(run, j, step, turned, loose)
+            every = slides_on(run, j, step, turned, loose, links)
         elif run.problem.contact.friction == ELASTIC_STICK and every and joint.sliding == 0:
-            every = breaks_loose(run, j, loose)
+            every = breaks_loose(run, j, loose, links)
         overshoots = joint.sliding == 0 and (joint.motion == ALL) != (joint.slip_since_break > 0.0)
         changes = turned or overshoots or (joint.sliding == 1) != every
         switches = switches or (changes and run.problem.contact.mu_static[points_of(run, j)[0]] > 0.0)
@@ -89,21 +90,23 @@ def settle_friction(run: RunState, step: float, loose: bool | None) -> bool:
 
 
 @compiled(inline=True)
-def breaks_loose(run: RunState, j: int, loose: bool | None) -> bool:
+def breaks_loose(run: RunState, j: int, loose: bool | None, links: LinkedBody | None) -> bool:
     """Whether a joint whose points all slide at the limit of static friction breaks loose as a whole.
 
     A rigid body would slide, or the points have slid as far as counts as sliding. Less is the overshoot of an elastic
     swing, which lasts milliseconds and slides micrometres: too little for friction to fall.
     """
     joint = run.joints[j]
-    holding, normal = holding_force(run, j, loose)
+    holding, normal = holding_force(run, j, loose, links)
     slid = joint.slip_since_break + abs(joint.slip_step)
     mu_static = run.problem.contact.mu_static[points_of(run, j)[0]]
     return abs(holding) > mu_static * normal or slid > SLIDING * joint.width
 
 
 @compiled(inline=True)
-def slides_on(run: RunState, j: int, step: float, turned: bool, loose: bool | None) -> bool:
+def slides_on(
+    run: RunState, j: int, step: float, turned: bool, loose: bool | None, links: LinkedBody | None
+) -> bool:
     """Whether a sliding joint slides on after the attempted step; where it stops, its slip of the step may change.
 
     It stops where its slip has `turned` round, or none of its points slides, and static friction can hold it. A slip
@@ -111,7 +114,7 @@ def slides_on(run: RunState, j: int, step: float, turned: bool, loose: bool | No
     """
     joint = run.joints[j]
     if turned or joint.motion == NO_POINT:
-        holding, normal = holding_force(run, j, loose)
+        holding, normal = holding_force(run, j, loose, links)
         if abs(holding) <= run.problem.contact.mu_static[points_of(run, j)[0]] * normal:
             # a stop within an impact does not last
             weight = 0.0
@@ -124,19 +127,23 @@ def slides_on(run: RunState, j: int, step: float, turned: bool, loose: bool | No
 
 
 @compiled(inline=True)
-def holding_force(run: RunState, j: int, loose: bool | None) -> tuple[float, float]:
+def holding_force(run: RunState, j: int, loose: bool | None, links: LinkedBody | None) -> tuple[float, float]:
     """Tangential force that holds a joint at the end of the attempted step, and the normal force for it [N].
 
     The forces of a rigid body that stands on both sides of its base, or rocks about the resultant of its normal forces,
     or begins to rock about a corner because it cannot stand. The springs of the contact, and an elastic body, swing
     around them. In an impact the normal force is larger. On a floor that accelerates upward by a_v gravity is g + a_v;
-    a slope acts as an acceleration of the floor uphill.
+    a slope acts as an acceleration of the floor uphill. What links push is taken from what the joint must hold.
     """
     if loose is not None:
         return holding_in_stack(run, j)
     new, track, joint = run.attempt.new, run.track[0], run.joints[j]
     acceleration = run.floor[1, 2] - run.problem.control.downhill
-    gravity = run.problem.control.gravity + run.lift[1, 2]
+    gravity, moment = run.problem.control.gravity + run.lift[1, 2], 0.0
+    if links is not None:
+        push_x, push_z, moment = load_of_links(run, links)
+        acceleration -= push_x / joint.mass
+        gravity -= push_z / joint.mass
     normal, x, z = 0.0, 0.0, 0.0
     begin, end = points_of(run, j)
     for i in range(begin, end):
@@ -155,6 +162,8 @@ def holding_force(run: RunState, j: int, loose: bool | None) -> tuple[float, flo
     arm_z = new.pose[CENTRE_Z] - run.lift[1, 0] - z
     inertia = joint.inertia / joint.mass + arm_x * arm_x + arm_z * arm_z
     turning = (gravity * arm_x - acceleration * arm_z) / inertia
+    if links is not None:
+        turning += moment / joint.mass / inertia
     push, load = acceleration, gravity
     if not stands or turning * acceleration < 0.0:
         spin = new.pose[ANGULAR_VELOCITY] ** 2
@@ -306,7 +315,7 @@ def slide(run: RunState, j: int, step: float, holding: float) -> None:
             that overshoot.
     """
     stops = holding < SLIDES_ON
-    contact, old, new, work, joint = run.problem.contact, run.old, run.attempt.new, run.work, run.joints[j]
+    contact, new, work, joint = run.problem.contact, run.attempt.new, run.work, run.joints[j]
     slip = run.attempt.slip
     every, any_slides, direction, weighted, total, velocity = True, False, 0.0, 0.0, 0.0, 0.0
     begin, end = points_of(run, j)
@@ -314,32 +323,13 @@ def slide(run: RunState, j: int, step: float, holding: float) -> None:
     for i in range(begin, end):
         loaded += new.force[i, 1]
     for i in range(begin, end):
-        normal, tangential = new.force[i, 1], new.force[i, 0]
-        moved = new.point[i, 0] - old.point[i, 0]
-        stick = old.stick[i]
-        if old.point[i, 1] >= 0.0:  # open at the beginning: it slides in the closed part of the step only
-            below = max(0.0, new.crushed[i] - old.crushed[i] - new.point[i, 1])
-            moved *= below / (below + old.point[i, 1]) if below > 0.0 else 0.0
-        slip[i] = 0.0
-        if new.point[i, 1] >= 0.0:
-            new.stick[i] = 0.0
-            continue
-        if contact.friction == REGULARISED:
-            new.stick[i] = 0.0
-            slip[i] = moved
-        elif stops and normal > 0.0:
+        normal = new.force[i, 1]
+        start = SLIDES_ON
+        if stops and normal > 0.0:
             start = -holding * normal / loaded / contact.tangential_stiffness[i]
-            new.stick[i] = start - contact.relaxation_time[i] * work.velocity[i, 0]
-            slip[i] = moved - (new.stick[i] - stick)
-        elif normal <= 0.0 or work.slope[i, 0] == 0.0:
-            new.stick[i] = relaxed_stick(
-                stick, -tangential, contact.tangential_stiffness[i], contact.relaxation_time[i], step
-            )
-            slip[i] = moved - (new.stick[i] - stick)
-        elif old.point[i, 1] >= 0.0:
-            new.stick[i] = 0.0
-        else:
-            new.stick[i] = stick + moved
+        slide_point(run, i, step, start)
+        if new.point[i, 1] >= 0.0:
+            continue
         if normal > 0.0:
             weighted += normal * slip[i]
             velocity += normal * work.velocity[i, 0]
@@ -359,6 +349,45 @@ def slide(run: RunState, j: int, step: float, holding: float) -> None:
     if stops:  # what decided that it stops remains
         return
     joint.motion = ALL if every else (SOME if any_slides else NO_POINT)
+
+
+@inlined
+def slide_point(run: RunState, i: int, step: float, start: float) -> None:
+    """Sliding of a point and elongation of its spring, which else begins anew with `start` [m], after a step [s]."""
+    contact, old, new, work, slip = run.problem.contact, run.old, run.attempt.new, run.work, run.attempt.slip
+    normal, tangential = new.force[i, 1], new.force[i, 0]
+    moved = new.point[i, 0] - old.point[i, 0]
+    stick = old.stick[i]
+    if old.point[i, 1] >= 0.0:  # open at the beginning: it slides in the closed part of the step only
+        below = max(0.0, new.crushed[i] - old.crushed[i] - new.point[i, 1])
+        moved *= below / (below + old.point[i, 1]) if below > 0.0 else 0.0
+    slip[i] = 0.0
+    if new.point[i, 1] >= 0.0:
+        new.stick[i] = 0.0
+    elif contact.friction == REGULARISED:
+        new.stick[i] = 0.0
+        slip[i] = moved
+    elif start < SLIDES_ON:
+        new.stick[i] = start - contact.relaxation_time[i] * work.velocity[i, 0]
+        slip[i] = moved - (new.stick[i] - stick)
+    elif normal <= 0.0 or work.slope[i, 0] == 0.0:
+        new.stick[i] = relaxed_stick(
+            stick, -tangential, contact.tangential_stiffness[i], contact.relaxation_time[i], step
+        )
+        slip[i] = moved - (new.stick[i] - stick)
+    elif old.point[i, 1] >= 0.0:
+        new.stick[i] = 0.0
+    else:
+        new.stick[i] = stick + moved
+
+
+@inlined
+def slide_links(run: RunState, step: float, links: LinkedBody | None) -> None:
+    """Sliding of the points of links after a converged step of this size [s], each for itself."""
+    if links is not None:
+        n = run.attempt.new.point.shape[0]
+        for i in range(n - run.links.shape[0], n):
+            slide_point(run, i, step, SLIDES_ON)
 
 
 @compiled(inline=True)

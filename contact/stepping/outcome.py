@@ -20,7 +20,7 @@ import numpy as np
 from contact.arrays import FloatArray
 from contact.jit import compiled
 from contact.motion.kernel import UNIFORM, as_floor_motion, floor_motion
-from contact.stepping.block_on_corners import advance_on
+from contact.stepping.block_on_corners import FloatingBody, advance_on
 from contact.stepping.body import KINETIC, ROTATION, VELOCITY_X
 from contact.stepping.boxes import is_unsettled, lose_footing
 from contact.stepping.control import most_attempts
@@ -31,8 +31,9 @@ from contact.stepping.integrator import (
     REACHED,
     enter_floor_frame_compiled,
 )
+from contact.stepping.links import LinkedBody
 from contact.stepping.loose_stack import LooseStack
-from contact.stepping.modal_body import ModalBody, with_own_scratch
+from contact.stepping.modal_body import with_own_scratch
 from contact.stepping.observables import NEVER, lifting_energy
 from contact.stepping.stack_body import stack_with_own_scratch
 from contact.stepping.state import ROW_SLIP, Buffers, RunState
@@ -65,7 +66,7 @@ class SteppingEnd(NamedTuple):
 
 
 def run_to_end(
-    body: ModalBody | LooseStack,
+    body: FloatingBody,
     run: RunState,
     duration: float,
     *,
@@ -77,7 +78,7 @@ def run_to_end(
     """Step a run from t = 0 to its end, in place; the result does not depend on other runs or threads.
 
     Args:
-        body: its container, or a loose stack of boxes in floating frames. Runs may share it: the scratch arrays are
+        body: its container, or a loose stack of boxes, in floating frames. Runs may share it: the scratch arrays are
             not touched.
         run: with samples at the interval of its history, if that has columns.
         duration: at most [s].
@@ -85,7 +86,7 @@ def run_to_end(
         aftermath: how long a container beyond its slenderness angle is followed afterwards on a resting floor [s].
         slip_until, cycle: the slip is kept of the last `cycle` before `slip_until` [s].
     """
-    own = stack_with_own_scratch(body) if isinstance(body, LooseStack) else with_own_scratch(body)
+    own = own_body(body)
     samples = run.buffers.history
     run.clock["attempt_limit"] = most_attempts(run.problem.control, duration + aftermath)
     kept = KeptSamples(slip_until=float(slip_until), slip=np.zeros(math.ceil(cycle / samples.interval) + 2))
@@ -107,7 +108,14 @@ def run_to_end(
     return SteppingEnd(status, kept)
 
 
-def advance_compiled(body: ModalBody | LooseStack, run: RunState, until: float) -> int:
+def own_body(body: FloatingBody) -> FloatingBody:
+    """The same body with scratch arrays of its own."""
+    if isinstance(body, LinkedBody):
+        return body._replace(body=own_body(body.body))
+    return stack_with_own_scratch(body) if isinstance(body, LooseStack) else with_own_scratch(body)
+
+
+def advance_compiled(body: FloatingBody, run: RunState, until: float) -> int:
     """`integrator.advance` of a container or a loose stack in floating frames.
 
     It is in the kernel of runs without history, so that a run and its band compile the stepping once.
@@ -160,7 +168,7 @@ def is_over(run: RunState, part: int) -> bool:
 
 @compiled
 def advance_in_slices(
-    body: ModalBody | LooseStack,
+    body: FloatingBody,
     run: RunState,
     kept: KeptSamples,
     ahead: float,

@@ -176,6 +176,27 @@ JOINT_RECORD = np.dtype(
 )
 
 
+#: a stop or a tie, see `contact.stepping.links`; `RunState.links` has one of these for each
+LINK_RECORD = np.dtype(
+    [
+        ("max_force", "f8"),  # along its line
+        ("hits", "i8"),
+        ("largest_closing_velocity", "f8"),
+        ("broken_at", "f8"),
+        ("least_gap", "f8"),  # that was left while it was whole
+        ("away", "f8"),  # largest gap since the last touch
+    ],
+    align=True,
+)
+
+
+def make_links(count: int) -> Any:
+    """A record array (count,) of LINK_RECORD at the start."""
+    links = np.zeros(count, LINK_RECORD).view(np.recarray)
+    links["broken_at"] = links["away"] = links["least_gap"] = NEVER
+    return links
+
+
 def make_joints(mass: npt.ArrayLike, inertia: npt.ArrayLike, width: npt.ArrayLike) -> Any:
     """A record array (N,) of JOINT_RECORD at the start; mass, inertia, width of the boxes (N,), from the floor up."""
     boxes = np.atleast_1d(mass)
@@ -277,6 +298,7 @@ class RunState(NamedTuple):
     ledger: FloatArray  #: (7,) [J]
     clock: Any  #: (1,) of STEP_RECORD
     joints: Any  #: (N,) of JOINT_RECORD
+    links: Any  #: (k,) of LINK_RECORD; their points are the last ones
     track: Any  #: (1,) of `observables.OBSERVABLES`
     contents: FloatArray  #: (8, 2 n_m) filter of the contents, see `contact.stepping.contents`
     #: (2, n_w, 1 + n_d) the most strained step of each `STRAIN_WINDOW` (of the last one in all time from there on) by
@@ -311,13 +333,15 @@ def make_run(
     history: Samples,
     frames: Samples,
     joints: Any = None,
+    links: int = 0,
     strained: int = 0,
     stress: Stresses = NO_STRESSES,
 ) -> RunState:
     """Assemble a run at t = 0.
 
-    `old` is the initial state, completed; `joints` those of a loose stack, see `make_joints`; `strained`: windows
-    of which the most strained steps are kept, by the stress at the points of `stress`, too.
+    `old` is the initial state, completed; `joints` those of a loose stack, see `make_joints`; `links`: so
+    many of the last contact points are those of links; `strained`: windows of which the most strained steps are kept,
+    by the stress at the points of `stress`, too.
 
     Raises:
         ValueError: the kernels do not handle the law of friction; an array of the contact does not have one
@@ -358,6 +382,7 @@ def make_run(
         ledger=np.zeros(LEDGER_ROWS),
         clock=clock,
         joints=make_joints(control.mass, control.inertia, control.width) if joints is None else joints,
+        links=make_links(links),
         track=make_observables(),
         contents=np.zeros((8, 2 * (monitors - control.top_monitors))),
         strained=np.full((2, strained, 1 + old.position.size), -1.0),

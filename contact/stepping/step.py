@@ -39,6 +39,7 @@ from contact.stepping.ledger import (
     spring_energy,
     work_of_lift,
 )
+from contact.stepping.links import LinkedBody, links_of, push_of_links, rub_links
 from contact.stepping.scheme import Scheme
 from contact.stepping.state import RunState
 
@@ -215,6 +216,7 @@ def attempt(body: Any, run: RunState, step: float) -> int:
             work.mu[i] = stribeck_mu(
                 run.joints[j].mu, contact.mu_kinetic[i], contact.stribeck_velocity, velocity
             )
+    rub_links(run, links_of(body))
     rolls = contact.rolling_time > 0.0
     clock.rolling = rolling_share(run, step) if rolls else 0.0
     for iteration in range(ITERATION_LIMIT):
@@ -243,13 +245,15 @@ def attempt(body: Any, run: RunState, step: float) -> int:
 
 
 @compiled(inline=True)
-def account(run: RunState, step: float) -> float:
+def account(run: RunState, step: float, links: LinkedBody | None) -> float:
     """Write the ledger terms of the attempted step; returns its dissipation but for crushing [J]."""
     old, new, change = run.old, run.attempt.new, run.attempt.change
     shear = 0.0
     begin, end = points_of(run, 0)
     for i in range(begin, end):
         shear += 0.5 * (old.force[i, 0] + new.force[i, 0])
+    if links is not None:  # what holds them moves with the floor
+        shear += push_of_links(run, links)
     friction, damping = contact_losses(
         run.problem.contact,
         old.point,

@@ -248,6 +248,8 @@ def reasons_against(model: Model, history: History, verdict: Verdict, reference:
         )
     if not model.case.starts_moving and floor_motion(model.vertical.compiled(), 0.0)[1] != 0.0:
         reasons.append("the floor starts with a jerk up or down, which the block does not feel")
+    if model.case.links:
+        reasons.append("stops or ties hold it")
     if impact is None and verdict.first_impact_s is None:
         reasons.append("no impact in the run or the block")
     return reasons

@@ -10,6 +10,7 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, Strict, ValidationError
 from pydantic.fields import FieldInfo
 
+from fem.case.links import ROWS
 from fem.case.quantities import Quantity, with_unit
 from fem.case.tables import TABLES
 from fem.case.validation import TOP, choices_of, did_you_mean, known_keys, quantity_of, requirement_of
@@ -138,6 +139,11 @@ def check_varied(key: str) -> FieldInfo:
     return field
 
 
+NAMED = (
+    TABLES | ROWS
+)  #: what the first part of a dotted key names; of [[stop]] and [[tie]] a key is that of all
+
+
 def field_of(key: str) -> FieldInfo:
     """The field of a case that a dotted key names.
 
@@ -148,15 +154,15 @@ def field_of(key: str) -> FieldInfo:
     if not dot:
         if name in TOP:
             return TOP[name]
-        owners = [known for known, model in TABLES.items() if name in known_keys(model)]
+        owners = [known for known, model in NAMED.items() if name in known_keys(model)]
         if owners:
             wanted = " or ".join(f"{one}.{name}" for one in owners)
             raise AxisError(f"is no key before the first table; write {wanted!r}")
-        keys = [f"{known}.{one}" for known, model in TABLES.items() for one in known_keys(model)]
+        keys = [f"{known}.{one}" for known, model in NAMED.items() for one in known_keys(model)]
         raise AxisError(f"is no key of a case file{hint(name, [*TOP, *keys])}")
-    if table not in TABLES:
-        raise AxisError(f"names no table of a case file{hint(table, TABLES)} (known: {', '.join(TABLES)})")
-    fields = known_keys(TABLES[table])
+    if table not in NAMED:
+        raise AxisError(f"names no table of a case file{hint(table, NAMED)} (known: {', '.join(NAMED)})")
+    fields = known_keys(NAMED[table])
     if name not in fields:
         raise AxisError(f"is no key of a case file{hint(name, fields)} (known: {', '.join(fields)})")
     return fields[name]

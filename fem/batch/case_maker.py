@@ -6,6 +6,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from fem.case.case import Case
+from fem.case.links import ROWS
 from fem.case.overrides import keys_in_effect, with_overrides
 from fem.case.tables import TABLES
 
@@ -32,6 +33,8 @@ class CaseMaker:
         given = values
         values = keys_in_effect(values, self._kinds)
         keys = tuple(values)
+        if any(key.rpartition(".")[0] in ROWS for key in keys):  # all rows of a table change
+            return self.base.with_values(given)
         if keys not in self._templates:
             self._templates[keys] = self._template(values)
         fixed, touched = self._templates[keys]
@@ -49,6 +52,7 @@ class CaseMaker:
     def _template(self, values: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, dict[str, Any]]]:
         data = with_overrides(self.base.given(), values)
         names = {key.rpartition(".")[0] for key in values} - {""}
-        fixed = {key: value for key, value in data.items() if key not in TABLES}
+        fixed = {key: value for key, value in data.items() if key not in TABLES and key not in ROWS}
+        fixed |= {name: getattr(self.base, name) for name in ROWS}
         fixed |= {name: getattr(self.base, name) for name in TABLES if name not in names}
         return fixed, {name: data[name] for name in names}

@@ -18,6 +18,7 @@ from pydantic import ConfigDict, Field, PrivateAttr
 from fem.case import data_files
 from fem.case.boxes import Box, boxes_of, joint_friction
 from fem.case.files import CASES, DEFAULT_CASE, Origin, parse_case
+from fem.case.links import StopTable, TieTable, links_of_case
 from fem.case.overrides import kinds_of, naming_overrides, parse_override, with_overrides
 from fem.case.resolved import resolved_tables
 from fem.case.rules import CASE_RULES
@@ -70,6 +71,8 @@ class Case(CaseHeading):
     output: OutputTable = Field(default_factory=OutputTable)
     uncertainty: UncertaintyTable = Field(default_factory=UncertaintyTable)
     document: DocumentTable | None = None  #: None: the pages bear no names
+    stop: tuple[StopTable, ...] = ()
+    tie: tuple[TieTable, ...] = ()
 
     _origin: Origin = PrivateAttr(default_factory=Origin)
 
@@ -104,6 +107,11 @@ class Case(CaseHeading):
     def stack(self) -> tuple[Box, ...]:
         """All boxes, from the floor up."""
         return boxes_of(self.container, self.gravity_m_s2)
+
+    @property
+    def links(self) -> tuple[StopTable | TieTable, ...]:
+        """Stops and ties, the stops first."""
+        return links_of_case(self)
 
     @property
     def effective_width(self) -> float:

@@ -9,6 +9,8 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
 
+from fem.case.links import held_above
+
 MODE = "mode"  #: the column of the word; all others are numbers
 GROUND, FLOOR, BELOW, START = "ground", "floor", "what is below", "start of the run"
 
@@ -36,6 +38,11 @@ class ColumnGroup:
 
 def _is_loose(case: Any) -> bool:
     return bool(case.container.joints == "loose")
+
+
+def _bolted_boxes(case: Any) -> int:
+    """Boxes of a bolted stack whose joint forces follow from their motion; 1 where they do not."""
+    return 1 if _is_loose(case) or held_above(case) else int(case.container.boxes)
 
 
 ALWAYS = ColumnGroup(
@@ -84,7 +91,7 @@ VERTICAL = ColumnGroup(
 )
 #: the joints between the boxes of a bolted stack, from the floor up, from 1 (`fem.model.joints`)
 JOINTS = ColumnGroup(
-    lambda case: range(1, 1 if _is_loose(case) else case.container.boxes),
+    lambda case: range(1, _bolted_boxes(case)),
     (
         HistoryColumn("joint_{}_normal_N", "N"),
         HistoryColumn("joint_{}_shear_N", "N"),
@@ -102,9 +109,16 @@ BOXES = ColumnGroup(
         HistoryColumn("box_{}_z_m", "m", FLOOR),
     ),
 )
+#: stops and ties, in the order of the case, from 1: the force along their line, on the container
+STOPS = ColumnGroup(
+    lambda case: range(1, 1 + len(getattr(case, "stop", ()))), (HistoryColumn("stop_{}_force_N", "N"),)
+)
+TIES = ColumnGroup(
+    lambda case: range(1, 1 + len(getattr(case, "tie", ()))), (HistoryColumn("tie_{}_force_N", "N"),)
+)
 #: a run that was compared with the rigid block (`fem.assessment.rigid_check`): nan where that is not followed
 ANALYTIC = ColumnGroup(lambda case: (), (HistoryColumn("analytic_rotation_rad", "rad", GROUND),))
-GROUPS = (ALWAYS, CRUSHING, IMPACTS, VERTICAL, JOINTS, BOXES, ANALYTIC)
+GROUPS = (ALWAYS, CRUSHING, IMPACTS, VERTICAL, JOINTS, BOXES, STOPS, TIES, ANALYTIC)
 
 
 def history_columns(case: Any, joints: int | None = None) -> tuple[str, ...]:

@@ -11,6 +11,7 @@ from copy import deepcopy
 from typing import Any
 
 from fem.case.floors import PENALTY_KEYS, PRESET_KEYS, SLAB_KEYS
+from fem.case.links import ROWS
 from fem.case.tables import TABLES
 from fem.case.validation import CaseError, did_you_mean
 
@@ -61,6 +62,13 @@ def with_overrides(data: Mapping[str, Any], overrides: Mapping[str, Any]) -> dic
                     f"--set {dotted}: [{key}] is a table; set one of its keys, --set {key}.KEY=VALUE"
                 )
             changed[key] = value
+            continue
+        if table in ROWS:
+            rows = changed.get(table)
+            if not rows:
+                raise CaseError(f"--set {dotted}: the case has no [[{table}]] to change; give it one")
+            for row in rows if isinstance(rows, list | tuple) else ():
+                row[key] = value
             continue
         if table not in TABLES:
             near = did_you_mean(table, TABLES)

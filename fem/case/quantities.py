@@ -150,6 +150,34 @@ RESTITUTION = Quantity(
     slips=PER_CENT,
     advice="measured on concrete: 0.93 to 1.05",
 )
+LINK_HEIGHT = Quantity(unit="m", least=0.0, most=1e3, typical=0.5, slips=MILLI_AND_CENTI)
+GAP = Quantity(
+    unit="m",
+    least=0.0,
+    most=1e3,
+    typical=0.05,
+    slips=MILLI_AND_CENTI,
+    advice="a gap below 0 would overlap at the start",
+)
+LINK_STIFFNESS = Quantity(
+    unit="N/m", least=1.0, most=1e12, typical=1e7, slips={"kN/m": 1e3, "kN/mm": 1e6}, advice="1e8 is a kerb"
+)
+LINK_FORCE = Quantity(
+    unit="N",
+    least=1.0,
+    most=1e12,
+    typical=1e5,
+    slips={"kilonewtons": 1e3, "tonnes": 9.81e3},
+    advice="what holds nothing is left out",
+)
+STOP_RESTITUTION = Quantity(
+    unit="",
+    least=0.005,
+    most=1.0,
+    typical=0.5,
+    slips=PER_CENT,
+    advice="below that take damping_ratio = 10, which leaves 0.25 % of the velocity",
+)
 FRICTION = Quantity(
     unit="", least=0.0, most=5.0, typical=0.4, slips=PER_CENT, advice="steel on concrete has 0.3 to 0.4"
 )

@@ -1,7 +1,7 @@
 """The keys of a case with every default, as its resolved file has them.
 
-A case without vertical motion, on a level rigid floor, of equal bolted boxes that bear on all of their base has no keys
-of these, and keeps its hash.
+A case without vertical motion, on a level rigid floor, of equal bolted boxes that bear on all of their base, without
+stops and ties, has no keys of these, and keeps its hash.
 What [joints] leaves out stays out: the floor's friction stands in its place, and the band treats it as unknown.
 """
 
@@ -9,12 +9,13 @@ from typing import Any
 
 from fem.case.data_files import FILE_KEYS, copied_name
 from fem.case.floors import PENALTY_KEYS
+from fem.case.links import ROWS
 from fem.case.tables import TABLES
 
 
 def resolved_tables(case: Any) -> dict[str, Any]:
     """Every key of a case that is used, defaults included, by table."""
-    document = case.model_dump(by_alias=True, exclude=set(TABLES))
+    document = case.model_dump(by_alias=True, exclude={*TABLES, *ROWS})
     absent = _absent(case)
     for name in TABLES:
         table = getattr(case, name)
@@ -37,6 +38,9 @@ def resolved_tables(case: Any) -> dict[str, Any]:
     if case.container.box is not None:
         del document["container"]["boxes"]
         document["container"]["box"] = _boxes(case)
+    for name in ROWS:
+        rows = [table.model_dump(by_alias=True, exclude_none=True) for table in getattr(case, name)]
+        document |= {name: rows} if rows else {}
     for dotted in FILE_KEYS:
         name, _, key = dotted.partition(".")
         if key in document.get(name, {}):

@@ -7,6 +7,7 @@ from fem.case import quantities as q
 from fem.case.boxes import BOX_RULES, JOINT_RULES, boxes_of
 from fem.case.columns import history_columns
 from fem.case.floors import FLOOR_CASE_RULES
+from fem.case.links import LINK_RULES
 from fem.case.motion_rules import harmonic_angular_frequency
 from fem.case.problem import Rule, is_a_file_name, outside_the_folder
 
@@ -261,6 +262,7 @@ CASE_RULES = (
     *FLOOR_CASE_RULES,
     *BOX_RULES,
     *JOINT_RULES,
+    *LINK_RULES,
     _plausible_density("weight_N"),
     _plausible_density("mass_kg"),
     Rule(

@@ -9,6 +9,8 @@ from typing import Any
 from pydantic.fields import FieldInfo
 
 from fem.case.case import Case
+from fem.case.links import ROWS
+from fem.case.table import CaseTable
 from fem.case.tables import TABLES, BoxTable, CaseHeading
 from fem.case.toml import toml_value
 from fem.case.validation import known_keys, quantity_of
@@ -37,16 +39,19 @@ def case_template(case: Case) -> str:
         boxes = values.pop("box", ())
         lines += _key_lines({key: field for key, field in fields.items() if key != "box"}, values)
         if "box" in fields:
-            lines += _box_lines(boxes)
+            lines += _row_lines("container.box", BoxTable, boxes)
+    for name, table in ROWS.items():
+        lines += _row_lines(name, table, resolved.get(name, ()))
     return "\n".join(lines) + "\n"
 
 
-def _box_lines(boxes: Sequence[Mapping[str, Any]]) -> list[str]:
-    heading = f"[[container.box]]  # {_first_line(BoxTable.__doc__)}"
+def _row_lines(name: str, table: type[CaseTable], rows: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Tables of which a case may have several; in comments where it has none."""
+    heading = f"[[{name}]]  # {_first_line(table.__doc__)}"
     lines = []
-    for values in boxes or ({},):
+    for values in rows or ({},):
         lines += ["", heading if values else f"# {heading}"]
-        lines += _key_lines(known_keys(BoxTable), values)
+        lines += _key_lines(known_keys(table), values)
     return lines
 
 

@@ -37,9 +37,13 @@ def toml_document(tables: Mapping[str, Any]) -> str:
     """Scalars first, then one table after another, each with its own tables behind it.
 
     Args:
-        tables: key -> scalar, or table name -> mapping of keys to scalars and to sequences of such mappings.
+        tables: key -> scalar, or table name -> mapping of keys to scalars and to sequences of such mappings, or
+            such a sequence itself.
     """
-    top = [f"{key} = {toml_value(value)}" for key, value in tables.items() if not isinstance(value, Mapping)]
+    scalars = {
+        key: one for key, one in tables.items() if not isinstance(one, Mapping) and not _are_tables(one)
+    }
+    top = [f"{key} = {toml_value(value)}" for key, value in scalars.items()]
     blocks = ["\n".join(top)] if top else []
     for name, content in tables.items():
         if isinstance(content, Mapping):
@@ -47,6 +51,8 @@ def toml_document(tables: Mapping[str, Any]) -> str:
             own = {key: value for key, value in content.items() if key not in rows}
             blocks.append(_block(f"[{name}]", own))
             blocks += [_block(f"[[{name}.{key}]]", one) for key, value in rows.items() for one in value]
+        elif name not in scalars:
+            blocks += [_block(f"[[{name}]]", one) for one in content]
     return "\n\n".join(blocks) + "\n"
 
 

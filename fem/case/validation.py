@@ -14,6 +14,7 @@ from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails, PydanticUndefined
 
+from fem.case.links import MOST_ROWS, ROWS
 from fem.case.problem import Problem, broken
 from fem.case.quantities import Quantity, with_unit
 from fem.case.rules import CASE_RULES
@@ -31,6 +32,7 @@ def known_keys(table: type[CaseTable]) -> dict[str, FieldInfo]:
 
 
 TOP = known_keys(CaseHeading)
+MOST_BOXES = range(1, 51)
 #: what values of the wrong type should have been, by pydantic's name of the fault
 KINDS = {
     "float_type": "a number",
@@ -77,9 +79,9 @@ def read_case_tables(data: Mapping[str, Any]) -> tuple[dict[str, Any], list[Prob
         if key in TABLES and not isinstance(value, dict):
             reason = f"must be one table, got {_shown(value)}; write [{key}] above its keys"
             problems.append(Problem(table=key, key="", reason=reason))
-        elif isinstance(value, dict) and key not in TABLES and key not in TOP:
+        elif isinstance(value, dict) and key not in (*TABLES, *ROWS, *TOP):
             problems.append(Problem(table=key, key="", reason=_unknown_table(key)))
-        elif key not in TABLES:
+        elif key not in TABLES and key not in ROWS:
             heading[key] = value
     read, partial, found = read_table("", CaseHeading, heading)
     problems += found
@@ -94,6 +96,12 @@ def read_case_tables(data: Mapping[str, Any]) -> tuple[dict[str, Any], list[Prob
         partial[name] = SimpleNamespace(**part)
         if not found:
             read[name] = model.model_validate(given)
+    for name in ROWS.keys() & data.keys():
+        rows, found = _read_rows(name, ROWS[name], data[name], range(MOST_ROWS + 1))
+        problems += found
+        if not found:
+            read[name] = rows
+        partial[name] = rows or ()
     return read, problems + broken(CASE_RULES, SimpleNamespace(**partial))
 
 
@@ -138,7 +146,9 @@ def read_table(
     ]
     given = model.as_meant({key: value for key, value in content.items() if key in known})
     if model is TABLES["container"] and "box" in given:
-        given["box"], found = _read_boxes(given["box"])
+        given["box"], found = _read_rows(
+            "container.box", BoxTable, given["box"], MOST_BOXES, "from the floor up"
+        )
         problems += found
     reasons: dict[str, list[ErrorDetails]] = {}
     try:
@@ -153,23 +163,25 @@ def read_table(
     return given, partial, problems + broken(model.rules, SimpleNamespace(**partial))
 
 
-def _read_boxes(content: Any) -> tuple[Any, list[Problem]]:
-    """Tables [[container.box]] as far as they can be read, in place of the content; and problems, each with its box."""
+def _read_rows(
+    name: str, model: type[CaseTable], content: Any, count: range, order: str = ""
+) -> tuple[Any, list[Problem]]:
+    """Tables [[name]] as far as they can be read, in place of the content; and problems, each with its number."""
+    table, _, key = name.rpartition(".")
     tables = isinstance(content, list | tuple) and all(isinstance(one, Mapping) for one in content)
-    if not tables or not 1 <= len(content) <= 50:
-        reason = (
-            f"must be 1 to 50 tables [[container.box]], one a box from the floor up, got {_shown(content)}"
-        )
-        return None, [Problem(table="container", key="box", reason=reason)]
-    boxes, problems = [], []
+    if not tables or len(content) not in count:
+        one = f", one a {key} {order}" if order else ""
+        reason = f"must be {count[0]} to {count[-1]} tables [[{name}]]{one}, got {_shown(content)}"
+        return None, [Problem(table=table, key=key, reason=reason)]
+    rows, problems = [], []
     for number, one in enumerate(content, 1):
-        given, part, found = read_table("container.box", BoxTable, one)
-        boxes.append(BoxTable.model_construct(**part) if found else BoxTable.model_validate(given))
+        given, part, found = read_table(name, model, one)
+        rows.append(model.model_construct(**part) if found else model.model_validate(given))
         problems += [
-            Problem(table="container", key=f"box {number}: {problem.key}".rstrip(), reason=problem.reason)
+            Problem(table=table, key=f"{key} {number}: {problem.key}".rstrip(), reason=problem.reason)
             for problem in found
         ]
-    return tuple(boxes), problems
+    return tuple(rows), problems
 
 
 def _partial(model: type[CaseTable], given: Mapping[str, Any], bad: Iterable[str]) -> dict[str, Any]:

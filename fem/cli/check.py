@@ -115,6 +115,12 @@ def _page(preview: Preview, document: dict[str, Any]) -> str:
                 f"    {action:<14} {what:<12} {one.demand / 1e3:8.3f}   {one.capacity / 1e3:8.3f} "
                 f"{'k' + one.unit:<4} {one.utilisation:8.3f}{verdict}"
             )
+    for tied in preview.tied:
+        breaks = ", where a tie breaks" if tied.broken else ""
+        lines.append(
+            f"    with its ties  to the {tied.side:<5}  resists up to {tied.moment / 1e3:.3f} kNm, at "
+            f"{math.degrees(tied.rotation):.3g} deg{breaks}; without {tied.free / 1e3:.3f} kNm"
+        )
     lines += ["", *numerics_lines(numerics)]
     for note in document["notes"]:
         lines.append(

@@ -9,6 +9,7 @@ from contact.interface.faces import TOUCHING, make_faces
 from contact.interface.support import Support
 from fem.case.case import Case
 from fem.model.geometry import build_container, node_count
+from fem.model.links import nodes_of_links
 from fem.model.support import build_support
 from fem.model.validity import require_memory
 from fem.runtime.arrays import IntArray
@@ -43,7 +44,8 @@ class Container:
     mesh: ContainerMesh
     elements: FiniteElements
     support: Support
-    nodes: IntArray  #: (n_c,) contact nodes, those of the base first, by rising x; see `BoxModel` for a loose stack
+    #: (n_c,) contact nodes, those of the base first, by rising x, those of links last; see `BoxModel` for a loose stack
+    nodes: IntArray
     monitors: IntArray  #: (n_m,) nodes whose motion is observed
     response: StaticResponse  #: none of a loose stack
     basis: ReducedBasis  #: elastic modes of a reduced model; none of the others
@@ -113,6 +115,7 @@ def discretise(case: Case, mesh: ContainerMesh | None = None) -> Container:
     nodes = elements.base_nodes[support.index]
     if not case.output.stop_when_overturned:  # lying on its side it touches with the upper corners, too
         nodes = np.concatenate([nodes, _upper_corners(elements)])
+    nodes = np.concatenate([nodes, nodes_of_links(case, elements.nodes)])
     response = static_response(elements, nodes)
     basis, first = _elastic(case, elements, response, modes_of_a_body(case))
     return Container(

@@ -10,11 +10,13 @@ from contact.interface.laws import FRICTION_LAWS
 from contact.interface.penalty import relaxation_time
 from contact.interface.workspace import Contact
 from contact.stepping.body import ROTATION
+from contact.stepping.links import LinkedBody
 from contact.stepping.loose_stack import LooseStack
 from contact.stepping.modal_body import ModalBody, make_modal_body
 from fem.case.case import Case, CaseError
 from fem.model.container import Container
 from fem.model.floor import slab_of
+from fem.model.links import lines_at, places_of_links, with_links
 from fem.model.loose_stack import make_stack_state, own_stiffness, settle, stack_of, with_joints
 from fem.model.support import Rolling, base_points, normal_penalty, steel_penalty
 from fem.model.validity import require_bearing, require_stiff_contact, require_stiff_container
@@ -60,7 +62,8 @@ def find_equilibrium(case: Case, container: Container, gravity: float) -> Equili
     base = springs.size
     require_stiff_contact(case, container.mesh, float(springs.sum()))
     if not container.boxes:
-        springs = np.concatenate([springs, np.full(container.nodes.size - base, 0.5 * springs.sum())])
+        corners = container.nodes.size - base - len(case.links)
+        springs = np.concatenate([springs, np.full(corners, 0.5 * springs.sum())])
     contact = _contact(case, container, springs)
     stance: Stance | None = None
     body: Body
@@ -70,11 +73,12 @@ def find_equilibrium(case: Case, container: Container, gravity: float) -> Equili
             body, force, compression = _settled_stack(case, container, contact, gravity)
         else:
             stance = _stance(case, container, contact, gravity)
-            body, force = _body(case, container, contact), stance.force
+            body, force = _body(case, container, contact, stance), stance.force[: contact.cap.size]
+            contact = with_links(case, contact, container.mesh.mass)
             compression = _compression(container, stance) if case.solver.model != "rigid" else 0.0
     except SettlingError as error:
         raise CaseError(f"[initial] no equilibrium at the start: {error}") from error
-    require_bearing(case, container.mesh, float(np.max(force[:, 1] / contact.cap)))
+    require_bearing(case, container.mesh, float(np.max(force[:, 1] / contact.cap[: len(force)])))
     require_stiff_container(case, compression)
     return Equilibrium(
         penalty=penalty,
@@ -110,6 +114,7 @@ def same_equilibrium(case: Case, other: Case) -> bool:
         and case.joints == other.joints
         and case.floor == other.floor
         and case.initial == other.initial
+        and case.links == other.links
         and case.container.centroid_m == other.container.centroid_m
         and case.container.eccentricity_m == other.container.eccentricity_m
         and case.container.damping_ratio == other.container.damping_ratio
@@ -169,21 +174,30 @@ def _contact(case: Case, container: Container, springs: FloatArray) -> Contact:
     )
 
 
-def _body(case: Case, container: Container, contact: Contact) -> ModalBody | FullBody:
+def _body(
+    case: Case, container: Container, contact: Contact, stance: Stance
+) -> ModalBody | LinkedBody | FullBody:
     elements, mesh = container.elements, container.mesh
     gravity, downhill = case.gravity_toward_floor, case.gravity_downhill
     nodes, monitors = container.nodes, container.monitors
     damping = container.damping(case.container.damping_ratio)
+    placed = base_points(case, elements.nodes[nodes], container.support.index.size)
+    links = slice(len(nodes) - len(case.links), None)
+    if case.links and case.solver.model == "rigid":  # it has points wherever they are asked for
+        placed[links] = places_of_links(case)
+    line = lines_at(case, _at_rest(case, container, placed, stance)[links], mesh.width)
     if case.solver.model == "full":
-        return FullBody(elements, nodes, monitors, gravity=gravity, downhill=downhill, damping=damping)
+        return FullBody(
+            elements, nodes, monitors, gravity=gravity, downhill=downhill, damping=damping, line=line
+        )
     centroid, basis = np.asarray(mesh.centroid), container.basis
     penetration = mesh.mass * gravity / float(contact.normal_stiffness.sum())
-    return make_modal_body(
+    body = make_modal_body(
         mass=mesh.mass,
         inertia=mesh.inertia,
         gravity=gravity,
         downhill=downhill,
-        point=base_points(case, elements.nodes[nodes], container.support.index.size) - centroid,
+        point=placed - centroid,
         rest=mesh.centroid,
         shape=np.moveaxis(basis.shapes[:, nodes], 0, -1),
         frequencies=basis.angular_frequencies,
@@ -192,6 +206,22 @@ def _body(case: Case, container: Container, contact: Contact) -> ModalBody | Ful
         monitor_shape=np.moveaxis(basis.shapes[:, monitors], 0, -1),
         tolerance=POINT_TOLERANCE * penetration,
     )
+    return body if line is None else LinkedBody(body=body, line=line)
+
+
+def _at_rest(case: Case, container: Container, placed: FloatArray, stance: Stance) -> FloatArray:
+    """Contact points (n, 2) of the container upright at rest: gaps are measured from them [m].
+
+    Of one that starts tilted, those of the undeformed container on a hard floor.
+    """
+    if case.initial.rotation_rad != 0.0 or not case.links:
+        return placed
+    turn = rotation_matrix(stance.rotation)
+    shape = placed - np.asarray(container.mesh.centroid)
+    if case.solver.model != "rigid":
+        own = (stance.with_points(len(placed)).force @ turn).ravel()
+        shape = shape + np.tensordot(own, container.response.displacement[:, container.nodes], axes=1)
+    return np.asarray(stance.centre) + shape @ turn.T
 
 
 def _stance(case: Case, container: Container, contact: Contact, gravity: float) -> Stance:

@@ -14,6 +14,7 @@ from scipy.sparse import csr_array
 
 from contact.stepping.body import ANGULAR_VELOCITY, ROTATION, State
 from fem.case.case import Case
+from fem.case.links import held_above
 from fem.model.model import Model
 from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid.assembly import FiniteElements
@@ -139,7 +140,7 @@ class Joints:
 
 
 def joints_of(model: Model, heights: FloatArray | None = None) -> Joints | None:
-    """The joints of a model's stack; None for a single box, and for boxes without bolts.
+    """The joints of a model's stack; None for a single box, for boxes without bolts, and where links hold upper boxes.
 
     Args:
         model: what is stepped.
@@ -148,7 +149,7 @@ def joints_of(model: Model, heights: FloatArray | None = None) -> Joints | None:
     container = model.container
     mesh, elements, shapes = container.mesh, container.elements, container.basis.shapes
     lines = joint_heights(model.case) if heights is None else np.asarray(heights, dtype=float)
-    if lines.size == 0 or model.case.container.is_loose:
+    if lines.size == 0 or model.case.container.is_loose or held_above(model.case):
         return None
     layers = _layers(elements, mesh, np.append(lines, np.inf))
     arm = elements.nodes - np.asarray(mesh.centroid)

@@ -18,6 +18,7 @@ from contact.stepping import modal_kernels
 from contact.stepping.body import State, make_state
 from contact.stepping.control import step_level
 from contact.stepping.ledger import spring_energy
+from contact.stepping.links import LinkedBody
 from contact.stepping.loose_stack import LooseStack
 from contact.stepping.modal_body import ModalBody
 from contact.stepping.observables import record_start
@@ -27,6 +28,7 @@ from fem.model.container import Container, discretise, modes_of_a_body
 from fem.model.equilibrium import Equilibrium, find_equilibrium
 from fem.model.floor import slab_of
 from fem.model.frames import frame_interval
+from fem.model.links import begin_links
 from fem.model.loose_stack import joints_of_stack, make_stack_state, own_stiffness, settle
 from fem.model.motion import build_motions, longest_run, peaks_in_run, rest_sought_from
 from fem.model.restitution import require_loss
@@ -147,12 +149,15 @@ def build_model(
         settle(body, contact, old, gravity=gravity, place=(x, z), velocity=velocity, lift_velocity=velocity_z)
     else:
         assert equilibrium.stance is not None
-        coordinates = 3 + body.stiffness.size if isinstance(body, ModalBody) else body.coordinates
+        own = body.body if isinstance(body, LinkedBody) else body
+        coordinates = 3 + own.stiffness.size if isinstance(own, ModalBody) else own.coordinates
         old = make_state(coordinates, nodes.size, container.monitors.size)
         stance = equilibrium.stance.moved(x, z)
         if case.starts_moving:
             stance = stance.moving(*velocity)
-        _place(body, old, stance, container.response, (x, z, velocity_z), contact)
+        _place(own, old, stance, container.response, (x, z, velocity_z), contact)
+        begin_links(case, body, old)
+        old.point[:, 1] += contact.camber
     coordinates = old.position.size
     require_stiff_corner(
         case,
@@ -188,6 +193,7 @@ def build_model(
             velocity=coordinates if fields > 0.0 else 0,
         ),
         joints=joints_of_stack(container) if container.boxes else None,
+        links=len(case.links),
         strained=_strained_steps(case, duration),
         stress=_stresses_at_contacts(container),
     )
@@ -258,4 +264,3 @@ def _place(
     else:
         modal_kernels.place(body, state, stance)
         modal_kernels.start(body, state, *floor)
-    state.point[:, 1] += contact.camber

@@ -285,6 +285,19 @@ class Numerics(JsonBlock):
 
 
 @dataclass(frozen=True, kw_only=True)
+class LinkResult(JsonBlock):
+    """What a stop or a tie did."""
+
+    side: str  #: of the container: left | right
+    height_m: float  #: of its point; of an elastic container that of the nearest node of the mesh
+    max_force_N: float  #: along its line
+    hits: int  #: how often it began to hold
+    largest_closing_velocity_m_s: float  #: with which it did
+    gap_left_m: float | None = None  #: least gap or slack that was left; None: it is broken
+    broken_at_s: float | None = None  #: None: it did not break
+
+
+@dataclass(frozen=True, kw_only=True)
 class RunAndBlock(JsonBlock):
     """One quantity of the run and of the analytic rigid block."""
 
@@ -337,6 +350,8 @@ class RunResult(JsonBlock):
     versions: Mapping[str, str] | None = None
     verdict: Verdict | None = None
     joints: tuple[JointDemand, ...] | None = None  #: None for a single box
+    stops: tuple[LinkResult, ...] | None = None  #: in the order of the case; None where it has none
+    ties: tuple[LinkResult, ...] | None = None
     energy: Energy | None = None
     numerics: Numerics | None = None
     error: str | None = None  #: why it failed

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from contact.stepping.links import LinkedBody
 from contact.stepping.loose_stack import LooseStack
 from contact.stepping.modal_body import ModalBody
 from contact.stepping.state import RunState
@@ -48,7 +49,7 @@ class SavedState:
             np.copyto(array, self.arrays[name])
         for name, array in _waiting(model.run, model.run.clock).items():  # the clock is restored by now
             np.copyto(array, self.arrays[name])
-        if not isinstance(model.body, ModalBody | LooseStack):
+        if not isinstance(model.body, ModalBody | LooseStack | LinkedBody):
             model.body.recall(_named(self.arrays, BODY))
         recorder.recall(_named(self.arrays, RECORDED))
 
@@ -127,7 +128,7 @@ def misfit(path: Path, reason: str) -> CheckpointError:
 def state_of(model: Model, recorder: Recorder) -> Arrays:
     """Everything that changes in a run, by name; the arrays themselves, not copies."""
     found = changing(model) | _waiting(model.run, model.run.clock)
-    if not isinstance(model.body, ModalBody | LooseStack):
+    if not isinstance(model.body, ModalBody | LooseStack | LinkedBody):
         found |= {BODY + name: array for name, array in model.body.memory().items()}
     return found | {RECORDED + name: array for name, array in recorder.memory().items()}
 

@@ -7,6 +7,7 @@ with samples, and finds the same verdict.
 import numpy as np
 
 from contact.stepping.integrator import FAILED
+from contact.stepping.links import LinkedBody
 from contact.stepping.loose_stack import LooseStack
 from contact.stepping.modal_body import ModalBody
 from contact.stepping.outcome import run_to_end
@@ -27,7 +28,7 @@ def run_without_history(model: Model, recovery: Recovery | None) -> tuple[Verdic
     Returns:
         Its verdict, and why it failed, if it did: a verdict that does not count then.
     """
-    assert isinstance(model.body, ModalBody | LooseStack)
+    assert isinstance(model.body, ModalBody | LooseStack | LinkedBody)
     run, duration, until = model.run, model.duration, end_of_drive(model)
     status, kept = run_to_end(
         model.body,

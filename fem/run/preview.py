@@ -12,6 +12,7 @@ from fem.case.case import Case
 from fem.case.rules import ends_at_rest
 from fem.model.floor import floor_result, slab_of
 from fem.model.geometry import node_count
+from fem.model.links import TiedCapacity, tied_capacities
 from fem.model.restitution import contact_restitution, require_loss
 from fem.model.static_checks import StaticChecks, static_checks_of
 from fem.model.support import build_support, normal_penalty
@@ -97,6 +98,11 @@ class Preview:
             "output_bytes": required_disk(case, nodes, self.duration),
         }
 
+    @property
+    def tied(self) -> list[TiedCapacity]:
+        """What its ties add to the static capacity, toward each side."""
+        return tied_capacities(self.case, self.mesh)
+
     @cached_property
     def floor(self) -> FloorNumbers:
         """What the floor amounts to; of a rigid one its slope alone."""
@@ -161,6 +167,7 @@ class Preview:
             "motion": self.motion.to_json(),
             "floor": self.floor.to_json(),
             "static": self.static.to_result().to_json(),
+            **({"tied": [one.to_json() for one in self.tied]} if self.case.tie else {}),
             "contact_restitution": contact_restitution(
                 self.case, self.static, self.case.effective_width * self.mesh.width
             ),

@@ -11,7 +11,7 @@ import numpy as np
 from contact.motion.kernel import floor_history, floor_motion
 from contact.stepping.body import ROTATION, State
 from contact.stepping.state import ROW_ROTATION, RunState, Samples, row_names
-from fem.case.columns import JOINTS, VERTICAL, history_columns
+from fem.case.columns import JOINTS, STOPS, TIES, VERTICAL, history_columns
 from fem.model.joints import Joints, joints_of
 from fem.model.model import Model
 from fem.model.recovery import Recovery
@@ -136,6 +136,10 @@ class Recorder:
         columns |= zip(VERTICAL.names((0,)), floor_history(run.problem.vertical, times), strict=True)
         joints = JOINTS.names(range(1, len(self._joint_forces) + 1))
         columns |= zip(joints, self._forces_in_joints(samples, first, count).T, strict=True)
+        case = self._model.case
+        links = (*STOPS.names(STOPS.numbers(case)), *TIES.names(TIES.numbers(case)))
+        floor_points = samples.force.shape[1] - len(links)
+        columns |= zip(links, samples.force[:count, floor_points:, 1].T, strict=True)
         rows = np.column_stack([columns[name] for name in self._numbers])
         rows += 0.0  # no minus zero
         modes = [MODES[int(mode)] for mode in samples.mode[:count]]
@@ -185,7 +189,9 @@ class Recorder:
                     self._note_stress(float(np.max(frame.von_mises)))
                 if self._frame_sink is not None:
                     pressure = np.zeros(len(frame.displacement))
-                    pressure[self._model.container.nodes] = samples.force[k, :, 1] / self._area
+                    floor_points = len(self._area) - len(self._model.case.links)
+                    nodes = self._model.container.nodes[:floor_points]
+                    pressure[nodes] = (samples.force[k, :, 1] / self._area)[:floor_points]
                     floor, _, _ = floor_motion(run.problem.motion, time)
                     lift, _, _ = floor_motion(run.problem.vertical, time)
                     self._frame_sink(

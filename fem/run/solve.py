@@ -9,6 +9,7 @@ from typing import Any
 
 from contact.motion.base_motion import BaseMotion
 from fem.assessment.joint_demands import joint_demands
+from fem.assessment.link_words import link_results
 from fem.assessment.summary import outcome_sentence
 from fem.assessment.verdict import energy_of, numerics_of, verdict_of
 from fem.assessment.warnings import warnings_for
@@ -99,11 +100,14 @@ def stepped(
     history = recorder.history()
     stress = recorder.largest_von_mises if model.case.solver.model != "rigid" else None
     verdict = verdict_of(model, history, stress)
+    stops, ties = link_results(model)
     result = replace(
         result,
         status=ending.status,
         verdict=verdict if ending.error is None else replace(verdict, outcome=None),
         joints=joint_demands(model, history),
+        stops=stops,
+        ties=ties,
         energy=energy_of(model),
         numerics=numerics_of(model, ending.stepping_cpu_s),
         error=ending.error,

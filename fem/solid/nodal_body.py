@@ -17,6 +17,7 @@ from contact.interface.equilibrium import Stance
 from contact.interface.workspace import Contact, Workspace
 from contact.stepping.body import State
 from contact.stepping.integrator import UNPREPARED, advance, enter_floor_frame_compiled
+from contact.stepping.links import LinkedBody
 from contact.stepping.loose_stack import LooseStack
 from contact.stepping.modal_body import ModalBody
 from contact.stepping.outcome import advance_compiled
@@ -55,6 +56,7 @@ class FullBody:
         monitor: (n_m,) nodes whose motion is observed.
         gravity: toward the floor; downhill: along a floor that falls toward +x [m/s2].
         damping: a of the stiffness-proportional damping C = a K in the turned frame [s].
+        line: (k, 4) lines of the links at its last supporting nodes, see `contact.stepping.links`.
     """
 
     compiled = True  #: stepped by machine code; a subclass with other methods is stepped by the interpreter
@@ -68,12 +70,14 @@ class FullBody:
         gravity: float,
         downhill: float = 0.0,
         damping: float,
+        line: FloatArray | None = None,
     ) -> None:
         self.elements = elements
         self.base = np.asarray(base)
         self.monitor = np.asarray(monitor)
         self.gravity, self.downhill = gravity, downhill
         self.damping = damping
+        self.line = line
         pattern = elements.stiffness.tobsr((2, 2))
         pattern.sort_indices()
         self._block_mass = _on_blocks(elements.mass, pattern)
@@ -143,11 +147,16 @@ class FullBody:
 
     def advance(self, run: RunState, until: float) -> int:
         """`contact.stepping.integrator.advance` with the factors there are."""
-        return int(advance_nodal(self.nodal, run, until) if self.compiled else advance(self, run, until))
+        return int(advance_nodal(self._linked, run, until) if self.compiled else advance(self, run, until))
 
     def leave_alone(self, run: RunState, floor_velocity: float, lift_velocity: float) -> None:
         """`contact.stepping.integrator.enter_floor_frame`."""
-        enter_floor_frame_nodal(self.nodal, run, floor_velocity, lift_velocity)
+        enter_floor_frame_nodal(self._linked, run, floor_velocity, lift_velocity)
+
+    @property
+    def _linked(self) -> NodalBody | LinkedBody:
+        """What is stepped."""
+        return self.nodal if self.line is None else LinkedBody(body=self.nodal, line=self.line)
 
     def prepared(self, step: float) -> bool:
         """See `contact.stepping.body.prepared`."""
@@ -232,14 +241,14 @@ class NodalModel(Protocol):
 
 
 #: what is stepped: a container or a loose stack in floating frames, or with all their nodes
-Body = ModalBody | LooseStack | NodalModel
+Body = ModalBody | LooseStack | LinkedBody | NodalModel
 
 
 def advance_body(body: Body, run: RunState, until: float) -> int:
     """`contact.stepping.integrator.advance` for any body, compiled; factors of the full model are made where they
     are missing.
     """
-    if isinstance(body, ModalBody | LooseStack):
+    if isinstance(body, ModalBody | LooseStack | LinkedBody):
         return advance_compiled(body, run, until)
     while True:
         code = body.advance(run, until)
@@ -250,7 +259,7 @@ def advance_body(body: Body, run: RunState, until: float) -> int:
 
 def leave_body_alone(body: Body, run: RunState, floor_velocity: float, lift_velocity: float) -> None:
     """`contact.stepping.integrator.enter_floor_frame` for any body."""
-    if isinstance(body, ModalBody | LooseStack):
+    if isinstance(body, ModalBody | LooseStack | LinkedBody):
         enter_floor_frame_compiled(body, run, floor_velocity, lift_velocity)
     else:
         body.leave_alone(run, floor_velocity, lift_velocity)

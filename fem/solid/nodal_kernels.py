@@ -295,7 +295,8 @@ def complete(body: NodalBody, new: State, floor: float, lift: float, lift_veloci
         new.internal[2 * i + 1] += body.nodal_mass[i] * body.gravity
     for a in range(body.base.size):
         j = 2 * body.base[a]
-        new.external[j], new.external[j + 1] = new.force[a, 0], new.force[a, 1]
+        new.external[j] += new.force[a, 0]  # a node may have several points
+        new.external[j + 1] += new.force[a, 1]
         new.point[a, 0], new.point[a, 1] = position[j] - floor, position[j + 1] - lift
     centre_x, centre_z, cosine, sine = fit(body, position)
     along, up, spin, twice = 0.0, 0.0, 0.0, 0.0

@@ -6,6 +6,7 @@ Signs, factors, dropped terms, one coefficient for another, tangents, the ledger
 from mutation import Mutation
 from mutations_of_floor import FLOOR_FAULTS
 from mutations_of_impacts import IMPACTS
+from mutations_of_links import LINK_FAULTS
 from mutations_of_loose_stacks import LOOSE_STACKS
 from mutations_of_vertical_motion import VERTICAL_MOTION
 
@@ -123,8 +124,8 @@ MUTATIONS = (
     ),
     Mutation(
         name="a turn without a stop that restores static friction",
-        old="            every = slides_on(run, j, step, turned, loose)\n",
-        new="            every = slides_on(run, j, step, turned, loose)\n"
+        old="            every = slides_on(run, j, step, turned, loose, links)\n",
+        new="            every = slides_on(run, j, step, turned, loose, links)\n"
         "            joint.slip_since_break *= not turned\n",
         tests=(*SLIDING, "turn and without"),
     ),
@@ -316,8 +317,8 @@ MUTATIONS = (
     ),
     Mutation(
         name="a material damping of a member that stays the run's",
-        old="damping = container.damping(case.container.damping_ratio)\n    if",
-        new="damping = container.damping(0.02)\n    if",
+        old="damping = container.damping(case.container.damping_ratio)\n    placed",
+        new="damping = container.damping(0.02)\n    placed",
         tests=("unit/batch/test_runner.py", "-k", "damping"),
     ),
     Mutation(
@@ -341,5 +342,6 @@ MUTATIONS = (
     *VERTICAL_MOTION,
     *FLOOR_FAULTS,
     *IMPACTS,
+    *LINK_FAULTS,
     *LOOSE_STACKS,
 )

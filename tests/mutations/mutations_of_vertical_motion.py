@@ -37,8 +37,8 @@ VERTICAL_MOTION = (
     ),
     Mutation(
         name="gravity less the vertical acceleration where the support holds",
-        old="gravity = run.problem.control.gravity + run.lift[1, 2]",
-        new="gravity = run.problem.control.gravity - run.lift[1, 2]",
+        old="gravity, moment = run.problem.control.gravity + run.lift[1, 2]",
+        new="gravity, moment = run.problem.control.gravity - run.lift[1, 2]",
         tests=("verification/test_verification_checks.py", "-k", "vertical and slider"),
     ),
     Mutation(

@@ -29,7 +29,16 @@ UP = ("vertical.kind=harmonic", "vertical.peak_acceleration_m_s2=3", "vertical.f
 
 LOOSE = ("container.joints=loose", "motion.peak_acceleration_m_s2=9")
 
+#: it slides against a kerb, rocks, and tears a strap
+HELD = (
+    *RIGID,
+    *("contact.mu_static=0.2", "contact.mu_kinetic=0.15", "motion.peak_acceleration_m_s2=6"),
+    "stop=[{side = 'right', height_m = 0.1, gap_m = 0.02, stiffness_N_m = 1e8, mu = 0.3}]",
+    "tie=[{from = 'left', height_m = 0.5, slack_m = 0.001, stiffness_N_m = 1e6, strength_N = 1e3}]",
+)
+
 CASES = {
+    "stop and tie": ("rocking", HELD),
     "loose": ("seed_stack_plateau", (*RIGID, *LOOSE)),
     "loose, reduced": (
         "seed_stack_plateau",

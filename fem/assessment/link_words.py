@@ -1,0 +1,60 @@
+"""What stops and ties did in a run: its records, and one sentence for each that held."""
+
+import math
+
+from fem.model.links import heights_of_links
+from fem.model.model import Model
+from fem.results.run_result import LinkResult, RunResult
+from fem.runtime.units import visible_number
+
+
+def link_results(model: Model) -> tuple[tuple[LinkResult, ...] | None, tuple[LinkResult, ...] | None]:
+    """What stops and ties did in a model that was stepped, in the order of the case; None where there are none."""
+    case, records, container = model.case, model.run.links, model.container
+    heights = heights_of_links(case, container.elements.nodes[container.nodes])
+    found = [
+        LinkResult(
+            side=link.side,
+            height_m=height,
+            max_force_N=float(record.max_force),
+            hits=int(record.hits),
+            largest_closing_velocity_m_s=float(record.largest_closing_velocity),
+            gap_left_m=float(record.least_gap)
+            if math.isinf(record.broken_at) and math.isfinite(record.least_gap)
+            else None,
+            broken_at_s=None if math.isinf(record.broken_at) else float(record.broken_at),
+        )
+        for link, height, record in zip(case.links, heights, records, strict=True)
+    ]
+    stops = len(case.stop)
+    return tuple(found[:stops]) or None, tuple(found[stops:]) or None
+
+
+def links_in_words(result: RunResult) -> str:
+    """What each stop and tie did, without a full stop; empty where there are none."""
+    stops, ties = result.stops or (), result.ties or ()
+    return "; ".join([*(_of_stop(one) for one in stops), *(_of_tie(one) for one in ties)])
+
+
+def _of_stop(one: LinkResult) -> str:
+    name = f"the stop on the {one.side} at {one.height_m:g} m"
+    if one.hits == 0:
+        return f"{name} was not touched"
+    hits = "once" if one.hits == 1 else f"{one.hits} times"
+    said = f"{name} was hit {hits}, at {one.largest_closing_velocity_m_s:.2g} m/s at most, with up to {_force(one)}"
+    return said + _broken(one)
+
+
+def _of_tie(one: LinkResult) -> str:
+    name = f"the tie on the {one.side} at {one.height_m:g} m"
+    if one.hits == 0:
+        return f"{name} stayed slack"
+    return f"{name} carried up to {_force(one)}{_broken(one)}"
+
+
+def _force(one: LinkResult) -> str:
+    return f"{visible_number(one.max_force_N, 1e-3, '.3g')} kN"
+
+
+def _broken(one: LinkResult) -> str:
+    return "" if one.broken_at_s is None else f", and broke at t = {one.broken_at_s:.3f} s"

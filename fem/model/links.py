@@ -1,0 +1,187 @@
+"""Stops and ties of a case as contact points of its container, behind those of the base."""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from contact.interface.penalty import damping_ratio_of
+from contact.interface.workspace import Contact
+from contact.stepping.body import State
+from contact.stepping.links import APART, make_lines, place_links
+from fem.case.boxes import Box
+from fem.case.case import Case, CaseError
+from fem.case.links import USUAL_STOP_DAMPING, StopTable, TieTable
+from fem.runtime.arrays import FloatArray, IntArray
+from mesh.container import ContainerMesh
+
+OVERLAP = 1e-9  #: overlap at the start that is rounding [m]
+MOST_TURNED, TURNS = 0.5 * math.pi, 20_001  #: rotations at which a capacity is sought [rad]
+
+
+def box_at(case: Case, height: float) -> Box:
+    """The lowest box whose side reaches to a height above the floor [m]."""
+    return next((box for box in case.stack if height <= box.top * (1.0 + 1e-9)), case.stack[-1])
+
+
+def side_of(case: Case, link: StopTable | TieTable) -> float:
+    """x of the side of the container where a link is [m]."""
+    left, right = box_at(case, link.height_m).sides
+    return left if link.side == "left" else right
+
+
+def places_of_links(case: Case) -> FloatArray:
+    """Points of the container to which the links belong, (k, 2), where it stands on x = 0 [m]."""
+    return np.array([(side_of(case, one), one.height_m) for one in case.links]).reshape(-1, 2)
+
+
+def nodes_of_links(case: Case, nodes: FloatArray) -> IntArray:
+    """The nodes of a structured mesh, of all (n, 2), that are nearest to the points of the links, (k,)."""
+    found = []
+    for x, z in places_of_links(case):
+        on_side = np.flatnonzero(np.abs(nodes[:, 0] - x) <= 1e-9 * np.ptp(nodes[:, 0]))
+        found.append(on_side[np.argmin(np.abs(nodes[on_side, 1] - z))])
+    return np.array(found, dtype=np.int64)
+
+
+def heights_of_links(case: Case, nodes: FloatArray) -> list[float]:
+    """Heights of the points of the links [m]: as asked for, or of an elastic container those of its last contact nodes.
+
+    `nodes`: (n, 2) contact nodes of the container.
+    """
+    if case.solver.model == "rigid":
+        return [one.height_m for one in case.links]
+    return [float(z) for z in nodes[len(nodes) - len(case.links) :, 1]]
+
+
+def direction_of(link: StopTable | TieTable) -> tuple[float, float]:
+    """Direction in which the point of a link may go: away from a stop, down from a tie."""
+    if isinstance(link, TieTable):
+        return 0.0, -1.0
+    return (1.0, 0.0) if link.side == "left" else (-1.0, 0.0)
+
+
+def relaxation_of(link: StopTable | TieTable, mass: float) -> float:
+    """Dashpot over spring of a link [s]; a tie has no dashpot."""
+    if isinstance(link, TieTable):
+        return 0.0
+    ratio = USUAL_STOP_DAMPING if link.damping_ratio is None else link.damping_ratio
+    if link.restitution is not None:
+        ratio = damping_ratio_of(link.restitution)
+    return 2.0 * ratio * math.sqrt(mass / link.stiffness_N_m)
+
+
+def with_links(case: Case, contact: Contact, mass: float) -> Contact:
+    """The contact of a container of this mass [kg] with the points of its links behind those of the floor."""
+    links = case.links
+    if not links:
+        return contact
+    mu = [one.mu if isinstance(one, StopTable) else 0.0 for one in links]
+    stiffness = [one.stiffness_N_m for one in links]
+    nothing = [0.0] * len(links)
+    added: dict[str, Any] = {
+        "normal_stiffness": stiffness,
+        "tangential_stiffness": stiffness,
+        "cap": [math.inf if one.strength_N is None else one.strength_N for one in links],
+        "relaxation_time": [relaxation_of(one, mass) for one in links],
+        "mu_static": mu,
+        "mu_kinetic": mu,
+        "weakening": nothing,
+        "camber": nothing,
+    }
+    return contact._replace(
+        resolution=contact.resolution * (1.0 + APART * len(links)),
+        **{name: np.append(getattr(contact, name), given) for name, given in added.items()},  # type: ignore[arg-type]
+    )
+
+
+def lines_at(case: Case, place: FloatArray, width: float) -> FloatArray | None:
+    """The lines of the links of a case, (k, 4); None where it has none.
+
+    Args:
+        case: its links.
+        place: (k, 2) of their points where the container stands on x = 0 [m].
+        width: of the container [m].
+    """
+    if not case.links:
+        return None
+    direction = np.array([direction_of(one) for one in case.links])
+    return make_lines(direction, place, np.array([one.slack for one in case.links]), width)
+
+
+def begin_links(case: Case, body: Any, state: State) -> None:
+    """Measure the points of links from their links, in a state whose points are over the floor.
+
+    Raises:
+        CaseError: a link is overlapped at the start.
+    """
+    line: FloatArray | None = getattr(body, "line", None)
+    if line is None:
+        return
+    place_links(line, state.point)
+    gaps = state.point[-len(line) :, 1]
+    for number, (link, gap) in enumerate(zip(case.links, gaps, strict=True), 1):
+        if gap < -OVERLAP:
+            own = number if isinstance(link, StopTable) else number - len(case.stop)
+            name, key = ("stop", "gap_m") if isinstance(link, StopTable) else ("tie", "slack_m")
+            raise CaseError(
+                f"[{name}] {name} {own}: {key} = {link.slack:g} m is overlapped by {-gap:.3g} m at the start, as the "
+                "container stands in its initial rotation; take a wider one, or another [initial]"
+            )
+
+
+@dataclass(frozen=True, kw_only=True)
+class TiedCapacity:
+    """The largest static moment about a corner that weight and ties resist, while the container turns slowly."""
+
+    side: str  #: toward which it turns
+    moment: float  #: [Nm]
+    rotation: float  #: at which [rad]
+    free: float  #: of the weight alone, at no rotation [Nm]
+    broken: bool  #: whether a tie breaks there
+
+    def to_json(self) -> dict[str, Any]:
+        """Keys with units."""
+        return {
+            "side": self.side,
+            "moment_Nm": self.moment,
+            "rotation_rad": self.rotation,
+            "moment_without_Nm": self.free,
+            "tie_breaks": self.broken,
+        }
+
+
+def tied_capacities(case: Case, mesh: ContainerMesh) -> list[TiedCapacity]:
+    """The capacity toward each side; none where the case has no ties.
+
+    A tie whose point rises by u carries k (u - slack), up to its strength, and then no more.
+    """
+    found = []
+    rotation = np.linspace(0.0, MOST_TURNED, TURNS)
+    for side, sign in (("left", -1.0), ("right", 1.0)) if case.tie else ():
+        corner = 0.5 * case.effective_width * mesh.width
+        arm = corner - sign * mesh.centroid[0]
+        weight = mesh.mass * case.gravity_toward_floor
+        moment = weight * (arm * np.cos(rotation) - mesh.centroid[1] * np.sin(rotation))
+        breaks = np.zeros(TURNS, dtype=bool)
+        for tie in case.tie:
+            beside = corner - sign * side_of(case, tie)  # of its point from the corner, against the turn
+            rise = beside * np.sin(rotation) + tie.height_m * (np.cos(rotation) - 1.0)
+            force = tie.stiffness_N_m * np.maximum(rise - tie.slack_m, 0.0)
+            if tie.strength_N is not None:
+                broken = np.logical_or.accumulate(force >= tie.strength_N)
+                breaks |= np.append(broken[1:] & ~broken[:-1], False)
+                force[broken] = 0.0
+            moment += force * (beside * np.cos(rotation) - tie.height_m * np.sin(rotation))
+        most = int(np.argmax(moment))
+        found.append(
+            TiedCapacity(
+                side=side,
+                moment=float(moment[most]),
+                rotation=float(rotation[most]),
+                free=float(weight * arm),
+                broken=bool(breaks[most]),
+            )
+        )
+    return found

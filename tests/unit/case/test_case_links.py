@@ -1,0 +1,63 @@
+"""[[stop]] and [[tie]] of a case file: reading, refusing, changing and writing them."""
+
+import pytest
+
+from fem.case.case import CaseError, case_hash, load_case, read_case, to_toml
+from fem.case.template import case_template
+
+STOP = {"side": "right", "height_m": 0.1, "gap_m": 0.05, "stiffness_N_m": 1e8}
+TIE = {"from": "left", "height_m": 0.5, "slack_m": 0.01, "stiffness_N_m": 1e6}
+RIGID = load_case("rocking", ["solver.model=rigid"])
+
+
+def held(**keys):
+    """The case with one stop and one tie, with keys changed in both as far as they have them."""
+    rows = [{key: keys.get(key, value) for key, value in row.items()} for row in (STOP, TIE)]
+    rest = {key: value for key, value in keys.items() if key not in STOP | TIE}
+    return RIGID.with_values({"stop": [rows[0] | rest], "tie": [rows[1]]})
+
+
+def test_stops_and_ties_are_read_written_and_are_part_of_the_hash():
+    case = held(mu=0.3)
+    assert [(one.side, one.height_m) for one in case.links] == [("right", 0.1), ("left", 0.5)]
+    for text in (to_toml(case), case_template(case)):
+        again = read_case(text)
+        assert again.links == case.links
+        assert case_hash(again) == case_hash(case)
+    assert case_hash(case) != case_hash(RIGID)
+    assert case_hash(case.with_values({"stop": [], "tie": []})) == case_hash(RIGID)
+
+
+def test_a_key_of_a_stop_is_that_of_all_stops():
+    case = RIGID.with_values({"stop": [STOP, {**STOP, "side": "left"}]}).with_values({"stop.gap_m": 0.2})
+    assert [one.gap_m for one in case.stop] == [0.2, 0.2]
+    with pytest.raises(CaseError, match=r"no \[\[tie\]\] to change"):
+        case.with_values({"tie.slack_m": 0.1})
+
+
+@pytest.mark.parametrize(
+    ("keys", "reason"),
+    [
+        ({"gap_m": -0.01}, r"stop 1: gap_m must be between 0 and .* would overlap at the start"),
+        ({"strength_N": 0.0}, "stop 1: strength_N must be .* holds nothing"),
+        ({"height_m": 4.5}, "stop. height_m must be at most the height of the container, 4 m, got 4.5 m"),
+        ({"from": "top"}, 'tie 1: from must be "left" or "right"'),
+        ({"stiffness_N_m": 0.0}, "tie 1: stiffness_N_m must be"),
+        ({"restitution": 0.5, "damping_ratio": 1.0}, "restitution and damping_ratio say the same"),
+        ({"heigth_m": 1.0}, "unknown key 'heigth_m'; did you mean 'height_m'"),
+    ],
+)
+def test_what_holds_nothing_or_overlaps_is_refused(keys, reason):
+    with pytest.raises(CaseError, match=reason):
+        held(**keys)
+
+
+def test_what_is_no_row_of_tables_is_refused():
+    for wrong in ("right", {"side": "right"}, [1.0]):
+        with pytest.raises(CaseError, match=r"must be 0 to 20 tables \[\[stop\]\]"):
+            RIGID.with_values({"stop": wrong})
+
+
+def test_loose_boxes_have_no_points_for_links():
+    with pytest.raises(CaseError, match="joints must be"):
+        RIGID.with_values({"container.boxes": 2, "container.joints": "loose", "stop": [STOP]})

@@ -1,0 +1,67 @@
+"""A run with a stop and a tie, from the case file to its files and sentences."""
+
+import json
+
+import numpy as np
+import pytest
+
+import fem
+from fem.case.case import CaseError, load_case
+from fem.cli.check import check
+from fem.model.model import build_model
+from fem.run.run import RunOptions, run_case
+
+KEYS = (
+    *("solver.model=rigid", "solver.element_size_m=0.5", "solver.order=1", "solver.duration_s=3"),
+    *("output.fields_s=0", "output.figures=false"),
+    *("contact.mu_static=0.2", "contact.mu_kinetic=0.15", "motion.peak_acceleration_m_s2=6"),
+    "stop=[{side = 'right', height_m = 0.1, gap_m = 0.02, stiffness_N_m = 1e8, mu = 0.3}, "
+    "{side = 'left', height_m = 0.1, gap_m = 2.0, stiffness_N_m = 1e8}]",
+    "tie=[{from = 'left', height_m = 0.5, slack_m = 0.001, stiffness_N_m = 1e6, strength_N = 1e3}]",
+)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    place = tmp_path_factory.mktemp("links") / "run"
+    case = load_case("rocking", KEYS)
+    run_case(case, case_text=case.text, folder=place, options=RunOptions(band=False))
+    return place
+
+
+def test_the_result_holds_forces_hits_and_what_broke(folder):
+    found, history = json.loads((folder / "run.json").read_text()), fem.open_run(folder).history
+    (kerb, far), (tie,) = found["stops"], found["ties"]
+    assert kerb["hits"] > 0
+    assert kerb["largest_closing_velocity_m_s"] > 0.0
+    assert kerb["gap_left_m"] == 0.0
+    assert kerb["broken_at_s"] is None
+    assert 0.0 < history["stop_1_force_N"].max() <= kerb["max_force_N"] * (1.0 + 1e-9)
+    assert (far["hits"], far["max_force_N"]) == (0, 0.0)
+    assert far["gap_left_m"] > 1.0
+    assert tie["max_force_N"] == pytest.approx(1e3)
+    assert tie["gap_left_m"] is None
+    assert not history["tie_1_force_N"][history["time_s"] > tie["broken_at_s"] + 0.01].any()
+    # the forces on the container and its inertia: what stands in the history is in balance where no one strikes
+    assert np.isfinite(history["slip_m"]).all()
+
+
+def test_the_summary_says_what_each_of_them_did(folder):
+    first = json.loads((folder / "run.json").read_text())["verdict"]["first_line"]
+    assert "the stop on the right at 0.1 m was hit" in first
+    assert "the stop on the left at 0.1 m was not touched" in first
+    assert "the tie on the left at 0.5 m carried up to 1 kN, and broke at t = " in first
+
+
+def test_check_prints_the_static_capacity_with_the_tie(capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    check("rocking", overrides=list(KEYS))
+    printed = capsys.readouterr().out
+    assert "with its ties  to the right" in printed
+    assert "where a tie breaks" in printed
+
+
+def test_a_tilt_that_overlaps_a_stop_is_refused():
+    case = load_case("rocking", [*KEYS, "initial.rotation_rad=0.1", "stop.height_m=1.0"])
+    with pytest.raises(CaseError, match=r"stop 1: gap_m = 0\.02 m is overlapped by 0\.0"):
+        build_model(case)

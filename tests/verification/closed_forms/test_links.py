@@ -1,0 +1,232 @@
+"""Stops and ties: restitution, impulse and energy of hits, work balance of straps, and what must not change anything.
+
+The references are closed forms and a quadrature; none of them steps.
+"""
+
+import math
+
+import numpy as np
+import pytest
+
+from contact.interface.penalty import damping_ratio_of, restitution_of
+from contact.stepping.ledger import BASE_WORK, CONTACT_DAMPING, FRICTION, IMBALANCE
+from fem.case.case import Case
+from fem.evidence.verification.runs import SOLID, STACK, Finished, harmonic, pulse, run
+from fem.model.geometry import build_container
+from fem.model.links import tied_capacities
+
+MASS, WIDTH, MIDDLE = 1e4, 1.1, 2.0
+GRAVITY, SPEED = 9.81, 0.5
+#: a container that slides without friction toward +x
+SLIDER = STACK.with_values(
+    {"contact.mu_static": 0.0, "initial.velocity_m_s": SPEED, "solver.duration_s": 0.6}
+)
+#: what touches it at the height of its mass centre does not turn it
+STOP = {"side": "right", "height_m": MIDDLE, "gap_m": 0.1, "stiffness_N_m": 1e8}
+#: held by friction, so that it rocks
+HELD = STACK.with_values({"contact.mu_static": 3.0})
+STRAP = {"from": "left", "height_m": 0.0, "slack_m": 0.0, "stiffness_N_m": 1e6}
+
+
+def with_links(case: Case, *, stop: tuple[dict, ...] = (), tie: tuple[dict, ...] = ()) -> Case:
+    return case.with_values({"stop": list(stop), "tie": list(tie)})
+
+
+def velocity_at_end(found: Finished) -> float:
+    return float(found.model.run.old.pose[4])
+
+
+@pytest.mark.parametrize("restitution", [1.0, 0.5, 0.1])
+def test_a_slider_leaves_a_stop_with_its_restitution(restitution):
+    found = run(with_links(SLIDER, stop=({**STOP, "restitution": restitution},)), {"output.history_s": 2e-5})
+    record, ledger = found.model.run.links[0], found.model.run.ledger
+    assert velocity_at_end(found) == pytest.approx(-restitution * SPEED, abs=1e-3 * SPEED)
+    assert record.hits == 1
+    assert record.largest_closing_velocity == pytest.approx(SPEED, rel=1e-6)
+    assert ledger[CONTACT_DAMPING] == pytest.approx(
+        0.5 * MASS * SPEED**2 * (1.0 - restitution**2), abs=1e-3 * 0.5 * MASS * SPEED**2
+    )
+    impulse = float(np.trapezoid(found.history["stop_1_force_N"], found.history["time_s"]))
+    assert impulse == pytest.approx(MASS * SPEED * (1.0 + restitution), rel=5e-3)
+    if restitution == 1.0:
+        assert record.max_force == pytest.approx(SPEED * math.sqrt(MASS * STOP["stiffness_N_m"]), rel=1e-3)
+
+
+def test_restitution_and_damping_ratio_belong_to_each_other():
+    for ratio in (0.01, 0.3, 0.999, 1.0, 1.001, 3.0, 10.0):
+        assert damping_ratio_of(restitution_of(ratio)) == pytest.approx(ratio, rel=1e-6)
+    step, position, velocity = 1e-5, 0.0, 1.0  # of a mass of 1 on a spring of 1
+    while 2.0 * 0.4 * velocity + position >= 0.0:
+        velocity -= step * (2.0 * 0.4 * velocity + position)
+        position += step * velocity
+    assert restitution_of(0.4) == pytest.approx(-velocity, rel=1e-3)
+
+
+def test_a_plastic_wall_stops_one_sided_rocking_in_its_first_landing():
+    tilt = 0.1
+    wall = {"side": "left", "height_m": 4.0, "gap_m": 0.0, "stiffness_N_m": 1e8, "damping_ratio": 10.0}
+    start = {"initial.rotation_rad": tilt, "solver.duration_s": 3.0}
+    found = run(with_links(HELD.with_values(start), stop=(wall,)))
+    block = found.block
+    angle, p = block.slenderness_angle, block.frequency_parameter
+    # half of theta'^2 is p^2 (cos(angle - tilt) - cos(angle - theta)); theta = tilt - u^2 takes the root away
+    u = (np.arange(200_000) + 0.5) * math.sqrt(tilt) / 200_000
+    fall = np.cos(angle - tilt) - np.cos(angle - tilt + u**2)
+    quarter = float(np.mean(2.0 * u / np.sqrt(2.0 * p**2 * fall))) * math.sqrt(tilt)
+    assert found.track.first_impact == pytest.approx(quarter, rel=1e-3)
+    assert found.model.run.links[0].hits == 1
+    landed = found.history["time_s"] > quarter + 0.05
+    assert np.abs(found.history["rotation_rad"][landed]).max() < 1e-3 * angle
+    free = run(HELD, start)
+    assert np.abs(free.history["rotation_rad"][landed]).max() > 0.3 * tilt
+
+
+@pytest.mark.parametrize(("stiffness", "slack"), [(1e5, 0.0), (1e6, 0.0), (1e6, 0.02), (3e6, 0.01)])
+def test_a_strap_takes_the_work_of_the_rotation_that_it_stops(stiffness, slack):
+    rate = 0.3
+    strap = {**STRAP, "stiffness_N_m": stiffness, "slack_m": slack}
+    moving = HELD.with_values({"initial.angular_velocity_rad_s": rate, "solver.duration_s": 0.5})
+    found = run(with_links(moving, tie=(strap,)))
+    block = found.block
+    rotation = np.linspace(0.0, 0.1, 1_000_001)
+    lifted = np.cos(block.slenderness_angle - rotation) - math.cos(block.slenderness_angle)
+    stretch = np.maximum(WIDTH * np.sin(rotation) - slack, 0.0)
+    stored = MASS * GRAVITY * block.radius * lifted + 0.5 * stiffness * stretch**2
+    kinetic = 0.5 * MASS * GRAVITY * block.radius / block.frequency_parameter**2 * rate**2
+    reached = float(rotation[np.searchsorted(stored, kinetic)])
+    assert found.track.max_rotation == pytest.approx(reached, rel=1e-3)
+    assert found.model.run.links[0].max_force == pytest.approx(
+        stiffness * (WIDTH * math.sin(reached) - slack), rel=5e-3
+    )
+
+
+def test_a_strap_without_stiffness_or_strength_is_none():
+    moving = HELD.with_values({"initial.angular_velocity_rad_s": 0.3, "solver.duration_s": 0.5})
+    free = run(moving).track.max_rotation
+    for strap in ({"stiffness_N_m": 1.0}, {"strength_N": 1.0}):
+        tied = run(with_links(moving, tie=({**STRAP, **strap},)))
+        assert tied.track.max_rotation == pytest.approx(free, rel=2e-4)
+
+
+def test_a_strap_that_breaks_takes_the_energy_of_its_strength_and_stays_broken():
+    strap = {**STRAP, "slack_m": 0.02, "strength_N": 1e4, "stiffness_N_m": 1e6}
+    moving = HELD.with_values({"initial.angular_velocity_rad_s": 0.3, "solver.duration_s": 4.0})
+    found = run(with_links(moving, tie=(strap,)), {"output.history_s": 1e-3})
+    record, history = found.model.run.links[0], found.history
+    assert 0.0 < record.broken_at < 0.5
+    assert record.max_force == pytest.approx(1e4, rel=1e-9)
+    # until the turning point the only other losses are those of the corner's dashpot
+    turned = int(np.argmax(history["rotation_rad"]))
+    taken = (
+        history["contact_damping_J"][turned]
+        - history["contact_damping_J"][np.searchsorted(history["time_s"], record.broken_at) - 1]
+    )
+    assert taken == pytest.approx(0.5 * 1e4**2 / 1e6, rel=0.01)
+    broken = history["time_s"] > record.broken_at + 2e-3
+    assert not history["tie_1_force_N"][broken].any()
+    assert record.hits == 1
+
+
+def test_the_static_capacity_with_a_strap_is_that_of_weight_and_spring():
+    case = with_links(STACK, tie=({**STRAP, "stiffness_N_m": 1e6, "slack_m": 0.02, "strength_N": 2e4},))
+    left, right = tied_capacities(case, build_container(case))
+    rotation = math.asin((2e4 / 1e6 + 0.02) / WIDTH)
+    radius, angle = math.hypot(0.55, MIDDLE), math.atan2(0.55, MIDDLE)
+    weight = MASS * GRAVITY * radius * math.sin(angle - rotation)
+    assert right.moment == pytest.approx(weight + 2e4 * WIDTH * math.cos(rotation), rel=1e-3)
+    assert right.rotation == pytest.approx(rotation, rel=1e-3)
+    assert right.broken
+    assert left.moment == left.free == right.free == pytest.approx(MASS * GRAVITY * 0.55, rel=1e-9)
+
+
+SHAKEN = STACK.with_values(
+    {**harmonic(0.08, 8.0), "contact.mu_static": 0.2, "contact.mu_kinetic": 0.15, "solver.duration_s": 5.0}
+)
+KERBS = tuple(
+    {"side": side, "height_m": 0.1, "gap_m": gap, "stiffness_N_m": 1e8, "mu": 0.3, "restitution": 0.4}
+    for side, gap in (("right", 0.02), ("left", 0.04))
+)
+TIE = {"from": "left", "height_m": 1.0, "slack_m": 0.01, "stiffness_N_m": 1e6}
+OTHER = {"left": "right", "right": "left"}
+
+
+def test_the_mirrored_motion_hits_the_mirrored_links_alike():
+    right = run(with_links(SHAKEN, stop=KERBS, tie=(TIE,)))
+    mirrored = tuple({**one, "side": OTHER[one["side"]]} for one in KERBS)
+    left = run(
+        with_links(SHAKEN, stop=mirrored, tie=({**TIE, "from": "right"},)), {"motion.phase_rad": math.pi}
+    )
+    assert right.model.run.links.hits.min() > 0
+    early = right.history["time_s"] < 1.0
+    assert left.history["rotation_rad"][early] == pytest.approx(
+        -right.history["rotation_rad"][early], abs=1e-9
+    )
+    assert left.model.run.links.max_force == pytest.approx(right.model.run.links.max_force, rel=1e-3)
+
+
+def test_the_order_of_links_does_not_matter():
+    one, other = (run(with_links(SHAKEN, stop=stop, tie=(TIE,))) for stop in (KERBS, KERBS[::-1]))
+    early = one.history["time_s"] < 1.0
+    assert other.history["slip_m"][early] == pytest.approx(one.history["slip_m"][early], abs=1e-9)
+    assert other.model.run.links[1].hits == one.model.run.links[0].hits > 0
+
+
+def test_links_that_are_not_reached_change_no_bit_wherever_they_are():
+    far = tuple({**one, "gap_m": 3.0} for one in KERBS)
+    farther = tuple({**one, "gap_m": 7.0, "stiffness_N_m": 1e5, "mu": 0.0} for one in KERBS)
+    one, other = (run(with_links(SHAKEN, stop=stop)) for stop in (far, farther))
+    assert np.abs(one.history["slip_m"]).max() > 0.01
+    assert one.history["rotation_rad"].tobytes() == other.history["rotation_rad"].tobytes()
+    assert one.history["slip_m"].tobytes() == other.history["slip_m"].tobytes()
+    free = run(SHAKEN)
+    early = free.history["time_s"] < 1.0
+    assert one.history["slip_m"][early] == pytest.approx(free.history["slip_m"][early], abs=1e-5)
+
+
+def test_wedges_on_both_sides_carry_a_container_along_and_their_work_is_that_of_the_floor():
+    wedges = tuple(
+        {"side": side, "height_m": MIDDLE, "gap_m": 0.0, "stiffness_N_m": 1e8} for side in ("left", "right")
+    )
+    still = SLIDER.with_values({"initial.velocity_m_s": 0.0, "solver.duration_s": 4.0, **harmonic(0.1, 6.0)})
+    found = run(
+        with_links(still.with_values({"motion.start": "rest", "motion.ramp_cycles": 1.0}), stop=wedges)
+    )
+    reference = found.model.run.problem.control.reference_energy
+    assert np.abs(found.history["centre_x_m"]).max() < 3.0 * 0.1 * 36.0 * MASS / 1e8
+    assert found.model.run.ledger[FRICTION] == pytest.approx(0.0, abs=1e-9)
+    assert abs(found.model.run.ledger[IMBALANCE]) < 1e-3 * reference
+    history = found.history
+    gained = history["kinetic_J"] + history["contact_damping_J"] - history["base_work_J"]
+    assert np.abs(gained).max() < 0.01 * history["kinetic_J"].max()
+    assert found.model.run.ledger[BASE_WORK] != 0.0
+
+
+def test_friction_on_a_face_slows_what_falls_along_it():
+    # The floor falls away faster than gravity and pushes with a wall: in its frame the container rises.
+    press, drop, mu, time = 5.0, 15.0, 0.4, 0.15
+    wall = {"side": "left", "height_m": MIDDLE, "gap_m": 0.0, "stiffness_N_m": 1e8, "mu": mu}
+    falling = {
+        **pulse(press, 1.0),
+        "vertical.kind": "pulse",
+        "vertical.shape": "rectangular",
+        "vertical.peak_acceleration_m_s2": -drop,
+        "vertical.pulse_s": 1.0,
+        "vertical.delay_s": 0.05,
+        "initial.velocity_m_s": 0.0,
+        "solver.duration_s": 0.05 + time,
+    }
+    heights = []
+    for one in (mu, 0.0):
+        found = run(with_links(SLIDER, stop=({**wall, "mu": one},)), falling)
+        heights.append(found.history["centre_z_m"][-1] - MIDDLE)
+    assert heights[1] == pytest.approx(0.5 * (drop - GRAVITY) * time**2, rel=0.01)
+    assert heights[0] == pytest.approx(0.5 * (drop - GRAVITY - mu * press) * time**2, rel=0.02)
+
+
+@pytest.mark.parametrize("model", ["reduced", pytest.param("full", marks=pytest.mark.slow)])
+def test_elastic_containers_leave_a_soft_stop_as_the_rigid_one_does(model):
+    stop = {**STOP, "stiffness_N_m": 1e6, "restitution": 0.5, "gap_m": 0.02}
+    keys = SOLID | {"solver.model": model, "solver.element_size_m": 0.5, "solver.order": 1}
+    found = run(with_links(SLIDER.with_values(keys), stop=(stop,)), {"solver.duration_s": 0.4})
+    assert velocity_at_end(found) == pytest.approx(-0.5 * SPEED, rel=0.02)
+    assert found.model.run.links[0].hits == 1
