@@ -18,6 +18,7 @@ from typing import Any, Generic
 import numpy as np
 
 from fem.batch.runner import ChunkWork, ItemT, Row, Runner
+from fem.batch.shard import number_of
 from fem.case.case import Case
 
 
@@ -114,6 +115,7 @@ class LoggedRuns(Generic[ItemT]):
     values: Callable[[ItemT, Row], Iterable[Any]]  #: of the columns, from an item and its row
     note: Callable[[str], None]  #: called with every line of the log, old and new
     work: ChunkWork | None = None  #: what is done with some items in place of their runs
+    number: Callable[[ItemT], int] = number_of  #: of an item, by which it has its shard
 
     def run(self, runner: Runner, batches: Iterable[Sequence[ItemT]]) -> None:
         """Note the rows of earlier attempts, then run the items that are missing.
@@ -128,11 +130,14 @@ class LoggedRuns(Generic[ItemT]):
             for items in batches:
                 if runner.stop():
                     break
-                for chunk, rows in runner.rows(self.what, items, self.make, self.model_of, self.work):
+                mine = runner.share.of(items, map(self.number, items)) if runner.share else items
+                for chunk, rows in runner.rows(self.what, mine, self.make, self.model_of, self.work):
                     lines = [line_of(self.values(*pair)) for pair in zip(chunk, rows, strict=True)]
                     log.append(lines)
                     for line in lines:
                         self.note(line)
+                if runner.share and len(mine) < len(items) and not runner.stop():
+                    runner.share.waits = True
             log.sync()
 
 

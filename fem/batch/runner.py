@@ -15,6 +15,7 @@ from typing import Any
 from fem.assessment.motion_words import covered_in_words, is_cut, missing_peak
 from fem.assessment.verdict import verdict_of
 from fem.batch.container_cache import ContainerCache, container_key
+from fem.batch.shard import Share
 from fem.batch.workers import FoundT, ItemT, LocalWorkers, Pool, WorkersOf, hand_out, never
 from fem.case.case import Case, CaseError
 from fem.model.equilibrium import same_equilibrium
@@ -57,6 +58,7 @@ class Runner:
     reporter: Reporter = field(default_factory=SilentReporter)
     stop: Callable[[], bool] = never  #: asked repeatedly; true ends the work
     jobs: int = 1  #: cores of this machine that it may use
+    share: Share | None = None  #: of the items of a study that is shared with other machines; None: all
 
     def rows(
         self,

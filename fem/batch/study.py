@@ -7,15 +7,16 @@ result. What is logged on the way survives an interruption; the result then says
 
 import hashlib
 import json
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Generic, TypedDict, TypeVar, Unpack
 
 from fem.batch.runner import Runner
+from fem.batch.shard import Shard, Share, join_logs, read_shards
 from fem.batch.workers import LocalWorkers, WorkersOf
-from fem.results.errors import FolderError
+from fem.results.errors import OTHER_FOLDER, FolderError
 from fem.results.folder import ResultFolder, open_result_folder, program_of_results
 from fem.results.json_block import JsonBlock
 from fem.results.kinds import ResultKind, read_result, typed_result
@@ -34,16 +35,19 @@ class StudyOptions(TypedDict, total=False):
     resume: bool  #: continue with what is there
     force: bool  #: overwrite earlier results
     reporter: Reporter | None
+    shard: Shard | None  #: compute this part alone
+    merge: Sequence[Path]  #: folders of all shards, whose rows are taken
 
 
 @dataclass(frozen=True, kw_only=True)
 class StudyResult(JsonBlock):
     """What the marking file of every study holds."""
 
-    written_where_given = frozenset({"missing"})
+    written_where_given = frozenset({"missing", "shard"})
     status: str = "running"  #: running | interrupted | failed | completed
     answer: str | None = None  #: in one sentence; None until the study is finished, or where it has none
     missing: str | None = None  #: what an interrupted study has not come to, in words
+    shard: Shard | None = None  #: the part that it is
     program: str = field(default_factory=lambda: str(program_of_results()["program"]))
     versions: dict[str, str] = field(default_factory=lambda: dict(program_of_results()["versions"]))
 
@@ -57,6 +61,8 @@ class StudyResult(JsonBlock):
         """What stands in place of the answer of an unfinished study; None of a finished one."""
         if self.state == "finished":
             return None
+        if self.shard is not None and self.shard.done:
+            return f"shard {self.shard} is done: {self.missing}; --merge with the folders of all shards continues"
         return f"no answer yet: {self.missing or 'the study was interrupted'}; --resume continues"
 
     def to_json(self) -> dict[str, Any]:
@@ -106,6 +112,13 @@ def run_study(study: Study[ResultT], folder: Path, **options: Unpack[StudyOption
         open_result_folder(folder, kind, study.request, force=force, resume=resume) as place,
         interruptible(runner.reporter) as stop,
     ):
+        shard, merge = options.get("shard"), options.get("merge") or ()
+        before = Shard.from_json(place.found["shard"]) if place.found and place.found.get("shard") else None
+        if before and shard and (before.number, before.count) != (shard.number, shard.count):
+            raise FolderError(f"{folder} holds shard {before} of this {kind.name}; {OTHER_FOLDER}")
+        if before and before.done and shard and not merge:
+            runner.reporter.message(f"{folder} holds shard {shard} of this {kind.name} already")
+            return typed_result(study.result, place.found or {}, folder / kind.mark)
         if place.finished and place.found:
             known = study.again(place, typed_result(study.result, place.found, folder / kind.mark))
             if known is not None:
@@ -116,11 +129,20 @@ def run_study(study: Study[ResultT], folder: Path, **options: Unpack[StudyOption
         place.require_same_program()
         place.require_room(study.size, study.subject, study.way_out)
         mark = {kind.request: study.request}
+        parts = read_shards(place, study.request, merge) if merge else []
+        share = Share(shard) if shard else None
+        place = replace(place, beside={"shard": shard.to_json()} if shard else {})
         place.begin(study.begun.to_json() | mark, study.texts, keep=place.found is not None)
-        result = study.compute(place, replace(runner, stop=stop))
+        if parts:
+            join_logs(folder, kind, merge)
+            place = replace(place, found=place.found or dict(parts[0]))
+        halted = (lambda: stop() or share.waits) if share else stop
+        result = study.compute(place, replace(runner, stop=halted, share=share))
+        if shard and share:
+            result = replace(result, shard=replace(shard, done=share.waits or result.status in kind.finished))
         place.check()
-        place.write_result(result.to_json() | mark)
-        if result.status in kind.finished:
+        replace(place, beside={}).write_result(result.to_json() | mark)
+        if result.status in kind.finished and not shard:
             place.remove(*kind.temporary)
     return result
 

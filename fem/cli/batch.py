@@ -9,7 +9,7 @@ from cyclopts import Parameter
 
 from fem.batch.answers import table_lines
 from fem.case.case import load_case
-from fem.cli.console import STUDY, AllowOutside, StudyFlags, flag, print_result
+from fem.cli.console import SHARED, AllowOutside, SharedFlags, flag, print_result
 from fem.results.kinds import HALL
 
 if TYPE_CHECKING:
@@ -40,7 +40,7 @@ def batch(
     strict: Annotated[bool, flag("Refuse the list if one of its rows is bad.")] = False,
     allow_outside: AllowOutside = False,
     pdf: Annotated[bool, flag("Print the page to report.pdf, by Chromium or Chrome.")] = False,
-    flags: StudyFlags = STUDY,
+    flags: SharedFlags = SHARED,
 ) -> int:
     """Compute a list of containers: which rest, slide, rock or overturn, and which is the weakest?
 

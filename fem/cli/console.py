@@ -135,7 +135,39 @@ class StudyFlags:
             }
 
 
+@Parameter(name="*")
+@dataclass(frozen=True, kw_only=True)
+class SharedFlags(StudyFlags):
+    """Options of a study that machines can share."""
+
+    shard: Annotated[
+        str | None, Parameter(show_default=False, help="Compute one part alone, such as 3/64.")
+    ] = None
+    merge: Annotated[
+        tuple[Path, ...],
+        Parameter(
+            consume_multiple=True,
+            negative=(),
+            show_default=False,
+            help="Folders of all shards, to make the whole of; with --shard, to share its next stage.",
+        ),
+    ] = ()
+
+    def folder(self, name: str) -> Path:
+        """That of a shard has its own."""
+        return super().folder(f"{name}-shard-{self.shard.replace('/', '-of-')}" if self.shard else name)
+
+    @contextmanager
+    def options(self) -> "Iterator[StudyOptions]":
+        """For `run_study`."""
+        shards = importlib.import_module("fem.batch.shard")
+        shard = shards.Shard.parse(self.shard) if self.shard else None
+        with super().options() as options:
+            yield {**options, "shard": shard, "merge": self.merge}
+
+
 STUDY = StudyFlags()
+SHARED = SharedFlags()
 
 
 def print_result(
@@ -150,4 +182,4 @@ def print_result(
         print((folder / kind.mark).read_text(encoding="utf-8"), end="")
     else:
         print("\n".join([*page, *filter(None, [result.no_answer_yet or result.answer])]))
-    return EXIT_CODES[result.status]
+    return 0 if result.shard is not None and result.shard.done else EXIT_CODES[result.status]

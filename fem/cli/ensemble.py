@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from fem.batch.answers import falling_in_words, table_lines
 from fem.batch.axes import MOTION_FILE
-from fem.cli.console import STUDY, StudyFlags, print_result
+from fem.cli.console import SHARED, SharedFlags, print_result
 from fem.results.kinds import ENSEMBLE
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ def ensemble(
     ensemble: str,
     /,
     *,
-    flags: StudyFlags = STUDY,
+    flags: SharedFlags = SHARED,
 ) -> int:
     """Sample the uncertain parameters and count how often the container overturns, with confidence intervals.
 

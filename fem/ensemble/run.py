@@ -152,6 +152,7 @@ def _compute(
         model_of=lambda draw: ensemble.base.solver.model,
         values=draws.values,
         note=draws.note,
+        number=lambda draw: draw.cell * ensemble.draws + draw.number,
     ).run(runner, iter(draws.missing, []))
     complete = (draws.codes != Ending.UNKNOWN).all(axis=1)
     points = [count_point(ensemble, int(k), draws.codes[k], draws.slips[k]) for k in np.flatnonzero(complete)]

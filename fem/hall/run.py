@@ -134,6 +134,7 @@ def _compute(hall: Hall, begun: HallResult, place: ResultFolder, runner: Runner)
         model_of=hall.model_of,
         values=runs.values,
         note=runs.note,
+        number=lambda item: item.container * len(hall.cases.motions) + item.motion,
     ).run(runner, iter(runs.missing, []))
     if missing := len(runs.missing()):
         total = len(hall.items())

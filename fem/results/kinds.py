@@ -30,6 +30,8 @@ class ResultKind:
     own: tuple[str, ...]
     #: those of them that serve to continue, and go when it is finished
     temporary: tuple[str, ...] = ()
+    logs: tuple[str, ...] = ()  #: those of them that shards of the study are merged from
+    later: str = ""  #: key of a hash of what its later stages depend on, besides the request
     #: statuses after which there is nothing left to compute
     finished: frozenset[str] = frozenset({"completed"})
 
@@ -79,6 +81,8 @@ SWEEP = ResultKind(
         *("motions.csv", "motion_set.csv", "spectra.csv", "figures/*.svg"),
     ),
     temporary=("rows.csv",),
+    logs=("rows.csv", "members.csv", "tried.csv"),
+    later="band_hash",
 )
 ENSEMBLE = ResultKind(
     name="ensemble",
@@ -97,6 +101,7 @@ ENSEMBLE = ResultKind(
         "state.npz",
         "figures/*.svg",
     ),
+    logs=("draws.csv",),
 )
 RESPONSE = ResultKind(
     name="response curve",
@@ -147,6 +152,7 @@ HALL = ResultKind(
         "report.html",
         "report.pdf",
     ),
+    logs=("runs.csv", "checks.csv"),
 )
 PAPER = ResultKind(
     name="study",
