@@ -10,6 +10,7 @@ from markupsafe import Markup
 
 from fem.batch.study import read_study
 from fem.case.case import load_case
+from fem.hall.places import PICTURE
 from fem.hall.result import REFUSED, HallResult, TagCount
 from fem.html import sections as html
 from fem.html.page import Signature
@@ -57,6 +58,7 @@ def hall_report(folder: Path, *, signature: Signature | None = None, result: Hal
         hash=info.asked,
         sections=[
             found_section(info),
+            html.section("In plan", "plan", *studies.drawings(folder, [PICTURE], "batch")),
             html.section("By tag", "tags", *([tags_table(info)] if info.tags else [])),
             html.section("The weakest first", "weakest", weakest_table(info, ranked), html.Note(MARGIN)),
             html.section("Refused rows", "refused", *([refused_table(refused)] if refused else [])),

@@ -29,6 +29,7 @@ from fem.case.toml import toml_document
 from fem.hall.file import HallFile
 from fem.hall.found import CHECK_COLUMNS, RUN_COLUMNS, HallRuns, check_chunk, static_use, weakest_first
 from fem.hall.page import hall_report
+from fem.hall.places import PICTURE, draw_places, geojson
 from fem.hall.plan import Hall, plan_hall
 from fem.hall.result import (
     CHECKED,
@@ -47,6 +48,7 @@ from fem.results.outcome import COUNTED, Ending
 from fem.results.run_files import copy_data_files
 
 RUNS, CHECKS, TABLE, PAGE = "runs.csv", "checks.csv", "hall.csv", "report.html"
+GEOJSON = "hall.geojson"
 Checks = Literal["weakest", "all", "none"]
 WORDS = {ending: word for word, ending in COUNTED.items()}
 NUMBERS = frozenset({"impacts", "fell_box"})
@@ -164,6 +166,11 @@ def _compute(hall: Hall, begun: HallResult, place: ResultFolder, runner: Runner)
     checked = sorted(runs.checked.items())
     place.write_text(CHECKS, table_text(CHECK_COLUMNS, ([k, *one.values()] for k, one in checked)))
     place.write_text(TABLE, table_text((*hall.file.columns, *RESULT_COLUMNS), found.rows()))
+    for name, text in ((PICTURE, draw_places(result)), (GEOJSON, geojson(result))):
+        if text:
+            place.write_text(name, text)
+        else:
+            place.remove(name)
     place.write_text(PAGE, hall_report(place.path, result=result))
     return result
 

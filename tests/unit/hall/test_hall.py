@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+import re
 import shlex
 
 import pytest
@@ -11,6 +12,7 @@ from fem.__main__ import main
 from fem.case.case import load_case
 from fem.case.validation import CaseError
 from fem.hall.file import read_hall
+from fem.hall.places import UNKNOWN, class_of, plan_of
 from fem.hall.run import run_hall
 from fem.results.figures import SCALARS
 from fem.run.compute import compute
@@ -219,3 +221,25 @@ def test_a_result_may_be_the_list_of_the_next_hall(tmp_path, base):
     run_hall(again, case, tmp_path / "next", checks="none")
     first, second = ((tmp_path / name / "hall.csv").read_bytes() for name in ("out", "next"))
     assert first == second
+
+
+def test_places_are_drawn_in_plan_and_written_as_geojson(tmp_path, base):
+    """The picture has one mark a container, its class by outcome; formulas and mathematics in names stay text."""
+    text = "name,width_m,lon,lat,note\n=A$x_,0.3,8.40,49.0,<b>\nB,3,8.41,49.0,\nbad,-1,8.42,49.0,\nnowhere,3,,,\n"
+    out = tmp_path / "out"
+    result = run_hall(read_hall(listed(tmp_path, text)), load_case(base), out, checks="none")
+    found = json.loads((out / "hall.geojson").read_text(encoding="utf-8"))
+    assert found["type"] == "FeatureCollection" and len(found["features"]) == 3
+    first, _, bad = found["features"]
+    assert first["geometry"] == {"type": "Point", "coordinates": [8.4, 49.0]}
+    assert first["properties"]["name"] == "=A$x_" and first["properties"]["note"] == "<b>"
+    assert (first["properties"]["outcome"], bad["properties"]["status"]) == ("overturned", "refused")
+    east = [x for x, _, _ in plan_of(result)]
+    assert east[1] - east[0] == pytest.approx(0.01 * 111.19e3 * 0.6561, rel=1e-3)  # cos 49 degrees
+    assert [class_of(row) for row in result.table] == ["overturned", UNKNOWN, "no outcome", UNKNOWN]
+    drawn = (out / "figures" / "hall.svg").read_text(encoding="utf-8")
+    assert "=A$x_" in drawn and "east of the middle" in drawn
+    assert 'id="plan"' in (out / "report.html").read_text(encoding="utf-8")
+    without = re.sub(r"8\.4\d,49\.0", ",", text)
+    run_hall(read_hall(listed(tmp_path, without)), load_case(base), out, checks="none")
+    assert not (out / "hall.geojson").exists() and not (out / "figures").exists()
