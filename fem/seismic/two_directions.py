@@ -56,7 +56,7 @@ class SlipInTwoDirections:
     mu_static: float  #: friction with the largest slip
     mu_kinetic: float
     motion: int  #: with the largest slip, from 1
-    mean_in_plane: float  #: the largest mean without the second component [m]
+    mean_in_plane: float  #: as `mean`, for the same friction without the second component [m]
 
 
 def slip_in_two_directions(
@@ -80,17 +80,15 @@ def slip_in_two_directions(
         pair: np.array([_largest(motion, pair, gravity, both=True) for motion in motions])
         for pair in frictions
     }
-    plain = {
-        pair: np.mean([_largest(motion, pair, gravity, both=False) for motion in motions]) for pair in slips
-    }
+    longest = max(slips, key=lambda pair: float(slips[pair].mean()))
     worst = max(slips, key=lambda pair: float(slips[pair].max()))
     return SlipInTwoDirections(
-        mean=max(float(one.mean()) for one in slips.values()),
+        mean=float(slips[longest].mean()),
         largest=float(slips[worst].max()),
         mu_static=worst[0],
         mu_kinetic=worst[1],
         motion=1 + int(np.argmax(slips[worst])),
-        mean_in_plane=float(max(plain.values())),
+        mean_in_plane=float(np.mean([_largest(one, longest, gravity, both=False) for one in motions])),
     )
 
 

@@ -1,6 +1,6 @@
 """The answer to a verification, from its runs: what counts by the rule, what speaks against it, and the margin."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from fem.results.outcome import Outcome
@@ -24,6 +24,7 @@ class Beside:
 
     confirmed: Sequence[result.ConfirmedRun] = ()  #: the deciding runs, repeated
     wind: float | None = None  #: utilisation under wind; None: it was not asked for
+    two_directions: result.TwoDirections | None = None  #: None: the motions have no second component
     still: int = 0  #: runs that the rigid bound made superfluous
     moves_at: float | None = None  #: factor on the motions at which a rigid body first uplifts or slips
     left_out: str = ""  #: stages that were not asked for, in words
@@ -61,6 +62,9 @@ def answer_of(
         confirmed=beside.confirmed,
     )
     against = list(evidence.reasons())
+    slip = beside.two_directions
+    if slip is not None:
+        against += two_directions_reasons(slip, limits.slip_m)
     if not request.motions.further and not beside.left_out:
         against.append(Reason(NOT_SURE, NO_FURTHER))
     if beside.left_out:
@@ -70,7 +74,7 @@ def answer_of(
         result.ActionAnswer(
             name=EARTHQUAKE,
             answer=None if unknown else gravest(against),
-            utilisation=found.utilisation(limits),
+            utilisation=_with_slip(found.utilisation(limits), slip, limits.slip_m),
         )
     ]
     if beside.wind is not None:
@@ -85,7 +89,7 @@ def answer_of(
         fulfilled={FULFILLED: True, NOT_FULFILLED: False}.get(answer or ""),
         reasons=tuple(reason.sentence for reason in against),
         rule=rule,
-        sentence=_sentence(request, answer, found, against, runs=len(own)),
+        sentence=_sentence(request, answer, found, against, slip, runs=len(own)),
         overturned=found.overturned,
         runs=len(own),
         still=beside.still,
@@ -93,14 +97,36 @@ def answer_of(
         exceeded=tuple(found.exceeded(limits)),
         governing=governing_run(request, own),
         actions=tuple(actions),
-        margin_factor=margin_factor(request, runs),
+        margin_factor=_least(margin_factor(request, runs), slip.margin_factor if slip else None),
         factor_at_first_overturning=_first_overturning(runs),
         factor_at_first_movement=beside.moves_at,
+        two_directions=slip,
         rule_range=span,
         scan=_scan(runs),
         further=tuple(evidence.further),
         confirmed=tuple(beside.confirmed),
     )
+
+
+def two_directions_reasons(slip: result.TwoDirections, limit: float) -> Iterator[Reason]:
+    """Whether a body that slides in both directions keeps within the clearance."""
+    if slip.slip_largest_m > limit:
+        period = "" if slip.building_period_s is None else f", building {slip.building_period_s:g} s"
+        yield Reason(
+            NOT_FULFILLED,
+            f"Under both horizontal components at once the largest slip is {_slip_in_words(slip.slip_largest_m)}, "
+            f"beyond the clearance of {SHORT_MILLIMETRES.text(limit)} (motion {slip.motion}{period}, friction "
+            f"{slip.mu_static:.3g}/{slip.mu_kinetic:.3g}; a body that does not rock).",
+        )
+
+
+def _least(*factors: float | None) -> float | None:
+    return min((factor for factor in factors if factor is not None), default=None)
+
+
+def _with_slip(used: float | None, slip: result.TwoDirections | None, limit: float) -> float | None:
+    """The utilisation of the limits with the slip in two directions; None stays: a run overturned."""
+    return used if used is None or slip is None else max(used, slip.slip_largest_m / limit)
 
 
 def gravest(reasons: Iterable[Reason]) -> str:
@@ -258,7 +284,13 @@ def _scan(runs: Mapping[RunKey, result.SiteRun]) -> tuple[result.ScanPoint, ...]
 
 
 def _sentence(
-    request: SiteRequest, answer: str | None, found: RuleFound, against: Sequence[Reason], *, runs: int
+    request: SiteRequest,
+    answer: str | None,
+    found: RuleFound,
+    against: Sequence[Reason],
+    slip: result.TwoDirections | None,
+    *,
+    runs: int,
 ) -> str:
     """The answer in words: what it rests on, or what speaks against it."""
     if answer is None:
@@ -267,10 +299,11 @@ def _sentence(
         gravest_ones = [reason.sentence for reason in against if reason.answer == answer]
         return f"{answer.capitalize()}. {' '.join(gravest_ones)}"
     limits, figures = request.limits, found.by_rule
+    furthest = max(figures.slip_m or 0.0, slip.slip_largest_m if slip else 0.0)
     return (
         f"Fulfilled under the rule below: none of {runs} runs overturned; rotation "
         f"{RATIO.text(figures.rotation_ratio)} of the slenderness angle (limit {limits.rotation_ratio:g}), "
-        f"largest slip {_slip_in_words(figures.slip_m or 0.0)} (limit {1e3 * limits.slip_m:g} mm)."
+        f"largest slip {_slip_in_words(furthest)} (limit {1e3 * limits.slip_m:g} mm)."
     )
 
 

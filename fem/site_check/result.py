@@ -217,6 +217,25 @@ class ActionAnswer(JsonBlock):
 
 
 @dataclass(frozen=True, kw_only=True)
+class TwoDirections(JsonBlock):
+    """Slip of a body that does not rock under both horizontal components and the vertical, of the motions of the set.
+
+    Of each motion the worse sign of the vertical, of frictions and building periods the worst.
+    """
+
+    slip_mean_m: float
+    slip_largest_m: float
+    slip_mean_in_plane_m: float  #: as the mean, without the second component
+    mu_static: float  #: with which it slides furthest
+    mu_kinetic: float
+    motion: int
+    building_period_s: float | None = None
+    margin_factor: float | None = (
+        None  #: least factor on the motions, of those tried, at which it slides too far
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
 class SiteAnswer(ByRule):
     """The answer, under the rule that is printed with it."""
 
@@ -238,6 +257,7 @@ class SiteAnswer(ByRule):
     factor_at_first_movement: float | None = (
         None  #: at which a rigid body first uplifts or slips; None: not known
     )
+    two_directions: TwoDirections | None = None  #: None: the motions have no second component
     rule_range: RuleRange | None = None
     scan: tuple[ScanPoint, ...] = ()
     further: tuple[FurtherMotions, ...] = ()

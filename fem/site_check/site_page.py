@@ -30,6 +30,7 @@ from fem.site_check.result import (
     SiteDocument,
     SiteMotion,
     SiteResult,
+    TwoDirections,
 )
 
 COPIES = ("site.toml", "container.toml")  #: in the folder, printed on the page
@@ -44,7 +45,7 @@ CODE = (
 SIGNING = ("prepared", "checked", "approved")
 MOST_DRAWN = 30  #: motions whose curves are on the page
 NOT_COVERED = (
-    "two horizontal components at once, torsion, motion out of the plane",
+    "rocking under two horizontal components at once, torsion, motion out of the plane",
     "joints of a stack, sloshing of the content, buckling",
     "strength and stiffness of floor and soil",
     "neighbouring containers and walls, ropes, stops",
@@ -149,6 +150,8 @@ def beside_the_set(result: SiteResult) -> list[str]:
             moved = answer.factor_at_first_movement
             count = f"Nothing moves up to {short(moved, figures=3)} × the set: all {answer.runs} runs stay"
         words.append(f"{count} below uplift and slip of a rigid body and were not computed.")
+    if answer.two_directions:
+        words.append(two_directions_in_words(answer.two_directions))
     if answer.further:
         words.append(f"Of {answer.further[0].motions} further motions for the same action:")
         words[-1] += ";".join(
@@ -162,6 +165,17 @@ def beside_the_set(result: SiteResult) -> list[str]:
     if repeated := confirmation(result):
         words.append(repeated)
     return words
+
+
+def two_directions_in_words(slip: TwoDirections) -> str:
+    """How far it slides under both horizontal components, and how much further than in the plane of the runs."""
+    largest, mean = millimetres(slip.slip_largest_m), millimetres(slip.slip_mean_m)
+    plane = millimetres(slip.slip_mean_in_plane_m)
+    return (
+        f"Under both horizontal components at once, as a body that slides and does not rock: largest slip {largest} "
+        f"mm, mean of the motions {mean} mm, in the plane {plane} mm. The clearance is compared with this largest "
+        "slip, too; rocking is computed in the plane only."
+    )
 
 
 def _headlines(result: SiteResult) -> list[html.Headline]:

@@ -9,13 +9,14 @@ from fem.batch.runner import Runner
 from fem.batch.workers import hand_out
 from fem.seismic.artificial import artificial_motions
 from fem.seismic.ground_motion import GroundMotion
+from fem.seismic.two_directions import slip_in_two_directions
 from fem.site_check.answer import Beside
 from fem.site_check.file import SiteRequest
 from fem.site_check.motion_results import write_csv_files
 from fem.site_check.motions import on_floor
-from fem.site_check.result import ConfirmedRun
+from fem.site_check.result import ConfirmedRun, TwoDirections
 from fem.site_check.rule import RuleFound, governing_groups, groups_of
-from fem.site_check.runs import SET, RunKey, RunPlan, RunRows, motion_stem
+from fem.site_check.runs import SCAN, SET, RunKey, RunPlan, RunRows, motion_stem
 from fem.site_check.screening import Screening
 
 #: numbers of the artificial motions beyond the set begin behind those of any set
@@ -29,6 +30,7 @@ class Stages:
     request: SiteRequest
     plan: RunPlan
     screening: Screening
+    floors: Mapping[float | None, Sequence[GroundMotion]]  #: by building period
     longest: float  #: period of the band [s]
     folder: Path  #: that holds the motions
     rows: RunRows = field(default_factory=RunRows)
@@ -58,7 +60,9 @@ class Stages:
         for period, floor in floors.items():
             for number, motion in enumerate(floor, start=1):
                 screening.motions[motion_stem(number, period)] = motion
-        return cls(request=request, plan=plan, screening=screening, longest=longest, folder=folder)
+        return cls(
+            request=request, plan=plan, screening=screening, floors=floors, longest=longest, folder=folder
+        )
 
     def of_the_answer(self, runner: Runner) -> Iterator[Sequence[RunKey]]:
         """The set, its repetitions and the further motions: all that the answer rests on but the deciding runs."""
@@ -92,8 +96,46 @@ class Stages:
         return Beside(
             confirmed=confirmed,
             wind=wind,
+            two_directions=self._two_directions(),
             still=sum(key.stage == SET for key in self.rows.still),
             moves_at=None if None in first else min(one for one in first if one is not None),
+        )
+
+    def _two_directions(self) -> TwoDirections | None:
+        """How far the container slides in both directions if it does not rock; None where that is not known.
+
+        On a sloping floor it is not: a body that has no preferred direction would also creep downhill.
+        """
+        box, pairs = self.request.container, self.request.frictions
+        if box.floor.slope_percent:
+            return None
+        gravity = box.gravity_m_s2
+        found = {
+            period: slip_in_two_directions(motions, pairs, gravity=gravity)
+            for period, motions in self.floors.items()
+        }
+        known = {period: one for period, one in found.items() if one is not None}
+        if not known:
+            return None
+        worst = max(known, key=lambda period: known[period].largest)
+        longest, first = max(known.values(), key=lambda one: one.mean), known[worst]
+        pair = first.mu_static, first.mu_kinetic
+
+        def too_far(factor: float) -> bool:
+            motions = [motion.scaled(factor) for motion in self.floors[worst]]
+            slid = slip_in_two_directions(motions, [pair], gravity=gravity)
+            return slid is not None and slid.largest > self.request.limits.slip_m
+
+        tried = sorted({1.0, *(key.factor for key in self.rows.found if key.stage in (SET, SCAN))})
+        return TwoDirections(
+            slip_mean_m=longest.mean,
+            slip_largest_m=first.largest,
+            slip_mean_in_plane_m=longest.mean_in_plane,
+            mu_static=first.mu_static,
+            mu_kinetic=first.mu_kinetic,
+            motion=first.motion,
+            building_period_s=worst,
+            margin_factor=next(filter(too_far, tried), None),
         )
 
     def _overturns(self, factor: float) -> bool:

@@ -7,7 +7,7 @@ from site_example import RUN, example
 
 from fem.site_check.answer import Beside, answer_of, margin_factor
 from fem.site_check.file import load_site
-from fem.site_check.result import ConfirmedRun, SiteRun
+from fem.site_check.result import ConfirmedRun, SiteRun, TwoDirections
 from fem.site_check.runs import FURTHER, REFINED, REPEATED, REPETITIONS, SCAN, key_of
 
 REQUEST = load_site("site")  # limits 0.5, 0.8, 100 mm
@@ -172,3 +172,32 @@ def test_each_pair_of_further_motions_is_told_by_itself():
         "3 of 100 further motions overturned it" in found.sentence
         and "(empty, friction 0.4/0.2)" in found.sentence
     )
+
+
+def two_directions(largest, factor):
+    return TwoDirections(
+        slip_mean_m=0.5 * largest,
+        slip_largest_m=largest,
+        slip_mean_in_plane_m=0.2 * largest,
+        mu_static=0.3,
+        mu_kinetic=0.15,
+        motion=5,
+        margin_factor=factor,
+    )
+
+
+def test_the_slip_in_two_directions_is_compared_with_the_clearance():
+    found = answer(runs_of(), repeated(), further(), two_directions=two_directions(0.12, 1.0))
+    assert (found.answer, found.margin_factor) == ("not fulfilled", 1.0)
+    assert found.reasons == (
+        "Under both horizontal components at once the largest slip is 120 mm, beyond the clearance of 100 mm "
+        "(motion 5, friction 0.3/0.15; a body that does not rock).",
+    )
+    assert found.actions[0].utilisation == pytest.approx(1.2)
+
+
+def test_within_the_clearance_the_slip_in_two_directions_is_the_one_in_the_sentence():
+    found = answer(runs_of(), repeated(), further(), two_directions=two_directions(0.08, 1.5))
+    assert (found.answer, found.margin_factor) == ("fulfilled", 1.5)
+    assert "largest slip 80.0 mm (limit 100 mm)" in found.sentence
+    assert found.actions[0].utilisation == pytest.approx(0.8)

@@ -1,0 +1,67 @@
+"""Slip under both horizontal components: from the motions of a site to its answer."""
+
+import pytest
+
+from fem.seismic.two_directions import slip_in_two_directions
+from fem.site_check.file import load_site
+from fem.site_check.motions import floor_motions, ground_motions
+from fem.site_check.stages import Stages
+
+SITE = """
+container = "seed_stack"
+[site]
+ground = "D"
+reference_acceleration_m_s2 = 2.8
+[motions]
+count = 3
+{motions}
+[friction]
+mu_static = [0.2, 0.4]
+[limits]
+slip_m = {limit}
+{building}
+"""
+
+
+def slid(folder, *, limit=0.2, motions="", building="", container=""):
+    """What stages find, and the motions of the floors."""
+    place = folder / "hall.toml"
+    place.write_text(SITE.format(limit=limit, motions=motions, building=building))
+    request = load_site(place)
+    for key, value in dict(part.split("=") for part in container.split()).items():
+        request = request.with_value(key, float(value))
+    floors = floor_motions(request, ground_motions(request, 4.0))
+    return Stages.of(request, floors, longest=4.0, folder=folder).beside([], None).two_directions, floors
+
+
+def test_the_largest_slip_of_the_set_is_found_with_its_friction_and_motion(tmp_path):
+    found, floors = slid(tmp_path, limit=0.01)
+    pairs = [(0.2, 0.1), (0.2, 0.2), (0.4, 0.2), (0.4, 0.4), (0.3, 0.225)]
+    expected = slip_in_two_directions(floors[None], pairs)
+    assert found.slip_largest_m == expected.largest > 0.1
+    assert (found.mu_static, found.mu_kinetic) == (0.2, 0.1)
+    assert found.slip_mean_in_plane_m < 0.8 * found.slip_mean_m
+    assert found.margin_factor == 1.0  # beyond 10 mm
+
+
+def test_within_the_clearance_no_factor_tried_is_a_margin(tmp_path):
+    found, _ = slid(tmp_path, limit=5.0)
+    assert found.margin_factor is None
+
+
+def test_of_the_periods_of_a_building_the_worst_counts(tmp_path):
+    found, floors = slid(
+        tmp_path, building="[building]\nz_over_h = 1.0\nbuilding_period_s = 0.5\nstoreys = 5"
+    )
+    slips = {
+        period: slip_in_two_directions(motions, [(0.2, 0.1)]).largest for period, motions in floors.items()
+    }
+    assert found.building_period_s == max(slips, key=slips.get)
+    assert found.slip_largest_m == max(slips.values())
+
+
+@pytest.mark.parametrize(
+    ("motions", "container"), [("second_component = 0.0", ""), ("", "floor.slope_percent=2")]
+)
+def test_without_a_second_component_or_on_a_slope_it_is_not_known(tmp_path, motions, container):
+    assert slid(tmp_path, motions=motions, container=container)[0] is None
