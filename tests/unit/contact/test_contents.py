@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from functools import cache
 
 import numpy as np
 import pytest
@@ -40,12 +41,18 @@ def filtered(motion: Motion, times: np.ndarray) -> tuple[np.ndarray, float]:
     return np.array(found), largest
 
 
-def by_scipy(motion: Motion, times: np.ndarray) -> tuple[np.ndarray, float]:
-    """The same by a Butterworth filter of scipy on a fine grid."""
+@cache
+def dense_response(motion: Motion) -> tuple[np.ndarray, np.ndarray]:
+    """Instants, and the acceleration there by a Butterworth filter of scipy."""
     dense = np.linspace(0.0, END, 300_001)
     numerator, denominator = scipy.signal.butter(2, CUTOFF, analog=True)
     differentiated = (np.append(numerator, 0.0), denominator)
-    _, found, _ = scipy.signal.lsim(differentiated, motion[1](dense) - motion[1](dense[:1]), dense)
+    return dense, scipy.signal.lsim(differentiated, motion[1](dense) - motion[1](dense[:1]), dense)[1]
+
+
+def by_scipy(motion: Motion, times: np.ndarray) -> tuple[np.ndarray, float]:
+    """The filtered acceleration at the instants, and the largest one, by scipy."""
+    dense, found = dense_response(motion)
     return np.interp(times, dense, found), float(np.abs(found[dense <= times[-1]]).max())
 
 

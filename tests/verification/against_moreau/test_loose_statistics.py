@@ -16,6 +16,7 @@ from stack_on_floor import Box, stack_rig
 from contact.motion.table import TableMotion
 from contact.stepping.integrator import FAILED
 
+pytestmark = pytest.mark.slow
 MOTIONS, LENGTH, DURATION = 50, 7.0, 8.0  # -, s, s
 FLOOR, JOINT = 0.5, 0.35  # friction
 STEP = 1e-3  # of Moreau's scheme [s]
