@@ -79,6 +79,7 @@ class Finding:
     case: str = ""  #: what was computed
     source: str = ""  #: of the reference
     note: str = ""
+    telling: bool = False  #: not judged, and to be seen with what is
     inside: bool = True  #: whether it is made inside the stated bounds of its claim
 
     def __post_init__(self) -> None:

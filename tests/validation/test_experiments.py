@@ -8,7 +8,16 @@ import numpy as np
 import pytest
 
 from fem.evidence.validation import cube, impacts, pulses, rocks
+from fem.evidence.validation.shake_tests import (
+    ROCK,
+    ROCK_MOTIONS,
+    Body,
+    ShakeTest,
+    ShakeTestError,
+    read_series,
+)
 from fem.evidence.validation.suite import run_validation
+from fem.evidence.validation.vote import Block
 
 DATA = Path(__file__).parents[3] / "shared" / "experiments"
 
@@ -62,15 +71,109 @@ def test_measured_restitutions():
 
 
 def test_a_folder_of_another_kind_is_refused(tmp_path):
-    with pytest.raises(rocks.MotionFolderError, match="no granite_rock_motions"):
+    with pytest.raises(ShakeTestError, match=r"neither granite_rock_motions.* nor outcomes.csv"):
         run_validation(tmp_path)
-    (tmp_path / rocks.MOTIONS).write_text("no gzip")
-    with pytest.raises(rocks.MotionFolderError, match="not a table of rock motions"):
+    (tmp_path / ROCK_MOTIONS).write_text("no gzip")
+    with pytest.raises(ShakeTestError, match="not a table of rock motions"):
         run_validation(tmp_path)
-    with gzip.open(tmp_path / rocks.MOTIONS, "wt") as file:
+    with gzip.open(tmp_path / ROCK_MOTIONS, "wt") as file:
         file.write("time,value\n0,1\n")
-    with pytest.raises(rocks.MotionFolderError, match="not a table of rock motions"):
+    with pytest.raises(ShakeTestError, match="not a table of rock motions"):
         run_validation(tmp_path)
+
+
+BODY = """
+mass_kg = 400.0
+height_m = 0.8
+centroid_m = 0.4
+inertia_m2 = 0.055
+slenderness_angle_rad = [0.1, 0.3]
+unit = "m/s2"
+"""
+
+
+def own_tests(folder, rows, body=BODY):
+    """A folder of tests on one motion, a sine of 1 m/s2 of 1.5 s, scaled."""
+    times = np.arange(0.0, 2.0, 0.01)
+    values = np.where(times < 1.5, np.sin(2.0 * np.pi * times / 1.5), 0.0)
+    (folder / "sine.csv").write_text(
+        "\n".join(f"{t:.2f},{a:.6f}" for t, a in zip(times, values, strict=True))
+    )
+    (folder / "body.toml").write_text(body)
+    (folder / "outcomes.csv").write_text("\n".join(["motion,scale,record,set,overturned", *rows]) + "\n")
+    return folder
+
+
+def outcomes_of(block, scales):
+    """What a block of the program does under the sine, as rows of a table."""
+    body = Body(mass=400.0, height=0.8, centroid=0.4, inertia=0.055, angles=(0.1, 0.3))
+    times = np.arange(0.0, 2.0, 0.01)
+    sine = np.where(times < 1.5, np.sin(2.0 * np.pi * times / 1.5), 0.0)
+    for scale in scales:
+        test = ShakeTest(
+            name="",
+            record="",
+            overturned=(),
+            simulated=(),
+            fitted=True,
+            times=times,
+            acceleration=scale * sine,
+        )
+        yield f"sine.csv,{scale:g},{scale:g},,{int(rocks.overturns(body, block, test))}"
+
+
+def test_a_users_own_tests_are_predicted_and_not_judged(tmp_path, monkeypatch):
+    monkeypatch.setattr(rocks, "ANGLES", 9)
+    monkeypatch.setattr(rocks, "UPLIFTS", (0.04,))
+    rows = list(outcomes_of(Block(angle=0.2), np.linspace(1.0, 6.0, 12)))
+    assert {row[-1] for row in rows} == {"0", "1"}
+    found = rocks.compute(own_tests(tmp_path, rows))
+    agreement, brier = found.findings[:2]
+    assert (found.tests, found.missed) == (12, 0)
+    assert agreement.holds is None and agreement.value >= 0.8  # the outcomes of a block, by blocks
+    assert brier.value < 0.1
+    assert "0.2" in found.fitted and found.figures[0].svg.startswith("<?xml")
+
+
+def test_tests_set_apart_are_predicted_by_the_others(tmp_path, monkeypatch):
+    monkeypatch.setattr(rocks, "ANGLES", 5)
+    monkeypatch.setattr(rocks, "UPLIFTS", ())
+    rows = list(outcomes_of(Block(angle=0.2), np.linspace(1.0, 6.0, 8)))
+    rows = [row.replace(",,", ",fit," if k % 2 else ",predict,") for k, row in enumerate(rows)]
+    assert rocks.compute(own_tests(tmp_path, rows)).tests == 4
+
+
+@pytest.mark.parametrize(
+    ("rows", "words"),
+    [
+        (["sine.csv,1,,,2"], "row 2: overturned must be 0 or 1"),
+        (["sine.csv,1,,,0", "none.csv,1,,,1"], "row 3: .*none.csv"),
+        (["sine.csv,0,,,1"], "row 2: scale must be finite and not zero"),
+        (["sine.csv,x,,,1"], "row 2: scale must be a number"),
+        (["sine.csv,1,,both,1"], "row 2: set must be fit or predict"),
+        (["sine.csv,1,,,1"], "too few tests"),
+        ([], "header needs the columns"),
+    ],
+)
+def test_a_table_of_outcomes_that_cannot_be_used_is_refused_with_its_row(tmp_path, rows, words):
+    with pytest.raises(ShakeTestError, match=words):
+        read_series(own_tests(tmp_path, rows))
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (("mass_kg = 400.0\n", ""), "mass_kg is missing"),
+        (("400.0", "-4"), "mass_kg must be a positive number, got -4"),
+        (("[0.1, 0.3]", "[0.3, 0.1]"), "must rise"),
+        (("[0.1, 0.3]", "0.2"), r"must be \[least, largest\]"),
+        (("mass_kg", "mass"), "unknown key mass;"),
+        (('"m/s2"', "3"), "unit must be text"),
+    ],
+)
+def test_a_body_that_cannot_be_used_is_refused(tmp_path, change, words):
+    with pytest.raises(ShakeTestError, match=words):
+        read_series(own_tests(tmp_path, ["sine.csv,1,,,1", "sine.csv,2,b,,1"], BODY.replace(*change)))
 
 
 @pytest.mark.slow
@@ -82,7 +185,7 @@ def test_the_experiments_meet_their_criteria():
 
 @pytest.mark.skipif(not DATA.is_dir(), reason="the motions of the rocks are not here")
 def test_a_rock_under_two_table_motions():
-    tests = {test.number: test for test in rocks.read_tests(DATA)}
-    assert np.abs(tests[14].acceleration).max() / 9.81 == pytest.approx(0.075, abs=5e-4)
-    assert not rocks.overturns(tests[14], 0.1)
-    assert rocks.overturns(tests[97], 0.1)
+    tests = {test.name: test for test in read_series(DATA).tests}
+    assert np.abs(tests["test 14"].acceleration).max() / 9.81 == pytest.approx(0.075, abs=5e-4)
+    assert not rocks.overturns(ROCK, Block(angle=0.1), tests["test 14"])
+    assert rocks.overturns(ROCK, Block(angle=0.1), tests["test 97"])

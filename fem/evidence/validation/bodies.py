@@ -33,13 +33,14 @@ def rigid_case(
     return STACK.with_values(keys | {key.replace("__", "."): value for key, value in changes.items()})
 
 
-def specimen(case: Case, *, centroid: float, inertia_ratio: float) -> Container:
+def specimen(case: Case, *, centroid: float, inertia_ratio: float, columns: int = 1) -> Container:
     """The case's container with a given mass centre and moment of inertia, of three horizontal layers.
 
     Args:
         case: its width, height and mass; a rigid model.
         centroid: height of the mass centre above the base [m].
         inertia_ratio: moment of inertia about the mass centre over the mass [m2].
+        columns: elements across it.
 
     Raises:
         MeshError: a layer would have a negative mass.
@@ -56,16 +57,18 @@ def specimen(case: Case, *, centroid: float, inertia_ratio: float) -> Container:
             f"no body of {width:g} x {height:g} m has its mass centre at {centroid:g} m and an inertia of "
             f"{inertia_ratio:g} m2 times its mass"
         )
-    low = np.arange(LAYERS) * 2
+    nodes = columns + 1
+    low = (nodes * np.arange(LAYERS)[:, None] + np.arange(columns)).ravel()
+    across = np.linspace(-0.5 * width, 0.5 * width, nodes)
     return discretise(
         case,
         ContainerMesh(
-            points=np.array([[x, z] for z in levels for x in (-0.5 * width, 0.5 * width)]),
-            quads=np.stack([low, low + 1, low + 3, low + 2], axis=1),
-            region=np.full(LAYERS, int(Region.SOLID)),
-            box=np.zeros(LAYERS, dtype=np.int64),
-            thickness=np.full(LAYERS, case.container.depth_m),
-            areal_density=np.asarray(mass * shares / (width * layer), dtype=np.float64),
+            points=np.array([[x, z] for z in levels for x in across]),
+            quads=np.stack([low, low + 1, low + nodes + 1, low + nodes], axis=1),
+            region=np.full(low.size, int(Region.SOLID)),
+            box=np.zeros(low.size, dtype=np.int64),
+            thickness=np.full(low.size, case.container.depth_m),
+            areal_density=np.repeat(np.asarray(mass * shares / (width * layer), dtype=np.float64), columns),
         ),
     )
 

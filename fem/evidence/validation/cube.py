@@ -17,18 +17,21 @@ import numpy as np
 from contact.interface.equilibrium import Stance
 from fem.case.case import Case
 from fem.evidence.findings import prediction
+from fem.evidence.validation import drawings
 from fem.evidence.validation.bodies import cross_validated, rigid_case, specimen
-from fem.evidence.validation.experiments import Experiment
+from fem.evidence.validation.experiments import Experiment, Picture
 from fem.evidence.validation.tables import measured_table
 from fem.evidence.verification.runs import finish, placed
 from fem.model.container import Container
 from fem.model.model import build_model
+from fem.results.history import History
 from fem.runtime.arrays import FloatArray
 
 SIDE, MASS = 0.1048, 0.37  #: [m], [kg]
 INERTIA = 0.797 * (0.5 * SIDE) ** 2  #: about the mass centre, over the mass [m2]
 FRICTION, HIGH_FRICTION = 0.18, 0.8  #: of the authors' simulator; and one at which the corner cannot slide
 AUTHORS_RESTITUTION = 0.125  #: of a point, in their simulator
+SHOWN = 412  #: toss of the figure
 SAMPLES = 5  #: at the beginning of a landing, through which its state is fitted
 LANDED = math.radians(1.5)  #: tilt below which the cube has landed
 AT_REST = math.radians(0.1)
@@ -145,6 +148,18 @@ def compute() -> Experiment:
                 note="a control, no measurement: friction decides the side",
             ),
         ),
+        figures=(_picture(next(one for one in landings if one.toss == SHOWN), halves[0][0]),),
+    )
+
+
+def _picture(landing: Landing, damping_ratio: float) -> Picture:
+    history = _history(landing, damping_ratio, FRICTION)
+    times, side = history["time_s"], np.sign(landing.rotation[0])
+    shown = times <= landing.times[-1]
+    return drawings.landed(
+        landing.toss,
+        (landing.times, side * np.degrees(landing.rotation)),
+        (times[shown], side * np.degrees(history["rotation_rad"][shown])),
     )
 
 
@@ -171,15 +186,7 @@ def restitution_of(damping_ratio: float) -> float:
 @cache
 def landed(landing: Landing, damping_ratio: float, friction: float = FRICTION) -> Rebound:
     """Compute a landing from its measured state."""
-    case, container = _cube()
-    case = case.with_values(
-        {
-            "contact.damping_ratio": damping_ratio,
-            "contact.mu_static": friction,
-            "contact.mu_kinetic": friction,
-        }
-    )
-    history = finish(placed(build_model(case, container), _start(landing))).history
+    history = _history(landing, damping_ratio, friction)
     times, rotation = history["time_s"], history["rotation_rad"]
     same, other = _rebounds(rotation)
     landing_time = times[_landing(rotation)]
@@ -191,6 +198,18 @@ def landed(landing: Landing, damping_ratio: float, friction: float = FRICTION) -
         hop=float(np.max((history["centre_z_m"] - lowest)[times > landing_time])),
         rest_after=max(0.0, float(times[moving[-1]] - landing_time)),
     )
+
+
+def _history(landing: Landing, damping_ratio: float, friction: float) -> History:
+    case, container = _cube()
+    case = case.with_values(
+        {
+            "contact.damping_ratio": damping_ratio,
+            "contact.mu_static": friction,
+            "contact.mu_kinetic": friction,
+        }
+    )
+    return finish(placed(build_model(case, container), _start(landing))).history
 
 
 @cache

@@ -15,6 +15,15 @@ KEYS = {"quantity": "what", "measured": "reference", "predicted": "value", "pass
 
 
 @dataclass(frozen=True, kw_only=True)
+class Picture:
+    """A figure of the page."""
+
+    name: str
+    caption: str
+    svg: str
+
+
+@dataclass(frozen=True, kw_only=True)
 class Predictor:
     """The score of another predictor on the same tests."""
 
@@ -35,6 +44,7 @@ class Experiment:
     fitted: str  #: which inputs were fitted, on which tests, and to what
     findings: tuple[Finding, ...] = ()
     others: tuple[Predictor, ...] = ()
+    figures: tuple[Picture, ...] = ()
     not_computed: str = ""  #: the reason, where there is nothing to compare
     seconds: float = 0.0
 
@@ -70,12 +80,22 @@ class ValidationResult:
         """The result in one sentence, missed criteria first."""
         if not self.judged:
             return "No experiment was computed."
-        skipped = sum(bool(one.not_computed) for one in self.experiments)
-        rest = f"; {skipped} of {len(self.experiments)} experiments not computed" if skipped else ""
-        if self.failures:
-            names = ", ".join(one.title for one in self.experiments if one.missed)
-            return f"{self.failures} of {self.judged} predictions miss their criterion ({names}){rest}."
-        return f"All {self.judged} predictions meet their criterion{rest}."
+        judged = f"{self.judged - self.failures} of {self.judged} judged predictions meet their criterion"
+        missed = ", ".join(one.title for one in self.experiments if one.missed)
+        parts = [f"{judged}; missed: {missed}" if missed else judged]
+        if stated := [one for one in self.findings if one.holds is None]:
+            off = [one for one in stated if one.telling]
+            parts.append(f"{len(stated)} are stated and not judged")
+            if off:
+                some = "; ".join(
+                    f"{one.what}: measured {one.reference}, predicted {one.value}" for one in off
+                )
+                parts[-1] += f", of which {len(off)} tell most ({some})"
+        if skipped := [one.title for one in self.experiments if one.not_computed]:
+            parts.append(
+                f"{len(skipped)} of {len(self.experiments)} experiments not computed ({', '.join(skipped)})"
+            )
+        return "; ".join(parts) + "."
 
     def to_dict(self) -> dict[str, Any]:
         """Everything as plain data, for JSON."""
@@ -85,7 +105,7 @@ class ValidationResult:
             "judged": self.judged,
             "sentence": self.sentence,
             "experiments": [
-                asdict(one)
+                {key: value for key, value in asdict(one).items() if key != "figures"}
                 | {"findings": [finding.document(KEYS) for finding in one.findings]}
                 | {"computed": not one.not_computed, "missed": one.missed}
                 for one in self.experiments

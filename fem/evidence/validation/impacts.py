@@ -110,6 +110,7 @@ def compute() -> Experiment:
                     f"slenderness {slenderness:g} on concrete: restitution over Housner's",
                     f"{(found := restitution_ratio('concrete', slenderness, width)):.3f}",
                     reference=measured["concrete", slenderness],
+                    telling=True,
                     note=f"a prediction, off by {found - measured['concrete', slenderness]:+.3f}: a rigid block on its "
                     "edges loses no more than Housner's, and one so light crushes nothing; give "
                     "contact.restitution_over_housner where it is measured",

@@ -5,14 +5,14 @@ from collections.abc import Iterator
 from fem.evidence import page
 from fem.evidence.findings import Finding
 from fem.evidence.validation.experiments import Experiment, Predictor, ValidationResult
-from fem.html.page import Page, html_of
-from fem.html.sections import NUMBER, Block, Column, Note, PageSection, Paragraph, table_of
+from fem.html.page import Page, html_of, svg_element
+from fem.html.sections import NUMBER, Block, Column, Figure, Note, PageSection, Paragraph, table_of
 from fem.html.units import typeset
 
 SHOWS = "shows the tables"
 INTRODUCTION = (
     "Every table compares predictions of this program with measurements in a laboratory. Quantities that were not "
-    "measured were fitted on half of the tests to predict the other half, and vice versa. Each criterion was set "
+    "measured were fitted on some of the tests to predict the others. Each criterion was set "
     "before the comparison; a line without one is stated and not judged."
 )
 FINDINGS = [
@@ -72,6 +72,9 @@ def _blocks(one: Experiment) -> Iterator[Block]:
         return
     yield f"{one.tests} tests. Fitted: {typeset(one.fitted)}."
     yield table_of(f"findings of {one.title}", FINDINGS, one.findings, row_look=page.look_of)
+    for picture in one.figures:
+        svg = svg_element(picture.svg, label=picture.caption, prefix=picture.name)
+        yield Figure(svg, picture.caption, caption=picture.caption)
     if one.others:
         yield table_of("other predictors", OTHERS, one.others)
 

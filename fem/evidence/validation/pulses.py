@@ -14,8 +14,9 @@ import numpy as np
 from contact.motion.kernel import PIECEWISE, as_floor_motion
 from fem.case.case import Case
 from fem.evidence.findings import prediction
+from fem.evidence.validation import drawings
 from fem.evidence.validation.bodies import cross_validated, rigid_case
-from fem.evidence.validation.experiments import Experiment, Predictor
+from fem.evidence.validation.experiments import Experiment, Picture, Predictor
 from fem.evidence.validation.tables import measured_table
 from fem.evidence.verification.runs import with_motion
 from fem.model.container import Container, discretise
@@ -29,6 +30,7 @@ SINGLE_STEPS = tuple(np.linspace(0.13, 0.22, 10).tolist())
 LEAST_RADIUS = 0.015  #: of a block of a laboratory [m]
 LEAST_AGREEMENT = 0.80
 FOLLOWED_S = 2.0
+PLACES = 24  #: of the figure, along each axis
 RISE_S = 1e-3  #: not published; the shortest kick lasts 4 ms
 
 
@@ -90,7 +92,17 @@ def compute() -> Experiment:
                 name="the more frequent outcome for all", agreement=f"{stood:.2f}", source="the same table"
             ),
         ),
+        figures=(_picture(kicks),),
     )
+
+
+def _picture(kicks: Sequence[Kick]) -> Picture:
+    """Where the block that fits all tests overturns."""
+    size, gap, speed = fitted_size(kicks), [one.gap for one in kicks], [one.speed for one in kicks]
+    gaps, speeds = np.linspace(min(gap), max(gap), PLACES), np.linspace(min(speed), max(speed), PLACES)
+    falls = [[predicted(size, Kick(gap=g, speed=v, overturned=False)) for g in gaps] for v in speeds]
+    overturned = np.array([one.overturned for one in kicks])
+    return drawings.kicked(gaps, speeds, np.array(falls), (np.array(gap), np.array(speed)), overturned)
 
 
 def fitted_size(kicks: Sequence[Kick]) -> BlockSize:

@@ -1,15 +1,14 @@
-"""Two nearly identical granite rocks on a shake table: overturned or stood, under 35 recorded table motions.
+"""Bodies on a shake table: overturned or stood, under recorded motions of the table.
 
-The scan of a rock does not show where it stood on its pedestal, so one number is fitted, its slenderness angle; mass
-centre and inertia are those of the scan. It is fitted on half of the motions, and the other half is predicted. The
-motions come from a folder that the user names; the table of this package has outcomes and peaks.
+On which points a rock stood on its pedestal is not known, so blocks of many slenderness angles, with several losses at
+an impact and several cambers of the base, are tried; mass centre and inertia are measured. Each record is predicted by
+the vote of the blocks that fit the others (`vote`). Beside it, fitted and judged on the same tests: thresholds on the
+peak velocity and on the response of one oscillator, the twin on the same table.
 """
 
-import csv
-import gzip
 import math
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import cache, partial
 from pathlib import Path
 
@@ -18,244 +17,292 @@ import numpy as np
 from fem.batch.runner import Runner
 from fem.batch.workers import LocalWorkers
 from fem.case.case import Case
+from fem.case.validation import CaseError
 from fem.evidence.findings import Finding, prediction
-from fem.evidence.validation.bodies import cross_validated, rigid_case, specimen
+from fem.evidence.validation import drawings
+from fem.evidence.validation.bodies import rigid_case, specimen
 from fem.evidence.validation.experiments import Experiment, Predictor
-from fem.evidence.validation.tables import measured_table
+from fem.evidence.validation.shake_tests import (
+    ROCKS_LICENCE,
+    ROCKS_SOURCE,
+    ROCKS_TITLE,
+    Body,
+    Series,
+    ShakeTest,
+    read_series,
+)
+from fem.evidence.validation.vote import Block, BoolArray, Vote, brier, by_threshold, probabilities
 from fem.model.container import Container
 from fem.model.model import build_model
+from fem.records.spectrum import evenly_sampled, response_spectrum
 from fem.results.outcome import Outcome
-from fem.run.checks import WantedChecks
-from fem.run.compute import compute_on
 from fem.run.outcome import run_without_history
 from fem.runtime.arrays import FloatArray
 from fem.runtime.threads import cores
+from mesh.errors import MeshError
 
-MOTIONS = "granite_rock_motions.csv.gz"  #: file of the folder
-MASS, HEIGHT, CENTROID, INERTIA = 353.8, 0.79, 0.294, 0.0526  #: [kg], [m], [m], over the mass [m2]
-ANGLES = tuple(np.round(np.arange(0.05, 0.1601, 0.005), 3).tolist())  #: of slenderness, tried [rad]
-SPECIMENS = (1, 2)
+DENSITY = 2000.0  #: of a block, which is as deep as this asks [kg/m3]
+ANGLES = 25  #: of slenderness, evenly over their range
+RESTITUTIONS = (1.0, 0.95, 0.9, 0.85)  #: over Housner's
+UPLIFTS, DAMPINGS = (0.02, 0.04, 0.06), (0.05, 0.1)  #: of cambered bases [rad], [-]
+ELEMENTS = 6  #: across a cambered base
+SHARP, CAMBERED = "sharp corners", "sharp corners and cambered bases"
+PERIODS, RATIOS = np.geomspace(0.2, 2.0, 24), (0.05, 0.1, 0.2)  #: of oscillators [s], [-]
 LEAST_AGREEMENT, SHARE_WITHIN, UNSURE_SHARE = 0.82, 0.08, 0.5
+AGREED = 0.95  #: share of the votes from which the blocks agree
 DESCRIBED = Experiment(
     name="rocks",
-    title="Two rocks on a shake table",
-    source="github.com/ZhiangChen/virtual_shake_robot_pybullet, commit 9f239e7e, tests of 2021; 35 of 582 "
-    "motions, 0.1 to 25 Hz",
-    licence="outcomes as facts; the repository is GPL-3.0, none is stated for the data",
+    title=ROCKS_TITLE,
+    source=ROCKS_SOURCE,
+    licence=ROCKS_LICENCE,
     tests=0,
-    fitted="slenderness angle",
+    fitted="slenderness angle, loss at an impact, camber of the base",
 )
-BINS = ((0.0, 0.12), (0.12, 0.27), (0.27, math.inf))  #: of the peak acceleration [g]
-
-
-class MotionFolderError(ValueError):
-    """The folder does not hold the table motions."""
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class ShakeTest:
-    """One motion of the table, and what both rocks did."""
-
-    number: int
-    peak: float  #: [g]
-    overturned: tuple[bool, bool]
-    simulated: tuple[bool, bool]  #: by the authors' discrete elements, tuned on the same tests
-    times: FloatArray  #: (n,) [s]
-    acceleration: FloatArray  #: (n,) [m/s2]
-
-
-def read_tests(folder: Path) -> tuple[ShakeTest, ...]:
-    """The tests whose motions are in the folder.
-
-    Raises:
-        MotionFolderError: there is no file of these motions, it cannot be read, or none of its tests is known.
-    """
-    path = folder / MOTIONS
-    if not path.is_file():
-        raise MotionFolderError(
-            f"{folder}: no {MOTIONS} in this folder; --data names the folder of the rock motions"
-        )
-    try:
-        with gzip.open(path, "rt", encoding="utf-8") as file:
-            motions = {int(row["test"]): row for row in csv.DictReader(file)}
-            accelerations = {
-                number: 1e-3 * np.array(row["acceleration_mm_per_s2_space_separated"].split(), dtype=float)
-                for number, row in motions.items()
-            }
-            steps = {number: float(row["sample_interval_s"]) for number, row in motions.items()}
-    except (OSError, EOFError, KeyError, TypeError, ValueError):
-        raise MotionFolderError(f"{path}: not a table of rock motions") from None
-    rows = [row for row in measured_table("rocks.csv") if int(row["test"]) in motions]
-    if len(rows) < 2:
-        raise MotionFolderError(f"{path}: holds none of the tests of the table of outcomes")
-    return tuple(_test(row, accelerations[int(row["test"])], steps[int(row["test"])]) for row in rows)
-
-
-def _test(row: dict[str, str], acceleration: FloatArray, step: float) -> ShakeTest:
-    def both(name: str) -> tuple[bool, bool]:
-        return row[name.format(1)] == "1", row[name.format(2)] == "1"
-
-    return ShakeTest(
-        number=int(row["test"]),
-        peak=float(row["peak_g"]),
-        overturned=both("specimen_{}_overturned"),
-        simulated=both("dem_{}_overturned"),
-        times=np.asarray(step * np.arange(acceleration.size), dtype=np.float64),
-        acceleration=acceleration,
-    )
 
 
 def compute(folder: Path | None) -> Experiment:
-    """Fit on half of the motions and predict the other half, and the reverse, for both rocks.
+    """Predict each record by a fit on the others, or those set apart by a fit on the rest, for every specimen.
 
     Raises:
-        MotionFolderError: as for `read_tests`.
+        ShakeTestError: as for `read_series`.
     """
     if folder is None:
         return replace(
             DESCRIBED, not_computed="the motions are not part of the program: name their folder with --data"
         )
-    tests = read_tests(folder)
+    series = read_series(folder)
+    tried = blocks(series.body)
     with LocalWorkers(cores()) as workers_of:
         runner = Runner(workers_of=workers_of)
-        tried = predictions(runner, [(test, angle) for angle in ANGLES for test in tests])
-        fits, findings = [], []
-        for rock in SPECIMENS:
-            halves = cross_validated(tests, partial(fitted_angle, tried=tried, rock=rock))
-            fits.append(" and ".join(f"{angle:.3f}" for angle, _ in halves))
-            pairs = [(test, angle) for angle, others in halves for test in others]
-            findings += _findings(rock, pairs, list(predictions(runner, pairs).values()))
-    return replace(
-        DESCRIBED,
-        tests=len(tests),
-        fitted=f"slenderness angle [rad], on each half: {'; '.join(fits)} (rock 1; rock 2)",
+        found = runner.each("blocks on the table", list(tried), partial(falls, series))
+    falling = np.array([one for one in found if one is not None], dtype=bool)
+    possible = [block for block, one in zip(tried, found, strict=True) if one is not None]
+    sharp = np.array([block.uplift == 0.0 for block in possible])
+    records = np.unique([test.record for test in series.tests], return_inverse=True)[1]
+    every = np.ones(len(series.tests), dtype=bool)
+    fitted = np.array([test.fitted for test in series.tests])
+    asked = ~fitted if series.set_apart else every
+    fits, findings, figures, measures = [], [], [], _measures(series.tests)
+    others = []
+    for number, name in enumerate(series.specimens):
+        overturned = np.array([test.overturned[number] for test in series.tests])
+        vote = Vote(falls={SHARP: falling[sharp], CAMBERED: falling}, overturned=overturned, records=records)
+        votes = vote.predicted(fitted, asked) if series.set_apart else vote.by_record(every, vote.predicted)
+        fits.append(f"{name}: {_described(vote, possible, sharp, fitted)}")
+        findings += _findings(name, votes, overturned[asked], judged=not series.own)
+        tests = [test for test, one in zip(series.tests, asked, strict=True) if one]
+        figures.append(drawings.shaken(name, tests, probabilities(votes), overturned[asked]))
+        others.append(_scores(series, number, fitted, asked, vote, measures))
+    return Experiment(
+        name=DESCRIBED.name,
+        title=series.title,
+        source=series.source,
+        licence=series.licence,
+        tests=int(asked.sum()),
+        fitted=f"{DESCRIBED.fitted}, on {'the tests set apart' if series.set_apart else 'all other records'}; on "
+        f"all that may be used: {'; '.join(fits)}",
         findings=tuple(findings),
-        others=_others(tests),
+        others=_others(others),
+        figures=tuple(figures),
     )
 
 
-def predictions(
-    runner: Runner, pairs: Sequence[tuple[ShakeTest, float]]
-) -> dict[tuple[ShakeTest, float], bool]:
-    """Whether the program's rigid block overturns in each test at an angle, on all cores."""
-    return dict(zip(pairs, runner.each("rocks", pairs, _unpacked), strict=True))
+def blocks(body: Body) -> tuple[Block, ...]:
+    """The blocks tried for a body."""
+    angles = np.linspace(*body.angles, ANGLES).tolist()
+    sharp = [Block(angle=angle, restitution=one) for one in RESTITUTIONS for angle in angles]
+    cambered = [
+        Block(angle=angle, uplift=uplift, damping=damping)
+        for uplift in UPLIFTS
+        for damping in DAMPINGS
+        for angle in angles
+    ]
+    return (*sharp, *cambered)
 
 
-def _unpacked(pair: tuple[ShakeTest, float]) -> bool:
-    return overturns(*pair)
+def falls(series: Series, block: Block) -> tuple[bool, ...] | None:
+    """Whether a block overturns in each test; None where there is no such block, as where its base is too round."""
+    try:
+        _block(series.body, block)
+    except (CaseError, MeshError):
+        return None
+    return tuple(overturns(series.body, block, test) for test in series.tests)
 
 
-def fitted_angle(
-    tests: Sequence[ShakeTest], tried: Mapping[tuple[ShakeTest, float], bool], rock: int
-) -> float:
-    """The angle with the most outcomes right; the mean where several are as good [rad]."""
-    scores = {
-        angle: sum(tried[test, angle] == test.overturned[rock - 1] for test in tests) for angle in ANGLES
-    }
-    return float(np.mean([angle for angle, score in scores.items() if score == max(scores.values())]))
+def overturns(body: Body, block: Block, test: ShakeTest) -> bool:
+    """Whether the program's rigid block overturns.
 
-
-def overturns(test: ShakeTest, angle: float) -> bool:
-    """Whether the program's rigid block overturns."""
-    case, container = _rock(angle)
-    verdict, error = run_without_history(
-        build_model(case.with_motion(test.times, test.acceleration), container), None
-    )
+    Raises:
+        CaseError, MeshError: there is no such block.
+        ArithmeticError: the run failed.
+    """
+    case, container = _block(body, block)
+    model = build_model(case.with_motion(test.times, test.acceleration), container)
+    verdict, error = run_without_history(model, None)
     if error is not None:
-        raise ArithmeticError(f"test {test.number}, {angle:g} rad: {error}")
+        raise ArithmeticError(f"{test.name}, {block.angle:g} rad: {error}")
     return verdict.outcome == Outcome.OVERTURNED
 
 
-def _is_unsure(test: ShakeTest, angle: float) -> bool:
-    """Whether the program calls its prediction unsure: another outcome within the ranges of its unknown inputs."""
-    case, container = _rock(angle)
-    motion = case.with_motion(test.times, test.acceleration)
-    return compute_on(container, motion, WantedChecks(band=True)).verdict.sure == "unsure"
-
-
 @cache
-def _rock(angle: float) -> tuple[Case, Container]:
-    """A block on two corners with the mass centre and inertia of the rock, which does not slide."""
+def _block(body: Body, block: Block) -> tuple[Case, Container]:
+    """A block with the mass centre and inertia of the body, which does not slide."""
+    width = 2.0 * body.centroid * math.tan(block.angle)
+    size = 0.5 * body.height
+    changes: dict[str, float | str | list[float]] = {}
+    if block.uplift > 0.0:
+        size = width / ELEMENTS
+        changes = {
+            "support__kind": "flat",
+            "support__camber_m": 0.25 * block.uplift * width,
+            "support__rocking_damping_ratio": block.damping,
+        }
+    elif block.restitution != 1.0:
+        changes = {"contact__restitution_over_housner": block.restitution}
     case = rigid_case(
-        width=2.0 * CENTROID * math.tan(angle),
-        height=HEIGHT,
-        element_size=0.3,
-        container__depth_m=0.7,
-        container__mass_kg=MASS,
-        container__centroid_m=CENTROID,
+        width=width,
+        height=body.height,
+        element_size=size,
+        container__depth_m=body.mass / (DENSITY * width * body.height),
+        container__mass_kg=body.mass,
+        container__centroid_m=body.centroid,
         solver__duration_s="auto",
+        **changes,
     )
-    return case, specimen(case, centroid=CENTROID, inertia_ratio=INERTIA)
+    columns = ELEMENTS if block.uplift > 0.0 else 1
+    container = specimen(case, centroid=body.centroid, inertia_ratio=body.inertia, columns=columns)
+    build_model(case, container)  # refuses a base that is too round
+    return case, container
 
 
-def _findings(
-    rock: int, pairs: Sequence[tuple[ShakeTest, float]], predicted: Sequence[bool]
-) -> list[Finding]:
-    """Measured and predicted outcomes of a rock, each test predicted by the fit on the others."""
-    count = len(pairs)
-    measured = [test.overturned[rock - 1] for test, _ in pairs]
-    wrong = [one for one, a, b in zip(pairs, predicted, measured, strict=True) if a != b]
-    agreement = 1.0 - len(wrong) / count
-    share, seen = sum(predicted) / count, sum(measured) / count
-    unsure = sum(_is_unsure(test, angle) for test, angle in wrong)
-    findings = [
-        prediction(
-            f"rock {rock}: share of outcomes predicted, fitted on the other half",
-            round(agreement, 3),
-            reference="1",
+def _described(vote: Vote, tried: Sequence[Block], sharp: BoolArray, fitted: BoolArray) -> str:
+    """The family that was chosen, and means of its blocks by their weights."""
+    family = vote.family(fitted)
+    some = [block for block, one in zip(tried, sharp, strict=True) if one or family == CAMBERED]
+    weights = vote.weights(family, fitted)
+
+    def mean(value: Callable[[Block], float]) -> float:
+        return float(weights @ np.array([value(block) for block in some]))
+
+    angle = mean(lambda block: block.angle)
+    scatter = math.sqrt(mean(lambda block: (block.angle - angle) ** 2))
+    return (
+        f"{family}, {angle:.3f} +- {scatter:.3f} rad, restitution {mean(lambda block: block.restitution):.2f} of "
+        f"Housner's, {100.0 * mean(lambda block: block.uplift > 0.0):.0f} % of the weight on cambered bases"
+    )
+
+
+def _findings(name: str, votes: FloatArray, overturned: BoolArray, *, judged: bool) -> list[Finding]:
+    """Measured and predicted outcomes of a specimen: votes and outcomes, (n,) each; own tests have no criteria."""
+    count, chances = votes.size, probabilities(votes)
+    wrong = (chances > 0.5) != overturned
+    agreement, share, seen = 1.0 - wrong.mean(), chances.mean(), overturned.mean()
+    agreed = (votes >= AGREED) | (votes <= 1.0 - AGREED)
+    doubted = int((wrong & ~agreed).sum())
+    constant = float(seen * (1.0 - seen))
+
+    def stated(what: str, value: float, reference: float | str, **criterion: str | bool) -> Finding:
+        if not judged:
+            criterion.pop("criterion", None), criterion.pop("met", None)
+        return prediction(f"{name}: {what}", value, reference=reference, **criterion)  # type: ignore[arg-type]
+
+    return [
+        stated(
+            "share of outcomes predicted",
+            round(float(agreement), 3),
+            "1",
             criterion=f"at least {LEAST_AGREEMENT}",
-            met=agreement >= LEAST_AGREEMENT,
-            note="the other rock on the same table agrees with this one in 0.87 of 582 tests",
+            met=bool(agreement >= LEAST_AGREEMENT),
         ),
-        prediction(
-            f"rock {rock}: share overturned",
-            round(share, 3),
-            reference=round(seen, 3),
+        stated(
+            "Brier score of the probabilities",
+            round(brier(chances, overturned), 3),
+            "0",
+            note=f"{constant:.3f} where each has the probability of all",
+        ),
+        stated(
+            "share overturned",
+            round(float(share), 3),
+            round(float(seen), 3),
             criterion=f"within {SHARE_WITHIN}",
-            met=abs(share - seen) <= SHARE_WITHIN,
+            met=bool(abs(share - seen) <= SHARE_WITHIN),
         ),
-        prediction(
-            f"rock {rock}: wrong predictions that the program itself calls unsure",
-            unsure,
-            reference=len(wrong),
+        stated(
+            "wrong predictions on which the blocks do not agree",
+            doubted,
+            int(wrong.sum()),
             criterion="at least half",
-            met=unsure >= UNSURE_SHARE * len(wrong),
+            met=doubted >= UNSURE_SHARE * int(wrong.sum()),
+            note=f"they agree, with {100 * AGREED:.0f} % of the votes, on {int(agreed.sum())} of {count} tests, of "
+            f"which {int((wrong & agreed).sum())} are wrong",
+        ),
+        *(
+            stated(
+                f"overturned of {int(some.sum())} with a probability from {low:g} to {high:g}",
+                round(float(chances[some].sum()), 1),
+                int(overturned[some].sum()),
+            )
+            for low, high in ((0.0, 0.25), (0.25, 0.5), (0.5, 0.75), (0.75, 1.0))
+            if (some := (chances >= low) & ((chances < high) | (high == 1.0))).any()
         ),
     ]
-    for low, high in BINS:
-        some = [k for k, (test, _) in enumerate(pairs) if low <= test.peak < high]
-        if some:
-            to = f"to {high:g} g" if math.isfinite(high) else "g and more"
-            findings.append(
-                prediction(
-                    f"rock {rock}: overturned of {len(some)} with a peak from {low:g} {to}",
-                    sum(predicted[k] for k in some),
-                    reference=sum(measured[k] for k in some),
-                )
-            )
-    return findings
 
 
-def _others(tests: Sequence[ShakeTest]) -> tuple[Predictor, ...]:
-    """The scores of other predictors on these tests."""
+def _measures(tests: Sequence[ShakeTest]) -> dict[str, list[FloatArray]]:
+    """Measures of strength on which a threshold is fitted, each (tests,), by the predictor that chooses among them."""
+    sampled = [evenly_sampled(test.times, test.acceleration) for test in tests]
+    spectra = [
+        [response_spectrum(step, values, PERIODS, ratio).pseudo_acceleration_m_s2 for step, values in sampled]
+        for ratio in RATIOS
+    ]
+    return {
+        "threshold on the peak velocity": [np.array([test.peak_velocity for test in tests])],
+        "threshold on the response of one oscillator": [
+            column for values in spectra for column in np.array(values).T
+        ],
+    }
 
-    def agreement(says: Callable[[ShakeTest], tuple[bool, bool]]) -> str:
-        return ", ".join(
-            f"{np.mean([says(test)[k] == test.overturned[k] for test in tests]):.2f}" for k in range(2)
+
+def _scores(
+    series: Series,
+    number: int,
+    fitted: BoolArray,
+    asked: BoolArray,
+    vote: Vote,
+    measures: dict[str, list[FloatArray]],
+) -> dict[str, float]:
+    """Share of the outcomes of a specimen that other predictors say, each fitted as the blocks are."""
+    overturned = vote.overturned
+
+    def by_measures(some: list[FloatArray], fit: BoolArray, wanted: BoolArray) -> FloatArray:
+        return np.asarray(by_threshold(some, overturned, fit)[wanted], dtype=np.float64)
+
+    scores = {"always stands": np.zeros(int(asked.sum()))}
+    for name, some in measures.items():
+        says = partial(by_measures, some)
+        scores[name] = says(fitted, asked) if series.set_apart else vote.by_record(asked, says)
+    every = np.array([test.overturned for test in series.tests])[asked]
+    if every.shape[1] == 2:
+        scores["the twin on the same table"] = every[:, 1 - number].astype(np.float64)
+    if all(test.simulated for test in series.tests):
+        simulated = np.array([test.simulated[number] for test in series.tests])[asked]
+        scores["discrete elements in three dimensions, contact stiffness tuned on these tests"] = simulated
+    return {name: float(np.mean(says == overturned[asked])) for name, says in scores.items()}
+
+
+SOURCES = {
+    "the twin on the same table": "the same tests; 0.87 of all 582 of the rocks",
+    "discrete elements in three dimensions, contact stiffness tuned on these tests": "the authors; 0.87 and 0.90 of "
+    "all 582",
+}
+
+
+def _others(scores: Sequence[dict[str, float]]) -> tuple[Predictor, ...]:
+    return tuple(
+        Predictor(
+            name=name,
+            agreement=", ".join(f"{one[name]:.2f}" for one in scores),
+            source=SOURCES.get(name, "the same tests, fitted as the blocks are"),
         )
-
-    return (
-        Predictor(
-            name="always stands", agreement=agreement(lambda _: (False, False)), source="the same tests"
-        ),
-        Predictor(
-            name="the other rock",
-            agreement=agreement(lambda test: (test.overturned[1], test.overturned[0])),
-            source="the same tests; 0.87 of all 582",
-        ),
-        Predictor(
-            name="discrete elements in three dimensions, contact stiffness tuned on these tests",
-            agreement=agreement(lambda test: test.simulated),
-            source="the authors; 0.87 and 0.90 of all 582",
-        ),
+        for name in scores[0]
     )

@@ -9,16 +9,17 @@ from fem.evidence.findings import prediction
 from fem.evidence.suite import attempted
 from fem.evidence.validation import cube, impacts, pulses, rocks
 from fem.evidence.validation.experiments import Experiment, ValidationResult
+from fem.evidence.validation.shake_tests import read_series
 
 
 def require(data: Path | None) -> None:
-    """Refuse a folder that does not hold the rock motions.
+    """Refuse a folder without shake-table tests.
 
     Raises:
-        MotionFolderError: the folder is of another kind.
+        ShakeTestError: the folder is of another kind.
     """
     if data is not None:
-        rocks.read_tests(data)
+        read_series(data)
 
 
 def run_validation(
@@ -27,10 +28,10 @@ def run_validation(
     """Compute every experiment; `before` each, call with its name.
 
     Args:
-        data: folder of the rock motions; None leaves that experiment out.
+        data: folder of shake-table tests; None leaves that experiment out.
 
     Raises:
-        MotionFolderError: as for `require`.
+        ShakeTestError: as for `require`.
     """
     require(data)
     experiments = []

@@ -1,11 +1,16 @@
 """Experiments: what is missed comes first, and what is not computed is named; specimens have their mass properties."""
 
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
 import pytest
 
 from fem.evidence.findings import prediction
 from fem.evidence.validation.bodies import cross_validated, specimen
 from fem.evidence.validation.experiments import Experiment, ValidationResult
 from fem.evidence.validation.page import lines_of, page_of
+from fem.evidence.validation.vote import Vote, best_threshold, by_threshold, probabilities
 from fem.evidence.verification.runs import STACK
 from mesh.errors import MeshError
 
@@ -39,17 +44,67 @@ def experiment(name: str, *met: bool | None, not_computed: str = "") -> Experime
 @pytest.mark.parametrize(
     ("experiments", "sentence"),
     [
-        ([experiment("a", True, None)], "All 1 predictions meet their criterion."),
-        ([experiment("a", True), experiment("b", False)], "1 of 2 predictions miss their criterion (b)."),
+        (
+            [experiment("a", True, None)],
+            "1 of 1 judged predictions meet their criterion; 1 are stated and not judged.",
+        ),
+        (
+            [experiment("a", True), experiment("b", False)],
+            "1 of 2 judged predictions meet their criterion; missed: b.",
+        ),
         (
             [experiment("a", True), experiment("b", not_computed="no data")],
-            "; 1 of 2 experiments not computed.",
+            "; 1 of 2 experiments not computed (b).",
         ),
         ([experiment("b", not_computed="no data")], "No experiment was computed."),
     ],
 )
 def test_the_sentence_names_what_is_missed_and_what_is_not_computed(experiments, sentence):
     assert ValidationResult(experiments=tuple(experiments)).sentence.endswith(sentence)
+
+
+def test_a_telling_number_that_is_not_judged_stands_in_the_sentence():
+    off = prediction("restitution", "1.002", reference=0.95, telling=True)
+    one = replace(experiment("a", True, None), findings=(*experiment("a", True, None).findings, off))
+    assert ValidationResult(experiments=(one,)).sentence == (
+        "1 of 1 judged predictions meet their criterion; 2 are stated and not judged, of which 1 tell most "
+        "(restitution: measured 0.95, predicted 1.002)."
+    )
+
+
+def test_a_vote_is_weighted_by_what_the_blocks_said_of_the_others():
+    # Two blocks: the first is right of three records, the second of one; the fourth is asked for.
+    falls = np.array([[1, 0, 1, 1], [0, 1, 1, 0]], dtype=bool)
+    vote = Vote(falls={"all": falls}, overturned=np.array([1, 0, 1, 1], dtype=bool), records=np.arange(4))
+    fitted = np.array([1, 1, 1, 0], dtype=bool)
+    odds = (0.87 / 0.13) ** 2
+    assert vote.votes("all", fitted, ~fitted) == pytest.approx([odds / (1.0 + odds)])
+    assert probabilities(np.array([0.0, 0.5, 1.0])) == pytest.approx([0.13, 0.5, 0.87])
+
+
+def test_tests_of_one_record_are_not_in_the_fit_that_predicts_them():
+    falls = np.array([[1, 1, 0], [0, 0, 0]], dtype=bool)
+    vote = Vote(falls={"all": falls}, overturned=np.array([1, 1, 0], dtype=bool), records=np.array([0, 0, 1]))
+    every = np.ones(3, dtype=bool)
+    found = vote.by_record(every, partial(vote.votes, "all"))
+    assert found[:2] == pytest.approx(
+        [0.5, 0.5]
+    )  # both blocks say the third; without the other of its record
+    assert found[2] == pytest.approx(0.0)
+
+
+def test_the_family_that_predicts_better_is_taken():
+    good, bad = np.array([[1, 0, 1, 0]], dtype=bool), np.array([[0, 1, 1, 0]], dtype=bool)
+    vote = Vote(falls={"bad": bad, "good": good}, overturned=good[0], records=np.arange(4))
+    assert vote.family(np.ones(4, dtype=bool)) == "good"
+
+
+def test_a_threshold_is_fitted_to_the_measure_that_separates():
+    measures = [np.array([1.0, 2.0, 3.0, 4.0]), np.array([4.0, 1.0, 3.0, 2.0])]
+    overturned = np.array([0, 0, 1, 1], dtype=bool)
+    assert by_threshold(measures, overturned, np.ones(4, dtype=bool)).tolist() == overturned.tolist()
+    assert best_threshold(measures[0], overturned) == (4, 2.5)
+    assert best_threshold(measures[1], overturned)[0] == 3
 
 
 def test_an_experiment_that_is_missed_comes_first_on_the_page_and_in_the_terminal():

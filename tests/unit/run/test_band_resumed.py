@@ -19,7 +19,14 @@ from fem.run import changed_runs
 from fem.run.changed_runs_file import ChangedRunsFile
 
 SHORT = ("solver.duration_s=0.5", "output.fields_s=0", "output.figures=false", "uncertainty.draws=2")
-HELD = ("centroid_m", "eccentricity_m", "effective_width", "slope_percent", "mu_static", "ramp")  # fewer members
+HELD = (
+    "centroid_m",
+    "eccentricity_m",
+    "effective_width",
+    "slope_percent",
+    "mu_static",
+    "ramp",
+)  # fewer members
 MODELS = {
     "reduced": ("solver.duration_s=0.3", *(f"uncertainty.{name}=held" for name in HELD)),
     "full": (*COARSE, "solver.duration_s=0.06"),
