@@ -34,7 +34,7 @@ def lines_of(result: ValidationResult) -> list[str]:
     groups = [
         (f"{one.title}  ({one.tests} tests, {one.seconds:.0f} s)", _lines(one)) for one in _ordered(result)
     ]
-    return page.table_lines(groups, result.sentence)
+    return [result.sentence, *page.table_lines(groups, "")]
 
 
 def _lines(one: Experiment) -> list[str]:

@@ -74,9 +74,12 @@ def compute(folder: Path | None) -> Experiment:
     tried = blocks(series.body)
     with LocalWorkers(cores()) as workers_of:
         runner = Runner(workers_of=workers_of)
-        found = runner.each("blocks on the table", list(tried), partial(falls, series))
-    falling = np.array([one for one in found if one is not None], dtype=bool)
-    possible = [block for block, one in zip(tried, found, strict=True) if one is not None]
+        count = len(series.tests)
+        pairs = [(block, number) for block in tried for number in range(count)]
+        found = runner.each("runs of blocks on the table", pairs, partial(falls, series))
+    rows = [found[first : first + count] for first in range(0, len(found), count)]
+    possible = [block for block, row in zip(tried, rows, strict=True) if None not in row]
+    falling = np.array([row for row in rows if None not in row], dtype=bool)
     sharp = np.array([block.uplift == 0.0 for block in possible])
     records = np.unique([test.record for test in series.tests], return_inverse=True)[1]
     every = np.ones(len(series.tests), dtype=bool)
@@ -120,13 +123,13 @@ def blocks(body: Body) -> tuple[Block, ...]:
     return (*sharp, *cambered)
 
 
-def falls(series: Series, block: Block) -> tuple[bool, ...] | None:
-    """Whether a block overturns in each test; None where there is no such block, as where its base is too round."""
+def falls(series: Series, pair: tuple[Block, int]) -> bool | None:
+    """Whether a block overturns in the test of a number; None where there is no such block, as on too round a base."""
+    block, number = pair
     try:
-        _block(series.body, block)
+        return overturns(series.body, block, series.tests[number])
     except (CaseError, MeshError):
         return None
-    return tuple(overturns(series.body, block, test) for test in series.tests)
 
 
 def overturns(body: Body, block: Block, test: ShakeTest) -> bool:
@@ -171,7 +174,6 @@ def _block(body: Body, block: Block) -> tuple[Case, Container]:
     )
     columns = ELEMENTS if block.uplift > 0.0 else 1
     container = specimen(case, centroid=body.centroid, inertia_ratio=body.inertia, columns=columns)
-    build_model(case, container)  # refuses a base that is too round
     return case, container
 
 

@@ -86,7 +86,9 @@ class Series:
 
 ROCK = Body(mass=353.8, height=0.79, centroid=0.294, inertia=0.0526, angles=(0.04, 0.16))
 ROCKS_TITLE = "Two rocks on a shake table"
-ROCKS_SOURCE = "github.com/ZhiangChen/virtual_shake_robot_pybullet, commit 9f239e7e, 2021; 35 of 582 tests, 0.1-25 Hz"
+ROCKS_SOURCE = (
+    "github.com/ZhiangChen/virtual_shake_robot_pybullet, commit 9f239e7e, 2021; 35 of 582 tests, 0.1-25 Hz"
+)
 ROCKS_LICENCE = "outcomes as facts; the repository is GPL-3.0, none is stated for the data"
 
 
