@@ -39,7 +39,7 @@ SHORT = {
 FEWER_RUNS = {
     "count = 7": "count = 3",
     "further = 100": "further = 0",
-    "empty_mass_kg = 500.0": "",
+    "empty_mass_kg = 600.0": "",
     "mu_static = [0.3, 0.4]": "mu_static = [0.4, 0.4]",
     "mu_kinetic_over_static = [0.5, 1.0]": "mu_kinetic_over_static = [1.0, 1.0]",
 }

@@ -26,6 +26,10 @@ def assess(
         ),
     ] = (),
     allow_outside: AllowOutside = False,
+    quick: Annotated[
+        bool,
+        flag('The set of motions and its repetitions alone; its answer is never "fulfilled" if it moves.'),
+    ] = False,
     pdf: Annotated[bool, flag("Print the page to report.pdf, by Chromium or Chrome.")] = False,
 ) -> int:
     """Verify a container at a site: overturning and slip under motions for the site, by EN 1998-1, 4.4.2.4(2).
@@ -44,7 +48,9 @@ def assess(
     # Loaded late: bad input is refused before anything is compiled.
     study = importlib.import_module("fem.site_check.run")
     with flags.options() as options:
-        result = study.run_site(request, folder, allow_outside=allow_outside or bool(motion), **options)
+        result = study.run_site(
+            request, folder, allow_outside=allow_outside or bool(motion), quick=quick, **options
+        )
     if pdf and result.status == "completed":
         printing = importlib.import_module("fem.report.printing")
         ScreenReporter(quiet=flags.quiet).message(

@@ -15,6 +15,7 @@ from fem.site_check.tables import (
     LimitsTable,
     MotionsTable,
     SiteTable,
+    SourcesTable,
     WindTable,
 )
 from fem.sweep.file import SweepHeading
@@ -57,6 +58,7 @@ class SiteFile(SiteHeading):
     friction: FrictionTable
     limits: LimitsTable
     wind: WindTable | None = None
+    sources: SourcesTable = SourcesTable()
     document: DocumentTable | None = None
 
 

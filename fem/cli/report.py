@@ -23,6 +23,9 @@ PAGES = {
     "hall.json": "fem.hall.page:hall_report",
 }
 
+#: the files that mark a folder whose report has a short form
+WITH_SHORT = ("run.json", "assess.json")
+
 
 def report(
     folder: Path,
@@ -35,7 +38,9 @@ def report(
     all_variations: Annotated[
         bool, flag("Compute every variation of a run, even if that takes long.")
     ] = False,
-    short: Annotated[bool, flag("At most three printed pages, of a run.")] = False,
+    short: Annotated[
+        bool, flag("At most three printed pages, of a run; two, of a verification at a site.")
+    ] = False,
     pdf: Annotated[bool, flag("Print it to a PDF beside it, by Chromium or Chrome.")] = False,
     quiet: Quiet = False,
 ) -> None:
@@ -51,8 +56,8 @@ def report(
             f"{folder}: no such folder; give the folder of a run, a sweep, an ensemble, a response curve or a study, "
             "such as outputs/NAME"
         )
-    if short and not (folder / "run.json").is_file():
-        raise FolderError(f"{folder}: --short is for the report of a run")
+    if short and not any((folder / mark).is_file() for mark in WITH_SHORT):
+        raise FolderError(f"{folder}: --short is for the report of a run, or of a verification at a site")
     if pdf and to is not None and to.suffix.lower() == ".pdf":
         to = to.with_suffix(".html")  # the PDF lies beside the page
     place = _place(to if to is not None else folder / PAGE)
@@ -63,7 +68,8 @@ def report(
     marks = [mark for mark in PAGES if (folder / mark).is_file()]
     if marks:
         module, _, name = PAGES[marks[0]].partition(":")
-        page = getattr(importlib.import_module(module), name)(folder, signature=signature)
+        brief = {"brief": True} if short else {}
+        page = getattr(importlib.import_module(module), name)(folder, signature=signature, **brief)
     else:
         opened = importlib.import_module("fem.results.reader").open_run(folder)
         with interrupts.interruptible(reporter) as stop:

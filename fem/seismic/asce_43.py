@@ -19,6 +19,9 @@ from fem.seismic.method import MethodQuantity, MethodRow, MethodSource, SourceSt
 SLIDING_DAMPING = 0.10
 VERTICAL_SHARE = 0.4  #: of the vertical peak that reduces friction, and of a second horizontal component
 ANGLES = 1000  #: tried between upright and the slenderness angle
+ON_A_FLOOR = (
+    "on a floor, whose nearly harmonic motion does not follow the η of Eq. (3.6) at other damping ratios"
+)
 SOURCE = MethodSource(work="ASCE/SEI 43-05, Appendix A", standing=SourceStanding.DERIVED)
 
 
@@ -127,8 +130,11 @@ class RockingOscillator:
 
 
 def sliding_row(body: LooseBody, limits: Limits, action: FloorAction) -> MethodRow:
-    """Sliding distance in the plane of the motion, against the slip that is allowed."""
-    found = slide(body.mu_kinetic, body.block.gravity, action)
+    """Sliding distance, under the vector spectrum where there are two components, against the slip allowed."""
+    both = action.second_component
+    found = slide(body.mu_kinetic, body.block.gravity, action, second_component=both)
+    vector = math.sqrt(1.0 + (VERTICAL_SHARE * both) ** 2)
+    components = f"two horizontal components, F_H = {vector:.4g}" if both else "motion in a plane"
     said = "does not slide" if found.period == 0.0 else f"slides {length_in_words(found.distance)}"
     return MethodRow(
         name="ASCE/SEI 43 approximate sliding",
@@ -141,7 +147,8 @@ def sliding_row(body: LooseBody, limits: Limits, action: FloorAction) -> MethodR
         unit="m",
         says=said if math.isfinite(found.distance) else "slides further than the spectrum shows",
         source=SOURCE,
-        validity="meant to be conservative; one friction coefficient, the kinetic one; motion in a plane",
+        validity=f"meant to be conservative; one friction coefficient, the kinetic one; {components}",
+        beyond=ON_A_FLOOR if action.in_building else "",
     )
 
 
@@ -175,6 +182,7 @@ def rocking_row(body: LooseBody, limits: Limits, action: FloorAction, *, vertica
         source=SOURCE,
         validity="a rocking body is no oscillator (Makris and Konstantinidis 2003); found not always conservative "
         "against time histories",
+        beyond=ON_A_FLOOR if action.in_building else "",
     )
 
 

@@ -59,6 +59,8 @@ class FloorAction:
     spectrum: Spectrum  #: of the floor, elastic, horizontal
     vertical_spectrum: Spectrum  #: of the floor, elastic
     ground_peak: float  #: gamma_a a_g S of the site [m/s2]
+    in_building: bool = False  #: filtered by a building, and so nearly harmonic
+    second_component: float = 0.0  #: of a second horizontal component over the first; 0: motion in a plane
 
     def __post_init__(self) -> None:
         for name in ("peak", "vertical_peak", "peak_velocity", "ground_peak"):

@@ -69,6 +69,8 @@ class MethodRow:
     says: str
     source: MethodSource
     validity: str
+    median: bool = False  #: what half of such motions or bodies exceed: no statement on one of them
+    beyond: str = ""  #: why it does not hold here; empty: it does
 
     @property
     def utilisation(self) -> float:

@@ -57,6 +57,8 @@ class SlidingRule:
     formula: str
     slip: Regression
     validity: str
+    median: bool = False
+    least_ratio: float = 0.0  #: r, from which it holds
 
 
 RULES = (
@@ -71,27 +73,35 @@ RULES = (
         formula="0.087 V²/A r^−4",
         slip=richards_elms,
         validity="r above 0.3",
+        least_ratio=0.3,
     ),
     SlidingRule(
-        name="Whitman and Liao (1985)", formula="37 V²/A exp(−9.4 r)", slip=whitman_liao, validity="mean"
+        name="Whitman and Liao (1985)",
+        formula="37 V²/A exp(−9.4 r)",
+        slip=whitman_liao,
+        validity="mean",
+        median=True,
     ),
     SlidingRule(
         name="Ambraseys and Menu (1988)",
         formula="10^0.90 (1 − r)^2.53 r^−1.09 cm",
         slip=ambraseys_menu,
         validity="median; knows r alone",
+        median=True,
     ),
     SlidingRule(
         name="Jibson (2007)",
         formula="10^0.215 (1 − r)^2.341 r^−1.438 cm",
         slip=jibson,
         validity="median; knows r alone",
+        median=True,
     ),
     SlidingRule(
         name="Saygili and Rathje (2008)",
         formula="exp(−1.56 − 4.58 r − 20.84 r² + 44.75 r³ − 30.50 r⁴ − 0.64 ln A + 1.55 ln V) cm",
         slip=saygili_rathje,
         validity="median; A in g, V in cm/s",
+        median=True,
     ),
 )
 
@@ -104,6 +114,11 @@ def sliding_rows(body: LooseBody, limits: Limits, action: FloorAction) -> list[M
 def _row(rule: SlidingRule, body: LooseBody, limits: Limits, action: FloorAction) -> MethodRow:
     ratio = body.mu_kinetic * body.block.gravity / action.peak if action.peak > 0.0 else math.inf
     slides = ratio < 1.0 and action.peak_velocity > 0.0
+    beyond = ""
+    if action.in_building:
+        beyond = "on a floor: it was made of ground motions"
+    elif slides and ratio < rule.least_ratio:
+        beyond = f"r = {ratio:.2g}: it holds from {rule.least_ratio:g} on"
     slip = rule.slip(ratio, action.peak, action.peak_velocity) if slides else 0.0
     return MethodRow(
         name=rule.name,
@@ -117,4 +132,6 @@ def _row(rule: SlidingRule, body: LooseBody, limits: Limits, action: FloorAction
         says=f"slides {length_in_words(slip)}" if slides else "does not slide",
         source=MethodSource(work=rule.name, standing=SourceStanding.LITERATURE),
         validity=f"{rule.validity}; slip in one direction on a slope, one friction coefficient",
+        median=rule.median,
+        beyond=beyond,
     )

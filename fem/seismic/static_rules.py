@@ -10,12 +10,15 @@ from dataclasses import replace
 from fem.seismic.body import FloorAction, LooseBody
 from fem.seismic.method import MethodQuantity, MethodRow, MethodSource, SourceStanding
 
-#: shares of the horizontal and vertical peak, after EN 1998-1:2004, 4.3.3.5.2
+#: shares of the horizontal and vertical peak: by itself, two of EN 1998-1:2004, 4.3.3.5.2, and both at once, more than
+#: that clause asks for
 COMBINATIONS = ((1.0, 0.0), (1.0, 0.3), (1.0, 1.0), (0.3, 1.0))
 ACROSS = 0.3  #: share of the other horizontal component, EN 1998-1:2004, 4.3.3.5.1 (3)
 ELEMENT_BEHAVIOUR_FACTOR = 1.0  #: q_a: no row of table 4.4 is for an unanchored body
 
-PEAK = MethodSource(
+STATIC = "EN 1998-1:2004, 4.4.2.4 (1)P, with the peak as a static force"
+PEAK = MethodSource(work=STATIC, standing=SourceStanding.DERIVED)
+COMBINED = MethodSource(
     work="EN 1998-1:2004, 4.4.2.4 (1)P and 4.3.3.5.2, with the peak as a static force",
     standing=SourceStanding.DERIVED,
 )
@@ -23,10 +26,10 @@ DIRECTIONS = MethodSource(
     work="EN 1998-1:2004, 4.4.2.4 (1)P and 4.3.3.5.1, with the peak as a static force",
     standing=SourceStanding.DERIVED,
 )
+#: no clause gives a loose body the plateau and the behaviour factor of a building
 PLATEAU = MethodSource(
-    work="EN 1998-1:2004",
-    clause="4.4.2.4 (1)P with 4.3.3.2.2 and 3.2.2.5 (4)P, Eq. (3.14)",
-    standing=SourceStanding.CLAUSE,
+    work="EN 1998-1:2004, 4.4.2.4 (1)P, 4.3.3.2.2 and 3.2.2.5 (4)P, Eq. (3.14)",
+    standing=SourceStanding.DERIVED,
 )
 ELEMENT = MethodSource(
     work="EN 1998-1:2004", clause="4.3.5.2, Eqs. (4.24) and (4.25)", standing=SourceStanding.CLAUSE
@@ -43,7 +46,7 @@ def peak_rows(body: LooseBody, action: FloorAction, *, horizontal: float, vertic
         put_in=f"{horizontal:g} × {action.peak:.4g}",
         lift=vertical * action.vertical_peak,
         lift_put_in=f"{vertical:g} × {action.vertical_peak:.4g}",
-        source=PEAK,
+        source=COMBINED if 0.3 in (horizontal, vertical) else PEAK,
         validity="at rest before uplift or slip; treats the instantaneous peak as a sustained force",
     )
 

@@ -26,6 +26,7 @@ from fem.site_check.tables import (
     LimitsTable,
     MotionsTable,
     SiteTable,
+    SourcesTable,
     WindTable,
 )
 
@@ -42,6 +43,7 @@ TABLES: dict[str, type[CaseTable]] = {
     "friction": FrictionTable,
     "limits": LimitsTable,
     "wind": WindTable,
+    "sources": SourcesTable,
     "document": DocumentTable,
 }
 FULL, EMPTY = "full", "empty"
@@ -89,6 +91,7 @@ class SiteRequest:
     friction: FrictionTable
     limits: LimitsTable
     wind: WindTable | None
+    sources: SourcesTable
     document: DocumentTable | None
 
     @property
@@ -226,7 +229,7 @@ def _request(data: Mapping[str, Any], origin: Origin, container: Case | None = N
     for name, model in TABLES.items():
         if name in REQUIRED and name not in tables:
             problems.append(f"[{name}] is missing: {REQUIRED[name]}")
-        elif name in tables or name == "motions":
+        elif name in tables or name in ("motions", "sources"):
             take(name, model, tables.get(name, {}))
     if problems:
         raise CaseError("\n".join(problems))
@@ -242,6 +245,7 @@ def _request(data: Mapping[str, Any], origin: Origin, container: Case | None = N
         friction=read["friction"],
         limits=read["limits"],
         wind=read.get("wind"),
+        sources=read["sources"],
         document=read.get("document"),
     )
     _check(request)

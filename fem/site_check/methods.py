@@ -2,21 +2,23 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from contact.reference.rigid_block import RigidBlock
 from contact.stepping.observables import ROCKING
 from fem.case.validation import CaseError
-from fem.results.outcome import Outcome, least_slide
+from fem.results.outcome import least_slide
 from fem.runtime.arrays import FloatArray
 from fem.seismic.action import DAMPING_RATIO, SiteAction, damping_correction
 from fem.seismic.body import FloorAction, Limits, LooseBody
-from fem.seismic.method import MethodQuantity, MethodRow, length_in_words
+from fem.seismic.method import MethodQuantity, MethodRow, SourceStanding, length_in_words
 from fem.seismic.methods import method_capacities, method_rows, methods_of
 from fem.seismic.wind import wind_rows
 from fem.site_check.result import FloorResult, SiteBody, SiteInputs, SiteMethod, SiteMotion, SiteRun
+from fem.site_check.rule import RuleFound, groups_of
+from fem.site_check.tables import LimitsTable
 
 
 def site_methods(
@@ -40,6 +42,11 @@ def site_methods(
         runs: those of the set count, with both signs.
     """
     limits = Limits(rotation=inputs.rotation_ratio_limit, slip=inputs.slip_limit_m)
+    by_rule = LimitsTable(
+        rotation_ratio=inputs.rotation_ratio_limit,
+        single_rotation_ratio=inputs.single_rotation_ratio_limit,
+        slip_m=inputs.slip_limit_m,
+    )
     action = floor_action(site, motions, periods_s, floor)
     rows = []
     for one in bodies:
@@ -56,7 +63,7 @@ def site_methods(
             _result(
                 row,
                 one,
-                found_by_runs(row, own, width=one.support_width_m, limits=limits),
+                found_by_runs(row, own, width=one.support_width_m, limits=by_rule),
                 capacity.factor,
             )
             for row, capacity in zip(method_rows(methods, action), capacities, strict=True)
@@ -140,6 +147,7 @@ def floor_action(
         spectrum=spectrum,
         vertical_spectrum=ground.vertical_spectrum,
         ground_peak=ground.ground_peak,
+        in_building=True,
     )
 
 
@@ -151,23 +159,44 @@ class Found:
     compared: str = ""
 
 
-def found_by_runs(row: MethodRow, runs: Sequence[SiteRun], *, width: float, limits: Limits) -> Found:
-    """The result of the runs beside that of a method, and how the two compare.
+def found_by_runs(row: MethodRow, runs: Sequence[SiteRun], *, width: float, limits: LimitsTable) -> Found:
+    """What the rule finds in the runs of the set beside a method, and how the two compare.
 
     Overturning: over all frictions; slip: with the least friction, as the methods take it. A method is conservative
-    where it refuses what the runs fulfil, or tells more slip than they find.
+    where it refuses what the rule fulfils, or tells more slip than the rule counts. Neither a median nor a method out
+    of its range is compared.
     """
     done = [run for run in runs if run.stage == "set" and run.outcome is not None]
-    if row.quantity is MethodQuantity.OVERTURNING:
-        return _overturning(row, done, limits)
-    least = min(((run.mu_static, run.mu_kinetic) for run in done), default=None)
-    slips = [run.slipped for run in done if (run.mu_static, run.mu_kinetic) == least]
-    if not slips:
+    if not done:
         return Found(words="no runs")
-    most = max(slips)
-    least_slip, slides = min(slips), most > least_slide(width)
-    ends = f"{length_in_words(least_slip)} to" if least_slip > least_slide(width) else "up to"
-    words = f"{ends} {length_in_words(most)}" if slides else "none slides"
+    if row.quantity is MethodQuantity.OVERTURNING:
+        found = _overturning(row, done, limits)
+    else:
+        found = _sliding(row, done, width)
+    return replace(found, compared="") if row.median or row.beyond else found
+
+
+def _overturning(row: MethodRow, done: Sequence[SiteRun], limits: LimitsTable) -> Found:
+    found = RuleFound.of(groups_of(done))
+    words = f"{found.overturned or 'none'} of {len(done)} overturned"
+    turned, largest = found.by_rule.rotation_ratio, found.by_rule.rotation_ratio_largest
+    if turned is not None and largest is not None:
+        words += f"; by the rule {turned:.2g} of the angle" if largest > ROCKING else "; none rocks"
+        if largest > ROCKING and largest > turned:
+            words += f", at most {largest:.2g}"
+    failed = found.overturned > 0 or bool({*found.exceeded(limits)} - {"slip_m"})
+    return Found(words=words, compared=_compared(refused=not row.fulfilled, failed=failed))
+
+
+def _sliding(row: MethodRow, done: Sequence[SiteRun], width: float) -> Found:
+    least = min((run.mu_static, run.mu_kinetic) for run in done)
+    own = [run for run in done if (run.mu_static, run.mu_kinetic) == least]
+    most = max(run.slipped for run in own)
+    slides = most > least_slide(width)
+    mean = RuleFound.of(groups_of(own)).by_rule.slip_mean_m
+    words = f"largest {length_in_words(most)}" if slides else "none slides"
+    if slides and mean is not None:
+        words += f", mean {length_in_words(mean)}"
     if row.quantity is MethodQuantity.SLIDING:
         return Found(words=words, compared=_compared(refused=not row.fulfilled, failed=slides))
     within = min(row.demand, most) >= 0.9 * max(row.demand, most)
@@ -175,25 +204,6 @@ def found_by_runs(row: MethodRow, runs: Sequence[SiteRun], *, width: float, limi
         words=words,
         compared="agrees" if within else "conservative" if row.demand > most else "not conservative",
     )
-
-
-def _overturning(row: MethodRow, done: Sequence[SiteRun], limits: Limits) -> Found:
-    fell = sum(run.outcome == Outcome.OVERTURNED for run in done)
-    stood = [run.turned for run in done if run.outcome != Outcome.OVERTURNED]
-    if not done:
-        return Found(words="no runs")
-    words = f"{fell or 'none'} of {len(done)} overturned"
-    if stood:
-        words += f"; {_rotation(max(stood), others=fell > 0)}"
-    failed = fell > 0 or max(stood) > limits.rotation
-    return Found(words=words, compared=_compared(refused=not row.fulfilled, failed=failed))
-
-
-def _rotation(ratio: float, *, others: bool) -> str:
-    """The largest rotation ratio of those that stood, beside others that fell."""
-    if ratio <= ROCKING:
-        return "no other rocks" if others else "none rocks"
-    return f"{'the others ' if others else ''}at most {ratio:.2g} of the angle"
 
 
 def _compared(*, refused: bool, failed: bool) -> str:
@@ -217,6 +227,9 @@ def _result(row: MethodRow, body: SiteBody, found: Found, factor: float | None) 
         says=row.says,
         source=str(row.source),
         validity=row.validity,
+        checked=row.source.standing is not SourceStanding.UNCHECKED,
+        median=row.median,
+        beyond=row.beyond,
         found=found.words,
         compared=found.compared,
         factor=factor,

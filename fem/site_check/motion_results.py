@@ -118,7 +118,7 @@ def _checks(checked: MotionSetCheck) -> tuple[SetCheck, ...]:
                 found=checked.vertical_least_ratio,
                 demanded=f"at least {LEAST_SHARE:g}" if needed else "shown only: recorded components",
                 fulfilled=checked.vertical_fulfilled or not needed,
-                clause="EN 1998-1:2004, 3.2.3.1.2 (1)P" if needed else "",
+                clause="EN 1998-1:2004, 3.2.3.1.2 (1)P; 0.9 as in (4) c)" if needed else "",
             )
         )
     if checked.second_least_ratio is not None and checked.second_least_ratio_period is not None:

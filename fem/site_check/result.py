@@ -281,8 +281,13 @@ class SiteMethod(JsonBlock):
     says: str
     source: str
     validity: str
+    checked: bool = True  #: against the text of its source
+    median: bool = (
+        False  #: half of such motions or bodies exceed it, so that it is not compared with the runs
+    )
+    beyond: str = ""  #: why it does not hold here, and is not compared; empty: it does
     found: str = ""
-    compared: str = ""  #: the method against the runs: agrees | conservative | not conservative
+    compared: str = ""  #: the method against the rule's value: agrees | conservative | not conservative
     factor: float | None = None  #: capacity over strength: on the action, at which the method is used up
 
 
@@ -303,6 +308,8 @@ class SiteInputs(JsonBlock):
         USUAL_BEHAVIOUR_FACTOR  #: of the plateau rows: that of [static] of the container
     )
     model: str
+    #: where site, container, friction and limits come from, in the words of the user; empty: not stated
+    sources: tuple[tuple[str, str], ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -325,6 +332,7 @@ class SiteProvenance(JsonBlock):
     site_hash: str
     case_hash: str
     versions: tuple[tuple[str, str], ...] = ()
+    system: str = ""  #: operating system and processor
     wall_s: float | None = None
     cpu_s: float | None = None
 

@@ -50,6 +50,11 @@ class RunGroup:
         return len({run.motion for run in self.runs})
 
     @property
+    def rests(self) -> bool:
+        """Whether nothing moves in any of its runs."""
+        return all(run.outcome == Outcome.REST for run in self.runs)
+
+    @property
     def overturned(self) -> int:
         """Runs that overturned."""
         return sum(run.outcome == Outcome.OVERTURNED for run in self.runs)

@@ -5,10 +5,11 @@ neither on that nor on the number of cores.
 """
 
 import hashlib
+import platform
 import shlex
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Unpack
 
@@ -19,7 +20,9 @@ from fem.case.case import case_hash
 from fem.results.disk import BYTES_BESIDE, table_bytes
 from fem.results.folder import ResultFolder
 from fem.results.kinds import SITE
+from fem.run.expected import expected_s
 from fem.runtime.identity import versions
+from fem.runtime.progress import clock_time
 from fem.seismic.ground_motion import GroundMotion
 from fem.seismic.motion_set import MotionSetCheck, check_set
 from fem.site_check.answer import answer_of, governing_run, no_answer_yet
@@ -52,16 +55,25 @@ from fem.site_check.stages import Stages
 
 RUNS, PAGE = "runs.csv", "report.html"
 OF_A_MOTION = 75_000  #: numbers, in three files
+QUICK = (
+    "Left out by --quick: further motions, other factors on the motions, the deciding runs with their bands."
+)
 TIMES_THE_SET = 20  #: runs of all stages over those of the set
 
 
 def run_site(
-    request: SiteRequest, folder: Path, *, allow_outside: bool = False, **options: Unpack[StudyOptions]
+    request: SiteRequest,
+    folder: Path,
+    *,
+    allow_outside: bool = False,
+    quick: bool = False,
+    **options: Unpack[StudyOptions],
 ) -> SiteResult:
     """Verify a container at a site, into a folder; raises as `run_study`, and CaseError for bad input.
 
     Args:
         allow_outside: take records from outside the folder of the site file.
+        quick: the set and its repetitions alone; "fulfilled" then only of a container that rests.
     """
     began = time.perf_counter()
     bodies = tuple(map(body_of, request.variants))
@@ -70,7 +82,7 @@ def run_site(
     floors = floor_motions(request, ground)
     stages = Stages.of(request, floors, longest=longest, folder=folder)
     files = len(ground) * (1 + len(floors)) + request.motions.further
-    asked = site_hash(request, ground)
+    asked = hash_of([site_hash(request, ground), "quick"]) if quick else site_hash(request, ground)
     work = _Verification(
         request=request,
         stages=stages,
@@ -79,6 +91,7 @@ def run_site(
         floors=floors,
         wind=wind_utilisation(bodies, inputs_of(request)),
         asked=asked,
+        quick=quick,
         began=began,
     )
     study = Study(
@@ -99,9 +112,8 @@ def run_site(
 
 def site_hash(request: SiteRequest, ground: Sequence[GroundMotion]) -> str:
     """Equal for requests that give the same result."""
-    data = {
-        key: value for key, value in request.data.items() if key not in ("title", "document", "container")
-    }
+    for_people = ("title", "document", "sources", "container")
+    data = {key: value for key, value in request.data.items() if key not in for_people}
     digest = hashlib.sha256()
     for motion in ground:
         for component in motion.components:
@@ -120,6 +132,7 @@ class _Verification:
     floors: Mapping[float | None, Sequence[GroundMotion]]  #: by building period
     wind: float | None  #: the largest utilisation under it
     asked: str  #: its hash
+    quick: bool
     began: float  #: when it was asked for [s]
 
     def compute(self, place: ResultFolder, runner: Runner) -> SiteResult:
@@ -148,8 +161,10 @@ class _Verification:
     def _answer(self, place: ResultFolder, runner: Runner, motions: MotionSet) -> SiteAnswer | None:
         """Compute the runs that are missing; None where it was interrupted."""
         again, stages, rows = [], self.stages, self.stages.rows
+        left_out = QUICK if self.quick and not stages.rests else ""
         if motions.valid:
             cases = RunCases.of(self.request, place.path)
+            self._say_expected(runner, cases)
             LoggedRuns(
                 what="runs",
                 path=place.path / RUNS,
@@ -160,13 +175,28 @@ class _Verification:
                 note=rows.note,
             ).run(runner, self._batches(runner))
             runs = rows.in_order()
-            keys = [key for key in self._deciding(runs) if key not in rows.still]
+            keys = [key for key in self._deciding(runs) if key not in rows.still and not left_out]
             if not runner.stop() and keys:
                 runner.reporter.message("repeating the deciding runs with the reduced model")
                 again = confirmed(cases, runs, keys, runner.jobs)
         if runner.stop():
             return None
-        return answer_of(self.request, motions, rows.in_order(), stages.beside(again, self.wind))
+        beside = replace(stages.beside(again, self.wind), left_out=left_out)
+        return answer_of(self.request, motions, rows.in_order(), beside)
+
+    def _say_expected(self, runner: Runner, cases: RunCases) -> None:
+        """How many runs there are, and how long they take, before the first is computed."""
+        own, most = self.stages.most_runs(quick=self.quick)
+        of_set = self.stages.plan.of_set()
+        cores = f"{runner.jobs} core{'s' if runner.jobs > 1 else ''}"
+        words = f"{len(of_set) - own} of {len(of_set)} runs rest below uplift and slip and are not computed; "
+        seconds = most * expected_s(cases(of_set[0])) / runner.jobs
+        runner.reporter.message(
+            f"{words if own < len(of_set) else ''}{own} runs of the set, up to {most} with repetitions"
+            + ("" if self.quick else ", further motions and other factors")
+            + f": at most about {clock_time(float(f'{seconds:.1g}'))} on {cores}"
+            + ("" if self.quick or self.stages.rests else ", then the deciding runs with their bands")
+        )
 
     def _deciding(self, runs: Mapping[RunKey, SiteRun]) -> list[RunKey]:
         own = self.stages.rows.of(self.stages.plan.of_set())
@@ -202,10 +232,11 @@ class _Verification:
                 runs=own if answer else (),
             ),
             provenance=SiteProvenance(
-                command=f"python -m fem assess {shlex.quote(request.origin.place)}",
+                command=f"python -m fem assess {shlex.quote(request.origin.place)}{' --quick' if self.quick else ''}",
                 site_hash=self.asked,
                 case_hash=case_hash(request.container),
                 versions=tuple(versions().items()),
+                system=f"{platform.system()} {platform.release()}, {platform.machine()}",
                 wall_s=time.perf_counter() - self.began,
             ),
             document=None if document is None else SiteDocument(**document),
@@ -221,8 +252,9 @@ class _Verification:
 
     def _batches(self, runner: Runner) -> Iterator[Sequence[RunKey]]:
         """The runs of each stage that are missing; a stage is asked for when the one before is there."""
-        yield from self.stages.of_the_answer(runner)
-        yield from self.stages.of_the_margin()
+        yield from self.stages.of_the_answer(runner, quick=self.quick)
+        if not self.quick:
+            yield from self.stages.of_the_margin()
 
 
 def inputs_of(request: SiteRequest) -> SiteInputs:
@@ -240,4 +272,5 @@ def inputs_of(request: SiteRequest) -> SiteInputs:
         gamma_mu=request.wind.gamma_mu if request.wind else 1.0,
         behaviour_factor=static.behaviour_factor if static else USUAL_BEHAVIOUR_FACTOR,
         model=request.heading.model,
+        sources=tuple(request.sources.model_dump().items()),
     )

@@ -75,6 +75,11 @@ class RunPlan:
     periods: tuple[float | None, ...]  #: of the building
 
     @property
+    def signs(self) -> tuple[int, ...]:
+        """Of the vertical component."""
+        return (1, -1) if self.vertical else (0,)
+
+    @property
     def factors(self) -> list[float]:
         """Of the scan, rising; that of the set is not among them."""
         return sorted(SCANNED)
@@ -84,7 +89,6 @@ class RunPlan:
 
         Neighbours differ in their motion alone, so that they share the equilibrium that they start from.
         """
-        signs = (1, -1) if self.vertical else (0,)
         return [
             RunKey(
                 stage=SET,
@@ -103,7 +107,7 @@ class RunPlan:
                 self.periods,
                 self.request.frictions,
                 range(1, self.motions + 1),
-                signs,
+                self.signs,
             )
         ]
 
@@ -154,12 +158,11 @@ class RunPlan:
 
     def of_further(self, groups: Iterable[RunGroup], count: int) -> list[RunKey]:
         """Further motions with both signs, for the containers and frictions of these groups."""
-        signs = (1, -1) if self.vertical else (0,)
         return [
             key_of(group.first)._replace(stage=FURTHER, motion=number, vertical_sign=sign)
             for group in groups
             for number in range(1, count + 1)
-            for sign in signs
+            for sign in self.signs
         ]
 
 

@@ -53,13 +53,20 @@ NOT_COVERED = (
 )
 
 
-def site_report(folder: Path, result: SiteResult | None = None, *, signature: Signature | None = None) -> str:
+def site_report(
+    folder: Path,
+    result: SiteResult | None = None,
+    *,
+    signature: Signature | None = None,
+    brief: bool = False,
+) -> str:
     """The page, as the text of an HTML file; there is nothing to sign before the verification is finished.
 
     Args:
         folder: of the verification.
         result: of it; None: as its folder holds it.
         signature: author, checker, revision.
+        brief: two printed sheets: that which is signed, and what the runs found.
 
     Raises:
         FolderError: the folder holds no result of `assess`, or it is damaged.
@@ -71,11 +78,11 @@ def site_report(folder: Path, result: SiteResult | None = None, *, signature: Si
         site_sections.DrawnMotion(
             motion, motion_figure(folder, motion, result) if motion.number <= MOST_DRAWN else None
         )
-        for motion in result.set.motions
+        for motion in (() if brief else result.set.motions)
     ]
     copies = [(name, _text(folder / name)) for name in COPIES if (folder / name).is_file()]
     page = Page(
-        kind="Verification of an unanchored container",
+        kind=f"Verification of an unanchored container{', short' if brief else ''}",
         title=result.title or folder.name,
         name=folder.name,
         hash=result.provenance.site_hash,
@@ -97,12 +104,19 @@ def site_report(folder: Path, result: SiteResult | None = None, *, signature: Si
                     ),
                 ],
             ),
-            site_sections.runs_section(view),
-            site_sections.methods_section(view),
-            site_sections.motions_section(motions),
-            site_sections.every_run_section(view),
-            site_sections.sheet_section(view),
-            site_sections.repeat_section(view, copies),
+            site_sections.runs_section(view, brief=brief),
+            *(
+                []
+                if brief
+                else [
+                    site_sections.methods_section(view),
+                    site_sections.unchecked_section(view),
+                    site_sections.motions_section(motions),
+                    site_sections.every_run_section(view),
+                    site_sections.sheet_section(view),
+                    site_sections.repeat_section(view, copies),
+                ]
+            ),
         ],
     )
     return html_of(page)
@@ -304,6 +318,9 @@ def container_rows(result: SiteResult) -> list[tuple[str, str]]:
             f"{short(inputs.single_rotation_ratio_limit)}; slip {quantity(inputs.slip_limit_m, 'mm', 1e3, 3)}",
         ),
     ]
+    stated = "; ".join(f"{name}: {words or 'not stated'}" for name, words in inputs.sources)
+    if stated:
+        rows.append(("sources", stated))
     if inputs.wind_pressure_Pa is not None:
         pressure = (
             f"q_p = {quantity(inputs.wind_pressure_Pa, 'kN/m²', 1e-3, 3)} ({inputs.wind_pressure_source})"

@@ -10,12 +10,13 @@ from markupsafe import Markup
 from fem.html import sections as html
 from fem.html.formula import formula_markup
 from fem.html.page import svg_element
-from fem.html.units import ABSENT, figure_cell, figure_head, millimetres, number, quantity, ratio, short
+from fem.html.units import ABSENT, figure_head, number, quantity, short, typeset
 from fem.results.figures import FIGURES, Place, keys_of
 from fem.results.outcome import Outcome
 from fem.site_check.figures import draw_floor, draw_methods, draw_scan
 from fem.site_check.result import ConfirmedRun, SiteMethod, SiteMotion, SiteResult, SiteRun
 from fem.site_check.rule import RunGroup, both_directions, groups_of
+from fem.site_check.tables import MotionsTable
 
 BOTH = (
     "Both: the slips of the two elevations as vectors, the larger of 100 % + 30 % and 30 % + 100 % (EN 1998-1:2004, "
@@ -25,6 +26,11 @@ MARGIN = (
     "The margin is the factor on the set, not the ratio: a body may return from beyond its angle, and a body that a "
     "weaker motion overturns may stand under a stronger one. Near the boundary a single run may come out otherwise "
     "with other numerics, so read the factor as a magnitude."
+)
+DEFAULT_SEED = MotionsTable().seed
+SINGLE = (
+    "The peak of a single motion is chaotic: with other numerics the same motion may turn a body half or twice as far. "
+    "Two figures are given; what the rule makes of all of them is steadier, and its range is on the first sheet."
 )
 symbols = partial(formula_markup, prose=True)
 TURNED, *FURTHER = keys_of(Place.RUNS)
@@ -73,8 +79,8 @@ def figure(svg: str, name: str, label: str) -> html.Figure:
     return html.Figure(svg_element(svg, label=name.replace("-", " "), prefix=name), label)
 
 
-def runs_section(view: SiteView) -> html.PageSection:
-    """What the runs found, and the margin."""
+def runs_section(view: SiteView, *, brief: bool = False) -> html.PageSection:
+    """What the runs found, and the margin; in brief without the runs of a single motion."""
     if not view.groups:
         return html.section("", "found")
     result, governing = view.result, view.governing
@@ -84,20 +90,26 @@ def runs_section(view: SiteView) -> html.PageSection:
         f"Every motion {signs}at each weight and friction, model {result.inputs.model}. No value of friction is always "
         "the unfavourable one: with low friction the body slides, with high friction it rocks. At a ratio of 1 the "
         "body has reached its slenderness angle, beyond which it falls if left alone.",
-        _groups_table(view, both),
     ]
-    if both:
+    moving = [group for group in view.groups if not group.rests]
+    if moving:
+        blocks.append(_groups_table(view, moving, both))
+    if resting := len(view.groups) - len(moving):
+        count = f"All {resting}" if not moving else f"The other {resting} of {len(view.groups)}"
+        blocks.append(f"{count} combinations of weight, elevation and friction are at rest in every motion.")
+    if both and moving:
         blocks.append(html.Note(BOTH))
-    if result.floor:
+    if result.floor and not brief:
         drawn = figure(draw_floor(result.action, result.floor), "floor", "spectra of the floor")
         blocks += [html.Heading("The floor in the building"), drawn]
-    if governing:
+    if governing and not governing.rests and not brief:
         where = f"{governing.first.mass}, friction {friction(governing.first)}"
         blocks += [
             html.Heading(f"Motion by motion, where it governs: {where}"),
             _governing_table(governing),
+            html.Note(SINGLE),
         ]
-    if result.result.confirmed:
+    if result.result.confirmed and not brief:
         blocks += [html.Heading("The deciding runs, repeated"), _confirmed_table(result.result.confirmed)]
     if result.result.scan:
         drawn = figure(
@@ -114,11 +126,15 @@ class _GroupRow(NamedTuple):
     elevation: str
     overturned: str
     rotation: str
-    slip: float | None
+    largest: str
+    slip: str
+    mean: str
     look: str = ""
 
 
-def _groups_table(view: SiteView, both: Sequence[tuple[RunGroup, float]]) -> html.Table:
+def _groups_table(
+    view: SiteView, groups: Sequence[RunGroup], both: Sequence[tuple[RunGroup, float]]
+) -> html.Table:
     def row_of(group: RunGroup) -> _GroupRow:
         failed = f", {group.failed} failed" if group.failed else ""
         look = "given" if group is view.governing else ""
@@ -126,8 +142,10 @@ def _groups_table(view: SiteView, both: Sequence[tuple[RunGroup, float]]) -> htm
             group,
             group.first.elevation,
             f"{group.overturned} of {len(group.runs)}{failed}",
-            ratio(group.by_rule.rotation_ratio),
-            group.by_rule.slip_m,
+            two_figures("rotation_ratio", group.by_rule.rotation_ratio),
+            two_figures("rotation_ratio", group.by_rule.rotation_ratio_largest),
+            two_figures("max_slip_m", group.by_rule.slip_m),
+            two_figures("max_slip_m", group.by_rule.slip_mean_m),
             "failed" if group.overturned or group.failed else look,
         )
 
@@ -141,10 +159,18 @@ def _groups_table(view: SiteView, both: Sequence[tuple[RunGroup, float]]) -> htm
         html.Column("friction, static / kinetic", lambda row: friction(row.group.first), html.NUMBER),
         html.Column("overturned", lambda row: row.overturned, html.NUMBER),
         html.Column("rotation ratio, by the rule", lambda row: row.rotation, html.NUMBER),
-        html.Column("slip, by the rule [mm]", lambda row: millimetres(row.slip), html.NUMBER),
+        html.Column("largest of one motion", lambda row: row.largest, html.NUMBER),
+        html.Column("slip, largest [mm]", lambda row: row.slip, html.NUMBER),
+        html.Column("mean", lambda row: row.mean, html.NUMBER),
     ]
-    rows = [row_of(group) for group in view.groups]
-    rows += [_GroupRow(group, "both, 100 % + 30 %", ABSENT, ABSENT, slip) for group, slip in both]
+    rows = [row_of(group) for group in groups]
+    rows += [
+        _GroupRow(
+            group, "both, 100 % + 30 %", ABSENT, ABSENT, ABSENT, two_figures("max_slip_m", slip), ABSENT
+        )
+        for group, slip in both
+        if not group.rests
+    ]
     return html.table_of("what the runs found", columns, rows, row_look=lambda row: row.look, look="runs")
 
 
@@ -156,7 +182,7 @@ def _run_columns(k: int, head: str, turned_head: str) -> list[html.Column[RunPai
 
     def found(key: str, run: SiteRun) -> str:
         fell = key == TURNED and run.outcome == Outcome.OVERTURNED
-        return "fell" if fell else figure_cell(FIGURES[key], run[key])
+        return "fell" if fell else two_figures(key, run[key])
 
     return [
         html.Column(head, partial(of, lambda run: run.outcome or "failed")),
@@ -186,7 +212,7 @@ def _governing_table(group: RunGroup) -> html.Table:
 
 def _confirmed_table(confirmed: Sequence[ConfirmedRun]) -> html.Table:
     def found(key: str, one: ConfirmedRun) -> str:
-        return figure_cell(FIGURES[key], one[key])
+        return two_figures(key, one[key])
 
     columns: list[html.Column[ConfirmedRun]] = [
         html.Column("motion", lambda one: str(one.run.motion), html.NUMBER),
@@ -207,40 +233,71 @@ def _confirmed_table(confirmed: Sequence[ConfirmedRun]) -> html.Table:
 def methods_section(view: SiteView) -> html.PageSection:
     """The simplified methods side by side, and what each says of the strength."""
     result = view.result
-    if not result.methods:
+    checked = [row for row in result.methods if row.checked]
+    if not checked:
         return html.section("", "methods")
     governing = result.result.governing
     shown = governing.mass if governing else result.bodies[0].mass
-    drawn = [row for row in result.methods if row.mass == shown]
+    drawn = [row for row in checked if row.mass == shown and not row.beyond]
     capacities = (
         draw_methods(drawn, result.result, shown) if any(row.factor is not None for row in drawn) else ""
     )
+    return html.section(
+        "Rules of thumb side by side",
+        "methods",
+        html.joined(
+            "All use the least friction of the range and the same action as the runs. The last columns give what the "
+            "rule counts, and whether the method is conservative against that. A median is what half of such "
+            "motions or bodies exceed, so it gets no verdict; nor does a rule out of its range, in grey. "
+            "Formulas and numbers are in the ",
+            html.link("static calculation", "sheet"),
+            ".",
+        ),
+        _methods_table("rules of thumb side by side", checked),
+        *([figure(capacities, "methods-0", "capacity over strength by each method")] if capacities else []),
+    )
+
+
+def unchecked_section(view: SiteView) -> html.PageSection:
+    """The simplified methods whose sources were not seen, on a sheet of their own."""
+    rows = [row for row in view.result.methods if not row.checked]
+    if not rows:
+        return html.section("", "unchecked")
+    return html.section(
+        "Further rules of thumb, not checked against their texts",
+        "unchecked",
+        html.Paragraph(
+            "They are no part of the verification: take them as a hint, or look up the source.", "tight"
+        ),
+        _methods_table("rules of thumb that were not checked", rows),
+        look="break",
+    )
+
+
+def _methods_table(caption: str, rows: Sequence[SiteMethod]) -> html.Table:
+    def compared(row: SiteMethod) -> html.Cell:
+        if row.beyond:
+            return html.Cell(f"out of range: {row.beyond}", "note")
+        if row.median:
+            return html.Cell("a median: no verdict", "note")
+        return html.Cell(row.compared or ABSENT, "doubt" if row.compared == "not conservative" else "")
+
     columns: list[html.Column[SiteMethod]] = [
         html.Column("method", lambda row: symbols(row.name)),
         html.Column("check", lambda row: row.quantity),
         html.Column("weight", lambda row: row.mass + _elevation(row.elevation)),
         html.Column("utilisation", lambda row: _utilisation(row, 3), html.NUMBER),
         html.Column("conclusion", lambda row: row.says),
-        html.Column("the runs found", lambda row: Markup.escape(row.found)),
-        html.Column(
-            "the method is",
-            lambda row: html.Cell(
-                row.compared or ABSENT, "doubt" if row.compared == "not conservative" else ""
-            ),
-        ),
+        html.Column("the rule counts", lambda row: Markup.escape(row.found)),
+        html.Column("the method is", compared),
         html.Column("source", lambda row: html.Cell(Markup.escape(row.source), "note")),
     ]
-    return html.section(
-        "Rules of thumb side by side",
-        "methods",
-        html.joined(
-            "All use the least friction of the range and the same action as the runs. The last columns give what the "
-            "runs found, and whether the method is conservative there; formulas and numbers are in the ",
-            html.link("static calculation", "sheet"),
-            ".",
-        ),
-        html.table_of("rules of thumb side by side", columns, merged_methods(result.methods), look="methods"),
-        *([figure(capacities, "methods-0", "capacity over strength by each method")] if capacities else []),
+    return html.table_of(
+        caption,
+        columns,
+        merged_methods(rows),
+        row_look=lambda row: "outside" if row.beyond else "",
+        look="methods",
     )
 
 
@@ -276,8 +333,9 @@ def motions_section(motions: Sequence[DrawnMotion]) -> html.PageSection:
 
 def every_run_section(view: SiteView) -> html.PageSection:
     """Appendix B: a row for each motion at each weight and friction."""
-    pairs = [pair for group in view.groups for pair in pairs_of(group)]
-    if not pairs:
+    every = [pair for group in view.groups for pair in pairs_of(group)]
+    pairs = [pair for pair in every if any(run.outcome != Outcome.REST for run in pair.runs)]
+    if not every:
         return html.section("", "runs")
     period: html.Column[RunPair] = html.Column(
         symbols("T_1 [s]"), lambda pair: short(pair.group.first.building_period_s), html.NUMBER
@@ -293,8 +351,14 @@ def every_run_section(view: SiteView) -> html.PageSection:
             for column in _run_columns(k, sign_in_words(sign), "ratio")
         ),
     ]
-    table = html.table_of("every run", columns, pairs, look="runs long", most=len(pairs))
-    return html.section("Appendix B: every run", "runs", table)
+    blocks: list[html.Block] = [html.Note(SINGLE)]
+    if left := len(every) - len(pairs):
+        blocks.append(
+            f"{left} of {len(every)} rows are left out, in which the container rests; runs.csv has them."
+        )
+    if pairs:
+        blocks.append(html.table_of("every run", columns, pairs, look="runs long", most=len(pairs)))
+    return html.section("Appendix B: every run", "runs", *blocks)
 
 
 def sheet_section(view: SiteView) -> html.PageSection:
@@ -324,10 +388,17 @@ def sheet_section(view: SiteView) -> html.PageSection:
 def repeat_section(view: SiteView, copies: Sequence[tuple[str, str]]) -> html.PageSection:
     """Appendix D: seeds, hashes and files to compute it again."""
     origin, motions = view.result.provenance, view.result.set
-    rows: list[tuple[str, str]] = [("command", html.code(origin.command))]
+    rows: list[tuple[str, str]] = [
+        ("command", html.code(origin.command)),
+        (
+            "program",
+            f"sources {view.result.program}, {origin.system}" if origin.system else view.result.program,
+        ),
+    ]
     if motions.seed is not None:
         lasts = quantity(motions.stationary_s, "s")
-        rows.append(("seed", f"{motions.seed}, {motions.source}, stationary part {lasts}"))
+        chosen = "the default" if motions.seed == DEFAULT_SEED else "chosen by the user"
+        rows.append(("seed", f"{motions.seed} ({chosen}), {motions.source}, stationary part {lasts}"))
     rows += [
         ("hash of the site file", html.code(origin.site_hash)),
         ("hash of the case", html.code(origin.case_hash)),
@@ -372,6 +443,11 @@ def pairs_of(group: RunGroup) -> list[RunPair]:
         )
         for motion in sorted({run.motion for run in group.runs})
     ]
+
+
+def two_figures(key: str, value: float | None) -> str:
+    """A figure of a run as far as it is known."""
+    return ABSENT if value is None else typeset(FIGURES[key].unit.text(value, figures=2, bare=True))
 
 
 def friction(run: SiteRun) -> str:

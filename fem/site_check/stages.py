@@ -16,7 +16,7 @@ from fem.site_check.motion_results import write_csv_files
 from fem.site_check.motions import on_floor
 from fem.site_check.result import ConfirmedRun, TwoDirections
 from fem.site_check.rule import RuleFound, governing_groups, groups_of
-from fem.site_check.runs import SCAN, SET, RunKey, RunPlan, RunRows, motion_stem
+from fem.site_check.runs import REPETITIONS, SCAN, SET, RunKey, RunPlan, RunRows, motion_stem
 from fem.site_check.screening import Screening
 
 #: numbers of the artificial motions beyond the set begin behind those of any set
@@ -64,15 +64,44 @@ class Stages:
             request=request, plan=plan, screening=screening, floors=floors, longest=longest, folder=folder
         )
 
-    def of_the_answer(self, runner: Runner) -> Iterator[Sequence[RunKey]]:
-        """The set, its repetitions and the further motions: all that the answer rests on but the deciding runs."""
+    def of_the_answer(self, runner: Runner, *, quick: bool = False) -> Iterator[Sequence[RunKey]]:
+        """The set, its repetitions and the further motions: all that the answer rests on but the deciding runs.
+
+        Args:
+            runner: lets its workers make the further motions.
+            quick: none of these, unless the container rests in the whole set, where they cost next to nothing.
+        """
         yield self._left(self.plan.of_set())
         groups = governing_groups(groups_of(self.rows.of(self.plan.of_set())))
         yield self._left(self.plan.repeated(groups))
+        if quick and not self.rests:
+            return
         further = self.plan.of_further(groups, self.request.motions.further)
         self._make(runner, [key for key in further if key.stem not in self.screening.motions])
         if not runner.stop():
             yield self._left(further)
+
+    @property
+    def rests(self) -> bool:
+        """Whether no run of the set need be computed."""
+        return all(self.screening.at_rest(key) for key in self.plan.of_set())
+
+    def most_runs(self, *, quick: bool = False) -> tuple[int, int]:
+        """Runs of the set that must be computed, and of all stages at most, without the deciding ones."""
+
+        def left(keys: Sequence[RunKey]) -> int:
+            return sum(not self.screening.at_rest(key) for key in keys)
+
+        own = left(self.plan.of_set())
+        masses = len({one.mass for one in self.request.variants})
+        of_a_group = self.plan.motions * len(self.plan.signs)
+        of_a_mass = len(self.plan.of_set()) // (of_a_group * masses)  # groups, of which two govern
+        pairs = min(2, of_a_mass) * masses if own else 0
+        most = own + pairs * of_a_group * len(REPETITIONS)
+        if quick:
+            return own, most
+        most += pairs * self.request.motions.further * len(self.plan.signs)
+        return own, most + sum(left(self.plan.scanned(factor)) for factor in self.plan.factors)
 
     def of_the_margin(self) -> Iterator[Sequence[RunKey]]:
         """The set at other factors, up to the first at which the rule fails and a run overturns, and between."""

@@ -45,6 +45,7 @@ MOST_MOTIONS = 100
 SOME_FRICTION = replace(q.FRICTION, least=None, above=0.0)
 FrictionRange = Annotated[list[Annotated[float, SOME_FRICTION]], Field(min_length=1, max_length=2)]
 ShareRange = Annotated[list[Annotated[float, SHARE]], Field(min_length=1, max_length=2)]
+OfSource = Annotated[str, Field(max_length=500)]
 Corners = Annotated[list[Annotated[float, SPECTRUM_PERIOD]], Field(min_length=3, max_length=3)] | None
 
 #: keys of [site] that a spectrum needs, and those that it has of its own
@@ -283,6 +284,15 @@ class LimitsTable(CaseTable):
     single_rotation_ratio: Annotated[float, ROTATION_RATIO] = case_key(
         "largest of any single motion, where the mean of seven and more counts: this program's own rule", 0.8
     )
+
+
+class SourcesTable(CaseTable):
+    """Where the inputs come from, in words for the page."""
+
+    site: OfSource = case_key("hazard, ground, importance", "", example="report on the ground of 3 May 2026")
+    container: OfSource = case_key("weights, dimensions, mass centre", "")
+    friction: OfSource = case_key("the range of friction", "", example="tests of castings on this floor")
+    limits: OfSource = case_key("limits of rotation and slip", "", example="clearances of drawing 12")
 
 
 class WindTable(CaseTable):

@@ -15,6 +15,8 @@ from fem.seismic.methods import method_capacities, method_rows, methods_of
 from fem.seismic.sliding_rules import RULES, sliding_rows
 from fem.seismic.static_rules import both_directions_rows, element_rows, floor_factor, peak_rows, plateau_rows
 from fem.seismic.velocity_rules import (
+    contents_row,
+    contents_velocity,
     displacement_row,
     housner_row,
     ishiyama_row,
@@ -177,6 +179,47 @@ def test_kaneko_and_hayashi():
     assert "F_e = 1.003 Hz, F_b = 0.5418 Hz" in row.numbers
 
 
+#: width and height [m], median velocity [m/s] of the nine unanchored contents of FEMA P-58 (fragility.csv of the
+#: NHERI-SimCenter library, second edition: E.20.22.102a to 106a, 112a, 114a, 124a, 125a)
+CONTENTS = (
+    (0.3207, 0.7366, 0.724),
+    (0.3207, 1.0414, 0.493),
+    (0.3207, 1.4224, 0.361),
+    (0.3207, 1.8034, 0.290),
+    (0.3207, 2.0637, 0.251),
+    (0.3810, 0.6096, 1.229),
+    (0.3810, 1.3208, 0.498),
+    (0.4724, 1.3335, 0.688),
+    (0.4724, 1.7208, 0.526),
+)
+
+
+def test_contents_of_fema_p_58():
+    ratios = [contents_velocity(width, height) / median for width, height, median in CONTENTS]
+    assert min(ratios) > 0.97 and max(ratios) < 1.06
+    assert np.mean(ratios) == pytest.approx(1.0, abs=0.01)
+    row = contents_row(K1, ACTION)
+    assert row.median and row.utilisation == pytest.approx(PEAK_VELOCITY / contents_velocity(1.1, 4.0))
+
+
+def test_asce_43_takes_the_vector_spectrum_of_two_components():
+    both = replace(ACTION, second_component=1.0)
+    one, two = (sliding_row(k1(), LIMITS, action) for action in (ACTION, both))
+    # site S1, mu 0.2 kinetic: 0.1061 m in a plane, 0.1230 m under two equal components
+    assert (one.demand, two.demand) == (pytest.approx(0.1061, abs=1e-4), pytest.approx(0.1230, abs=1e-4))
+    assert "F_H = 1.077" in two.validity and "plane" in one.validity
+
+
+def test_a_regression_below_its_ratio_is_marked():
+    for mu, beyond in ((0.05, "r = 0.2"), (0.2, "")):
+        row = next(
+            row
+            for row in sliding_rows(k1(mu_static=mu, mu_kinetic=mu), LIMITS, ACTION)
+            if row.name.startswith("Richards")
+        )
+        assert row.beyond.startswith(beyond) and bool(row.beyond) == bool(beyond)
+
+
 def test_the_branches_of_kaneko_and_hayashi_meet():
     bound = 15.6 / 20.0 * 1.275**-1.5
     ends = [
@@ -268,7 +311,7 @@ def test_a_tall_body_has_no_wind_row():
 
 def test_all_methods_have_their_formula_numbers_source_and_validity():
     rows = method_rows(methods_of(K1, LIMITS, behaviour_factor=1.5, height_ratio=0.5), ACTION)
-    assert len({(row.name, row.quantity) for row in rows}) == len(rows) == 32
+    assert len({(row.name, row.quantity) for row in rows}) == len(rows) == 33
     for row in rows:
         assert row.formula and row.numbers and row.says and row.validity and str(row.source)
         assert row.unit

@@ -94,8 +94,14 @@ def test_every_motion_run_and_method_is_on_the_page(folders):
     outcomes = page.count("<td>slide</td>") + page.count("<td>rest</td>")
     # a drawing with its region for each, and the table motion by motion
     assert regions == 2 * 7 + 1
-    # in the appendix, where it governs, and in the confirmed run
-    assert outcomes == 112 + 14 + 2
+    # in the appendix those that move, and where it governs; the outcome of the confirmed run and over its inputs
+    assert outcomes == 56 + 14 + 2
+    words = words_of(page)
+    assert "28 of 56 rows are left out, in which the container rests" in words
+    assert (
+        "The other 4 of 8 combinations of weight, elevation and friction are at rest in every motion."
+        in words
+    )
     assert {name for motion in result.set.motions for name in motion.sha256 if name not in page} == set()
     assert {row.name for row in result.methods if row.name.split(",")[0] not in words_of(page)} == set()
 
@@ -105,7 +111,13 @@ def test_in_a_building_the_floor_stands_beside_the_ground(folders):
     assert "floor at z/H = 1 of a building with T1 = 0.425, 0.5, 0.575 s" in words
     assert "The floor in the building" in words
     assert "element on a floor, z/H = 1, Ta/T1 = 1" in words
-    assert page_of(folders, "in a building").count('<td class="number">0.425</td>') == 8 + 7 * 8
+    assert page_of(folders, "in a building").count('<td class="number">0.425</td>') == 4 + 7 * 4
+
+
+def test_a_short_page_has_the_sheet_that_is_signed_and_what_the_runs_found(folders):
+    words = words_of(site_report(folders / "fulfilled", brief=True))
+    assert "prepared: name, date, signature" in words and "What the runs found" in words
+    assert "Appendix" not in words and "Rules of thumb" not in words
 
 
 def test_of_many_motions_the_first_are_drawn(folders, monkeypatch):

@@ -272,9 +272,41 @@ def test_components_of_different_length_are_refused(tmp_path, capsys):
     assert "do not belong together" in capsys.readouterr().err
 
 
+def test_a_container_without_friction_is_refused_at_reading(tmp_path, capsys):
+    text = site_file(tmp_path).read_text()
+    (tmp_path / "site.toml").write_text(text.replace("mu_static = [0.4]", "mu_static = [0.0, 0.4]"))
+    assert main(["assess", str(tmp_path / "site.toml"), "--out", str(tmp_path / "out"), "-q"]) == 2
+    assert "[friction] mu_static must be positive" in capsys.readouterr().err
+
+
+def test_wind_on_a_tall_stack_is_refused_before_anything_is_computed(tmp_path, capsys):
+    place = site_file(tmp_path, more="[wind]\npeak_velocity_pressure_Pa = 500.0")
+    (tmp_path / "k1.toml").write_text(CONTAINER.replace("height_m = 4.0", "height_m = 16.0"))
+    assert main(["assess", str(place), "--out", str(tmp_path / "out"), "-q"]) == 2
+    assert "[wind] the wind row is for bodies up to 15 m" in capsys.readouterr().err
+
+
+def test_quick_is_never_fulfilled_of_a_container_that_moves(tmp_path, capsys, brief):
+    place = site_file(tmp_path, reference=3.2, motions="vertical = false")
+    assert main(["assess", str(place), "--out", str(tmp_path / "out"), "--quick", "-j", "1"]) == 0
+    shown = capsys.readouterr()
+    assert "runs of the set, up to 18 with repetitions" in shown.err
+    found = json.loads((tmp_path / "out" / "assess.json").read_text())["result"]
+    assert found["answer"] in ("not sure", "not fulfilled") and found["further"] == []
+    assert any("Left out by --quick" in reason for reason in found["reasons"])
+
+
+def test_a_container_that_rests_is_answered_without_a_run(tmp_path, brief):
+    place = site_file(tmp_path, reference=0.8, further=72)
+    result = run_site(load_site(place), tmp_path / "out", jobs=1, quick=True)
+    answer = result.result
+    assert (answer.answer, answer.still, answer.runs) == ("fulfilled", 6, 6)
+    assert answer.further[0].motions == 72 and answer.factor_at_first_movement > 1.5
+
+
 def test_an_empty_box_lighter_than_its_walls_is_refused(tmp_path, capsys):
     (tmp_path / "site.toml").write_text(
-        load_site("site").origin.text.replace("empty_mass_kg = 500.0", "empty_mass_kg = 400.0")
+        load_site("site").origin.text.replace("empty_mass_kg = 600.0", "empty_mass_kg = 400.0")
     )
     assert main(["assess", str(tmp_path / "site.toml"), "--out", str(tmp_path / "out"), "-q"]) == 2
     assert "empty_mass_kg: the walls of one box weigh" in capsys.readouterr().err
