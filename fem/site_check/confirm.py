@@ -12,15 +12,14 @@ MODEL = "reduced"
 
 
 def deciding(runs: Mapping[RunKey, SiteRun], governing: SiteRun | None) -> list[RunKey]:
-    """The runs that decide: what governs, and the largest rotation and slip among the runs that stood."""
+    """The runs that decide: one that overturned, else that of the largest rotation; and that of the largest slip."""
     own = {key: run for key, run in runs.items() if key.stage == SET and run.outcome is not None}
     if governing is None or not own:
         return []
-    keys = [next(key for key, run in own.items() if run is governing)]
     stood = {key: run for key, run in own.items() if run.outcome != Outcome.OVERTURNED}
-    if stood:
-        for figure in LIMITED.values():
-            keys.append(max(stood, key=lambda key: stood[key][figure] or 0.0))
+    keys = [next(key for key, run in own.items() if run is governing)] if len(stood) < len(own) else []
+    figures = list(LIMITED.values())[len(keys) :] if stood else []
+    keys += [max(stood, key=lambda key: stood[key][figure] or 0.0) for figure in figures]
     return list(dict.fromkeys(keys))
 
 
