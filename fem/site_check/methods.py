@@ -30,6 +30,7 @@ def site_methods(
     periods_s: Sequence[float],
     floor: FloorResult | None,
     runs: Sequence[SiteRun],
+    second_component: float = 0.0,
 ) -> tuple[SiteMethod, ...]:
     """Every method for every body, with the least friction, and for the lightest body the wind.
 
@@ -40,6 +41,7 @@ def site_methods(
         periods_s: of the spectrum of the floor.
         floor: of the building; None: on the ground.
         runs: those of the set count, with both signs.
+        second_component: a second horizontal component over the first; 0: motion in a plane.
     """
     limits = Limits(rotation=inputs.rotation_ratio_limit, slip=inputs.slip_limit_m)
     by_rule = LimitsTable(
@@ -47,7 +49,7 @@ def site_methods(
         single_rotation_ratio=inputs.single_rotation_ratio_limit,
         slip_m=inputs.slip_limit_m,
     )
-    action = floor_action(site, motions, periods_s, floor)
+    action = replace(floor_action(site, motions, periods_s, floor), second_component=second_component)
     rows = []
     for one in bodies:
         body = loose_body(one, inputs)
