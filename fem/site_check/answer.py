@@ -9,7 +9,7 @@ from fem.runtime.units import RATIO, SHORT_MILLIMETRES
 from fem.site_check import result
 from fem.site_check.file import SiteRequest
 from fem.site_check.reasons import CONFIDENCE, NOT_FULFILLED, NOT_SURE, Evidence, Reason
-from fem.site_check.rule import RuleFound, RunGroup, groups_of, rule_in_words
+from fem.site_check.rule import FIGURE_OF, RuleFound, RunGroup, groups_of, rule_in_words
 from fem.site_check.runs import FURTHER, REFINED, REPEATED, SCAN, SET, RunKey
 
 FULFILLED = "fulfilled"
@@ -94,7 +94,12 @@ def answer_of(
         runs=len(own),
         still=beside.still,
         **vars(found.by_rule),
-        exceeded=tuple(found.exceeded(limits)),
+        exceeded=tuple(
+            key
+            for key in FIGURE_OF
+            if key in found.exceeded(limits)
+            or (key == "slip_m" and slip is not None and slip.slip_largest_m > limits.slip_m)
+        ),
         governing=governing_run(request, own),
         actions=tuple(actions),
         margin_factor=_least(margin_factor(request, runs), slip.margin_factor if slip else None),

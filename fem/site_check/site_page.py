@@ -198,6 +198,8 @@ def _headlines(result: SiteResult) -> list[html.Headline]:
     tried = [point.factor for point in answer.scan]
     far = f"factors {short(tried[0])} to {short(tried[-1])} tried" if tried else "other factors not computed"
     largest, mean = answer.rotation_ratio_largest, answer.slip_mean_m
+    both = answer.two_directions
+    across = f"; in both directions {millimetres(both.slip_largest_m)} mm" if both else ""
 
     def at(factor: float | None) -> str:
         if factor is None:
@@ -217,7 +219,7 @@ def _headlines(result: SiteResult) -> list[html.Headline]:
         html.Headline(
             "slip, largest",
             f"{_with_range('slip_m', answer.slip_m, span.slip_m)} mm",
-            f"limit {quantity(inputs.slip_limit_m, 'mm', 1000, 3)}; mean {millimetres(mean)} mm",
+            f"limit {quantity(inputs.slip_limit_m, 'mm', 1000, 3)}; mean {millimetres(mean)} mm{across}",
         ),
         html.Headline("the rule first fails at", at(answer.margin_factor), far),
         html.Headline("first overturned at", at(answer.factor_at_first_overturning), far),
