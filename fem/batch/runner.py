@@ -155,6 +155,8 @@ class Runner:
         self.reporter.finish()
         if len(results) < len(numbered):
             raise KeyboardInterrupt
+        if time.perf_counter() - began > TOLD_S:
+            self.reporter.message(_progress(what, done, done, 0, time.perf_counter() - began))
         return results
 
 

@@ -23,7 +23,10 @@ from fem.results.reader import OpenedRun
 from fem.results.run_result import ChangedRun, Numerics
 from fem.run.changed_runs import changed_run, cost_of, run_changes
 from fem.run.changed_runs_file import ChangedRunsFile, key_of
+from fem.run.expected import LONG_S
 from fem.run.outcome import run_without_history
+from fem.runtime.progress import clock_time
+from fem.runtime.threads import cores
 from fem.runtime.units import RATIO
 
 PHASES = (0.25, 0.5, 0.75)  #: of half a turn; a whole half turn is the mirror image
@@ -148,7 +151,9 @@ def variation_table(
     most = len(missing) if every else max(1, int(BUDGET_S / price))
     left_out = missing[most:]
     if missing[:most]:
-        message("computing variations of the run")
+        seconds = price * min(most, len(missing)) / cores()
+        long = f": roughly {clock_time(float(f'{seconds:.1g}'))}" if seconds > LONG_S else ""
+        message(f"computing {min(most, len(missing))} variations of the run{long}")
     if left_out:
         message(
             f"variations left out, because they take longer: {len(left_out)}; --all-variations computes them"

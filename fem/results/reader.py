@@ -161,6 +161,8 @@ def open_run(folder: str | Path) -> OpenedRun:
         raise FolderError(f"{path}: no such folder; give the folder of a run, such as outputs/NAME")
     for kind in KINDS:
         if (path / kind.mark).is_file() and not (path / RUN.mark).is_file():
+            if read_result(path / kind.mark, kind).get("status") in ("running", "interrupted"):
+                raise FolderError(f"{path}: the {kind.name} is not finished; continue it with --resume")
             raise FolderError(
                 f"{path}: the folder of {kind.article} {kind.name} (its results: {kind.results}); give that of a run, "
                 "such as outputs/NAME"

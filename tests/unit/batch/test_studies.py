@@ -208,7 +208,7 @@ def test_the_report_of_a_killed_study_gives_no_answer(tmp_path, capsys, study, m
         assert code == 0 and 'class="sentence">No answer yet: ' in page
         assert 'id="signature"' not in page and "signature</div>" not in page
         return
-    ending = "give that of a run" if study is size else "is not finished; continue it with --resume"
+    ending = "is not finished; continue it with --resume"
     assert code == 2 and len(said.err.splitlines()) == 1 and ending in said.err
     assert not said.out and not (folder / "report.html").exists()
 
