@@ -120,7 +120,8 @@ def motion_section(view: RunView) -> html.PageSection:
         return html.section("The motion", "motion-title", "There are no samples to show.")
     player = [_player(view)] if view.played else []
     shown = html.Group("motion brief" if view.brief else "motion", [*player, html.Group("curves", curves)])
-    return html.section("The motion", "motion-title", shown, *_stills(view))
+    stills = _stills(view)  # first: on paper they fill the sheet of the results, which no curve does
+    return html.section("The motion", "motion-title", *stills, shown)
 
 
 def _player(view: RunView) -> html.Player:
