@@ -38,6 +38,10 @@ case = "seed_stack_plateau"
 """
 RECORD = "0 1.2 -2.5 3.9 -4.4 3.0 -1.1 0.4 0 0 0"
 PULSE = ("motion.kind=pulse", "motion.shape=sine", "motion.peak_acceleration_m_s2=3.8", "motion.pulse_s=1.0")
+LINKS = (
+    "stop=[{side = 'right', height_m = 0.1, gap_m = 0.02, stiffness_N_m = 1e8, restitution = 0.5, mu = 0.3}]",
+    "tie=[{from = 'left', height_m = 0.5, slack_m = 0.01, stiffness_N_m = 1e6, strength_N = 2e4}]",
+)
 VERTICAL = ("vertical.kind=harmonic", "vertical.peak_acceleration_m_s2=2.0", "vertical.frequency_Hz=3.0")
 LOOSE = "container.joints=loose"
 
@@ -88,12 +92,14 @@ ITEMS = (
     run("run pulse", "rocking", *PULSE, "solver.model=rigid"),
     run("run slope", "rocking", "floor.slope_percent=3", "solver.model=rigid"),
     run("run vertical", "rocking", *VERTICAL, "solver.model=rigid"),
+    run("run links", "rocking", *LINKS, "solver.model=rigid"),
     run("run record", "record.toml", options=["--check-rigid"]),
     run("run newmark", "sliding", "solver.scheme=newmark", "solver.step_s=1e-3", options=["--no-band"]),
     Item("modes", (("modes", "rocking", "--out", "out"),)),
     study("sweep", "small.toml"),
     *(study("sweep", name, long=True) for name in ("friction_slenderness", "outcome_map", "rigid_to_soft")),
     study("sweep", "loose_stack", long=True),
+    study("sweep", "kerb_gap", long=True),
     *(study("ensemble", name, long=True) for name in ("boundary", "fragility")),
     study("response", "rocking", "--from", "0.8", "--to", "1.6", "--count", "5"),
     study("assess", "site", long=True),

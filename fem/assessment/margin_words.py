@@ -24,7 +24,17 @@ def margin_in_words(verdict: Verdict | None) -> str:
         up_to = "" if stands else f"stands up to {FACTOR.text(margin.stands_up_to)} times this motion, "
         times = " times this motion" if stands else ""
         words = f"{lead}; {up_to}overturns first at {FACTOR.text(margin.factor)}{times}"
-    return f"{words}{_range(margin)}{_islands(margin)}{_failed(margin)}."
+    return f"{words}{_range(margin)}{_islands(margin)}{_failed(margin)}{_without_links(margin)}."
+
+
+def _without_links(margin: Margin) -> str:
+    """What the same container does without its stops and ties."""
+    most = margin.without_links_tried_to
+    if most is None:
+        return ""
+    if margin.factor_without_links is None:
+        return f"; without its stops and ties it stands up to {most:.3g}"
+    return f"; without its stops and ties it overturns first at {FACTOR.text(margin.factor_without_links)}"
 
 
 def _range(margin: Margin) -> str:

@@ -22,6 +22,7 @@ STRENGTHS = (
     "motion.scale",
     "motion.amplitude_m",
 )
+GAPS = ("stop.gap_m", "tie.slack_m")  #: axes of an answer where none is a strength
 #: axes along which the larger value is the safer one
 LARGER_IS_SAFER = frozenset({"container.width_m"})
 MOST_RANGES = 4  #: of values that a sentence names
@@ -63,14 +64,14 @@ class Answer:
 
 
 def answer_axis(axes: Sequence[Axis]) -> Axis | None:
-    """The axis along which a study answers: a strength, else the only one whose values are rising numbers.
+    """The axis along which a study answers: a strength, else a gap, else the only one whose values are rising numbers.
 
     An axis of two opposite signs is not a strength.
     """
     numeric = {
         axis.key: axis for axis in axes if axis.is_numeric and len({abs(value) for value in axis.values}) > 1
     }
-    for key in STRENGTHS:
+    for key in (*STRENGTHS, *GAPS):
         if key in numeric:
             return numeric[key]
     return next(iter(numeric.values())) if len(numeric) == 1 else None

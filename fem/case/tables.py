@@ -393,6 +393,21 @@ class UncertaintyTable(CaseTable):
     material_damping_ratio: Unknown = case_key(
         "of the container; default: half to twice", None, example=[0.01, 0.04]
     )
+    stop_gap_m: Unknown = case_key(
+        "of all stops, where they have one; default: 0.8 to 1.2 times", None, example=[0.04, 0.06]
+    )
+    stop_stiffness_N_m: Unknown = case_key(  # noqa: N815
+        "of all stops, likewise; default: half to twice", None, example=[5e7, 2e8]
+    )
+    stop_mu: Unknown = case_key(
+        "friction on all stops, likewise; default: half to twice", None, example=[0.1, 0.4]
+    )
+    tie_slack_m: Unknown = case_key(
+        "of all ties, where they have one; default: 0.8 to 1.2 times", None, example=[0.0, 0.01]
+    )
+    tie_stiffness_N_m: Unknown = case_key(  # noqa: N815
+        "of all ties, likewise; default: half to twice", None, example=[5e5, 2e6]
+    )
     centroid_m: Unknown = case_key(
         "height of the mass centre in a box; default: 0.98 to 1.02 times", None, example=[0.45, 0.55]
     )

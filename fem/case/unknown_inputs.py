@@ -19,6 +19,7 @@ from typing import Any, NamedTuple
 
 from contact.reference.rigid_block import RigidBlock
 from fem.case import quantities as q
+from fem.case.links import ROWS
 from fem.case.motion_rules import LEAST_RAMP
 from fem.case.problem import Rule
 from fem.case.rules import longest_time
@@ -41,6 +42,11 @@ RESTITUTIONS = (0.95, 1.06)  #: over Housner's, of sharp corners whose restituti
 WEAKENING_M, STRIBECK_M_S = 5e-3, 0.3  #: largest slip and velocity over which friction falls
 WEAKENINGS_BETWEEN_M = (1e-4, 1e-3)
 RAMP_CYCLES = 2.0
+GAPS, LINK_STIFFNESS, LINK_FRICTION = (
+    (0.8, 1.2),
+    (0.5, 2.0),
+    (0.5, 2.0),
+)  #: of stops and ties over those of the case
 MOVES = 1e-9  #: cosine of the phase of a floor that starts at rest
 
 MU_KINETIC, WEAKENING, STRIBECK = "contact.mu_kinetic", "contact.weakening_m", "contact.stribeck_velocity_m_s"
@@ -58,6 +64,8 @@ PENALTY, DASHPOT, RESTITUTION, MATERIAL = (
     "container.damping_ratio",
 )
 CAMBER, ROCKING = "support.camber_m", "support.rocking_damping_ratio"
+STOP_GAP, STOP_STIFFNESS, STOP_FRICTION = "stop.gap_m", "stop.stiffness_N_m", "stop.mu"
+TIE_SLACK, TIE_STIFFNESS = "tie.slack_m", "tie.stiffness_N_m"
 STRENGTH, MODULUS = "floor.bearing_strength_Pa", "floor.youngs_modulus_Pa"
 
 Value = float | str
@@ -178,6 +186,9 @@ def short(value: float) -> float:
 def _own(case: Any, key: str, penalty: float | None) -> Any:
     """What a case has of an input, with what follows where the case itself says nothing; None: nothing."""
     table, _, name = key.partition(".")
+    if table in ROWS:  # of all its rows at once, where they agree
+        values = {getattr(one, name) for one in getattr(case, table)}
+        return values.pop() if len(values) == 1 else None
     if key == PENALTY:
         return None if case.floor.is_slab else penalty
     if key == DASHPOT:  # that of a slab matters little where it crushes
@@ -411,6 +422,11 @@ UNKNOWN: tuple[UnknownNumber | UnknownChoice, ...] = (
            matters=_two_harmonics, power=1.0, between=_quarters, same=_same_angle),
     Choice(START, "start", "start", _other_start, unless_stated=False),
     Choice(RAMP, "ramp", "cycles of the ramp", _other_ramp),
+    Number(STOP_GAP, "stop_gap_m", "gap of the stops", q.GAP, GAPS, power=1.0),
+    Number(STOP_STIFFNESS, "stop_stiffness_N_m", "stiffness of the stops", q.LINK_STIFFNESS, LINK_STIFFNESS),
+    Number(STOP_FRICTION, "stop_mu", "friction on the stops", q.FRICTION, LINK_FRICTION, power=1.0),
+    Number(TIE_SLACK, "tie_slack_m", "slack of the ties", q.GAP, GAPS, power=1.0),
+    Number(TIE_STIFFNESS, "tie_stiffness_N_m", "stiffness of the ties", q.LINK_STIFFNESS, LINK_STIFFNESS),
     Number(PENALTY, "normal_penalty_Pa_m", "stiffness of the contact", q.PENALTY, (SOFTEST, STIFFEST)),
     Number(STRENGTH, "bearing_strength_Pa", "strength of the floor", q.BEARING_STRENGTH, SLAB),
     Number(MODULUS, "floor_youngs_modulus_Pa", "stiffness of the floor", q.FLOOR_STIFFNESS, SLAB),

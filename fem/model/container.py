@@ -151,6 +151,20 @@ def with_mass_of(case: Case, container: Container, own: Case) -> Container:
     return replace(container, mesh=mesh, boxes=boxes)
 
 
+def without_links(case: Case, container: Container) -> Container:
+    """The container of a case without the contact nodes of its links; their attachment modes stay."""
+    points = len(container.nodes) - len(case.links)
+    response = container.response
+    return replace(
+        container,
+        nodes=container.nodes[:points],
+        response=StaticResponse(
+            displacement=response.displacement[: 2 * points],
+            compliance=response.compliance[: 2 * points, : 2 * points],
+        ),
+    )
+
+
 def _assembled(case: Case, mesh: ContainerMesh) -> FiniteElements:
     box = case.container
     order = case.solver.order

@@ -190,6 +190,12 @@ class Margin(JsonBlock):
     least_tried: float
     largest_tried: float
     runs: int  #: with the inputs of the run, besides itself
+    #: of a container with stops or ties: the factor of its first overturning without them, None where none was found;
+    #: and the largest factor tried so
+    factor_without_links: float | None = None
+    without_links_tried_to: float | None = None
+
+    written_where_given = frozenset({"factor_without_links", "without_links_tried_to"})
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -11,10 +11,11 @@ from concurrent.futures import Executor, ThreadPoolExecutor
 from functools import cache
 
 from fem.case.case import Case, CaseError
+from fem.case.links import ROWS
 from fem.case.strength import scaled_motion
 from fem.case.uncertainty import as_changed, draws_of
 from fem.case.unknown_inputs import TOLERANCE, Value
-from fem.model.container import Container, with_mass_of
+from fem.model.container import Container, with_mass_of, without_links
 from fem.model.equilibrium import same_equilibrium
 from fem.model.model import Model, build_model
 from fem.results.outcome import Ending, ending_of
@@ -80,6 +81,7 @@ def margin_of(model: Model, result: RunResult, *, drawn: bool, stop: Callable[[]
                 known[least] = trial(least)
             _locate(known, trial)
             first, ended = _first(known), [one for one in known if known[one] != Ending.FAILED]
+            bare = _bare(model, least, most, pool, stop)
             ends: list[float | None] = []
             lowest = None
             if drawn:
@@ -106,14 +108,38 @@ def margin_of(model: Model, result: RunResult, *, drawn: bool, stop: Callable[[]
         least_tried=min(ended),
         largest_tried=max(ended),
         runs=len(ended) - 1,
+        factor_without_links=None if bare is None else bare[0],
+        without_links_tried_to=None if bare is None else bare[1],
     )
+
+
+def _bare(
+    model: Model, least: float, most: float, pool: Executor, stop: Callable[[], bool]
+) -> tuple[float | None, float] | None:
+    """The first factor that overturns the container without its stops and ties, and the largest one tried.
+
+    None where it has no links.
+    """
+    if not model.case.links:
+        return None
+    free = model.case.with_values({name: [] for name in ROWS})
+    trial = _trial(build_model(free, without_links(model.case, model.container)), {}, stop)
+    own = trial(1.0)
+    scanned = _scanned(least, 1.0 if own == Ending.OVERTURNED else most)
+    known = {1.0: own} | dict(zip(scanned, pool.map(trial, scanned), strict=True))
+    _locate(known, trial)
+    first, ended = _first(known), [one for one in known if known[one] != Ending.FAILED]
+    return None if first is None else first.high, max(ended, default=0.0)
 
 
 def _least(case: Case, result: RunResult) -> float:
     """The least factor that may overturn; what is pushed or tilted at the start may fall at any."""
     if case.initial.is_pushed:
         return LEAST
-    use = (result.static or StaticResult()).ruling.utilisation_overturning
+    rule = (result.static or StaticResult()).ruling
+    use = rule.utilisation_overturning
+    if case.stop:  # what slides against a stop may fall over it
+        use = max(use or 0.0, rule.utilisation_sliding or math.inf)
     return LEAST if not use or use < 0.0 else min(LARGEST, max(LEAST, SURELY_AT_REST / use))
 
 

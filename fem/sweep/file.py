@@ -12,6 +12,7 @@ from fem.batch.axes import Axis, AxisError, check_varied, field_of, first_motion
 from fem.batch.derived import Derived, read_derived, value_in
 from fem.case.case import Case
 from fem.case.files import DEFAULT_CASE, SWEEPS, Origin
+from fem.case.links import ROWS
 from fem.case.overrides import keys_in_effect
 from fem.case.quantities import SLIP_LIMIT
 from fem.case.tables import CaseTable
@@ -173,4 +174,4 @@ def _is_idle(case: Case, key: str) -> bool:
     table, _, name = key.rpartition(".")
     if key == "solver.elastic_modes":
         return case.solver.model != "reduced"
-    return bool(table) and name in getattr(case, table).idle_keys()
+    return bool(table) and table not in ROWS and name in getattr(case, table).idle_keys()

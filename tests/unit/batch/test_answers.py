@@ -137,6 +137,7 @@ def test_many_islands_are_counted():
     [
         ((MU, PEAK), PEAK.key),
         ((MU, WIDTH), None),
+        ((MU, Axis(key="stop.gap_m", values=(0.0, 0.1))), "stop.gap_m"),
         ((MU,), MU.key),
         ((Axis(key="solver.model", values=("rigid", "reduced")),), None),
         ((Axis(key="motion.scale", values=(-1.0, 1.0)), MU), MU.key),

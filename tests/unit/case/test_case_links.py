@@ -4,6 +4,7 @@ import pytest
 
 from fem.case.case import CaseError, case_hash, load_case, read_case, to_toml
 from fem.case.template import case_template
+from fem.case.unknown_inputs import ranges_of
 
 STOP = {"side": "right", "height_m": 0.1, "gap_m": 0.05, "stiffness_N_m": 1e8}
 TIE = {"from": "left", "height_m": 0.5, "slack_m": 0.01, "stiffness_N_m": 1e6}
@@ -61,3 +62,19 @@ def test_what_is_no_row_of_tables_is_refused():
 def test_loose_boxes_have_no_points_for_links():
     with pytest.raises(CaseError, match="joints must be"):
         RIGID.with_values({"container.boxes": 2, "container.joints": "loose", "stop": [STOP]})
+
+
+def test_gap_stiffness_and_friction_are_unknown_where_all_stops_have_one_value():
+    found = {one.key: one.ends for one in ranges_of(held(mu=0.3), 1e9)}
+    assert found["stop.gap_m"] == (0.04, 0.06)
+    assert found["stop.stiffness_N_m"] == (5e7, 2e8)
+    assert found["stop.mu"] == (0.15, 0.6)
+    assert found["tie.slack_m"] == (0.008, 0.012)
+    assert found["tie.stiffness_N_m"] == (5e5, 2e6)
+    unlike = RIGID.with_values({"stop": [STOP, {**STOP, "side": "left", "gap_m": 0.2}]})
+    found = {one.key: one.ends for one in ranges_of(unlike, 1e9)}
+    assert "stop.gap_m" not in found
+    assert "stop.stiffness_N_m" in found
+    assert not {one.key for one in ranges_of(RIGID, 1e9)} & {"stop.gap_m", "tie.slack_m", "stop.mu"}
+    stated = held().with_values({"uncertainty.stop_gap_m": [0.0, 0.1]})
+    assert {one.key: one.ends for one in ranges_of(stated, 1e9)}["stop.gap_m"] == (0.0, 0.1)

@@ -7,6 +7,7 @@ import pytest
 from cases import named_case
 
 from fem.case.case import CaseError, load_case, read_case, to_toml
+from fem.case.links import ROWS
 from fem.case.tables import TABLES
 from fem.case.uncertainty import as_changed, changes_of, draws_of, pairs_of, sobol_points, stiff_floor
 from fem.case.unknown_inputs import INPUTS, UNKNOWN, UnknownNumber, ranges_of
@@ -265,7 +266,7 @@ def test_every_key_of_the_table_is_an_unknown_input_and_every_input_a_key_of_the
     assert len(INPUTS) == len(set(INPUTS)) == len(UNKNOWN) + 1
     for one in UNKNOWN:
         table, _, key = one.key.partition(".")
-        field = TABLES[table].model_fields[key]
+        field = (TABLES | ROWS)[table].model_fields[key]
         if isinstance(one, UnknownNumber):
             declared = [
                 *field.metadata,

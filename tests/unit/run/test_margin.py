@@ -121,6 +121,22 @@ def test_failed_trials_say_nothing_and_the_search_ends():
     assert math.isnan(found)
 
 
+def test_a_container_with_stops_has_the_margin_without_them_beside_its_own():
+    kerb = "{{side = '{}', height_m = 0.1, gap_m = 0.1, stiffness_N_m = 1e8, restitution = 0.5}}"
+    slides = ("contact.mu_static=0.2", "contact.mu_kinetic=0.15", "motion.peak_acceleration_m_s2=5")
+    motion = ("motion.angular_frequency_rad_s=4.4", "solver.duration_s=12")
+    stops = ",".join(kerb.format(side) for side in ("left", "right"))
+    held, free = (computed(*slides, *motion, f"stop=[{rows}]") for rows in (stops, ""))
+    assert free.verdict.margin.factor_without_links is None
+    assert free.verdict.margin.without_links_tried_to is None
+    margin, own = held.verdict.margin, free.verdict.margin
+    assert margin.factor < 0.9 * (own.factor or own.largest_tried)  # it falls over its kerb
+    assert margin.factor_without_links == (
+        None if own.factor is None else pytest.approx(own.factor, rel=0.03)
+    )
+    assert margin.without_links_tried_to >= 1.0
+
+
 def test_a_floor_at_rest_has_no_margin():
     assert computed(name="free_rocking").verdict.margin is None
 
@@ -196,6 +212,16 @@ MARGIN = Margin(
             "overturned",
             "Overturns; stands up to 0.799 times this motion, overturns first at 0.810 (from 0.72 on over what is not "
             "known; 3 of 16 draws stand up to 4); 2 draws failed.",
+        ),
+        (
+            {"factor_without_links": 2.0, "without_links_tried_to": 4.0},
+            "rock",
+            "Stands; overturns first at 1.50 times this motion; without its stops and ties it overturns first at 2.00.",
+        ),
+        (
+            {"without_links_tried_to": 4.0},
+            "rock",
+            "Stands; overturns first at 1.50 times this motion; without its stops and ties it stands up to 4.",
         ),
         (
             {"factor": None, "stands_up_to": None, "runs": 1},
