@@ -155,6 +155,14 @@ def parse_case(origin: Origin) -> dict[str, Any]:
     return data
 
 
+def is_site(name_or_path: str | Path) -> bool:
+    """Whether it is a site file, or the name of a shipped one; false also of what cannot be read."""
+    try:
+        return not MARKS["site"].isdisjoint(parse_case(SITES.find(name_or_path)))
+    except CaseError:
+        return False
+
+
 def _other_kind(place: str, kind: str) -> str:
     article = "an" if kind == "ensemble" else "a"
     return f"{place}: this is {article} {kind} file: python -m fem {COMMANDS[kind]} {place}"

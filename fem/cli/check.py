@@ -10,8 +10,10 @@ from typing import Any
 from fem.assessment.floor_words import floor_rows
 from fem.assessment.motion_words import covered_in_words, is_cut, missing_peak, motion_in_words
 from fem.case.case import Case, case_hash, load_case
+from fem.case.files import is_site
 from fem.case.motion_tables import FloorMotionTable
 from fem.case.rules import longest_time
+from fem.case.validation import CaseError
 from fem.cli.console import WIDTH, AllowBaseline, AllowOutside, AsJson, CaseName, Motion, Overrides
 from fem.model.geometry import build_container
 from fem.model.motion_summary import summary_from_keys
@@ -30,7 +32,19 @@ def check(
     allow_baseline: AllowBaseline = False,
     as_json: AsJson = False,
 ) -> None:
-    """Print static checks, derived numbers and numerical settings of a case; nothing is computed or written."""
+    """Print static checks, derived numbers and numerical settings of a case; nothing is computed or written.
+
+    Of a site file: its motions, what they move, and how many runs and how long a verification takes.
+    """
+    if case is not None and is_site(case):
+        if overrides or motion is not None:
+            raise CaseError(f"{case}: a site file takes neither --set nor --motion; edit the file")
+        files = importlib.import_module("fem.site_check.file")
+        previews, request = importlib.import_module("fem.site_check.preview"), files.load_site(case)
+        found = previews.preview_of(request, allow_outside=allow_outside)
+        lines = previews.preview_lines(found, request)
+        print(json.dumps(found.to_json(), indent=2) if as_json else "\n".join(lines))
+        return
     loaded = load_case(
         case, overrides, motion=motion, allow_outside=allow_outside, allow_baseline=allow_baseline
     )

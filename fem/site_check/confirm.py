@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 
+from fem.assessment.ranges import largest_bolt_forces
 from fem.batch.compute_many import compute_many
 from fem.results.figures import Place
 from fem.results.outcome import Outcome
@@ -34,13 +35,18 @@ def confirmed(
     again = compute_many([cases(key._replace(model=MODEL)) for key in keys], jobs, margin=False)
     results = []
     for key, run in zip(keys, again, strict=True):
-        verdict = run.verdict
+        verdict, joints = run.verdict, run.typed_result.joints or ()
+        tension, shear = largest_bolt_forces(joints) if joints else (None, None)
+        used = [one.bolt_utilisation for one in joints if one.bolt_utilisation is not None]
         results.append(
             ConfirmedRun(
                 run=runs[key],
                 model=MODEL,
                 outcome=verdict.outcome,
                 **verdict.figures(Place.KEY),
+                bolt_tension_N=tension,
+                bolt_shear_N=shear,
+                bolt_utilisation=max(used, default=None),
                 sure=verdict.sure or "",
                 outcomes=verdict.band.outcomes if verdict.band else (),
             )

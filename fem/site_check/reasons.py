@@ -123,6 +123,11 @@ class Evidence:
         words = "deciding runs, repeated with the elastic model over their unknown inputs,"
         if failed:
             yield Reason(NOT_SURE, f"{failed} of {len(again)} {words} failed.")
+        if (bolts := max((one.bolt_utilisation or 0.0 for one in again), default=0.0)) > 1.0:
+            yield Reason(
+                NOT_SURE,
+                f"In a deciding run the bolts carry {bolts:.2g} of their capacity: the stack does not stay one body.",
+            )
         if fell:
             yield Reason(NOT_SURE, f"{fell} of {len(again)} {words} can overturn.")
         elif beyond and not self.rule.fails(self.limits):

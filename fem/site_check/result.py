@@ -200,8 +200,9 @@ class ConfirmedRun(RunFigures):
     model: str
     sure: str = ""  #: of the verdict: sure | regime unsure | unsure
     outcomes: tuple[str, ...] = ()  #: over the band
+    bolt_utilisation: float | None = None  #: largest tension over joints.bolt_capacity_N; None: not given
 
-    written_where_given = keys_beside(Place.KEY) | {"boxes"}
+    written_where_given = keys_beside(Place.KEY) | {"boxes", "bolt_utilisation"}
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -20,15 +20,14 @@ from fem.case.case import case_hash
 from fem.results.disk import BYTES_BESIDE, table_bytes
 from fem.results.folder import ResultFolder
 from fem.results.kinds import SITE
-from fem.run.expected import expected_s
 from fem.runtime.identity import versions
-from fem.runtime.progress import clock_time
 from fem.seismic.ground_motion import GroundMotion
 from fem.seismic.motion_set import MotionSetCheck, check_set
 from fem.site_check.answer import answer_of, governing_run, no_answer_yet
 from fem.site_check.bodies import body_of
 from fem.site_check.confirm import confirmed, deciding
 from fem.site_check.file import SiteRequest
+from fem.site_check.inputs import inputs_of
 from fem.site_check.methods import site_methods, wind_utilisation
 from fem.site_check.motion_results import (
     action_result,
@@ -38,13 +37,12 @@ from fem.site_check.motion_results import (
     write_ground,
 )
 from fem.site_check.motions import floor_motions, ground_motions, longest_period
+from fem.site_check.preview import forecast
 from fem.site_check.result import (
-    USUAL_BEHAVIOUR_FACTOR,
     MotionSet,
     SiteAnswer,
     SiteBody,
     SiteDocument,
-    SiteInputs,
     SiteProvenance,
     SiteResult,
     SiteRun,
@@ -164,7 +162,7 @@ class _Verification:
         left_out = QUICK if self.quick and not stages.rests else ""
         if motions.valid:
             cases = RunCases.of(self.request, place.path)
-            self._say_expected(runner, cases)
+            runner.reporter.message(forecast(stages, runner.jobs, quick=self.quick).words)
             LoggedRuns(
                 what="runs",
                 path=place.path / RUNS,
@@ -183,20 +181,6 @@ class _Verification:
             return None
         beside = replace(stages.beside(again, self.wind), left_out=left_out)
         return answer_of(self.request, motions, rows.in_order(), beside)
-
-    def _say_expected(self, runner: Runner, cases: RunCases) -> None:
-        """How many runs there are, and how long they take, before the first is computed."""
-        own, most = self.stages.most_runs(quick=self.quick)
-        of_set = self.stages.plan.of_set()
-        cores = f"{runner.jobs} core{'s' if runner.jobs > 1 else ''}"
-        words = f"{len(of_set) - own} of {len(of_set)} runs rest below uplift and slip and are not computed; "
-        seconds = most * expected_s(cases(of_set[0])) / runner.jobs
-        runner.reporter.message(
-            f"{words if own < len(of_set) else ''}{own} runs of the set, up to {most} with repetitions"
-            + ("" if self.quick else ", further motions and other factors")
-            + f": at most about {clock_time(float(f'{seconds:.1g}'))} on {cores}"
-            + ("" if self.quick or self.stages.rests else ", then the deciding runs with their bands")
-        )
 
     def _deciding(self, runs: Mapping[RunKey, SiteRun]) -> list[RunKey]:
         own = self.stages.rows.of(self.stages.plan.of_set())
@@ -258,22 +242,3 @@ class _Verification:
         yield from self.stages.of_the_answer(runner, quick=self.quick)
         if not self.quick:
             yield from self.stages.of_the_margin()
-
-
-def inputs_of(request: SiteRequest) -> SiteInputs:
-    """What was asked, for the page and the simplified methods."""
-    wind, static = request.wind_pressure, request.container.static
-    return SiteInputs(
-        container=request.heading.container,
-        mu_static=tuple(request.friction.mu_static),
-        mu_kinetic_over_static=tuple(request.friction.mu_kinetic_over_static),
-        rotation_ratio_limit=request.limits.rotation_ratio,
-        single_rotation_ratio_limit=request.limits.single_rotation_ratio,
-        slip_limit_m=request.limits.slip_m,
-        wind_pressure_Pa=wind[0] if wind else None,
-        wind_pressure_source=wind[1] if wind else "",
-        gamma_mu=request.wind.gamma_mu if request.wind else 1.0,
-        behaviour_factor=static.behaviour_factor if static else USUAL_BEHAVIOUR_FACTOR,
-        model=request.heading.model,
-        sources=tuple(request.sources.model_dump().items()),
-    )

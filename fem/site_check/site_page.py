@@ -12,6 +12,7 @@ from fem.html import sections as html
 from fem.html.page import Page, Signature, html_of
 from fem.html.units import ABSENT, millimetres, number, quantity, ratio, short, typeset
 from fem.results.errors import FolderError
+from fem.results.figures import FIGURES
 from fem.results.kinds import SITE
 from fem.results.outcome import Outcome
 from fem.runtime.arrays import FloatArray
@@ -23,6 +24,7 @@ from fem.site_check.reasons import span as span_in_words
 from fem.site_check.result import (
     RESULT_FILE,
     ActionAnswer,
+    ConfirmedRun,
     MotionSet,
     RuleRange,
     SetCheck,
@@ -178,6 +180,8 @@ def beside_the_set(result: SiteResult) -> list[str]:
         words[-1] += "."
     if repeated := confirmation(result):
         words.append(repeated)
+    if bolts := bolts_in_words(answer.confirmed):
+        words.append(bolts)
     return words
 
 
@@ -345,6 +349,21 @@ def confirmation(result: SiteResult) -> str:
         return f"{words}: {fell} can overturn, {failed} failed."
     turned, slip = max(one.turned for one in again), max(one.slipped for one in again)
     return f"{words}: none overturns, largest rotation ratio {ratio(turned)}, largest slip {millimetres(slip)} mm."
+
+
+def bolts_in_words(confirmed: Sequence[ConfirmedRun]) -> str:
+    """What the bolts of a stack carry in the deciding runs; empty of a single box, or without such runs."""
+    loaded = [one for one in confirmed if one.bolt_tension_N is not None]
+    if not loaded:
+        return ""
+    most = max(loaded, key=lambda one: one.bolt_tension_N or 0.0)
+    tension, used = FIGURES["bolt_tension_N"].unit.text(most.bolt_tension_N, figures=2), most.bolt_utilisation
+    of_it = (
+        "; no joints.bolt_capacity_N is given"
+        if used is None
+        else f", {short(used, 100, 2)} % of their capacity"
+    )
+    return f"The bolts along one edge carry at most {tension} of tension there{of_it}."
 
 
 def _body(body: SiteBody) -> str:

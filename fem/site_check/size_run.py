@@ -28,12 +28,13 @@ from fem.site_check.bracket import SizeAxis, SizeResult, next_values, size_asked
 from fem.site_check.confirm import confirmed, deciding
 from fem.site_check.figures import draw_size
 from fem.site_check.file import SiteRequest
+from fem.site_check.inputs import inputs_of
 from fem.site_check.methods import wind_utilisation
 from fem.site_check.motion_results import set_result, write_csv_files
 from fem.site_check.motions import floor_motions, ground_motions, longest_period
 from fem.site_check.reasons import NOT_FULFILLED
 from fem.site_check.result import ConfirmedRun, MotionSet, SiteAnswer
-from fem.site_check.run import inputs_of, site_hash
+from fem.site_check.run import site_hash
 from fem.site_check.runs import COLUMNS, RunCases, RunKey, RunRows, motion_stem
 from fem.site_check.size_axis import at, followers
 from fem.site_check.stages import Stages

@@ -114,6 +114,12 @@ class Stages:
             yield self._left(self.plan.scanned(factor))
         yield self._left(self.plan.refined(self.rows.found))
 
+    @property
+    def first_movement(self) -> float | None:
+        """Factor on the motions at which a rigid body first uplifts or slips; None where that is not known."""
+        first = [self.screening.moves_at(key) for key in self.plan.of_set()]
+        return None if None in first else min(one for one in first if one is not None)
+
     def beside(self, confirmed: Sequence[ConfirmedRun], wind: float | None) -> Beside:
         """What the answer rests on beside the runs.
 
@@ -121,13 +127,12 @@ class Stages:
             confirmed: the deciding runs, repeated.
             wind: the largest utilisation under wind; None: it was not asked for.
         """
-        first = [self.screening.moves_at(key) for key in self.plan.of_set()]
         return Beside(
             confirmed=confirmed,
             wind=wind,
             two_directions=self._two_directions(),
             still=sum(key.stage == SET for key in self.rows.still),
-            moves_at=None if None in first else min(one for one in first if one is not None),
+            moves_at=self.first_movement,
         )
 
     def _two_directions(self) -> TwoDirections | None:

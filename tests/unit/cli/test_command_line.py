@@ -425,3 +425,15 @@ class TestDoctor:
         began = time.monotonic()
         assert rendering.probe_rendering() == "the rendering test did not end within 0.5 s"
         assert time.monotonic() - began < 30.0
+
+
+def test_check_of_a_site_tells_what_a_verification_takes(capsys, tmp_path):
+    assert command_line.main(["check", "site", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["set_valid"] and found["forecast"]["of_set"] == 140 and found["forecast"]["most"] > 1000
+    assert 0.5 < found["factor_at_first_movement"] < 1.0 and found["wind_utilisation"] < 1.0
+    assert command_line.main(["check", "site"]) == 0
+    shown = capsys.readouterr().out
+    assert "moves      first at 0.7" in shown and "runs       140 to compute, up to" in shown
+    assert command_line.main(["check", "site", "--set", "contact.mu_static=0.3"]) == 2
+    assert "edit the file" in capsys.readouterr().err

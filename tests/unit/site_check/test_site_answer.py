@@ -110,6 +110,7 @@ def test_a_limit_within_the_range_of_the_repetitions_is_not_sure(own, again):
         ),
         ([repeated(), further()], {"confirmed": (confirmed(outcome=None),)}, "1 of 1 deciding runs"),
         ([repeated(), further()], {"confirmed": (confirmed(max_slip_m=0.2),)}, "go beyond a limit"),
+        ([repeated(), further()], {"confirmed": (confirmed(bolt_utilisation=1.2),)}, "bolts carry 1.2"),
         ([repeated()], {"left_out": "Further motions were left out."}, "were left out"),
     ],
 )

@@ -14,7 +14,7 @@ from fem.html.page import Page, html_of
 from fem.results.errors import FolderError
 from fem.results.files import to_json
 from fem.site_check.result import RESULT_FILE, SiteResult
-from fem.site_check.site_page import answer_section, confirmation, site_report
+from fem.site_check.site_page import answer_section, bolts_in_words, confirmation, site_report
 
 ANSWERS = {
     "fulfilled": ({}, "Fulfilled under the rule below"),
@@ -150,6 +150,15 @@ def test_what_decides_is_repeated(change, words):
     result, _ = example()
     answer = replace(result.result, confirmed=(replace(CONFIRMED, **change),))
     assert confirmation(replace(result, result=answer)).endswith(words)
+
+
+def test_the_bolts_of_the_deciding_runs_are_told():
+    pulled = replace(CONFIRMED, bolt_tension_N=18_200.0)
+    assert bolts_in_words([CONFIRMED]) == ""
+    assert bolts_in_words([pulled]).endswith("18 kN of tension there; no joints.bolt_capacity_N is given.")
+    assert "18 kN of tension there, 7.3 % of their capacity." in bolts_in_words(
+        [replace(pulled, bolt_utilisation=0.073)]
+    )
 
 
 def test_what_speaks_against_the_answer_stands_in_the_box_and_the_answer_has_its_colour():

@@ -1,0 +1,128 @@
+"""What can be said of a site before any run: action, motions, what they move, and what a verification would take."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from fem.results.json_block import JsonBlock
+from fem.run.expected import OF_A_RUN, USUAL_RECORD_S, of_a_second
+from fem.runtime.progress import clock_time
+from fem.runtime.threads import cores
+from fem.seismic.motion_set import check_set
+from fem.site_check.bodies import body_of
+from fem.site_check.file import SiteRequest
+from fem.site_check.inputs import inputs_of
+from fem.site_check.methods import wind_utilisation
+from fem.site_check.motions import floor_motions, ground_motions, longest_period
+from fem.site_check.result import SiteBody
+from fem.site_check.runs import still
+from fem.site_check.stages import Stages
+
+
+@dataclass(frozen=True, kw_only=True)
+class Forecast(JsonBlock):
+    """How many runs a verification takes, and how long."""
+
+    of_set: int
+    of_set_still: int  #: of these, below uplift and slip of a rigid body: not computed
+    most: int  #: of all stages, without the deciding runs
+    seconds: float  #: of them, on these cores, roughly
+    cores: int
+    quick: bool = False
+
+    @property
+    def words(self) -> str:
+        """In one sentence."""
+        on = f"{self.cores} core{'s' if self.cores > 1 else ''}"
+        moving, rest = self.of_set - self.of_set_still, ""
+        if self.of_set_still:
+            rest = f"{self.of_set_still} of {self.of_set} runs of the set rest below uplift and slip; "
+        more = "" if self.quick else ", further motions and other factors"
+        after = "" if self.quick or not moving else ", then the deciding runs with their bands"
+        return (
+            f"{rest}{moving} to compute, up to {self.most} with repetitions{more}: at most about "
+            f"{clock_time(float(f'{self.seconds:.1g}'))} on {on}{after}"
+        )
+
+
+def forecast(stages: Stages, jobs: int, *, quick: bool = False) -> Forecast:
+    """How many runs there will be, before the first is computed."""
+    own, most = stages.most_runs(quick=quick)
+    request = stages.request
+    case = still(request.variants[0].case, request.heading.model)
+    one = OF_A_RUN[case.solver.model] + of_a_second(case) * USUAL_RECORD_S
+    total = len(stages.plan.of_set())
+    return Forecast(
+        of_set=total,
+        of_set_still=total - own,
+        most=most,
+        seconds=most * one / jobs,
+        cores=jobs,
+        quick=quick,
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class SitePreview(JsonBlock):
+    """What is known of a verification before it is computed."""
+
+    site: str
+    title: str
+    spectrum: str
+    ag_S_m_s2: float  # noqa: N815 - a key of the file
+    avg_m_s2: float
+    bodies: tuple[SiteBody, ...]
+    motions: int
+    set_valid: bool
+    reasons: tuple[str, ...]
+    factor_at_first_movement: float | None  #: on the motions, of a rigid body; None: not known
+    wind_utilisation: float | None
+    forecast: Forecast
+
+
+def preview_of(request: SiteRequest, *, allow_outside: bool = False) -> SitePreview:
+    """What is known of a request; nothing is computed but its motions.
+
+    Raises:
+        CaseError, MeshError: it cannot be computed.
+    """
+    bodies = tuple(map(body_of, request.variants))
+    longest = longest_period([body.frequency_parameter_1_s for body in bodies])
+    ground = ground_motions(request, longest, allow_outside=allow_outside)
+    checked = check_set(
+        ground, request.action, longest=longest, second=request.motions.second_component or 1.0
+    )
+    stages = Stages.of(request, floor_motions(request, ground), longest=longest, folder=Path())
+    return SitePreview(
+        site=request.name,
+        title=request.heading.title,
+        spectrum=request.action.shape.source,
+        ag_S_m_s2=request.action.surface_acceleration,
+        avg_m_s2=request.action.vertical_acceleration,
+        bodies=bodies,
+        motions=len(ground),
+        set_valid=checked.valid,
+        reasons=checked.reasons,
+        factor_at_first_movement=stages.first_movement,
+        wind_utilisation=wind_utilisation(bodies, inputs_of(request)),
+        forecast=forecast(stages, cores()),
+    )
+
+
+def preview_lines(preview: SitePreview, request: SiteRequest) -> Iterator[str]:
+    """The lines of a preview, for people."""
+    yield f"{preview.site}: {preview.title}" if preview.title else preview.site
+    yield f"  action     {preview.spectrum}; a_g S = {preview.ag_S_m_s2:.3g} m/s2, a_vg = {preview.avg_m_s2:.3g} m/s2"
+    for body in preview.bodies:
+        yield (
+            f"  {body.mass:<10} {body.mass_kg:.6g} kg, {body.elevation} {body.width_m:g} m along the motion: uplift "
+            f"from {body.uplift_acceleration_m_s2:.3g} m/s2, slip from "
+            f"{min(request.friction.mu_static) * body.gravity_m_s2:.3g} m/s2"
+        )
+    said = "valid" if preview.set_valid else f"not valid: {'; '.join(preview.reasons)}"
+    yield f"  motions    {preview.motions}, {request.motions.source}: {said}"
+    if preview.factor_at_first_movement is not None:
+        yield f"  moves      first at {preview.factor_at_first_movement:.3g} times the set, as a rigid body"
+    if preview.wind_utilisation is not None:
+        yield f"  wind       utilisation {preview.wind_utilisation:.3g}"
+    yield f"  runs       {preview.forecast.words}"
