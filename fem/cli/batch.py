@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from cyclopts import Parameter
 
 from fem.batch.answers import table_lines
-from fem.case.case import load_case
+from fem.case.case import CaseError, load_case
 from fem.cli.console import SHARED, AllowOutside, SharedFlags, flag, print_result
 from fem.results.kinds import HALL
 
@@ -20,7 +20,16 @@ def batch(
     hall: Path,
     /,
     *,
-    case: Annotated[str, Parameter(help="The case that the rows change: a case file or a shipped case.")],
+    case: Annotated[
+        str | None,
+        Parameter(
+            show_default=False, help="The case that the rows change; at a site its container if left out."
+        ),
+    ] = None,
+    site: Annotated[
+        str | None,
+        Parameter(show_default=False, help="Verify each container at a site, by a site file as of assess."),
+    ] = None,
     motion: Annotated[
         tuple[str, ...],
         Parameter(
@@ -52,18 +61,26 @@ def batch(
     hall:
         The list, as CSV.
     """
+    if (case is None and site is None) or (site is not None and motion):
+        words = "--case is missing: the case that the rows change"
+        raise CaseError("--site and --motion contradict each other; give one of them" if site else words)
     listed = importlib.import_module("fem.hall.file").read_hall(hall)
-    base = load_case(case, allow_outside=allow_outside)
+    base = load_case(case, allow_outside=allow_outside) if case is not None else None
     folder = flags.folder(listed.name)
     # Loaded late: bad input is refused before anything is compiled.
-    study = importlib.import_module("fem.hall.run")
     with flags.options() as options:
-        result = study.run_hall(
-            listed, base, folder, motions=motion, checks=margins, strict=strict, **options
-        )
+        if site is not None:
+            request = importlib.import_module("fem.site_check.file").load_site(site)
+            study = importlib.import_module("fem.hall.site")
+            result = study.run_hall_at_site(listed, request, base, folder, strict=strict, **options)
+        else:
+            study = importlib.import_module("fem.hall.run")
+            result = study.run_hall(
+                listed, base, folder, motions=motion, checks=margins, strict=strict, **options
+            )
     if pdf and result.status == "completed":
         printing = importlib.import_module("fem.report.printing")
-        print(printing.print_page(folder / study.PAGE) or printing.BY_HAND)
+        print(printing.print_page(folder / "report.html") or printing.BY_HAND)
     return print_result(result, HALL, folder, page_of(result, folder), as_json=flags.as_json)
 
 
@@ -71,14 +88,15 @@ def page_of(result: "HallResult", folder: Path) -> Iterator[str]:
     """The lines of a hall, for people."""
     yield result.hall
     motions = f" under {len(result.motions)} motions" if len(result.motions) > 1 else ""
+    what = f"verified at {result.site}" if result.site else f"{result.runs} runs, model {result.model}"
     yield (
-        f"  {result.rows} rows, {result.containers} containers, {result.distinct} that differ{motions}: "
-        f"{result.runs} runs, model {result.model}, {result.status}"
+        f"  {result.rows} rows, {result.containers} containers, {result.distinct} that differ{motions}: {what}, "
+        f"{result.status}"
     )
     if result.kept:
         yield f"  kept       {', '.join(result.kept)}"
     for outcome, count in result.outcomes.items():
-        yield f"  {outcome:12} {count:>8}"
+        yield f"  {outcome:13} {count:>7}"
     bad = [
         (f"row {one['row']} {one['name']}", one["reason"])
         for one in result.table
@@ -91,16 +109,18 @@ def page_of(result: "HallResult", folder: Path) -> Iterator[str]:
         ranked = sorted(
             (one for one in result.table if one["rank"]), key=lambda one: (one["rank"], one["row"])
         )
-        yield f"  sure and margin of the weakest {result.checked}" * bool(result.checked)
+        if result.checked:
+            yield f"  sure and margin of the weakest {result.checked}"
         yield from table_lines([(one["name"], _shown(one)) for one in ranked[:10]])
     yield f"  files      {folder}: hall.csv, hall.json, report.html"
 
 
 def _shown(row: dict[str, object]) -> str:
     """A container in a line."""
-    words = [str(row["outcome"] or row["reason"])]
+    words = [str(row["answer"] or row["outcome"] or row["reason"])]
     if isinstance(row["margin"], float):
-        words.append(f"overturns from {row['margin']:.3g} times the motion on")
+        does = "fails the rule" if row["answer"] else "overturns"
+        words.append(f"{does} from {row['margin']:.3g} times the motion on")
     elif isinstance(row["margin_tried_to"], float):
         words.append(f"stands up to {row['margin_tried_to']:.3g} times the motion")
     if isinstance(row["rotation_ratio"], float) and row["outcome"] != "overturned":

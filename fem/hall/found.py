@@ -109,7 +109,9 @@ def static_use(hall: Hall, item: HallItem) -> tuple[float | None, float | None]:
     return found.utilisation_sliding, found.utilisation_overturning
 
 
-def weakest_first(runs: HallRuns, static: Mapping[int, Mapping[str, float | None]]) -> list[int]:
+def weakest_first(
+    runs: HallRuns, static: Mapping[int, Mapping[str, float | None]], *, margins: bool = True
+) -> list[int]:
     """The containers in the order of their weakness.
 
     What overturned comes first, then what has no outcome, then what stood; within these what has a margin before what
@@ -119,7 +121,7 @@ def weakest_first(runs: HallRuns, static: Mapping[int, Mapping[str, float | None
     def place(number: int) -> tuple[float, ...]:
         run = runs.found[number][runs.governing(number)]
         order, _, slip = run.weakness
-        check = runs.checked.get(number, {})
+        check = runs.checked.get(number, {}) if margins else {}
         margin = number_in(check.get("margin", "")) or number_in(check.get("margin_tried_to", ""))
         turned = -run.ratio if run.ratio > ROCKS and order == 2 else 0.0
         known = margin is None, margin or 0.0

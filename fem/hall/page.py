@@ -24,9 +24,13 @@ from fem.results.kinds import HALL
 SHOWN = ("rotation_ratio", "max_slip_m")
 MOST_INPUTS = 3  #: of those that decide
 LOOKS = {"overturned": "bad", "failed": "bad"}
-MARGIN = "Margin: the factor on the whole motion of the run from which it overturns, with the range that all unknown "
-MARGIN += (
-    "inputs together give it. Utilisation: of the static rule for overturning, under the peak of the motion."
+MARGIN = (
+    "Margin: the factor on the whole motion of the run from which it overturns, with the range that all unknown inputs "
+    "together give it. Utilisation: of the static rule for overturning, under the peak of the motion."
+)
+AT_SITE = (
+    "By the rule of each page, to which the answers lead: rotation and slip that count, and as margin the least of the "
+    "factors tried on the motions at which the rule fails. The outcome is that of the run that governs."
 )
 A_ROW = Mapping[str, Any]
 
@@ -60,7 +64,12 @@ def hall_report(folder: Path, *, signature: Signature | None = None, result: Hal
             found_section(info),
             html.section("In plan", "plan", *studies.drawings(folder, [PICTURE], "batch")),
             html.section("By tag", "tags", *([tags_table(info)] if info.tags else [])),
-            html.section("The weakest first", "weakest", weakest_table(info, ranked), html.Note(MARGIN)),
+            html.section(
+                "The weakest first",
+                "weakest",
+                weakest_table(info, ranked),
+                html.Note(AT_SITE if info.site else MARGIN),
+            ),
             html.section("Refused rows", "refused", *([refused_table(refused)] if refused else [])),
             html.section(
                 "What the rows start from",
@@ -90,18 +99,19 @@ def hall_report(folder: Path, *, signature: Signature | None = None, result: Hal
 def again(info: HallResult) -> str:
     """The command that computes the hall."""
     words = ["python", "-m", "fem", "batch", "list.csv", "--case", "base.toml"]
-    motions = ["--motion", *info.motions] if info.motions else []
+    motions = ["--motion", *info.motions] if info.motions else ["--site", info.site] if info.site else []
     return shlex.join([*words, *motions, *(["--margins", info.checks] * (info.checks != "weakest"))])
 
 
 def found_section(info: HallResult) -> html.PageSection:
     """The answer, and what was computed."""
     under = f" under {len(info.motions)} motions" if len(info.motions) > 1 else ""
-    count = (
-        f"{info.rows} rows, {info.containers} containers, {info.distinct} that differ{under}: {info.runs} "
-        f"runs{studies.unfinished(info)}."
-    )
-    if info.checked:
+    what = f"verified at {info.site}" if info.site else f"{info.runs} runs"
+    count = f"{info.rows} rows, {info.containers} containers, {info.distinct} that differ{under}: "
+    count += f"{what}{studies.unfinished(info)}."
+    if info.site:
+        pass
+    elif info.checked:
         which = "all" if info.checked == info.distinct else f"the weakest {info.checked}"
         count += f" Sure, deciding inputs and margin are those of {which}, each under its governing motion."
     elif info.state == "finished":
@@ -127,7 +137,7 @@ def tags_table(info: HallResult) -> html.Table:
         html.Column("containers", lambda one: str(one.containers), html.NUMBER),
         *(
             html.Column(word, partial(_count, word), html.NUMBER)
-            for word in ("stood", "overturned", "failed", "refused")
+            for word in dict.fromkeys(word for one in info.tags for word in sorted(one.counts))
         ),
         html.Column("least margin", lambda one: number(one.margin, figures=3), html.NUMBER),
     ]
@@ -147,6 +157,7 @@ def weakest_table(info: HallResult, rows: list[dict[str, Any]]) -> html.Table:
             "count", lambda row: "" if row["count"] == 1 else str(row["count"]), html.NUMBER, optional=True
         ),
         html.Column("tag", lambda row: row["tag"], optional=True),
+        html.Column("answer", _answer, optional=True),
         html.Column("outcome", lambda row: row["outcome"] or f"none: {row['reason']}"),
         html.Column("margin", margin_words, html.NUMBER),
         html.Column("sure", lambda row: row["sure"] or "", optional=True),
@@ -211,7 +222,13 @@ def _deciding(row: A_ROW) -> str:
 
 
 def _count(word: str, one: TagCount) -> str:
-    return str(getattr(one, word) or "")
+    return str(one.counts.get(word, ""))
+
+
+def _answer(row: A_ROW) -> html.Cell:
+    words = row["answer"] or ("no answer" if row["reasons"] else "")
+    linked = Markup('<a href="{}">{}</a>').format(row["page"], words) if row["page"] else words
+    return html.Cell(linked)
 
 
 def _share(row: A_ROW) -> str:

@@ -2,10 +2,10 @@
 
 import re
 import shlex
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -58,6 +58,16 @@ class HallCases:
         return CaseMaker(self.base.without_fields())
 
 
+@dataclass(frozen=True, kw_only=True)
+class Looked:
+    """The rows of a list, looked at."""
+
+    reasons: tuple[str, ...]  #: why each is refused; empty where it is not
+    of_row: tuple[int | None, ...]  #: the container of each
+    containers: tuple[Mapping[str, Any], ...]  #: what the rows of each set that differ
+    hashes: tuple[str, ...]  #: of these
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Hall:
     """A list of containers with the case that they start from, and the motions that they undergo."""
@@ -66,16 +76,13 @@ class Hall:
     base: Case
     motions: tuple[FloorMotionPair, ...]
     cases: HallCases
-    containers: tuple[Mapping[str, Any], ...]  #: what the rows of each set that differ
-    of_row: tuple[int | None, ...]  #: the container of each row; None of a row that is refused
-    reasons: tuple[str, ...]  #: why, of each row; empty where it is not
-    hashes: tuple[str, ...]  #: of the cases of the containers
+    looked: Looked
     named: tuple[str, ...] = ()  #: motions as they were named on the command line
 
     @property
-    def rows(self) -> tuple[HallRow, ...]:
-        """Those of the list."""
-        return self.file.rows
+    def containers(self) -> tuple[Mapping[str, Any], ...]:
+        """What the rows of each set that differ."""
+        return self.looked.containers
 
     def items(self) -> list[HallItem]:
         """All runs; those of a container follow one another."""
@@ -145,23 +152,14 @@ def plan_hall(
         base_of_set = base.from_origin(origin)
         pairs = read_motion_set(base_of_set, [_axis(base.folder, motions)], runner)
         cases = HallCases(base=base_of_set, motions=tuple(pair.keys for pair in pairs))
-    reasons, of_row, containers, hashes = _look_at(file, cases, outside=bool(motions))
-    if not containers or (strict and any(reasons)):
-        bad = [(row, reason) for row, reason in zip(file.rows, reasons, strict=True) if reason]
-        lines = [f"{file.name}, line {row.line} ({row.name}): {reason}" for row, reason in bad[:20]]
-        more = [f"and {len(bad) - 20} more rows"] * (len(bad) > 20)
-        raise CaseError(
-            "\n".join([*lines, *more, "no row can be computed"[: None if not containers else 0]]).strip()
-        )
     return Hall(
         file=file,
         base=base,
         motions=pairs,
         cases=cases,
-        containers=tuple(containers),
-        of_row=tuple(of_row),
-        reasons=tuple(reasons),
-        hashes=tuple(hashes),
+        looked=look_at(
+            file, partial(_hash_of, cases, outside=bool(motions)), base.origin_with({}).place, strict=strict
+        ),
         named=tuple(motions),
     )
 
@@ -195,33 +193,46 @@ def _axis(folder: Path, motions: Sequence[str]) -> Axis:
     return Axis(key=MOTION_FILE, values=names, following=following)
 
 
-def _look_at(
-    file: HallFile, cases: HallCases, *, outside: bool
-) -> tuple[list[str], list[int | None], list[Mapping[str, Any]], list[str]]:
-    """Of every row why it is refused or which container it is, and the containers that differ with their hashes."""
+def look_at(file: HallFile, look: Callable[[Mapping[str, Any]], str], place: str, *, strict: bool) -> Looked:
+    """Look at every row before any is computed; equal ones are one container.
+
+    Args:
+        file: the list.
+        look: gives a hash of a container from the values of a row, or raises a ValueError.
+        place: the base case, as messages of `look` begin with it.
+        strict: refuse the whole list for one bad row.
+
+    Raises:
+        CaseError: no good row; with `strict` any bad row.
+    """
     reasons: list[str] = []
     of_row: list[int | None] = []
-    containers: list[Mapping[str, Any]] = []
-    hashes: list[str] = []
-    seen: dict[str, tuple[str, int | None]] = {}
-    by_hash: dict[str, int] = {}
+    containers: dict[str, Mapping[str, Any]] = {}
+    seen: dict[str, tuple[str, int | None]] = {}  #: by what a row sets: why not, and which container
+    numbers: dict[str, int] = {}  #: of the containers, by hash
     for row in file.rows:
         values = repr(sorted(row.values.items()))
         if not row.reason and values not in seen:
             try:
-                digest = _hash_of(cases, row.values, outside=outside)
+                digest = look(row.values)
+                containers.setdefault(digest, row.values)
+                seen[values] = "", numbers.setdefault(digest, len(numbers))
             except ValueError as error:
-                seen[values] = _in_words_of_list(str(error), cases.base), None
-            else:
-                if digest not in by_hash:
-                    by_hash[digest] = len(containers)
-                    containers.append(row.values)
-                    hashes.append(digest)
-                seen[values] = "", by_hash[digest]
+                seen[values] = _in_words_of_list(str(error), place), None
         reason, container = (row.reason, None) if row.reason else seen[values]
         reasons.append(reason)
         of_row.append(container)
-    return reasons, of_row, containers, hashes
+    bad = [(row, reason) for row, reason in zip(file.rows, reasons, strict=True) if reason]
+    if not containers or (strict and bad):
+        lines = [f"{file.name}, line {row.line} ({row.name}): {reason}" for row, reason in bad[:20]]
+        lines += [f"and {len(bad) - 20} more rows"] * (len(bad) > 20)
+        raise CaseError("\n".join(lines + ["no row can be computed"] * (not containers)))
+    return Looked(
+        reasons=tuple(reasons),
+        of_row=tuple(of_row),
+        containers=tuple(containers.values()),
+        hashes=tuple(containers),
+    )
 
 
 def _hash_of(cases: HallCases, values: Mapping[str, Any], *, outside: bool) -> str:
@@ -245,8 +256,9 @@ def _hash_of(cases: HallCases, values: Mapping[str, Any], *, outside: bool) -> s
     return case_hash(first)
 
 
-def _in_words_of_list(reason: str, base: Case) -> str:
+def _in_words_of_list(reason: str, place: str) -> str:
     """Why a case cannot be used, without the words of the command line, on one line."""
-    place = f"{base.origin_with({}).place}: "
-    lines = (re.sub(r" \(--set \S+?=.*\)$", "", line.removeprefix(place)) for line in reason.splitlines())
+    lines = (
+        re.sub(r" \(--set \S+?=.*\)$", "", line.removeprefix(f"{place}: ")) for line in reason.splitlines()
+    )
     return "; ".join(line for line in lines if line and not line.startswith("with --set "))

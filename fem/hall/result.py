@@ -15,9 +15,13 @@ CHECKED = ("sure", "decided_by", "margin", "margin_low", "margin_high", "margin_
 STATIC = ("utilisation_sliding", "utilisation_overturning")
 #: of a container under several motions
 OF_MOTIONS = ("motion", "motions_overturned", "motions_failed", "largest_slip_m", "largest_slip_motion")
+#: of a container at a site, by the rule of `assess`
+AT_SITE = ("answer", "reasons", "factor_at_first_overturning", "page")
 FIRST = ("status", "reason", "outcome", *CHECKED[:3], "rotation_ratio", "max_slip_m", "tilt_rad")
 #: behind the columns of the list
-RESULT_COLUMNS = tuple(dict.fromkeys((*FIRST, *STATIC, *OF_MOTIONS, *CHECKED, *SCALARS, *BOXES, "rank")))
+RESULT_COLUMNS = tuple(
+    dict.fromkeys((*FIRST, *STATIC, *OF_MOTIONS, *CHECKED, *SCALARS, *BOXES, *AT_SITE, "rank"))
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,10 +30,7 @@ class TagCount(JsonBlock):
 
     tag: str
     containers: int  #: rows times their counts
-    stood: int = 0
-    overturned: int = 0
-    failed: int = 0  #: without an outcome
-    refused: int = 0
+    counts: dict[str, int]  #: stood, overturned, failed, refused; at a site by answer
     margin: float | None = None  #: the least that was found
 
 
@@ -43,6 +44,7 @@ class HallResult(StudyResult):
     listed: str = ""  #: hash of the list
     model: str
     motions: tuple[str, ...] = ()  #: files; empty: the motion of the case
+    site: str = ""  #: its file; empty: none
     motion_covered: str | None = None
     rows: int  #: of the list
     containers: int  #: rows times their counts
@@ -53,7 +55,7 @@ class HallResult(StudyResult):
     checked: int = 0  #: containers whose run was repeated
     outcomes: dict[str, int] = field(
         default_factory=dict
-    )  #: of containers, by count; "failed", "refused" too
+    )  #: of containers, by count; at a site their answers
     tags: tuple[TagCount, ...] = ()
     kept: tuple[str, ...] = ()  #: columns of the list that set nothing
     columns: tuple[str, ...] = ()  #: of the list

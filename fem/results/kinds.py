@@ -147,12 +147,14 @@ HALL = ResultKind(
         "hall.geojson",
         "runs.csv",
         "checks.csv",
+        "sites.csv",
         "list.csv",
         "base.toml",
         "report.html",
         "report.pdf",
+        "figures/*.svg",
     ),
-    logs=("runs.csv", "checks.csv"),
+    logs=("runs.csv", "checks.csv", "sites.csv"),
 )
 PAPER = ResultKind(
     name="study",

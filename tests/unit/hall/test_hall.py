@@ -9,13 +9,17 @@ import shlex
 import pytest
 
 from fem.__main__ import main
+from fem.batch.shard import Shard
 from fem.case.case import load_case
 from fem.case.validation import CaseError
 from fem.hall.file import read_hall
 from fem.hall.places import UNKNOWN, class_of, plan_of
 from fem.hall.run import run_hall
+from fem.hall.site import run_hall_at_site
 from fem.results.figures import SCALARS
 from fem.run.compute import compute
+from fem.site_check.file import load_site
+from fem.site_check.run import run_site
 
 BASE = """
 [container]
@@ -40,6 +44,20 @@ A,2,north,1.0,2000,0.5,ACME
 bad,1,south,-1,2000,,
 C,3,south,1.0,2000.0,0.5,x
 D,1,,2.4,,0.2,y
+"""
+SITE = """
+container = "base.toml"
+[site]
+ground = "D"
+reference_acceleration_m_s2 = 3.5
+[motions]
+count = 3
+further = 2
+[friction]
+mu_static = [0.4]
+mu_kinetic_over_static = [1.0]
+[limits]
+slip_m = 0.1
 """
 
 
@@ -89,11 +107,46 @@ def test_a_row_is_the_run_by_itself_bit_for_bit(tmp_path, base, monkeypatch, cap
         assert row["margin_high"] == alone.margin.high
     ranks = {row["name"]: row["rank"] for row in found["table"]}
     assert ranks == {"=B": 1, "A": 2, "C": 2, "D": 3, "bad": None}
-    tags = {one["tag"]: one for one in found["tags"]}
+    tags = {one["tag"]: one["counts"] for one in found["tags"]}
     assert (tags["north"]["overturned"], tags["south"]["overturned"], tags["south"]["refused"]) == (3, 3, 1)
     page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
     assert "7 of 7" not in page and "6 of 7 containers overturned" in page and 'href="#row-2"' in page
     assert main(["report", "out", "-q"]) == 0
+
+
+@pytest.mark.slow
+def test_every_container_is_verified_at_a_site_as_by_assess(tmp_path, base, monkeypatch, capsys):
+    monkeypatch.setattr("fem.site_check.run.confirmed", lambda *arguments: [])
+    monkeypatch.setattr("fem.site_check.runs.SCANNED", (0.5,))
+    monkeypatch.chdir(tmp_path)
+    listed(tmp_path, SITE, "site.toml")
+    listed(tmp_path, "name,width_m,mu_static,tag\nslim,0.5,,a\nwide,3,0.9,b\nbad,-1,,b\nagain,3.0,0.9,b\n")
+    command = ["batch", "hall.csv", "--case", "base.toml", "--site", "site.toml", "--out", "out", "-q"]
+    assert main(command) == 0
+    assert "of 3 containers: " in capsys.readouterr().out
+    found = json.loads((tmp_path / "out" / "hall.json").read_text(encoding="utf-8"))
+    slim, wide, bad, again = found["table"]
+    assert (
+        slim["answer"] == "not fulfilled"
+        and bad["status"] == "refused"
+        and (found["distinct"], slim["rank"]) == (2, 1)
+    )
+    assert wide["answer"] == again["answer"] is not None
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert (tmp_path / "out" / slim["page"]).is_file() and slim["page"] in page
+    alone = run_site(load_site(shlex.split(wide["command"])[4]), tmp_path / "alone").result
+    assert (alone.answer, alone.margin_factor) == (wide["answer"], wide["margin"])
+    assert (alone.rotation_ratio, alone.slip_m) == (wide["rotation_ratio"], wide["max_slip_m"])
+    shards = [tmp_path / f"shard {number}" for number in (1, 2)]
+    asked = read_hall(tmp_path / "hall.csv"), load_site("site.toml"), load_case("base.toml")
+    for number, folder in enumerate(shards, start=1):
+        run_hall_at_site(*asked, folder, shard=Shard(number, 2))
+    merged = run_hall_at_site(*asked, tmp_path / "merged", merge=shards[::-1])
+    assert [row["answer"] for row in merged.table] == [row["answer"] for row in found["table"]]
+    assert main([*command[:-3], "--motion", "x.csv"]) == 2
+    listed(tmp_path, "name,motion.scale\na,2\n", "moved.csv")
+    assert main(["batch", "moved.csv", "--site", "site.toml"]) == 2
+    assert "'motion.scale' has no effect at a site" in capsys.readouterr().err
 
 
 def test_equal_rows_are_computed_once_and_labels_cost_nothing(tmp_path, base):

@@ -1,0 +1,188 @@
+"""A hall at a site: every container verified as by `assess`, each in a folder of its own with its page.
+
+The verifications follow one another, each on all cores. What is kept of a finished one is a line of a log.
+"""
+
+import math
+import shlex
+from collections.abc import Mapping
+from contextlib import closing
+from dataclasses import dataclass, field, replace
+from functools import partial
+from pathlib import Path
+from typing import Any, Unpack
+
+from fem.batch.log import RowLog, fields_of, line_of, number_in, table_of_lines
+from fem.batch.runner import Runner
+from fem.batch.study import COMPLETED, INTERRUPTED, StudyOptions, hash_of, run_study
+from fem.case.case import Case, case_hash
+from fem.case.validation import CaseError
+from fem.hall.file import HallFile
+from fem.hall.plan import Looked, look_at
+from fem.hall.result import AT_SITE, HallResult
+from fem.hall.run import asked_of, study_of, written
+from fem.hall.table import HallTable
+from fem.results.folder import ResultFolder
+from fem.runtime.progress import SilentReporter
+from fem.site_check.bodies import body_of
+from fem.site_check.file import SiteRequest
+from fem.site_check.run import run_site
+
+SITES, FOLDERS = "sites.csv", "sites"
+MU = "contact.mu_static"
+#: tables of a case that a verification takes from its site file
+OF_THE_SITE = ("motion", "vertical", "initial", "static", "solver", "output", "uncertainty", "joints")
+FIGURES = ("outcome", "margin", "rotation_ratio", "max_slip_m", "motions_overturned", "motions_failed")
+COLUMNS = ("container", "status", *FIGURES, *AT_SITE[:3])
+NO_ANSWER = "no answer"
+WORST_FIRST = ("not fulfilled", NO_ANSWER, "not sure", "fulfilled")
+
+
+def run_hall_at_site(
+    file: HallFile,
+    site: SiteRequest,
+    base: Case | None,
+    folder: Path,
+    *,
+    strict: bool = False,
+    **options: Unpack[StudyOptions],
+) -> HallResult:
+    """Verify every container of a list at a site, into a folder; raises as `run_study`, and CaseError for bad input.
+
+    Args:
+        file: the list.
+        site: the action, the motions, the limits.
+        base: the case that the rows change; None: the container of the site.
+        folder: of the results.
+        strict: refuse the list for one bad row.
+        options: of every study.
+    """
+    start = base or site.container
+    idle = [
+        key
+        for key in file.keys.values()
+        if key.partition(".")[0] in OF_THE_SITE or key == "contact.mu_kinetic"
+    ]
+    if idle:
+        raise CaseError(
+            f"{file.path}: {idle[0]!r} has no effect at a site, whose file says it; leave the column out"
+        )
+    looked = look_at(file, partial(_look, site, start), start.origin_with({}).place, strict=strict)
+    begun = replace(
+        asked_of(file, start, looked),
+        site=site.origin.place,
+        model=site.heading.model,
+        asked=hash_of(looked.hashes),
+        listed=hash_of(file.text),
+    )
+    work = _AtSite(file=file, site=site, start=start, looked=looked, begun=begun)
+    return run_study(study_of(file, start, begun, work.compute, 0.0), folder, **options)
+
+
+def request_of(site: SiteRequest, start: Case, values: Mapping[str, Any], name: str) -> SiteRequest:
+    """The verification of a container.
+
+    Raises:
+        CaseError: it cannot be verified at the site.
+    """
+    mu = values.get(MU)
+    if mu is not None and not isinstance(mu, float):
+        raise CaseError(
+            f"[contact] mu_static must be a number at a site, whose [friction] has the range, got {mu!r}"
+        )
+    return site.of_container(name, start.with_values(values) if values else start, mu)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _AtSite:
+    """A hall at a site under way."""
+
+    file: HallFile
+    site: SiteRequest
+    start: Case
+    looked: Looked
+    begun: HallResult
+    lines: dict[int, str] = field(default_factory=dict)  #: of the log, by container
+
+    def compute(self, place: ResultFolder, runner: Runner) -> HallResult:
+        """Verify what is missing, and write the list with the answers, and its page."""
+        count, path = len(self.looked.containers), place.path / SITES
+        numbers = list(range(count))
+        mine = runner.share.of(numbers, numbers) if runner.share else numbers
+        with closing(RowLog(path, COLUMNS)) as log:
+            for line in log.lines:
+                self.lines[int(fields_of(line)[0])] = line
+            for number in (one for one in mine if one not in self.lines):
+                runner.reporter.message(f"container {number + 1} of {count} at the site")
+                line = "" if runner.stop() else self._verify(number, place.path, runner)
+                if not line:
+                    break
+                log.append([line])
+                self.lines[number] = line
+        if len(self.lines) < count:
+            if runner.share and not {*mine} - self.lines.keys():
+                runner.share.waits = True
+            missing = f"{len(self.lines)} of {count} containers are verified"
+            return replace(self.begun, status=INTERRUPTED, missing=missing)
+        place.check()
+        place.write_text(SITES, table_of_lines(COLUMNS, (line for _, line in sorted(self.lines.items()))))
+        found = {k: dict(zip(COLUMNS, fields_of(line), strict=True)) for k, line in self.lines.items()}
+        for k, one in found.items():
+            page = self._folder(k) / "report.html"
+            one["page"] = page.as_posix() if (place.path / page).is_file() else ""
+        table = HallTable(
+            file=self.file,
+            looked=self.looked,
+            found=found,
+            words={k: (one["answer"] or NO_ANSWER,) * 2 for k, one in found.items()},
+            order=sorted(found, key=lambda k: _weakness(found[k])),
+            command=lambda row, container: shlex.join(
+                ["python", "-m", "fem", "assess", str(place.path / self._folder(container) / "site.toml")]
+            ),
+        )
+        return written(place, table, replace(self.begun, status=COMPLETED, runs=count))
+
+    def _verify(self, number: int, folder: Path, runner: Runner) -> str:
+        """The line of a container; empty where it was interrupted."""
+        own = self.looked.of_row.index(number)
+        request = request_of(self.site, self.start, self.looked.containers[number], self.file.rows[own].name)
+        result = run_site(
+            request,
+            folder / self._folder(number),
+            allow_outside=bool(request.motions.files),
+            jobs=runner.jobs,
+            workers_of=runner.workers_of,
+            resume=True,
+            reporter=SilentReporter(),
+        )
+        if result.state != "finished":
+            return ""
+        answer = result.result
+        outcome = answer.governing.outcome if answer.governing else None
+        shown = (outcome, answer.margin_factor, answer.rotation_ratio, answer.slip_m, answer.overturned, None)
+        reasons = answer.reasons or ([] if answer.answer else [answer.sentence])
+        said = (answer.answer, " ".join(reasons), answer.factor_at_first_overturning)
+        return line_of((number, result.status, *shown, *said))
+
+    def _folder(self, number: int) -> Path:
+        return Path(FOLDERS) / f"{number + 1:03d}-{self.looked.hashes[number][:8]}"
+
+
+def _look(site: SiteRequest, start: Case, values: Mapping[str, Any]) -> str:
+    """The hash of a verification, once its bodies can be built.
+
+    Raises:
+        CaseError, MeshError: what it would be refused for.
+    """
+    request = request_of(site, start, values, "container")
+    for variant in request.variants:
+        body_of(variant)
+    return hash_of([request.data, case_hash(request.container)])
+
+
+def _weakness(found: Mapping[str, str]) -> tuple[float, ...]:
+    """Smaller for the worse: by the answer, then by the margin, then by rotation and slip."""
+    ratio, slip = (number_in(found[name]) or 0.0 for name in ("rotation_ratio", "max_slip_m"))
+    margin = number_in(found["margin"])
+    order = WORST_FIRST.index(found["answer"] or NO_ANSWER)
+    return order, math.inf if margin is None else margin, -ratio, -slip

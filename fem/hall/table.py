@@ -1,0 +1,119 @@
+"""The list with its results: `hall.csv`, the counts and rows of `hall.json`, its answer."""
+
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+from fem.hall.file import HallFile, HallRow
+from fem.hall.plan import Looked
+from fem.hall.result import REFUSED, RESULT_COLUMNS, HallResult, TagCount
+
+WHOLE = frozenset({"impacts", "fell_box", "motions_overturned", "motions_failed"})
+TEXTS = frozenset(
+    {
+        "status",
+        "reason",
+        "outcome",
+        "sure",
+        "decided_by",
+        "motion",
+        "largest_slip_motion",
+        "answer",
+        "reasons",
+        "page",
+    }
+)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class HallTable:
+    """The rows of a list with what their containers showed."""
+
+    file: HallFile
+    looked: Looked
+    #: of each container, by column, as values or as the texts of a log
+    found: Mapping[int, Mapping[str, Any]]
+    words: Mapping[int, tuple[str, str]]  #: what the outcomes count each container as, and what the tags do
+    order: list[int]  #: of the containers, the weakest first
+    command: Callable[[HallRow, int], str]  #: of a row, whose container this is
+
+    def _results(self) -> Iterator[tuple[HallRow, int | None, dict[str, Any]]]:
+        ranks = {number: place for place, number in enumerate(self.order, start=1)}
+        for row, container, reason in zip(
+            self.file.rows, self.looked.of_row, self.looked.reasons, strict=True
+        ):
+            if container is None:
+                yield row, None, {"status": REFUSED, "reason": reason}
+            else:
+                yield row, container, {**self.found[container], "rank": ranks[container]}
+
+    def rows(self) -> Iterator[tuple[Any, ...]]:
+        """`hall.csv`: the fields of the list as they were given, then the results."""
+        for row, _, found in self._results():
+            yield *row.given, *(found.get(name) for name in RESULT_COLUMNS)
+
+    def added_to(self, result: HallResult) -> HallResult:
+        """The result with counts and rows."""
+        table, outcomes, tags = [], Counter[str](), dict[str, TagCount]()
+        for number, (row, container, found) in enumerate(self._results(), start=1):
+            values = {name: _parsed(name, found.get(name)) for name in RESULT_COLUMNS}
+            outcome, counted = (REFUSED, REFUSED) if container is None else self.words[container]
+            outcomes[outcome] += row.count
+            tag = tags.get(row.tag, TagCount(tag=row.tag, containers=0, counts={}))
+            margins = [one for one in (tag.margin, values["margin"]) if one is not None]
+            tags[row.tag] = replace(
+                tag,
+                containers=tag.containers + row.count,
+                counts={**tag.counts, counted: tag.counts.get(counted, 0) + row.count},
+                margin=min(margins, default=None),
+            )
+            table.append(
+                {"row": number, "line": row.line, "name": row.name, "count": row.count, "tag": row.tag}
+                | {"place_m": row.place, "lon_lat": row.geographic}
+                | {"given": dict(zip(self.file.columns, row.given, strict=True))}
+                | values
+                | {"command": None if container is None else self.command(row, container)}
+            )
+        return replace(
+            result,
+            outcomes=dict(sorted(outcomes.items())),
+            tags=tuple(tags[tag] for tag in sorted(tags)) if {*tags} != {""} else (),
+            table=tuple(table),
+        )
+
+
+def _parsed(name: str, value: Any) -> Any:
+    """A field of a log as a value."""
+    if not isinstance(value, str) or name in TEXTS:
+        return value if value != "" else None
+    if value in ("", "true", "false"):
+        return value == "true" if value else None
+    if " " in value:
+        return tuple(map(float, value.split()))
+    return int(value) if name in WHOLE else float(value)
+
+
+def answer_of(result: HallResult) -> str:
+    """How many containers did what, and which is the weakest, in one sentence."""
+    counts = dict(result.outcomes)
+    refused = counts.pop(REFUSED, 0)
+    computed = result.containers - refused
+    if result.site:
+        words = f"of {computed} containers: " + ", ".join(f"{count} {word}" for word, count in counts.items())
+    else:
+        overturned, failed = counts.get("overturned", 0), counts.get("failed", 0)
+        under = f" under at least one of {len(result.motions)} motions" if len(result.motions) > 1 else ""
+        words = f"{overturned or 'none'} of {computed} containers overturned{under if overturned else ''}"
+        words += f"; {failed} have no outcome" if failed else ""
+    words += f"; {result.refused} rows were refused" if refused else ""
+    weakest = next(row for row in result.table if row["rank"] == 1)
+    words += f"; the weakest is {weakest['name']}"
+    if weakest["margin"] is not None:
+        does = (
+            "fails the rule from {:.3g} times the motions on"
+            if result.site
+            else "overturns from {:.3g} times its motion on"
+        )
+        words += f", which {does.format(weakest['margin'])}"
+    return words
