@@ -44,7 +44,8 @@ class Container:
     mesh: ContainerMesh
     elements: FiniteElements
     support: Support
-    #: (n_c,) contact nodes, those of the base first, by rising x, those of links last; see `BoxModel` for a loose stack
+    #: (n_c,) contact nodes, those of the base first, by rising x, those nearest to links last; of a loose stack see
+    #: `BoxModel`
     nodes: IntArray
     monitors: IntArray  #: (n_m,) nodes whose motion is observed
     response: StaticResponse  #: none of a loose stack

@@ -16,7 +16,7 @@ from contact.stepping.modal_body import ModalBody, make_modal_body
 from fem.case.case import Case, CaseError
 from fem.model.container import Container
 from fem.model.floor import slab_of
-from fem.model.links import lines_at, places_of_links, with_links
+from fem.model.links import lines_at, places_of_links, shapes_at_links, with_links
 from fem.model.loose_stack import make_stack_state, own_stiffness, settle, stack_of, with_joints
 from fem.model.support import Rolling, base_points, normal_penalty, steel_penalty
 from fem.model.validity import require_bearing, require_stiff_contact, require_stiff_container
@@ -183,7 +183,7 @@ def _body(
     damping = container.damping(case.container.damping_ratio)
     placed = base_points(case, elements.nodes[nodes], container.support.index.size)
     links = slice(len(nodes) - len(case.links), None)
-    if case.links and case.solver.model == "rigid":  # it has points wherever they are asked for
+    if case.links and case.solver.model != "full":  # it has points wherever they are asked for
         placed[links] = places_of_links(case)
     line = lines_at(case, _at_rest(case, container, placed, stance)[links], mesh.width)
     if case.solver.model == "full":
@@ -191,6 +191,8 @@ def _body(
             elements, nodes, monitors, gravity=gravity, downhill=downhill, damping=damping, line=line
         )
     centroid, basis = np.asarray(mesh.centroid), container.basis
+    shapes = basis.shapes[:, nodes]
+    shapes[:, links] = shapes_at_links(case, elements.nodes, basis.shapes)
     penetration = mesh.mass * gravity / float(contact.normal_stiffness.sum())
     body = make_modal_body(
         mass=mesh.mass,
@@ -199,7 +201,7 @@ def _body(
         downhill=downhill,
         point=placed - centroid,
         rest=mesh.centroid,
-        shape=np.moveaxis(basis.shapes[:, nodes], 0, -1),
+        shape=np.moveaxis(shapes, 0, -1),
         frequencies=basis.angular_frequencies,
         damping_ratios=0.5 * damping * basis.angular_frequencies,
         monitor=elements.nodes[monitors] - centroid,
@@ -220,7 +222,11 @@ def _at_rest(case: Case, container: Container, placed: FloatArray, stance: Stanc
     shape = placed - np.asarray(container.mesh.centroid)
     if case.solver.model != "rigid":
         own = (stance.with_points(len(placed)).force @ turn).ravel()
-        shape = shape + np.tensordot(own, container.response.displacement[:, container.nodes], axes=1)
+        response = container.response.displacement
+        displacement = response[:, container.nodes]
+        if case.solver.model == "reduced":
+            displacement[:, -len(case.links) :] = shapes_at_links(case, container.elements.nodes, response)
+        shape = shape + np.tensordot(own, displacement, axes=1)
     return np.asarray(stance.centre) + shape @ turn.T
 
 

@@ -38,19 +38,39 @@ def places_of_links(case: Case) -> FloatArray:
 
 def nodes_of_links(case: Case, nodes: FloatArray) -> IntArray:
     """The nodes of a structured mesh, of all (n, 2), that are nearest to the points of the links, (k,)."""
-    found = []
-    for x, z in places_of_links(case):
-        on_side = np.flatnonzero(np.abs(nodes[:, 0] - x) <= 1e-9 * np.ptp(nodes[:, 0]))
-        found.append(on_side[np.argmin(np.abs(nodes[on_side, 1] - z))])
+    found = [
+        side[np.argmin(np.abs(nodes[side, 1] - z))]
+        for side, z in zip(_sides(case, nodes), places_of_links(case)[:, 1], strict=True)
+    ]
     return np.array(found, dtype=np.int64)
 
 
+def shapes_at_links(case: Case, nodes: FloatArray, shapes: FloatArray) -> FloatArray:
+    """Shapes of modes (m, n, 2) at the points of the links, (m, k, 2): linear between the nodes of the side, (n, 2)."""
+    found = np.empty((len(shapes), len(case.links), 2))
+    for k, (side, z) in enumerate(zip(_sides(case, nodes), places_of_links(case)[:, 1], strict=True)):
+        above = min(max(int(np.searchsorted(nodes[side, 1], z)), 1), side.size - 1)
+        low, high = side[above - 1], side[above]
+        share = (z - nodes[low, 1]) / (nodes[high, 1] - nodes[low, 1])
+        found[:, k] = (1.0 - share) * shapes[:, low] + share * shapes[:, high]
+    return found
+
+
+def _sides(case: Case, nodes: FloatArray) -> list[IntArray]:
+    """For each link the nodes, of all (n, 2), on the side where it is, from below."""
+    found = []
+    for x in places_of_links(case)[:, 0]:
+        on_side = np.flatnonzero(np.abs(nodes[:, 0] - x) <= 1e-9 * np.ptp(nodes[:, 0]))
+        found.append(on_side[np.argsort(nodes[on_side, 1])])
+    return found
+
+
 def heights_of_links(case: Case, nodes: FloatArray) -> list[float]:
-    """Heights of the points of the links [m]: as asked for, or of an elastic container those of its last contact nodes.
+    """Heights of the points of the links [m]: as asked for, or of a full model those of its last contact nodes.
 
     `nodes`: (n, 2) contact nodes of the container.
     """
-    if case.solver.model == "rigid":
+    if case.solver.model != "full":
         return [one.height_m for one in case.links]
     return [float(z) for z in nodes[len(nodes) - len(case.links) :, 1]]
 

@@ -295,7 +295,7 @@ class LinkResult(JsonBlock):
     """What a stop or a tie did."""
 
     side: str  #: of the container: left | right
-    height_m: float  #: of its point; of an elastic container that of the nearest node of the mesh
+    height_m: float  #: of its point; of a full model that of the nearest node of the mesh
     max_force_N: float  #: along its line
     hits: int  #: how often it began to hold
     largest_closing_velocity_m_s: float  #: with which it did

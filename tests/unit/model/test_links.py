@@ -1,0 +1,50 @@
+"""Points, shapes and springs of stops and ties on the containers of cases."""
+
+import numpy as np
+import pytest
+
+from contact.stepping.links import LinkedBody
+from fem.case.case import load_case
+from fem.case.columns import history_columns
+from fem.evidence.verification.runs import SOLID, STACK
+from fem.model.joints import joints_of
+from fem.model.model import build_model
+
+STOPS = [
+    {"side": "right", "height_m": 0.13, "gap_m": 0.02, "stiffness_N_m": 1e8},
+    {"side": "left", "height_m": 3.97, "gap_m": 0.03, "stiffness_N_m": 1e8},
+]
+TIE = {"from": "left", "height_m": 0.0, "slack_m": 0.01, "stiffness_N_m": 1e6, "strength_N": 5e4}
+HELD = STACK.with_values({**SOLID, "solver.element_size_m": 0.5, "stop": STOPS, "tie": [TIE]})
+
+
+@pytest.mark.parametrize("model", ["rigid", "reduced", "full"])
+def test_at_rest_every_link_has_its_gap_left(model):
+    state = build_model(HELD.with_values({"solver.model": model})).run.old
+    assert state.point[-3:, 1] == pytest.approx([0.02, 0.03, 0.01], abs=1e-12)
+    assert not state.force[-3:].any()
+
+
+def test_a_reduced_container_has_its_points_where_they_are_asked_for():
+    model = build_model(HELD)
+    assert isinstance(model.body, LinkedBody)
+    body, mesh = model.body.body, model.container.mesh
+    places = body.point[-3:] + np.asarray(mesh.centroid)
+    assert places == pytest.approx(np.array([[0.55, 0.13], [-0.55, 3.97], [-0.55, 0.0]]))
+    # between the shapes of the nodes beside it, of the corner those of its node
+    assert body.shape[-1] == pytest.approx(body.shape[0], abs=1e-15)
+    nodes, shapes = model.container.elements.nodes, model.container.basis.shapes
+    side = np.flatnonzero(np.abs(nodes[:, 0] - 0.55) < 1e-9)
+    side = side[np.argsort(nodes[side, 1])]
+    expected = [np.interp(0.13, nodes[side, 1], shapes[0, side, c]) for c in range(2)]
+    assert body.shape[-3, :, 0] == pytest.approx(expected, rel=1e-12)
+
+
+@pytest.mark.parametrize(("height", "joints"), [(0.1, 3), (1.0, 3), (1.5, 0)])
+def test_joints_are_left_out_where_a_link_holds_an_upper_box(height, joints):
+    stop = {**STOPS[0], "height_m": height}
+    case = load_case("seed_stack_plateau", ["solver.model=rigid"]).with_values({"stop": [stop]})
+    names = history_columns(case)
+    assert sum(name.startswith("joint_") for name in names) == 3 * joints
+    assert (joints_of(build_model(case)) is None) == (joints == 0)
+    assert "stop_1_force_N" in names
