@@ -11,6 +11,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 
 import numpy as np
 from scipy.special import log_ndtr
@@ -18,6 +19,7 @@ from scipy.special import log_ndtr
 from fem.runtime.arrays import FloatArray
 from fem.runtime.intervals import binomial_interval
 
+ACCELERATION, VELOCITY = "acceleration_m_s2", "velocity_m_s"
 YEARS = 50.0  #: of the probability that is printed
 
 
@@ -32,6 +34,7 @@ class HazardCurve:
 
     strengths: FloatArray  #: rising, (n,) [m/s2, or the unit of another measure]
     rates: FloatArray  #: falling, (n,) [1/year]
+    measure: str = ACCELERATION  #: of the strength
 
     def __post_init__(self) -> None:
         for name in ("strengths", "rates"):
@@ -109,6 +112,30 @@ class HazardCurve:
         return int(
             np.clip(np.searchsorted(self.strengths, strength, side="right") - 1, 0, self.rates.size - 2)
         )
+
+
+def read_hazard(path: Path) -> HazardCurve:
+    """The curve of a CSV file: a line that names its columns, acceleration_m_s2 or velocity_m_s, and rate_per_year.
+
+    Raises:
+        OSError: it cannot be read.
+        ValueError: other columns, or numbers that are no hazard curve.
+    """
+    first, *lines = path.read_text(encoding="utf-8").split()
+    names = first.split(",")
+    if len(names) != 2 or names[0] not in (ACCELERATION, VELOCITY) or names[1] != "rate_per_year":
+        raise ValueError(
+            f"{path.name}: the first line must be {ACCELERATION},rate_per_year or {VELOCITY},rate_per_year, got "
+            f"{first[:60]!r}"
+        )
+    try:
+        numbers = np.array([[float(one) for one in line.split(",")] for line in lines])
+    except ValueError:
+        raise ValueError(f"{path.name}: every further line must hold two numbers") from None
+    if numbers.ndim != 2 or numbers.shape[1] != 2:
+        raise ValueError(f"{path.name}: every further line must hold two numbers")
+    ordered = numbers[np.argsort(numbers[:, 0])]
+    return HazardCurve(strengths=ordered[:, 0], rates=ordered[:, 1], measure=names[0])
 
 
 def _log_share(low: FloatArray, high: FloatArray) -> FloatArray:

@@ -25,6 +25,7 @@ class Beside:
     confirmed: Sequence[result.ConfirmedRun] = ()  #: the deciding runs, repeated
     wind: float | None = None  #: utilisation under wind; None: it was not asked for
     two_directions: result.TwoDirections | None = None  #: None: the motions have no second component
+    hazard: result.AnnualRates | None = None  #: None: no hazard was given
     still: int = 0  #: runs that the rigid bound made superfluous
     moves_at: float | None = None  #: factor on the motions at which a rigid body first uplifts or slips
     left_out: str = ""  #: stages that were not asked for, in words
@@ -106,6 +107,7 @@ def answer_of(
         factor_at_first_overturning=_first_overturning(runs),
         factor_at_first_movement=beside.moves_at,
         two_directions=slip,
+        hazard=beside.hazard,
         rule_range=span,
         scan=_scan(runs),
         further=tuple(evidence.further),

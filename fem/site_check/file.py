@@ -19,10 +19,12 @@ from fem.case.tables import DocumentTable
 from fem.case.toml import toml_document
 from fem.case.validation import CaseError
 from fem.seismic.action import GERMAN_ZONES, SiteAction, SpectrumShape, eurocode_shape, german_shape
+from fem.seismic.hazard import HazardCurve, read_hazard
 from fem.seismic.wind import german_pressure, terrain_pressure
 from fem.site_check.tables import (
     BuildingTable,
     FrictionTable,
+    HazardTable,
     LimitsTable,
     MotionsTable,
     SiteTable,
@@ -43,6 +45,7 @@ TABLES: dict[str, type[CaseTable]] = {
     "friction": FrictionTable,
     "limits": LimitsTable,
     "wind": WindTable,
+    "hazard": HazardTable,
     "sources": SourcesTable,
     "document": DocumentTable,
 }
@@ -91,6 +94,7 @@ class SiteRequest:
     friction: FrictionTable
     limits: LimitsTable
     wind: WindTable | None
+    hazard: HazardTable | None
     sources: SourcesTable
     document: DocumentTable | None
 
@@ -137,6 +141,23 @@ class SiteRequest:
                 for mass, case in masses.items()
             ]
         return variants
+
+    @cached_property
+    def hazard_curve(self) -> HazardCurve | None:
+        """The hazard of the site; None: the file gives none.
+
+        Raises:
+            CaseError: points that are no hazard curve, or a file that holds none.
+        """
+        if self.hazard is None:
+            return None
+        place = "file" if self.hazard.points is None else "points"
+        try:
+            if self.hazard.points is not None:
+                return HazardCurve.from_return_periods([(years, one) for years, one in self.hazard.points])
+            return read_hazard(self.origin.folder / (self.hazard.file or ""))
+        except (OSError, ValueError) as error:
+            raise CaseError(f"[hazard] {place}: {error}") from None
 
     @property
     def wind_pressure(self) -> tuple[float, str] | None:
@@ -267,6 +288,7 @@ def _request(data: Mapping[str, Any], origin: Origin, container: Case | None = N
         friction=read["friction"],
         limits=read["limits"],
         wind=read.get("wind"),
+        hazard=read.get("hazard"),
         sources=read["sources"],
         document=read.get("document"),
     )
@@ -283,7 +305,7 @@ def _check(request: SiteRequest) -> None:
             f"container: {differs} is not verified at a site, whose rules are those of equal boxes that move as one "
             "body; take bolted boxes, or run the motions one by one"
         )
-    _ = request.action, request.variants, request.wind_pressure
+    _ = request.action, request.variants, request.wind_pressure, request.hazard_curve
     if request.heading.empty_centroid_m is not None and request.heading.empty_mass_kg is None:
         raise CaseError("empty_centroid_m has no effect without empty_mass_kg")
 

@@ -237,6 +237,49 @@ class TwoDirections(JsonBlock):
 
 
 @dataclass(frozen=True, kw_only=True)
+class HazardLevel(JsonBlock):
+    """Motions of one strength, which are those of no other level."""
+
+    strength: float  #: in the unit of the hazard
+    factor: float  #: on motions for the action of the site
+    motions: int
+    overturned: int
+    slipped: int  #: beyond the limit, in the plane or in both directions
+
+
+@dataclass(frozen=True, kw_only=True)
+class AnnualRates(JsonBlock):
+    """How often a year the container overturns, or slides beyond the limit, by counts at several levels."""
+
+    mass: str  #: that rocks most in the set, and so the elevation, period and friction
+    elevation: str
+    building_period_s: float | None = None
+    mu_static: float
+    mu_kinetic: float
+    scatter: float  #: of records about a level, of the logarithm
+    measure: str  #: acceleration_m_s2: a_gR; velocity_m_s: peak of the ground
+    strengths: tuple[float, ...]  #: of the hazard curve
+    rates_per_year: tuple[float, ...]
+    levels: tuple[HazardLevel, ...]
+    overturning_per_year: float
+    interval: tuple[float, ...]  #: with the 95 % intervals of all counts at once, and the tails as bounds
+    in_50_years: float  #: probability
+    most_from: float | None = (
+        None  #: strengths between which most of the rate arises; None: nothing overturned
+    )
+    most_to: float | None = None  #: None also: beyond the strongest level
+    share: float  #: of the rate that arises there
+    slip_per_year: float
+    slip_interval: tuple[float, ...]
+    median: float | None = (
+        None  #: of the lognormal curve fitted to the counts of overturning; None: there is none
+    )
+    beta: float | None = None  #: with the scatter
+    fit_per_year: float | None = None  #: of that curve
+    closed_form_per_year: float | None = None  #: of it with one power law: H(median) exp(k^2 beta^2/2)
+
+
+@dataclass(frozen=True, kw_only=True)
 class SiteAnswer(ByRule):
     """The answer, under the rule that is printed with it."""
 
@@ -258,6 +301,7 @@ class SiteAnswer(ByRule):
     factor_at_first_movement: float | None = (
         None  #: at which a rigid body first uplifts or slips; None: not known
     )
+    hazard: AnnualRates | None = None  #: None: no hazard was given
     two_directions: TwoDirections | None = None  #: None: the motions have no second component
     rule_range: RuleRange | None = None
     scan: tuple[ScanPoint, ...] = ()

@@ -39,6 +39,7 @@ from fem.site_check.motion_results import (
 from fem.site_check.motions import floor_motions, ground_motions, longest_period
 from fem.site_check.preview import forecast
 from fem.site_check.result import (
+    MOTIONS,
     MotionSet,
     SiteAnswer,
     SiteBody,
@@ -47,7 +48,7 @@ from fem.site_check.result import (
     SiteResult,
     SiteRun,
 )
-from fem.site_check.runs import COLUMNS, RunCases, RunKey, motion_stem
+from fem.site_check.runs import COLUMNS, HAZARD, RunCases, RunKey, motion_stem
 from fem.site_check.site_page import site_report
 from fem.site_check.stages import Stages
 
@@ -179,7 +180,10 @@ class _Verification:
                 again = confirmed(cases, runs, keys, runner.jobs)
         if runner.stop():
             return None
-        beside = replace(stages.beside(again, self.wind), left_out=left_out)
+        velocity = sum(one.pgv_m_s for one in motions.motions) / max(len(motions.motions), 1)
+        beside = replace(stages.beside(again, self.wind, self.bodies, velocity), left_out=left_out)
+        for file in place.path.glob(f"{MOTIONS}/{HAZARD}_*.csv"):  # the seed gives them again
+            file.unlink()
         return answer_of(self.request, motions, rows.in_order(), beside)
 
     def _deciding(self, runs: Mapping[RunKey, SiteRun]) -> list[RunKey]:
@@ -242,3 +246,4 @@ class _Verification:
         yield from self.stages.of_the_answer(runner, quick=self.quick)
         if not self.quick:
             yield from self.stages.of_the_margin()
+            yield from self.stages.of_the_hazard(runner, self.bodies)

@@ -21,7 +21,8 @@ from fem.site_check.result import MOTIONS, SiteRun
 from fem.site_check.rule import RuleFound, RunGroup, groups_of
 
 SET, REPEATED, SCAN, REFINED, FURTHER = "set", "repeated", "scan", "refined", "further"
-STAGES = (SET, REPEATED, SCAN, REFINED, FURTHER)  #: in the order of the rows
+HAZARD = "hazard"  #: levels for the rate per year
+STAGES = (SET, REPEATED, SCAN, REFINED, FURTHER, HAZARD)  #: in the order of the rows
 WIDTH = "width"  #: the elevation that a case file shows
 #: factors on the motions beside 1, and values tried below the first that fails and below the first that overturns
 SCANNED = (0.5, 0.75, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0, 3.5, 4.0)
@@ -48,7 +49,7 @@ class RunKey(NamedTuple):
     @property
     def stem(self) -> str:
         """Of the names of the files of its motion."""
-        return motion_stem(self.motion, self.building_period_s, further=self.stage == FURTHER)
+        return motion_stem(self.motion, self.building_period_s, self.stage)
 
 
 def key_of(run: SiteRun) -> RunKey:
@@ -59,9 +60,9 @@ def key_of(run: SiteRun) -> RunKey:
 COLUMNS = (*RunKey._fields, "outcome", *keys_of(Place.RUNS), "reason")
 
 
-def motion_stem(number: int, period: float | None, *, further: bool = False) -> str:
+def motion_stem(number: int, period: float | None, stage: str = SET) -> str:
     """Beginning of the names of the files of a motion."""
-    name = f"further_{number:03d}" if further else f"motion_{number:02d}"
+    name = f"{stage}_{number:03d}" if stage in (FURTHER, HAZARD) else f"motion_{number:02d}"
     return name if period is None else f"{name}_floor_{period:g}s"
 
 

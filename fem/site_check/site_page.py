@@ -16,6 +16,7 @@ from fem.results.figures import FIGURES
 from fem.results.kinds import SITE
 from fem.results.outcome import Outcome
 from fem.runtime.arrays import FloatArray
+from fem.seismic.hazard import ACCELERATION
 from fem.site_check import site_sections
 from fem.site_check.answer import FULFILLED
 from fem.site_check.figures import draw_motion, draw_spectra
@@ -24,6 +25,7 @@ from fem.site_check.reasons import span as span_in_words
 from fem.site_check.result import (
     RESULT_FILE,
     ActionAnswer,
+    AnnualRates,
     ConfirmedRun,
     MotionSet,
     RuleRange,
@@ -182,7 +184,44 @@ def beside_the_set(result: SiteResult) -> list[str]:
         words.append(repeated)
     if bolts := bolts_in_words(answer.confirmed):
         words.append(bolts)
+    if answer.hazard:
+        words += rates_in_words(answer.hazard, result.inputs.slip_limit_m)
     return words
+
+
+def rates_in_words(rates: AnnualRates, slip_limit: float) -> list[str]:
+    """How often a year it overturns and slides too far, and what that rests on."""
+    unit = "m/s²" if rates.measure == ACCELERATION else "m/s"
+    counts = ", ".join(
+        f"{one.overturned} of {one.motions} at {short(one.strength, figures=3)}" for one in rates.levels
+    )
+    low, high = rates.interval
+    most = ""
+    if rates.most_from is not None:
+        begin = short(rates.most_from, figures=3)
+        place = (
+            f"beyond {begin}"
+            if rates.most_to is None
+            else f"from {begin} to {short(rates.most_to, figures=3)}"
+        )
+        most = f"; {short(rates.share, 100, 2)} % of it arises {place} {unit}"
+    fitted = "no lognormal curve fits the counts"
+    if rates.fit_per_year is not None:
+        fitted = (
+            f"a lognormal curve through them (median {short(rates.median, figures=3)} {unit}, with the scatter beta "
+            f"{short(rates.beta, figures=2)}) gives {rates.fit_per_year:.2g} per year, the closed form "
+            f"{rates.closed_form_per_year:.2g}"
+        )
+    slow, shigh = rates.slip_interval
+    return [
+        f"Rate of overturning by counts: {rates.overturning_per_year:.2g} per year ({low:.2g} to {high:.2g} with the "
+        f"95 % intervals of all counts and the tails as bounds), {100.0 * rates.in_50_years:.2g} % in 50 years"
+        f"{most}. Slip beyond {quantity(slip_limit, 'mm', 1000, 3)}: {rates.slip_per_year:.2g} per year "
+        f"({slow:.2g} to {shigh:.2g}).",
+        f"The counts of overturning ({rates.mass}, friction {rates.mu_static:.3g}/{rates.mu_kinetic:.3g}): {counts} "
+        f"{unit}; {fitted}. Artificial motions scatter less than records; the hazard is spread by {rates.scatter:g} of "
+        "the logarithm for it. Targets are the user's: none is compared.",
+    ]
 
 
 def two_directions_in_words(slip: TwoDirections) -> str:

@@ -1,7 +1,7 @@
 """The runs of a verification stage by stage: each is asked for when the one before is there."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 
@@ -14,13 +14,14 @@ from fem.site_check.answer import Beside
 from fem.site_check.file import SiteRequest
 from fem.site_check.motion_results import write_csv_files
 from fem.site_check.motions import on_floor
-from fem.site_check.result import ConfirmedRun, TwoDirections
+from fem.site_check.result import ConfirmedRun, SiteBody, TwoDirections
 from fem.site_check.rule import RuleFound, governing_groups, groups_of
-from fem.site_check.runs import REPETITIONS, SCAN, SET, RunKey, RunPlan, RunRows, motion_stem
+from fem.site_check.runs import HAZARD, REPETITIONS, SCAN, SET, RunKey, RunPlan, RunRows, motion_stem
 from fem.site_check.screening import Screening
+from fem.site_check.yearly import annual_rates, hazard_runs, rocking_most
 
 #: numbers of the artificial motions beyond the set begin behind those of any set
-FIRST_FURTHER = 10_000
+FIRST_FURTHER, FIRST_OF_HAZARD = 10_000, 100_000
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -120,17 +121,40 @@ class Stages:
         first = [self.screening.moves_at(key) for key in self.plan.of_set()]
         return None if None in first else min(one for one in first if one is not None)
 
-    def beside(self, confirmed: Sequence[ConfirmedRun], wind: float | None) -> Beside:
+    def of_the_hazard(self, runner: Runner, bodies: Sequence[SiteBody]) -> Iterator[Sequence[RunKey]]:
+        """Motions at several levels, where a hazard was given."""
+        own = self.rows.of(self.plan.of_set())
+        if self.request.hazard is None or runner.stop() or not own:
+            return
+        groups = groups_of(own)
+        floor = self.floors[rocking_most(groups).first.building_period_s]
+        keys = hazard_runs(groups, bodies, floor, self.request.hazard.motions)
+        self._make(runner, keys)
+        if not runner.stop():
+            yield self._left(keys)
+
+    def beside(
+        self,
+        confirmed: Sequence[ConfirmedRun],
+        wind: float | None,
+        bodies: Sequence[SiteBody] = (),
+        peak_velocity: float = 0.0,
+    ) -> Beside:
         """What the answer rests on beside the runs.
 
         Args:
+            bodies: of all containers, and peak_velocity: mean of the set on the ground [m/s]; for the hazard.
             confirmed: the deciding runs, repeated.
             wind: the largest utilisation under wind; None: it was not asked for.
         """
+        slid = self._two_directions()
         return Beside(
             confirmed=confirmed,
             wind=wind,
-            two_directions=self._two_directions(),
+            two_directions=slid,
+            hazard=annual_rates(
+                self.request, self.rows.in_order(), self.screening.motions, bodies, slid, peak_velocity
+            ),
             still=sum(key.stage == SET for key in self.rows.still),
             moves_at=self.first_movement,
         )
@@ -189,17 +213,28 @@ class Stages:
         """Make the further motions of these runs, and write their files."""
         for period in dict.fromkeys(key.building_period_s for key in keys):
             numbers = sorted({key.motion for key in keys if key.building_period_s == period})
-            make = partial(further_motions, self.request, self.plan.vertical, self.longest, period)
+            stage, first, second = keys[0].stage, FIRST_FURTHER, 0.0
+            if stage == HAZARD:
+                first, second = FIRST_OF_HAZARD, self.request.motions.second_component
+            make = partial(
+                further_motions, self.request, self.plan.vertical, self.longest, period, first, second
+            )
             pools = runner.workers_of(self.request.heading.model, len(keys))
             for chunk, made in hand_out(numbers, make, pools, at_a_time=4, stop=runner.stop):
                 for number, motion in zip(chunk, made, strict=True):
-                    stem = motion_stem(number, period, further=True)
+                    stem = motion_stem(number, period, stage)
                     self.screening.motions[stem] = motion
-                    write_csv_files(self.folder, motion, stem)
+                    write_csv_files(self.folder, replace(motion, second=None), stem)
 
 
 def further_motions(
-    request: SiteRequest, vertical: bool, longest: float, period: float | None, numbers: Sequence[int]
+    request: SiteRequest,
+    vertical: bool,
+    longest: float,
+    period: float | None,
+    first: int,
+    second: float,
+    numbers: Sequence[int],
 ) -> list[GroundMotion]:
     """Artificial motions beyond the set, on the floor of a building of this period or on the ground (None)."""
     asked, made = request.motions, []
@@ -211,7 +246,8 @@ def further_motions(
             stationary=asked.stationary_s,
             longest=longest,
             vertical=vertical,
-            first=FIRST_FURTHER + number,
+            second=second,
+            first=first + number,
         )
         made.append(on_floor(request.building, motion, period))
     return made

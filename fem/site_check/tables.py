@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, Strict
 
 from fem.case import quantities as q
-from fem.case.problem import Rule
+from fem.case.problem import Rule, outside_the_folder, stays_in_the_folder
 from fem.case.quantities import Quantity
 from fem.case.table import CaseTable, case_key
 from fem.seismic.artificial import LEAST_STATIONARY_S, MOST_STATIONARY_S
@@ -35,6 +35,8 @@ STATIONARY = Quantity(
     advice="EN 1998-1:2004, 3.2.3.1.2 (3) asks for 10 s at least",
 )
 SHARE = Quantity(unit="", above=0.0, most=1.0, advice="0.5 to 1 is usual")
+SCATTER = Quantity(unit="", least=0.0, most=1.0, advice="0.4 is a common value for records")
+RATED = Quantity(unit="", above=0.0, below=1e9)
 SECOND = Quantity(unit="", least=0.0, most=1.5, advice="1 is the same spectrum in both directions")
 ROTATION_RATIO = Quantity(unit="", above=0.0, most=1.0, advice="0.5 is usual; 1 is on the point of falling")
 SLIP = Quantity(unit="m", above=0.0, most=100.0, typical=0.1, slips={"millimetres": 1e-3})
@@ -229,6 +231,10 @@ class MotionsTable(CaseTable):
     sample_interval_s: Annotated[float, Quantity(unit="s", above=0.0, most=1.0)] | None = case_key(
         "of records of one column", None, example=0.01
     )
+    scatter: Annotated[float, SCATTER] = case_key(
+        "of motions about one strength in [hazard], of the logarithm: that of records, which artificial ones lack",
+        0.4,
+    )
     further: Annotated[int, Strict(), Quantity(unit="", least=0, most=10_000)] = case_key(
         "further artificial motions, for the share that overturns; 0: none", 100
     )
@@ -293,6 +299,35 @@ class SourcesTable(CaseTable):
     container: OfSource = case_key("weights, dimensions, mass centre", "")
     friction: OfSource = case_key("the range of friction", "", example="tests of castings on this floor")
     limits: OfSource = case_key("limits of rotation and slip", "", example="clearances of drawing 12")
+
+
+class HazardTable(CaseTable):
+    """The hazard of the site, for the rate per year of overturning and of slip beyond the limit."""
+
+    points: list[Annotated[list[Annotated[float, RATED]], Field(min_length=2, max_length=2)]] | None = (
+        case_key("return periods in years and a_gR in m/s2", None, example=[[475, 1.6], [2475, 3.0]])
+    )
+    file: str | None = case_key(
+        "in their place, columns acceleration_m_s2 (a_gR) or velocity_m_s (peak, of the ground) and rate_per_year",
+        None,
+        example="hazard.csv",
+    )
+    motions: Annotated[int, Strict(), Quantity(unit="", least=10, most=1000)] = case_key(
+        "artificial motions at each of seven levels", 40
+    )
+
+    rules = (
+        Rule(
+            "hazard.points",
+            lambda hazard: (hazard.points is None) != (hazard.file is None),
+            "or file: exactly one of the two must be given",
+        ),
+        Rule(
+            "hazard.file",
+            lambda hazard: stays_in_the_folder(hazard.file),
+            lambda hazard: outside_the_folder(hazard.file),
+        ),
+    )
 
 
 class WindTable(CaseTable):

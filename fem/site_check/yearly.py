@@ -1,0 +1,200 @@
+"""How often a year: the hazard of a site, and what the container does at levels of the motion.
+
+Each level has artificial motions of its own, as strong as the target at that level. Recorded motions of one strength
+scatter about their median: the hazard of what acts is that of the site spread by this scatter, so that the counts need
+no draws of it. Below the level at which a rigid body first moves nothing happens.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from fem.ensemble.fragility import fit_lognormal
+from fem.results.outcome import Outcome
+from fem.seismic.ground_motion import GroundMotion
+from fem.seismic.hazard import ACCELERATION, YEARS, CountedRate, HazardCurve, counted_rate, probability_in
+from fem.seismic.two_directions import slip_in_two_directions
+from fem.site_check.file import SiteRequest
+from fem.site_check.result import AnnualRates, HazardLevel, SiteBody, SiteRun, TwoDirections
+from fem.site_check.rule import RunGroup
+from fem.site_check.runs import HAZARD, RunKey, key_of
+from fem.site_check.screening import KEPT, BodyAtRest
+
+LEVELS = 7
+#: of the levels, weakest and strongest, over the factor at which a rigid body first rocks
+SPAN = (1.15, 5.5)
+#: of the hazard of what acts: points a decade, and how far they reach beyond the levels
+POINTS, REACH = 60, 20.0
+
+
+def rocks_from(body: SiteBody, motions: Sequence[GroundMotion]) -> float:
+    """The factor on some motions below which none of them lifts a side of a rigid body."""
+    slenderness = math.tan(body.slenderness_angle_rad)
+    resting = BodyAtRest(gravity=body.gravity_m_s2, slenderness=slenderness, slope=0.0)
+    return KEPT * min(resting.moves_at(one, sign, math.inf) for one in motions for sign in (1, -1))
+
+
+def slides_from(body: SiteBody, mu_static: float, motions: Sequence[GroundMotion]) -> float:
+    """The factor on some motions below which none of them slides a body in any direction."""
+    strongest = 0.0
+    for one in motions:
+        along = one.horizontal if one.second is None else np.hypot(one.horizontal, one.second)
+        lift = 0.0 if one.vertical is None else np.abs(one.vertical)
+        strongest = max(strongest, float(np.max(along + mu_static * lift)))
+    return KEPT * mu_static * body.gravity_m_s2 / strongest if strongest > 0.0 else math.inf
+
+
+def hazard_runs(
+    groups: Sequence[RunGroup], bodies: Sequence[SiteBody], floor: Sequence[GroundMotion], motions: int
+) -> list[RunKey]:
+    """Runs at every level with motions of their own, for the container and friction that rock most in the set.
+
+    Args:
+        groups: of the set; bodies: of all containers; floor: motions of the set on the floor of that group's building.
+        motions: at each level, half of them with the vertical reversed.
+    """
+    first = rocking_most(groups).first
+    body = _body_of(bodies, first)
+    begin = rocks_from(body, floor) / KEPT
+    signs = (1, -1) if first.vertical_sign else (0,)
+    return [
+        key_of(first)._replace(
+            stage=HAZARD,
+            motion=level * motions + k + 1,
+            vertical_sign=signs[k % len(signs)],
+            factor=float(f"{begin * share:.6g}"),
+        )
+        for level, share in enumerate(np.geomspace(*SPAN, LEVELS).tolist())
+        for k in range(motions)
+    ]
+
+
+def _body_of(bodies: Sequence[SiteBody], run: SiteRun) -> SiteBody:
+    return next(one for one in bodies if (one.mass, one.elevation) == (run.mass, run.elevation))
+
+
+def rocking_most(groups: Sequence[RunGroup]) -> RunGroup:
+    """The group of the largest rotation; where nothing rocks, that of the highest friction."""
+    return max(
+        groups,
+        key=lambda group: (
+            group.by_rule.rotation_ratio_largest or 0.0,
+            group.first.mu_static,
+            group.first.mu_kinetic,
+        ),
+    )
+
+
+def annual_rates(
+    request: SiteRequest,
+    runs: Mapping[RunKey, SiteRun],
+    made: Mapping[str, GroundMotion],
+    bodies: Sequence[SiteBody],
+    slid: TwoDirections | None,
+    peak_velocity: float,
+) -> AnnualRates | None:
+    """Rates per year of overturning, and of slip beyond the limit; None: no hazard was given, or no run is there.
+
+    Args:
+        runs: all of them; made: motions by the stems of their files.
+        bodies: of all containers.
+        peak_velocity: mean of the motions of the set on the ground [m/s].
+        slid: slip in two directions of the set, whose friction is taken for that of the levels.
+    """
+    hazard = request.hazard_curve
+    own = {key: run for key, run in runs.items() if key.stage == HAZARD and run.outcome is not None}
+    if hazard is None or not own:
+        return None
+    body = _body_of(bodies, next(iter(own.values())))
+    limit, gravity = request.limits.slip_m, request.container.gravity_m_s2
+    first = next(iter(own))
+    pair = (first.mu_static, first.mu_kinetic) if slid is None else (slid.mu_static, slid.mu_kinetic)
+
+    def too_far(key: RunKey, run: SiteRun) -> bool:
+        if (run.max_slip_m or 0.0) > limit:
+            return True
+        found = slip_in_two_directions([made[key.stem].scaled(key.factor)], [pair], gravity=gravity)
+        return found is not None and found.largest > limit
+
+    # the strength of the site's own motions, in the unit of the hazard
+    unit = request.action.ground_acceleration if hazard.measure == ACCELERATION else peak_velocity
+    levels = []
+    for factor in sorted({key.factor for key in own}):
+        there = {key: run for key, run in own.items() if key.factor == factor}
+        levels.append(
+            HazardLevel(
+                strength=factor * unit,
+                factor=factor,
+                motions=len(there),
+                overturned=sum(run.outcome == Outcome.OVERTURNED for run in there.values()),
+                slipped=sum(too_far(key, run) for key, run in there.items()),
+            )
+        )
+    motions = [made[key.stem] for key in own]
+    acting = scattered(hazard, request.motions.scatter, [level.strength for level in levels])
+    falls = _rate(acting, levels, [one.overturned for one in levels], unit * rocks_from(body, motions))
+    slips = _rate(acting, levels, [one.slipped for one in levels], unit * slides_from(body, pair[0], motions))
+    strengths = np.array([level.strength for level in levels])
+    fit = fit_lognormal(
+        strengths,
+        np.array([level.overturned for level in levels], dtype=float),
+        np.array([level.motions for level in levels], dtype=float),
+    )
+    beta = None if fit is None else math.hypot(fit.deviation, request.motions.scatter)
+    return AnnualRates(
+        mass=first.mass,
+        elevation=first.elevation,
+        building_period_s=first.building_period_s,
+        mu_static=first.mu_static,
+        mu_kinetic=first.mu_kinetic,
+        scatter=request.motions.scatter,
+        measure=hazard.measure,
+        strengths=tuple(hazard.strengths.tolist()),
+        rates_per_year=tuple(hazard.rates.tolist()),
+        levels=tuple(levels),
+        overturning_per_year=falls.rate,
+        interval=(falls.low, falls.high),
+        in_50_years=probability_in(YEARS, falls.rate),
+        most_from=falls.most_from[0] if falls.share else None,
+        most_to=falls.most_from[1] if falls.share and math.isfinite(falls.most_from[1]) else None,
+        share=falls.share,
+        slip_per_year=slips.rate,
+        slip_interval=(slips.low, slips.high),
+        median=None if fit is None else fit.median,
+        beta=beta,
+        fit_per_year=None if fit is None or beta is None else hazard.lognormal(fit.median, beta),
+        closed_form_per_year=None if fit is None or beta is None else closed_form(hazard, fit.median, beta),
+    )
+
+
+def scattered(hazard: HazardCurve, scatter: float, levels: Sequence[float]) -> HazardCurve:
+    """The hazard of what acts: motions of one strength in the hazard scatter about it, lognormally.
+
+    The rate at which s is exceeded is that of an event whose probability is 1/2 at s, with the scatter as its beta.
+    """
+    if scatter == 0.0:
+        return hazard
+    ends = levels[0] / REACH, levels[-1] * REACH
+    strengths = np.geomspace(*ends, math.ceil(POINTS * math.log10(ends[1] / ends[0])))
+    rates = [hazard.lognormal(strength, scatter) for strength in strengths.tolist()]
+    return HazardCurve(strengths=strengths, rates=np.array(rates))
+
+
+def closed_form(hazard: HazardCurve, median: float, beta: float) -> float:
+    """H(median) exp(k^2 beta^2/2) with the exponent of the hazard at the median [1/year] (EN 1998-1:2004, 2.1 (4))."""
+    exponent = -math.log(hazard.rate(1.01 * median) / hazard.rate(median)) / math.log(1.01)
+    return hazard.rate(median) * math.exp(0.5 * (exponent * beta) ** 2)
+
+
+def _rate(
+    hazard: HazardCurve, levels: Sequence[HazardLevel], events: Sequence[int], never_below: float
+) -> CountedRate:
+    strengths = [level.strength for level in levels]
+    return counted_rate(
+        hazard,
+        strengths,
+        events,
+        [level.motions for level in levels],
+        never_below=min(never_below, 0.99 * strengths[0]),
+    )
