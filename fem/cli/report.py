@@ -24,7 +24,7 @@ PAGES = {
 }
 
 #: the files that mark a folder whose report has a short form
-WITH_SHORT = ("run.json", "assess.json")
+WITH_SHORT = ("run.json", "assess.json", "hall.json")
 
 
 def report(
@@ -49,7 +49,7 @@ def report(
     Parameters
     ----------
     folder:
-        The folder of a run, a sweep, an ensemble, a response curve or a study, such as outputs/my-stack.
+        The folder of a run, a sweep, an ensemble, a response curve, a hall or a study, such as outputs/my-stack.
     """
     if not folder.is_dir():
         raise FolderError(
@@ -57,7 +57,9 @@ def report(
             "such as outputs/NAME"
         )
     if short and not any((folder / mark).is_file() for mark in WITH_SHORT):
-        raise FolderError(f"{folder}: --short is for the report of a run, or of a verification at a site")
+        raise FolderError(
+            f"{folder}: --short is for the report of a run, of a verification at a site, or of a hall"
+        )
     if pdf and to is not None and to.suffix.lower() == ".pdf":
         to = to.with_suffix(".html")  # the PDF lies beside the page
     place = _place(to if to is not None else folder / PAGE)

@@ -9,7 +9,7 @@ from typing import Any
 from markupsafe import Markup
 
 from fem.batch.study import read_study
-from fem.case.case import load_case
+from fem.case.case import Case, load_case
 from fem.hall.places import PICTURE
 from fem.hall.result import REFUSED, HallResult, TagCount
 from fem.html import sections as html
@@ -22,6 +22,7 @@ from fem.results.kinds import HALL
 
 #: figures of a container on the page
 SHOWN = ("rotation_ratio", "max_slip_m")
+BRIEFLY = 30  #: containers on the short page
 MOST_INPUTS = 3  #: of those that decide
 LOOKS = {"overturned": "bad", "failed": "bad"}
 MARGIN = (
@@ -35,13 +36,20 @@ AT_SITE = (
 A_ROW = Mapping[str, Any]
 
 
-def hall_report(folder: Path, *, signature: Signature | None = None, result: HallResult | None = None) -> str:
+def hall_report(
+    folder: Path,
+    *,
+    signature: Signature | None = None,
+    result: HallResult | None = None,
+    brief: bool = False,
+) -> str:
     """The page, as the text of an HTML file.
 
     Args:
         folder: of the hall.
         signature: author, checker, revision.
         result: what its marking file is to hold; default: what it holds.
+        brief: the answer, the plan, the tags and the weakest alone.
 
     Raises:
         FolderError: it is no folder of a hall, it is damaged, or it is not finished.
@@ -51,7 +59,20 @@ def hall_report(folder: Path, *, signature: Signature | None = None, result: Hal
     case = load_case(str(folder / "base.toml"), allow_outside=True)
     ranked = sorted((row for row in info.table if row["rank"]), key=lambda row: (row["rank"], row["row"]))
     refused = [row for row in info.table if row["status"] == REFUSED]
-    motions = [html.Bullets(info.motions)] if info.motions else []
+    sections = [
+        found_section(info),
+        html.section("In plan", "plan", *studies.drawings(folder, [PICTURE], "batch")),
+        html.section("By tag", "tags", *([tags_table(info)] if info.tags else [])),
+        html.section(
+            "The weakest first",
+            "weakest",
+            weakest_table(ranked, BRIEFLY if brief else html.MOST_ROWS, linked=not brief),
+            html.Note(AT_SITE if info.site else MARGIN),
+        ),
+        html.section("Refused rows", "refused", *([refused_table(refused)] if refused else [])),
+    ]
+    if not brief:
+        sections += full_sections(info, ranked, folder, case)
     return studies.study_html(
         "a hall",
         info=info,
@@ -60,40 +81,32 @@ def hall_report(folder: Path, *, signature: Signature | None = None, result: Hal
         case=case,
         signature=signature,
         hash=info.asked,
-        sections=[
-            found_section(info),
-            html.section("In plan", "plan", *studies.drawings(folder, [PICTURE], "batch")),
-            html.section("By tag", "tags", *([tags_table(info)] if info.tags else [])),
-            html.section(
-                "The weakest first",
-                "weakest",
-                weakest_table(info, ranked),
-                html.Note(AT_SITE if info.site else MARGIN),
-            ),
-            html.section("Refused rows", "refused", *([refused_table(refused)] if refused else [])),
-            html.section(
-                "What the rows start from",
-                "asked",
-                html.columns(
-                    html.Pairs(
-                        asked_rows(case), caption="Base case, where a row changes nothing", look="asked"
-                    ),
-                    html.Group("", [html.Heading("Motions of every container"), *motions]) if motions else "",
-                ),
-            ),
-            html.section("One container by itself", "commands", commands_table(ranked)),
-            limits_section(case),
-            studies.repeat_section(
-                [("hall", f"{info.hall}, {info.status}, model {info.model}"), ("hash", info.asked)],
-                info,
-                studies.Again(
-                    words="With the two files of this folder, and the motions:",
-                    command=again(info),
-                    files=[("base.toml", studies.text_of(folder / "base.toml"))],
-                ),
-            ),
-        ],
+        sections=sections,
     )
+
+
+def full_sections(
+    info: HallResult, ranked: list[dict[str, Any]], folder: Path, case: Case
+) -> list[html.PageSection]:
+    """What the rows start from, the commands, the assumptions, and how to repeat it."""
+    given = html.Pairs(asked_rows(case), caption="Base case, where a row changes nothing", look="asked")
+    motions = html.Group("", [html.Heading("Motions of every container"), html.Bullets(info.motions)])
+    return [
+        html.section(
+            "What the rows start from", "asked", html.columns(given, *([motions] if info.motions else []))
+        ),
+        html.section("One container by itself", "commands", commands_table(ranked)),
+        limits_section(case),
+        studies.repeat_section(
+            [("hall", f"{info.hall}, {info.status}, model {info.model}"), ("hash", info.asked)],
+            info,
+            studies.Again(
+                words="With the two files of this folder, and the motions or the site:",
+                command=again(info),
+                files=[("base.toml", studies.text_of(folder / "base.toml"))],
+            ),
+        ),
+    ]
 
 
 def again(info: HallResult) -> str:
@@ -144,14 +157,17 @@ def tags_table(info: HallResult) -> html.Table:
     return html.table_of("tags", columns, info.tags, file="hall.csv")
 
 
-def weakest_table(info: HallResult, rows: list[dict[str, Any]]) -> html.Table:
+def weakest_table(rows: list[dict[str, Any]], most: int, *, linked: bool) -> html.Table:
     """A row a container, the weakest first; its name leads to its command."""
 
     def figure(name: str, row: A_ROW) -> str:
         return figure_cell(FIGURES[name], row[name])
 
     columns: list[html.Column[A_ROW]] = [
-        html.Column("container", lambda row: html.Cell(html.link(row["name"], f"row-{row['row']}"))),
+        html.Column(
+            "container",
+            lambda row: html.Cell(html.link(row["name"], f"row-{row['row']}") if linked else row["name"]),
+        ),
         html.Column("line", lambda row: str(row["line"]), html.NUMBER),
         html.Column(
             "count", lambda row: "" if row["count"] == 1 else str(row["count"]), html.NUMBER, optional=True
@@ -163,11 +179,9 @@ def weakest_table(info: HallResult, rows: list[dict[str, Any]]) -> html.Table:
         html.Column("sure", lambda row: row["sure"] or "", optional=True),
         html.Column("decided by", _deciding, optional=True),
         *(html.Column(figure_head(FIGURES[name]), partial(figure, name), html.NUMBER) for name in SHOWN),
-        html.Column(
-            "utilisation", lambda row: number(row["utilisation_overturning"], figures=3), html.NUMBER
-        ),
+        html.Column("utilisation", _utilisation, html.NUMBER, optional=True),
         html.Column("motion", lambda row: row["motion"] or "", optional=True),
-        html.Column("of the motions, overturned", _share, html.NUMBER, optional=True),
+        html.Column("runs overturned", _share, html.NUMBER, optional=True),
     ]
     return html.table_of(
         "containers",
@@ -175,6 +189,7 @@ def weakest_table(info: HallResult, rows: list[dict[str, Any]]) -> html.Table:
         rows,
         row_look=lambda row: LOOKS.get(row["outcome"] or "failed", ""),
         file="hall.csv",
+        most=most,
     )
 
 
@@ -229,6 +244,11 @@ def _answer(row: A_ROW) -> html.Cell:
     words = row["answer"] or ("no answer" if row["reasons"] else "")
     linked = Markup('<a href="{}">{}</a>').format(row["page"], words) if row["page"] else words
     return html.Cell(linked)
+
+
+def _utilisation(row: A_ROW) -> str:
+    use = row["utilisation_overturning"]
+    return "" if use is None else number(use, figures=3)
 
 
 def _share(row: A_ROW) -> str:

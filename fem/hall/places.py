@@ -77,6 +77,7 @@ def draw_places(result: HallResult) -> str:
     with house_style():
         present = [name for name in LOOKS if name in classes]
         figure, (axes,) = panels([4.0], header=1 + (len(present) + 2) // 3, below=0.5)
+        axes.margins(0.12)
         for name in reversed(present):  # the weakest on top
             at = [(x, y) for (x, y, _), own in zip(placed, classes, strict=True) if own == name]
             colour, mark = LOOKS[name]
@@ -90,7 +91,6 @@ def draw_places(result: HallResult) -> str:
                 name[:30], (x, y), place, textcoords=over, ha="center", fontsize=7.0, parse_math=False
             )
         axes.set_aspect("equal", adjustable="datalim")
-        axes.margins(0.12)
         local = bool(placed[0][2]["place_m"])
         axes.set_xlabel("x [m]" if local else "east of the middle [m]")
         axes.set_ylabel("y [m]" if local else "north of the middle [m]")

@@ -112,6 +112,9 @@ def test_a_row_is_the_run_by_itself_bit_for_bit(tmp_path, base, monkeypatch, cap
     page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
     assert "7 of 7" not in page and "6 of 7 containers overturned" in page and 'href="#row-2"' in page
     assert main(["report", "out", "-q"]) == 0
+    assert main(["report", "out", "--short", "--to", "short.html", "-q"]) == 0
+    short = (tmp_path / "short.html").read_text(encoding="utf-8")
+    assert "6 of 7 containers overturned" in short and len(short) < len(page) and "row-2" not in short
 
 
 @pytest.mark.slow
