@@ -188,7 +188,7 @@ def _over(
     tilt.set_ylabel("rotation ratio [-]")
     slips = [None if point.slip_m is None else 1e3 * point.slip_m for point in points]
     _limited(slip, values, slips, 1e3 * inputs.slip_limit_m)
-    slip.set_ylabel("slip [mm]")
+    slip.set_ylabel("slip in plane [mm]")
     share = [100.0 * point.overturned / max(point.runs, 1) for point in points]
     fell.vlines(values, 0.0, share, color=style.VERMILLION, linewidth=3.0)
     fell.plot(values, share, color=style.VERMILLION, marker="o", markersize=3.0, linestyle="none")

@@ -6,6 +6,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
+from markupsafe import Markup
 
 from fem.batch.study import read_study
 from fem.html import sections as html
@@ -20,7 +21,7 @@ from fem.seismic.hazard import ACCELERATION
 from fem.site_check import site_sections
 from fem.site_check.answer import FULFILLED
 from fem.site_check.figures import draw_motion, draw_spectra
-from fem.site_check.reasons import NOT_FULFILLED, unit_of, where
+from fem.site_check.reasons import NOT_FULFILLED, unit_of
 from fem.site_check.reasons import span as span_in_words
 from fem.site_check.result import (
     RESULT_FILE,
@@ -41,16 +42,15 @@ COPIES = ("site.toml", "container.toml")  #: in the folder, printed on the page
 CODE = (
     "EN 1998-1:2004, 4.4.2.4 (2), for building structures in special cases and applied here by analogy, allows the "
     "equilibrium to be verified by geometrically non-linear methods with the action of 3.2.3.1. It names no number of "
-    "motions, no limit of rotation or slip and no partial factor. The motions follow 3.2.3.1; the mean or the largest "
-    "of rotations follows 4.3.3.4.3 (3), by analogy; the limits are those of the user. A clearance is kept by the "
-    "largest slip, not by a mean. That any overturning means not fulfilled, and the limit of a single rotation, are "
-    "rules of this program: the code gives none."
+    "motions, no limit of rotation or slip and no partial factor: worst or mean follow 4.3.3.4.3 (3), by analogy, the "
+    "limits are those of the user. That any overturning means not fulfilled, the limit of a single rotation, and the "
+    "largest slip against the clearance are rules of this program."
 )
 SIGNING = ("prepared", "checked", "approved")
 MOST_DRAWN = 30  #: motions whose curves are on the page
 NOT_COVERED = (
     "rocking under two horizontal components at once, torsion, motion out of the plane",
-    "joints of a stack, sloshing of the content, buckling",
+    "failure of the joints of a stack, sloshing of the content, buckling",
     "strength and stiffness of floor and soil",
     "neighbouring containers and walls, ropes, stops",
     "partial factors on friction: its range is computed instead",
@@ -109,6 +109,7 @@ def site_report(
                 ],
             ),
             site_sections.runs_section(view, brief=brief),
+            spectra_section(result),
             *(
                 []
                 if brief
@@ -140,11 +141,7 @@ def answer_section(result: SiteResult) -> html.PageSection:
         "verdict-title",
         html.Paragraph(typeset(first), "sentence"),
         *([html.Bullets([typeset(words) for words in answer.reasons], "tight")] if answer.reasons else []),
-        *(
-            [html.Pairs([(one.name, action_in_words(one)) for one in answer.actions], look="rows")]
-            if len(answer.actions) > 1
-            else []
-        ),
+        *([html.Paragraph(actions_in_words(answer.actions))] if len(answer.actions) > 1 else []),
         *([html.Headlines(_headlines(result))] if answer.answer is not None else []),
         *([html.Paragraph(typeset(words)) for words in beside_the_set(result)]),
         html.Note(html.joined(html.strong("Rule:"), f" {answer.rule}. {CODE}")),
@@ -153,10 +150,13 @@ def answer_section(result: SiteResult) -> html.PageSection:
     )
 
 
-def action_in_words(action: ActionAnswer) -> str:
-    """The answer for one action with its utilisation."""
-    used = "" if action.utilisation is None else f", utilisation {number(action.utilisation, figures=3)}"
-    return f"{action.answer or 'no answer'}{used}"
+def actions_in_words(actions: Sequence[ActionAnswer]) -> Markup:
+    """The answer for each action with its utilisation, on a line."""
+    parts: list[object] = []
+    for one in actions:
+        used = "" if one.utilisation is None else f" (utilisation {number(one.utilisation, figures=3)})"
+        parts += ["; " if parts else "", html.strong(f"{one.name}:"), f" {one.answer or 'no answer'}{used}"]
+    return html.joined(*parts, ".")
 
 
 def beside_the_set(result: SiteResult) -> list[str]:
@@ -170,16 +170,19 @@ def beside_the_set(result: SiteResult) -> list[str]:
         words.append(f"{count} below uplift and slip of a rigid body and were not computed.")
     if answer.two_directions:
         words.append(two_directions_in_words(answer.two_directions))
-    if answer.further:
-        words.append(f"Of {answer.further[0].motions} further motions for the same action:")
-        words[-1] += ";".join(
-            f" {one.overturned} overturned it (95 %: {short(one.interval[0], 100, 2)} to "
-            f"{short(one.interval[1], 100, 2)} % of such motions do) and {one.beyond_limits} went beyond a limit of a "
-            f"single motion, {where(one)}"
-            for one in answer.further
-            if one.motions
+    if known := [one for one in answer.further if one.motions]:
+        worst = max(known, key=lambda one: (one.overturned, one.beyond_limits))
+        low, high = (short(end, 100, 2) for end in worst.interval)
+        pairs = (
+            f", for each of {len(known)} combinations of weight and friction at most"
+            if len(known) > 1
+            else ""
         )
-        words[-1] += "."
+        words.append(
+            f"Of {worst.motions} further motions{pairs} {worst.overturned} overturned it (95 % interval {low} to "
+            f"{high} %) and {max(one.beyond_limits for one in known)} went beyond a limit of a single motion. All "
+            "these motions have the spectrum of the site; recorded ones scatter more."
+        )
     if repeated := confirmation(result):
         words.append(repeated)
     if bolts := bolts_in_words(answer.confirmed):
@@ -227,11 +230,10 @@ def rates_in_words(rates: AnnualRates, slip_limit: float) -> list[str]:
 def two_directions_in_words(slip: TwoDirections) -> str:
     """How far it slides under both horizontal components, and how much further than in the plane of the runs."""
     largest, mean = millimetres(slip.slip_largest_m), millimetres(slip.slip_mean_m)
-    plane = millimetres(slip.slip_mean_in_plane_m)
     return (
-        f"Under both horizontal components at once, as a body that slides and does not rock: largest slip {largest} "
-        f"mm, mean of the motions {mean} mm, in the plane {plane} mm. The clearance is compared with this largest "
-        "slip, too; rocking is computed in the plane only."
+        f"Under both horizontal components at once, sliding without rocking: largest slip {largest} mm, mean {mean} "
+        f"mm, in the plane {millimetres(slip.slip_mean_in_plane_m)} mm. It is held against the clearance, too; rocking "
+        "is computed in the plane only."
     )
 
 
@@ -240,6 +242,10 @@ def _headlines(result: SiteResult) -> list[html.Headline]:
     span = answer.rule_range or RuleRange()
     tried = [point.factor for point in answer.scan]
     far = f"factors {short(tried[0])} to {short(tried[-1])} tried" if tried else "other factors not computed"
+    if answer.factor_at_first_movement is not None:
+        moves = f"a rigid body moves from {short(answer.factor_at_first_movement, figures=3)} on"
+    else:
+        moves = far
     largest, mean = answer.rotation_ratio_largest, answer.slip_mean_m
     both = answer.two_directions
     across = f"; in both directions {millimetres(both.slip_largest_m)} mm" if both else ""
@@ -265,7 +271,7 @@ def _headlines(result: SiteResult) -> list[html.Headline]:
             f"limit {quantity(inputs.slip_limit_m, 'mm', 1000, 3)}; mean {millimetres(mean)} mm{across}",
         ),
         html.Headline("the rule first fails at", at(answer.margin_factor), far),
-        html.Headline("first overturned at", at(answer.factor_at_first_overturning), far),
+        html.Headline("first overturned at", at(answer.factor_at_first_overturning), moves),
     ]
 
 
@@ -289,7 +295,9 @@ def inputs_section(result: SiteResult) -> html.PageSection:
         listed("Action", site_rows(result)),
         listed("Container, friction, limits", container_rows(result)),
     ]
-    return html.section("Inputs", "inputs", html.Group("columns even", given))
+    stated = "; ".join(f"{name}: {words or 'not stated'}" for name, words in result.inputs.sources)
+    sources = [html.Note(f"Sources, as stated by the user: {stated}.")] if stated else []
+    return html.section("Inputs", "inputs", html.Group("columns even", given), *sources)
 
 
 def set_section(result: SiteResult) -> html.PageSection:
@@ -304,14 +312,20 @@ def set_section(result: SiteResult) -> html.PageSection:
         ),
         html.Column("clause", lambda check: html.Cell(check.clause or "this program's own", "note")),
     ]
-    drawn = draw_spectra(result.action, result.set)
     return html.section(
         f"The set of motions: {'its checks' if result.set.valid else 'not valid'}",
         "set",
         html.table_of("checks of the set of motions", columns, result.set.checks),
-        html.Note(site_sections.symbols(period_sentence(result.set))),
-        site_sections.figure(drawn, "spectra", "target, mean and every motion"),
     )
+
+
+def spectra_section(result: SiteResult) -> html.PageSection:
+    """The mean spectrum of the set, and those of its motions."""
+    drawn = site_sections.figure(
+        draw_spectra(result.action, result.set), "spectra", "target, mean and every motion"
+    )
+    words = html.Note(site_sections.symbols(period_sentence(result.set)))
+    return html.section("Spectra of the set", "spectra-of-the-set", drawn, words)
 
 
 def site_rows(result: SiteResult) -> list[tuple[str, str]]:
@@ -335,7 +349,7 @@ def site_rows(result: SiteResult) -> list[tuple[str, str]]:
             f"a_vg = {quantity(action.avg_m_s2, 'm/s²')} ({short(action.vertical_ratio)} a_g)",
         ),
         ("corner periods T_B, T_C, T_D", f"{corners} s; vertical {vertical} s"),
-        ("design displacement of the ground", f"d_g = {quantity(action.displacement_m, 'mm', 1e3, 3)}"),
+        ("displacement of the ground", f"d_g = {quantity(action.displacement_m, 'mm', 1e3, 3)}"),
     ]
     if floor is None:
         return [*rows, ("level", "on the ground: the motions of the ground")]
@@ -363,9 +377,6 @@ def container_rows(result: SiteResult) -> list[tuple[str, str]]:
             f"{short(inputs.single_rotation_ratio_limit)}; slip {quantity(inputs.slip_limit_m, 'mm', 1e3, 3)}",
         ),
     ]
-    stated = "; ".join(f"{name}: {words or 'not stated'}" for name, words in inputs.sources)
-    if stated:
-        rows.append(("sources", stated))
     if inputs.wind_pressure_Pa is not None:
         pressure = (
             f"q_p = {quantity(inputs.wind_pressure_Pa, 'kN/m²', 1e-3, 3)} ({inputs.wind_pressure_source})"

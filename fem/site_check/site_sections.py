@@ -456,16 +456,15 @@ def friction(run: SiteRun) -> str:
 
 
 def merged_methods(methods: Sequence[SiteMethod]) -> list[SiteMethod]:
-    """The methods side by side; weights with the same result, to three figures, share a row."""
-    found: dict[tuple[str, ...], list[SiteMethod]] = {}
+    """The methods side by side; weights of which a method says the same, to three figures, share a row."""
+    merged: dict[tuple[str, ...], list[SiteMethod]] = {}
     for one in methods:
-        shown = (
-            one.name,
-            one.quantity,
-            one.elevation,
-            number(one.utilisation, figures=3),
-            one.says,
-            one.found,
-        )
-        found.setdefault((*shown, one.compared), []).append(one)
-    return [replace(same[0], mass=", ".join(one.mass for one in same)) for same in found.values()]
+        shown = one.name, one.quantity, one.elevation, number(one.utilisation, figures=3), one.says
+        merged.setdefault((*shown, one.compared), []).append(one)
+    rows = []
+    for same in merged.values():
+        found = {one.mass: one.found for one in same}
+        alike = len(set(found.values())) == 1
+        words = same[0].found if alike else "; ".join(f"{mass}: {found[mass]}" for mass in found)
+        rows.append(replace(same[0], mass=", ".join(one.mass for one in same), found=words))
+    return rows

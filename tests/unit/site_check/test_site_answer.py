@@ -10,7 +10,7 @@ from fem.site_check.file import load_site
 from fem.site_check.result import ConfirmedRun, SiteRun, TwoDirections
 from fem.site_check.runs import FURTHER, REFINED, REPEATED, REPETITIONS, SCAN, key_of
 
-REQUEST = load_site("site")  # limits 0.5, 0.8, 100 mm
+REQUEST = load_site("site").with_value("limits.slip_m", 0.1)  # and 0.5, 0.8 of the angle
 MOTIONS = example()[0].set
 SEVEN = range(1, 8)
 
