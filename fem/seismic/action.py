@@ -37,6 +37,9 @@ class SpectrumShape:
     vertical_ratio: float  #: a_vg / a_g [-]
     vertical_corner_periods: tuple[float, float, float]  #: [s]
     annex_a_corner: float | None = None  #: T_E [s]; None: constant displacement beyond T_D
+    flat_to: float = 0.0  #: T_A, up to which the spectra stay at the peak [s]
+    plateau: float = PLATEAU  #: over the peak, horizontal [-]
+    vertical_plateau: float = VERTICAL_PLATEAU  #: over the peak, vertical [-]
     source: str = "given"  #: where the numbers stand
 
     def __post_init__(self) -> None:
@@ -44,10 +47,10 @@ class SpectrumShape:
             if not 0.0 < value < 10.0:
                 raise ValueError(f"the {name} must be positive and below 10, got {value:g}")
         for periods in (self.corner_periods, self.vertical_corner_periods):
-            if not 0.0 < periods[0] < periods[1] < periods[2] <= LAST_PERIOD_S:
+            if not self.flat_to < periods[0] < periods[1] < periods[2] <= LAST_PERIOD_S:
                 shown = ", ".join(f"{period:g}" for period in periods)
                 raise ValueError(
-                    f"corner periods T_B, T_C, T_D must rise from above 0 to at most 4 s, got {shown}"
+                    f"corner periods T_B, T_C, T_D must rise from above {self.flat_to:g} s to at most 4 s, got {shown}"
                 )
 
 
@@ -133,7 +136,48 @@ def german_shape(subsoil: str, vertical_ratio: float) -> SpectrumShape:
         corner_periods=(periods[0], periods[1], periods[2]),
         vertical_ratio=vertical_ratio,
         vertical_corner_periods=(vertical_first, 0.20, 2.0),
-        source=f"DIN EN 1998-1/NA:2011, subsoil {subsoil}",
+        source=f"DIN EN 1998-1/NA:2011, subsoil {subsoil} (superseded by NA:2021-07 and NA:2023-11)",
+    )
+
+
+def second_generation_shape(
+    *,
+    plateau: float,
+    one_second: float,
+    periods: tuple[float, float, float],
+    vertical_ratio: float,
+    ratio: float,
+) -> SpectrumShape:
+    """Spectra of the form of the second generation of Eurocode 8, from parameters of the ground's surface.
+
+    Up to T_A the peak S_alpha/F_A, from T_B the plateau S_alpha, from T_C = S_beta/S_alpha on S_beta/T, from T_D on
+    T_D S_beta/T^2. The vertical has the same form. Site factors are not in it: the program has no text of that code.
+
+    Args:
+        plateau: S_alpha [m/s2]; one_second: S_beta [m/s2], both at the surface.
+        periods: T_A, T_B, T_D [s].
+        vertical_ratio: f_vh, vertical over horizontal.
+        ratio: F_A, plateau over peak.
+
+    Raises:
+        ValueError: numbers that give no such spectrum.
+    """
+    if not (0.0 < plateau < math.inf and 0.0 < one_second < math.inf):
+        raise ValueError(f"S_alpha and S_beta must be positive, got {plateau:g} and {one_second:g} m/s2")
+    if not 1.0 < ratio < 10.0:
+        raise ValueError(f"F_A must lie between 1 and 10, got {ratio:g}")
+    first, second, fourth = periods
+    corners = second, one_second / plateau, fourth
+    return SpectrumShape(
+        soil_factor=1.0,
+        corner_periods=corners,
+        vertical_ratio=vertical_ratio,
+        vertical_corner_periods=corners,
+        flat_to=first,
+        plateau=ratio,
+        vertical_plateau=ratio,
+        source=f"given, in the form of the second generation of Eurocode 8: S_alpha = {plateau:g} m/s2, S_beta = "
+        f"{one_second:g} m/s2, T_A = {first:g} s, F_A = {ratio:g}",
     )
 
 
@@ -149,6 +193,7 @@ class SiteAction:
     reference_acceleration: float  #: a_gR, on rock [m/s2]
     importance_factor: float = 1.0  #: gamma_I of the building (4.2.5) [-]
     element_importance_factor: float = 1.0  #: gamma_a of the element (4.3.5.3); 1.5 for toxic content [-]
+    topographic_factor: float = 1.0  #: S_T (EN 1998-5:2004, Annex A), on both components [-]
 
     def __post_init__(self) -> None:
         if not 0.0 < self.reference_acceleration < 30.0:
@@ -167,8 +212,9 @@ class SiteAction:
 
     @property
     def ground_acceleration(self) -> float:
-        """a_g gamma_a = gamma_I gamma_a a_gR (3.2.1(3); 4.24 for gamma_a) [m/s2]."""
-        return self.importance_factor * self.element_importance_factor * self.reference_acceleration
+        """a_g gamma_a S_T = gamma_I gamma_a S_T a_gR (3.2.1(3); 4.24 for gamma_a) [m/s2]."""
+        factors = self.importance_factor * self.element_importance_factor
+        return factors * self.reference_acceleration * self.topographic_factor
 
     @property
     def surface_acceleration(self) -> float:
@@ -196,7 +242,9 @@ class SiteAction:
         Where no T_E is known, the displacement stays constant beyond 4 s, which is not below Annex A.
         """
         corners, eta = self.shape.corner_periods, damping_correction(damping_ratio)
-        found = _elastic(periods, self.surface_acceleration, PLATEAU, corners, eta)
+        found = _elastic(
+            periods, self.surface_acceleration, self.shape.plateau, corners, eta, self.shape.flat_to
+        )
         if self.shape.annex_a_corner is None:
             return found
         displacement = self._annex_a(periods, self.shape.annex_a_corner, eta)
@@ -208,7 +256,14 @@ class SiteAction:
     def vertical(self, periods: FloatArray, damping_ratio: float = DAMPING_RATIO) -> FloatArray:
         """Vertical elastic spectrum S_ve (3.8) to (3.11) at the periods (n,) [s], shape (n,) [m/s2]."""
         corners, eta = self.shape.vertical_corner_periods, damping_correction(damping_ratio)
-        return _elastic(periods, self.vertical_acceleration, VERTICAL_PLATEAU, corners, eta)
+        return _elastic(
+            periods,
+            self.vertical_acceleration,
+            self.shape.vertical_plateau,
+            corners,
+            eta,
+            self.shape.flat_to,
+        )
 
     def _annex_a(self, periods: FloatArray, begin: float, eta: float) -> FloatArray:
         """Elastic displacement spectrum from T_E on, Annex A (A.1), (A.2), shape (n,) [m]."""
@@ -228,12 +283,18 @@ def damping_correction(damping_ratio: float) -> float:
 
 
 def _elastic(
-    periods: FloatArray, peak: float, plateau: float, corners: tuple[float, float, float], eta: float
+    periods: FloatArray,
+    peak: float,
+    plateau: float,
+    corners: tuple[float, float, float],
+    eta: float,
+    flat_to: float,
 ) -> FloatArray:
-    """(3.2) to (3.5), or (3.8) to (3.11), at the periods (n,); `peak` at T = 0 [m/s2]."""
+    """(3.2) to (3.5), or (3.8) to (3.11), at the periods (n,); `peak` at T = 0 [m/s2], and on to `flat_to` [s]."""
     first, second, third = corners
     flat = plateau * peak * eta
-    rising = peak * (1.0 + periods / first * (plateau * eta - 1.0))
+    way = np.maximum(periods - flat_to, 0.0) / (first - flat_to)
+    rising = peak * (1.0 + way * (plateau * eta - 1.0))
     with np.errstate(divide="ignore"):
         falling = flat * np.where(periods <= third, second / periods, second * third / periods**2)
     return np.where(periods < first, rising, np.where(periods <= second, flat, falling))

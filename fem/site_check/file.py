@@ -18,7 +18,14 @@ from fem.case.table import CaseTable, case_key
 from fem.case.tables import DocumentTable
 from fem.case.toml import toml_document
 from fem.case.validation import CaseError
-from fem.seismic.action import GERMAN_ZONES, SiteAction, SpectrumShape, eurocode_shape, german_shape
+from fem.seismic.action import (
+    GERMAN_ZONES,
+    SiteAction,
+    SpectrumShape,
+    eurocode_shape,
+    german_shape,
+    second_generation_shape,
+)
 from fem.seismic.hazard import HazardCurve, read_hazard
 from fem.seismic.wind import german_pressure, terrain_pressure
 from fem.site_check.tables import (
@@ -317,6 +324,16 @@ def _action(site: SiteTable) -> SiteAction:
     elif site.spectrum == "DIN-NA-2011":
         shape = german_shape(site.ground or "", site.vertical_ratio or 0.0)
         reference = GERMAN_ZONES[site.zone or 0]
+    elif site.spectrum == "second-generation":
+        plateau = site.plateau_m_s2 or 0.0
+        reference = plateau / site.plateau_over_peak
+        shape = second_generation_shape(
+            plateau=plateau,
+            one_second=site.one_second_m_s2 or 0.0,
+            periods=_three(site.end_periods_s),
+            vertical_ratio=site.vertical_ratio or 0.0,
+            ratio=site.plateau_over_peak,
+        )
     else:
         shape = SpectrumShape(
             soil_factor=site.soil_factor or 0.0,
@@ -329,6 +346,7 @@ def _action(site: SiteTable) -> SiteAction:
         reference_acceleration=reference or 0.0,
         importance_factor=site.importance_factor,
         element_importance_factor=site.element_importance_factor,
+        topographic_factor=site.topographic_factor,
     )
 
 

@@ -10,11 +10,13 @@ import numpy as np
 from fem.records.spectrum import response_spectrum
 from fem.runtime.arrays import FloatArray
 from fem.seismic.action import SiteAction
+from fem.seismic.floor import HIGHEST_HZ, ONE_MODE_TO_S
 from fem.seismic.ground_motion import GroundMotion
 from fem.seismic.motion_files import write_at2, write_csv
 from fem.seismic.motion_set import LEAST_MOTIONS, LEAST_SHARE, MOST_CORRELATION, MotionSetCheck
 from fem.site_check.file import SiteRequest
 from fem.site_check.result import MOTIONS, FloorResult, MotionSet, SetCheck, SiteActionResult, SiteMotion
+from fem.site_check.tables import BuildingTable
 
 HEADINGS = {"h": "HORIZONTAL", "v": "UP", "t": "SECOND HORIZONTAL"}
 CLAUSE = "EN 1998-1:2004, 3.2.3.1.2 (4) "
@@ -28,6 +30,7 @@ def action_result(action: SiteAction, checked: MotionSetCheck) -> SiteActionResu
         reference_acceleration_m_s2=action.reference_acceleration,
         importance_factor=action.importance_factor,
         element_importance_factor=action.element_importance_factor,
+        topographic_factor=action.topographic_factor,
         ag_m_s2=action.ground_acceleration,
         soil_factor=shape.soil_factor,
         ag_S_m_s2=action.surface_acceleration,
@@ -201,12 +204,25 @@ def floor_result(
     ]
     return FloorResult(
         z_over_h=request.building.z_over_h,
+        building=_modes_in_words(request.building),
         building_periods_s=tuple(varied),
         damping_ratio=request.building.damping_ratio,
         peak_m_s2=peaks[worst],
         peak_velocity_m_s=float(np.mean([one.intensities["h"].peak_velocity_m_s for one in motions])),
         mean_m_s2=_numbers(np.mean(spectra, axis=0)),
     )
+
+
+def _modes_in_words(building: BuildingTable) -> str:
+    """The model of a building."""
+    if building.storeys is None:
+        beyond = building.building_period_s > ONE_MODE_TO_S
+        return (
+            f"one mode, linear over the height, good for low, stiff buildings up to {ONE_MODE_TO_S:g} s"
+            f"{', which this one exceeds' if beyond else ''}; no model of the structure as 4.3.5.1 (2)P asks for it"
+        )
+    shape = "equal storeys that shear" if building.kind == "shear" else "one stiffness in bending"
+    return f"{building.storeys} storeys, {shape}, all modes up to {HIGHEST_HZ:g} Hz"
 
 
 def _numbers(values: FloatArray) -> tuple[float, ...]:

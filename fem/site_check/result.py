@@ -23,7 +23,8 @@ class SiteActionResult(JsonBlock):
     reference_acceleration_m_s2: float  #: a_gR
     importance_factor: float  #: gamma_I
     element_importance_factor: float  #: gamma_a
-    ag_m_s2: float  #: gamma_I gamma_a a_gR
+    topographic_factor: float = 1.0  #: S_T
+    ag_m_s2: float  #: gamma_I gamma_a S_T a_gR
     soil_factor: float
     ag_S_m_s2: float
     avg_m_s2: float
@@ -43,6 +44,7 @@ class FloorResult(JsonBlock):
     """The floor of a building on which the container stands, and what the motions are there."""
 
     z_over_h: float
+    building: str = ""  #: its modes, in words
     building_periods_s: tuple[float, ...]  #: the one given, and varied both ways
     damping_ratio: float
     #: of the building's period with the largest mean peak; all are means over the motions

@@ -332,6 +332,11 @@ def site_rows(result: SiteResult) -> list[tuple[str, str]]:
     """The action in numbers: name and value."""
     action, floor = result.action, result.floor
     factors = f"γ_I = {short(action.importance_factor)}, γ_a = {short(action.element_importance_factor)}"
+    if action.topographic_factor != 1.0:
+        factors += (
+            f", S_T = {short(action.topographic_factor)} for topography (EN 1998-5:2004, Annex A; its values are not "
+            "checked against its text)"
+        )
     corners = ", ".join(short(period) for period in action.corner_periods_s)
     vertical = ", ".join(short(period) for period in action.vertical_corner_periods_s)
     rows = [
@@ -354,10 +359,16 @@ def site_rows(result: SiteResult) -> list[tuple[str, str]]:
     if floor is None:
         return [*rows, ("level", "on the ground: the motions of the ground")]
     periods = ", ".join(short(period) for period in floor.building_periods_s)
+    model = f" ({floor.building})" if floor.building else ""
     words = (
-        f"floor at z/H = {short(floor.z_over_h)} of a building with T_1 = {periods} s, damping "
+        f"floor at z/H = {short(floor.z_over_h)} of a building{model} with T_1 = {periods} s, damping "
         f"{short(100.0 * floor.damping_ratio)} %: mean peak there {quantity(floor.peak_m_s2, 'm/s²')}"
     )
+    if floor.peak_m_s2 < result.set.mean_pga_m_s2:
+        words += (
+            f", below that of the ground, {quantity(result.set.mean_pga_m_s2, 'm/s²')}: a slow building follows little "
+            "of a motion that is mostly faster, and at this height its modes act against each other"
+        )
     return [*rows, ("level", words)]
 
 

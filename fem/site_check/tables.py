@@ -22,6 +22,14 @@ IMPORTANCE = Quantity(
 )
 REFERENCE = Quantity(unit="m/s2", above=0.0, below=30.0, typical=1.6, slips={"g": 9.81, "cm/s2": 0.01})
 VERTICAL_RATIO = Quantity(unit="", above=0.0, below=10.0, advice="EN 1998-1:2004, table 3.4 has 0.45 and 0.9")
+TOPOGRAPHY = Quantity(
+    unit="",
+    least=1.0,
+    most=2.0,
+    advice="as remembered, not checked against its text: 1 below 15 degrees or 30 m of height; at least 1.2 near the "
+    "top of cliffs, slopes and ridges, 1.4 on narrow ridges steeper than 30 degrees, 20 % more on loose ground",
+)
+SPECTRAL = Quantity(unit="m/s2", above=0.0, below=100.0, slips={"g": 9.81})
 SPECTRUM_PERIOD = Quantity(unit="s", above=0.0, most=4.0, advice="T_B, T_C, T_D are 0.05 to 2 s")
 LEVEL = Quantity(unit="", least=0.0, most=1.0, advice="0 is the foundation, 1 the roof")
 BUILDING_PERIOD = Quantity(
@@ -54,6 +62,7 @@ Corners = Annotated[list[Annotated[float, SPECTRUM_PERIOD]], Field(min_length=3,
 NEEDED = {
     "EN1998-1": ("ground", "reference_acceleration_m_s2"),
     "DIN-NA-2011": ("ground", "zone", "vertical_ratio"),
+    "second-generation": ("plateau_m_s2", "one_second_m_s2", "end_periods_s", "vertical_ratio"),
     "custom": (
         "reference_acceleration_m_s2",
         "soil_factor",
@@ -62,7 +71,14 @@ NEEDED = {
         "vertical_corner_periods_s",
     ),
 }
-OF_SPECTRA = ("type", "ground", "zone", "reference_acceleration_m_s2", *NEEDED["custom"][1:])
+OF_SPECTRA = (
+    "type",
+    "ground",
+    "zone",
+    "reference_acceleration_m_s2",
+    *NEEDED["custom"][1:],
+    *NEEDED["second-generation"][:3],
+)
 WHY = {
     "vertical_ratio": "a_vg/a_g, which the annex in force gives",
     "zone": "1, 2 or 3",
@@ -95,8 +111,10 @@ def _rises(name: str, key: str) -> Rule:
 class SiteTable(CaseTable):
     """The action: the elastic spectra of the site and their factors."""
 
-    spectrum: Literal["EN1998-1", "DIN-NA-2011", "custom"] = case_key(
-        '"EN1998-1" | "DIN-NA-2011" | "custom": parameters of another annex, given below', "EN1998-1"
+    spectrum: Literal["EN1998-1", "DIN-NA-2011", "second-generation", "custom"] = case_key(
+        '"EN1998-1" | "DIN-NA-2011" (superseded in 2021 and 2023) | "custom": parameters of another annex, given below '
+        '| "second-generation": of the form of EN 1998-1-1:2024, S_alpha and S_beta given below',
+        "EN1998-1",
     )
     type: Annotated[int, Strict(), Quantity(unit="", least=1, most=2)] | None = case_key(
         "of the spectrum, EN1998-1 only: 1, or 2 where the hazard is from magnitudes up to 5.5 (default 1)",
@@ -114,13 +132,29 @@ class SiteTable(CaseTable):
     element_importance_factor: Annotated[float, IMPORTANCE] = case_key(
         "gamma_a (4.3.5.3): 1.5 for toxic or explosive content", 1.0
     )
+    topographic_factor: Annotated[float, TOPOGRAPHY] = case_key(
+        "S_T near cliffs and on ridges (EN 1998-5:2004, Annex A)", 1.0
+    )
     soil_factor: Annotated[float, q.SOIL_FACTOR] | None = case_key("S, custom only", None, example=1.35)
     corner_periods_s: Corners = case_key("[T_B, T_C, T_D], custom only", None, example=[0.2, 0.8, 2.0])
     vertical_ratio: Annotated[float, VERTICAL_RATIO] | None = case_key(
-        "a_vg/a_g, custom and DIN-NA-2011", None, example=0.9
+        "a_vg/a_g, custom and DIN-NA-2011; f_vh, second-generation", None, example=0.9
     )
     vertical_corner_periods_s: Corners = case_key(
         "of the vertical, custom only", None, example=[0.05, 0.15, 1.0]
+    )
+
+    plateau_m_s2: Annotated[float, SPECTRAL] | None = case_key(
+        "S_alpha at the surface, site factors in it, second-generation only", None, example=6.32
+    )
+    one_second_m_s2: Annotated[float, SPECTRAL] | None = case_key(
+        "S_beta at the surface, second-generation only; T_C is S_beta/S_alpha", None, example=3.37
+    )
+    end_periods_s: Corners = case_key(
+        "[T_A, T_B, T_D], second-generation only", None, example=[0.02, 0.1, 2.0]
+    )
+    plateau_over_peak: Annotated[float, Quantity(unit="", above=1.0, below=10.0)] = case_key(
+        "F_A, second-generation", 2.5
     )
 
     rules = (

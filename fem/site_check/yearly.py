@@ -118,7 +118,10 @@ def annual_rates(
         return found is not None and found.largest > limit
 
     # the strength of the site's own motions, in the unit of the hazard
-    unit = request.action.ground_acceleration if hazard.measure == ACCELERATION else peak_velocity
+    action = request.action
+    unit = action.ground_acceleration / action.topographic_factor
+    if hazard.measure != ACCELERATION:
+        unit = peak_velocity
     levels = []
     for factor in sorted({key.factor for key in own}):
         there = {key: run for key, run in own.items() if key.factor == factor}

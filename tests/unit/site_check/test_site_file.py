@@ -1,11 +1,13 @@
 """A site file: what it asks for, and the reasons why it cannot be used."""
 
+import numpy as np
 import pytest
 
 from fem.case.case import load_case
 from fem.case.files import SITES
 from fem.case.validation import CaseError
 from fem.site_check.file import SiteRequest, load_site
+from fem.site_check.motions import ground_motions
 
 LEAST = """
 container = "seed_stack"
@@ -17,6 +19,14 @@ mu_static = [0.3, 0.4]
 [limits]
 slip_m = 0.1
 """
+
+GERMAN = 'spectrum = "DIN-NA-2011"\nground = "C-R"\nzone = 3\nvertical_ratio = 0.5'
+#: ground D with S_alpha,RP = 4.0 and S_beta,RP = 1.2 m/s2: 4.0 x 1.580 and 1.2 x 2.809, T_D = 1 + 1.2 s
+SECOND = """spectrum = "second-generation"
+plateau_m_s2 = 6.319
+one_second_m_s2 = 3.370
+end_periods_s = [0.02, 0.1, 2.2]
+vertical_ratio = 0.7"""
 
 
 def request(tmp_path, *changes: tuple[str, str]) -> SiteRequest:
@@ -32,10 +42,10 @@ def request(tmp_path, *changes: tuple[str, str]) -> SiteRequest:
 def test_the_shipped_site_can_be_read():
     asked = load_site("site")
     assert (asked.name, asked.heading.container, asked.motions.count) == ("site", "seed_stack", 7)
-    assert asked.action.surface_acceleration == pytest.approx(1.35 * 1.6)
+    assert asked.action.surface_acceleration == pytest.approx(1.35 * 2.3)
     assert [(one.mass, one.elevation) for one in asked.variants] == [("full", "width"), ("empty", "width")]
-    assert asked.variants[1].case.mass == pytest.approx(2000.0)
-    assert asked.wind_pressure == (650.0, "given")
+    assert asked.variants[1].case.mass == pytest.approx(2400.0)
+    assert asked.wind_pressure == (500.0, "given")
 
 
 def test_defaults_are_those_of_the_shipped_file(tmp_path):
@@ -91,6 +101,46 @@ def test_a_value_of_the_site_or_of_the_container_is_changed(tmp_path):
     assert len(stiff.frictions) == 3
 
 
+def test_the_present_german_hazard_is_given_by_the_plateau_on_rock():
+    asked = load_site("cologne")
+    assert asked.action.horizontal(np.array([0.1]))[0] == pytest.approx(1.7144, rel=1e-4)  # S_aP,R
+    assert (asked.building.storeys, asked.building.kind) == (4, "shear")
+    assert {motion.peak for motion in ground_motions(asked, 4.0)} != {0.0}
+
+
+def test_topography_multiplies_the_action(tmp_path):
+    flat, ridge = (
+        request(tmp_path, ("= 1.6", f"= 1.6\ntopographic_factor = {factor}")).action for factor in (1.0, 1.4)
+    )
+    for one in ("surface_acceleration", "vertical_acceleration"):
+        assert getattr(ridge, one) == pytest.approx(1.4 * getattr(flat, one))
+
+
+def test_the_german_annex_of_2011_says_that_it_is_superseded(tmp_path):
+    old = request(tmp_path, ('ground = "D"\nreference_acceleration_m_s2 = 1.6', GERMAN))
+    assert "superseded by NA:2021-07 and NA:2023-11" in old.action.shape.source
+
+
+def test_a_spectrum_of_the_second_generation_is_given_by_its_parameters(tmp_path):
+    asked = request(tmp_path, ('ground = "D"\nreference_acceleration_m_s2 = 1.6', SECOND))
+    periods = np.array([0.0, 0.02, 0.06, 0.1, 0.3, 1.0, 2.2, 3.0])
+    plateau, one = 6.319, 3.370
+    expected = [
+        plateau / 2.5,
+        plateau / 2.5,
+        0.5 * (plateau / 2.5 + plateau),
+        plateau,
+        plateau,
+        one,
+        one / 2.2,
+    ]
+    expected.append(2.2 * one / 9.0)
+    assert asked.action.horizontal(periods).tolist() == pytest.approx(expected)
+    assert asked.action.surface_acceleration == pytest.approx(2.528, abs=5e-4)
+    assert asked.action.shape.corner_periods[1] == pytest.approx(0.533, abs=5e-4)
+    np.testing.assert_allclose(asked.action.vertical(periods), 0.7 * np.array(expected))
+
+
 def test_wind_pressures_come_from_a_table_or_a_terrain(tmp_path):
     zone = request(tmp_path, ("[limits]", "[wind]\ngerman_zone = 2\n[limits]"))
     assert zone.wind_pressure == (650.0, "simplified German pressure, zone 2, inland")
@@ -108,6 +158,8 @@ def test_wind_pressures_come_from_a_table_or_a_terrain(tmp_path):
         ('ground = "D"', 'ground = "C-R"\nspectrum = "DIN-NA-2011"\nzone = 3', r"needs vertical_ratio \(a_vg/a_g"),
         ("= 1.6", "= 1.6\nimportance_factor = 2.5", r"importance_factor must be between 0.5 and 2"),
         ("= 1.6", "= 1.6\nelement_importance_factor = 0.1", r"element_importance_factor must be between 0.5 and 2"),
+        ("= 1.6", "= 1.6\ntopographic_factor = 0.8", r"topographic_factor must be between 1 and 2"),
+        ('ground = "D"', SECOND, r'"second-generation" has its own reference_acceleration_m_s2'),
         ("[0.3, 0.4]", "[0.4, 0.3]", r"\[friction\] mu_static must be \[low, high\], got \[0.4, 0.3\]"),
         ("[limits]\nslip_m = 0.1\n", "", r"\[limits\] is missing: slip_m, the clearance"),
         ("slip_m = 0.1", "rotation_ratio = 0.5", r"\[limits\] slip_m"),

@@ -33,7 +33,7 @@ def request(folder, *tables):
 
 def three_records(folder, letters):
     """Files of three motions at 0.005 s, a name for each letter."""
-    action = load_site("site").action
+    action = request(folder).action
     names = []
     for number, motion in enumerate(artificial_motions(action, count=3, seed=5, second=1.0)):
         names.append([])
@@ -49,7 +49,7 @@ def test_artificial_motions_have_a_second_component_of_the_share_asked_for(tmp_p
         ground_motions(request(tmp_path, f"[motions]\ncount = 3\nsecond_component = {share}"), 4.0)
         for share in (1.0, 0.5, 0.0)
     )
-    action = load_site("site").action
+    action = request(tmp_path).action
     assert check_set(both, action).valid and check_set(half, action, second=0.5).valid
     assert any("second components" in reason for reason in check_set(half, action).reasons)
     np.testing.assert_allclose(half[0].second, 0.5 * both[0].second, rtol=1e-12, atol=1e-12)

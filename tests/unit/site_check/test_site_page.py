@@ -13,8 +13,8 @@ from fem.html.formula import formula_markup
 from fem.html.page import Page, html_of
 from fem.results.errors import FolderError
 from fem.results.files import to_json
-from fem.site_check.result import RESULT_FILE, SiteResult
-from fem.site_check.site_page import answer_section, bolts_in_words, confirmation, site_report
+from fem.site_check.result import RESULT_FILE, FloorResult, SiteResult
+from fem.site_check.site_page import answer_section, bolts_in_words, confirmation, site_report, site_rows
 
 ANSWERS = {
     "fulfilled": ({}, "Fulfilled under the rule below"),
@@ -110,6 +110,26 @@ def test_in_a_building_the_floor_stands_beside_the_ground(folders):
     assert "The floor in the building" in words
     assert "element on a floor, z/H = 1, Ta/T1 = 1" in words
     assert page_of(folders, "in a building").count('<td class="number">0.425</td>') == 4 + 7 * 4
+
+
+def test_a_floor_that_moves_less_than_its_ground_is_explained():
+    result, _ = example()
+    floor = FloorResult(
+        z_over_h=0.5,
+        building="10 storeys",
+        building_periods_s=(2.0,),
+        damping_ratio=0.05,
+        peak_m_s2=1.9,
+        peak_velocity_m_s=0.5,
+        mean_m_s2=(),
+    )
+    ridge = replace(result.action, topographic_factor=1.2)
+    rows = dict(site_rows(replace(result, floor=floor, action=ridge)))
+    assert "a building (10 storeys) with T_1 = 2 s" in rows["level"]
+    assert "below that of the ground" in rows["level"] and "modes act against each other" in rows["level"]
+    assert "S_T = 1.2 for topography" in rows["reference acceleration"]
+    high = dict(site_rows(replace(result, floor=replace(floor, peak_m_s2=9.0))))
+    assert "below that of the ground" not in high["level"]
 
 
 def test_a_short_page_has_the_sheet_that_is_signed_and_what_the_runs_found(folders):
