@@ -6,7 +6,7 @@ from concurrent.futures import Future
 from weakref import WeakKeyDictionary
 
 from fem.case.case import Case
-from fem.model.container import Container, discretise, with_mass_of
+from fem.model.container import Container, changed_container, discretise
 from fem.model.geometry import build_container
 from fem.model.model import Model
 from fem.model.recovery import Recovery, recovery_of
@@ -64,7 +64,7 @@ class ContainerCache:
         if found is None:
             try:
                 unlike = first is promise or first.exception() is not None
-                built = discretise(case) if unlike else with_mass_of(case, first.result(), own)
+                built = discretise(case) if unlike else changed_container(case, first.result(), own)
                 promise.set_result(built)
             except BaseException as error:
                 promise.set_exception(error)

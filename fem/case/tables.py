@@ -366,7 +366,9 @@ class UncertaintyTable(CaseTable):
         "loose joints: default: 0.1 to 2, and as given", None, example=[0.1, 2.0]
     )
     camber_m: Unknown = case_key(
-        "of the support, where it is cambered; default: half to twice", None, example=[0.002, 0.008]
+        "of the support; default: half to twice, of a level base flat or on feet 0 to 2 mm",
+        None,
+        example=[0.0, 0.002],
     )
     rocking_damping_ratio: Unknown = case_key(
         "of the support, where it is cambered; default: 0.02 to 0.1, and as given", None, example=[0.02, 0.1]

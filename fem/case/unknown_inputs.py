@@ -36,6 +36,8 @@ BESIDE = 0.01  #: of the mass centre from the axis, over the width
 EFFECTIVE_WIDTH = 0.97  #: over that of the case, at least
 SLOPE_PERCENT = 0.5  #: more or less than that of the case
 CAMBERS = (0.5, 2.0)  #: camber of a base over that of the case
+#: camber of a base that is given as level: no base and no floor is [m]; a share of it is tried, too
+LEVEL_CAMBER_M, BETWEEN_CAMBERS = 0.002, 0.25
 ROCKING_DAMPING = (0.02, 0.1)  #: damping of small rocking on it, as far as the case has none beyond
 LOSS = (0.8, 1.5)  #: loss at an impact, 1 - e, over that of the case where its restitution is given
 RESTITUTIONS = (0.95, 1.06)  #: over Housner's, of sharp corners whose restitution is not given
@@ -110,6 +112,7 @@ class UnknownNumber(NamedTuple):
     )  #: values tried between the ends
     alone: Callable[[Any], bool] = lambda case: True  #: where a change of it alone makes a difference
     same: Callable[[float], float] = lambda value: value  #: the value that means the same, of an angle
+    varies: Callable[[Any], bool] = lambda case: True  #: where it is drawn with all others
 
     def range_in(self, case: Any, penalty: float | None) -> InputRange | None:
         """The range in a case; None where it makes no difference."""
@@ -124,7 +127,7 @@ class UnknownNumber(NamedTuple):
             own=own,
             ends=tuple(end for end in sorted(ends) if not math.isclose(end, own, rel_tol=1e-12)),
             between=tuple(map(self.same, between)),
-            drawn=partial(self._drawn, low, high),
+            drawn=partial(self._drawn, low, high) if self.varies(case) else None,
             alone=self.alone(case),
         )
 
@@ -269,11 +272,25 @@ def _is_cambered(case: Any) -> bool:
     return bool(case.support.camber_m > 0.0)
 
 
+def _may_be_cambered(case: Any) -> bool:
+    """Whether the base is cambered, or level and could be: of one body, with points enough to roll."""
+    if _is_cambered(case):
+        return True
+    fine = case.solver.element_size_m <= 0.25 * case.stack[0].width
+    given = case.contact.restitution_over_housner is not None
+    one = not case.container.is_loose and case.container.mesh_file is None and case.solver.model != "full"
+    return one and not given and (case.support.kind == "feet" or (case.support.kind == "flat" and fine))
+
+
 def _cambers(case: Any, own: float) -> Ends:
     """At most a base of a radius twice as high as the mass centre."""
-    box, low, high = case.stack[0], CAMBERS[0] * own, CAMBERS[1] * own
+    box, low, high = case.stack[0], CAMBERS[0] * own, CAMBERS[1] * own if own > 0.0 else LEVEL_CAMBER_M
     height = sum(one.mass * (one.bottom + one.centroid) for one in case.stack) / case.mass
     return low, max(own, min(high, short((case.support.effective_width * box.width) ** 2 / (16.0 * height))))
+
+
+def _first_cambers(low: float, high: float) -> tuple[float, ...]:
+    return () if low > 0.0 else (short(BETWEEN_CAMBERS * high),)
 
 
 def _has_impacts(case: Any) -> bool:
@@ -407,7 +424,8 @@ UNKNOWN: tuple[UnknownNumber | UnknownChoice, ...] = (
            matters=_joints_may_fall, power=3.0, between=_weakenings, alone=_joints_fall),
     Number(JOINTS_DASHPOT, "joints_damping_ratio", "damping of the joints", q.CONTACT_DAMPING, _joints_dashpot,
            matters=_is_loose),
-    Number(CAMBER, "camber_m", "camber of the base", q.CAMBER, _cambers, matters=_is_cambered),
+    Number(CAMBER, "camber_m", "camber of the base", q.CAMBER, _cambers, matters=_may_be_cambered,
+           between=_first_cambers, varies=_is_cambered),
     Number(ROCKING, "rocking_damping_ratio", "damping of rocking", q.ROCKING_DAMPING, _rocking_damping,
            matters=_rolls),
     Choice(SUPPORT, "support", "contact of the base", _other_support, drawn=False),

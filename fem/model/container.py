@@ -132,10 +132,11 @@ def discretise(case: Case, mesh: ContainerMesh | None = None) -> Container:
     )
 
 
-def with_mass_of(case: Case, container: Container, own: Case) -> Container:
-    """The container of a case that differs from that of another case in the places of its mass alone.
+def changed_container(case: Case, container: Container, own: Case) -> Container:
+    """The container of a case that differs from another case in the places of its mass, or in what touches the floor.
 
-    Elements and elastic modes stay, which a shift by some hundredths changes by less than its own square.
+    Elements and elastic modes stay where the same points touch; a shift of the mass by some hundredths changes them by
+    less than its own square.
 
     Args:
         case: of which the container is wanted.
@@ -145,11 +146,16 @@ def with_mass_of(case: Case, container: Container, own: Case) -> Container:
         CaseError, MeshError: bad input.
     """
     given, there = case.container, own.container
-    if (given.centroid_m, given.eccentricity_m) == (there.centroid_m, there.eccentricity_m):
-        return container
-    mesh = build_container(case)
-    boxes = tuple(replace(box, mesh=box_mesh(mesh, number)) for number, box in enumerate(container.boxes))
-    return replace(container, mesh=mesh, boxes=boxes)
+    if (given.centroid_m, given.eccentricity_m) != (there.centroid_m, there.eccentricity_m):
+        mesh = build_container(case)
+        boxes = tuple(replace(box, mesh=box_mesh(mesh, number)) for number, box in enumerate(container.boxes))
+        container = replace(container, mesh=mesh, boxes=boxes)
+    if (case.support.kind, case.support.camber_m) != (own.support.kind, own.support.camber_m):
+        support = build_support(case, container.mesh)
+        if not np.array_equal(support.index, container.support.index):
+            return discretise(case)
+        container = replace(container, support=support)
+    return container
 
 
 def without_links(case: Case, container: Container) -> Container:

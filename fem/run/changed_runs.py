@@ -17,7 +17,7 @@ from fem.assessment.ranges import largest_bolt_forces
 from fem.assessment.verdict import verdict_of
 from fem.case.uncertainty import InputChange, as_changed
 from fem.case.unknown_inputs import SUPPORT, TOLERANCE
-from fem.model.container import with_mass_of
+from fem.model.container import changed_container
 from fem.model.joints import Joints, joints_of
 from fem.model.model import Model, build_model
 from fem.model.recovery import Recovery, recovery_of
@@ -140,9 +140,9 @@ def _run_changed(run: Model, change: InputChange, shared: Shared, stop: Callable
         if change.kind == "draw" or SUPPORT in change.values:  # a flat base takes twenty times as long
             values[TOLERANCE] = max(DRAWN_TOLERANCE, run.case.solver.energy_tolerance)
         case = run.case.with_values(as_changed(run.case, values))
-        same_base = case.support.kind == run.case.support.kind
-        model = build_model(case, with_mass_of(case, run.container, run.case) if same_base else None)
-        recovery = shared.recovery if same_base or shared.recovery is None else recovery_of(model)
+        model = build_model(case, changed_container(case, run.container, run.case))
+        same_elements = model.container.elements is run.container.elements
+        recovery = shared.recovery if same_elements or shared.recovery is None else recovery_of(model)
         # its forces follow from mass and weight
         same_load = model.container is run.container and case.floor.slope == run.case.floor.slope
         joints = shared.joints if same_load or shared.joints is None else joints_of(model)

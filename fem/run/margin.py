@@ -15,7 +15,7 @@ from fem.case.links import ROWS
 from fem.case.strength import scaled_motion
 from fem.case.uncertainty import as_changed, draws_of
 from fem.case.unknown_inputs import TOLERANCE, Value
-from fem.model.container import Container, with_mass_of, without_links
+from fem.model.container import Container, changed_container, without_links
 from fem.model.equilibrium import same_equilibrium
 from fem.model.model import Model, build_model
 from fem.results.outcome import Ending, ending_of
@@ -269,7 +269,7 @@ def _trial(model: Model, values: Mapping[str, Value], stop: Callable[[], bool]) 
 
     @cache
     def container() -> Container:
-        return with_mass_of(own.with_values(as_changed(own, values)), model.container, own)
+        return changed_container(own.with_values(as_changed(own, values)), model.container, own)
 
     def ending(factor: float) -> Ending:
         if stop():

@@ -3,7 +3,7 @@
 import pytest
 from cases import named_case
 
-from fem.model.container import discretise, with_mass_of
+from fem.model.container import changed_container, discretise
 from fem.model.model import build_model
 from fem.run.outcome import run_without_history
 
@@ -26,7 +26,7 @@ def rocks(values: dict, share: float, toward: float) -> bool:
     peak = share * 9.81 * toward
     case = named_case("seed_stack_plateau", PULSE | values | {"motion.peak_acceleration_m_s2": peak})
     own = case.with_values({"container.eccentricity_m": 0.0, "container.centroid_m": 0.5})
-    model = build_model(case, with_mass_of(case, discretise(own), own))
+    model = build_model(case, changed_container(case, discretise(own), own))
     verdict, error = run_without_history(model, None)
     assert error is None
     return verdict.rotation_ratio > 0.01

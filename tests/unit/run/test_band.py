@@ -18,7 +18,8 @@ from fem.results.reader import open_run
 from fem.results.run_result import ActionResult, Numerics, RunResult, StaticResult, Verdict
 from fem.run import band
 from fem.run.band import plan_of, wants_band
-from fem.run.changed_runs import DRAWN_TOLERANCE, SHORT_S, cost_of
+from fem.run.changed_runs import DRAWN_TOLERANCE, SHORT_S, cost_of, run_changes
+from fem.run.outcome import run_without_history
 from fem.run.recorder import Recorder
 from fem.run.run import RunOptions, run_case
 from fem.run.simulation import simulate
@@ -195,3 +196,19 @@ def test_a_member_that_fails_is_named_in_a_warning_and_in_the_summary(tmp_path):
     assert "1 of " in found["verdict"]["first_line"] and "variations failed" in found["verdict"]["first_line"]
     first = found["warnings"][0]
     assert first.startswith("unsure:") and "stiffness of the contact 6e+10 Pa/m" in first
+
+
+@pytest.mark.parametrize("camber", [0.0, 0.004])
+def test_a_base_of_another_camber_touches_as_one(camber):
+    flat = ["support.kind=flat", f"support.camber_m={camber}", "floor.corner_patch_m=[0.55, 1.1]"]
+    model = build_model(load_case("rocking", [*SHORT, *flat]))
+    changes = [one for one in changes_of(model.case, None) if "support.camber_m" in one.values]
+    assert [one.values["support.camber_m"] for one in changes] == (
+        [0.0005, 0.002] if not camber else [0.002, 0.008]
+    )
+    assert not any("support.camber_m" in one.values for one in draws_of(model.case, None)) or camber
+    for change, run in zip(
+        changes, run_changes(model, changes, numerics=Numerics(), stop=lambda: False), strict=True
+    ):
+        alone, _ = run_without_history(build_model(model.case.with_values(change.values)), None)
+        assert (run.outcome, run.rotation_ratio) == (alone.outcome, alone.rotation_ratio)
