@@ -46,6 +46,7 @@ CODE = (
     "limits are those of the user. That any overturning means not fulfilled, the limit of a single rotation, and the "
     "largest slip against the clearance are rules of this program."
 )
+STANDARD = "EN 1998-1:2004"
 SIGNING = ("prepared", "checked", "approved")
 MOST_DRAWN = 30  #: motions whose curves are on the page
 NOT_COVERED = (
@@ -108,12 +109,13 @@ def site_report(
                     ),
                 ],
             ),
+            html.section("The rule and the code", "rule", html.Paragraph(CODE, "tight")),
             site_sections.runs_section(view, brief=brief),
-            spectra_section(result),
             *(
                 []
                 if brief
                 else [
+                    spectra_section(result),
                     site_sections.methods_section(view),
                     site_sections.unchecked_section(view),
                     site_sections.motions_section(motions),
@@ -144,7 +146,7 @@ def answer_section(result: SiteResult) -> html.PageSection:
         *([html.Paragraph(actions_in_words(answer.actions))] if len(answer.actions) > 1 else []),
         *([html.Headlines(_headlines(result))] if answer.answer is not None else []),
         *([html.Paragraph(typeset(words)) for words in beside_the_set(result)]),
-        html.Note(html.joined(html.strong("Rule:"), f" {answer.rule}. {CODE}")),
+        html.Note(html.joined(html.strong("Rule:"), f" {answer.rule}.")),
         *([html.Paragraph(typeset(f"Reasons: {'; '.join(reasons)}."), "fail")] if reasons else []),
         look=f"answer {standing}",
     )
@@ -185,8 +187,8 @@ def beside_the_set(result: SiteResult) -> list[str]:
         )
     if repeated := confirmation(result):
         words.append(repeated)
-    if bolts := bolts_in_words(answer.confirmed):
-        words.append(bolts)
+    if repeated and (bolts := bolts_in_words(answer.confirmed)):
+        words[-1] += f" {bolts}"
     if answer.hazard:
         words += rates_in_words(answer.hazard, result.inputs.slip_limit_m)
     return words
@@ -248,7 +250,7 @@ def _headlines(result: SiteResult) -> list[html.Headline]:
         moves = far
     largest, mean = answer.rotation_ratio_largest, answer.slip_mean_m
     both = answer.two_directions
-    across = f"; in both directions {millimetres(both.slip_largest_m)} mm" if both else ""
+    across = f"; in two directions {millimetres(both.slip_largest_m)}" if both else ""
 
     def at(factor: float | None) -> str:
         if factor is None:
@@ -259,7 +261,7 @@ def _headlines(result: SiteResult) -> list[html.Headline]:
     return [
         html.Headline("overturned", f"{answer.overturned} of {answer.runs} runs"),
         html.Headline(
-            "rotation ratio, by the rule",
+            "rotation, by the rule",
             _with_range("rotation_ratio", answer.rotation_ratio, span.rotation_ratio),
             f"limit {short(inputs.rotation_ratio_limit)}; a single motion "
             f"{_with_range('rotation_ratio', largest, span.rotation_ratio_largest)}, limit "
@@ -268,7 +270,7 @@ def _headlines(result: SiteResult) -> list[html.Headline]:
         html.Headline(
             "slip, largest",
             f"{_with_range('slip_m', answer.slip_m, span.slip_m)} mm",
-            f"limit {quantity(inputs.slip_limit_m, 'mm', 1000, 3)}; mean {millimetres(mean)} mm{across}",
+            f"limit {quantity(inputs.slip_limit_m, 'mm', 1000, 3)}; mean {millimetres(mean)}{across}",
         ),
         html.Headline("the rule first fails at", at(answer.margin_factor), far),
         html.Headline("first overturned at", at(answer.factor_at_first_overturning), moves),
@@ -310,7 +312,12 @@ def set_section(result: SiteResult) -> html.PageSection:
             "fulfilled",
             lambda check: html.Cell("yes", "pass") if check.fulfilled else html.Cell("no", "fail"),
         ),
-        html.Column("clause", lambda check: html.Cell(check.clause or "this program's own", "note")),
+        html.Column(
+            STANDARD,
+            lambda check: html.Cell(
+                check.clause.removeprefix(f"{STANDARD}, ") or "this program's own", "note"
+            ),
+        ),
     ]
     return html.section(
         f"The set of motions: {'its checks' if result.set.valid else 'not valid'}",

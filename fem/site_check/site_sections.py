@@ -174,8 +174,10 @@ def _groups_table(
     return html.table_of("what the runs found", columns, rows, row_look=lambda row: row.look, look="runs")
 
 
-def _run_columns(k: int, head: str, turned_head: str) -> list[html.Column[RunPair]]:
-    """What the run with sign `k` of a pair found."""
+def _run_columns(
+    k: int, head: str, turned_head: str, further: Sequence[str] = FURTHER
+) -> list[html.Column[RunPair]]:
+    """What the run with sign `k` of a pair found: its outcome, its rotation ratio and further figures by their keys."""
 
     def of(cell: html.CellOf[SiteRun], pair: RunPair) -> str:
         return cell(pair.runs[k]) if k < len(pair.runs) else ""
@@ -189,7 +191,7 @@ def _run_columns(k: int, head: str, turned_head: str) -> list[html.Column[RunPai
         html.Column(turned_head, partial(of, partial(found, TURNED)), html.NUMBER),
         *(
             html.Column(figure_head(FIGURES[key]), partial(of, partial(found, key)), html.NUMBER)
-            for key in FURTHER
+            for key in further
         ),
     ]
 
@@ -348,10 +350,12 @@ def every_run_section(view: SiteView) -> html.PageSection:
         *(
             column
             for k, sign in enumerate(view.signs)
-            for column in _run_columns(k, sign_in_words(sign), "ratio")
+            for column in _run_columns(k, sign_in_words(sign), "ratio", ["max_slip_m"])
         ),
     ]
-    blocks: list[html.Block] = [html.Note(SINGLE)]
+    blocks: list[html.Block] = [
+        html.Note(f"{SINGLE} Residual slips, velocities and uplifts are in runs.csv.")
+    ]
     if left := len(every) - len(pairs):
         blocks.append(
             f"{left} of {len(every)} rows are left out, in which the container rests; runs.csv has them."
