@@ -241,6 +241,9 @@ def _thresholds(folder: Path, info: SweepResult) -> list[html.Block]:
     except (OSError, ValueError) as error:
         raise FolderError(f"{path}: cannot be read ({error}); repeat the sweep with --force") from None
     shown = ([short(float(one), figures=5) if NUMBER.fullmatch(one) else one for one in row] for row in rows)
+    along = (info.threshold or {}).get("axis")
+    unit = next((axis.unit for axis in info.axes if axis.key == along), "")
+    header = [f"{name} [{unit}]" if unit and name in ("low", "high", "value") else name for name in header]
     held = f"They hold {info.held}; a range of an unknown input moves them." if info.held else ""
     return [
         html.Heading("Changes of outcome, refined"),
