@@ -23,13 +23,19 @@ class SchedulerError(ValueError):
 
 
 @contextmanager
-def cluster(address: str) -> Iterator[WorkersOf]:
+def cluster(address: str, *, named: str = "", worker_s: float = WORKER_S) -> Iterator[WorkersOf]:
     """Connect to a scheduler; yields the pools that compute the cases of a model.
+
+    Args:
+        address: of the scheduler.
+        named: how messages call it; default: as `--scheduler` does.
+        worker_s: within which it has a worker [s].
 
     Raises:
         SchedulerError: it does not answer, has no workers, or they run another version of this program.
         WorkersLostError: the workers died.
     """
+    named = named or f"--scheduler {address}"
     for name in ("distributed", "distributed.client"):  # what matters is raised here
         logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
@@ -39,17 +45,17 @@ def cluster(address: str) -> Iterator[WorkersOf]:
     except (OSError, TimeoutError, ValueError) as error:
         reason = str(error).partition("\n")[0] or type(error).__name__
         raise SchedulerError(
-            f"--scheduler {address}: no answer within {ANSWER_S:g} s ({reason}); start one with 'dask scheduler' "
+            f"{named}: no answer within {ANSWER_S:g} s ({reason}); start one with 'dask scheduler' "
             "and give the address it prints, or leave --scheduler out to compute on this machine"
         ) from None
     with client:
         try:
-            client.wait_for_workers(1, timeout=WORKER_S)
+            client.wait_for_workers(1, timeout=worker_s)
         except TimeoutError:
             raise SchedulerError(
-                f"--scheduler {address}: it has no workers; start some with 'dask worker {address}'"
+                f"{named}: it has no workers; start some with 'dask worker {address}'"
             ) from None
-        _require_the_same_program(client, address)
+        _require_the_same_program(client, named)
 
         with client.get_executor(pure=False) as executor:
 
@@ -69,12 +75,12 @@ async def _identity(address: str) -> object:
         return await scheduler.identity()
 
 
-def _require_the_same_program(client: Client, address: str) -> None:
+def _require_the_same_program(client: Client, named: str) -> None:
     mine = program_identity()
     for worker, theirs in client.run(program_identity).items():
         other = [name for name, value in mine.items() if theirs.get(name) != value]
         if other:
             raise SchedulerError(
-                f"--scheduler {address}: the worker {worker} has another {other[0]} "
+                f"{named}: the worker {worker} has another {other[0]} "
                 f"({theirs.get(other[0])}, here {mine[other[0]]}); install the same program there"
             )

@@ -58,6 +58,8 @@ class Runner:
     reporter: Reporter = field(default_factory=SilentReporter)
     stop: Callable[[], bool] = never  #: asked repeatedly; true ends the work
     jobs: int = 1  #: cores of this machine that it may use
+    #: told what runs cost in CPU time [s] before they are handed out; may refuse with a CaseError
+    approve: Callable[[str, float], None] = field(default=lambda what, seconds: None)
     share: Share | None = None  #: of the items of a study that is shared with other machines; None: all
 
     def rows(
@@ -117,6 +119,8 @@ class Runner:
         for some in by_model.values():
             with suppress(ValueError):  # a case that cannot be computed is told in its row
                 seconds += len(some) * expected_s(make(some[0]))
+        if any(by_model.values()):
+            self.approve(what, seconds)
         say_expected(self.reporter, what, seconds / self.jobs, self.jobs)
 
     def each(self, what: str, items: Sequence[ItemT], work: Callable[[ItemT], FoundT]) -> list[FoundT]:

@@ -167,8 +167,11 @@ def runner_of(**options: Unpack[StudyOptions]) -> Iterator[Runner]:
     """What runs the cases of a study; nothing stops it."""
     with ExitStack() as stack:
         jobs = options.get("jobs") or cores()
+        given = options.get("workers_of")
+        approve = getattr(given, "approve", None)
         yield Runner(
-            workers_of=options.get("workers_of") or stack.enter_context(LocalWorkers(jobs)),
+            workers_of=given or stack.enter_context(LocalWorkers(jobs)),
+            **({"approve": approve} if approve else {}),
             reporter=options.get("reporter") or SilentReporter(),
             jobs=jobs,
         )

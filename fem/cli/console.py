@@ -2,7 +2,7 @@
 
 import importlib
 from collections.abc import Iterable, Iterator, Sequence
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -93,16 +93,26 @@ def connected(scheduler: str | None) -> AbstractContextManager[Any]:
     """
     if scheduler is None:
         return nullcontext()
+    workers: AbstractContextManager[Any] = _optional("fem.batch.cluster", "--scheduler", "cluster").cluster(
+        scheduler
+    )
+    return workers
+
+
+def _optional(module: str, option: str, extra: str) -> Any:
+    """A module that needs an extra.
+
+    Raises:
+        CaseError: it is not installed.
+    """
     try:
-        module = importlib.import_module("fem.batch.cluster")
+        return importlib.import_module(module)
     except ModuleNotFoundError as error:
-        if (error.name or "").partition(".")[0] not in ("dask", "distributed"):
+        if (error.name or "").partition(".")[0] not in ("dask", "distributed", "dask_jobqueue"):
             raise
         raise CaseError(
-            "--scheduler needs the extra 'cluster': python -m pip install \"unanchored[cluster]\""
+            f'{option} needs the extra {extra!r}: python -m pip install "unanchored[{extra}]"'
         ) from None
-    workers: AbstractContextManager[Any] = module.cluster(scheduler)
-    return workers
 
 
 @Parameter(name="*")
@@ -153,6 +163,11 @@ class SharedFlags(StudyFlags):
         ),
     ] = ()
 
+    slurm: Annotated[
+        Path | None, Parameter(show_default=False, help="Compute by jobs of Slurm, as this TOML file says.")
+    ] = None
+    yes: Annotated[bool, flag("Submit them without asking.")] = False
+
     def folder(self, name: str) -> Path:
         """That of a shard has its own."""
         return super().folder(f"{name}-shard-{self.shard.replace('/', '-of-')}" if self.shard else name)
@@ -162,7 +177,13 @@ class SharedFlags(StudyFlags):
         """For `run_study`."""
         shards = importlib.import_module("fem.batch.shard")
         shard = shards.Shard.parse(self.shard) if self.shard else None
-        with super().options() as options:
+        if self.slurm and self.scheduler:
+            raise CaseError("--slurm and --scheduler contradict each other; give one of them")
+        with ExitStack() as held:
+            options = held.enter_context(super().options())
+            if self.slurm is not None:
+                jobs = _optional("fem.batch.slurm", "--slurm", "slurm")
+                options = {**options, "workers_of": held.enter_context(jobs.slurm(self.slurm, yes=self.yes))}
             yield {**options, "shard": shard, "merge": self.merge}
 
 
