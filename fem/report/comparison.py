@@ -211,6 +211,12 @@ def assumptions(case: Case, result: RunResult | None = None) -> list[str]:
             if case.container.is_loose
             else f"The boxes are bolted and do not separate{listed}."
         )
+    if case.stop:
+        lines.append("A stop moves with the floor, and meets the one point of the container beside it.")
+    if case.tie:
+        lines.append(
+            "A tie pulls straight down, however far the container slides; it is elastic until it breaks."
+        )
     return lines
 
 
@@ -260,7 +266,7 @@ def exclusions(case: Case) -> list[str]:
         f"{vertical}torsion, motion out of the plane, wind",
         "sloshing, plasticity, buckling and bending of the sheets out of their plane",
         *(["boxes without bolts, which open and slide on one another"] if bolted else []),
-        f"{ground}, neighbouring containers, ropes or stops",
+        f"{ground}, neighbouring containers{', ropes or stops' * (not case.links)}",
         "partial factors, and further ground motions: EN 1998-1:2004, 3.2.3.1.2 (4) asks for three or more",
     ]
 

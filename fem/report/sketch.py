@@ -21,6 +21,7 @@ from fem.case.case import Case
 from fem.figures.style import BLACK, BLUE, GREY, house_style, svg_of
 from fem.html.page import svg_element
 from fem.html.units import degrees, quantity, short
+from fem.model.links import side_of
 
 WIDTH = 4.3  #: of the drawing [inch]
 WIDEST, TALLEST = 1.8, 2.6  #: of the container in it [inch]
@@ -52,6 +53,7 @@ def sketch(
         unit = 0.04 * inch
         _draw_floor(axes, case, unit)
         _draw_container(axes, case, unit)
+        _draw_links(axes, case, unit)
         middle = centre_above(boxes, 0)
         _draw_mass_centre(axes, 0.5 * width, middle, centroid, unit, slope=case.floor.slope)
         _dimension(axes, (-0.5 * width, -7 * unit), (0.5 * width, -7 * unit), f"a = {short(width)} m")
@@ -75,6 +77,8 @@ def sketch(
         f"Sketch: container{stack}, {short(high - low)} m wide and {short(height)} m high, mass centre at "
         f"{short(centroid)} m, on {case.support.kind}"
     )
+    held = ((len(case.stop), "stop"), (len(case.tie), "tie"))
+    label += "".join(f", {count} {name}{'s' * (count > 1)}" for count, name in held if count)
     return svg_element(svg_of(figure), label=label, prefix="sketch")
 
 
@@ -139,6 +143,23 @@ def _draw_container(axes: Axes, case: Case, unit: float) -> None:
         _draw_loose_joints(axes, case, unit)
     if case.container.is_loose or case.container.box is not None:
         _number_boxes(axes, boxes, unit)
+
+
+def _draw_links(axes: Axes, case: Case, unit: float) -> None:
+    """Stops as walls up to their point, at their gap but not further than the figure is wide; ties as lines."""
+    reach = 0.45 * (axes.get_xlim()[1] - axes.get_xlim()[0])
+    for stop in case.stop:
+        outward = -1.0 if stop.side == "left" else 1.0
+        face = side_of(case, stop) + outward * stop.gap_m
+        if abs(face) < reach - 2 * unit:
+            wall = Rectangle((min(face, face + outward * 2 * unit), 0.0), 2 * unit, max(stop.height_m, unit))
+            wall.set(fill=False, hatch="////", ec=GREY, lw=0)
+            axes.add_patch(wall)
+            axes.plot((face, face), (0.0, max(stop.height_m, unit)), color=BLACK, linewidth=1.5)
+    for tie in case.tie:
+        x = side_of(case, tie)
+        axes.plot((x, x), (0.0, tie.height_m), color=BLUE, linewidth=1.2, linestyle=":", zorder=6)
+        axes.plot((x,), (tie.height_m,), color=BLUE, marker="o", markersize=3, zorder=6)
 
 
 def _draw_loose_joints(axes: Axes, case: Case, unit: float) -> None:

@@ -69,3 +69,21 @@ def test_the_page_says_whether_boxes_may_separate(values, loose):
 def test_the_compliance_of_a_slab_is_not_left_out(kind, left_out):
     (ground,) = (line for line in exclusions(named_case("rocking", {"floor.kind": kind})) if "soil" in line)
     assert left_out in ground
+
+
+HELD = {
+    "stop": [
+        {"side": side, "height_m": 0.1, "gap_m": 0.1, "stiffness_N_m": 1e8} for side in ("left", "right")
+    ],
+    "tie": [{"from": "left", "height_m": 0.5, "stiffness_N_m": 1e6}],
+}
+
+
+def test_stops_and_ties_are_drawn_and_no_longer_left_out():
+    free, held = named_case("seed_stack_plateau"), named_case("seed_stack_plateau", HELD)
+    drawings = [str(sketch(case, centroid=2.0, peak_acceleration=4.0)) for case in (free, held)]
+    assert "2 stops, 1 tie" in drawings[1]
+    assert drawings[1].count("<path") > drawings[0].count("<path")
+    assert any("ropes or stops" in line for line in exclusions(free))
+    assert not any("ropes or stops" in line for line in exclusions(held))
+    assert any("A tie pulls straight down" in line for line in assumptions(held))
