@@ -61,6 +61,11 @@ class ResponseRequest:
                 '[container] joints must be "bolted" for a response curve, which follows one body; take a sweep over '
                 "motion.frequency_Hz"
             )
+        if self.case.links:
+            raise CaseError(
+                "[stop] and [tie] must be left out for a response curve, which follows a container that nothing holds; "
+                "take --set stop=[] --set tie=[], or a sweep over motion.frequency_Hz"
+            )
         if solver.model == "full":
             raise CaseError(
                 '[solver] model = "full" would take days over the hundreds of periods of a response curve; '

@@ -45,6 +45,11 @@ def test_what_is_held_is_what_the_case_states():
         (["motion.kind=none"], {}, r'\[motion\] kind must be "harmonic"'),
         (["motion.cycles=5"], {}, r"\[motion\] cycles = 5 ends the drive"),
         (["solver.model=full"], {}, r"reduced"),
+        (
+            ["tie=[{from = 'left', height_m = 0.5, stiffness_N_m = 1e6}]"],
+            {},
+            r"\[stop\] and \[tie\] must be left out",
+        ),
         ([], {"first_Hz": 2.0}, "--from must be less than --to, got 2 Hz and 1.4 Hz"),
         ([], {"first_Hz": 0.0}, "--from must lie between 0.01 and 100 Hz, got 0 Hz"),
         ([], {"last_Hz": float("nan")}, "--to must lie between"),
