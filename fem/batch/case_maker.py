@@ -53,6 +53,6 @@ class CaseMaker:
         data = with_overrides(self.base.given(), values)
         names = {key.rpartition(".")[0] for key in values} - {""}
         fixed = {key: value for key, value in data.items() if key not in TABLES and key not in ROWS}
-        fixed |= {name: getattr(self.base, name) for name in ROWS}
+        fixed |= {name: rows for name in ROWS if (rows := getattr(self.base, name))}
         fixed |= {name: getattr(self.base, name) for name in TABLES if name not in names}
         return fixed, {name: data[name] for name in names}
