@@ -1,7 +1,6 @@
 """Stops and ties of a case as contact points of its container, behind those of the base."""
 
 import math
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -10,25 +9,12 @@ from contact.interface.penalty import damping_ratio_of
 from contact.interface.workspace import Contact
 from contact.stepping.body import State
 from contact.stepping.links import APART, make_lines, place_links
-from fem.case.boxes import Box
 from fem.case.case import Case, CaseError
 from fem.case.links import USUAL_STOP_DAMPING, StopTable, TieTable
+from fem.model.tied_capacity import side_of
 from fem.runtime.arrays import FloatArray, IntArray
-from mesh.container import ContainerMesh
 
 OVERLAP = 1e-9  #: overlap at the start that is rounding [m]
-MOST_TURNED, TURNS = 0.5 * math.pi, 20_001  #: rotations at which a capacity is sought [rad]
-
-
-def box_at(case: Case, height: float) -> Box:
-    """The lowest box whose side reaches to a height above the floor [m]."""
-    return next((box for box in case.stack if height <= box.top * (1.0 + 1e-9)), case.stack[-1])
-
-
-def side_of(case: Case, link: StopTable | TieTable) -> float:
-    """x of the side of the container where a link is [m]."""
-    left, right = box_at(case, link.height_m).sides
-    return left if link.side == "left" else right
 
 
 def places_of_links(case: Case) -> FloatArray:
@@ -149,59 +135,3 @@ def begin_links(case: Case, body: Any, state: State) -> None:
                 f"[{name}] {name} {own}: {key} = {link.slack:g} m is overlapped by {-gap:.3g} m at the start, as the "
                 "container stands in its initial rotation; take a wider one, or another [initial]"
             )
-
-
-@dataclass(frozen=True, kw_only=True)
-class TiedCapacity:
-    """The largest static moment about a corner that weight and ties resist, while the container turns slowly."""
-
-    side: str  #: toward which it turns
-    moment: float  #: [Nm]
-    rotation: float  #: at which [rad]
-    free: float  #: of the weight alone, at no rotation [Nm]
-    broken: bool  #: whether a tie breaks there
-
-    def to_json(self) -> dict[str, Any]:
-        """Keys with units."""
-        return {
-            "side": self.side,
-            "moment_Nm": self.moment,
-            "rotation_rad": self.rotation,
-            "moment_without_Nm": self.free,
-            "tie_breaks": self.broken,
-        }
-
-
-def tied_capacities(case: Case, mesh: ContainerMesh) -> list[TiedCapacity]:
-    """The capacity toward each side; none where the case has no ties.
-
-    A tie whose point rises by u carries k (u - slack), up to its strength, and then no more.
-    """
-    found = []
-    rotation = np.linspace(0.0, MOST_TURNED, TURNS)
-    for side, sign in (("left", -1.0), ("right", 1.0)) if case.tie else ():
-        corner = 0.5 * case.effective_width * mesh.width
-        arm = corner - sign * mesh.centroid[0]
-        weight = mesh.mass * case.gravity_toward_floor
-        moment = weight * (arm * np.cos(rotation) - mesh.centroid[1] * np.sin(rotation))
-        breaks = np.zeros(TURNS, dtype=bool)
-        for tie in case.tie:
-            beside = corner - sign * side_of(case, tie)  # of its point from the corner, against the turn
-            rise = beside * np.sin(rotation) + tie.height_m * (np.cos(rotation) - 1.0)
-            force = tie.stiffness_N_m * np.maximum(rise - tie.slack_m, 0.0)
-            if tie.strength_N is not None:
-                broken = np.logical_or.accumulate(force >= tie.strength_N)
-                breaks |= np.append(broken[1:] & ~broken[:-1], False)
-                force[broken] = 0.0
-            moment += force * (beside * np.cos(rotation) - tie.height_m * np.sin(rotation))
-        most = int(np.argmax(moment))
-        found.append(
-            TiedCapacity(
-                side=side,
-                moment=float(moment[most]),
-                rotation=float(rotation[most]),
-                free=float(weight * arm),
-                broken=bool(breaks[most]),
-            )
-        )
-    return found

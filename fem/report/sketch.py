@@ -21,7 +21,7 @@ from fem.case.case import Case
 from fem.figures.style import BLACK, BLUE, GREY, house_style, svg_of
 from fem.html.page import svg_element
 from fem.html.units import degrees, quantity, short
-from fem.model.links import side_of
+from fem.model.tied_capacity import side_of
 
 WIDTH = 4.3  #: of the drawing [inch]
 WIDEST, TALLEST = 1.8, 2.6  #: of the container in it [inch]

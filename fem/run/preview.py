@@ -12,10 +12,10 @@ from fem.case.case import Case
 from fem.case.rules import ends_at_rest
 from fem.model.floor import floor_result, slab_of
 from fem.model.geometry import node_count
-from fem.model.links import TiedCapacity, tied_capacities
 from fem.model.restitution import contact_restitution, require_loss
 from fem.model.static_checks import StaticChecks, static_checks_of
 from fem.model.support import build_support, normal_penalty
+from fem.model.tied_capacity import TiedCapacity, tied_capacities
 from fem.model.validity import require_bearing, require_stiff_contact
 from fem.results.run_result import FloorNumbers, MotionResult
 from fem.run.size import frames_of, required_disk, samples_of

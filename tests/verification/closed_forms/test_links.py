@@ -13,7 +13,7 @@ from contact.stepping.ledger import BASE_WORK, CONTACT_DAMPING, FRICTION, IMBALA
 from fem.case.case import Case
 from fem.evidence.verification.runs import SOLID, STACK, Finished, harmonic, pulse, run
 from fem.model.geometry import build_container
-from fem.model.links import tied_capacities
+from fem.model.tied_capacity import tied_capacities
 
 MASS, WIDTH, MIDDLE = 1e4, 1.1, 2.0
 GRAVITY, SPEED = 9.81, 0.5
