@@ -122,12 +122,10 @@ def found_section(info: HallResult) -> html.PageSection:
     what = f"verified at {info.site}" if info.site else f"{info.runs} runs"
     count = f"{info.rows} rows, {info.containers} containers, {info.distinct} that differ{under}: "
     count += f"{what}{studies.unfinished(info)}."
-    if info.site:
-        pass
-    elif info.checked:
+    if info.checked:
         which = "all" if info.checked == info.distinct else f"the weakest {info.checked}"
         count += f" Sure, deciding inputs and margin are those of {which}, each under its governing motion."
-    elif info.state == "finished":
+    elif not info.site and info.state == "finished":
         count += " No run was repeated: nothing is known of sureness and margins."
     outcomes = ", ".join(f"{word}: {number}" for word, number in info.outcomes.items())
     note = "A container under several motions has the outcome of the one that does worst, the governing motion: one "

@@ -104,11 +104,11 @@ class Hall:
         """The command that computes a row under a motion by itself."""
         words = ["python", "-m", "fem", "run", self.base_place]
         if self.named:
-            horizontal, _, vertical = self.named[motion].partition(",")
-            words += ["--motion", horizontal]
-            if vertical:
-                name = as_named_from(self.base.folder, vertical)
-                words += ["--set", "vertical.kind=table", "--set", f"vertical.file={name}"]
+            words += ["--motion", self.named[motion].partition(",")[0].strip()]
+        # of a pair its vertical file; of a motion alone among pairs that it has none
+        set_by_motion = {k: v for k, v in self.cases.motions[motion].items() if k != MOTION_FILE}
+        for key, value in set_by_motion.items():
+            words += ["--set", f"{key}={value}"]
         for key, value in row.values.items():
             words += ["--set", f"{key}={value if isinstance(value, str) else toml_value(value)}"]
         return shlex.join(words)

@@ -192,6 +192,17 @@ def test_under_several_motions_the_worst_governs_and_the_largest_slip_is_told(tm
     assert words[5:7] == ["--motion", "strong.csv"]
     alone = compute(load_case("base.toml", words[8::2], motion="strong.csv")).verdict
     assert slim["rotation_ratio"] == alone.rotation_ratio and slim["margin"] == alone.margin.factor
+    for pairs in (("strong.csv,weak.csv", "middle.csv"), ("strong.csv", "weak.csv,middle.csv")):
+        files = {"motions": pairs, "checks": "none", "force": True}
+        result = run_hall(
+            read_hall(tmp_path / "hall.csv"), load_case("base.toml"), tmp_path / "pairs", **files
+        )
+        words = shlex.split(result.table[0]["command"])
+        assert (
+            words[6] == "strong.csv" and words[8] == f"vertical.kind={'table' if ',' in pairs[0] else 'none'}"
+        )
+        alone = compute(load_case("base.toml", words[8::2], motion=words[6]), band=False).verdict
+        assert result.table[0]["max_slip_m"] == alone.max_slip_m
 
 
 @pytest.mark.parametrize(
