@@ -43,7 +43,7 @@ class HallResult(StudyResult):
     asked: str  #: hash of what is computed
     listed: str = ""  #: hash of the list
     model: str
-    motions: tuple[str, ...] = ()  #: files; empty: the motion of the case
+    motions: tuple[str, ...] = ()  #: files, of pairs both, as they were named; empty: the motion of the case
     site: str = ""  #: its file; empty: none
     motion_covered: str | None = None
     rows: int  #: of the list

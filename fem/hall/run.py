@@ -62,7 +62,7 @@ def run_hall(
             asked_of(file, base, hall.looked),
             asked=hash_of([hall.looked.hashes, [pair.case_hash for pair in hall.motions]]),
             listed=hash_of([file.text, checks]),
-            motions=tuple(pair.name for pair in hall.motions),
+            motions=hall.named,
             motion_covered=motions_left_out(base, hall.motions),
             checks=checks,
         )
