@@ -45,11 +45,11 @@ class Screening:
 
     #: by weight and elevation; none of a container that rolls on a cambered base or that is not run as a rigid one
     bodies: Mapping[tuple[str, str], BodyAtRest]
-    motions: dict[str, GroundMotion] = field(default_factory=dict)  #: by the stems of their files
+    motions: dict[str, GroundMotion]  #: by the stems of their files
     known: dict[tuple[str, str, str, int, float], float] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, request: SiteRequest) -> Self:
+    def of(cls, request: SiteRequest, motions: dict[str, GroundMotion]) -> Self:
         """For the containers of a request.
 
         Raises:
@@ -65,7 +65,7 @@ class Screening:
                 slenderness=math.tan(static.slenderness_angle),
                 slope=static.slope,
             )
-        return cls(bodies=bodies)
+        return cls(bodies=bodies, motions=motions)
 
     def moves_at(self, key: RunKey) -> float | None:
         """The factor on the motion of a run at which its body first moves; None where that is not known."""

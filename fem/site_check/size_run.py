@@ -142,6 +142,8 @@ class _Sizing:
     tried: dict[float, Tried] = field(default_factory=dict)
     #: rows of an earlier attempt, by value, until it is tried
     early: dict[float, list[str]] = field(default_factory=dict)
+    #: motions by the folders that hold them, which values of the container share, and by stem
+    made: dict[Path, dict[str, GroundMotion]] = field(default_factory=dict)
 
     def compute(self, place: ResultFolder, runner: Runner) -> SizeResult:
         """Run what is missing; the values are those that fulfil the rule."""
@@ -236,7 +238,9 @@ class _Sizing:
         self.tried[value] = tried = Tried(
             request=request,
             motions=set_result(request, checked, ground, ()),
-            stages=Stages.of(request, floors, longest=longest, folder=folder),
+            stages=Stages.of(
+                request, floors, longest=longest, folder=folder, made=self.made.setdefault(folder, {})
+            ),
             wind=wind_utilisation(bodies, inputs_of(request)),
         )
         self.cases.cases[value] = RunCases.of(request, folder)

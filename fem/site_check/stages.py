@@ -44,8 +44,16 @@ class Stages:
         *,
         longest: float,
         folder: Path,
+        made: dict[str, GroundMotion] | None = None,
     ) -> "Stages":
         """For a request and the motions of its set, by building period.
+
+        Args:
+            request: what is asked.
+            floors: the motions of the set.
+            longest: period of the band [s].
+            folder: that holds the motions.
+            made: the motions that are in the folder already, by stem; further ones are added.
 
         Raises:
             CaseError, MeshError: a container cannot be built.
@@ -57,7 +65,7 @@ class Stages:
             vertical=any_floor[0].vertical is not None,
             periods=tuple(floors),
         )
-        screening = Screening.of(request)
+        screening = Screening.of(request, {} if made is None else made)
         for period, floor in floors.items():
             for number, motion in enumerate(floor, start=1):
                 screening.motions[motion_stem(number, period)] = motion
@@ -105,11 +113,15 @@ class Stages:
         return own, most + sum(left(self.plan.scanned(factor)) for factor in self.plan.factors)
 
     def of_the_margin(self) -> Iterator[Sequence[RunKey]]:
-        """The set at other factors, up to the first at which the rule fails and a run overturns, and between."""
+        """The set at other factors, up to the first at which a run overturns, and between.
+
+        Of a container that rests in the whole set, up to the first at which the rule fails: that is far enough.
+        """
         before = 1.0
         for factor in self.plan.factors:
             if factor > 1.0:
-                if self._overturns(before):
+                found = RuleFound.of(groups_of(self.plan.by_factor(self.rows.found)[before]))
+                if found.overturned or (self.rests and found.fails(self.request.limits)):
                     break
                 before = factor
             yield self._left(self.plan.scanned(factor))
@@ -195,9 +207,6 @@ class Stages:
             building_period_s=worst,
             margin_factor=next(filter(too_far, tried), None),
         )
-
-    def _overturns(self, factor: float) -> bool:
-        return RuleFound.of(groups_of(self.plan.by_factor(self.rows.found)[factor])).overturned > 0
 
     def _left(self, keys: Sequence[RunKey]) -> list[RunKey]:
         """Those that must be computed; those at rest by the rigid bound are noted."""

@@ -290,7 +290,7 @@ def test_quick_is_never_fulfilled_of_a_container_that_moves(tmp_path, capsys, br
     place = site_file(tmp_path, reference=3.2, motions="vertical = false")
     assert main(["assess", str(place), "--out", str(tmp_path / "out"), "--quick", "-j", "1"]) == 0
     shown = capsys.readouterr()
-    assert "runs of the set, up to 18 with repetitions" in shown.err
+    assert "3 to compute, up to 18 with repetitions: at most" in shown.err
     found = json.loads((tmp_path / "out" / "assess.json").read_text())["result"]
     assert found["answer"] in ("not sure", "not fulfilled") and found["further"] == []
     assert any("Left out by --quick" in reason for reason in found["reasons"])

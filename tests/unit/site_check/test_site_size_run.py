@@ -14,6 +14,7 @@ reference_acceleration_m_s2 = 3.5
 [motions]
 count = 3
 further = 72
+vertical = false
 [friction]
 mu_static = [0.4]
 mu_kinetic_over_static = [1.0]
@@ -34,7 +35,7 @@ def place(tmp_path_factory):
         return []
 
     (place / "hall.toml").write_text(SITE, encoding="utf-8")
-    command = ["size", str(place / "hall.toml"), "--over", "container.boxes", "--to", "5", *out(place)]
+    command = ["size", str(place / "hall.toml"), "--over", "container.boxes", "--to", "4", *out(place)]
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("fem.site_check.size_run.confirmed", confirmed)
         assert main(command) == 0
@@ -54,10 +55,10 @@ def test_the_tallest_stack_is_found(place):
     found = result_in(place / "found")
     fulfilled = [point["fulfilled"] for point in found["points"]]
     assert [point["answer"] == "fulfilled" for point in found["points"]] == [one is True for one in fulfilled]
-    assert fulfilled[0] and not fulfilled[-1]  # one box does not rock at 0.48 g; five overturn
+    assert fulfilled[0] and not fulfilled[-1]  # one box does not rock at 0.48 g; four rotate too far
     assert found["value"] == next(k for k, one in enumerate(fulfilled) if not one)
     assert found["sentence"].startswith(f"The largest number of boxes is {found['value']:g}")
-    assert [point["runs"] for point in found["points"]] == [6] * 5
+    assert [point["runs"] for point in found["points"]] == [3] * 4
     assert (place / "found" / "figures" / "size.svg").is_file()
     assert not (place / "found" / ".motions").exists()
 
