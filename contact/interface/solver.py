@@ -65,7 +65,7 @@ def evaluate_laws(
             -work.velocity[i, 1],
             contact.normal_stiffness[i],
             contact.normal_stiffness[i] * contact.relaxation_time[i],
-            contact.cap[i],
+            work.cap[i],
             step,
         )
         work.law[i, 1] = normal
@@ -120,7 +120,7 @@ def return_held_points(
         stuck = closed and contact.friction == ELASTIC_STICK and abs(tangential) < SLIDING * mu[i] * normal
         for k in range(2):
             stiffness = contact.tangential_stiffness[i] if k == 0 else contact.normal_stiffness[i]
-            held = stuck if k == 0 else closed and normal < SLIDING * contact.cap[i]
+            held = stuck if k == 0 else closed and normal < SLIDING * work.cap[i]
             work.trial[i, k] = 0.0
             if held and magnified * stiffness * work.compliance[2 * i + k, 2 * i + k] > 1.0:
                 back = start[i, k] - work.point[i, k]
@@ -161,11 +161,11 @@ def linearise_in_old_states(
         found = True
         stiffness = contact.normal_stiffness[i]
         damping = stiffness * contact.relaxation_time[i]
-        if normal < SLIDING * contact.cap[i]:
+        if normal < SLIDING * work.cap[i]:
             work.law[i, 1] = -stiffness * work.point[i, 1] - damping * work.velocity[i, 1]
             work.slope[i, 2] = stiffness + damping * velocity_slope
         else:
-            work.law[i, 1], work.slope[i, 2] = contact.cap[i], 0.0
+            work.law[i, 1], work.slope[i, 2] = work.cap[i], 0.0
         if abs(tangential) < SLIDING * mu[i] * normal:
             stiffness, elongation = contact.tangential_stiffness[i], stick[i] + work.point[i, 0] - start[i, 0]
             work.law[i, 0] = stick_trial(
@@ -214,7 +214,7 @@ def press_where_turned(
         level = 0
         if work.law[i, 1] <= 0.0:
             level = -1
-        elif work.law[i, 1] >= contact.cap[i]:
+        elif work.law[i, 1] >= work.cap[i]:
             level = 1
         if iteration > 0 and level * work.level[i] < 0:
             stiffness = contact.normal_stiffness[i]

@@ -2,6 +2,8 @@
 
 from typing import Annotated, NamedTuple
 
+import numpy as np
+
 from contact.arrays import FloatArray, IntArray
 from contact.layout import zeros_of
 from contact.structs import struct
@@ -13,7 +15,11 @@ class Contact(NamedTuple):
 
     normal_stiffness: FloatArray  #: [N/m]
     tangential_stiffness: FloatArray  #: [N/m]
-    cap: FloatArray  #: largest normal force, dashpot included, at which the floor crushes [N]; infinite: it does not
+    #: (n,) largest normal force, dashpot included, at which the intact floor crushes [N]; infinite: it does not
+    cap: FloatArray
+    cap_growth: (
+        FloatArray  #: (n,) by which it grows with the indentation, over that of the intact floor [1/m]
+    )
     #: (n,) dashpot over spring, of the normal and of the stuck tangential direction [s]
     relaxation_time: FloatArray
     mu_static: FloatArray  #: (n,) the same for all points of a joint, as the next two
@@ -49,6 +55,7 @@ class Workspace(NamedTuple):
     slope: Annotated[
         FloatArray, "n", 3
     ]  #: minus its derivatives: tangential by x, tangential by z, normal by z [N/m]
+    cap: Annotated[FloatArray, "n"]  #: largest normal force in this step [N]
     matrix: Annotated[FloatArray, "2n", "2n"]  #: factors of the tangent over the active points
     change: Annotated[FloatArray, "2n"]
     solution: Annotated[FloatArray, "2n"]
@@ -67,7 +74,8 @@ class Workspace(NamedTuple):
 
 
 def make_workspace(points: int) -> Workspace:
-    """Allocate the arrays for so many base points."""
+    """Allocate the arrays for so many base points, on a floor that does not crush."""
     work = Workspace(**zeros_of(Workspace, **{"n": points, "2n": 2 * points}))
     work.factored_step[0] = -1.0
+    work.cap[:] = np.inf
     return work

@@ -89,6 +89,13 @@ def indent(contact: Contact, point: FloatArray, crushed: FloatArray) -> None:
 
 
 @compiled(inline=True)
+def grow_caps(contact: Contact, old: State, work: Workspace) -> None:
+    """Largest normal forces in a step, constant within it: they follow from the indentations before it."""
+    for i in range(work.cap.size):
+        work.cap[i] = contact.cap[i] * (1.0 + contact.cap_growth[i] * old.crushed[i])
+
+
+@compiled(inline=True)
 def crush(contact: Contact, step: float, old: State, new: State, work: Workspace) -> None:
     """Indent the floor under the points that reached their cap; `new.point` holds their heights.
 
@@ -98,10 +105,10 @@ def crush(contact: Contact, step: float, old: State, new: State, work: Workspace
     for i in range(new.point.shape[0]):
         indented = old.crushed[i]
         new.point[i, 1] += contact.camber[i]
-        if work.law[i, 1] >= contact.cap[i]:
+        if work.law[i, 1] >= work.cap[i]:
             elastic = relaxed_stick(
                 max(0.0, -old.point[i, 1]),
-                contact.cap[i],
+                work.cap[i],
                 contact.normal_stiffness[i],
                 contact.relaxation_time[i],
                 step,
@@ -207,8 +214,9 @@ def attempt(body: Any, run: RunState, step: float) -> int:
     clock.lag_step = step
     predict(body, scheme, step, old, new)
     copy_rows(work.force, old.force)
-    # Friction follows the extrapolated velocity: its fall is a negative damping, not to be solved implicitly.
     contact = run.problem.contact
+    grow_caps(contact, old, work)
+    # Friction follows the extrapolated velocity: its fall is a negative damping, not to be solved implicitly.
     for j in range(run.joints.shape[0]):
         begin, end = points_of(run, j)
         for i in range(begin, end):

@@ -61,20 +61,15 @@ def _cap(floor: FloorNumbers) -> str:
         other = f", where the steel above it yields; the floor bears {_in_units(bearing, KILONEWTON)}"
     elif floor.steel_capacity_N is not None:
         other = f"; the steel above it yields at {_in_units(floor.steel_capacity_N, KILONEWTON)}"
-    return f"{_in_units(cap, KILONEWTON)} a corner, {in_figures(times, FEW)} times the weight{other}"
+    return f"{_in_units(cap, KILONEWTON)} a corner at its surface, {in_figures(times, FEW)} times the weight{other}"
 
 
 def _hit(floor: FloorNumbers) -> str:
     ratio, speed, crushing = floor.hit_rotation_ratio, floor.closing_speed_m_s, floor.crushing_per_hit_m
     if ratio is None or speed is None or crushing is None:
         return ""
-    crushed = (
-        f"{in_figures(floor.crushing_per_hit_J or 0.0, FEW)} J crush {in_figures(crushing, FEW, 1e3)} mm"
-    )
-    return (
-        f"back from {ratio:g} of the slenderness angle: {in_figures(speed, FEW)} m/s, "
-        f"{crushed if crushing else 'which crushes nothing'}"
-    )
+    gives = "crushes the corner" if crushing else "crushes nothing"
+    return f"back from {ratio:g} of the slenderness angle: {in_figures(speed, FEW)} m/s, which {gives}"
 
 
 def _in_units(value: float, *units: tuple[str, float]) -> str:

@@ -27,7 +27,7 @@ from fem.assessment.rule_or_run import governing
 from fem.assessment.sure_words import sureness_in_words
 from fem.results import run_result
 from fem.results.figures import BRIEF, FIGURES, SUMMARY, Place, summary_order
-from fem.results.outcome import ROCKING, SLIDING, Outcome
+from fem.results.outcome import ENDINGS, ROCKING, SLIDING, Outcome
 from fem.runtime.units import DEGREES, INVISIBLE, visible_number
 
 TEXT_WIDTH = 80
@@ -127,6 +127,10 @@ def _found(result: run_result.RunResult) -> str:
     verdict, motion = result.verdict or run_result.Verdict(), result.motion or run_result.MotionResult()
     if verdict.outcome is None:
         return "no result yet"
+    if verdict.outcome == Outcome.INVALID:
+        return (
+            f"not valid: the corner is destroyed, {verdict.invalid_reason}; what else was found does not hold"
+        )
     if verdict.outcome == Outcome.OVERTURNED:
         at = verdict.overturned_at_s
         fell = fall_in_words(verdict) or "overturned" + (f" at t = {at:.3f} s" if at is not None else "")
@@ -226,8 +230,8 @@ def run_lifted(verdict: run_result.Verdict) -> str:
 
 def run_tilted(verdict: run_result.Verdict) -> str:
     """Whether the run overturned, and how far it turned."""
-    if verdict.outcome == Outcome.OVERTURNED:
-        return "overturned"
+    if verdict.outcome and verdict.outcome in ENDINGS:
+        return Outcome(verdict.outcome).verb
     ratio = largest_ratio(verdict)
     return f"stood, ratio {ratio}" if ratio else "-"
 
@@ -243,14 +247,12 @@ def _table_of_pairs(title: str, rows: Sequence[tuple[str, str]]) -> Iterator[Tab
 def result_rows(result: run_result.RunResult) -> list[tuple[str, str]]:
     """Name and value of each result in reading order; results that were not reached are left out."""
     verdict, motion = result.verdict or run_result.Verdict(), result.motion or run_result.MotionResult()
-    energy = result.energy or run_result.Energy()
     #: rows behind that of a figure
     behind = {
         "slip_travel_m": [
             ("largest slip between boxes", ", ".join(filter(None, largest_joint_slip(verdict))))
         ],
-        "max_corner_force_N": floor_rows(result.floor),
-        "max_indentation_m": [("work of crushing", _crushing(energy, verdict))],
+        "max_corner_force_N": [*floor_rows(result.floor), ("crushing", _crushing(verdict))],
     }
     rows = [
         ("floor motion", motion_in_words(motion)),
@@ -299,14 +301,15 @@ def numerics_rows(result: run_result.RunResult) -> list[tuple[str, str]]:
     return [(name, value) for name, value in rows if value]
 
 
-def _crushing(energy: run_result.Energy, verdict: run_result.Verdict) -> str:
-    """The work of crushing, and its share of all that was dissipated."""
-    if not crushes(verdict) or energy.crushing_J is None:
+def _crushing(verdict: run_result.Verdict) -> str:
+    """Whether a corner was crushed; by how much is no result."""
+    if not crushes(verdict):
         return ""
-    parts = (energy.friction_J, energy.contact_damping_J, energy.material_damping_J, energy.crushing_J)
-    lost = sum(part or 0.0 for part in parts)
-    share = f", {energy.crushing_J / lost:.0%} of all losses" if lost > 0.0 else ""
-    return f"{visible_number(energy.crushing_J, 1.0, '.3g')} J{share}"
+    return (
+        "a corner crushes at the surface strength; depth not predicted"
+        if verdict.max_indentation_m
+        else "none"
+    )
 
 
 def _band(band: run_result.Band | None) -> str:

@@ -10,6 +10,7 @@ from fem.assessment.sureness import (
     SURE,
     UNSURE,
     below_uplift,
+    ending,
     numerical,
     rests_on_stiff_floor,
     stands,
@@ -17,19 +18,26 @@ from fem.assessment.sureness import (
 )
 from fem.case.unknown_inputs import WORDS, in_words
 from fem.results.figures import FIGURES
-from fem.results.outcome import ROCKING, SLIDING, Outcome
+from fem.results.outcome import ROCKING, SLIDING, Ending, Outcome
 from fem.results.run_result import Band, ChangedRun, RunResult, Verdict
 from fem.runtime.intervals import binomial_interval
 
 CONFIDENCE = 0.95
 LEAST_SHARE, LEAST_DRAWS = 0.25, 4  #: of the draws, on one side of a value from which that value is named
 MOST_NAMED = 2  #: inputs in a sentence
+DOES = {
+    Ending.STANDING: "stands",
+    Ending.OVERTURNED: "overturns",
+    Ending.INVALID: "destroys a corner, which is not valid,",
+}
 
 
 def sureness_in_words(result: RunResult) -> str:
-    """One to three sentences; empty if the band was not computed."""
+    """One to three sentences; empty if the band was not computed, or the run is not valid."""
     verdict = result.verdict or Verdict()
     band = verdict.band
+    if verdict.outcome == Outcome.INVALID:
+        return ""
     if verdict.sure is None:  # no band, or one of a former version
         return "Unsure: see the band." if band is not None and band.unsure else ""
     if band is None:
@@ -47,32 +55,33 @@ def sureness_in_words(result: RunResult) -> str:
         )
     if verdict.sure == UNSURE:
         return f"Unsure: {'; '.join(_doubts(verdict, band, tried))}."
-    ending = "Stands" if stands(band.members[0]) else "Overturns"
+    does = DOES[ending(band.members[0])]
     if verdict.sure == SURE:
         all_of_them = f"all {len(tried)} variations" if len(tried) > 1 else "the one variation"
-        return f"Sure: {ending.lower()} in {all_of_them}."
-    return f"{ending} in all {len(tried)} variations. {_other_regime(verdict, band)}{_depending(verdict)}."
+        return f"Sure: {does} in {all_of_them}."
+    return f"{does.capitalize()} in all {len(tried)} variations. {_other_regime(verdict, band)}{_depending(verdict)}."
 
 
 def _doubts(verdict: Verdict, band: Band, tried: Sequence[ChangedRun]) -> Iterator[str]:
     """Why it is not sure whether it stands."""
     own = band.members[0]
-    crossing = [one for one in tried if stands(one) != stands(own) and not numerical(one)]
+    crossing = [one for one in tried if ending(one) != ending(own) and not numerical(one)]
     draws = [one for one in tried if one.kind == "draw"]
-    verb = "overturns" if stands(own) else "stands"
     if crossing:
         drawn = [one for one in draws if one in crossing]
         alone = [one for one in crossing if one.kind != "draw"]
-        if alone:
-            named = [in_words(one.values or {}) for one in alone[:MOST_NAMED]]
-            more = f" and {len(alone) - len(named)} other changes" if len(alone) > len(named) else ""
-            yield f"{verb} with {' and with '.join(named)}{more}"
+        for kind, does in DOES.items():
+            if alike := [one for one in alone if ending(one) == kind]:
+                named = [in_words(one.values or {}) for one in alike[:MOST_NAMED]]
+                more = f" and {len(alike) - len(named)} other changes" if len(alike) > len(named) else ""
+                yield f"{does} with {' and with '.join(named)}{more}"
         if drawn:
             yield _counted(draws) + _value_that_decides(draws)
         elif draws:
             undrawn = any(not set(one.values or {}) <= set(draws[0].values or {}) for one in alone)
             yield f"not in {len(draws)} draws of {'the other' if undrawn else 'all'} inputs at once"
     if verdict.numerically_unsure:
+        verb = "overturns" if stands(own) else "stands"
         yield f"numerically, for it {verb} with steps ten times as accurate"
     if below_uplift(band.members):
         found = "rests" if rests_on_stiff_floor(band.members) else "still rocks"
@@ -84,23 +93,30 @@ def _doubts(verdict: Verdict, band: Band, tried: Sequence[ChangedRun]) -> Iterat
 
 
 def _counted(draws: Sequence[ChangedRun]) -> str:
-    """How many draws overturned, with the interval of their share."""
-    count = sum(not stands(one) for one in draws)
-    low, high = binomial_interval(count, len(draws), CONFIDENCE)
-    return f"overturned in {count} of {len(draws)} draws (95 %: {100.0 * low:.0f} to {100.0 * high:.0f} %)"
+    """How many draws overturned, and how many destroyed a corner, with the intervals of their shares."""
+    parts = []
+    for found, word in ((Ending.OVERTURNED, "overturned"), (Ending.INVALID, "not valid")):
+        count = sum(ending(one) == found for one in draws)
+        if count or (found == Ending.OVERTURNED and all(map(stands, draws))):
+            low, high = binomial_interval(count, len(draws), CONFIDENCE)
+            parts.append(
+                f"{word} in {count} of {len(draws)} draws (95 %: {100.0 * low:.0f} to {100.0 * high:.0f} %)"
+            )
+    return ", ".join(parts)
 
 
 def _value_that_decides(draws: Sequence[ChangedRun]) -> str:
     """The input and its value beyond which most draws end in one way; empty if no value tells enough of them apart."""
     found: list[tuple[int, str]] = []
+    all_valid = all(ending(one) != Ending.INVALID for one in draws)
     for key in draws[0].values or {}:
         values = [(one.values or {}).get(key) for one in draws]
         known = [
             (value, stands(one)) for value, one in zip(values, draws, strict=True) if isinstance(value, float)
         ]
-        for ending, word in ((True, "stands"), (False, "overturns")):
-            same = [value for value, one in known if one is ending]
-            others = [value for value, one in known if one is not ending]
+        for standing, word in ((True, "stands"), (False, "overturns" if all_valid else "does not stand")):
+            same = [value for value, one in known if one is standing]
+            others = [value for value, one in known if one is not standing]
             if not same or not others:
                 continue
             for beyond, limit, side in (

@@ -16,7 +16,7 @@ import numpy as np
 from fem.case.uncertainty import InputChange
 from fem.case.unknown_inputs import INPUTS, TOLERANCE
 from fem.results.figures import BOX_FIGURES, Place, RunFigures, keys_of
-from fem.results.outcome import ROCKING, Outcome
+from fem.results.outcome import ENDINGS, ROCKING, Ending, Outcome
 from fem.results.run_result import Band, BoxReach, ChangedRun, RunResult, StaticResult, Verdict
 
 SURE, REGIME_UNSURE, UNSURE = "sure", "regime unsure", "unsure"
@@ -51,12 +51,13 @@ def judged(
     numerically = OTHER_END in (level for level, one in zip(levels, changes, strict=True) if numerical(one))
     missing = [one for one in left_out if one.kind != "draw"]
     no_outcome = any(one.outcome is None for one in others)
-    if no_outcome or missing or OTHER_END in levels or below_uplift(members):
+    destroyed = own.outcome == Outcome.INVALID
+    if no_outcome or missing or OTHER_END in levels or below_uplift(members) or destroyed:
         sure = UNSURE
     else:
         sure = REGIME_UNSURE if OTHER_REGIME in levels else SURE
     found = {one.outcome for one in members}
-    alike = [one for one in members if stands(one) == stands(own) and one.outcome is not None]
+    alike = [one for one in members if ending(one) == ending(own) and one.outcome is not None]
     draws = [one for one in others if one.kind == "draw"]
     ranges: dict[str, Any] = {key: _reach(one[key] for one in alike) for key in keys_of(Place.BAND)}
     band = Band(
@@ -64,6 +65,7 @@ def judged(
         unsure=sure == UNSURE,
         draws=len(draws),
         draws_overturned=sum(one.outcome == Outcome.OVERTURNED for one in draws),
+        draws_invalid=sum(one.outcome == Outcome.INVALID for one in draws),
         left_out=tuple(one.label for one in missing),
         draws_left_out=len(left_out) - len(missing),
         members=tuple(members),
@@ -100,9 +102,14 @@ def static_use(result: RunResult) -> float | None:
     return max(own.utilisation_sliding, own.utilisation_overturning)
 
 
+def ending(one: RunFigures) -> Ending:
+    """What a run that did not fail counts as."""
+    return ENDINGS.get(one.outcome or "", Ending.STANDING)
+
+
 def stands(one: RunFigures) -> bool:
-    """True if it did not overturn."""
-    return one.outcome != Outcome.OVERTURNED
+    """True if it neither overturned nor destroyed a corner."""
+    return ending(one) == Ending.STANDING
 
 
 def numerical(one: ChangedRun | InputChange) -> bool:
@@ -119,7 +126,7 @@ def difference(own: RunFigures, other: RunFigures, width: float) -> int:
     """
     if other.outcome is None:
         return SAME
-    if stands(own) != stands(other):
+    if ending(own) != ending(other):
         return OTHER_END
     if not stands(own):
         return SAME if own.fell_box == other.fell_box else OTHER_REGIME

@@ -23,7 +23,7 @@ from contact.stepping.ledger import (
 )
 from contact.stepping.observables import FORCE_WINDOW, HOPPING, ROCKING
 from fem.case.case import Case
-from fem.model.floor import YIELD_STRENGTH, is_steel_shell, plastic_work, steel_capacity
+from fem.model.floor import YIELD_STRENGTH, is_steel_shell, plastic_work, slab_of, steel_capacity
 from fem.model.model import Model
 from fem.results.figures import BOX_FIGURES, FIGURES, BoxResult, Shown
 from fem.results.history import History
@@ -39,7 +39,25 @@ MOST_RESTITUTION = 1.05
 
 
 def outcome_of(model: Model) -> Outcome:
-    """The outcome of the whole run, in one word."""
+    """The outcome of the whole run, in one word; not valid where a corner is destroyed, whatever followed."""
+    return _motion_of(model) if destroyed_corner(model) is None else Outcome.INVALID
+
+
+def destroyed_corner(model: Model) -> str | None:
+    """What has given way under a corner, further than the law of its contact holds; None where nothing has."""
+    depth = _indentation(model)
+    if depth is None:
+        return None
+    slab = slab_of(model.case, model.container.mesh.mass)
+    if depth <= slab.deepest:
+        return None
+    steel = "its wall is" if model.case.container.corner_post_N is None else "its posts are"
+    what = steel if slab.yields_first else "the floor under it is"
+    return f"{what} crushed by more than {1e3 * slab.deepest:.3g} mm"
+
+
+def _motion_of(model: Model) -> Outcome:
+    """The outcome of the whole run, by its motion alone."""
     track = model.run.track[0]
     if math.isfinite(track.overturned_at):
         return Outcome.OVERTURNED
@@ -86,7 +104,8 @@ def verdict_from(
         time, slip: of the samples, as far back as a cycle of the drive at least [s], [m].
         largest_von_mises: [Pa].
     """
-    run, angle, outcome = model.run, model.static.slenderness_angle, outcome_of(model)
+    run, angle, outcome = model.run, model.static.slenderness_angle, _motion_of(model)
+    destroyed = destroyed_corner(model)
     track, joint = _numbers(run.track), _numbers(run.joints)
     capacity = steel_capacity(model.case)
     boxes = box_results(model)
@@ -95,7 +114,9 @@ def verdict_from(
     rocked = outcome in (Outcome.ROCK, Outcome.SLIDE_ROCK)
     return Verdict(
         **_recorded(FIGURES, track=track, joint=joint),
-        outcome=outcome,
+        outcome=outcome if destroyed is None else Outcome.INVALID,
+        valid=destroyed is None,
+        invalid_reason=destroyed,
         modes=_modes_seen(track.modes | _hops(model) << Outcome.HOP.code, outcome, slides=_slides(model)),
         max_rotation_rad=rotation,
         rotation_ratio=relative_rotation(rotation, angle),

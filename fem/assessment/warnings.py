@@ -170,18 +170,6 @@ def stress_is_beyond_yield(result: run_result.RunResult, case: Case) -> str | No
     )
 
 
-def floor_is_crushed_deeply(result: run_result.RunResult, case: Case) -> str | None:
-    """A strength that does not change with the indentation is that of a patch at the surface."""
-    depth, floor = _verdict(result).max_indentation_m, result.floor or run_result.FloorNumbers(kind="rigid")
-    if depth is None or floor.corner_patch_m is None or depth <= min(floor.corner_patch_m):
-        return None
-    patch = " x ".join(f"{1e3 * side:g}" for side in floor.corner_patch_m)
-    return (
-        f"a corner crushed the floor by {1e3 * depth:.2g} mm in all, more than the smaller side of its patch of "
-        f"{patch} mm: the bearing strength holds for the surface, so take this as a sign of damage, not as a depth"
-    )
-
-
 def strain_is_not_small(result: run_result.RunResult, case: Case) -> str | None:
     """The reduced model is linear elasticity in a turning frame: it leaves out what grows with the strain."""
     stress = _verdict(result).max_von_mises_Pa
@@ -233,7 +221,6 @@ CHECKS: tuple[Callable[[run_result.RunResult, Case], str | None], ...] = (
     steps_were_rejected,
     strain_is_not_small,
     stress_is_beyond_yield,
-    floor_is_crushed_deeply,
     housner_is_not_credible,
     opening_is_not_uplift,
     rest_proves_nothing,

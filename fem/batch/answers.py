@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from fem.batch.axes import Axis
 from fem.batch.labels import in_words
-from fem.results.outcome import Ending
+from fem.results.outcome import NOT_STANDING, Ending
 from fem.runtime.units import MILLIMETRES, plain_number
 
 #: axes of the floor's strength, that first along which an answer is given where a study does not say
@@ -48,7 +48,8 @@ class Trial(NamedTuple):
 class Answer:
     """The result of the runs of one or more lines, from the safe side on.
 
-    With a limit on the slip, what slides further does not stand, and counts as what overturns.
+    With a limit on the slip, what slides further does not stand, and counts as what overturns; so does what destroys a
+    corner.
     """
 
     stood_to: float | None  #: up to here every run stood; None where one of the first value did not
@@ -57,6 +58,7 @@ class Answer:
     slip: float | None = None  #: of the run that overturned [m]
     line: int | None = None  #: of that run
     slid: bool = False  #: no run overturned at the second of these values: one slid beyond the limit
+    invalid: bool = False  #: .. or one destroyed a corner
     limit_slip: float | None = None  #: [m]
     stood_again: tuple[Range, ...] = ()  #: beyond that value, where every line was tried and stood
     failed: tuple[Range, ...] = ()  #: where a run has no outcome
@@ -100,7 +102,7 @@ def answer_of(trials: Sequence[Trial], *, rising: bool, limit_slip: float | None
 
     def falls(one: Trial) -> bool:
         beyond = limit_slip is not None and one.kind == Ending.STANDING and (one.slip or 0.0) > limit_slip
-        return beyond or one.kind == Ending.OVERTURNED
+        return beyond or one.kind in NOT_STANDING
 
     lines = len({one.line for one in trials})
     at: dict[float, list[Trial]] = defaultdict(list)
@@ -114,7 +116,8 @@ def answer_of(trials: Sequence[Trial], *, rising: bool, limit_slip: float | None
     upright = stands.index(False) if False in stands else len(values)
     fell = [one for one in at[fallen[0]] if falls(one)] if fallen else []
     overturned = [one for one in fell if one.kind == Ending.OVERTURNED]
-    worst = max(overturned or fell, key=lambda one: (one.slip or 0.0, -one.line), default=None)
+    invalid = [one for one in fell if one.kind == Ending.INVALID]
+    worst = max(overturned or invalid or fell, key=lambda one: (one.slip or 0.0, -one.line), default=None)
     slips = [one.slip for value in values[:upright] for one in at[value] if one.slip is not None]
     # A value tried in some lines only is unknown for the others; where it did not stand, it ends a range.
     beyond = [
@@ -133,7 +136,8 @@ def answer_of(trials: Sequence[Trial], *, rising: bool, limit_slip: float | None
         stood_slip=max(slips, default=None),
         slip=worst.slip if worst else None,
         line=worst.line if worst else None,
-        slid=bool(fell) and not overturned,
+        slid=bool(fell) and not overturned and not invalid,
+        invalid=bool(invalid) and not overturned,
         limit_slip=limit_slip,
         stood_again=tuple(_ranges(beyond)),
         failed=tuple(_ranges((value, Ending.FAILED in kinds[value]) for value in values)),
@@ -145,7 +149,7 @@ def sentence_of(answer: Answer, axis: Axis, *, rising: bool, where: str = "") ->
     """An answer in words: "stood in every motion tried up to 0.42 g (slid up to 50 mm); first overturned at 0.44 g"."""
     every = f"stood in every {'motion' if axis.key.startswith('motion.') else 'case'} tried"
     limit = "" if answer.limit_slip is None else slip_in_words(answer.limit_slip)
-    overturned = f"slid beyond {limit}" if answer.slid else "overturned"
+    overturned = f"slid beyond {limit}" if answer.slid else "not valid" if answer.invalid else "overturned"
     stood, fell = ends_in_words(answer, axis)
     if stood and answer.stood_slip is not None and answer.stood_slip >= MILLIMETRES.least:
         there = f" (slid up to {slip_in_words(answer.stood_slip)})"

@@ -12,6 +12,9 @@ from fem.model.model import Model
 from fem.model.recovery import Recovery, recovery_of
 from fem.model.support import normal_penalty
 
+#: values for keys of [support] that say how a container stands on its points
+STANDING = {"effective_width": 1.0, "casting_m": None, "rocking_damping_ratio": 0.0}
+
 
 def container_key(case: Case, *, mass: bool = True) -> Hashable:
     """Equal for cases whose containers are the same, whatever floor they stand on and however they are damped.
@@ -21,8 +24,8 @@ def container_key(case: Case, *, mass: bool = True) -> Hashable:
     solver = case.solver
     places = {} if mass else {"centroid_m": 0.0, "eccentricity_m": 0.0}
     return (
-        case.container.model_copy(update={"damping_ratio": 0.0, **places}),
-        case.support.model_copy(update={"effective_width": 1.0, "rocking_damping_ratio": 0.0}),
+        case.container.model_copy(update={"damping_ratio": 0.0, "corner_post_N": None, **places}),
+        case.support.model_copy(update=STANDING),
         case.gravity_m_s2,
         case.folder,
         solver.model,

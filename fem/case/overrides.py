@@ -16,6 +16,7 @@ from fem.case.tables import TABLES
 from fem.case.validation import CaseError, did_you_mean
 
 DOTTED_KEY = re.compile(r"[A-Za-z0-9_-]+(\.[A-Za-z0-9_-]+)?")
+SIDES = ("container.width_m", "container.depth_m")
 FREQUENCIES = ("angular_frequency_rad_s", "frequency_Hz")
 #: of a record: the key that replaces another one
 OF_A_RECORD = {
@@ -82,6 +83,8 @@ def with_overrides(data: Mapping[str, Any], overrides: Mapping[str, Any]) -> dic
     _replace_alternatives(changed, overrides.keys())
     if "floor.corner_patch_m" not in overrides:
         _keep_patch_under_wall(changed, data)
+    if "support.casting_m" not in overrides and not overrides.keys().isdisjoint(SIDES):
+        _keep_castings_under_base(changed)
     return changed
 
 
@@ -113,6 +116,7 @@ def _replace_alternatives(data: dict[str, Any], dotted: Any) -> None:
     if isinstance(container, dict):
         for group in (("weight_N", "mass_kg", "density_kg_m3"), ("boxes", "box")):
             _drop_others(container, group, _keys_set("container", dotted))
+    _replace_support(data, dotted)
     _replace_floor(data, dotted)
     for table in ("motion", "vertical"):
         motion, explicit = data.get(table), _keys_set(table, dotted)
@@ -129,18 +133,28 @@ def _replace_alternatives(data: dict[str, Any], dotted: Any) -> None:
             _drop_others(motion, ("amplitude_m", "peak_acceleration_m_s2"), explicit)
 
 
-def _replace_floor(data: dict[str, Any], dotted: Any) -> None:
-    """Another floor takes nothing of the former one: kind, preset; a numerical penalty replaces a slab.
+def _replace_support(data: dict[str, Any], dotted: Any) -> None:
+    """Feet and a flat base have no castings with their posts and no patch of a corner; nor has a patch castings."""
+    for key in ("floor", "support", "container"):
+        if not isinstance(data.get(key), dict | None):
+            return
+    floor, support, container = (data.get(key) or {} for key in ("floor", "support", "container"))
+    of_floor, of_support = _keys_set("floor", dotted), _keys_set("support", dotted)
+    no_corners = "kind" in of_support and support["kind"] != "corners"
+    if no_corners or "casting_m" in of_support:
+        _drop(floor, ("corner_patch_m",), of_floor)
+    if no_corners or ("corner_patch_m" in of_floor and "casting_m" in support):
+        _drop(support, ("casting_m",), of_support)
+        _drop(container, ("corner_post_N",), _keys_set("container", dotted))
 
-    Feet and a flat base do not stand on the patch of a corner.
-    """
+
+def _replace_floor(data: dict[str, Any], dotted: Any) -> None:
+    """Another floor takes nothing of the former one: kind, preset; a numerical penalty replaces a slab."""
     floor, contact, explicit = data.get("floor"), data.get("contact"), _keys_set("floor", dotted)
     if not isinstance(floor, dict):
         return
     if not explicit and not _keys_set("contact", dotted).isdisjoint(PENALTY_KEYS):
         floor["kind"], explicit = "rigid", {"kind"}
-    if "kind" in _keys_set("support", dotted) and data["support"]["kind"] != "corners":
-        _drop(floor, ("corner_patch_m",), explicit)
     if "kind" in explicit and floor.get("kind") == "rigid":
         _drop(floor, SLAB_KEYS, explicit)
     if "kind" in explicit and floor.get("kind") == "slab" and isinstance(contact, dict):
@@ -165,6 +179,24 @@ def _keep_patch_under_wall(data: dict[str, Any], former: Mapping[str, Any]) -> N
         new if side is not None and side == was else side
         for side, was, new in zip(patch, *sides, strict=False)
     ]
+
+
+def _keep_castings_under_base(data: dict[str, Any]) -> None:
+    """Castings that a narrower or less deep base has no room for become as large as half of it."""
+    box, support = data.get("container"), data.get("support")
+    casting = support.get("casting_m") if isinstance(support, dict) else None
+    if not (
+        isinstance(box, dict)
+        and isinstance(support, dict)
+        and isinstance(casting, list)
+        and len(casting) == 3
+    ):
+        return
+    try:
+        width, half = 0.5 * box["width_m"] - casting[2], 0.5 * (box.get("depth_m") or box["width_m"])
+        support["casting_m"] = [min(casting[0], width), min(casting[1], half), casting[2]]
+    except (KeyError, TypeError):
+        return  # refused when the case is read
 
 
 def _keys_set(table: str, dotted: Any) -> set[str]:

@@ -9,7 +9,7 @@ import numpy as np
 from fem.ensemble.fragility import BOOTSTRAPS, bootstrap_fits, falls, fit_lognormal, misses, misses_by_chance
 from fem.ensemble.plan import Ensemble
 from fem.ensemble.result import FittedLognormal, Fragility, Resampled
-from fem.results.outcome import COUNTED, Ending
+from fem.results.outcome import COUNTED, NOT_STANDING, Ending
 from fem.runtime.arrays import FloatArray
 from fem.runtime.intervals import Estimate, estimate
 
@@ -27,17 +27,19 @@ class PointResult:
     values: dict[str, Any]  #: of the axes
     stood: int
     overturned: int
+    invalid: int  #: that destroyed a corner
     failed: int
-    estimate: Estimate
-    region: str  #: below | above | undecided: the probability of overturning against the limit asked for
+    estimate: Estimate  #: of the probability not to stand
+    region: str  #: below | above | undecided: the probability not to stand against the limit asked for
     slip: float | None = None  #: largest of the draws that stood [m]
 
     def row(self) -> dict[str, Any]:
         """By the axes' keys and `POINT_COLUMNS`."""
         return self.values | {
-            "draws": self.stood + self.overturned + self.failed,
+            "draws": self.stood + self.overturned + self.invalid + self.failed,
             "stood": self.stood,
             "overturned": self.overturned,
+            "invalid": self.invalid,
             "failed": self.failed,
             "probability": self.estimate.value,
             "low": self.estimate.low,
@@ -51,9 +53,9 @@ def count_point(
     ensemble: Ensemble, cell: int, codes: np.ndarray, slips: FloatArray | None = None
 ) -> PointResult:
     """The result of a point from the endings (draws,) of its draws, and their slips [m], nan for none."""
-    overturned, failed = codes == Ending.OVERTURNED, codes == Ending.FAILED
+    fallen, failed = np.isin(codes, NOT_STANDING), codes == Ending.FAILED
     share = estimate(
-        overturned,
+        fallen,
         failed,
         replicates=ensemble.replicates,
         confidence=ensemble.confidence,
@@ -69,7 +71,8 @@ def count_point(
     return PointResult(
         values=ensemble.point(cell),
         stood=int(standing.sum()),
-        overturned=int(overturned.sum()),
+        overturned=int((codes == Ending.OVERTURNED).sum()),
+        invalid=int((codes == Ending.INVALID).sum()),
         failed=int(failed.sum()),
         estimate=share,
         region=region,
@@ -146,7 +149,7 @@ def _lognormal(
 
 
 def _by_replicate(ensemble: Ensemble, codes: np.ndarray) -> tuple[FloatArray, FloatArray]:
-    """Overturned, and draws with an outcome, in each replicate, shapes (points, replicates)."""
+    """What does not stand, and draws with an outcome, in each replicate, shapes (points, replicates)."""
     blocks = codes.reshape(len(codes), ensemble.replicates, -1)
-    fallen, known = blocks == Ending.OVERTURNED, blocks != Ending.FAILED
+    fallen, known = np.isin(blocks, NOT_STANDING), blocks != Ending.FAILED
     return fallen.sum(axis=2).astype(float), known.sum(axis=2).astype(float)

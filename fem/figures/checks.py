@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from fem.case.unknown_inputs import WORDS
 from fem.figures import style
-from fem.results.outcome import Outcome
+from fem.results.outcome import ENDINGS
 from fem.results.reader import RunData
 from fem.results.run_result import ChangedRun, RigidCheckResult, RunAndBlock, Verdict
 from fem.runtime.units import RATIO
@@ -124,4 +124,4 @@ def _ratios(check: RigidCheckResult) -> str:
 def _height(member: ChangedRun) -> float:
     if member.outcome is None:
         return 0.0
-    return FALLEN_ROW if member.outcome == Outcome.OVERTURNED else min(member.turned, FALLEN_ROW)
+    return FALLEN_ROW if member.outcome in ENDINGS else min(member.turned, FALLEN_ROW)

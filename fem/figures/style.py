@@ -36,6 +36,7 @@ STATE_COLOURS: dict[str, str] = {
     Outcome.ROCK: ORANGE,
     Outcome.SLIDE_ROCK: PURPLE,
     Outcome.OVERTURNED: BLACK,
+    Outcome.INVALID: BLUE,
 }
 WIDTH = 7.0  #: of a figure [inch], the text width of an A4 page
 LEFT, RIGHT, FOOTER = 0.8, 0.15, 0.45  #: margins [inch]

@@ -39,9 +39,9 @@ class RunFound:
 
     @property
     def weakness(self) -> tuple[float, ...]:
-        """Smaller for the worse: overturned, without an outcome, the larger rotation, the larger slip."""
-        order = (Ending.OVERTURNED, Ending.FAILED).index(self.ending) if self.ending != Ending.STANDING else 2
-        return order, -self.ratio if order == 2 else 0.0, -self.slip
+        """Smaller for the worse: overturned, not valid, without an outcome, the larger rotation, the larger slip."""
+        order = (Ending.OVERTURNED, Ending.INVALID, Ending.FAILED, Ending.STANDING).index(self.ending)
+        return order, -self.ratio if self.ending == Ending.STANDING else 0.0, -self.slip
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

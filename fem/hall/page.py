@@ -24,7 +24,7 @@ from fem.results.kinds import HALL
 SHOWN = ("rotation_ratio", "max_slip_m")
 BRIEFLY = 30  #: containers on the short page
 MOST_INPUTS = 3  #: of those that decide
-LOOKS = {"overturned": "bad", "failed": "bad"}
+LOOKS = {"overturned": "bad", "invalid": "bad", "failed": "bad"}
 MARGIN = (
     "Margin: the factor on the whole motion of the run from which it overturns, with the range that all unknown inputs "
     "together give it. Utilisation: of the static rule for overturning, under the peak of the motion."

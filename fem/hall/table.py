@@ -102,9 +102,10 @@ def answer_of(result: HallResult) -> str:
     if result.site:
         words = f"of {computed} containers: " + ", ".join(f"{count} {word}" for word, count in counts.items())
     else:
-        overturned, failed = counts.get("overturned", 0), counts.get("failed", 0)
+        overturned, invalid, failed = (counts.get(word, 0) for word in ("overturned", "invalid", "failed"))
         under = f" under at least one of {len(result.motions)} motions" if len(result.motions) > 1 else ""
         words = f"{overturned or 'none'} of {computed} containers overturned{under if overturned else ''}"
+        words += f"; {invalid} destroyed a corner, which is not valid" if invalid else ""
         words += f"; {failed} have no outcome" if failed else ""
     words += f"; {result.refused} rows were refused" if refused else ""
     weakest = next(row for row in result.table if row["rank"] == 1)

@@ -147,9 +147,10 @@ def _contact(case: Case, container: Container, springs: FloatArray) -> Contact:
     if case.floor.is_slab:
         slab = slab_of(case, mesh.mass)
         ratio, relaxation = slab.tangential_stiffness / slab.normal_stiffness, slab.relaxation_time
-        cap = slab.cap * springs / corner
+        cap, growth = slab.cap * springs / corner, slab.cap_growth
     else:
         ratio, cap = chosen.tangential_ratio, np.full(springs.size, math.inf)
+        growth = 0.0
         relaxation = relaxation_time(chosen.damping_ratio, mesh.mass, 2.0 * corner)
     rolling = Rolling.of(case, mesh)
     if rolling is not None:  # the dashpots of the points resist slow rolling, too, but hardly a fast one
@@ -158,6 +159,7 @@ def _contact(case: Case, container: Container, springs: FloatArray) -> Contact:
         normal_stiffness=springs,
         tangential_stiffness=ratio * springs,
         cap=cap,
+        cap_growth=np.full(springs.size, growth),
         relaxation_time=np.full(springs.size, relaxation),
         mu_static=np.full(springs.size, chosen.mu_static),
         mu_kinetic=np.full(springs.size, chosen.mu_kinetic),

@@ -4,6 +4,9 @@ Each corner of the elevation stands on a patch of the floor. Where a case gives 
 wall (wall x depth), a foot (its length x depth), half of a flat base. The points of a foot and of a flat base share
 stiffness and cap by their tributary lengths; a flat base is one patch with both halves. The cap of a corner is the
 bearing strength times the area of its patch; a steel shell that stands on its wall bears no more than yields the wall.
+
+As a corner sinks in, more of the container bears: the patch grows along x with the depth, and with it the cap. A corner
+that has sunk in too far is destroyed: beyond that this law says nothing.
 """
 
 import math
@@ -18,6 +21,10 @@ from mesh.container import ContainerMesh
 
 YIELD_STRENGTH = 235e6  #: [Pa], S235, EN 1993-1-1 Table 3.1
 STEEL_MODULUS = 1.5e11  #: [Pa], from which a shell is taken for steel
+DEEPEST = 0.01  #: indentation up to which the law of a corner holds [m]
+WHOLE_DEPTH = 0.99  #: share of the depth of the container from which a patch is its whole edge
+#: of the weight: a corner that lifts the other one carries all of it, and more at a landing
+LEAST_BEARING = 1.2
 HIT_RATIO = 0.2  #: rotation over the slenderness angle from which a typical impact is reckoned
 #: least damping ratio of a slab for which the case gives none. Waves into the floor alone (0.004 for the edge of a wall
 #: on concrete) let a corner ring after each hit: ten times the steps of a rigid container and the same motion, because
@@ -33,6 +40,7 @@ class Slab:
     normal_stiffness: float  #: [N/m]
     tangential_stiffness: float  #: along x [N/m]
     relaxation_time: float  #: dashpot over spring [s]
+    widening: float  #: growth of the patch along x over the depth of the indentation [-]
     bearing_capacity: float  #: strength of the floor times the area of the patch [N]
     steel_capacity: float | None  #: at which the corner of a steel shell yields [N]; None of another corner
 
@@ -43,8 +51,19 @@ class Slab:
 
     @property
     def cap(self) -> float:
-        """Largest normal force of the corner [N]."""
+        """Largest normal force of the corner before it has sunk in [N]."""
         return min(self.bearing_capacity, self.steel_capacity or self.bearing_capacity)
+
+    @property
+    def cap_growth(self) -> float:
+        """Growth of the cap with the indentation, over the cap: strength of the floor times that of the patch [1/m]."""
+        return self.widening * self.bearing_capacity / (self.patch[0] * self.cap)
+
+    @property
+    def deepest(self) -> float:
+        """Indentation beyond which the corner is destroyed: a side of the patch, and `DEEPEST` at most [m]."""
+        along = self.patch[0] / (1.0 - self.widening) if self.widening < 1.0 else math.inf
+        return min(DEEPEST, along, self.patch[1])
 
     @property
     def yields_first(self) -> bool:
@@ -104,12 +123,28 @@ def slab_of(case: Case, mass: float) -> Slab:
     least = relaxation_time(LEAST_DAMPING_RATIO if ratio is None else ratio, mass, 2.0 * normal)
     return Slab(
         patch=(along, out_of_plane),
+        widening=_widening(case, out_of_plane),
         normal_stiffness=normal,
         tangential_stiffness=below.horizontal_stiffness(halves * along, out_of_plane) / halves,
         relaxation_time=max(least, waves),
         bearing_capacity=floor.bearing_strength_Pa * along * out_of_plane,
         steel_capacity=steel_capacity(case),
     )
+
+
+def _widening(case: Case, out_of_plane: float) -> float:
+    """Growth of the patch of a corner along x over the depth of its indentation [-].
+
+    An edge over the whole depth is a wedge between wall and base. The rocking container stands on it, turned by at most
+    its slenderness angle, and where the edge has sunk in by d, the base bears over d/tan of that angle: height over
+    width for a mass centre in the middle. Beside a casting the frame clears the floor; what it heaps up before it has
+    about the slope 1. Feet and a flat base have no edge that grows.
+    """
+    if case.support.kind != "corners":
+        return 0.0
+    if out_of_plane < WHOLE_DEPTH * case.container.depth_m:
+        return 1.0
+    return sum(box.height for box in case.stack) / case.stack[0].width
 
 
 def slab_penalty(case: Case, mesh: ContainerMesh) -> float:
@@ -124,7 +159,7 @@ class Hit:
 
     closing_speed: float  #: of the corner [m/s]
     plastic_work: float  #: that the corner or the floor takes [J]
-    crushing: float  #: permanent indentation [m]
+    crushing: float  #: permanent indentation of an intact corner [m]
 
 
 def hit_from(ratio: float, static: StaticChecks, slab: Slab, width: float) -> Hit:
@@ -139,7 +174,11 @@ def hit_from(ratio: float, static: StaticChecks, slab: Slab, width: float) -> Hi
     lost = energy * (1.0 - max(static.housner_restitution, 0.0) ** 2)
     work = plastic_work(math.sqrt(2.0 * slab.normal_stiffness * lost), slab.cap, slab.normal_stiffness)
     speed = width * math.sqrt(2.0 * energy / inertia)
-    return Hit(closing_speed=speed, plastic_work=work, crushing=work / slab.cap)
+    share = work / slab.cap
+    crushing = (
+        2.0 * share / (1.0 + math.sqrt(1.0 + 2.0 * slab.cap_growth * share))
+    )  # work = cap d (1 + growth d/2)
+    return Hit(closing_speed=speed, plastic_work=work, crushing=crushing)
 
 
 def floor_result(case: Case, mesh: ContainerMesh, static: StaticChecks) -> FloorNumbers | None:

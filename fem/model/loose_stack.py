@@ -54,6 +54,7 @@ def with_joints(case: Case, floor: Contact, mass: float, penalty: float) -> Cont
         normal_stiffness=extended(floor.normal_stiffness, springs),
         tangential_stiffness=extended(floor.tangential_stiffness, chosen.tangential_ratio * springs),
         cap=extended(floor.cap, math.inf),
+        cap_growth=extended(floor.cap_growth, 0.0),
         relaxation_time=extended(floor.relaxation_time, damping),
         mu_static=extended(floor.mu_static, friction["mu_static"]),
         mu_kinetic=extended(floor.mu_kinetic, friction["mu_kinetic"]),

@@ -7,7 +7,7 @@ import math
 import os
 
 from fem.case.case import Case, CaseError
-from fem.model.floor import slab_of
+from fem.model.floor import LEAST_BEARING, slab_of
 from fem.model.support import normal_penalty
 from mesh.container import ContainerMesh
 
@@ -50,23 +50,29 @@ def require_stiff_contact(case: Case, mesh: ContainerMesh, stiffness: float) -> 
     )
 
 
-def require_bearing(case: Case, mesh: ContainerMesh, use: float) -> None:
-    """Refuse a slab that crushes under the container at rest, into which it would sink without end.
+def require_bearing(case: Case, mesh: ContainerMesh, use: float = 0.0) -> None:
+    """Refuse a slab into which the container would sink without end, at rest or as soon as one side lifts off.
 
-    `use` is the largest force of a point at the start over its cap; 0 on a rigid floor.
+    `use` is the largest force of a point at the start over its cap.
 
     Raises:
         CaseError: with the least patch that bears it.
     """
-    if use < 1.0:
+    if not case.floor.is_slab:
         return
     slab = slab_of(case, mesh.mass)
+    use = max(use, LEAST_BEARING * mesh.mass * case.gravity_m_s2 / slab.cap)
+    if use <= 1.0:
+        return
     patch, force = f"{slab.patch[0]:g} x {slab.patch[1]:g} m", use * slab.cap
-    carries = f"a corner carries {1e-3 * force:.4g} kN on a patch of {patch} and would sink in without end"
+    carries = (
+        f"a corner must carry {1e-3 * force:.4g} kN, {LEAST_BEARING:g} times the weight where the other one lifts off, "
+        f"and has {1e-3 * slab.cap:.4g} kN on its patch of {patch}: it would sink in without end"
+    )
     if slab.yields_first:
         if case.container.corner_post_N is not None:
             raise CaseError(
-                f"[container] corner_post_N = {case.container.corner_post_N:g} N: {carries}; its posts yield"
+                f"[container] corner_post_N = {case.container.corner_post_N:g} N: {carries}, because its posts yield"
             )
         raise CaseError(f"[container] wall_m = {case.stack[0].wall:g} m: {carries}, because its wall yields")
     raise CaseError(

@@ -155,7 +155,7 @@ def _slip(name: str, point: Mapping[str, Any]) -> str:
 
 
 def _count(name: str, point: Mapping[str, Any]) -> str:
-    return str(point[name])
+    return str(point.get(name, 0))
 
 
 def _on_axis(axis: Axis, point: Mapping[str, Any]) -> str:

@@ -33,7 +33,7 @@ def motions_of_ensemble(folder: Path, info: EnsembleResult) -> html.PageSection:
     outcomes = html.table_of(
         "outcome of each motion",
         html.in_order("motion", *COUNTED, look=html.NUMBER),
-        ([one["file"], *(str(one[name]) for name in COUNTED)] for one in motions),
+        ([one["file"], *(str(one.get(name, 0)) for name in COUNTED)] for one in motions),
         caption="Draws under each motion, at all points",
         file="motions.csv",
     )
@@ -151,6 +151,9 @@ def _together(places: Sequence[str], rows: Sequence[Mapping[str, Any]]) -> html.
         html.Column("motions", lambda place: str(place.counts["motions"]), html.NUMBER),
         html.Column("overturned", lambda place: str(place.counts["overturned"]), html.NUMBER),
         html.Column("95 % interval", interval, html.NUMBER),
+        html.Column(
+            "not valid", lambda place: str(place.counts.get("invalid") or ""), html.NUMBER, optional=True
+        ),
         html.Column("failed", lambda place: str(place.counts["failed"] or ""), html.NUMBER, optional=True),
         html.Column("worst", worst),
         html.Column("largest slip", slip),

@@ -360,4 +360,5 @@ def _standing(status: str, verdict: Verdict) -> str:
         return "open"
     if verdict.outcome == Outcome.OVERTURNED:
         return "fell"
-    return "unsure" if verdict.band is not None and verdict.band.unsure else "stood"
+    unsure = verdict.outcome == Outcome.INVALID or (verdict.band is not None and verdict.band.unsure)
+    return "unsure" if unsure else "stood"

@@ -18,7 +18,7 @@ from fem.case.uncertainty import InputChange, changes_of, largest_first
 from fem.html.units import degrees, quantity
 from fem.model.model import build_model
 from fem.results.files import write_atomically
-from fem.results.outcome import Outcome
+from fem.results.outcome import ENDINGS, Outcome
 from fem.results.reader import OpenedRun
 from fem.results.run_result import ChangedRun, Numerics
 from fem.run.changed_runs import changed_run, cost_of, run_changes
@@ -93,7 +93,7 @@ class VariationTable:
     def sentence(self) -> str:
         """The table in a few words."""
         count, outcomes = len(self.lines) - 1, [line.run.outcome for line in self.lines]
-        overturned = outcomes[1:].count(Outcome.OVERTURNED)
+        overturned, invalid = (outcomes[1:].count(one) for one in (Outcome.OVERTURNED, Outcome.INVALID))
         words = [
             f"The outcome is the same in all {count}."
             if self.changed == 0
@@ -101,12 +101,14 @@ class VariationTable:
         ]
         if overturned and outcomes[0] != Outcome.OVERTURNED:
             words.append(f"It overturns in {overturned}.")
-        runs = [line.run for line in self.lines if line.run.outcome != Outcome.OVERTURNED]
+        if invalid:
+            words.append(f"It destroys a corner in {invalid}.")
+        runs = [line.run for line in self.lines if line.run.outcome not in ENDINGS]
         ratios = [run.rotation_ratio for run in runs if run.rotation_ratio is not None]
         if ratios:
             low, high = RATIO.text(min(ratios)), RATIO.text(max(ratios))
             reach = f"ranges from {low} to {high}" if low != high else f"is {low}"
-            words.append(f"Where it does not overturn, the rotation ratio {reach}.")
+            words.append(f"Where it stands, the rotation ratio {reach}.")
         return " ".join(words)
 
 

@@ -133,10 +133,10 @@ class Figures(JsonBlock, Generic[ValueT]):
         ValueT | None,
         Shown("largest uplift", MM, TABLES | READ | BRIEF, "track.max_uplift", head="uplift", lowest=True),
     ] = None
-    #: permanent, where the floor is crushed; None: it does not crush
-    max_indentation_m: Annotated[
-        ValueT | None, Shown("indentation of the floor", MM, BAND | SUMMARY | BRIEF)
-    ] = None
+    #: permanent, where the floor is crushed; None: it does not crush. It holds `valid`, and is no prediction
+    max_indentation_m: Annotated[ValueT | None, Shown("indentation of the floor", MM, BAND)] = None
+    #: no corner has sunk in further than the law of its contact holds
+    valid: Annotated[bool | None, Shown("valid", units.COUNT, COLUMN)] = None
     #: rotation at the end; None of what overturned, or still turns about one side
     tilt_rad: Annotated[
         ValueT | None,

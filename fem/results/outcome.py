@@ -17,6 +17,8 @@ class Outcome(StrEnum):
     ROCK = "rock", observables.ROCK, "rocked"
     SLIDE_ROCK = "slide-rock", observables.SLIDE_ROCK, "slid, rocked"
     OVERTURNED = "overturned", observables.FALLEN, "overturned"
+    #: a corner was destroyed, and the laws of its contact do not hold; no state of motion, and no code of the kernel
+    INVALID = "invalid", 15, "not valid"
 
     code: int  #: of the kernel
     verb: str
@@ -42,7 +44,7 @@ def least_slide(width: float) -> float:
 
 
 #: by the code of the kernel
-MODES = {outcome.code: outcome for outcome in Outcome}
+MODES = {outcome.code: outcome for outcome in Outcome if outcome is not Outcome.INVALID}
 SLIDING = (Outcome.SLIDE, Outcome.SLIDE_ROCK)
 ROCKING = (Outcome.ROCK, Outcome.SLIDE_ROCK)
 
@@ -50,7 +52,7 @@ ROCKING = (Outcome.ROCK, Outcome.SLIDE_ROCK)
 class Ending(IntEnum):
     """What a run counts as in a study."""
 
-    UNKNOWN, STANDING, OVERTURNED, FAILED = 0, 1, 2, 3
+    UNKNOWN, STANDING, OVERTURNED, FAILED, INVALID = 0, 1, 2, 3, 4
 
     @property
     def word(self) -> str:
@@ -59,11 +61,20 @@ class Ending(IntEnum):
 
 
 #: the endings that a study counts, by column
-COUNTED = {"stood": Ending.STANDING, "overturned": Ending.OVERTURNED, "failed": Ending.FAILED}
+COUNTED = {
+    "stood": Ending.STANDING,
+    "overturned": Ending.OVERTURNED,
+    "invalid": Ending.INVALID,
+    "failed": Ending.FAILED,
+}
+#: of these, what does not stand: it overturned, or destroyed the corner on which it stood
+NOT_STANDING = (Ending.OVERTURNED, Ending.INVALID)
+#: of the outcomes of what does not stand
+ENDINGS: dict[str, Ending] = {Outcome.OVERTURNED: Ending.OVERTURNED, Outcome.INVALID: Ending.INVALID}
 
 
 def ending_of(status: str, outcome: str | None) -> Ending:
     """The ending of a run by its status and outcome; a failed run never stands."""
     if status not in UPRIGHT_OR_FALLEN or not outcome:
         return Ending.FAILED
-    return Ending.OVERTURNED if outcome == Outcome.OVERTURNED else Ending.STANDING
+    return ENDINGS.get(outcome, Ending.STANDING)

@@ -162,6 +162,7 @@ class Band(Figures[Reach]):
     unsure: bool = False  #: the outcome is unsure: see `Verdict.sure`
     draws: int | None = None  #: members in which all inputs are drawn at once
     draws_overturned: int | None = None
+    draws_invalid: int | None = None  #: that destroyed a corner
     left_out: tuple[str, ...] = ()  #: changes that the time did not allow
     draws_left_out: int | None = None
     boxes: tuple[BoxReach, ...] | None = None  #: of a loose stack, from the floor up
@@ -202,6 +203,7 @@ class Margin(JsonBlock):
 class Verdict(RunFigures):
     """Outcome, extremes and events of a run."""
 
+    invalid_reason: str | None = None  #: what is destroyed, in words
     modes: tuple[str, ...] = ()  #: states passed through
     at_rest_s: float | None = None  #: since when it is at rest, of a run that ended for it
     yield_strength_Pa: float | None = None  #: that of S235 of a steel shell; None of another container
@@ -219,7 +221,10 @@ class Verdict(RunFigures):
 
     #: the forces in bolts of a run are those of its joints
     written_where_given = frozenset(
-        {"boxes", "fell_box", "corner_capacity_N", "plastic_work_J", "bolt_tension_N", "bolt_shear_N"}
+        {
+            *("boxes", "fell_box", "corner_capacity_N", "plastic_work_J", "bolt_tension_N", "bolt_shear_N"),
+            "invalid_reason",
+        }
     )
 
     def to_json(self) -> dict[str, Any]:

@@ -37,12 +37,15 @@ class Plan:
 def wants_band(asked: bool | None, case: Case, result: RunResult) -> bool:
     """Whether a finished run is to have a band: as asked, else unless it rests far below the static limits.
 
-    A run of the `full` model has one only when asked: it would take several times as long.
+    A run of the `full` model has one only when asked: it would take several times as long. One that is not valid has
+    none otherwise either.
     """
     if asked is not None:
         return asked
     outcome = (result.verdict or Verdict()).outcome
-    return case.solver.model != "full" and outcome is not None and not rests_far_below_limits(case, result)
+    if outcome in (None, Outcome.INVALID):
+        return False
+    return case.solver.model != "full" and not rests_far_below_limits(case, result)
 
 
 def rests_far_below_limits(case: Case, result: RunResult) -> bool:

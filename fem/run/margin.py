@@ -10,6 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
 from functools import cache
 
+from fem.assessment.verdict import outcome_of
 from fem.case.case import Case, CaseError
 from fem.case.links import ROWS
 from fem.case.strength import scaled_motion
@@ -18,7 +19,7 @@ from fem.case.unknown_inputs import TOLERANCE, Value
 from fem.model.container import Container, changed_container, without_links
 from fem.model.equilibrium import same_equilibrium
 from fem.model.model import Model, build_model
-from fem.results.outcome import Ending, ending_of
+from fem.results.outcome import Ending, Outcome, ending_of
 from fem.results.run_result import Margin, Numerics, RunResult, StaticResult, Verdict
 from fem.run.bracket import Change, changes_of
 from fem.run.changed_runs import DRAWN_TOLERANCE, cost_of, workers_for
@@ -46,9 +47,12 @@ class StoppedError(Exception):
 
 
 def wants_margin(asked: bool | None, case: Case, result: RunResult) -> bool:
-    """Whether a finished run is to have a margin: as asked, else where a scan takes seconds; never without a motion."""
+    """Whether a finished run is to have a margin: as asked, else where a scan takes seconds; never without a motion.
+
+    A run that is not valid has none.
+    """
     outcome = (result.verdict or Verdict()).outcome
-    if asked is False or outcome is None or not scaled_motion(case, 1.0):
+    if asked is False or outcome in (None, Outcome.INVALID) or not scaled_motion(case, 1.0):
         return False
     cost = MOST_RUNS * cost_of(result.numerics or Numerics())
     return bool(asked) or (case.solver.model != "full" and cost <= SCAN_S)
@@ -285,10 +289,13 @@ def _trial(model: Model, values: Mapping[str, Value], stop: Callable[[], bool]) 
 
 
 def _ending(model: Model, stop: Callable[[], bool]) -> Ending:
+    """What a trial counts as; one that destroyed a corner says nothing of overturning, as one that failed."""
     if model.case.solver.model != "full":
         verdict, error = run_without_history(model, None)
-        return Ending.FAILED if error else ending_of("completed", verdict.outcome)
-    ending = simulate(model, Recorder(model, None), stop=stop)
-    if ending.status == "interrupted":
-        raise StoppedError
-    return Ending.OVERTURNED if ending.status == "overturned" else ending_of(ending.status, "stands")
+        found = Ending.FAILED if error else ending_of("completed", verdict.outcome)
+    else:
+        ending = simulate(model, Recorder(model, None), stop=stop)
+        if ending.status == "interrupted":
+            raise StoppedError
+        found = ending_of(ending.status, outcome_of(model))
+    return Ending.FAILED if found == Ending.INVALID else found

@@ -9,7 +9,7 @@ from fem.runtime.units import RATIO, SHORT_MILLIMETRES
 from fem.site_check import result
 from fem.site_check.file import SiteRequest
 from fem.site_check.reasons import CONFIDENCE, NOT_FULFILLED, NOT_SURE, Evidence, Reason
-from fem.site_check.rule import FIGURE_OF, RuleFound, RunGroup, groups_of, rule_in_words
+from fem.site_check.rule import FIGURE_OF, RuleFound, RunGroup, counts, groups_of, rule_in_words
 from fem.site_check.runs import FURTHER, REFINED, REPEATED, SCAN, SET, RunKey
 
 FULFILLED = "fulfilled"
@@ -221,7 +221,7 @@ def further_motions(
     limits = request.limits
     counted = []
     for group in groups_of(run for key, run in runs.items() if key.stage == FURTHER):
-        failed = {run.motion for run in group.runs if run.outcome is None}
+        failed = {run.motion for run in group.runs if not counts(run)}
         known = RunGroup(runs=tuple(run for run in group.runs if run.motion not in failed))
         fell = known.beyond_any({})
         first = group.first
@@ -301,7 +301,8 @@ def _sentence(
 ) -> str:
     """The answer in words: what it rests on, or what speaks against it."""
     if answer is None:
-        return f"No answer: {found.failed} of {runs} runs failed."
+        destroyed = f", {found.invalid} of them because a corner was destroyed" if found.invalid else ""
+        return f"No answer: {found.failed} of {runs} runs failed{destroyed}."
     if answer != FULFILLED:
         gravest_ones = [reason.sentence for reason in against if reason.answer == answer]
         return f"{answer.capitalize()}. {' '.join(gravest_ones)}"

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from fem.assessment.ranges import largest_bolt_forces
 from fem.batch.compute_many import compute_many
 from fem.results.figures import Place
-from fem.results.outcome import Outcome
+from fem.results.outcome import ENDINGS
 from fem.site_check.result import LIMITED, ConfirmedRun, SiteRun
 from fem.site_check.runs import SET, RunCases, RunKey
 
@@ -17,7 +17,7 @@ def deciding(runs: Mapping[RunKey, SiteRun], governing: SiteRun | None) -> list[
     own = {key: run for key, run in runs.items() if key.stage == SET and run.outcome is not None}
     if governing is None or not own:
         return []
-    stood = {key: run for key, run in own.items() if run.outcome != Outcome.OVERTURNED}
+    stood = {key: run for key, run in own.items() if run.outcome not in ENDINGS}
     keys = [next(key for key, run in own.items() if run is governing)] if len(stood) < len(own) else []
     figures = list(LIMITED.values())[len(keys) :] if stood else []
     keys += [max(stood, key=lambda key: stood[key][figure] or 0.0) for figure in figures]

@@ -8,7 +8,7 @@ from fem.results.outcome import Outcome
 from fem.runtime.intervals import binomial_interval, least_draws
 from fem.runtime.units import RATIO, SHORT_MILLIMETRES, DisplayUnit, plain_number
 from fem.site_check.result import ConfirmedRun, FurtherMotions, RuleRange, SiteRun
-from fem.site_check.rule import FIGURE_OF, MEAN_FROM, RuleFound, RunGroup
+from fem.site_check.rule import FIGURE_OF, MEAN_FROM, RuleFound, RunGroup, counts
 from fem.site_check.tables import LimitsTable
 
 NOT_FULFILLED, NOT_SURE = "not fulfilled", "not sure"
@@ -114,7 +114,7 @@ class Evidence:
     def _confirmed(self) -> Iterator[Reason]:
         """What the elastic model and the unknown inputs make of the deciding runs."""
         again = self.confirmed
-        failed = sum(one.outcome is None for one in again)
+        failed = sum(not counts(one) or Outcome.INVALID in one.outcomes for one in again)
         fell = sum(Outcome.OVERTURNED in (one.outcome, *one.outcomes) for one in again)
         beyond = sum(
             one.turned > self.limits.single_rotation_ratio or one.slipped > self.limits.slip_m

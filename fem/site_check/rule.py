@@ -13,6 +13,7 @@ from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import Self
 
+from fem.results.figures import RunFigures
 from fem.results.outcome import Outcome
 from fem.site_check.result import ByRule, SiteRun
 from fem.site_check.tables import LimitsTable
@@ -26,6 +27,11 @@ FIGURE_OF = {
     "slip_m": "slip_m",
 }
 Key = tuple[str, str, float | None, float, float]
+
+
+def counts(run: RunFigures) -> bool:
+    """Whether a run has an outcome that counts: it did not fail, and destroyed no corner."""
+    return run.outcome not in (None, Outcome.INVALID)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,8 +67,13 @@ class RunGroup:
 
     @property
     def failed(self) -> int:
-        """Runs without an outcome."""
-        return sum(run.outcome is None for run in self.runs)
+        """Runs without an outcome that counts."""
+        return sum(not counts(run) for run in self.runs)
+
+    @property
+    def invalid(self) -> int:
+        """Of these, runs that destroyed a corner."""
+        return sum(run.outcome == Outcome.INVALID for run in self.runs)
 
     @cached_property
     def by_rule(self) -> ByRule:
@@ -111,6 +122,7 @@ class RuleFound:
 
     overturned: int
     failed: int
+    invalid: int  #: of these, because a corner was destroyed
     by_rule: ByRule  #: over the groups the largest; None where one has none
 
     @classmethod
@@ -120,6 +132,7 @@ class RuleFound:
         return cls(
             overturned=sum(group.overturned for group in groups),
             failed=sum(group.failed for group in groups),
+            invalid=sum(group.invalid for group in groups),
             by_rule=ByRule(
                 **{name: None if None in some else max(some, default=None) for name, some in found.items()}
             ),

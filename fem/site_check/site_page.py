@@ -37,6 +37,7 @@ from fem.site_check.result import (
     SiteResult,
     TwoDirections,
 )
+from fem.site_check.rule import counts
 
 COPIES = ("site.toml", "container.toml")  #: in the folder, printed on the page
 CODE = (
@@ -411,7 +412,7 @@ def confirmation(result: SiteResult) -> str:
     words = f"The {len(again)} deciding runs, repeated with the elastic model over their unknown inputs"
     if len(again) == 1:
         words = "The deciding run, repeated with the elastic model over its unknown inputs"
-    failed = sum(one.outcome is None for one in again)
+    failed = sum(not counts(one) or Outcome.INVALID in one.outcomes for one in again)
     fell = sum(Outcome.OVERTURNED in (one.outcome, *one.outcomes) for one in again)
     if failed or fell:
         return f"{words}: {fell} can overturn, {failed} failed."

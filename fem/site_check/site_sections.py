@@ -12,7 +12,7 @@ from fem.html.formula import formula_markup
 from fem.html.page import svg_element
 from fem.html.units import ABSENT, figure_head, number, quantity, short, typeset
 from fem.results.figures import FIGURES, Place, keys_of
-from fem.results.outcome import Outcome
+from fem.results.outcome import ENDINGS, Outcome
 from fem.site_check.figures import draw_floor, draw_methods, draw_scan
 from fem.site_check.result import ConfirmedRun, SiteMethod, SiteMotion, SiteResult, SiteRun
 from fem.site_check.rule import RunGroup, both_directions, groups_of
@@ -207,7 +207,7 @@ def _governing_table(group: RunGroup) -> html.Table:
         "motion by motion",
         columns,
         single,
-        row_look=lambda pair: "failed" if pair.runs[0].outcome in (Outcome.OVERTURNED, None) else "",
+        row_look=lambda pair: "failed" if pair.runs[0].outcome in (*ENDINGS, None) else "",
         look="runs",
     )
 

@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from fem.ensemble.fragility import fit_lognormal
-from fem.results.outcome import Outcome
+from fem.results.outcome import ENDINGS
 from fem.seismic.ground_motion import GroundMotion
 from fem.seismic.hazard import ACCELERATION, YEARS, CountedRate, HazardCurve, counted_rate, probability_in
 from fem.seismic.two_directions import slip_in_two_directions
@@ -130,7 +130,7 @@ def annual_rates(
                 strength=factor * unit,
                 factor=factor,
                 motions=len(there),
-                overturned=sum(run.outcome == Outcome.OVERTURNED for run in there.values()),
+                overturned=sum(run.outcome in ENDINGS for run in there.values()),
                 slipped=sum(too_far(key, run) for key, run in there.items()),
             )
         )

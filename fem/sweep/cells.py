@@ -74,5 +74,5 @@ class CellRows:
 
     @property
     def decided(self) -> BoolArray:
-        """Whether a cell stands or overturns, shape (n_cells,); what failed does neither."""
+        """Whether a cell stands or overturns, shape (n_cells,); what failed or is not valid does neither."""
         return (self.kind == Ending.STANDING) | (self.kind == Ending.OVERTURNED)

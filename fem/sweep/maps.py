@@ -23,7 +23,7 @@ from fem.figures import style
 from fem.figures.heat_map import Look, MapAxis, Panel, draw_heat_map, value_label
 from fem.html.units import rounded
 from fem.results.files import write_atomically
-from fem.results.outcome import Outcome
+from fem.results.outcome import ENDINGS, Outcome
 from fem.sweep.plan import MapChoice
 from fem.sweep.table import SweepTable
 
@@ -50,7 +50,7 @@ PRINTED_SHARES = dict(zip(SHARES, GREYS, strict=True)) | {"no outcome": style.WH
 PRINTED_OUTCOMES = dict(
     zip(
         style.STATE_COLOURS,
-        (style.WHITE, "#DDDDDD", "#EEEEEE", "#DDDDDD", "#AAAAAA", style.BLACK),
+        (style.WHITE, "#DDDDDD", "#EEEEEE", "#DDDDDD", "#AAAAAA", style.BLACK, "#EEEEEE"),
         strict=True,
     )
 )
@@ -60,6 +60,7 @@ HATCHES = {
     Outcome.HOP: "..",
     Outcome.ROCK: "///",
     Outcome.SLIDE_ROCK: "xxx",
+    Outcome.INVALID: "**",
     "failed": "oo",
 }
 MOST_PANELS = 12
@@ -97,7 +98,7 @@ def sweep_map(table: SweepTable, kind: str, choice: MapChoice) -> Figure:
     """
     if kind.startswith("outcome"):
         return _outcome_map(table, choice, printed=kind == "outcome_print")
-    fallen = table.outcome == Outcome.OVERTURNED
+    fallen = np.isin(table.outcome, list(ENDINGS))
     if kind == "rotation":
         return _map(
             table,

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from fem.batch.axes import MOTION_FILE, Axis, point_of, shape_of
-from fem.results.outcome import COUNTED, Ending
+from fem.results.outcome import COUNTED, NOT_STANDING, Ending
 from fem.runtime.arrays import IntArray
 from fem.runtime.intervals import estimate
 from fem.runtime.units import RATIO, SHORT_MILLIMETRES
@@ -39,7 +39,7 @@ class MotionOutcome(RunShown):
 
 def severity(one: RunShown) -> tuple[int, float]:
     """Larger for a worse outcome."""
-    order = (Ending.STANDING, Ending.FAILED, Ending.OVERTURNED)
+    order = (Ending.STANDING, Ending.FAILED, Ending.INVALID, Ending.OVERTURNED)
     return order.index(one.kind), one.turned
 
 
@@ -74,7 +74,8 @@ def motions_at(
 def set_row(outcomes: Sequence[MotionOutcome]) -> dict[str, Any]:
     """The outcome of a set of motions at a point, by `SET_COLUMNS`."""
     kinds = np.array([one.kind for one in outcomes])
-    share = estimate(kinds == Ending.OVERTURNED, kinds == Ending.FAILED, replicates=1, confidence=CONFIDENCE)
+    fallen = np.isin(kinds, NOT_STANDING)
+    share = estimate(fallen, kinds == Ending.FAILED, replicates=1, confidence=CONFIDENCE)
     computed = [one for one in outcomes if one.kind != Ending.FAILED]
     standing = [one for one in computed if one.kind == Ending.STANDING]
     worst = max(computed, key=severity, default=None)
@@ -83,6 +84,7 @@ def set_row(outcomes: Sequence[MotionOutcome]) -> dict[str, Any]:
         "motions": len(outcomes),
         "stood": len(standing),
         "overturned": int((kinds == Ending.OVERTURNED).sum()),
+        "invalid": int((kinds == Ending.INVALID).sum()),
         "failed": int((kinds == Ending.FAILED).sum()),
         "overturned_share": share.value,
         "low": share.low,
@@ -106,7 +108,8 @@ def set_in_words(row: Mapping[str, Any]) -> str:
     begin = (
         f"{overturned or 'none'} of {count} motions overturn{'s' * (overturned < 2)} ({interval} confidence)"
     )
-    parts = [begin + (f", {failed} failed" if failed else "")]
+    others = {"not valid": row.get("invalid", 0), "failed": failed}
+    parts = [", ".join([begin, *(f"{number} {word}" for word, number in others.items() if number)])]
     if overturned:
         parts.append(f"worst {row['worst_motion']}")
     elif row["worst_rotation_ratio"] is not None:

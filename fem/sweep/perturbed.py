@@ -112,18 +112,19 @@ class PerturbedRows:
         return (min(own, *ratios), max(own, *ratios)) if ratios and np.isfinite(own) else (None, None)
 
     def overturned_share(self, cell: int) -> float | None:
-        """Share of a cell and all its copies that overturn; None of a cell that failed.
+        """Share of a cell and all its copies that do not stand; None of a cell that failed.
 
         A copy that was not tried, because it turned no cell around this one, counts as the cell, and so does one that
         failed; draws count where some were tried.
         """
-        if not self._cells.decided[cell]:
+        if self._cells.kind[cell] in (Ending.UNKNOWN, Ending.FAILED):
             return None
-        own, tried = self._cells.kind[cell], self.rows.get(cell, {}).values()
-        turned = sum(one.shown.kind not in (own, Ending.FAILED) for one in tried)
+        own, tried = self._cells.kind[cell] == Ending.STANDING, self.rows.get(cell, {}).values()
+        known = [one.shown.kind for one in tried if one.shown.kind != Ending.FAILED]
+        turned = sum((kind == Ending.STANDING) != own for kind in known)
         drawn = any(one.copy.drawn for one in tried)
         share = turned / (1 + sum(drawn or not copy.drawn for copy in self.copies.of(cell)))
-        return 1.0 - share if own == Ending.OVERTURNED else share
+        return share if own else 1.0 - share
 
 
 def band_rows(

@@ -5,6 +5,7 @@ from mutation import Mutation
 LANDING = ("verification/test_verification_checks.py", "-k", "landing")
 FLOOR = "verification/closed_forms/test_floor.py"
 SOLVER = "unit/contact/test_contact_solver.py"
+SLAB = "unit/model/test_floor.py"
 
 CAMBER = "verification/closed_forms/test_camber.py"
 PLANE = "unit/contact/test_plane_slider.py"
@@ -111,6 +112,30 @@ FLOOR_FAULTS = (
         old="    indent(run.problem.contact, run.old.point, run.old.crushed)\n",
         new="",
         tests=(FLOOR, "-k", "frame"),
+    ),
+    Mutation(
+        name="a corner that bears no more as it sinks in",
+        old="(1.0 + contact.cap_growth[i] * old.crushed[i])",
+        new="(1.0 + 0.0 * contact.cap_growth[i] * old.crushed[i])",
+        tests=LANDING,
+    ),
+    Mutation(
+        name="an edge that wins as much width as a casting",
+        old="return sum(box.height for box in case.stack) / case.stack[0].width",
+        new="return 1.0",
+        tests=(SLAB, "-k", "wins_more_width"),
+    ),
+    Mutation(
+        name="half the weight on the corner that carries all of it",
+        old="LEAST_BEARING = 1.2",
+        new="LEAST_BEARING = 0.6",
+        tests=(SLAB, "-k", "sinks_into_the_floor"),
+    ),
+    Mutation(
+        name="a corner that is never destroyed",
+        old="if depth <= slab.deepest:",
+        new="if depth <= 1e3 * slab.deepest:",
+        tests=("unit/run/test_slab_run.py", "-k", "gives_way"),
     ),
     Mutation(
         name="half the work of crushing",

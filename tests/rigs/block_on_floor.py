@@ -85,6 +85,7 @@ class Block:
             normal_stiffness=springs,
             tangential_stiffness=springs,
             cap=np.full(2, self.cap),
+            cap_growth=np.zeros(2),
             relaxation_time=np.full(2, self.relaxation_time),
             mu_static=np.full(2, self.mu_static),
             mu_kinetic=np.full(2, self.mu_kinetic),

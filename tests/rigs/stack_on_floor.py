@@ -123,6 +123,7 @@ def stack_rig(
         normal_stiffness=springs.copy(),
         tangential_stiffness=springs.copy(),
         cap=np.full(points, math.inf),
+        cap_growth=np.zeros(points),
         camber=np.zeros(points),
         relaxation_time=np.full(points, whole.relaxation_time),
         mu_static=mus,

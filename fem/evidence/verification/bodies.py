@@ -79,6 +79,7 @@ def free_run(
     height: float = 0.0,
     springs: FloatArray | None = None,
     caps: FloatArray | None = None,
+    growth: float = 0.0,
     speed: float = 0.0,
     until: float = math.inf,
 ) -> Flight:
@@ -92,6 +93,7 @@ def free_run(
         height: above its place on the floor at t = 0 [m].
         springs: (n,) contact springs, without damping and friction [N/m]; None: negligible ones.
         caps: (n,) at which they crush the floor [N]; None: never.
+        growth: of these with the indentation, over the cap [1/m].
         speed: upward velocity of a modal body at t = 0 [m/s].
         until: an instant at which a step ends [s].
     """
@@ -121,7 +123,7 @@ def free_run(
     samples = coordinates if isinstance(body, ModalBody) else 0
     run = make_run(
         scheme=scheme,
-        contact=_contact(np.full(points, 1.0) if springs is None else springs, caps, body.mass),
+        contact=_contact(np.full(points, 1.0) if springs is None else springs, caps, growth, body.mass),
         motion=as_floor_motion(UNIFORM, (0.0, 0.0, 0.0)),
         breaks=np.full(1, until),
         control=with_steps_of(build_model(STACK), step).run.problem.control._replace(
@@ -147,11 +149,12 @@ def full_body(elements: FiniteElements, *, gravity: float = 1e-3) -> FullBody:
     return FullBody(elements, ends, no_monitors, gravity=gravity, damping=0.0)
 
 
-def _contact(springs: FloatArray, caps: FloatArray | None, mass: float) -> Contact:
+def _contact(springs: FloatArray, caps: FloatArray | None, growth: float, mass: float) -> Contact:
     return Contact(
         normal_stiffness=springs,
         tangential_stiffness=springs.copy(),
         cap=np.full(springs.size, math.inf) if caps is None else caps,
+        cap_growth=np.full(springs.size, growth),
         relaxation_time=np.zeros(springs.size),
         mu_static=np.full(springs.size, 1e-9),
         mu_kinetic=np.full(springs.size, 1e-9),

@@ -2,16 +2,14 @@
 
 from dataclasses import replace
 
-import pytest
-
 from fem.assessment.floor_words import floor_rows
 from fem.assessment.ranges import UNTRIED, impact_note, largest_stress, plastic_corner
-from fem.assessment.warnings import floor_is_crushed_deeply, warnings_for
 from fem.case.case import load_case
 from fem.cli.check import check, preview_of
-from fem.results.run_result import Band, RunResult, Verdict
+from fem.results.run_result import Band, Verdict
 
-SLAB = ("floor.preset=concrete C25/30", "solver.element_size_m=0.5", "solver.order=1")
+COARSE = ("solver.element_size_m=0.5", "solver.order=1")
+SLAB = ("floor.preset=concrete C25/30", "floor.corner_patch_m=[0.008, 1.1]", *COARSE)
 CRUSHED = Verdict(max_indentation_m=0.0, impacts=3)
 #: 2 MN on a wall that yields at 1 MN over a floor of 1e9 N/m: (4 - 1) MN^2/2e9 N/m
 YIELDED = Verdict(
@@ -34,9 +32,9 @@ def test_check_says_what_a_slab_amounts_to(capsys):
     for words in (
         "slab concrete C25/30: E = 31 GPa, nu = 0.2, strength 50 MPa",
         "corner 0.008 x 1.1 m: 8142 kN/mm, contact frequency 203.1 Hz, sinks in by 6.024 um at rest",
-        "crushes at 440 kN a corner, 4.5 times the weight; the steel above it yields at 2068 kN",
+        "crushes at 440 kN a corner at its surface, 4.5 times the weight; the steel above it yields at 2068 kN",
         "slope 2 %, it falls to the right (+x)",
-        "one impact back from 0.2 of the slenderness angle: 0.33 m/s, 510 J crush 1.2 mm",
+        "one impact back from 0.2 of the slenderness angle: 0.33 m/s, which crushes the corner",
         "contact frequency 203.1 Hz, static penetration 6.02 um",
     ):
         assert words in page
@@ -57,9 +55,7 @@ def test_a_rigid_level_floor_has_no_rows():
     assert dict(floor_rows(preview_of(load_case("rocking", ["floor.kind=rigid"])).floor)) == {}
 
 
-def test_a_container_that_sinks_on_one_corner_and_a_floor_too_steep_are_noted():
-    weak = preview_of(load_case("rocking", [*SLAB, "floor.bearing_strength_Pa=7e6"]))
-    assert any("a corner crushes at 0.63 of the weight" in note for note in weak.notes)
+def test_a_floor_too_steep_is_noted():
     steep = ["floor.slope_percent=15", "contact.mu_static=0.1", "contact.mu_kinetic=0.1", "motion.kind=none"]
     notes = preview_of(load_case("rocking", [*SLAB, *steep])).notes
     assert any("steeper than static friction holds" in note for note in notes)
@@ -72,32 +68,13 @@ def test_an_impact_on_a_slab_is_for_design_with_its_band():
     assert impact_note(replace(CRUSHED, impacts=0)) == ""
 
 
-def test_beyond_yield_the_work_of_a_rigid_plastic_corner_is_stated_and_the_shell_said_to_be_elastic():
+def test_beyond_yield_the_shell_is_said_to_be_elastic_and_the_corner_to_yield_as_a_whole():
     words = largest_stress(YIELDED)
     assert "the shell stays elastic and has 300 MPa" in words
-    assert (
-        "the steel above a corner yields at 1000 kN; a rigid-plastic corner would take 1500 J there, 1.5 mm"
-        in words
-    )
+    assert words.endswith("1000 kN, less than the largest corner force: as a whole it would yield")
 
 
 def test_a_corner_below_its_capacity_takes_no_work_and_one_without_a_wall_says_nothing():
     strong = replace(YIELDED, max_corner_force_N=0.9e6, plastic_work_J=0.0)
     assert plastic_corner(strong).endswith("so a rigid-plastic corner would take no work")
     assert plastic_corner(replace(YIELDED, corner_capacity_N=None, plastic_work_J=None)) == ""
-
-
-@pytest.mark.parametrize(("depth", "warned"), [(0.007, False), (0.009, True)])
-def test_an_indentation_deeper_than_the_patch_is_wide_is_a_warning(depth, warned):
-    preview = preview_of(load_case("rocking", SLAB))
-    found = RunResult(
-        status="completed", floor=preview.floor, verdict=replace(CRUSHED, max_indentation_m=depth)
-    )
-    assert (floor_is_crushed_deeply(found, preview.case) is not None) is warned
-    assert (
-        any(
-            "more than the smaller side of its patch of 8 x 1100 mm" in one
-            for one in warnings_for(found, preview.case)
-        )
-        is warned
-    )

@@ -70,6 +70,7 @@ def test_density_and_mass_replace_the_weight_and_back():
     assert case.with_values({"container.weight_N": 24525.0}).box_mass == pytest.approx(2500.0)
 
 
+WALL = "floor.corner_patch_m=[0.008, 1.1]"
 SLAB = ["floor.preset=asphalt", "floor.bearing_strength_Pa=4e6", "floor.corner_patch_m=[0.1, 0.2]"]
 
 
@@ -90,21 +91,40 @@ def test_another_kind_of_floor_takes_nothing_of_the_former_one():
 
 
 def test_a_numerical_penalty_replaces_a_slab():
-    rigid = load_case(BASE, ["floor.kind=rigid", "contact.normal_penalty_Pa_m=1e9"])
-    assert (
-        load_case(BASE, SLAB).with_values({"contact.normal_penalty_Pa_m": 1e9}).resolved() == rigid.resolved()
-    )
+    edge = load_case(BASE, [WALL])
+    rigid = edge.with_values({"floor.kind": "rigid", "contact.normal_penalty_Pa_m": 1e9})
+    slab = load_case(BASE, SLAB)
+    assert slab.with_values({"contact.normal_penalty_Pa_m": 1e9}).resolved() == rigid.resolved()
     assert load_case(BASE, [*SLAB, "contact.damping_ratio=1.0"]).floor.kind == "slab"
     said = refused(*SLAB, "contact.normal_penalty_Pa_m=1e9")
     assert 'normal_penalty_Pa_m belongs to floor.kind = "rigid"' in said
 
 
 def test_a_patch_under_the_wall_follows_wall_and_depth():
-    case = load_case(BASE, ["container.depth_m=0.8"])
+    case = load_case(BASE, [WALL]).with_values({"container.depth_m": 0.8})
     assert case.floor.corner_patch_m == [0.008, 0.8]
     assert case.with_values({"container.wall_m": 0.01}).floor.corner_patch_m == [0.01, 0.8]
     castings = load_case(BASE, [*SLAB, "container.depth_m=0.8", "container.wall_m=0.01"])
     assert castings.floor.corner_patch_m == [0.1, 0.2]
+
+
+def test_of_castings_and_a_patch_the_one_that_is_set_holds():
+    edge = load_case(BASE, [WALL])
+    assert (edge.support.casting_m, edge.container.corner_post_N) == (None, None)
+    castings = edge.with_values({"support.casting_m": [0.1, 0.1, 0.0]})
+    assert castings.floor.corner_patch_m is None
+    flat = load_case(BASE, ["support.kind=flat"])
+    assert (flat.support.casting_m, flat.container.corner_post_N) == (None, None)
+    assert castings.with_values({"container.corner_post_N": 1e6}).support.casting_m is not None
+
+
+def test_castings_become_smaller_with_a_base_that_has_no_room_for_them():
+    case = load_case(BASE, ["support.casting_m=[0.2, 0.25, 0.05]"])
+    assert case.with_values({"container.width_m": 0.6}).support.casting_m == [0.2, 0.25, 0.05]
+    narrow = case.with_values({"container.width_m": 0.4, "container.depth_m": 0.4})
+    assert narrow.support.casting_m == pytest.approx([0.15, 0.2, 0.05])
+    with pytest.raises(CaseError, match="does not fit under the base"):
+        case.with_values({"container.width_m": 0.4, "support.casting_m": [0.2, 0.2, 0.05]})
 
 
 def test_another_support_does_not_stand_on_the_patch_of_the_former_one():

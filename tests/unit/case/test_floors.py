@@ -16,7 +16,7 @@ def test_the_value_of_a_preset_lies_in_its_range_and_has_a_source(name):
 
 
 def test_a_resolved_slab_has_the_numbers_of_its_preset_and_no_penalty():
-    case = load_case("seed_stack", ["floor.preset=concrete C25/30"])
+    case = load_case("seed_stack", ["floor.preset=concrete C25/30", "floor.corner_patch_m=[0.008, 1.1]"])
     resolved = case.resolved()
     assert resolved["floor"] == {
         "kind": "slab",

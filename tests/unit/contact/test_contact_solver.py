@@ -46,7 +46,7 @@ class Problem:
     def workspace(self) -> Workspace:
         work = make_workspace(len(self.start))
         work.free[:], work.free_velocity[:] = self.free, self.free_velocity
-        work.compliance[:] = self.compliance
+        work.compliance[:], work.cap[:] = self.compliance, self.contact.cap
         return work
 
     def attempt(self) -> tuple[int, Workspace]:
@@ -81,6 +81,7 @@ def random_problem(seed: int, points: int, *, friction: int = ELASTIC_STICK) -> 
         normal_stiffness=stiffness * draw.uniform(0.5, 2.0, points),
         tangential_stiffness=stiffness * draw.uniform(0.5, 2.0, points),
         cap=np.full(points, np.inf),
+        cap_growth=np.zeros(points),
         relaxation_time=np.full(
             points, draw.choice([0.0, 0.1, 1.0]) * step * 10.0 ** draw.uniform(-1.0, 1.0)
         ),

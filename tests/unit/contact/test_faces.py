@@ -55,6 +55,7 @@ def contact_of(faces: Faces) -> Contact:
         normal_stiffness=np.zeros(n),
         tangential_stiffness=np.zeros(n),
         cap=np.full(n, np.inf),
+        cap_growth=np.zeros(n),
         relaxation_time=np.zeros(n),
         mu_static=np.ones(n),
         mu_kinetic=np.ones(n),

@@ -11,6 +11,7 @@ CONTACT = Contact(
     normal_stiffness=np.array([2e9, 3e9]),
     tangential_stiffness=np.array([1e9, 4e9]),
     cap=np.full(2, np.inf),
+    cap_growth=np.zeros(2),
     relaxation_time=np.full(2, 5e-3),
     mu_static=np.full(2, 0.4),
     mu_kinetic=np.full(2, 0.2),

@@ -16,7 +16,7 @@ from fem.run.compute import compute
 CONCRETE = HalfSpace(youngs_modulus=31e9, poisson_ratio=0.2)
 COARSE = ("solver.element_size_m=0.5", "solver.order=1", "solver.model=rigid", "output.fields_s=0")
 SLAB = ("floor.preset=concrete C25/30", *COARSE)
-CASTINGS = "floor.corner_patch_m=[0.1, 0.2]"
+EDGE, CASTINGS = "floor.corner_patch_m=[0.008, 1.1]", "floor.corner_patch_m=[0.1, 0.2]"
 
 
 def slab_with(*overrides):
@@ -59,7 +59,7 @@ def test_waves_leave_faster_than_shear_and_slower_than_pressure(poisson_ratio):
 
 
 def test_the_edge_of_a_wall_crushes_the_concrete_before_it_yields():
-    slab = slab_with()
+    slab = slab_with(EDGE)
     assert slab.patch == (0.008, 1.1)
     assert slab.bearing_capacity == pytest.approx(50e6 * 0.008 * 1.1)
     assert slab.steel_capacity == pytest.approx(235e6 * 0.008 * 1.1)
@@ -75,7 +75,7 @@ def test_a_wall_on_castings_yields_before_the_concrete_crushes():
 
 def test_only_the_wall_of_a_steel_shell_yields():
     assert slab_with("container.section=solid", CASTINGS).steel_capacity is None
-    assert slab_with("container.youngs_modulus_Pa=7e10").steel_capacity is None
+    assert slab_with(EDGE, "container.youngs_modulus_Pa=7e10").steel_capacity is None
     assert slab_with("support.kind=flat").steel_capacity is None
 
 
@@ -115,20 +115,23 @@ def test_a_rigid_floor_has_no_cap():
 
 @pytest.mark.parametrize("start", [(), ("initial.rotation_rad=0.02",)], ids=["standing", "tilted"])
 def test_a_container_that_sinks_into_the_floor_is_refused_with_the_least_patch(start):
-    case = load_case("seed_stack", [*SLAB, "floor.preset=compacted gravel", *start])
-    least = (0.5 if not start else 1.0) * case.weight / 0.5e6
-    reason = rf"bearing_strength_Pa = 500000 Pa: a corner carries .* least patch has {least:.3g} m2, this one 0.0088"
+    case = load_case("seed_stack", [*SLAB, "floor.preset=compacted gravel", EDGE, *start])
+    least = (
+        1.2 * case.weight / 0.5e6
+    )  # all of the weight: one corner carries it where the other one lifts off
+    reason = rf"bearing_strength_Pa = 500000 Pa: a corner must carry .* least patch has {least:.3g} m2, this one 0.0088"
     with pytest.raises(CaseError, match=reason):
         preview_of(case).to_json()
-    if not start:
-        with pytest.raises(CaseError, match=reason):
-            build_model(case)
-        build_model(case.with_values({"floor.corner_patch_m": [0.2, 1.05 * least / 0.2]}))
+    with pytest.raises(CaseError, match=reason):
+        build_model(case)
+    enough = case.with_values({"floor.corner_patch_m": [0.4, 1.001 * least / 0.4]})
+    build_model(enough)
+    preview_of(enough).to_json()
 
 
 def test_a_wall_that_its_weight_yields_is_refused():
     thin = load_case("seed_stack", [*SLAB, CASTINGS, "container.wall_m=0.001", "container.boxes=4"])
-    with pytest.raises(CaseError, match=r"wall_m = 0.001 m: a corner carries .* because its wall yields"):
+    with pytest.raises(CaseError, match=r"wall_m = 0.001 m: a corner must carry .* because its wall yields"):
         build_model(thin)
 
 
@@ -142,12 +145,38 @@ def test_a_floor_into_which_a_container_sinks_elastically_is_refused():
 
 def test_a_hit_on_concrete_crushes_as_much_as_estimated():
     # Estimated apart from the program: 0.35 m/s at 0.22 of the slenderness angle, 500 to 800 J, 1 to 2 mm at 0.44 MN.
-    preview = preview_of(load_case("seed_stack", SLAB))
+    preview = preview_of(load_case("seed_stack", [*SLAB, EDGE]))
     slab = slab_of(preview.case, preview.mesh.mass)
     hit = hit_from(0.22, preview.static, slab, preview.mesh.width)
     assert hit.closing_speed == pytest.approx(0.35, rel=0.03)
     assert 500.0 < hit.plastic_work < 800.0
-    assert hit.crushing == pytest.approx(hit.plastic_work / 0.44e6)
+    # The cap grows by 50 MPa x 1.1 m for each metre of width, of which the edge wins 4/1.1 for each metre of depth.
+    growth = 50e6 * 1.1 * 4.0 / 1.1
+    assert hit.plastic_work == pytest.approx(0.44e6 * hit.crushing + 0.5 * growth * hit.crushing**2)
+
+
+def test_an_edge_wins_more_width_than_a_casting_as_it_sinks_in_and_feet_none():
+    for key, widening in (
+        (EDGE, 4.0 / 1.1),
+        (CASTINGS, 1.0),
+        ("support.kind=feet", 0.0),
+        ("support.kind=flat", 0.0),
+    ):
+        slab = slab_with(key)
+        assert slab.widening == pytest.approx(widening), key
+        # what bears after 1 mm, with the strength of the floor, whatever gave way first
+        wider = slab.bearing_capacity * widening * 1e-3 / slab.patch[0]
+        assert slab.cap * slab.cap_growth * 1e-3 == pytest.approx(wider)
+    contact = build_model(load_case("seed_stack", [*SLAB, EDGE])).run.problem.contact
+    np.testing.assert_allclose(contact.cap_growth, 4.0 / 1.1 / 0.008)
+
+
+@pytest.mark.parametrize(
+    ("patch", "deepest"), [("[0.008, 1.1]", 0.01), ("[0.1, 0.004]", 0.004), ("[0.3, 0.3]", 0.01)]
+)
+def test_a_corner_is_destroyed_where_it_has_sunk_in_by_10_mm_or_by_a_side_of_its_patch(patch, deepest):
+    slab = slab_with(f"floor.corner_patch_m={patch}", "floor.bearing_strength_Pa=500e6")
+    assert slab.deepest == pytest.approx(deepest)
 
 
 def test_a_corner_below_its_capacity_takes_nothing():

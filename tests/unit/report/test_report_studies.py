@@ -51,9 +51,9 @@ def test_an_ensemble_says_where_half_overturned_and_shows_every_point(tmp_path):
         "at most 5 % up to 0.2 g, by the upper end of the interval."
     )
     assert [row[1:] for row in rows_of(page, "points")] == [
-        ["100", "100", "0", "0", "0 %", "0 to 4.00 %", "at most 5 %", ABSENT],
-        ["100", "60", "40", "0", "40.0 %", "30.0 to 50.0 %", "more than 5 %", ABSENT],
-        ["100", "20", "80", "0", "80.0 %", "70.0 to 90.0 %", "more than 5 %", ABSENT],
+        ["100", "100", "0", "0", "0", "0 %", "0 to 4.00 %", "at most 5 %", ABSENT],
+        ["100", "60", "40", "0", "0", "40.0 %", "30.0 to 50.0 %", "more than 5 %", ABSENT],
+        ["100", "20", "80", "0", "0", "80.0 %", "70.0 to 90.0 %", "more than 5 %", ABSENT],
     ]
     assert rows_of(page, "random quantities") == [
         [

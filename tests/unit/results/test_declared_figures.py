@@ -18,9 +18,15 @@ from fem.sweep.table import FOUND
 
 BOX = BoxResult(max_rotation_rad=0.5, max_slip_m=0.5, max_opening_m=0.5)
 OF_FIELDS = [key for key in FIGURES if key in {one.name for one in fields(Verdict)}]
-NUMBERS = [key for key in OF_FIELDS if key not in ("impacts", "restored", "fell_box")]
+NUMBERS = [key for key in OF_FIELDS if key not in ("impacts", "restored", "valid", "fell_box")]
 FULL = Verdict(
-    outcome="rock", boxes=(BOX, BOX), fell_box=2, **dict.fromkeys(NUMBERS, 0.5), impacts=3, restored=True
+    outcome="rock",
+    boxes=(BOX, BOX),
+    fell_box=2,
+    **dict.fromkeys(NUMBERS, 0.5),
+    impacts=3,
+    restored=True,
+    valid=True,
 )
 #: of a run these are the forces in its joints
 BOLTS = {"bolt_tension_N", "bolt_shear_N"}

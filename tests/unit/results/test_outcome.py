@@ -19,7 +19,7 @@ def test_an_outcome_is_its_word():
 def test_every_mode_of_the_kernel_is_an_outcome():
     assert MODES[observables.REST] == "rest" and MODES[observables.FALLEN] == "overturned"
     assert MODES[observables.ROCK + observables.SLIDE] == "slide-rock"
-    assert len(MODES) == len(Outcome) == observables.HOP + 1
+    assert len(MODES) == len(Outcome) - 1 == observables.HOP + 1 and Outcome.INVALID not in MODES.values()
 
 
 @pytest.mark.parametrize(
@@ -30,7 +30,8 @@ def test_what_did_not_overturn_slid_or_rocked(slides, rocks, word):
     assert Outcome.of(slides=slides, rocks=rocks) == word
 
 
-def test_what_failed_never_stands():
+def test_what_failed_or_is_not_valid_never_stands():
+    assert ending_of("completed", "invalid") == ending_of("overturned", "invalid") == Ending.INVALID
     assert ending_of("failed", None) == ending_of("failed", "rest") == ending_of("interrupted", None)
     assert ending_of("failed", None) == Ending.FAILED
     assert ending_of("completed", "slide-rock") == Ending.STANDING

@@ -80,6 +80,7 @@ def test_a_motion_counts_once_with_the_worse_of_its_signs():
     assert counts["a"] == {
         "stood": 1,
         "overturned": 1,
+        "invalid": 0,
         "failed": 0,
         "max_rotation_ratio": 0.3,
         "max_slip_m": 0.05,

@@ -108,8 +108,10 @@ def test_every_model_crushes_the_floor_alike(model):
     rigid = stepped(tilted_box("rigid"), 0.12).run
     assert run.old.crushed[0] > 1e-5
     assert run.old.crushed[0] == pytest.approx(rigid.old.crushed[0], rel=0.05)
-    assert run.ledger[CRUSHING] == pytest.approx(run.problem.contact.cap @ run.old.crushed, rel=2e-2)
-    assert (run.old.force[:, 1] <= run.problem.contact.cap * (1.0 + 1e-9)).all()
+    cap, growth, deep = run.problem.contact.cap, run.problem.contact.cap_growth, run.old.crushed
+    assert growth[0] == pytest.approx(1.0 / 1.1 / 0.008)  # of the edge of one box
+    assert run.ledger[CRUSHING] == pytest.approx(cap @ (deep * (1.0 + 0.5 * growth * deep)), rel=2e-2)
+    assert (run.old.force[:, 1] <= cap * (1.0 + growth * deep) * (1.0 + 1e-9)).all()
 
 
 @pytest.mark.parametrize("model", MODELS)
