@@ -51,6 +51,7 @@ from fem.site_check.result import (
 from fem.site_check.runs import COLUMNS, HAZARD, RunCases, RunKey, motion_stem
 from fem.site_check.site_page import site_report
 from fem.site_check.stages import Stages
+from fem.site_check.yearly import hazard_motions
 
 RUNS, PAGE = "runs.csv", "report.html"
 OF_A_MOTION = 75_000  #: numbers, in three files
@@ -80,7 +81,7 @@ def run_site(
     ground = ground_motions(request, longest, allow_outside=allow_outside)
     floors = floor_motions(request, ground)
     stages = Stages.of(request, floors, longest=longest, folder=folder)
-    files = len(ground) * (1 + len(floors)) + request.motions.further
+    files = len(ground) * (1 + len(floors)) + request.motions.further + hazard_motions(request)
     asked = hash_of([site_hash(request, ground), "quick"]) if quick else site_hash(request, ground)
     work = _Verification(
         request=request,

@@ -18,7 +18,7 @@ from fem.site_check.result import ConfirmedRun, SiteBody, TwoDirections
 from fem.site_check.rule import RuleFound, governing_groups, groups_of
 from fem.site_check.runs import HAZARD, REPETITIONS, SCAN, SET, RunKey, RunPlan, RunRows, motion_stem
 from fem.site_check.screening import Screening
-from fem.site_check.yearly import annual_rates, hazard_runs, rocking_most
+from fem.site_check.yearly import annual_rates, hazard_motions, hazard_runs, rocking_most
 
 #: numbers of the artificial motions beyond the set begin behind those of any set
 FIRST_FURTHER, FIRST_OF_HAZARD = 10_000, 100_000
@@ -109,7 +109,7 @@ class Stages:
         most = own + pairs * of_a_group * len(REPETITIONS)
         if quick:
             return own, most
-        most += pairs * self.request.motions.further * len(self.plan.signs)
+        most += pairs * self.request.motions.further * len(self.plan.signs) + hazard_motions(self.request)
         return own, most + sum(left(self.plan.scanned(factor)) for factor in self.plan.factors)
 
     def of_the_margin(self) -> Iterator[Sequence[RunKey]]:

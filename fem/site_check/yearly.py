@@ -45,6 +45,11 @@ def slides_from(body: SiteBody, mu_static: float, motions: Sequence[GroundMotion
     return KEPT * mu_static * body.gravity_m_s2 / strongest if strongest > 0.0 else math.inf
 
 
+def hazard_motions(request: SiteRequest) -> int:
+    """Motions of all levels, each of which is one run; none where no hazard is given."""
+    return LEVELS * request.hazard.motions if request.hazard else 0
+
+
 def hazard_runs(
     groups: Sequence[RunGroup], bodies: Sequence[SiteBody], floor: Sequence[GroundMotion], motions: int
 ) -> list[RunKey]:

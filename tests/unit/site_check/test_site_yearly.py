@@ -15,7 +15,14 @@ from fem.site_check.file import load_site
 from fem.site_check.rule import groups_of
 from fem.site_check.runs import HAZARD, key_of
 from fem.site_check.site_page import rates_in_words
-from fem.site_check.yearly import annual_rates, hazard_runs, rocks_from, scattered, slides_from
+from fem.site_check.yearly import (
+    annual_rates,
+    hazard_motions,
+    hazard_runs,
+    rocks_from,
+    scattered,
+    slides_from,
+)
 
 SITE = """
 container = "seed_stack"
@@ -146,13 +153,14 @@ def test_below_its_static_limits_a_body_does_not_move():
     assert lifted == pytest.approx(0.9 * 0.3 * 9.81 / (3.0 + 0.3 * 2.0), rel=1e-3)
 
 
-def test_every_level_has_motions_of_its_own():
+def test_every_level_has_motions_of_its_own(tmp_path):
     runs = [replace(RUN, motion=k, rotation_ratio=0.1 * k, mu_static=0.3 + 0.05 * k) for k in (1, 2)]
     keys = hazard_runs(groups_of(runs), [BODY], [push(1.0)], 40)
     assert len({key.motion for key in keys}) == len(keys) == 7 * 40
     assert {key.mu_static for key in keys} == {0.4}  # that which rocks most
     levels = sorted({key.factor for key in keys})
     uplift = math.tan(BODY.slenderness_angle_rad) * 9.81
+    assert hazard_motions(request(tmp_path)) == len(keys)
     assert (levels[0], levels[-1]) == pytest.approx((1.15 * uplift, 5.5 * uplift), rel=1e-3)
     assert sum(key.vertical_sign for key in keys) == 0  # half of them with the vertical reversed
 
