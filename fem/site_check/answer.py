@@ -9,7 +9,7 @@ from fem.runtime.units import RATIO, SHORT_MILLIMETRES
 from fem.site_check import result
 from fem.site_check.file import SiteRequest
 from fem.site_check.reasons import CONFIDENCE, NOT_FULFILLED, NOT_SURE, Evidence, Reason
-from fem.site_check.rule import FIGURE_OF, RuleFound, RunGroup, counts, groups_of, rule_in_words
+from fem.site_check.rule import FIGURE_OF, RuleFound, RunGroup, groups_of, rule_in_words
 from fem.site_check.runs import FURTHER, REFINED, REPEATED, SCAN, SET, RunKey
 
 FULFILLED = "fulfilled"
@@ -70,7 +70,7 @@ def answer_of(
         against.append(Reason(NOT_SURE, NO_FURTHER))
     if beside.left_out:
         against.append(Reason(NOT_SURE, beside.left_out))
-    unknown = found.failed > 0 and not found.overturned
+    unknown = found.failed > 0 and not found.overturned + found.invalid
     actions = [
         result.ActionAnswer(
             name=EARTHQUAKE,
@@ -209,7 +209,9 @@ def rule_range(
         ranges[name] = (min(known), max(known)) if known else ()
     repetitions = found[1:]
     span = result.RuleRange(
-        **ranges, repetitions=len(repetitions), overturned=sum(one.overturned > 0 for one in repetitions)
+        **ranges,
+        repetitions=len(repetitions),
+        overturned=sum(one.overturned + one.invalid > 0 for one in repetitions),
     )
     return span, sum(run.outcome is None for some in again.values() for run in some)
 
@@ -221,7 +223,7 @@ def further_motions(
     limits = request.limits
     counted = []
     for group in groups_of(run for key, run in runs.items() if key.stage == FURTHER):
-        failed = {run.motion for run in group.runs if not counts(run)}
+        failed = {run.motion for run in group.runs if run.outcome is None}
         known = RunGroup(runs=tuple(run for run in group.runs if run.motion not in failed))
         fell = known.beyond_any({})
         first = group.first
@@ -233,7 +235,8 @@ def further_motions(
                 mu_static=first.mu_static,
                 mu_kinetic=first.mu_kinetic,
                 motions=known.motions,
-                overturned=fell,
+                overturned=len({run.motion for run in known.runs if run.outcome == Outcome.OVERTURNED}),
+                invalid=len({run.motion for run in known.runs if run.outcome == Outcome.INVALID}),
                 beyond_limits=known.beyond_any(
                     {"rotation_ratio": limits.single_rotation_ratio, "max_slip_m": limits.slip_m}
                 ),
@@ -255,7 +258,8 @@ def margin_factor(request: SiteRequest, runs: Mapping[RunKey, result.SiteRun]) -
     def fails(factor: float) -> bool:
         # Between factors some runs of a group may be there alone: they have no mean.
         return any(
-            group.overturned or (len(group.runs) == whole and RuleFound.of([group]).fails(request.limits))
+            group.overturned + group.invalid
+            or (len(group.runs) == whole and RuleFound.of([group]).fails(request.limits))
             for group in groups_of(by_factor[factor])
         )
 
@@ -301,8 +305,7 @@ def _sentence(
 ) -> str:
     """The answer in words: what it rests on, or what speaks against it."""
     if answer is None:
-        destroyed = f", {found.invalid} of them because a corner was destroyed" if found.invalid else ""
-        return f"No answer: {found.failed} of {runs} runs failed{destroyed}."
+        return f"No answer: {found.failed} of {runs} runs failed."
     if answer != FULFILLED:
         gravest_ones = [reason.sentence for reason in against if reason.answer == answer]
         return f"{answer.capitalize()}. {' '.join(gravest_ones)}"

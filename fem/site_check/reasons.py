@@ -8,7 +8,7 @@ from fem.results.outcome import Outcome
 from fem.runtime.intervals import binomial_interval, least_draws
 from fem.runtime.units import RATIO, SHORT_MILLIMETRES, DisplayUnit, plain_number
 from fem.site_check.result import ConfirmedRun, FurtherMotions, RuleRange, SiteRun
-from fem.site_check.rule import FIGURE_OF, MEAN_FROM, RuleFound, RunGroup, counts
+from fem.site_check.rule import FIGURE_OF, MEAN_FROM, RuleFound, RunGroup
 from fem.site_check.tables import LimitsTable
 
 NOT_FULFILLED, NOT_SURE = "not fulfilled", "not sure"
@@ -42,15 +42,21 @@ class Evidence:
 
     def reasons(self) -> Iterator[Reason]:
         """All of them, in the order of the evidence."""
+        runs = sum(len(group.runs) for group in self.groups)
+        if self.rule.invalid:
+            yield Reason(
+                NOT_FULFILLED,
+                f"{self.rule.invalid} of {runs} runs destroyed a corner: they are not valid beyond that, and do not "
+                "count as standing.",
+            )
         if self.rule.overturned:
-            runs = sum(len(group.runs) for group in self.groups)
             most = max(self.groups, key=lambda group: group.beyond_any({}))
             yield Reason(
                 NOT_FULFILLED,
                 f"{self.rule.overturned} of {runs} runs overturned: up to {most.beyond_any({})} of "
                 f"{self.motions} motions overturn it ({where(most.first)}).",
             )
-        else:
+        if not self.rule.overturned + self.rule.invalid:
             for key in FIGURE_OF:
                 yield from self._limit(key)
             yield from self._repetitions()
@@ -106,7 +112,8 @@ class Evidence:
         if self.range and self.range.overturned:
             yield Reason(
                 NOT_SURE,
-                f"In {self.range.overturned} of {self.range.repetitions} repetitions {ALIKE}, a run overturned.",
+                f"In {self.range.overturned} of {self.range.repetitions} repetitions {ALIKE}, a run overturned or "
+                "destroyed a corner.",
             )
         if self.repetitions_failed:
             yield Reason(NOT_SURE, f"{self.repetitions_failed} runs of the repetitions failed.")
@@ -114,7 +121,8 @@ class Evidence:
     def _confirmed(self) -> Iterator[Reason]:
         """What the elastic model and the unknown inputs make of the deciding runs."""
         again = self.confirmed
-        failed = sum(not counts(one) or Outcome.INVALID in one.outcomes for one in again)
+        failed = sum(one.outcome is None for one in again)
+        destroyed = sum(Outcome.INVALID in (one.outcome, *one.outcomes) for one in again)
         fell = sum(Outcome.OVERTURNED in (one.outcome, *one.outcomes) for one in again)
         beyond = sum(
             one.turned > self.limits.single_rotation_ratio or one.slipped > self.limits.slip_m
@@ -128,6 +136,8 @@ class Evidence:
                 NOT_SURE,
                 f"In a deciding run the bolts carry {bolts:.2g} of their capacity: the stack does not stay one body.",
             )
+        if destroyed:
+            yield Reason(NOT_SURE, f"{destroyed} of {len(again)} {words} can destroy a corner.")
         if fell:
             yield Reason(NOT_SURE, f"{fell} of {len(again)} {words} can overturn.")
         elif beyond and not self.rule.fails(self.limits):
@@ -145,12 +155,13 @@ def against(one: FurtherMotions) -> Iterator[Reason]:
     per_cent = f"{100.0 * MOST_OVERTURNING:g} %"
     beyond = f"{one.beyond_limits} went beyond a limit of a single motion"
     least_beyond, _ = binomial_interval(one.beyond_limits, one.motions, CONFIDENCE)
-    if one.overturned and one.interval[1] > MOST_OVERTURNING:
+    destroyed = f", {one.invalid} destroyed a corner" if one.invalid else ""
+    if one.overturned + one.invalid and one.interval[1] > MOST_OVERTURNING:
         low, high = (plain_number(100.0 * end, FIGURES) for end in one.interval)
         yield Reason(
             NOT_SURE,
-            f"{one.overturned} of {one.motions} further motions overturned it and {beyond} ({where(one)}): {low} to "
-            f"{high} % of such motions overturn it, which may be more than {per_cent}.",
+            f"{one.overturned} of {one.motions} further motions overturned it{destroyed} and {beyond} ({where(one)}): "
+            f"under {low} to {high} % of such motions it does not stand, which may be more than {per_cent}.",
         )
     elif least_beyond > MOST_OVERTURNING:
         yield Reason(

@@ -166,7 +166,9 @@ class RuleRange(JsonBlock):
     rotation_ratio_largest: tuple[float, ...] = ()
     slip_m: tuple[float, ...] = ()
     repetitions: int = 0
-    overturned: int = 0  #: repetitions in which a run overturned, of which the ranges know nothing
+    overturned: int = (
+        0  #: repetitions in which a run overturned or destroyed a corner, of which the ranges know nothing
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -190,7 +192,8 @@ class FurtherMotions(JsonBlock):
     motions: int
     overturned: int
     beyond_limits: int  #: overturned, or beyond a limit of a single motion
-    interval: tuple[float, ...]  #: of the probability of overturning, 95 %, two-sided
+    interval: tuple[float, ...]  #: of the probability that it does not stand, 95 %, two-sided
+    invalid: int = 0  #: motions that destroyed a corner, under which it does not count as standing
     failed: int = 0  #: motions without an outcome, which are none of `motions`
 
 

@@ -13,8 +13,7 @@ from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import Self
 
-from fem.results.figures import RunFigures
-from fem.results.outcome import Outcome
+from fem.results.outcome import ENDINGS, Outcome
 from fem.site_check.result import ByRule, SiteRun
 from fem.site_check.tables import LimitsTable
 
@@ -27,11 +26,6 @@ FIGURE_OF = {
     "slip_m": "slip_m",
 }
 Key = tuple[str, str, float | None, float, float]
-
-
-def counts(run: RunFigures) -> bool:
-    """Whether a run has an outcome that counts: it did not fail, and destroyed no corner."""
-    return run.outcome not in (None, Outcome.INVALID)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -67,12 +61,12 @@ class RunGroup:
 
     @property
     def failed(self) -> int:
-        """Runs without an outcome that counts."""
-        return sum(not counts(run) for run in self.runs)
+        """Runs without an outcome."""
+        return sum(run.outcome is None for run in self.runs)
 
     @property
     def invalid(self) -> int:
-        """Of these, runs that destroyed a corner."""
+        """Runs that destroyed a corner: they do not count as standing, and have no figures."""
         return sum(run.outcome == Outcome.INVALID for run in self.runs)
 
     @cached_property
@@ -90,23 +84,23 @@ class RunGroup:
         )
 
     def beyond(self, figure: str, limit: float) -> int:
-        """Motions of which a figure is beyond a limit with the worse sign, or which overturn it."""
+        """Motions of which a figure is beyond a limit with the worse sign, or under which it does not stand."""
         return self.beyond_any({figure: limit})
 
     def beyond_any(self, limits: Mapping[str, float]) -> int:
-        """Motions that overturn it, or of which one of some figures is beyond its limit, with the worse sign."""
+        """Motions under which it does not stand, or with one of some figures beyond its limit, of the worse sign."""
         return len(
             {
                 run.motion
                 for run in self.runs
-                if run.outcome == Outcome.OVERTURNED
+                if run.outcome in ENDINGS
                 or any((run[figure] or 0.0) > limit for figure, limit in limits.items())
             }
         )
 
     def _worst(self, figure: str) -> list[float] | None:
         """Of each motion the worse sign; None where a run has no such figure."""
-        if self.overturned or self.failed:
+        if self.overturned or self.invalid or self.failed:
             return None
         worst: dict[int, float] = {}
         for run in self.runs:
@@ -122,7 +116,7 @@ class RuleFound:
 
     overturned: int
     failed: int
-    invalid: int  #: of these, because a corner was destroyed
+    invalid: int  #: runs that destroyed a corner
     by_rule: ByRule  #: over the groups the largest; None where one has none
 
     @classmethod
@@ -144,7 +138,7 @@ class RuleFound:
 
     def fails(self, limits: LimitsTable) -> bool:
         """Whether the rule is not fulfilled."""
-        return self.overturned > 0 or bool(self.exceeded(limits))
+        return self.overturned + self.invalid > 0 or bool(self.exceeded(limits))
 
     def utilisation(self, limits: LimitsTable) -> float | None:
         """The largest share of a limit; None where a run overturned or failed."""
@@ -194,15 +188,15 @@ def governing_groups(groups: Sequence[RunGroup]) -> list[RunGroup]:
     """Of each weight the group that governs rotation and the one that governs slip, in the order of the groups."""
 
     def rotation(group: RunGroup) -> tuple[int, float]:
-        return group.overturned, max(run.turned for run in group.runs)
+        return group.overturned + group.invalid, max(run.turned for run in group.runs)
 
     def slip(group: RunGroup) -> float:
-        return max(run.slipped for run in group.runs if run.outcome != Outcome.OVERTURNED)
+        return max(run.slipped for run in group.runs if run.outcome not in ENDINGS)
 
     chosen: set[int] = set()
     for mass in dict.fromkeys(group.first.mass for group in groups):
         own = [group for group in groups if group.first.mass == mass and not group.failed]
-        standing = [group for group in own if group.overturned < len(group.runs)]
+        standing = [group for group in own if group.overturned + group.invalid < len(group.runs)]
         chosen |= {id(max(some, key=key)) for some, key in ((own, rotation), (standing, slip)) if some}
     return [group for group in groups if id(group) in chosen]
 

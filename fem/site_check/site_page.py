@@ -37,7 +37,6 @@ from fem.site_check.result import (
     SiteResult,
     TwoDirections,
 )
-from fem.site_check.rule import counts
 
 COPIES = ("site.toml", "container.toml")  #: in the folder, printed on the page
 CODE = (
@@ -412,10 +411,12 @@ def confirmation(result: SiteResult) -> str:
     words = f"The {len(again)} deciding runs, repeated with the elastic model over their unknown inputs"
     if len(again) == 1:
         words = "The deciding run, repeated with the elastic model over its unknown inputs"
-    failed = sum(not counts(one) or Outcome.INVALID in one.outcomes for one in again)
+    failed = sum(one.outcome is None for one in again)
+    destroyed = sum(Outcome.INVALID in (one.outcome, *one.outcomes) for one in again)
     fell = sum(Outcome.OVERTURNED in (one.outcome, *one.outcomes) for one in again)
-    if failed or fell:
-        return f"{words}: {fell} can overturn, {failed} failed."
+    if failed or fell or destroyed:
+        corner = f", {destroyed} can destroy a corner" if destroyed else ""
+        return f"{words}: {fell} can overturn{corner}, {failed} failed."
     turned, slip = max(one.turned for one in again), max(one.slipped for one in again)
     return f"{words}: none overturns, largest rotation ratio {ratio(turned)}, largest slip {millimetres(slip)} mm."
 

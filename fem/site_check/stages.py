@@ -121,7 +121,7 @@ class Stages:
         for factor in self.plan.factors:
             if factor > 1.0:
                 found = RuleFound.of(groups_of(self.plan.by_factor(self.rows.found)[before]))
-                if found.overturned or (self.rests and found.fails(self.request.limits)):
+                if found.overturned + found.invalid or (self.rests and found.fails(self.request.limits)):
                     break
                 before = factor
             yield self._left(self.plan.scanned(factor))

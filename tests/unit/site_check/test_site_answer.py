@@ -138,6 +138,19 @@ def test_any_overturning_is_not_fulfilled_and_counts_before_all_doubts():
     assert any("20 went beyond" in reason for reason in found.reasons)
 
 
+def test_a_run_that_destroys_a_corner_does_not_count_as_standing_and_is_named_apart():
+    own = runs_of(**OTHERS) + runs_of(**FIRST, outcome="invalid")
+    found = answer(own, repeated(), further())
+    assert (found.answer, found.overturned) == ("not fulfilled", 0)
+    assert "1 of 7 runs destroyed a corner" in found.sentence
+    many = further(99) + runs_of(FURTHER, (100,), outcome="invalid")
+    found = answer(runs_of(), repeated(), many)
+    assert found.answer == "not sure" and (found.further[0].overturned, found.further[0].invalid) == (0, 1)
+    assert "0 of 100 further motions overturned it, 1 destroyed a corner" in found.sentence
+    found = answer(runs_of(), repeated(), further(), confirmed=(confirmed(outcomes=("rock", "invalid")),))
+    assert found.answer == "not sure" and "can destroy a corner" in found.sentence
+
+
 def test_wind_alone_can_refuse_and_the_earthquake_keeps_its_own_answer():
     found = answer(runs_of(), repeated(), further(), wind=1.27)
     assert found.answer == "not fulfilled"
