@@ -90,6 +90,7 @@ def with_links(case: Case, contact: Contact, mass: float) -> Contact:
         "normal_stiffness": stiffness,
         "tangential_stiffness": stiffness,
         "cap": [math.inf if one.strength_N is None else one.strength_N for one in links],
+        "cap_growth": nothing,
         "relaxation_time": [relaxation_of(one, mass) for one in links],
         "mu_static": mu,
         "mu_kinetic": mu,
