@@ -24,7 +24,7 @@ def margin_in_words(verdict: Verdict | None) -> str:
         up_to = "" if stands else f"stands up to {FACTOR.text(margin.stands_up_to)} times this motion, "
         times = " times this motion" if stands else ""
         words = f"{lead}; {up_to}overturns first at {FACTOR.text(margin.factor)}{times}"
-    return f"{words}{_range(margin)}{_islands(margin)}{_failed(margin)}{_without_links(margin)}."
+    return f"{words}{_range(margin)}{_islands(margin)}{_destroyed(margin)}{_failed(margin)}{_without_links(margin)}."
 
 
 def _without_links(margin: Margin) -> str:
@@ -59,6 +59,12 @@ def _islands(margin: Margin) -> str:
     return f", stands again at {' and at '.join(again)}" if again else ""
 
 
+def _destroyed(margin: Margin) -> str:
+    """From which factor on a corner does not carry what the run says."""
+    least = margin.destroyed_from
+    return "" if least is None else f"; at {FACTOR.text(least)} times it a corner is destroyed"
+
+
 def _failed(margin: Margin) -> str:
     count = margin.draws_failed
-    return f"; {count} draw{'s' * (count != 1)} failed" if count else ""
+    return f"; {count} draw{'s' * (count != 1)} destroyed a corner or failed" if count else ""

@@ -185,18 +185,19 @@ class Margin(JsonBlock):
     high: float | None = None
     draws: int = 0  #: in which all unknown inputs are drawn, without those that failed
     draws_standing: int = 0  #: those that stand up to `draws_tried_to`
-    draws_failed: int = 0
+    draws_failed: int = 0  #: or destroyed a corner
     draws_tried_to: float | None = None  #: largest factor of the draws; None without draws
     islands: tuple[tuple[float, float], ...] = ()  #: [from, to] beyond `factor` where it stands again
     least_tried: float
     largest_tried: float
     runs: int  #: with the inputs of the run, besides itself
+    destroyed_from: float | None = None  #: least factor of those tried at which a corner is destroyed
     #: of a container with stops or ties: the factor of its first overturning without them, None where none was found;
     #: and the largest factor tried so
     factor_without_links: float | None = None
     without_links_tried_to: float | None = None
 
-    written_where_given = frozenset({"factor_without_links", "without_links_tried_to"})
+    written_where_given = frozenset({"destroyed_from", "factor_without_links", "without_links_tried_to"})
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -38,6 +38,8 @@ LEAST = 0.05  #: smallest factor
 #: draws, of a model whose runs are cheap; at least; runs that one takes; processor time for all, and for the scan [s]
 DRAWS, LEAST_DRAWS, RUNS_A_DRAW, DRAWN_S, SCAN_S = 16, 6, 5, 2.5, 12.0
 
+#: endings that say whether it overturns; a run that failed does not, nor one that destroyed a corner
+SAID = (Ending.STANDING, Ending.OVERTURNED)
 #: the ending under a factor, by the values of a change
 Trial = Callable[[float], Ending]
 
@@ -84,7 +86,7 @@ def margin_of(model: Model, result: RunResult, *, drawn: bool, stop: Callable[[]
                 least = max(LEAST, least / STEP**2)
                 known[least] = trial(least)
             _locate(known, trial)
-            first, ended = _first(known), [one for one in known if known[one] != Ending.FAILED]
+            first, ended = _first(known), [one for one in known if known[one] in SAID]
             bare = _bare(model, least, most, pool, stop)
             ends: list[float | None] = []
             lowest = None
@@ -112,6 +114,7 @@ def margin_of(model: Model, result: RunResult, *, drawn: bool, stop: Callable[[]
         least_tried=min(ended),
         largest_tried=max(ended),
         runs=len(ended) - 1,
+        destroyed_from=min((one for one in known if known[one] == Ending.INVALID), default=None),
         factor_without_links=None if bare is None else bare[0],
         without_links_tried_to=None if bare is None else bare[1],
     )
@@ -132,7 +135,7 @@ def _bare(
     scanned = _scanned(least, 1.0 if own == Ending.OVERTURNED else most)
     known = {1.0: own} | dict(zip(scanned, pool.map(trial, scanned), strict=True))
     _locate(known, trial)
-    first, ended = _first(known), [one for one in known if known[one] != Ending.FAILED]
+    first, ended = _first(known), [one for one in known if known[one] in SAID]
     return None if first is None else first.high, max(ended, default=0.0)
 
 
@@ -185,8 +188,8 @@ def _locate(known: dict[float, Ending], trial: Trial) -> None:
 
 
 def _changes(known: dict[float, Ending]) -> list[Change]:
-    """Neighbouring factors of which one stands and the other overturns; failed runs say nothing."""
-    said = {factor: ending.word for factor, ending in known.items() if ending != Ending.FAILED}
+    """Neighbouring factors of which one stands and the other overturns; others say nothing."""
+    said = {factor: ending.word for factor, ending in known.items() if ending in SAID}
     return changes_of(said)
 
 
@@ -213,13 +216,13 @@ def _islands(known: dict[float, Ending]) -> tuple[tuple[float, float], ...]:
 
 
 def _near(trial: Trial, start: float, least: float, most: float) -> float | None:
-    """The factor near `start` from which a changed case overturns; None: none up to `most`; nan: a trial failed."""
+    """The factor near `start` from which a changed case overturns; None: none up to `most`; nan: not known."""
     failed = False
 
     def falls(factor: float) -> bool:
         nonlocal failed
         ending = trial(factor)
-        failed = failed or ending == Ending.FAILED
+        failed = failed or ending not in SAID
         return ending == Ending.OVERTURNED
 
     low, high = start, start
@@ -289,13 +292,11 @@ def _trial(model: Model, values: Mapping[str, Value], stop: Callable[[], bool]) 
 
 
 def _ending(model: Model, stop: Callable[[], bool]) -> Ending:
-    """What a trial counts as; one that destroyed a corner says nothing of overturning, as one that failed."""
+    """What a trial counts as."""
     if model.case.solver.model != "full":
         verdict, error = run_without_history(model, None)
-        found = Ending.FAILED if error else ending_of("completed", verdict.outcome)
-    else:
-        ending = simulate(model, Recorder(model, None), stop=stop)
-        if ending.status == "interrupted":
-            raise StoppedError
-        found = ending_of(ending.status, outcome_of(model))
-    return Ending.FAILED if found == Ending.INVALID else found
+        return Ending.FAILED if error else ending_of("completed", verdict.outcome)
+    ending = simulate(model, Recorder(model, None), stop=stop)
+    if ending.status == "interrupted":
+        raise StoppedError
+    return ending_of(ending.status, outcome_of(model))

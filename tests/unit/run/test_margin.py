@@ -211,7 +211,12 @@ MARGIN = Margin(
             },
             "overturned",
             "Overturns; stands up to 0.799 times this motion, overturns first at 0.810 (from 0.72 on over what is not "
-            "known; 3 of 16 draws stand up to 4); 2 draws failed.",
+            "known; 3 of 16 draws stand up to 4); 2 draws destroyed a corner or failed.",
+        ),
+        (
+            {"destroyed_from": 2.9},
+            "rock",
+            "Stands; overturns first at 1.50 times this motion; at 2.90 times it a corner is destroyed.",
         ),
         (
             {"factor_without_links": 2.0, "without_links_tried_to": 4.0},
@@ -243,3 +248,11 @@ def test_the_sentence_says_what_was_tried(changes, outcome, words):
 def test_the_margin_is_written_and_read():
     margin = replace(MARGIN, islands=((1.6, 1.7),))
     assert Verdict.from_json(Verdict(margin=margin).to_json()).margin == margin
+
+
+def test_a_corner_that_a_stronger_motion_destroys_is_named():
+    # On the end of its wall the plateau stack crushes 9 mm of the floor; a tenth stronger it is more than 10.
+    changes = ("solver.model=rigid", "solver.duration_s=10", "floor.corner_patch_m=[0.008, 1.1]")
+    margin = fem.compute(fem.load_case("seed_stack_plateau", changes), band=False, margin=True).verdict.margin
+    assert 1.0 < margin.destroyed_from < 2.0
+    assert margin.largest_tried < margin.destroyed_from or margin.factor is not None
