@@ -312,6 +312,11 @@ def _check(request: SiteRequest) -> None:
             f"container: {differs} is not verified at a site, whose rules are those of equal boxes that move as one "
             "body; take bolted boxes, or run the motions one by one"
         )
+    if request.container.links:
+        raise CaseError(
+            "container: [[stop]] and [[tie]] are not verified at a site, whose second component, rigid bound and "
+            "simplified methods know a container that nothing holds; leave them out, or run the motions one by one"
+        )
     _ = request.action, request.variants, request.wind_pressure, request.hazard_curve
     if request.heading.empty_centroid_m is not None and request.heading.empty_mass_kg is None:
         raise CaseError("empty_centroid_m has no effect without empty_mass_kg")

@@ -61,6 +61,22 @@ def test_frictions_are_the_corners_of_the_ranges_and_their_middle(tmp_path):
     assert one.frictions == [(0.3, 0.3)]
 
 
+@pytest.mark.parametrize(
+    "link",
+    [
+        '[[stop]]\nside = "right"\nheight_m = 0.1\ngap_m = 0.05\nstiffness_N_m = 1e8',
+        '[[tie]]\nfrom = "left"\nheight_m = 0.5\nstiffness_N_m = 1e6',
+    ],
+)
+def test_a_container_that_something_holds_is_refused(tmp_path, link):
+    (tmp_path / "box.toml").write_text(
+        "[container]\nwidth_m = 1.1\nheight_m = 2.0\nmass_kg = 3000.0\n[contact]\nmu_static = 0.4\n"
+        f'[motion]\nkind = "none"\n{link}\n'
+    )
+    with pytest.raises(CaseError, match=r"\[\[stop\]\] and \[\[tie\]\] are not verified at a site"):
+        request(tmp_path, ('"seed_stack"', '"box.toml"'))
+
+
 def test_both_elevations_are_run_where_width_and_depth_differ(tmp_path):
     (tmp_path / "box.toml").write_text(
         "[container]\nwidth_m = 1.1\ndepth_m = 2.2\nheight_m = 2.0\nmass_kg = 3000.0\n[contact]\nmu_static = 0.4\n"
