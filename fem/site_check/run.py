@@ -118,6 +118,8 @@ def site_hash(request: SiteRequest, ground: Sequence[GroundMotion]) -> str:
     for motion in ground:
         for component in motion.components:
             digest.update(component.tobytes())
+    if (curve := request.hazard_curve) is not None:  # of its file the request has the name alone
+        digest.update(curve.measure.encode() + curve.strengths.tobytes() + curve.rates.tobytes())
     return hash_of([data, case_hash(request.container), digest.hexdigest()])
 
 
