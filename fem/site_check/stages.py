@@ -139,7 +139,7 @@ class Stages:
         if self.request.hazard is None or runner.stop() or not own:
             return
         groups = groups_of(own)
-        floor = self.floors[rocking_most(groups).first.building_period_s]
+        floor = self.floors[rocking_most(groups, bodies).first.building_period_s]
         keys = hazard_runs(groups, bodies, floor, self.request.hazard.motions)
         self._make(runner, keys)
         if not runner.stop():

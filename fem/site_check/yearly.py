@@ -59,7 +59,7 @@ def hazard_runs(
         groups: of the set; bodies: of all containers; floor: motions of the set on the floor of that group's building.
         motions: at each level, half of them with the vertical reversed.
     """
-    first = rocking_most(groups).first
+    first = rocking_most(groups, bodies).first
     body = _body_of(bodies, first)
     begin = rocks_from(body, floor) / KEPT
     signs = (1, -1) if first.vertical_sign else (0,)
@@ -79,16 +79,19 @@ def _body_of(bodies: Sequence[SiteBody], run: SiteRun) -> SiteBody:
     return next(one for one in bodies if (one.mass, one.elevation) == (run.mass, run.elevation))
 
 
-def rocking_most(groups: Sequence[RunGroup]) -> RunGroup:
-    """The group of the largest rotation; where nothing rocks, that of the highest friction."""
-    return max(
-        groups,
-        key=lambda group: (
-            group.by_rule.rotation_ratio_largest or 0.0,
-            group.first.mu_static,
-            group.first.mu_kinetic,
-        ),
-    )
+def rocking_most(groups: Sequence[RunGroup], bodies: Sequence[SiteBody]) -> RunGroup:
+    """The group in which most runs do not stand, then of the largest rotation.
+
+    Where nothing rocks, that of the most slender body with the highest friction.
+    """
+
+    def rocking(group: RunGroup) -> tuple[float, ...]:
+        first = group.first
+        fell, turned = group.overturned + group.invalid, max(run.turned for run in group.runs)
+        slender = -_body_of(bodies, first).slenderness_angle_rad
+        return fell, turned, slender, first.mu_static, first.mu_kinetic
+
+    return max(groups, key=rocking)
 
 
 def annual_rates(

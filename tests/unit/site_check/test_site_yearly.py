@@ -13,6 +13,7 @@ from fem.seismic.ground_motion import GroundMotion
 from fem.seismic.hazard import HazardCurve, counted_rate
 from fem.site_check.file import load_site
 from fem.site_check.rule import groups_of
+from fem.site_check.run import site_hash
 from fem.site_check.runs import HAZARD, key_of
 from fem.site_check.site_page import rates_in_words
 from fem.site_check.yearly import (
@@ -85,6 +86,17 @@ def test_the_hazard_is_that_of_its_points_or_of_a_file(tmp_path):
     (tmp_path / "curve.csv").write_text("velocity_m_s,rate_per_year\n0.1,1e-2\n0.6,1e-4\n")
     read = request(tmp_path, 'file = "curve.csv"').hazard_curve
     assert (read.measure, read.rate(0.6)) == ("velocity_m_s", pytest.approx(1e-4))
+
+
+def test_another_curve_under_the_same_name_of_its_file_is_another_verification(tmp_path):
+    def asked(text):
+        (tmp_path / "curve.csv").write_text(text)
+        return site_hash(request(tmp_path, 'file = "curve.csv"'), [])
+
+    curve = "velocity_m_s,rate_per_year\n0.1,1e-2\n0.6,1e-4\n"
+    assert asked(curve) == asked(curve)
+    changed = [curve.replace("0.6", "0.7"), curve.replace("1e-4", "2e-4")]
+    assert len({asked(one) for one in (curve, *changed)}) == 3
 
 
 @pytest.mark.parametrize(
@@ -163,6 +175,24 @@ def test_every_level_has_motions_of_its_own(tmp_path):
     assert hazard_motions(request(tmp_path)) == len(keys)
     assert (levels[0], levels[-1]) == pytest.approx((1.15 * uplift, 5.5 * uplift), rel=1e-3)
     assert sum(key.vertical_sign for key in keys) == 0  # half of them with the vertical reversed
+
+
+@pytest.mark.parametrize("outcome", ["overturned", "invalid"])
+def test_the_levels_are_run_for_the_group_that_falls(outcome):
+    milder = [replace(RUN, motion=k, rotation_ratio=0.6) for k in (1, 2)]
+    falls = [replace(RUN, mu_static=0.3, motion=1, outcome=outcome, rotation_ratio=None)]
+    keys = hazard_runs(groups_of([*milder, *falls]), [BODY], [push(1.0)], 2)
+    assert {key.mu_static for key in keys} == {0.3}
+
+
+def test_where_nothing_rocks_the_levels_are_run_for_the_most_slender_body():
+    runs = [
+        replace(RUN, elevation=side, outcome="rest", rotation_ratio=0.0, mu_static=mu)
+        for side, mu in (("width", 0.4), ("depth", 0.3), ("depth", 0.35))
+    ]
+    narrow = replace(BODY, elevation="depth", slenderness_angle_rad=0.5 * BODY.slenderness_angle_rad)
+    keys = hazard_runs(groups_of(runs), [BODY, narrow], [push(1.0)], 2)
+    assert {(key.elevation, key.mu_static) for key in keys} == {("depth", 0.35)}
 
 
 def test_slip_beyond_the_limit_counts_in_the_plane_and_in_both_directions(tmp_path):
