@@ -114,8 +114,9 @@ def weakest_first(
 ) -> list[int]:
     """The containers in the order of their weakness.
 
-    What overturned comes first, then what has no outcome, then what stood; within these what has a margin before what
-    has none, by the margin; then by rotation or, where nothing rocks, by the static rule; then by slip.
+    What overturned comes first, then what destroyed a corner, then what has no outcome, then what stood; within these
+    what has a margin before what has none, by the margin; then by rotation or, where nothing rocks, by the static
+    rule; then by slip.
     """
 
     def place(number: int) -> tuple[float, ...]:
@@ -123,7 +124,7 @@ def weakest_first(
         order, _, slip = run.weakness
         check = runs.checked.get(number, {}) if margins else {}
         margin = number_in(check.get("margin", "")) or number_in(check.get("margin_tried_to", ""))
-        turned = -run.ratio if run.ratio > ROCKS and order == 2 else 0.0
+        turned = -run.ratio if run.ratio > ROCKS and run.ending == Ending.STANDING else 0.0
         known = margin is None, margin or 0.0
         return order, *known, turned, -(static[number][STATIC[1]] or 0.0), slip, number
 

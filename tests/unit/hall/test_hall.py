@@ -9,10 +9,12 @@ import shlex
 import pytest
 
 from fem.__main__ import main
+from fem.batch.log import line_of
 from fem.batch.shard import Shard
 from fem.case.case import load_case
 from fem.case.validation import CaseError
 from fem.hall.file import read_hall
+from fem.hall.found import RUN_COLUMNS, HallRuns, weakest_first
 from fem.hall.places import UNKNOWN, class_of, plan_of
 from fem.hall.run import run_hall
 from fem.hall.site import run_hall_at_site
@@ -150,6 +152,25 @@ def test_every_container_is_verified_at_a_site_as_by_assess(tmp_path, base, monk
     listed(tmp_path, "name,motion.scale\na,2\n", "moved.csv")
     assert main(["batch", "moved.csv", "--site", "site.toml"]) == 2
     assert "'motion.scale' has no effect at a site" in capsys.readouterr().err
+
+
+def test_of_what_stands_the_larger_rotation_is_weaker_and_what_does_not_rock_follows_the_static_rule():
+    runs, static = HallRuns(hall=None), {}
+    for container, (outcome, ratio, use) in enumerate(
+        [
+            ("rest", 0.001, 0.8),
+            ("rock", 0.02, 1.2),
+            ("rest", 0.005, 0.9),
+            ("rock", 0.95, 1.1),
+            ("invalid", 0.3, 1.0),
+            ("overturned", 1.0, 1.0),
+        ]
+    ):
+        status = "overturned" if outcome == "overturned" else "completed"
+        fields = {"status": status, "outcome": outcome, "rotation_ratio": ratio, "max_slip_m": 0.0}
+        runs.note(line_of({"container": container, "motion": 0, **fields}.get(name) for name in RUN_COLUMNS))
+        static[container] = {"utilisation_overturning": use}
+    assert weakest_first(runs, static) == [5, 4, 3, 1, 2, 0]
 
 
 def test_equal_rows_are_computed_once_and_labels_cost_nothing(tmp_path, base):
