@@ -87,6 +87,11 @@ class HallRuns:
         runs = self.found[container]
         return min(sorted(runs), key=lambda motion: runs[motion].weakness)
 
+    def counts(self, container: int) -> tuple[int, ...]:
+        """How many motions overturn a container, destroy a corner of it, have no outcome."""
+        endings = [run.ending for run in self.found[container].values()]
+        return tuple(map(endings.count, (Ending.OVERTURNED, Ending.INVALID, Ending.FAILED)))
+
     def to_check(self, wanted: str, order: Sequence[int]) -> list[HallItem]:
         """The governing runs that are to be repeated, those that were not yet.
 

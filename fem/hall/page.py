@@ -129,7 +129,8 @@ def found_section(info: HallResult) -> html.PageSection:
         count += " No run was repeated: nothing is known of sureness and margins."
     outcomes = ", ".join(f"{word}: {number}" for word, number in info.outcomes.items())
     note = "A container under several motions has the outcome of the one that does worst, the governing motion: one "
-    note += "that overturns it, else the largest rotation. The margin under another motion may be less."
+    note += "that overturns it, else one that destroys a corner, else the largest rotation. The margin under another "
+    note += "motion may be less."
     return studies.answer_section(
         info,
         info.answer,
@@ -180,6 +181,9 @@ def weakest_table(rows: list[dict[str, Any]], most: int, *, linked: bool) -> htm
         html.Column("utilisation", _utilisation, html.NUMBER, optional=True),
         html.Column("motion", lambda row: row["motion"] or "", optional=True),
         html.Column("runs overturned", _share, html.NUMBER, optional=True),
+        html.Column(
+            "runs not valid", lambda row: str(row["motions_invalid"] or ""), html.NUMBER, optional=True
+        ),
     ]
     return html.table_of(
         "containers",

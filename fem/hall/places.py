@@ -18,13 +18,15 @@ from fem.figures.style import (
     svg_of,
 )
 from fem.hall.result import RESULT_COLUMNS, HallResult
+from fem.results.outcome import ENDINGS, Outcome
 
 PICTURE = "figures/hall.svg"
 EARTH_RADIUS_M = 6.371e6
 MOST_NAMED = 8  #: of the weakest, in the picture
 #: classes from the weakest, what they are called, colour and mark; margins up to the number, above the one before
-OVERTURNED, NONE, UNKNOWN, BEYOND = (
+OVERTURNED, INVALID, NONE, UNKNOWN, BEYOND = (
     "overturned",
+    "corner destroyed, not valid",
     "no outcome",
     "stood, margin not sought",
     "stood, margin above 3",
@@ -32,6 +34,7 @@ OVERTURNED, NONE, UNKNOWN, BEYOND = (
 MARGINS = ((1.5, VERMILLION, "s"), (2.0, ORANGE, "s"), (3.0, SKY, "o"))
 LOOKS = {
     OVERTURNED: (BLACK, "s"),
+    INVALID: (BLACK, "D"),
     NONE: (BLACK, "x"),
     **{f"stood, margin up to {limit:g}": (colour, mark) for limit, colour, mark in MARGINS},
     BEYOND: (BLUE, "o"),
@@ -59,8 +62,8 @@ def class_of(row: Mapping[str, Any]) -> str:
     """The class of a row in the picture."""
     if row["outcome"] is None:
         return NONE
-    if row["outcome"] == "overturned":
-        return OVERTURNED
+    if row["outcome"] in ENDINGS:
+        return OVERTURNED if row["outcome"] == Outcome.OVERTURNED else INVALID
     margin = row["margin"] or row["margin_tried_to"]
     if margin is None:
         return UNKNOWN

@@ -14,7 +14,10 @@ OF_A_RUN = ("status", *SCALARS, *BOXES, "reason")
 CHECKED = ("sure", "decided_by", "margin", "margin_low", "margin_high", "margin_tried_to")
 STATIC = ("utilisation_sliding", "utilisation_overturning")
 #: of a container under several motions
-OF_MOTIONS = ("motion", "motions_overturned", "motions_failed", "largest_slip_m", "largest_slip_motion")
+OF_MOTIONS = (
+    *("motion", "motions_overturned", "motions_invalid", "motions_failed"),
+    *("largest_slip_m", "largest_slip_motion"),
+)
 #: of a container at a site, by the rule of `assess`
 AT_SITE = ("answer", "reasons", "factor_at_first_overturning", "page")
 FIRST = ("status", "reason", "outcome", *CHECKED[:3], "rotation_ratio", "max_slip_m", "tilt_rad")
@@ -30,7 +33,7 @@ class TagCount(JsonBlock):
 
     tag: str
     containers: int  #: rows times their counts
-    counts: dict[str, int]  #: stood, overturned, failed, refused; at a site by answer
+    counts: dict[str, int]  #: stood, overturned, invalid, failed, refused; at a site by answer
     margin: float | None = None  #: the least that was found
 
 

@@ -192,8 +192,7 @@ def _shown(runs: HallRuns, container: int) -> dict[str, Any]:
     found: dict[str, Any] = {name: fields[name] for name in OF_A_RUN} | dict(runs.checked.get(container, {}))
     if names := [pair.name for pair in runs.hall.motions]:
         slipped = max(sorted(some), key=lambda one: some[one].slip)
-        endings = [run.ending for run in some.values()]
-        counts = endings.count(Ending.OVERTURNED), endings.count(Ending.FAILED)
+        counts = runs.counts(container)
         found |= dict(
             zip(OF_MOTIONS, (names[motion], *counts, some[slipped].slip, names[slipped]), strict=True)
         )

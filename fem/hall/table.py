@@ -9,7 +9,7 @@ from fem.hall.file import HallFile, HallRow
 from fem.hall.plan import Looked
 from fem.hall.result import REFUSED, RESULT_COLUMNS, HallResult, TagCount
 
-WHOLE = frozenset({"impacts", "fell_box", "motions_overturned", "motions_failed"})
+WHOLE = frozenset({"impacts", "fell_box", "motions_overturned", "motions_invalid", "motions_failed"})
 TEXTS = frozenset(
     {
         "status",

@@ -5,6 +5,7 @@ import io
 import json
 import re
 import shlex
+from dataclasses import replace
 
 import pytest
 
@@ -15,7 +16,7 @@ from fem.case.case import load_case
 from fem.case.validation import CaseError
 from fem.hall.file import read_hall
 from fem.hall.found import RUN_COLUMNS, HallRuns, weakest_first
-from fem.hall.places import UNKNOWN, class_of, plan_of
+from fem.hall.places import INVALID, UNKNOWN, class_of, draw_places, plan_of
 from fem.hall.run import run_hall
 from fem.hall.site import run_hall_at_site
 from fem.results.figures import SCALARS
@@ -154,6 +155,20 @@ def test_every_container_is_verified_at_a_site_as_by_assess(tmp_path, base, monk
     assert "'motion.scale' has no effect at a site" in capsys.readouterr().err
 
 
+def noted(runs, container, motion, outcome, ratio):
+    status = "overturned" if outcome == "overturned" else "completed" if outcome else "failed"
+    fields = {"container": container, "motion": motion, "status": status, "outcome": outcome}
+    fields |= {"rotation_ratio": ratio, "max_slip_m": 0.0}
+    runs.note(line_of(fields.get(name) for name in RUN_COLUMNS))
+
+
+def test_motions_that_destroy_a_corner_are_counted_by_themselves_and_are_worse_than_those_without_an_outcome():
+    runs = HallRuns(hall=None)
+    for motion, outcome in enumerate(["rock", "", "invalid", "", "invalid", ""]):
+        noted(runs, 0, motion, outcome, 0.3)
+    assert (runs.counts(0), runs.governing(0)) == ((0, 2, 3), 2)
+
+
 def test_of_what_stands_the_larger_rotation_is_weaker_and_what_does_not_rock_follows_the_static_rule():
     runs, static = HallRuns(hall=None), {}
     for container, (outcome, ratio, use) in enumerate(
@@ -166,9 +181,7 @@ def test_of_what_stands_the_larger_rotation_is_weaker_and_what_does_not_rock_fol
             ("overturned", 1.0, 1.0),
         ]
     ):
-        status = "overturned" if outcome == "overturned" else "completed"
-        fields = {"status": status, "outcome": outcome, "rotation_ratio": ratio, "max_slip_m": 0.0}
-        runs.note(line_of({"container": container, "motion": 0, **fields}.get(name) for name in RUN_COLUMNS))
+        noted(runs, container, 0, outcome, ratio)
         static[container] = {"utilisation_overturning": use}
     assert weakest_first(runs, static) == [5, 4, 3, 1, 2, 0]
 
@@ -325,6 +338,9 @@ def test_places_are_drawn_in_plan_and_written_as_geojson(tmp_path, base):
     east = [x for x, _, _ in plan_of(result)]
     assert east[1] - east[0] == pytest.approx(0.01 * 111.19e3 * 0.6561, rel=1e-3)  # cos 49 degrees
     assert [class_of(row) for row in result.table] == ["overturned", UNKNOWN, "no outcome", UNKNOWN]
+    destroyed = result.table[1] | {"outcome": "invalid"}
+    assert class_of(destroyed) == INVALID
+    assert INVALID in draw_places(replace(result, table=(result.table[0], destroyed)))
     drawn = (out / "figures" / "hall.svg").read_text(encoding="utf-8")
     assert "=A$x_" in drawn and "east of the middle" in drawn
     assert 'id="plan"' in (out / "report.html").read_text(encoding="utf-8")
