@@ -24,7 +24,8 @@ class Beside:
 
     confirmed: Sequence[result.ConfirmedRun] = ()  #: the deciding runs, repeated
     wind: float | None = None  #: utilisation under wind; None: it was not asked for
-    two_directions: result.TwoDirections | None = None  #: None: the motions have no second component
+    two_directions: result.TwoDirections | None = None  #: None: not asked for, or not known
+    in_plane_only: str = ""  #: why the slip in two directions, which was asked for, is not known, in words
     hazard: result.AnnualRates | None = None  #: None: no hazard was given
     still: int = 0  #: runs that the rigid bound made superfluous
     moves_at: float | None = None  #: factor on the motions at which a rigid body first uplifts or slips
@@ -66,6 +67,8 @@ def answer_of(
     slip = beside.two_directions
     if slip is not None:
         against += two_directions_reasons(slip, limits.slip_m)
+    if beside.in_plane_only:
+        against.append(Reason(NOT_SURE, beside.in_plane_only))
     if not request.motions.further and not beside.left_out:
         against.append(Reason(NOT_SURE, NO_FURTHER))
     if beside.left_out:

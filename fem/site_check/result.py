@@ -307,7 +307,8 @@ class SiteAnswer(ByRule):
         None  #: at which a rigid body first uplifts or slips; None: not known
     )
     hazard: AnnualRates | None = None  #: None: no hazard was given
-    two_directions: TwoDirections | None = None  #: None: the motions have no second component
+    #: None: motions.second_component = 0, or not known on a sloping floor or for motions without that component
+    two_directions: TwoDirections | None = None
     rule_range: RuleRange | None = None
     scan: tuple[ScanPoint, ...] = ()
     further: tuple[FurtherMotions, ...] = ()

@@ -22,6 +22,15 @@ from fem.site_check.yearly import annual_rates, hazard_motions, hazard_runs, roc
 
 #: numbers of the artificial motions beyond the set begin behind those of any set
 FIRST_FURTHER, FIRST_OF_HAZARD = 10_000, 100_000
+#: why the slip in two directions is not known
+ON_A_SLOPE = (
+    "Slip under both horizontal components at once is not computed on a sloping floor: how far it slides there is not "
+    "known."
+)
+NO_SECOND = (
+    "The motions have no second horizontal component: how far it slides under both at once is not known (records: the "
+    "third file of each)."
+)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -164,12 +173,23 @@ class Stages:
             confirmed=confirmed,
             wind=wind,
             two_directions=slid,
+            in_plane_only=self._in_plane_only,
             hazard=annual_rates(
                 self.request, self.rows.in_order(), self.screening.motions, bodies, slid, peak_velocity
             ),
             still=sum(key.stage == SET for key in self.rows.still),
             moves_at=self.first_movement,
         )
+
+    @property
+    def _in_plane_only(self) -> str:
+        """Why the slip in two directions, which was asked for, is not known, in words; empty: it is."""
+        if not self.request.motions.second_component:
+            return ""
+        if self.request.container.floor.slope_percent:
+            return ON_A_SLOPE
+        lacking = any(motion.second is None for floor in self.floors.values() for motion in floor)
+        return NO_SECOND if lacking else ""
 
     def _two_directions(self) -> TwoDirections | None:
         """How far the container slides in both directions if it does not rock; None where that is not known.

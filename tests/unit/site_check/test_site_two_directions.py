@@ -1,8 +1,12 @@
 """Slip under both horizontal components: from the motions of a site to its answer."""
 
+from dataclasses import replace
+
 import pytest
+from site_example import RUN, example
 
 from fem.seismic.two_directions import slip_in_two_directions
+from fem.site_check.answer import answer_of
 from fem.site_check.file import load_site
 from fem.site_check.motions import floor_motions, ground_motions
 from fem.site_check.stages import Stages
@@ -25,13 +29,18 @@ slip_m = {limit}
 
 def slid(folder, *, limit=0.2, motions="", building="", container=""):
     """What stages find, and the motions of the floors."""
+    stages = stages_of(folder, limit=limit, motions=motions, building=building, container=container)
+    return stages.beside([], None).two_directions, stages.floors
+
+
+def stages_of(folder, *, limit=0.2, motions="", building="", container=""):
     place = folder / "hall.toml"
     place.write_text(SITE.format(limit=limit, motions=motions, building=building))
     request = load_site(place)
     for key, value in dict(part.split("=") for part in container.split()).items():
         request = request.with_value(key, float(value))
     floors = floor_motions(request, ground_motions(request, 4.0))
-    return Stages.of(request, floors, longest=4.0, folder=folder).beside([], None).two_directions, floors
+    return Stages.of(request, floors, longest=4.0, folder=folder)
 
 
 def test_the_largest_slip_of_the_set_is_found_with_its_friction_and_motion(tmp_path):
@@ -65,3 +74,31 @@ def test_of_the_periods_of_a_building_the_worst_counts(tmp_path):
 )
 def test_without_a_second_component_or_on_a_slope_it_is_not_known(tmp_path, motions, container):
     assert slid(tmp_path, motions=motions, container=container)[0] is None
+
+
+def answer_beside(stages):
+    """The answer where all runs of the set stand, and nothing else is asked for."""
+    run = replace(RUN, mass="full", rotation_ratio=0.0, max_slip_m=0.0, outcome="rest")
+    runs = {key: replace(run, **key._asdict()) for key in stages.plan.of_set()}
+    return answer_of(stages.request, example()[0].set, runs, stages.beside([], None))
+
+
+@pytest.mark.parametrize(
+    ("motions", "container", "words"),
+    [
+        ("", "floor.slope_percent=2", "is not computed on a sloping floor"),
+        ("second_component = 0.0", "motions.second_component=1", "have no second horizontal component"),
+        ("second_component = 0.0", "", ""),
+        ("second_component = 0.0", "floor.slope_percent=2", ""),
+        ("", "", ""),
+    ],
+)
+def test_slip_in_two_directions_that_is_not_known_is_not_sure(tmp_path, motions, container, words):
+    """Unless `second_component` = 0 asks for motion in a plane."""
+    stages = stages_of(tmp_path, limit=5.0, motions=motions)
+    for key, value in dict(part.split("=") for part in container.split()).items():
+        stages = replace(stages, request=stages.request.with_value(key, float(value)))
+    found = answer_beside(stages)
+    told = [reason for reason in found.reasons if "horizontal component" in reason]
+    assert len(told) == bool(words) and all(words in reason for reason in told)
+    assert found.answer == ("not sure" if words else "fulfilled")
