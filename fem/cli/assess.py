@@ -71,7 +71,11 @@ def page_of(result: "SiteResult", folder: Path) -> Iterator[str]:
         f"target {motions.least_ratio:.2f} at {motions.least_ratio_period_s:.2g} s, largest correlation "
         f"{motions.largest_correlation:.2f}: {'valid' if motions.valid else 'not valid'}"
     )
-    yield f"  runs       {answer.runs}, {answer.overturned} overturned"
+
+    def destroyed(count: int) -> str:
+        return f", {count} destroyed a corner" if count else ""
+
+    yield f"  runs       {answer.runs}, {answer.overturned} overturned{destroyed(answer.invalid)}"
     for one in answer.actions:
         used = "" if one.utilisation is None else f", utilisation {one.utilisation:.3g}"
         yield f"  {one.name:<10} {one.answer or 'no answer'}{used}"
@@ -86,8 +90,9 @@ def page_of(result: "SiteResult", folder: Path) -> Iterator[str]:
         )
     for further in answer.further:
         yield (
-            f"  further    {further.overturned} of {further.motions} motions overturn it, {further.beyond_limits} go "
-            f"beyond a limit of one motion ({further.mass}, friction {further.mu_static:.3g}/{further.mu_kinetic:.3g})"
+            f"  further    {further.overturned} of {further.motions} motions overturn it{destroyed(further.invalid)}, "
+            f"{further.beyond_limits} go beyond a limit of one motion ({further.mass}, friction "
+            f"{further.mu_static:.3g}/{further.mu_kinetic:.3g})"
         )
     yield f"  rule       {answer.rule}"
     yield f"  files      {folder}"

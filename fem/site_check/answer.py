@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from fem.results.outcome import Outcome
+from fem.results.outcome import ENDINGS, Outcome
 from fem.runtime.intervals import binomial_interval
 from fem.runtime.units import RATIO, SHORT_MILLIMETRES
 from fem.site_check import result
@@ -95,6 +95,7 @@ def answer_of(
         rule=rule,
         sentence=_sentence(request, answer, found, against, slip, runs=len(own)),
         overturned=found.overturned,
+        invalid=found.invalid,
         runs=len(own),
         still=beside.still,
         **vars(found.by_rule),
@@ -165,13 +166,14 @@ def no_answer_yet(
         rule=rule_in_words(motions.count, request.limits),
         sentence=f"No answer yet: {missing}.",
         overturned=sum(run.outcome == Outcome.OVERTURNED for run in own),
+        invalid=sum(run.outcome == Outcome.INVALID for run in own),
         runs=len(own),
     )
 
 
 def governing_run(request: SiteRequest, runs: Sequence[result.SiteRun]) -> result.SiteRun | None:
-    """The run that decides: one that overturned, else the largest of the group that uses most of a limit."""
-    fell = [run for run in runs if run.outcome == Outcome.OVERTURNED]
+    """The run that decides: one that did not stand, else the largest of the group that uses most of a limit."""
+    fell = [run for run in runs if run.outcome in ENDINGS]
     if fell:
         counts = {id(run): sum(len(groups_of((run, other))) == 1 for other in fell) for run in fell}
         return max(fell, key=lambda run: counts[id(run)])
@@ -291,6 +293,7 @@ def _scan(runs: Mapping[RunKey, result.SiteRun]) -> tuple[result.ScanPoint, ...]
                 factor=factor,
                 runs=len(by_factor[factor]),
                 overturned=found.overturned,
+                invalid=found.invalid,
                 **vars(found.by_rule),
             )
         )

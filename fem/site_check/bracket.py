@@ -48,6 +48,7 @@ class SizePoint(ByRule):
     answer: str | None = None  #: fulfilled | not fulfilled | not sure
     fulfilled: bool | None = None
     overturned: int
+    invalid: int = 0  #: runs that destroyed a corner, which do not count as standing
     runs: int
     fails: str = ""  #: why it is not fulfilled, in words
 
@@ -209,6 +210,7 @@ def _point(value: float, answer: SiteAnswer) -> SizePoint:
         answer=answer.answer,
         fulfilled=answer.fulfilled,
         overturned=answer.overturned,
+        invalid=answer.invalid,
         runs=answer.runs,
         **{one.name: answer[one.name] for one in fields(ByRule)},
         fails=_reason(answer),
@@ -224,6 +226,8 @@ def _reason(answer: SiteAnswer) -> str:
         return "it is not sure"
     if answer.overturned:
         return "it overturns"
+    if answer.invalid:
+        return "a corner is destroyed"
     names = [LIMITS_IN_WORDS[key] for key in answer.exceeded]
     if not names:
         return "the wind moves it"

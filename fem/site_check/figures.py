@@ -180,7 +180,7 @@ def _over(
     points: Sequence[result.ScanPoint] | Sequence[SizePoint],
     inputs: result.SiteInputs,
 ) -> tuple[Figure, list[Axes]]:
-    """Three panels over a value: rotation ratio and slip with their limits, and the share that overturned."""
+    """Three panels over a value: rotation ratio and slip with their limits, and the share that did not stand."""
     values = [point.factor if isinstance(point, result.ScanPoint) else point.value for point in points]
     figure, (tilt, slip, fell) = style.panels([1.3, 1.1, 0.9], gaps=[0.12, 0.12], header=3)
     style.head(figure, title, statement)
@@ -189,10 +189,10 @@ def _over(
     slips = [None if point.slip_m is None else 1e3 * point.slip_m for point in points]
     _limited(slip, values, slips, 1e3 * inputs.slip_limit_m)
     slip.set_ylabel("slip in plane [mm]")
-    share = [100.0 * point.overturned / max(point.runs, 1) for point in points]
+    share = [100.0 * (point.overturned + point.invalid) / max(point.runs, 1) for point in points]
     fell.vlines(values, 0.0, share, color=style.VERMILLION, linewidth=3.0)
     fell.plot(values, share, color=style.VERMILLION, marker="o", markersize=3.0, linestyle="none")
-    fell.set_ylabel("overturned [%]")
+    fell.set_ylabel("not standing [%]" if any(point.invalid for point in points) else "overturned [%]")
     fell.set_ylim(-3.0, max(10.0, 1.1 * max(share, default=0.0)))
     fell.set_xlabel(label)
     for panel in (tilt, slip):

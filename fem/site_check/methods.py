@@ -16,6 +16,7 @@ from fem.seismic.body import FloorAction, Limits, LooseBody
 from fem.seismic.method import MethodQuantity, MethodRow, SourceStanding, length_in_words
 from fem.seismic.methods import method_capacities, method_rows, methods_of
 from fem.seismic.wind import wind_rows
+from fem.site_check.reasons import destroyed
 from fem.site_check.result import FloorResult, SiteBody, SiteInputs, SiteMethod, SiteMotion, SiteRun
 from fem.site_check.rule import RuleFound, groups_of
 from fem.site_check.tables import LimitsTable
@@ -180,13 +181,13 @@ def found_by_runs(row: MethodRow, runs: Sequence[SiteRun], *, width: float, limi
 
 def _overturning(row: MethodRow, done: Sequence[SiteRun], limits: LimitsTable) -> Found:
     found = RuleFound.of(groups_of(done))
-    words = f"{found.overturned or 'none'} of {len(done)} overturned"
+    words = f"{found.overturned or 'none'} of {len(done)} overturned{destroyed(found.invalid)}"
     turned, largest = found.by_rule.rotation_ratio, found.by_rule.rotation_ratio_largest
     if turned is not None and largest is not None:
         words += f"; by the rule {turned:.2g} of the angle" if largest > ROCKING else "; none rocks"
         if largest > ROCKING and largest > turned:
             words += f", at most {largest:.2g}"
-    failed = found.overturned > 0 or bool({*found.exceeded(limits)} - {"slip_m"})
+    failed = found.overturned + found.invalid > 0 or bool({*found.exceeded(limits)} - {"slip_m"})
     return Found(words=words, compared=_compared(refused=not row.fulfilled, failed=failed))
 
 

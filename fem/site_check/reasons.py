@@ -122,7 +122,7 @@ class Evidence:
         """What the elastic model and the unknown inputs make of the deciding runs."""
         again = self.confirmed
         failed = sum(one.outcome is None for one in again)
-        destroyed = sum(Outcome.INVALID in (one.outcome, *one.outcomes) for one in again)
+        invalid = sum(Outcome.INVALID in (one.outcome, *one.outcomes) for one in again)
         fell = sum(Outcome.OVERTURNED in (one.outcome, *one.outcomes) for one in again)
         beyond = sum(
             one.turned > self.limits.single_rotation_ratio or one.slipped > self.limits.slip_m
@@ -136,8 +136,8 @@ class Evidence:
                 NOT_SURE,
                 f"In a deciding run the bolts carry {bolts:.2g} of their capacity: the stack does not stay one body.",
             )
-        if destroyed:
-            yield Reason(NOT_SURE, f"{destroyed} of {len(again)} {words} can destroy a corner.")
+        if invalid:
+            yield Reason(NOT_SURE, f"{invalid} of {len(again)} {words} can destroy a corner.")
         if fell:
             yield Reason(NOT_SURE, f"{fell} of {len(again)} {words} can overturn.")
         elif beyond and not self.rule.fails(self.limits):
@@ -155,13 +155,13 @@ def against(one: FurtherMotions) -> Iterator[Reason]:
     per_cent = f"{100.0 * MOST_OVERTURNING:g} %"
     beyond = f"{one.beyond_limits} went beyond a limit of a single motion"
     least_beyond, _ = binomial_interval(one.beyond_limits, one.motions, CONFIDENCE)
-    destroyed = f", {one.invalid} destroyed a corner" if one.invalid else ""
     if one.overturned + one.invalid and one.interval[1] > MOST_OVERTURNING:
         low, high = (plain_number(100.0 * end, FIGURES) for end in one.interval)
         yield Reason(
             NOT_SURE,
-            f"{one.overturned} of {one.motions} further motions overturned it{destroyed} and {beyond} ({where(one)}): "
-            f"under {low} to {high} % of such motions it does not stand, which may be more than {per_cent}.",
+            f"{one.overturned} of {one.motions} further motions overturned it{destroyed(one.invalid)} and {beyond} "
+            f"({where(one)}): under {low} to {high} % of such motions it does not stand, which may be more than "
+            f"{per_cent}.",
         )
     elif least_beyond > MOST_OVERTURNING:
         yield Reason(
@@ -174,6 +174,11 @@ def against(one: FurtherMotions) -> Iterator[Reason]:
             f"{one.motions} further motions cannot show that at most {per_cent} overturn it: at least "
             f"{least_draws(MOST_OVERTURNING, CONFIDENCE)} can.",
         )
+
+
+def destroyed(count: int) -> str:
+    """What follows the count of those that overturned: how many did not stand otherwise."""
+    return f", {count} destroyed a corner" if count else ""
 
 
 def where(run: SiteRun | FurtherMotions) -> str:

@@ -178,6 +178,7 @@ class ScanPoint(ByRule):
     factor: float
     runs: int
     overturned: int
+    invalid: int = 0  #: runs that destroyed a corner, which do not count as standing
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -294,6 +295,7 @@ class SiteAnswer(ByRule):
     rule: str
     sentence: str
     overturned: int
+    invalid: int = 0  #: runs that destroyed a corner, which do not count as standing
     runs: int
     still: int = 0  #: runs below uplift and slip by the rigid bound, which were not computed
     exceeded: tuple[str, ...] = ()  #: keys of the limits that the set exceeds

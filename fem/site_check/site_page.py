@@ -21,7 +21,7 @@ from fem.seismic.hazard import ACCELERATION
 from fem.site_check import site_sections
 from fem.site_check.answer import FULFILLED
 from fem.site_check.figures import draw_motion, draw_spectra
-from fem.site_check.reasons import NOT_FULFILLED, unit_of
+from fem.site_check.reasons import NOT_FULFILLED, destroyed, unit_of
 from fem.site_check.reasons import span as span_in_words
 from fem.site_check.result import (
     RESULT_FILE,
@@ -173,17 +173,18 @@ def beside_the_set(result: SiteResult) -> list[str]:
     if answer.two_directions:
         words.append(two_directions_in_words(answer.two_directions))
     if known := [one for one in answer.further if one.motions]:
-        worst = max(known, key=lambda one: (one.overturned, one.beyond_limits))
+        worst = max(known, key=lambda one: (one.overturned + one.invalid, one.beyond_limits))
         low, high = (short(end, 100, 2) for end in worst.interval)
+        of_both = " of both" if worst.invalid else ""
         pairs = (
             f", for each of {len(known)} combinations of weight and friction at most"
             if len(known) > 1
             else ""
         )
         words.append(
-            f"Of {worst.motions} further motions{pairs} {worst.overturned} overturned it (95 % interval {low} to "
-            f"{high} %) and {max(one.beyond_limits for one in known)} went beyond a limit of a single motion. All "
-            "these motions have the spectrum of the site; recorded ones scatter more."
+            f"Of {worst.motions} further motions{pairs} {worst.overturned} overturned it{destroyed(worst.invalid)} "
+            f"(95 % interval{of_both} {low} to {high} %) and {max(one.beyond_limits for one in known)} went beyond a "
+            "limit of a single motion. All these motions have the spectrum of the site; recorded ones scatter more."
         )
     if repeated := confirmation(result):
         words.append(repeated)
@@ -259,7 +260,7 @@ def _headlines(result: SiteResult) -> list[html.Headline]:
         return f"{least}{short(factor, figures=3)} × the set"
 
     return [
-        html.Headline("overturned", f"{answer.overturned} of {answer.runs} runs"),
+        html.Headline("overturned", f"{answer.overturned} of {answer.runs} runs{destroyed(answer.invalid)}"),
         html.Headline(
             "rotation, by the rule",
             _with_range("rotation_ratio", answer.rotation_ratio, span.rotation_ratio),
@@ -412,10 +413,10 @@ def confirmation(result: SiteResult) -> str:
     if len(again) == 1:
         words = "The deciding run, repeated with the elastic model over its unknown inputs"
     failed = sum(one.outcome is None for one in again)
-    destroyed = sum(Outcome.INVALID in (one.outcome, *one.outcomes) for one in again)
+    invalid = sum(Outcome.INVALID in (one.outcome, *one.outcomes) for one in again)
     fell = sum(Outcome.OVERTURNED in (one.outcome, *one.outcomes) for one in again)
-    if failed or fell or destroyed:
-        corner = f", {destroyed} can destroy a corner" if destroyed else ""
+    if failed or fell or invalid:
+        corner = f", {invalid} can destroy a corner" if invalid else ""
         return f"{words}: {fell} can overturn{corner}, {failed} failed."
     turned, slip = max(one.turned for one in again), max(one.slipped for one in again)
     return f"{words}: none overturns, largest rotation ratio {ratio(turned)}, largest slip {millimetres(slip)} mm."

@@ -14,6 +14,7 @@ from fem.html.units import ABSENT, figure_head, number, quantity, short, typeset
 from fem.results.figures import FIGURES, Place, keys_of
 from fem.results.outcome import ENDINGS, Outcome
 from fem.site_check.figures import draw_floor, draw_methods, draw_scan
+from fem.site_check.reasons import destroyed
 from fem.site_check.result import ConfirmedRun, SiteMethod, SiteMotion, SiteResult, SiteRun
 from fem.site_check.rule import RunGroup, both_directions, groups_of
 from fem.site_check.tables import MotionsTable
@@ -141,12 +142,12 @@ def _groups_table(
         return _GroupRow(
             group,
             group.first.elevation,
-            f"{group.overturned} of {len(group.runs)}{failed}",
+            f"{group.overturned} of {len(group.runs)}{destroyed(group.invalid)}{failed}",
             two_figures("rotation_ratio", group.by_rule.rotation_ratio),
             two_figures("rotation_ratio", group.by_rule.rotation_ratio_largest),
             two_figures("max_slip_m", group.by_rule.slip_m),
             two_figures("max_slip_m", group.by_rule.slip_mean_m),
-            "failed" if group.overturned or group.failed else look,
+            "failed" if group.overturned or group.invalid or group.failed else look,
         )
 
     period: html.Column[_GroupRow] = html.Column(

@@ -143,6 +143,12 @@ def test_a_run_that_destroys_a_corner_does_not_count_as_standing_and_is_named_ap
     found = answer(own, repeated(), further())
     assert (found.answer, found.overturned) == ("not fulfilled", 0)
     assert "1 of 7 runs destroyed a corner" in found.sentence
+    assert (found.invalid, found.governing.outcome) == (1, "invalid")
+    scanned = answer(runs_of(), runs_of(SCAN, factor=1.5, outcome="invalid"))
+    assert [(point.factor, point.overturned, point.invalid) for point in scanned.scan] == [
+        (1.0, 0, 0),
+        (1.5, 0, 7),
+    ]
     many = further(99) + runs_of(FURTHER, (100,), outcome="invalid")
     found = answer(runs_of(), repeated(), many)
     assert found.answer == "not sure" and (found.further[0].overturned, found.further[0].invalid) == (0, 1)

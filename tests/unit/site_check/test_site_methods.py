@@ -27,6 +27,12 @@ STRONGER = peak_rows(k1(mu_static=0.2), ACTION.scaled(1.5), horizontal=1.0, vert
     [
         (OVERTURNING, [STOOD], "none of 1 overturned; by the rule 0.2 of the angle", "agrees"),
         (OVERTURNING, [STOOD, FELL], "1 of 2 overturned", "not conservative"),
+        (
+            OVERTURNING,
+            [STOOD, replace(FELL, outcome="invalid")],
+            "none of 2 overturned, 1 destroyed a corner",
+            "not conservative",
+        ),
         (OVERTURNING, [BEYOND], "none of 1 overturned; by the rule 0.6 of the angle", "not conservative"),
         (STRONGER, [STOOD], "none of 1 overturned; by the rule 0.2 of the angle", "conservative"),
         (OVERTURNING, [replace(STOOD, rotation_ratio=0.001)], "none of 1 overturned; none rocks", "agrees"),

@@ -3,18 +3,21 @@
 import json
 import re
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from browser import CHROMIUM, FAINT, Browser
 from markupsafe import Markup
 from site_example import example, write_example
 
+from fem.cli.assess import page_of as lines_of
 from fem.html.formula import formula_markup
 from fem.html.page import Page, html_of
 from fem.results.errors import FolderError
 from fem.results.files import to_json
 from fem.site_check.result import RESULT_FILE, FloorResult, SiteResult
 from fem.site_check.site_page import answer_section, bolts_in_words, confirmation, site_report, site_rows
+from fem.site_check.site_sections import SiteView, runs_section
 
 ANSWERS = {
     "fulfilled": ({}, "Fulfilled under the rule below"),
@@ -177,6 +180,31 @@ def test_the_bolts_of_the_deciding_runs_are_told():
     assert "18 kN of tension there, 7.3 % of their capacity." in bolts_in_words(
         [replace(pulled, bolt_utilisation=0.073)]
     )
+
+
+def test_destroyed_corners_are_named_beside_the_runs_that_overturned():
+    result, _ = example()
+    runs = [replace(run, outcome="invalid", rotation_ratio=None) for run in result.runs[:2]]
+    further = replace(result.result.further[0], invalid=7, interval=(0.0286, 0.139))
+    answer = replace(result.result, invalid=2, further=(further,))
+    crushed = replace(result, result=answer, runs=(*runs, *result.runs[2:]))
+    words = words_of(box_of(crushed))
+    assert "0 of 112 runs, 2 destroyed a corner" in words
+    assert "0 overturned it, 7 destroyed a corner (95 % interval of both 2.9 to 14 %)" in words
+    assert "further    0 of 100 motions overturn it, 7 destroyed a corner" in "\n".join(
+        lines_of(crushed, Path("out"))
+    )
+    rows = html_of(
+        Page(
+            kind="",
+            title="",
+            name="",
+            hash="",
+            signature=None,
+            sections=[runs_section(SiteView(result=crushed))],
+        )
+    )
+    assert "of 14, 1 destroyed a corner" in rows
 
 
 def test_what_speaks_against_the_answer_stands_in_the_box_and_the_answer_has_its_colour():

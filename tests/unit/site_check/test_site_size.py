@@ -143,6 +143,13 @@ def test_what_fails_beyond_is_told(exceeded, words):
     assert "from 1 to 6: it overturns or " in size_result(BOXES, {1.0: FELL, 6.0: beyond}).sentence
 
 
+def test_a_value_that_is_refused_for_destroyed_corners_says_so():
+    crushed = replace(FELL, overturned=0, invalid=2)
+    result = size_result(BOXES, {1.0: ANSWER, 6.0: crushed})
+    assert result.sentence.endswith("(above: a corner is destroyed).")
+    assert "not standing [%]" in draw_size(result, INPUTS)
+
+
 @pytest.mark.parametrize(("answer", "words"), [(None, "there is no answer"), ("not sure", "it is not sure")])
 def test_only_fulfilled_is_fulfilled(answer, words):
     found = replace(ANSWER, answer=answer, fulfilled=None)
