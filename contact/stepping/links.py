@@ -290,7 +290,8 @@ def follow_links(run: RunState, step: float, links: LinkedBody | None, apart: fl
                 record.least_gap = min(record.least_gap, max(gap, 0.0))
                 if gap > 0.0 and record.away < NEVER:
                     record.away = max(record.away, gap)
-            if gap < 0.0 and old.point[i, 1] >= 0.0:
+            # what begins without a gap may begin a rounding error closed
+            if gap < 0.0 and (old.point[i, 1] >= 0.0 or record.away == NEVER):
                 # the velocity of a touch at t = 0 follows from the step alone
                 speed = max(old.descent[i, 0], (old.point[i, 1] - gap) / step)
                 record.largest_closing_velocity = max(record.largest_closing_velocity, speed)

@@ -38,7 +38,7 @@ def links_in_words(result: RunResult) -> str:
 
 def _of_stop(one: LinkResult) -> str:
     name = f"the stop on the {one.side} at {one.height_m:g} m"
-    if one.hits == 0:
+    if one.max_force_N == 0.0:
         return f"{name} was not touched"
     hits = "once" if one.hits == 1 else f"{one.hits} times"
     said = f"{name} was hit {hits}, at {one.largest_closing_velocity_m_s:.2g} m/s at most, with up to {_force(one)}"
@@ -47,7 +47,7 @@ def _of_stop(one: LinkResult) -> str:
 
 def _of_tie(one: LinkResult) -> str:
     name = f"the tie on the {one.side} at {one.height_m:g} m"
-    if one.hits == 0:
+    if one.max_force_N == 0.0:
         return f"{name} stayed slack"
     return f"{name} carried up to {_force(one)}{_broken(one)}"
 

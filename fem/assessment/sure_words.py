@@ -81,7 +81,7 @@ def _doubts(verdict: Verdict, band: Band, tried: Sequence[ChangedRun]) -> Iterat
             undrawn = any(not set(one.values or {}) <= set(draws[0].values or {}) for one in alone)
             yield f"not in {len(draws)} draws of {'the other' if undrawn else 'all'} inputs at once"
     if verdict.numerically_unsure:
-        verb = "overturns" if stands(own) else "stands"
+        verb = next(DOES[ending(one)] for one in tried if numerical(one) and ending(one) != ending(own))
         yield f"numerically, for it {verb} with steps ten times as accurate"
     if below_uplift(band.members):
         found = "rests" if rests_on_stiff_floor(band.members) else "still rocks"

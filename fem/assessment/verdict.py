@@ -44,9 +44,13 @@ def outcome_of(model: Model) -> Outcome:
 
 
 def destroyed_corner(model: Model) -> str | None:
-    """What has given way under a corner, further than the law of its contact holds; None where nothing has."""
+    """What has given way under a corner, further than the law of its contact holds; None where nothing has.
+
+    A container that is followed until it lies on its side has fallen, whatever it crushes there.
+    """
+    lies = math.isfinite(model.run.track[0].overturned_at) and not model.case.output.stop_when_overturned
     depth = _indentation(model)
-    if depth is None:
+    if depth is None or lies:
         return None
     slab = slab_of(model.case, model.container.mesh.mass)
     if depth <= slab.deepest:

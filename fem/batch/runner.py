@@ -23,7 +23,6 @@ from fem.model.model import Model, build_model
 from fem.model.motion import build_motions, motion_result
 from fem.model.recovery import recovery_of
 from fem.results.figures import BOXES, SCALARS
-from fem.results.outcome import Outcome
 from fem.results.run_result import Verdict
 from fem.run.expected import expected_s, say_expected
 from fem.run.outcome import run_without_history
@@ -267,7 +266,7 @@ def run_model(model: Model) -> Row:
     """Step a rigid or reduced model to its end, in place; its row."""
     recovery = _CONTAINERS.recovery_of(model) if model.case.solver.model == "reduced" else None
     verdict, error = run_without_history(model, recovery)
-    ended = "overturned" if verdict.outcome == Outcome.OVERTURNED else "completed"
+    ended = "completed" if verdict.overturned_at_s is None else "overturned"
     return _row("failed" if error else ended, error, verdict)
 
 

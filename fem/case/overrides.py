@@ -62,14 +62,15 @@ def with_overrides(data: Mapping[str, Any], overrides: Mapping[str, Any]) -> dic
                 raise CaseError(
                     f"--set {dotted}: [{key}] is a table; set one of its keys, --set {key}.KEY=VALUE"
                 )
-            changed[key] = value
+            changed[key] = deepcopy(value)  # its rows may be changed below
             continue
         if table in ROWS:
             rows = changed.get(table)
             if not rows:
                 raise CaseError(f"--set {dotted}: the case has no [[{table}]] to change; give it one")
             for row in rows if isinstance(rows, list | tuple) else ():
-                row[key] = value
+                if isinstance(row, dict):  # else refused when the case is read
+                    row[key] = value
             continue
         if table not in TABLES:
             near = did_you_mean(table, TABLES)

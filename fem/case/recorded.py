@@ -22,7 +22,7 @@ USUAL_PEAKS = (0.5, 20.0)
 WAYS_OUT = ', or set gaps = "bridge" where the motion is meant to go straight on between these samples'
 ALLOW_BASELINE = (
     f"a change above {100.0 * DOUBTFUL:.2g} % is refused; take another baseline, or set allow_baseline = true "
-    "(--allow-baseline)"
+    "(--allow-baseline of run and check)"
 )
 
 

@@ -57,7 +57,9 @@ def tied_capacities(case: Case, mesh: ContainerMesh) -> list[TiedCapacity]:
         corner = 0.5 * case.effective_width * mesh.width
         arm = corner - sign * mesh.centroid[0]
         weight = mesh.mass * case.gravity_toward_floor
+        downhill = sign * mesh.mass * case.gravity_downhill  # x falls toward +x
         moment = weight * (arm * np.cos(rotation) - mesh.centroid[1] * np.sin(rotation))
+        moment -= downhill * (mesh.centroid[1] * np.cos(rotation) + arm * np.sin(rotation))
         breaks = np.zeros(TURNS, dtype=bool)
         for tie in case.tie:
             beside = corner - sign * side_of(case, tie)  # of its point from the corner, against the turn
@@ -74,7 +76,7 @@ def tied_capacities(case: Case, mesh: ContainerMesh) -> list[TiedCapacity]:
                 side=side,
                 moment=float(moment[most]),
                 rotation=float(rotation[most]),
-                free=float(weight * arm),
+                free=float(weight * arm - downhill * mesh.centroid[1]),
                 broken=bool(breaks[most]),
             )
         )

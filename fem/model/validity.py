@@ -51,7 +51,7 @@ def require_stiff_contact(case: Case, mesh: ContainerMesh, stiffness: float) -> 
 
 
 def require_bearing(case: Case, mesh: ContainerMesh, use: float = 0.0) -> None:
-    """Refuse a slab into which the container would sink without end, at rest or as soon as one side lifts off.
+    """Refuse a slab into which the container would sink at once, at rest or as soon as one side lifts off.
 
     `use` is the largest force of a point at the start over its cap.
 
@@ -67,7 +67,7 @@ def require_bearing(case: Case, mesh: ContainerMesh, use: float = 0.0) -> None:
     patch, force = f"{slab.patch[0]:g} x {slab.patch[1]:g} m", use * slab.cap
     carries = (
         f"a corner must carry {1e-3 * force:.4g} kN, {LEAST_BEARING:g} times the weight where the other one lifts off, "
-        f"and has {1e-3 * slab.cap:.4g} kN on its patch of {patch}: it would sink in without end"
+        f"and has {1e-3 * slab.cap:.4g} kN on its patch of {patch}: the container would sink in at once"
     )
     if slab.yields_first:
         if case.container.corner_post_N is not None:

@@ -46,7 +46,7 @@ QUANTITIES = (
     ("wall_s", "computing time", units.SECONDS),
 )
 #: shown by a colour for every word; the last in folders of before
-FLAGS = (("overturned_share", "variations that overturn"), ("sure", "how sure"), ("unsure", "unsure"))
+FLAGS = (("overturned_share", "variations that do not stand"), ("sure", "how sure"), ("unsure", "unsure"))
 SURENESS = {SURE: "#e3e8ee", REGIME_UNSURE: "#f2c879", UNSURE: "#c2410c", "not tried": "#ffffff"}
 NEEDED = 3  #: of these, in the order above: without them no page is made
 MOST_BYTES = 3_600_000  #: of all columns, in base64

@@ -23,7 +23,6 @@ from fem.model.model import Model, build_model
 from fem.model.recovery import Recovery, recovery_of
 from fem.model.validity import runs_in_memory
 from fem.results.figures import Place
-from fem.results.outcome import Outcome
 from fem.results.run_result import ChangedRun, JointDemand, Numerics, Verdict
 from fem.run.changed_runs_file import ChangedRunsFile, key_of
 from fem.run.outcome import run_without_history
@@ -148,7 +147,7 @@ def _run_changed(run: Model, change: InputChange, shared: Shared, stop: Callable
         joints = shared.joints if same_load or shared.joints is None else joints_of(model)
         if shared.short and (change.kind != "one" or case.container.bolted_joints == 0):
             verdict, error = run_without_history(model, recovery)
-            status = "overturned" if verdict.outcome == Outcome.OVERTURNED else "completed"
+            status = "completed" if verdict.overturned_at_s is None else "overturned"
             if error is not None:
                 return _without_outcome(change, "failed", error)
             return changed_run(change, model, status, verdict, None)

@@ -130,13 +130,17 @@ def _bare(
     if not model.case.links:
         return None
     free = model.case.with_values({name: [] for name in ROWS})
-    trial = _trial(build_model(free, without_links(model.case, model.container)), {}, stop)
+    try:
+        bare = build_model(free, without_links(model.case, model.container))
+    except (ValueError, ArithmeticError, RuntimeError):  # it does not stand without them
+        return None
+    trial = _trial(bare, {}, stop)
     own = trial(1.0)
     scanned = _scanned(least, 1.0 if own == Ending.OVERTURNED else most)
     known = {1.0: own} | dict(zip(scanned, pool.map(trial, scanned), strict=True))
     _locate(known, trial)
     first, ended = _first(known), [one for one in known if known[one] in SAID]
-    return None if first is None else first.high, max(ended, default=0.0)
+    return (None if first is None else first.high, max(ended)) if ended else None
 
 
 def _least(case: Case, result: RunResult) -> float:

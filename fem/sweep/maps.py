@@ -177,7 +177,7 @@ def _outcome_map(table: SweepTable, choice: MapChoice, *, printed: bool) -> Figu
     for name, plane in grids:
         overturned = plane(table.outcome == Outcome.OVERTURNED)
         if share is not None:
-            words = "; ".join(filter(None, ("Share of a cell's variations that overturn", name)))
+            words = "; ".join(filter(None, ("Share of a cell's variations that do not stand", name)))
             panels.append(Panel(values=plane(share), title=words, overturned=overturned, look=shares))
         words = "; ".join(filter(None, ("Outcome", name)))
         panels.append(Panel(values=plane(outcome), title=words, overturned=overturned, look=outcomes))

@@ -20,7 +20,7 @@ from fem.evidence.paper.cases import RIGID, SHELL, PaperCase
 from fem.evidence.verification.runs import Finished
 from fem.model.model import Model, build_model
 from fem.model.support import normal_penalty
-from fem.results.outcome import ROCKING, Outcome
+from fem.results.outcome import ENDINGS, ROCKING
 from fem.run.recorder import Recorder
 from fem.run.simulation import simulate
 
@@ -114,8 +114,8 @@ def capped_ratio(row: Row) -> float:
 
 
 def stands(row: Row) -> bool:
-    """Whether the container did not overturn, of a run that did not fail."""
-    return row["outcome"] != Outcome.OVERTURNED
+    """Whether the container stands, of a run that did not fail: it neither overturned nor destroyed a corner."""
+    return row["outcome"] not in ENDINGS
 
 
 class Experiments:

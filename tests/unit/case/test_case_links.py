@@ -36,6 +36,14 @@ def test_a_key_of_a_stop_is_that_of_all_stops():
         case.with_values({"tie.slack_m": 0.1})
 
 
+def test_the_rows_given_stay_as_they_are():
+    rows = [dict(STOP)]
+    assert RIGID.with_values({"stop": rows, "stop.gap_m": 0.3}).stop[0].gap_m == 0.3
+    assert rows == [STOP]
+    with pytest.raises(CaseError, match=r"must be 0 to 20 tables"):
+        RIGID.with_values({"stop": [1.0], "stop.gap_m": 0.3})
+
+
 @pytest.mark.parametrize(
     ("keys", "reason"),
     [

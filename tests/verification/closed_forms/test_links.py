@@ -139,6 +139,27 @@ def test_the_static_capacity_with_a_strap_is_that_of_weight_and_spring():
     assert left.moment == left.free == right.free == pytest.approx(MASS * GRAVITY * 0.55, rel=1e-9)
 
 
+def test_on_a_slope_the_static_capacity_is_less_downhill():
+    case = with_links(
+        STACK.with_values({"floor.slope_percent": 10.0}), tie=({**STRAP, "stiffness_N_m": 1.0},)
+    )
+    left, right = tied_capacities(case, build_container(case))
+    slope = math.atan(0.1)
+    for found, toward in ((left, -1.0), (right, 1.0)):
+        by_hand = MASS * GRAVITY * (0.55 * math.cos(slope) - toward * MIDDLE * math.sin(slope))
+        assert found.free == pytest.approx(by_hand, rel=1e-9)
+        assert found.moment == pytest.approx(by_hand, rel=1e-4)
+
+
+def test_a_wedge_that_carries_load_is_hit_and_named():
+    keys = {"floor.slope_percent": 10.0, "contact.mu_static": 0.02, "contact.mu_kinetic": 0.02}
+    wedge = {"side": "right", "height_m": 0.1, "gap_m": 0.0, "stiffness_N_m": 1e8}
+    case = with_links(STACK.with_values(SOLID | keys | {"solver.duration_s": 0.3}), stop=(wedge,))
+    found = run(case)
+    assert found.model.run.links[0].hits >= 1
+    assert found.model.run.links[0].max_force > 5e3
+
+
 SHAKEN = STACK.with_values(
     {**harmonic(0.08, 8.0), "contact.mu_static": 0.2, "contact.mu_kinetic": 0.15, "solver.duration_s": 5.0}
 )
