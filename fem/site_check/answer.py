@@ -294,6 +294,7 @@ def _scan(runs: Mapping[RunKey, result.SiteRun]) -> tuple[result.ScanPoint, ...]
                 runs=len(by_factor[factor]),
                 overturned=found.overturned,
                 invalid=found.invalid,
+                failed=found.failed,
                 **vars(found.by_rule),
             )
         )

@@ -179,6 +179,7 @@ class ScanPoint(ByRule):
     runs: int
     overturned: int
     invalid: int = 0  #: runs that destroyed a corner, which do not count as standing
+    failed: int = 0  #: runs without an outcome, of which the margin knows nothing
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -251,6 +252,7 @@ class HazardLevel(JsonBlock):
     motions: int
     overturned: int
     slipped: int  #: beyond the limit, in the plane or in both directions
+    failed: int = 0  #: motions without an outcome, which are none of `motions`
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -268,14 +270,17 @@ class AnnualRates(JsonBlock):
     rates_per_year: tuple[float, ...]
     levels: tuple[HazardLevel, ...]
     overturning_per_year: float
-    interval: tuple[float, ...]  #: with the 95 % intervals of all counts at once, and the tails as bounds
+    #: with the 95 % intervals of all counts at once, the tails as bounds, and failed runs in the upper end
+    interval: tuple[float, ...]
     in_50_years: float  #: probability
     most_from: float | None = (
         None  #: strengths between which most of the rate arises; None: nothing overturned
     )
     most_to: float | None = None  #: None also: beyond the strongest level
     share: float  #: of the rate that arises there
-    slip_per_year: float
+    slip_per_year: (
+        float | None
+    )  #: with the friction that slides furthest in the set; None: on a sloping floor
     slip_interval: tuple[float, ...]
     median: float | None = (
         None  #: of the lognormal curve fitted to the counts of overturning; None: there is none

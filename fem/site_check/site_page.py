@@ -190,6 +190,11 @@ def beside_the_set(result: SiteResult) -> list[str]:
         words.append(repeated)
     if repeated and (bolts := bolts_in_words(answer.confirmed)):
         words[-1] += f" {bolts}"
+    if failed := {point.factor: point.failed for point in answer.scan if point.failed}:
+        words.append(
+            f"{sum(failed.values())} runs failed at the factors {', '.join(map(short, failed))} on the set: the margin "
+            "does not know how they end."
+        )
     if answer.hazard:
         words += rates_in_words(answer.hazard, result.inputs.slip_limit_m)
     return words
@@ -218,15 +223,19 @@ def rates_in_words(rates: AnnualRates, slip_limit: float) -> list[str]:
             f"{short(rates.beta, figures=2)}) gives {rates.fit_per_year:.2g} per year, the closed form "
             f"{rates.closed_form_per_year:.2g}"
         )
-    slow, shigh = rates.slip_interval
+    slip = "of that the rate is not known on a sloping floor."
+    if rates.slip_per_year is not None:
+        slow, shigh = rates.slip_interval
+        slip = f"{rates.slip_per_year:.2g} per year ({slow:.2g} to {shigh:.2g})."
+    failed = sum(one.failed for one in rates.levels)
     return [
         f"Rate of overturning by counts: {rates.overturning_per_year:.2g} per year ({low:.2g} to {high:.2g} with the "
         f"95 % intervals of all counts and the tails as bounds), {100.0 * rates.in_50_years:.2g} % in 50 years"
-        f"{most}. Slip beyond {quantity(slip_limit, 'mm', 1000, 3)}: {rates.slip_per_year:.2g} per year "
-        f"({slow:.2g} to {shigh:.2g}).",
+        f"{most}. Slip beyond {quantity(slip_limit, 'mm', 1000, 3)}: {slip}",
         f"The counts of overturning ({rates.mass}, friction {rates.mu_static:.3g}/{rates.mu_kinetic:.3g}): {counts} "
         f"{unit}; {fitted}. Artificial motions scatter less than records; the hazard is spread by {rates.scatter:g} of "
         "the logarithm for it. Targets are the user's: none is compared.",
+        *([f"{failed} of these runs failed; they count into the upper ends alone."] if failed else []),
     ]
 
 

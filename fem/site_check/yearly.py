@@ -7,6 +7,7 @@ no draws of it. Below the level at which a rigid body first moves nothing happen
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -18,7 +19,7 @@ from fem.seismic.two_directions import slip_in_two_directions
 from fem.site_check.file import SiteRequest
 from fem.site_check.result import AnnualRates, HazardLevel, SiteBody, SiteRun, TwoDirections
 from fem.site_check.rule import RunGroup
-from fem.site_check.runs import HAZARD, RunKey, key_of
+from fem.site_check.runs import HAZARD, SET, RunKey, key_of
 from fem.site_check.screening import KEPT, BodyAtRest
 
 LEVELS = 7
@@ -108,21 +109,28 @@ def annual_rates(
         runs: all of them; made: motions by the stems of their files.
         bodies: of all containers.
         peak_velocity: mean of the motions of the set on the ground [m/s].
-        slid: slip in two directions of the set, whose friction is taken for that of the levels.
+        slid: slip in two directions of the set, whose friction is taken for that of the levels; None: that of the
+            largest slip of its runs.
     """
     hazard = request.hazard_curve
-    own = {key: run for key, run in runs.items() if key.stage == HAZARD and run.outcome is not None}
-    if hazard is None or not own:
+    own = {key: run for key, run in runs.items() if key.stage == HAZARD}
+    if hazard is None or all(run.outcome is None for run in own.values()):
         return None
     body = _body_of(bodies, next(iter(own.values())))
     limit, gravity = request.limits.slip_m, request.container.gravity_m_s2
     first = next(iter(own))
-    pair = (first.mu_static, first.mu_kinetic) if slid is None else (slid.mu_static, slid.mu_kinetic)
+    stood = [run for key, run in runs.items() if key.stage == SET and run.outcome not in (*ENDINGS, None)]
+    furthest = slid or max(stood, key=lambda run: run.slipped, default=first)
+    pair = furthest.mu_static, furthest.mu_kinetic
+    sloping = bool(request.container.floor.slope_percent)
 
     def too_far(key: RunKey, run: SiteRun) -> bool:
-        if (run.max_slip_m or 0.0) > limit:
-            return True
-        found = slip_in_two_directions([made[key.stem].scaled(key.factor)], [pair], gravity=gravity)
+        if sloping or run.slipped > limit:  # a body without a preferred direction would also creep downhill
+            return run.slipped > limit
+        motion = made[key.stem].scaled(key.factor)
+        if motion.second is None:
+            motion = replace(motion, second=np.zeros_like(motion.horizontal))
+        found = slip_in_two_directions([motion], [pair], gravity=gravity)
         return found is not None and found.largest > limit
 
     # the strength of the site's own motions, in the unit of the hazard
@@ -132,7 +140,8 @@ def annual_rates(
         unit = peak_velocity
     levels = []
     for factor in sorted({key.factor for key in own}):
-        there = {key: run for key, run in own.items() if key.factor == factor}
+        every = {key: run for key, run in own.items() if key.factor == factor}
+        there = {key: run for key, run in every.items() if run.outcome is not None}
         levels.append(
             HazardLevel(
                 strength=factor * unit,
@@ -140,18 +149,15 @@ def annual_rates(
                 motions=len(there),
                 overturned=sum(run.outcome in ENDINGS for run in there.values()),
                 slipped=sum(too_far(key, run) for key, run in there.items()),
+                failed=len(every) - len(there),
             )
         )
     motions = [made[key.stem] for key in own]
     acting = scattered(hazard, request.motions.scatter, [level.strength for level in levels])
     falls = _rate(acting, levels, [one.overturned for one in levels], unit * rocks_from(body, motions))
     slips = _rate(acting, levels, [one.slipped for one in levels], unit * slides_from(body, pair[0], motions))
-    strengths = np.array([level.strength for level in levels])
-    fit = fit_lognormal(
-        strengths,
-        np.array([level.overturned for level in levels], dtype=float),
-        np.array([level.motions for level in levels], dtype=float),
-    )
+    counts = [(level.strength, level.overturned, level.motions) for level in levels if level.motions]
+    fit = fit_lognormal(*np.array(counts, dtype=float).T)
     beta = None if fit is None else math.hypot(fit.deviation, request.motions.scatter)
     return AnnualRates(
         mass=first.mass,
@@ -170,8 +176,8 @@ def annual_rates(
         most_from=falls.most_from[0] if falls.share else None,
         most_to=falls.most_from[1] if falls.share and math.isfinite(falls.most_from[1]) else None,
         share=falls.share,
-        slip_per_year=slips.rate,
-        slip_interval=(slips.low, slips.high),
+        slip_per_year=None if sloping else slips.rate,
+        slip_interval=() if sloping else (slips.low, slips.high),
         median=None if fit is None else fit.median,
         beta=beta,
         fit_per_year=None if fit is None or beta is None else hazard.lognormal(fit.median, beta),
@@ -201,11 +207,19 @@ def closed_form(hazard: HazardCurve, median: float, beta: float) -> float:
 def _rate(
     hazard: HazardCurve, levels: Sequence[HazardLevel], events: Sequence[int], never_below: float
 ) -> CountedRate:
-    strengths = [level.strength for level in levels]
-    return counted_rate(
-        hazard,
-        strengths,
-        events,
-        [level.motions for level in levels],
-        never_below=min(never_below, 0.99 * strengths[0]),
-    )
+    """The rate by counts; failed runs count into its upper end alone, as if the event happened in each."""
+
+    def counted(failed: Sequence[int]) -> CountedRate:
+        rows = [
+            (level.strength, happened + more, level.motions + more)
+            for level, happened, more in zip(levels, events, failed, strict=True)
+            if level.motions + more
+        ]
+        strengths, counts, motions = zip(*rows, strict=True)
+        return counted_rate(
+            hazard, strengths, counts, motions, never_below=min(never_below, 0.99 * strengths[0])
+        )
+
+    found = counted([0] * len(levels))
+    failed = [level.failed for level in levels]
+    return replace(found, high=counted(failed).high) if any(failed) else found

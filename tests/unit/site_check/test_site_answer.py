@@ -145,6 +145,7 @@ def test_a_run_that_destroys_a_corner_does_not_count_as_standing_and_is_named_ap
     assert "1 of 7 runs destroyed a corner" in found.sentence
     assert (found.invalid, found.governing.outcome) == (1, "invalid")
     scanned = answer(runs_of(), runs_of(SCAN, factor=1.5, outcome="invalid"))
+    assert answer(runs_of(), runs_of(SCAN, factor=1.5, outcome=None)).scan[1].failed == 7
     assert [(point.factor, point.overturned, point.invalid) for point in scanned.scan] == [
         (1.0, 0, 0),
         (1.5, 0, 7),

@@ -207,6 +207,14 @@ def test_destroyed_corners_are_named_beside_the_runs_that_overturned():
     assert "of 14, 1 destroyed a corner" in rows
 
 
+def test_runs_that_failed_at_other_factors_are_told():
+    result, _ = example()
+    scan = [replace(point, failed=2 if point.factor > 2.0 else 0) for point in result.result.scan]
+    told = "4 runs failed at the factors 2.5, 4 on the set: the margin does not know how they end."
+    assert told in words_of(box_of(replace(result, result=replace(result.result, scan=tuple(scan)))))
+    assert "runs failed" not in words_of(box_of(result))
+
+
 def test_what_speaks_against_the_answer_stands_in_the_box_and_the_answer_has_its_colour():
     result, _ = example()
     reason = "3 of 100 further motions overturned it."

@@ -61,17 +61,18 @@ def push(peak, *, second=None, vertical=None):
     return GroundMotion(name="push", step=0.01, horizontal=peak * wave, **parts)
 
 
-def rates(folder, counts, *, motions=100, scatter=0.4, hazard=POINTS, velocity=0.5):
-    """From counts of overturning at factors on the motions."""
+def rates(folder, counts, *, motions=100, scatter=0.4, hazard=POINTS, velocity=0.5, failed=None):
+    """From counts of overturning at factors on the motions, of which shares failed."""
     runs, made = {}, {}
     for level, (factor, fallen) in enumerate(counts.items()):
+        without = round(motions * (failed or {}).get(factor, 0.0))
         for k in range(motions):
             run = replace(
                 RUN,
                 stage=HAZARD,
                 motion=level * motions + k + 1,
                 factor=factor,
-                outcome="overturned" if k < fallen else "rock",
+                outcome=None if k >= motions - without else "overturned" if k < fallen else "rock",
                 max_slip_m=0.0,
             )
             runs[key_of(run)] = run
@@ -209,6 +210,48 @@ def test_slip_beyond_the_limit_counts_in_the_plane_and_in_both_directions(tmp_pa
     assert [(level.overturned, level.slipped, level.motions) for level in found.levels] == [(0, 2, 3)]
     assert found.overturning_per_year == 0.0 and found.slip_per_year > 0.0
     assert found.fit_per_year is None
+
+
+def test_failed_runs_count_into_the_upper_ends_alone(tmp_path):
+    counts = {1.0: 0, 2.0: 10, 4.0: 40}
+    lacking = dict.fromkeys(counts, 0.2)
+    known, found = (
+        rates(tmp_path, counts, motions=one, failed=more) for one, more in ((40, {}), (50, lacking))
+    )
+    assert [(level.motions, level.failed) for level in found.levels] == [(40, 10)] * 3
+    assert (found.overturning_per_year, found.interval[0]) == (known.overturning_per_year, known.interval[0])
+    assert found.interval[1] > known.interval[1] and found.slip_interval[1] > known.slip_interval[1]
+    assert (
+        rates_in_words(found, 0.1)[-1].startswith("30 of these runs failed")
+        and len(rates_in_words(known, 0.1)) == 2
+    )
+    # a level of which every run failed has no count, and may have fallen throughout
+    gone = rates(tmp_path, counts, motions=40, failed={1.0: 1.0})
+    assert gone.levels[0].motions == 0 and gone.interval[1] > known.interval[1]
+    assert rates(tmp_path, counts, motions=40, failed=dict.fromkeys(counts, 1.0)) is None
+
+
+def test_the_friction_of_the_set_that_slides_furthest_counts_for_slip_in_a_plane(tmp_path):
+    """The levels are run with the friction that rocks most, under which this motion does not move the body."""
+    level = replace(
+        RUN, stage=HAZARD, factor=1.0, outcome="rest", max_slip_m=0.0, mu_static=0.9, mu_kinetic=0.9
+    )
+    slides = replace(RUN, mu_static=0.3, mu_kinetic=0.15, outcome="slide", max_slip_m=0.5)
+    falls = replace(RUN, mu_static=0.6, mu_kinetic=0.6, outcome="overturned", max_slip_m=9.0)
+    runs = {key_of(one): one for one in (level, slides, falls)}
+    made = {key_of(level).stem: push(6.0)}
+    found = annual_rates(request(tmp_path), runs, made, [BODY], None, 0.5)
+    assert found.levels[0].slipped == 1 and found.slip_per_year > 0.0
+    del runs[key_of(slides)]
+    assert annual_rates(request(tmp_path), runs, made, [BODY], None, 0.5).levels[0].slipped == 0
+
+
+def test_on_a_sloping_floor_the_rate_of_slip_is_not_known(tmp_path):
+    run = replace(RUN, stage=HAZARD, factor=1.0, outcome="rock")
+    asked = request(tmp_path).with_value("floor.slope_percent", 2.0)
+    found = annual_rates(asked, {key_of(run): run}, {key_of(run).stem: push(6.0)}, [BODY], None, 0.5)
+    assert found.slip_per_year is None and found.overturning_per_year == 0.0
+    assert "not known on a sloping floor" in rates_in_words(found, 0.1)[0]
 
 
 def test_the_page_says_what_was_counted_and_compares_no_target(tmp_path):
