@@ -72,7 +72,9 @@ def batch(
         if site is not None:
             request = importlib.import_module("fem.site_check.file").load_site(site)
             study = importlib.import_module("fem.hall.site")
-            result = study.run_hall_at_site(listed, request, base, folder, strict=strict, **options)
+            result = study.run_hall_at_site(
+                listed, request, base, folder, strict=strict, allow_outside=allow_outside, **options
+            )
         else:
             study = importlib.import_module("fem.hall.run")
             result = study.run_hall(

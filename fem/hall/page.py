@@ -173,7 +173,9 @@ def weakest_table(rows: list[dict[str, Any]], most: int, *, linked: bool) -> htm
         ),
         html.Column("tag", lambda row: row["tag"], optional=True),
         html.Column("answer", _answer, optional=True),
-        html.Column("outcome", lambda row: row["outcome"] or f"none: {row['reason']}"),
+        html.Column(
+            "outcome", lambda row: row["outcome"] or (f"none: {row['reason']}" if row["reason"] else ABSENT)
+        ),
         html.Column("margin", margin_words, html.NUMBER),
         html.Column("sure", lambda row: row["sure"] or "", optional=True),
         html.Column("decided by", _deciding, optional=True),

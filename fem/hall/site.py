@@ -5,7 +5,7 @@ The verifications follow one another, each on all cores. What is kept of a finis
 
 import math
 import shlex
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -14,26 +14,34 @@ from typing import Any, Unpack
 
 from fem.batch.log import RowLog, fields_of, line_of, number_in, table_of_lines
 from fem.batch.runner import Runner
-from fem.batch.study import COMPLETED, INTERRUPTED, StudyOptions, hash_of, run_study
-from fem.case.case import Case, case_hash
+from fem.batch.study import COMPLETED, FAILED, INTERRUPTED, StudyOptions, hash_of, run_study
+from fem.case.case import Case
 from fem.case.validation import CaseError
 from fem.hall.file import HallFile
 from fem.hall.plan import Looked, look_at
 from fem.hall.result import AT_SITE, HallResult
 from fem.hall.run import asked_of, study_of, written
 from fem.hall.table import HallTable
-from fem.results.folder import ResultFolder
+from fem.results.errors import FolderError
+from fem.results.folder import ResultFolder, program_of_results
+from fem.results.kinds import SITE, read_result
 from fem.runtime.progress import SilentReporter
+from fem.seismic.action import LAST_PERIOD_S
+from fem.seismic.ground_motion import GroundMotion
 from fem.site_check.bodies import body_of
 from fem.site_check.file import SiteRequest
-from fem.site_check.run import run_site
+from fem.site_check.inputs import inputs_of
+from fem.site_check.methods import wind_utilisation
+from fem.site_check.motions import ground_motions
+from fem.site_check.run import run_site, site_hash
+from mesh.errors import MeshError
 
 SITES, FOLDERS = "sites.csv", "sites"
 MU = "contact.mu_static"
 #: tables of a case that a verification takes from its site file
 OF_THE_SITE = ("motion", "vertical", "initial", "static", "solver", "output", "uncertainty", "joints")
 FIGURES = ("outcome", "margin", "rotation_ratio", "max_slip_m", "motions_overturned", "motions_failed")
-COLUMNS = ("container", "status", *FIGURES, *AT_SITE[:3])
+COLUMNS = ("container", "status", "reason", *FIGURES, *AT_SITE[:3])
 NO_ANSWER = "no answer"
 WORST_FIRST = ("not fulfilled", NO_ANSWER, "not sure", "fulfilled")
 
@@ -45,6 +53,7 @@ def run_hall_at_site(
     folder: Path,
     *,
     strict: bool = False,
+    allow_outside: bool = False,
     **options: Unpack[StudyOptions],
 ) -> HallResult:
     """Verify every container of a list at a site, into a folder; raises as `run_study`, and CaseError for bad input.
@@ -55,6 +64,7 @@ def run_hall_at_site(
         base: the case that the rows change; None: the container of the site.
         folder: of the results.
         strict: refuse the list for one bad row.
+        allow_outside: take records from outside the folder of the site file.
         options: of every study.
     """
     start = base or site.container
@@ -67,7 +77,9 @@ def run_hall_at_site(
         raise CaseError(
             f"{file.path}: {idle[0]!r} has no effect at a site, whose file says it; leave the column out"
         )
-    looked = look_at(file, partial(_look, site, start), start.origin_with({}).place, strict=strict)
+    # of records the contents, too: their names stay where they change
+    ground = ground_motions(site, LAST_PERIOD_S, allow_outside=allow_outside) if site.motions.files else []
+    looked = look_at(file, partial(_look, site, start, ground), start.origin_with({}).place, strict=strict)
     begun = replace(
         asked_of(file, start, looked),
         site=site.origin.place,
@@ -75,7 +87,8 @@ def run_hall_at_site(
         asked=hash_of(looked.hashes),
         listed=hash_of(file.text),
     )
-    work = _AtSite(file=file, site=site, start=start, looked=looked, begun=begun)
+    force = options.get("force", False)
+    work = _AtSite(file=file, site=site, start=start, looked=looked, begun=begun, force=force)
     return run_study(study_of(file, start, begun, work.compute, 0.0), folder, **options)
 
 
@@ -102,6 +115,7 @@ class _AtSite:
     start: Case
     looked: Looked
     begun: HallResult
+    force: bool  #: verify each anew
     lines: dict[int, str] = field(default_factory=dict)  #: of the log, by container
 
     def compute(self, place: ResultFolder, runner: Runner) -> HallResult:
@@ -136,48 +150,71 @@ class _AtSite:
             found=found,
             words={k: (one["answer"] or NO_ANSWER,) * 2 for k, one in found.items()},
             order=sorted(found, key=lambda k: _weakness(found[k])),
-            command=lambda row, container: shlex.join(
-                ["python", "-m", "fem", "assess", str(place.path / self._folder(container) / "site.toml")]
-            ),
+            command=lambda row, container: self._command(place.path / self._folder(container)),
         )
-        return written(place, table, replace(self.begun, status=COMPLETED, runs=count))
+        status = FAILED if {one["status"] for one in found.values()} == {FAILED} else COMPLETED
+        return written(place, table, replace(self.begun, status=status, runs=count))
 
     def _verify(self, number: int, folder: Path, runner: Runner) -> str:
         """The line of a container; empty where it was interrupted."""
         own = self.looked.of_row.index(number)
         request = request_of(self.site, self.start, self.looked.containers[number], self.file.rows[own].name)
-        result = run_site(
-            request,
-            folder / self._folder(number),
-            allow_outside=bool(request.motions.files),
-            jobs=runner.jobs,
-            workers_of=runner.workers_of,
-            resume=True,
-            reporter=SilentReporter(),
-        )
+        folder /= self._folder(number)
+        try:
+            result = run_site(
+                request,
+                folder,
+                allow_outside=bool(request.motions.files),  # as the site names them they are looked at
+                jobs=runner.jobs,
+                workers_of=runner.workers_of,
+                resume=True,
+                force=self.force or _is_of_another_program(folder),
+                reporter=SilentReporter(),
+            )
+        except (CaseError, MeshError) as error:
+            found = {"container": number, "status": FAILED} | dict.fromkeys(("reason", "reasons"), str(error))
+            return line_of(found.get(name) for name in COLUMNS)
         if result.state != "finished":
             return ""
+        if request.hazard is not None and request.hazard.file is not None:  # for the command of the row
+            copy = folder / request.hazard.file
+            copy.parent.mkdir(parents=True, exist_ok=True)
+            copy.write_bytes((request.origin.folder / request.hazard.file).read_bytes())
         answer = result.result
         outcome = answer.governing.outcome if answer.governing else None
         shown = (outcome, answer.margin_factor, answer.rotation_ratio, answer.slip_m, answer.overturned, None)
         reasons = answer.reasons or ([] if answer.answer else [answer.sentence])
         said = (answer.answer, " ".join(reasons), answer.factor_at_first_overturning)
-        return line_of((number, result.status, *shown, *said))
+        return line_of((number, result.status, None if answer.answer else answer.sentence, *shown, *said))
+
+    def _command(self, folder: Path) -> str:
+        words = ["python", "-m", "fem", "assess", str(folder / "site.toml")]
+        return shlex.join([*words, *(["--allow-outside"] if self.site.motions.files else [])])
 
     def _folder(self, number: int) -> Path:
         return Path(FOLDERS) / f"{number + 1:03d}-{self.looked.hashes[number][:8]}"
 
 
-def _look(site: SiteRequest, start: Case, values: Mapping[str, Any]) -> str:
-    """The hash of a verification, once its bodies can be built.
+def _is_of_another_program(folder: Path) -> bool:
+    """Whether a verification is there that this program does not vouch for."""
+    if not (folder / SITE.mark).exists():
+        return False
+    try:
+        found = read_result(folder / SITE.mark, SITE)
+    except FolderError:  # damaged
+        return True
+    return any(found.get(name) != value for name, value in program_of_results().items())
+
+
+def _look(site: SiteRequest, start: Case, ground: Sequence[GroundMotion], values: Mapping[str, Any]) -> str:
+    """The hash of a verification, once its bodies can be built and the wind on them is known.
 
     Raises:
         CaseError, MeshError: what it would be refused for.
     """
     request = request_of(site, start, values, "container")
-    for variant in request.variants:
-        body_of(variant)
-    return hash_of([request.data, case_hash(request.container)])
+    wind_utilisation([body_of(variant) for variant in request.variants], inputs_of(request))
+    return hash_of([request.data, site_hash(request, ground)])
 
 
 def _weakness(found: Mapping[str, str]) -> tuple[float, ...]:

@@ -1,0 +1,146 @@
+"""A hall at a site as a list of verifications: what is verified anew, what is refused, and the command of each row."""
+
+import json
+import shlex
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from fem.case.validation import CaseError
+from fem.hall.file import read_hall
+from fem.hall.site import run_hall_at_site
+from fem.results.folder import program_of_results
+from fem.site_check.file import load_site
+
+BASE = """
+[container]
+width_m = 1.0
+height_m = 3.0
+mass_kg = 2000.0
+[contact]
+mu_static = 0.5
+[motion]
+kind = "none"
+"""
+SITE = """
+container = "base.toml"
+[site]
+ground = "D"
+reference_acceleration_m_s2 = 3.5
+[motions]
+source = "records"
+files = [["1.csv"], ["2.csv"], ["3.csv"]]
+vertical = false
+[friction]
+mu_static = [0.4]
+[limits]
+slip_m = 0.1
+[wind]
+german_zone = 2
+[hazard]
+file = "hazard.csv"
+"""
+LIST = "name,width_m,height_m,mass_kg\nlow,1,2,2000\ntall,9,40,200000\nwide,2,2,2000\n"
+
+
+def record(path, frequency):
+    times = np.arange(0.0, 20.0, 0.01)
+    lines = (f"{time:.2f},{np.sin(frequency * time) * np.sin(0.157 * time):.6f}" for time in times)
+    path.write_text("\n".join(["time_s,acceleration_m_s2", *lines]), encoding="utf-8")
+
+
+@pytest.fixture
+def asked(tmp_path, monkeypatch):
+    """The list and the site file, with motions and hazard beside it; verifications that answer at once."""
+    monkeypatch.chdir(tmp_path)
+    for name, text in (("base.toml", BASE), ("site.toml", SITE), ("hall.csv", LIST)):
+        Path(name).write_text(text, encoding="utf-8")
+    Path("hazard.csv").write_text("acceleration_m_s2,rate_per_year\n1,1e-2\n3,1e-3\n", encoding="utf-8")
+    for number in (1, 2, 3):
+        record(tmp_path / f"{number}.csv", 5.0 + number)
+    made = []
+
+    def verified(request, folder, *, force, **options):
+        made.append(force)
+        if request.container.container.width_m == 2.0:
+            raise CaseError("the deciding run cannot be computed")
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / "site.toml").write_text(request.origin.text, encoding="utf-8")
+        (folder / "container.toml").write_text(request.container.text, encoding="utf-8")
+        mark = {"asked": "", **program_of_results()}
+        (folder / "assess.json").write_text(json.dumps(mark), encoding="utf-8")
+        names = ("margin_factor", "rotation_ratio", "slip_m", "overturned", "factor_at_first_overturning")
+        answer = dict.fromkeys(names) | {"answer": "fulfilled", "reasons": [], "sentence": "It is fulfilled."}
+        governing = SimpleNamespace(outcome="slide")
+        return SimpleNamespace(
+            state="finished", status="completed", result=SimpleNamespace(governing=governing, **answer)
+        )
+
+    monkeypatch.setattr("fem.hall.site.run_site", verified)
+
+    def hall(**options):
+        made.clear()
+        site = load_site("site.toml")
+        return run_hall_at_site(read_hall(Path("hall.csv")), site, None, tmp_path / "out", **options)
+
+    return hall, made
+
+
+def test_one_row_that_cannot_be_verified_is_a_row_with_its_reason(asked):
+    low, tall, wide = asked[0]().table
+    assert (low["status"], low["answer"], low["outcome"]) == ("completed", "fulfilled", "slide")
+    assert tall["status"] == "refused" and "[wind]" in tall["reason"]
+    assert (wide["status"], wide["reason"]) == ("failed", "the deciding run cannot be computed")
+    assert low["rank"] == 2 and wide["rank"] == 1
+
+
+def test_changed_contents_of_records_or_of_the_hazard_are_another_hall(asked):
+    hall, made = asked
+    first = hall()
+    assert hall().asked == first.asked and not made
+    for change in (
+        lambda: record(Path("2.csv"), 9.0),
+        lambda: Path("hazard.csv").write_text("acceleration_m_s2,rate_per_year\n1,1e-2\n3,2e-3\n"),
+    ):
+        change()
+        assert hall(force=True).asked != first.asked
+        first = hall()
+
+
+def test_a_forced_hall_and_folders_of_another_program_are_verified_anew(asked, tmp_path):
+    hall, made = asked
+    hall()
+    assert made == [False, False]
+    hall(force=True)
+    assert made == [True, True]
+    (mark,) = (tmp_path / "out" / "sites").glob("*/assess.json")
+    whole, log = tmp_path / "out" / "hall.json", tmp_path / "out" / "sites.csv"
+    for program in ({}, {"program": "an older one"}):
+        mark.write_text(json.dumps({"asked": "", **program_of_results()} | program), encoding="utf-8")
+        found = json.loads(whole.read_text(encoding="utf-8")) | {"status": "interrupted"}
+        whole.write_text(json.dumps(found), encoding="utf-8")
+        lines = log.read_text(encoding="utf-8").splitlines(keepends=True)
+        log.write_text("".join(line for line in lines if not line.startswith("0,")), encoding="utf-8")
+        hall(resume=True)
+        assert made == [bool(program)]
+
+
+def test_records_outside_the_folder_need_the_flag_and_the_command_of_a_row_runs(asked, tmp_path):
+    hall, _ = asked
+    row = hall().table[0]
+    words = shlex.split(row["command"])
+    assert words[-1] == "--allow-outside"
+    again = load_site(words[4])
+    assert again.hazard_curve.rates.tolist() == [1e-2, 1e-3]
+    (tmp_path / "below").mkdir()
+    for name in ("site.toml", "base.toml", "hazard.csv"):
+        Path(name).rename(tmp_path / "below" / name)
+    text = SITE.replace('["', '["../')
+    (tmp_path / "below" / "site.toml").write_text(text, encoding="utf-8")
+    site, listed = load_site("below/site.toml"), read_hall(Path("hall.csv"))
+    with pytest.raises(CaseError, match="allow-outside"):
+        run_hall_at_site(listed, site, None, tmp_path / "other")
+    found = run_hall_at_site(listed, site, None, tmp_path / "other", allow_outside=True)
+    assert found.table[0]["answer"] == "fulfilled"
