@@ -86,9 +86,12 @@ def links_of_case(case: Any) -> tuple[Any, ...]:
 
 def held_above(case: Any) -> bool:
     """Whether a link holds the container above its lowest box: the forces in the joints then do not follow from it."""
+    links = links_of_case(case)
+    if not links:
+        return False
     first = case.container.height_m if case.container.box is None else case.container.box[0].height_m
     lowest = case.container.height_m if first is None else first
-    return any(one.height_m > lowest * (1.0 + 1e-9) for one in links_of_case(case))
+    return any(one.height_m > lowest * (1.0 + 1e-9) for one in links)
 
 
 def _of_links(place: str, holds: Any, reason: Any) -> Rule:

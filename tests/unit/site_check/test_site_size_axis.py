@@ -15,9 +15,9 @@ SITE = load_site("site")
         ("container.width_m", "least", "m", (1.1 / 3.0, 3.3), 13),
         ("container.boxes", "largest", "", (1.0, 12.0), 12),
         ("contact.mu_static", "window", "", (0.05, 1.0), 13),
-        ("site.reference_acceleration_m_s2", "largest", "m/s2", (1.6 / 3.0, 4.8), 13),
+        ("site.reference_acceleration_m_s2", "largest", "m/s2", (2.3 / 3.0, 6.9), 13),
         ("site.importance_factor", "largest", "", (0.5, 2.0), 13),
-        ("limits.slip_m", "window", "m", (0.1 / 3.0, 0.3), 13),
+        ("limits.slip_m", "window", "m", (0.25 / 3.0, 0.75), 13),
     ],
 )
 def test_each_key_has_its_range_about_the_value_of_the_files(key, wanted, unit, ends, count):
