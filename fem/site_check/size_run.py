@@ -231,7 +231,7 @@ class _Sizing:
         longest = longest_period([body.frequency_parameter_1_s for body in bodies])
         ground = ground_motions(request, longest, allow_outside=self.allow_outside)
         floors = floor_motions(request, ground)
-        folder = _written(floors, working)
+        folder = written_motions(request, floors, longest, working)
         checked = check_set(
             ground, request.action, longest=longest, second=request.motions.second_component or 1.0
         )
@@ -248,9 +248,14 @@ class _Sizing:
             tried.rows.note(line)
 
 
-def _written(floors: Mapping[float | None, Sequence[GroundMotion]], working: Path) -> Path:
-    """The folder of these motions; values of the container share it."""
-    digest = sha256()
+def written_motions(
+    request: SiteRequest, floors: Mapping[float | None, Sequence[GroundMotion]], longest: float, working: Path
+) -> Path:
+    """The folder of these motions, and of the further ones that go with them; values of the container share it."""
+    asked = request.motions
+    # what the further motions depend on, which the set does not where it is one of records
+    further = request.action, request.building, longest, asked.seed, asked.stationary_s, asked.vertical
+    digest = sha256(repr(further).encode())
     for motion in (one for floor in floors.values() for one in floor):
         for component in motion.components:
             digest.update(component.tobytes())

@@ -2,9 +2,13 @@
 
 import json
 
+import numpy as np
 import pytest
 
 from fem.__main__ import main
+from fem.seismic.ground_motion import GroundMotion
+from fem.site_check.file import load_site
+from fem.site_check.size_run import written_motions
 
 SITE = """
 container = "seed_stack"
@@ -61,6 +65,28 @@ def test_the_tallest_stack_is_found(place):
     assert [point["runs"] for point in found["points"]] == [3] * 4
     assert (place / "found" / "figures" / "size.svg").is_file()
     assert not (place / "found" / ".motions").exists()
+
+
+def test_values_share_a_folder_of_motions_where_the_further_motions_are_the_same(tmp_path):
+    """The set may be the same all the same: one of records has no seed, and its scale need not follow the spectrum."""
+    wave = np.sin(np.arange(0.0, 2.0, 0.01))
+    floors = {None: [GroundMotion(name="record", step=0.01, horizontal=wave, vertical=0.5 * wave)]}
+    site = load_site("site")
+
+    def folder(key, value, longest=4.0):
+        return written_motions(site.with_value(key, value), floors, longest, tmp_path)
+
+    own = folder("motions.seed", site.motions.seed)
+    assert folder("container.width_m", 1.5) == folder("friction.mu_static", [0.3]) == own
+    others = {
+        folder("motions.seed", site.motions.seed + 1),
+        folder("motions.stationary_s", 20.0),
+        folder("motions.vertical", False),
+        folder("site.importance_factor", 1.2),
+        folder("container.width_m", 1.5, longest=5.0),
+    }
+    assert len(others) == 5 and own not in others
+    assert {path.name for path in own.rglob("*.csv")} == {"motion_01_h.csv", "motion_01_v.csv"}
 
 
 def test_bad_input_is_told_before_anything_is_computed(place, capsys):
