@@ -33,7 +33,7 @@ class SizeAxis:
     unit: str
     wanted: Wanted
     values: tuple[float, ...]  #: rising
-    whole: bool = False  #: whole numbers, which are all tried
+    whole: bool = False  #: all values are tried, and there are none between them: boxes, floors of a building
 
     def __post_init__(self) -> None:
         if len(self.values) < 2 or any(b <= a for a, b in pairwise(self.values)):

@@ -13,7 +13,8 @@ COUNT = 13  #: values of the scan
 MOST_COUNT = 200
 WIDER = 3.0  #: the scan reaches from the value in the file over this to this times it
 SIDES = ("container.width_m", "container.depth_m")
-BOXES, FRICTION = "container.boxes", "contact.mu_static"
+BOXES, FRICTION, FLOOR = "container.boxes", "contact.mu_static", "building.z_over_h"
+NEAR = 1e-3  #: of a step, within which an end of the range is a value: 0.666667 is the second floor of three
 #: key -> what is looked for, and words for it; other keys: the window of their values
 KNOWN: dict[str, tuple[Wanted, str]] = {
     "container.width_m": ("least", "width"),
@@ -25,10 +26,10 @@ KNOWN: dict[str, tuple[Wanted, str]] = {
     "site.element_importance_factor": ("largest", "importance factor of the element"),
     "site.soil_factor": ("largest", "soil factor"),
     "site.vertical_ratio": ("largest", "vertical ratio"),
-    "building.z_over_h": ("largest", "height in the building"),
+    FLOOR: ("largest", "height in the building"),
 }
 #: ends of the scan where the value in the file says little
-RANGES = {FRICTION: (0.05, 1.0), BOXES: (1.0, 12.0), "building.z_over_h": (0.0, 1.0)}
+RANGES = {FRICTION: (0.05, 1.0), BOXES: (1.0, 12.0), FLOOR: (0.0, 1.0)}
 
 
 def size_axis(
@@ -45,13 +46,13 @@ def size_axis(
         request: what is asked, with the value that the range starts from.
         key: dotted, such as `container.width_m`.
         low, high: ends of the scan; None: as suits the key.
-        count: values of the scan; None: 13, or every whole number.
+        count: values of the scan; None: 13. Every number of boxes, and every floor of a building of storeys, is tried.
 
     Raises:
         CaseError: no such key, one without a number, a range that does not rise or that the key cannot have.
     """
     quantity, value = _quantity(key), _value(request, key)
-    whole = key == BOXES
+    steps = _steps(request, key)
     if low is None or high is None:
         begin, end = RANGES.get(key) or _around(key, value, quantity)
         low, high = begin if low is None else low, end if high is None else high
@@ -64,13 +65,16 @@ def size_axis(
             raise CaseError(f"{name}: {key} {error}") from None
     if count is not None and not 2 <= count <= MOST_COUNT:
         raise CaseError(f"--count must be 2 to {MOST_COUNT}, got {count}")
-    values = (
-        tuple(float(number) for number in range(math.ceil(low), math.floor(high) + 1))
-        if whole
-        else spaced(low, high, count or COUNT)
-    )
+    values = spaced(low, high, count or COUNT)
+    if steps is not None:
+        first, last = math.ceil(low * steps - NEAR), math.floor(high * steps + NEAR)
+        values = tuple(number / steps for number in range(first, last + 1))
+        if len(values) < 2:
+            raise CaseError(f"--from {low:g} --to {high:g}: {key} has fewer than two values there")
     wanted, words = KNOWN.get(key, ("window", key))
-    axis = SizeAxis(key=key, words=words, unit=quantity.unit, wanted=wanted, values=values, whole=whole)
+    axis = SizeAxis(
+        key=key, words=words, unit=quantity.unit, wanted=wanted, values=values, whole=steps is not None
+    )
     for bound in (values[0], values[-1]):
         at(request, axis, bound)  # refused before anything is computed
     return axis
@@ -82,7 +86,7 @@ def at(request: SiteRequest, axis: SizeAxis, value: float) -> SiteRequest:
     Raises:
         CaseError: the value cannot be used.
     """
-    changed = request.with_value(axis.key, round(value) if axis.whole else value)
+    changed = request.with_value(axis.key, round(value) if axis.key == BOXES else value)
     for key in followers(request, axis.key):
         changed = changed.with_value(key, value)
     return changed
@@ -93,6 +97,13 @@ def followers(request: SiteRequest, key: str) -> tuple[str, ...]:
     box = request.container.container
     square = key in SIDES and box.width_m == box.depth_m
     return tuple(side for side in SIDES if square and side != key)
+
+
+def _steps(request: SiteRequest, key: str) -> int | None:
+    """Values of a key from 0 to 1, where it has no others between: whole numbers, floors; None: it has all."""
+    if key == FLOOR and request.building is not None:
+        return request.building.storeys
+    return 1 if key == BOXES else None
 
 
 def _quantity(key: str) -> Quantity:

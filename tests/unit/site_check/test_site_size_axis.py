@@ -1,12 +1,20 @@
 """The key that `size` varies, and its range."""
 
+from dataclasses import replace
+
 import pytest
 
 from fem.case.validation import CaseError
-from fem.site_check.file import load_site
+from fem.site_check.file import SiteRequest, load_site
 from fem.site_check.size_axis import at, size_axis
 
 SITE = load_site("site")
+
+
+def in_building(**keys: int) -> SiteRequest:
+    """The site with a building of one mode, or of storeys."""
+    building = {"z_over_h": 1.0, "building_period_s": 0.3, **keys}
+    return replace(SITE, data={**SITE.data, "building": building}).with_value("building.damping_ratio", 0.05)
 
 
 @pytest.mark.parametrize(
@@ -34,6 +42,21 @@ def test_the_request_takes_the_value():
     assert (box.width_m, box.depth_m) == (0.8, 0.8)  # it was square
     deep = at(SITE.with_value("container.depth_m", 1.3), axis, 0.8).container.container
     assert (deep.width_m, deep.depth_m) == (0.8, 1.3)
+
+
+def test_of_a_building_of_storeys_every_floor_is_tried_and_none_between():
+    tall = in_building(storeys=5)
+    axis = size_axis(tall, "building.z_over_h")
+    assert axis.values == (0.0, 0.2, 0.4, 0.6, 0.8, 1.0) and axis.whole
+    assert [at(tall, axis, value).building.z_over_h for value in axis.values] == list(axis.values)
+    assert size_axis(in_building(storeys=3), "building.z_over_h", low=0.3, high=0.66666).values == (
+        1 / 3,
+        2 / 3,
+    )
+    low = in_building()
+    assert len(size_axis(low, "building.z_over_h").values) == 13
+    with pytest.raises(CaseError, match="fewer than two values"):
+        size_axis(tall, "building.z_over_h", low=0.3, high=0.5)
 
 
 @pytest.mark.parametrize(
