@@ -81,7 +81,7 @@ SWEEP = ResultKind(
         *("motions.csv", "motion_set.csv", "spectra.csv", "figures/*.svg"),
     ),
     temporary=("rows.csv",),
-    logs=("rows.csv", "members.csv", "tried.csv"),
+    logs=("rows.csv", "members.csv", "margins.csv", "tried.csv"),
     later="band_hash",
 )
 ENSEMBLE = ResultKind(
