@@ -4,9 +4,18 @@ A key carries its unit. The type, range and unit of one key are checked by its `
 rules of `fem.case.rules` and `fem.case.motion_rules`. Keys of an option that is not chosen are checked and not used.
 """
 
+from dataclasses import dataclass
 from typing import Annotated, Any, Literal, assert_never
 
-from pydantic import BeforeValidator, Field, Strict, ValidationInfo, field_validator
+from pydantic import (
+    BeforeValidator,
+    Field,
+    GetJsonSchemaHandler,
+    Strict,
+    ValidationInfo,
+    field_validator,
+)
+from pydantic_core import CoreSchema
 
 from fem.case import quantities as q
 from fem.case.floors import FloorTable
@@ -18,6 +27,18 @@ from fem.case.unknown_inputs import UNCERTAINTY_RULES
 USUAL_DASHPOT = 2.0  #: damping ratio of a stiff contact that does not bounce
 #: a range [low, high], or that the value of the case is known
 Unknown = Annotated[list[float], Field(min_length=2, max_length=2)] | Literal["held", "known"] | None
+
+
+@dataclass(frozen=True)
+class OrRange:
+    """Metadata of a number in whose place a file may give [low, high]; reading makes it the middle and a range."""
+
+    def __get_pydantic_json_schema__(
+        self, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        """Both, for the JSON schema of the case file."""
+        number = handler(schema)
+        return {"anyOf": [number, {"type": "array", "items": number, "minItems": 2, "maxItems": 2}]}
 
 
 class BoxTable(CaseTable):
@@ -185,7 +206,9 @@ class SupportTable(CaseTable):
 class ContactTable(CaseTable):
     """Friction and the penalty contact of the base with the floor."""
 
-    mu_static: Annotated[float, q.FRICTION] = case_key("coefficient of static friction", example=0.4)
+    mu_static: Annotated[float, q.FRICTION, OrRange()] = case_key(
+        "coefficient of static friction", example=0.4
+    )
     mu_kinetic: Annotated[float, q.FRICTION] = case_key(
         "of kinetic friction; default: mu_static", follows=lambda values: values["mu_static"]
     )

@@ -304,6 +304,9 @@ class TestSchema:
         schema = self.schema(capsys)
         width = schema["$defs"]["ContainerTable"]["properties"]["width_m"]
         assert (width["minimum"], width["maximum"], width["x-unit"]) == (1e-3, 100.0, "m")
+        number, two = schema["$defs"]["ContactTable"]["properties"]["mu_static"]["anyOf"]
+        assert (number["type"], number["maximum"]) == ("number", 5.0) and number == two["items"]
+        assert (two["type"], two["minItems"], two["maxItems"]) == ("array", 2, 2)
         assert "schema" in schema["properties"]
         assert schema["additionalProperties"] is False
         assert schema["$defs"]["MotionTable"]["required"] == ["kind"]
