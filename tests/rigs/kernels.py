@@ -10,6 +10,7 @@ from fem.run.recorder import Recorder
 from fem.run.simulation import simulate
 
 LOOSE = ("container.joints=loose", "container.boxes=3")
+STOP = "stop=[{side = 'right', height_m = 0.1, gap_m = 0.02, stiffness_N_m = 1e8}]"
 #: cases that step with different kernels, the longest compilation first
 STEPPED = {
     "loose": LOOSE,
@@ -18,6 +19,8 @@ STEPPED = {
     "full loose": ("solver.model=full", *LOOSE),
     "full": ("solver.model=full",),
     "flat": ("support.kind=flat",),
+    "linked": ("solver.model=rigid", STOP),
+    "linked outcome": ("solver.model=rigid", STOP),
 }
 
 
@@ -34,7 +37,7 @@ def compile_kernels() -> None:
 
 def _step(name: str) -> None:
     model = build_model(load_case("seed_box", ["solver.duration_s=0.02", *STEPPED[name]]))
-    if name == "outcome":
+    if name.endswith("outcome"):
         run_to_end(model.body, model.run, model.duration)
     else:
         simulate(model, Recorder(model))
