@@ -7,7 +7,13 @@ import pytest
 from fem.evidence.verification.suite import CHECKS
 
 README = Path(__file__).parents[1] / "README.md"
-SLOW = {"manufactured solution, dynamic", "impact of a bar", "full model", "full model through an impact"}
+SLOW = {
+    "order at large rotation",
+    "manufactured solution, dynamic",
+    "impact of a bar",
+    "full model",
+    "full model through an impact",
+}
 
 
 @pytest.mark.parametrize(

@@ -131,7 +131,7 @@ STUDIES = pytest.mark.parametrize(
         (ensemble, "ensemble.json", "draws.csv"),
         (response, "response.json", "state.npz"),
         (site, "assess.json", "runs.csv"),
-        (size, "size.json", "runs.csv"),
+        pytest.param(size, "size.json", "runs.csv", marks=pytest.mark.slow),  # several verifications
         (hall, "hall.json", "runs.csv"),
     ],
     ids=["sweep", "ensemble", "response", "site", "size", "hall"],

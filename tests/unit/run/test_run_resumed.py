@@ -57,13 +57,18 @@ CASES = {
     "aftermath, full": ("free_rocking", (*FALLING, *COARSE, "solver.duration_s=0.1")),
 }
 
+#: compiled for this test alone, or half a minute long
+SLOW = ("loose, full", "aftermath, full")
+
 
 def run(folder: Path, name: str, overrides: tuple[str, ...], **options) -> OpenedRun:
     case = load_case(name, [*overrides, "output.figures=false"])
     return run_case(case, case_text=case.text, folder=folder, options=RunOptions(band=False, **options))
 
 
-@pytest.mark.parametrize("kind", CASES)
+@pytest.mark.parametrize(
+    "kind", [pytest.param(kind, marks=[pytest.mark.slow] * (kind in SLOW)) for kind in CASES]
+)
 def test_a_run_cut_off_after_every_slice_is_the_run_left_alone(tmp_path, monkeypatch, kind):
     name, overrides = CASES[kind]
     monkeypatch.setattr(fem.run.simulation, "SLICE_REDUCED", 0.25)

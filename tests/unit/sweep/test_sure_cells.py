@@ -101,6 +101,7 @@ def test_copies_of_a_loose_cell_change_floor_and_joints_apart(sweep_of):
     assert keys_of(sweep) >= {*(f"joints.{key}" for key in own), "joints.damping_ratio"}
 
 
+@pytest.mark.slow
 def test_cells_of_a_loose_stack_show_every_box(sweep_of, tmp_path):
     text = LOOSE.replace("count = 5", "count = 2").replace("count = 4", "count = 2")
     sweep = sweep_of(text + '[perturbation]\ncells = "all"\ndraws = 2\n')

@@ -154,6 +154,7 @@ def test_a_mirrored_start_is_the_mirror_image():
     np.testing.assert_allclose(swing(-0.1, 0.1), -swing(0.1, 0.1), atol=1e-12)
 
 
+@pytest.mark.slow
 def test_the_swing_converges_with_the_energy_tolerance():
     usual, coarse, fine, finest = (swing(0.1, one) for one in (1.0, 0.1, 0.01, 0.001))
     errors = [np.abs(one - finest).max() for one in (usual, coarse, fine)]
