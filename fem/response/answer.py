@@ -3,6 +3,7 @@
 from fem.batch.answers import slip_in_words
 from fem.response.branches import Coexistence, DropOut, Jump
 from fem.response.result import ResponseResult
+from fem.results.outcome import Outcome
 from fem.runtime.units import MILLIMETRES
 
 MOST_RANGES = 3  #: of frequencies that are named
@@ -13,17 +14,22 @@ def response_answer(result: ResponseResult) -> str | None:
     points = [point for point in result.points if point.status != "failed"]
     if result.state != "finished" or not points:
         return None
-    standing = [point for point in points if point.rotation_ratio is not None]
+    destroyed = [point for point in points if point.motion == Outcome.INVALID]
+    standing = [point for point in points if point.rotation_ratio is not None and point not in destroyed]
     frequencies = [point.frequency_Hz for point in points]
     failed = len(result.points) - len(points)
     every = f"every frequency {'with an outcome' if failed else 'tried'}, {_range(min(frequencies), max(frequencies))}"
     fallen = [f"{found_at(found)} going {found.direction}" for found in result.drop_outs]
-    if not fallen:
+    if not fallen and not destroyed:
         parts = [f"stood at {every}, up and down"]
-    elif not standing:
+    elif not standing and not destroyed:
         parts = [f"overturned at {every}"]
     else:
-        parts = [f"overturned at {_listed(fallen)}", f"stood at the other {len(standing)} points"]
+        parts = [f"overturned at {_listed(fallen)}"] if fallen else []
+        if destroyed:
+            where = f"{destroyed[0].frequency_Hz:.4g} Hz going {destroyed[0].direction}"
+            parts.append(f"not valid at {len(destroyed)} points, the first at {where}: a corner is destroyed")
+        parts += [f"stood at the other {len(standing)} points"] if standing else []
     if standing:
         most = max(standing, key=lambda point: point.rotation_ratio or 0.0)
         turned = f"{most.rotation_ratio:.2g} of the slenderness angle, at {most.frequency_Hz:.4g} Hz"

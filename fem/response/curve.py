@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from contact.stepping.observables import ROCKING
-from fem.assessment.verdict import relative_rotation
+from fem.assessment.verdict import destroyed_corner, relative_rotation
 from fem.case.case import Case
 from fem.model.container import Container
 from fem.response.decay import Decay, follow_decay
@@ -178,7 +178,9 @@ def judge(request: ResponseRequest, case: Case, driven: DrivenModel, orbit: Orbi
 
 
 def motion_of(driven: DrivenModel, orbit: Orbit) -> str:
-    """One word for a window of periods, with the limits of a verdict."""
+    """One word for a window of periods, with the limits of a verdict; a corner sinks in further from point to point."""
+    if destroyed_corner(driven.model) is not None:
+        return Outcome.INVALID
     if orbit.status == "overturned":
         return Outcome.OVERTURNED
     rocks = orbit.extremes[:, 3].max() > ROCKING * driven.run.problem.control.slenderness_angle

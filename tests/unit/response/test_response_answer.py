@@ -8,7 +8,7 @@ from fem.response.records import PointRow
 from fem.response.result import ResponseResult
 
 
-def point(frequency, direction, ratio, long_time="periodic", status="completed", slip=0.0):
+def point(frequency, direction, ratio, long_time="periodic", status="completed", slip=0.0, motion="rock"):
     stands = ratio is not None
     return PointRow(
         number=0,
@@ -20,6 +20,7 @@ def point(frequency, direction, ratio, long_time="periodic", status="completed",
         direction=direction,
         rotation_ratio=ratio,
         slip_stroke_m=slip if stands else None,
+        motion=motion if stands else None,
         long_time=long_time if stands else None,
         status=status if stands or status == "failed" else "overturned",
     )
@@ -60,6 +61,11 @@ TWO = Coexistence(from_Hz=1.0, to_Hz=1.0, frequencies=1, up=("rock",), down=("re
             curve(*STANDS[:3], point(0.5, "down", 0.1, slip=0.064)),
             "frequency: stood at every frequency tried, 0.5 to 1 Hz, up and down; largest rotation 0.62 of the "
             "slenderness angle, at 1 Hz going up; slid by up to 64 mm a period, at 0.5 Hz going down",
+        ),
+        (
+            curve(*STANDS[:3], point(0.5, "down", 0.1, motion="invalid")),
+            "frequency: not valid at 1 points, the first at 0.5 Hz going down: a corner is destroyed; stood at the "
+            "other 3 points; largest rotation 0.62 of the slenderness angle, at 1 Hz going up",
         ),
         (curve(*STANDS, status="interrupted"), None),
         (curve(point(0.5, "up", None, status="failed"), status="failed"), None),
