@@ -13,6 +13,7 @@ from fem.hall.file import read_hall
 from fem.hall.site import run_hall_at_site
 from fem.results.folder import program_of_results
 from fem.site_check.file import load_site
+from fem.site_check.motions import ground_motions
 
 BASE = """
 [container]
@@ -134,6 +135,7 @@ def test_records_outside_the_folder_need_the_flag_and_the_command_of_a_row_runs(
     assert words[-1] == "--allow-outside"
     again = load_site(words[4])
     assert again.hazard_curve.rates.tolist() == [1e-2, 1e-3]
+    assert len(ground_motions(again, 4.0, allow_outside=True)) == 3
     (tmp_path / "below").mkdir()
     for name in ("site.toml", "base.toml", "hazard.csv"):
         Path(name).rename(tmp_path / "below" / name)
