@@ -239,6 +239,10 @@ class Case(CaseHeading):
         """
         return _read(with_overrides(self.given(), values), self.origin_with(values), values)
 
+    def with_chosen(self, values: Mapping[str, Any]) -> "Case":
+        """This case with what is chosen for "auto", by dotted key: no change of a user, so none of its `overrides`."""
+        return _read(with_overrides(self.given(), values), self._origin, values)
+
     def replace(self, changes: Mapping[str, Any]) -> "Case":
         """This case with keys changed, for scripts: `case.replace({"contact.mu_static": 0.3})`.
 

@@ -39,7 +39,7 @@ def resolve(case: Case, mesh: ContainerMesh, motions: tuple[BaseMotion, BaseMoti
         CaseError: a motion that the given step would step over.
     """
     chosen = chosen_values(case, mesh, motions)
-    return case.with_values(chosen) if chosen else case
+    return case.with_chosen(chosen) if chosen else case
 
 
 def chosen_values(case: Case, mesh: ContainerMesh, motions: tuple[BaseMotion, BaseMotion]) -> dict[str, Any]:

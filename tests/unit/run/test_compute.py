@@ -81,3 +81,14 @@ def test_a_case_that_cannot_be_computed_is_refused_in_the_words_of_the_command()
     coarse = fem.load_case("seed_box").replace({"solver.step_s": 0.5})
     with pytest.raises(CaseError, match=r"\[solver\] step_s"):
         fem.compute(coarse)
+
+
+def test_what_is_chosen_for_auto_is_no_change_of_the_user():
+    changes = ["solver.model=rigid", "solver.duration_s=0.5"]
+    case = fem.load_case("rocking", changes)
+    result = fem.compute(case, band=False, margin=False).result
+    assert case.solver.step_s == case.output.fields_s == "auto"
+    assert result["overrides"] == changes
+    assert (
+        fem.compute(fem.load_case("free_rocking"), band=False, margin=False).result.get("overrides") is None
+    )
