@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
-from fem.batch.answers import table_lines
+from fem.batch.answers import slip_in_words, table_lines
 from fem.case.case import CaseError, load_case
 from fem.cli.console import SHARED, AllowOutside, SharedFlags, flag, print_result
+from fem.results.figures import SLIPPED, TURNED
 from fem.results.kinds import HALL
 
 if TYPE_CHECKING:
@@ -125,8 +126,8 @@ def _shown(row: dict[str, object]) -> str:
         words.append(f"{does} from {row['margin']:.3g} times the motion on")
     elif isinstance(row["margin_tried_to"], float):
         words.append(f"stands up to {row['margin_tried_to']:.3g} times the motion")
-    if isinstance(row["rotation_ratio"], float) and row["outcome"] != "overturned":
-        words.append(f"rotation ratio {row['rotation_ratio']:.2g}")
-    if isinstance(row["max_slip_m"], float):
-        words.append(f"slip {1e3 * row['max_slip_m']:.3g} mm")
+    if isinstance(turned := row[TURNED], float) and row["outcome"] != "overturned":
+        words.append(f"rotation ratio {turned:.2g}")
+    if isinstance(slip := row[SLIPPED], float):
+        words.append(f"slip {slip_in_words(slip)}")
     return ", ".join(words)

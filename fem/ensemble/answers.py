@@ -16,6 +16,7 @@ from fem.batch.axes import MOTION_FILE, Axis
 from fem.batch.labels import axis_name, in_words, place_in_words
 from fem.batch.study import COMPLETED
 from fem.ensemble.result import EnsembleResult
+from fem.results.figures import SLIPPED
 from fem.runtime.units import MILLIMETRES
 
 HALF = 0.5
@@ -174,7 +175,7 @@ def _half(
 def _slips(points: Sequence[Row], crossing: HalfPoint) -> str:
     """How far the draws slid that stood, at the points at which fewer than half did not."""
     before = takewhile(lambda point: crossing.value is None or (point["probability"] or 0.0) < HALF, points)
-    slip = max((point.get("max_slip_m") or 0.0 for point in before), default=0.0)
+    slip = max((point.get(SLIPPED) or 0.0 for point in before), default=0.0)
     return f"; those that stood there slid up to {slip_in_words(slip)}" if slip >= MILLIMETRES.least else ""
 
 

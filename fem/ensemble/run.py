@@ -33,6 +33,7 @@ from fem.ensemble.result import EnsembleResult
 from fem.ensemble.statistics import POINT_COLUMNS, PointResult, count_point, fragility_of
 from fem.ensemble.unknown import UnknownInputs
 from fem.results.disk import BYTES_BESIDE, table_bytes
+from fem.results.figures import SLIPPED, TURNED
 from fem.results.folder import ResultFolder
 from fem.results.kinds import ENSEMBLE
 from fem.results.outcome import COUNTED, Ending, ending_of
@@ -61,8 +62,8 @@ class DrawRows:
             *keys,
             *unknown.keys,
             "outcome",
-            "rotation_ratio",
-            "max_slip_m",
+            TURNED,
+            SLIPPED,
         )
         self.codes = np.full((ensemble.count, ensemble.draws), Ending.UNKNOWN, dtype=np.int8)
         self.slips = np.full(self.codes.shape, np.nan)
@@ -71,7 +72,7 @@ class DrawRows:
     def values(self, draw: Draw, row: Row) -> tuple[Any, ...]:
         """The row of a draw: what was drawn, and its result."""
         replicate = draw.number // (self._ensemble.draws // self._ensemble.replicates)
-        figures = (row["rotation_ratio"], row["max_slip_m"])
+        figures = (row[TURNED], row[SLIPPED])
         known = (one if one is not None and np.isfinite(one) else None for one in figures)
         found = WORDS[ending_of(row["status"], row["outcome"])], *known
         unknown = (draw.unknown.get(key) for key in self._unknown.keys)

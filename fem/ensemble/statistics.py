@@ -9,12 +9,13 @@ import numpy as np
 from fem.ensemble.fragility import BOOTSTRAPS, bootstrap_fits, falls, fit_lognormal, misses, misses_by_chance
 from fem.ensemble.plan import Ensemble
 from fem.ensemble.result import FittedLognormal, Fragility, Resampled
+from fem.results.figures import SLIPPED
 from fem.results.outcome import COUNTED, NOT_STANDING, Ending
 from fem.runtime.arrays import FloatArray
 from fem.runtime.intervals import Estimate, estimate
 
 #: columns of `points.csv` behind those of the axes
-POINT_COLUMNS = ("draws", *COUNTED, "probability", "low", "high", "region", "max_slip_m")
+POINT_COLUMNS = ("draws", *COUNTED, "probability", "low", "high", "region", SLIPPED)
 FEWEST_FITTED = 4  #: levels from which a curve is fitted
 NO_CURVE = "the counts are a step, fall, or hold nothing that overturned or nothing that stood"
 FEWEST_RESAMPLED = 0.9  #: share of the resamples that must have a curve, else there is no band
@@ -45,7 +46,7 @@ class PointResult:
             "low": self.estimate.low,
             "high": self.estimate.high,
             "region": self.region,
-            "max_slip_m": self.slip,
+            SLIPPED: self.slip,
         }
 
 

@@ -13,6 +13,7 @@ from fem.hall.result import CHECKED, OF_A_RUN, STATIC
 from fem.model.geometry import build_container
 from fem.model.motion import build_motions, peaks_in_run
 from fem.model.static_checks import static_checks_of
+from fem.results.figures import SLIPPED, TURNED
 from fem.results.outcome import Ending, ending_of
 from fem.run.checks import WantedChecks
 from fem.run.compute import compute_on
@@ -64,8 +65,8 @@ class HallRuns:
         run = RunFound(
             line=line,
             ending=ending_of(fields["status"], fields["outcome"]),
-            ratio=number_in(fields["rotation_ratio"]) or 0.0,
-            slip=number_in(fields["max_slip_m"]) or 0.0,
+            ratio=number_in(fields[TURNED]) or 0.0,
+            slip=number_in(fields[SLIPPED]) or 0.0,
         )
         self.found.setdefault(int(fields["container"]), {})[int(fields["motion"])] = run
 

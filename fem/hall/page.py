@@ -17,11 +17,11 @@ from fem.html.page import Signature
 from fem.html.units import ABSENT, figure_cell, figure_head, number
 from fem.report import studies
 from fem.report.comparison import asked_rows, limits_section
-from fem.results.figures import FIGURES
+from fem.results.figures import FIGURES, SLIPPED, TURNED
 from fem.results.kinds import HALL
 
 #: figures of a container on the page
-SHOWN = ("rotation_ratio", "max_slip_m")
+SHOWN = (TURNED, SLIPPED)
 BRIEFLY = 30  #: containers on the short page
 MOST_INPUTS = 3  #: of those that decide
 LOOKS = {"overturned": "bad", "invalid": "bad", "failed": "bad"}

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from fem.batch.study import StudyResult
-from fem.results.figures import BOXES, SCALARS
+from fem.results.figures import BOXES, SCALARS, SLIPPED, TURNED
 from fem.results.json_block import JsonBlock
 
 REFUSED = "refused"  #: status of a row that cannot be computed
@@ -20,7 +20,7 @@ OF_MOTIONS = (
 )
 #: of a container at a site, by the rule of `assess`
 AT_SITE = ("answer", "reasons", "factor_at_first_overturning", "page")
-FIRST = ("status", "reason", "outcome", *CHECKED[:3], "rotation_ratio", "max_slip_m", "tilt_rad")
+FIRST = ("status", "reason", "outcome", *CHECKED[:3], TURNED, SLIPPED, "tilt_rad")
 #: behind the columns of the list
 RESULT_COLUMNS = tuple(
     dict.fromkeys((*FIRST, *STATIC, *OF_MOTIONS, *CHECKED, *SCALARS, *BOXES, *AT_SITE, "rank"))

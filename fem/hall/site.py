@@ -23,6 +23,7 @@ from fem.hall.result import AT_SITE, HallResult
 from fem.hall.run import asked_of, study_of, written
 from fem.hall.table import HallTable
 from fem.results.errors import FolderError
+from fem.results.figures import SLIPPED, TURNED
 from fem.results.folder import ResultFolder, program_of_results
 from fem.results.kinds import SITE, read_result
 from fem.runtime.progress import SilentReporter
@@ -40,7 +41,7 @@ SITES, FOLDERS = "sites.csv", "sites"
 MU = "contact.mu_static"
 #: tables of a case that a verification takes from its site file
 OF_THE_SITE = ("motion", "vertical", "initial", "static", "solver", "output", "uncertainty", "joints")
-FIGURES = ("outcome", "margin", "rotation_ratio", "max_slip_m", "motions_overturned", "motions_failed")
+FIGURES = ("outcome", "margin", TURNED, SLIPPED, "motions_overturned", "motions_failed")
 COLUMNS = ("container", "status", "reason", *FIGURES, *AT_SITE[:3])
 NO_ANSWER = "no answer"
 WORST_FIRST = ("not fulfilled", NO_ANSWER, "not sure", "fulfilled")
@@ -219,7 +220,7 @@ def _look(site: SiteRequest, start: Case, ground: Sequence[GroundMotion], values
 
 def _weakness(found: Mapping[str, str]) -> tuple[float, ...]:
     """Smaller for the worse: by the answer, then by the margin, then by rotation and slip."""
-    ratio, slip = (number_in(found[name]) or 0.0 for name in ("rotation_ratio", "max_slip_m"))
+    ratio, slip = (number_in(found[name]) or 0.0 for name in (TURNED, SLIPPED))
     margin = number_in(found["margin"])
     order = WORST_FIRST.index(found["answer"] or NO_ANSWER)
     return order, math.inf if margin is None else margin, -ratio, -slip

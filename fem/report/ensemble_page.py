@@ -18,6 +18,7 @@ from fem.html.units import ABSENT, number, short, typeset
 from fem.report import studies
 from fem.report.comparison import asked_rows, limits_section
 from fem.report.motion_part import motions_of_ensemble
+from fem.results.figures import SLIPPED
 from fem.results.kinds import ENSEMBLE
 from fem.results.outcome import COUNTED
 
@@ -144,7 +145,7 @@ def points_table(info: EnsembleResult) -> html.Table:
             html.NUMBER,
         ),
         html.Column("region", lambda point: words[point["region"]]),
-        html.Column("slip of those that stood, mm", partial(_slip, "max_slip_m"), html.NUMBER),
+        html.Column("slip of those that stood, mm", partial(_slip, SLIPPED), html.NUMBER),
     ]
     return html.table_of("points", columns, info.points, file="points.csv")
 

@@ -266,6 +266,8 @@ def _declared(kind: type) -> Iterator[tuple[str, Shown]]:
 
 FIGURES = dict(_declared(RunFigures))  #: by key, in the order of the columns of tables
 BOX_FIGURES = dict(_declared(BoxFigures))  #: of each box of a loose stack
+#: keys of the two figures that studies limit and rank by: how far a container turns, and how far it slips
+TURNED, SLIPPED = "rotation_ratio", "max_slip_m"
 
 
 def keys_of(place: Place) -> tuple[str, ...]:

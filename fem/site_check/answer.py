@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from fem.results.figures import SLIPPED, TURNED
 from fem.results.outcome import ENDINGS, Outcome
 from fem.runtime.intervals import binomial_interval
 from fem.runtime.units import RATIO, SHORT_MILLIMETRES
@@ -243,7 +244,7 @@ def further_motions(
                 overturned=len({run.motion for run in known.runs if run.outcome == Outcome.OVERTURNED}),
                 invalid=len({run.motion for run in known.runs if run.outcome == Outcome.INVALID}),
                 beyond_limits=known.beyond_any(
-                    {"rotation_ratio": limits.single_rotation_ratio, "max_slip_m": limits.slip_m}
+                    {TURNED: limits.single_rotation_ratio, SLIPPED: limits.slip_m}
                 ),
                 interval=binomial_interval(fell, known.motions, CONFIDENCE) if known.motions else (),
                 failed=len(failed),

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from fem.results.figures import SLIPPED, TURNED
 from fem.results.outcome import Outcome
 from fem.runtime.intervals import binomial_interval, least_draws
 from fem.runtime.units import RATIO, SHORT_MILLIMETRES, DisplayUnit, plain_number
@@ -103,9 +104,7 @@ class Evidence:
         return f"The {share} rotation of the {self.motions} motions", f"the limit of {limit:g}"
 
     def _count(self, key: str, group: RunGroup) -> str:
-        beyond = group.beyond(
-            "max_slip_m" if key == "slip_m" else "rotation_ratio", getattr(self.limits, key)
-        )
+        beyond = group.beyond(SLIPPED if key == "slip_m" else TURNED, getattr(self.limits, key))
         return f"{beyond} of {self.motions} motions beyond it"
 
     def _repetitions(self) -> Iterator[Reason]:

@@ -7,7 +7,7 @@ Every field has the name of its key in the file, with its SI unit. Accelerations
 from dataclasses import dataclass
 
 from fem.batch.study import StudyResult
-from fem.results.figures import Place, RunFigures, keys_beside
+from fem.results.figures import SLIPPED, TURNED, Place, RunFigures, keys_beside
 from fem.results.json_block import JsonBlock
 
 RESULT_FILE = "assess.json"
@@ -155,7 +155,7 @@ class ByRule(JsonBlock):
 
 
 #: the figure of a run that each of these is on
-LIMITED = {"rotation_ratio": "rotation_ratio", "slip_m": "max_slip_m"}
+LIMITED = {"rotation_ratio": TURNED, "slip_m": SLIPPED}
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -13,6 +13,7 @@ from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import Self
 
+from fem.results.figures import SLIPPED, TURNED
 from fem.results.outcome import ENDINGS, Outcome
 from fem.site_check.result import ByRule, SiteRun
 from fem.site_check.tables import LimitsTable
@@ -72,7 +73,7 @@ class RunGroup:
     @cached_property
     def by_rule(self) -> ByRule:
         """What counts."""
-        rotations, slips = self._worst("rotation_ratio"), self._worst("max_slip_m")
+        rotations, slips = self._worst(TURNED), self._worst(SLIPPED)
         if rotations is None or slips is None:
             return ByRule()
         mean = sum(rotations) / len(rotations)

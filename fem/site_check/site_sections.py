@@ -11,7 +11,7 @@ from fem.html import sections as html
 from fem.html.formula import formula_markup
 from fem.html.page import svg_element
 from fem.html.units import ABSENT, figure_head, number, quantity, short, typeset
-from fem.results.figures import FIGURES, Place, keys_of
+from fem.results.figures import FIGURES, SLIPPED, TURNED, Place, keys_of
 from fem.results.outcome import ENDINGS, Outcome
 from fem.site_check.figures import draw_floor, draw_methods, draw_scan
 from fem.site_check.reasons import destroyed
@@ -34,7 +34,7 @@ SINGLE = (
     "Two figures are given; what the rule makes of all of them is steadier, and its range is on the first sheet."
 )
 symbols = partial(formula_markup, prose=True)
-TURNED, *FURTHER = keys_of(Place.RUNS)
+FURTHER = [key for key in keys_of(Place.RUNS) if key != TURNED]
 
 
 class RunPair(NamedTuple):
@@ -143,10 +143,10 @@ def _groups_table(
             group,
             group.first.elevation,
             f"{group.overturned} of {len(group.runs)}{destroyed(group.invalid)}{failed}",
-            two_figures("rotation_ratio", group.by_rule.rotation_ratio),
-            two_figures("rotation_ratio", group.by_rule.rotation_ratio_largest),
-            two_figures("max_slip_m", group.by_rule.slip_m),
-            two_figures("max_slip_m", group.by_rule.slip_mean_m),
+            two_figures(TURNED, group.by_rule.rotation_ratio),
+            two_figures(TURNED, group.by_rule.rotation_ratio_largest),
+            two_figures(SLIPPED, group.by_rule.slip_m),
+            two_figures(SLIPPED, group.by_rule.slip_mean_m),
             "failed" if group.overturned or group.invalid or group.failed else look,
         )
 
@@ -166,9 +166,7 @@ def _groups_table(
     ]
     rows = [row_of(group) for group in groups]
     rows += [
-        _GroupRow(
-            group, "both, 100 % + 30 %", ABSENT, ABSENT, ABSENT, two_figures("max_slip_m", slip), ABSENT
-        )
+        _GroupRow(group, "both, 100 % + 30 %", ABSENT, ABSENT, ABSENT, two_figures(SLIPPED, slip), ABSENT)
         for group, slip in both
         if not group.rests
     ]
@@ -351,7 +349,7 @@ def every_run_section(view: SiteView) -> html.PageSection:
         *(
             column
             for k, sign in enumerate(view.signs)
-            for column in _run_columns(k, sign_in_words(sign), "ratio", ["max_slip_m"])
+            for column in _run_columns(k, sign_in_words(sign), "ratio", [SLIPPED])
         ),
     ]
     blocks: list[html.Block] = [
