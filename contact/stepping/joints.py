@@ -353,7 +353,7 @@ def slide(run: RunState, j: int, step: float, holding: float) -> None:
 
 @inlined
 def slide_point(run: RunState, i: int, step: float, start: float) -> None:
-    """Sliding of a point and elongation of its spring, which else begins anew with `start` [m], after a step [s]."""
+    """Slip of a point in a step [s] and elongation of its tangential spring, which a finite `start` [m] sets anew."""
     contact, old, new, work, slip = run.problem.contact, run.old, run.attempt.new, run.work, run.attempt.slip
     normal, tangential = new.force[i, 1], new.force[i, 0]
     moved = new.point[i, 0] - old.point[i, 0]

@@ -10,6 +10,7 @@ from markupsafe import Markup
 
 from fem.batch.study import read_study
 from fem.case.case import Case, load_case
+from fem.case.unknown_inputs import WORDS
 from fem.hall.places import PICTURE
 from fem.hall.result import REFUSED, HallResult, TagCount
 from fem.html import sections as html
@@ -19,6 +20,7 @@ from fem.report import studies
 from fem.report.comparison import asked_rows, limits_section
 from fem.results.figures import FIGURES, SLIPPED, TURNED
 from fem.results.kinds import HALL
+from fem.results.outcome import Outcome
 
 #: figures of a container on the page
 SHOWN = (TURNED, SLIPPED)
@@ -160,7 +162,8 @@ def weakest_table(rows: list[dict[str, Any]], most: int, *, linked: bool) -> htm
     """A row a container, the weakest first; its name leads to its command."""
 
     def figure(name: str, row: A_ROW) -> str:
-        return figure_cell(FIGURES[name], row[name])
+        fallen = name == TURNED and row["outcome"] == Outcome.OVERTURNED  # how far it fell says nothing
+        return ABSENT if fallen else figure_cell(FIGURES[name], row[name])
 
     columns: list[html.Column[A_ROW]] = [
         html.Column(
@@ -235,9 +238,9 @@ def commands_table(rows: list[dict[str, Any]]) -> html.Table:
 
 
 def _deciding(row: A_ROW) -> str:
-    keys = (row["decided_by"] or "").split()
-    more = len(keys) - MOST_INPUTS
-    return ", ".join(keys[:MOST_INPUTS]) + (f" and {more} more" if more > 0 else "")
+    named = [WORDS.get(key, key) for key in (row["decided_by"] or "").split()]
+    more = len(named) - MOST_INPUTS
+    return ", ".join(named[:MOST_INPUTS]) + (f" and {more} more" if more > 0 else "")
 
 
 def _count(word: str, one: TagCount) -> str:

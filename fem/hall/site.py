@@ -116,7 +116,7 @@ class _AtSite:
     start: Case
     looked: Looked
     begun: HallResult
-    force: bool  #: verify each anew
+    force: bool  #: verify every container again
     lines: dict[int, str] = field(default_factory=dict)  #: of the log, by container
 
     def compute(self, place: ResultFolder, runner: Runner) -> HallResult:

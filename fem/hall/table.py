@@ -107,7 +107,7 @@ def answer_of(result: HallResult) -> str:
         words = f"{overturned or 'none'} of {computed} containers overturned{under if overturned else ''}"
         words += f"; {invalid} destroyed a corner, which is not valid" if invalid else ""
         words += f"; {failed} have no outcome" if failed else ""
-    words += f"; {result.refused} rows were refused" if refused else ""
+    words += f"; {result.refused} row{'s were' if result.refused != 1 else ' was'} refused" if refused else ""
     weakest = next(row for row in result.table if row["rank"] == 1)
     words += f"; the weakest is {weakest['name']}"
     if weakest["margin"] is not None:

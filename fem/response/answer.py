@@ -28,7 +28,8 @@ def response_answer(result: ResponseResult) -> str | None:
         parts = [f"overturned at {_listed(fallen)}"] if fallen else []
         if destroyed:
             where = f"{destroyed[0].frequency_Hz:.4g} Hz going {destroyed[0].direction}"
-            parts.append(f"not valid at {len(destroyed)} points, the first at {where}: a corner is destroyed")
+            count = f"{len(destroyed)} point{'s' * (len(destroyed) != 1)}"
+            parts.append(f"not valid at {count}, the first at {where}: a corner is destroyed")
         parts += [f"stood at the other {len(standing)} points"] if standing else []
     if standing:
         most = max(standing, key=lambda point: point.rotation_ratio or 0.0)

@@ -7,9 +7,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fem.evidence.validation.experiments import Picture
-from fem.evidence.validation.shake_tests import GRAVITY, ShakeTest
+from fem.evidence.validation.shake_tests import ShakeTest
 from fem.evidence.validation.vote import BoolArray
 from fem.figures.style import BLUE, GREY, VERMILLION, WIDTH, house_style, svg_of
+from fem.records.units import STANDARD_GRAVITY
 from fem.runtime.arrays import FloatArray
 
 HEIGHT = 3.6  #: [inch]
@@ -19,7 +20,7 @@ Curve = tuple[FloatArray, FloatArray]
 def shaken(name: str, tests: Sequence[ShakeTest], probability: FloatArray, overturned: BoolArray) -> Picture:
     """Outcomes over the strength of the motions, wrong predictions with their probability of overturning."""
     peak = np.array([test.peak for test in tests])
-    length = np.array([test.peak_velocity for test in tests]) / (GRAVITY * peak)
+    length = np.array([test.peak_velocity for test in tests]) / (STANDARD_GRAVITY * peak)
     wrong = (probability > 0.5) != overturned
     with house_style():
         figure, axes = _axes("peak acceleration [g]", "peak velocity over peak acceleration [s]")

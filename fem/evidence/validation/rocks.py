@@ -203,10 +203,17 @@ def _findings(name: str, votes: FloatArray, overturned: BoolArray, *, judged: bo
     doubted = int((wrong & ~agreed).sum())
     constant = float(seen * (1.0 - seen))
 
-    def stated(what: str, value: float, reference: float | str, **criterion: str | bool) -> Finding:
-        if not judged:
-            criterion.pop("criterion", None), criterion.pop("met", None)
-        return prediction(f"{name}: {what}", value, reference=reference, **criterion)  # type: ignore[arg-type]
+    def stated(
+        what: str,
+        value: float,
+        reference: float | str,
+        *,
+        criterion: str = "",
+        met: bool = True,
+        note: str = "",
+    ) -> Finding:
+        one = prediction(f"{name}: {what}", value, reference=reference, note=note)
+        return replace(one, criterion=criterion, met=met) if criterion and judged else one
 
     return [
         stated(

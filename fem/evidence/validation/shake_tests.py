@@ -19,13 +19,13 @@ from fem.evidence.validation.tables import measured_table
 from fem.records.files import read_record
 from fem.records.intensity import intensity
 from fem.records.record import RecordError
+from fem.records.units import STANDARD_GRAVITY
 from fem.runtime.arrays import FloatArray
 
 ROCK_MOTIONS = "granite_rock_motions.csv.gz"  #: the file of a folder of the rocks' motions
 OUTCOMES, BODY = "outcomes.csv", "body.toml"  #: the files of a folder of one's own
 OVERTURNED = {"0": False, "1": True}
 SETS = ("fit", "predict")
-GRAVITY = 9.81
 
 
 class ShakeTestError(ValueError):
@@ -58,7 +58,7 @@ class ShakeTest:
     @property
     def peak(self) -> float:
         """Peak acceleration [g]."""
-        return float(np.abs(self.acceleration).max()) / GRAVITY
+        return float(np.abs(self.acceleration).max()) / STANDARD_GRAVITY
 
     @property
     def peak_velocity(self) -> float:
@@ -215,10 +215,9 @@ def _body(path: Path) -> tuple[Body, str | None]:
         raise ShakeTestError(f"{path}: cannot be read ({error})") from None
 
     def positive(value: object, name: str) -> float:
-        number = isinstance(value, int | float) and not isinstance(value, bool)
-        if not number or not 0.0 < float(value) < math.inf:  # type: ignore[arg-type]
+        if not isinstance(value, int | float) or isinstance(value, bool) or not 0.0 < value < math.inf:
             raise ShakeTestError(f"{path}: {name} must be a positive number, got {value!r}")
-        return float(value)  # type: ignore[arg-type]
+        return float(value)
 
     names = ("mass_kg", "height_m", "centroid_m", "inertia_m2", "slenderness_angle_rad")
     if unknown := set(values) - {*names, "unit"}:

@@ -8,6 +8,7 @@ import subprocess
 import sys
 
 import pytest
+from small_site import SITE
 from small_sweep import SMALL
 
 from fem.__main__ import main
@@ -42,20 +43,6 @@ probability = 0.5
 "motion.peak_acceleration_m_s2" = [2.0, 6.0, 12.0]
 [random]
 "motion.phase_rad" = { distribution = "uniform", from = 0.0, to = 6.2 }
-"""
-SITE = """
-container = "seed_stack"
-[site]
-ground = "D"
-reference_acceleration_m_s2 = 3.5
-[motions]
-count = 3
-further = 2
-[friction]
-mu_static = [0.4]
-mu_kinetic_over_static = [1.0]
-[limits]
-slip_m = 0.1
 """
 HALL = "name,width_m,boxes\n" + "".join(f"{k},{0.6 + 0.02 * k:.2f},2\n" for k in range(40))
 RIGID = ("solver.model=rigid", "contact.mu_static=1", "contact.mu_kinetic=1", "solver.element_size_m=1")

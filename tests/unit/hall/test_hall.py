@@ -8,6 +8,7 @@ import shlex
 from dataclasses import replace
 
 import pytest
+from small_site import SITE
 
 from fem.__main__ import main
 from fem.batch.log import line_of
@@ -48,20 +49,7 @@ bad,1,south,-1,2000,,
 C,3,south,1.0,2000.0,0.5,x
 D,1,,2.4,,0.2,y
 """
-SITE = """
-container = "base.toml"
-[site]
-ground = "D"
-reference_acceleration_m_s2 = 3.5
-[motions]
-count = 3
-further = 2
-[friction]
-mu_static = [0.4]
-mu_kinetic_over_static = [1.0]
-[limits]
-slip_m = 0.1
-"""
+OF_BASE = SITE.replace('"seed_stack"', '"base.toml"')
 
 
 @pytest.fixture
@@ -85,7 +73,7 @@ def test_a_row_is_the_run_by_itself_bit_for_bit(tmp_path, base, monkeypatch, cap
     monkeypatch.chdir(tmp_path)
     assert main(["batch", str(listed(tmp_path, LIST)), "--case", "base.toml", "--out", "out", "-q"]) == 0
     said = capsys.readouterr().out
-    assert "1 rows were refused" in said and "refused    1 of 5 rows" in said
+    assert "1 row was refused" in said and "refused    1 of 5 rows" in said
     found = json.loads((tmp_path / "out" / "hall.json").read_text(encoding="utf-8"))
     assert (found["rows"], found["containers"], found["distinct"], found["refused"]) == (5, 8, 3, 1)
     assert found["kept"] == ["owner"] and found["runs"] == 3
@@ -125,7 +113,7 @@ def test_every_container_is_verified_at_a_site_as_by_assess(tmp_path, base, monk
     monkeypatch.setattr("fem.site_check.run.confirmed", lambda *arguments: [])
     monkeypatch.setattr("fem.site_check.runs.SCANNED", (0.5,))
     monkeypatch.chdir(tmp_path)
-    listed(tmp_path, SITE, "site.toml")
+    listed(tmp_path, OF_BASE, "site.toml")
     listed(tmp_path, "name,width_m,mu_static,tag\nslim,0.5,,a\nwide,3,0.9,b\nbad,-1,,b\nagain,3.0,0.9,b\n")
     command = ["batch", "hall.csv", "--case", "base.toml", "--site", "site.toml", "--out", "out", "-q"]
     assert main(command) == 0

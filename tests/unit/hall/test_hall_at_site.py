@@ -1,4 +1,4 @@
-"""A hall at a site as a list of verifications: what is verified anew, what is refused, and the command of each row."""
+"""A list of containers verified at a site: what is computed again, what is refused, and the command of each row."""
 
 import json
 import shlex
@@ -110,7 +110,7 @@ def test_changed_contents_of_records_or_of_the_hazard_are_another_hall(asked):
         first = hall()
 
 
-def test_a_forced_hall_and_folders_of_another_program_are_verified_anew(asked, tmp_path):
+def test_with_force_and_after_a_change_of_program_every_container_is_verified_again(asked, tmp_path):
     hall, made = asked
     hall()
     assert made == [False, False]

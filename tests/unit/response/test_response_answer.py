@@ -64,7 +64,7 @@ TWO = Coexistence(from_Hz=1.0, to_Hz=1.0, frequencies=1, up=("rock",), down=("re
         ),
         (
             curve(*STANDS[:3], point(0.5, "down", 0.1, motion="invalid")),
-            "frequency: not valid at 1 points, the first at 0.5 Hz going down: a corner is destroyed; stood at the "
+            "frequency: not valid at 1 point, the first at 0.5 Hz going down: a corner is destroyed; stood at the "
             "other 3 points; largest rotation 0.62 of the slenderness angle, at 1 Hz going up",
         ),
         (curve(*STANDS, status="interrupted"), None),

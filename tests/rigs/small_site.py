@@ -1,0 +1,16 @@
+"""A site whose verification takes seconds."""
+
+SITE = """
+container = "seed_stack"
+[site]
+ground = "D"
+reference_acceleration_m_s2 = 3.5
+[motions]
+count = 3
+further = 2
+[friction]
+mu_static = [0.4]
+mu_kinetic_over_static = [1.0]
+[limits]
+slip_m = 0.1
+"""
