@@ -12,6 +12,7 @@ def floor_rows(floor: FloorNumbers | None) -> list[tuple[str, str]]:
     if floor is None:
         return []
     rows = [("slab", _material(floor)), ("corner", _springs(floor)), ("crushes at", _cap(floor))]
+    rows.append(("turns about", _pivot(floor)))
     if floor.slope_percent:
         side = "right (+x)" if floor.slope_percent > 0.0 else "left (-x)"
         rows.append(("slope", f"{abs(floor.slope_percent):g} %, it falls to the {side}"))
@@ -62,6 +63,14 @@ def _cap(floor: FloorNumbers) -> str:
     elif floor.steel_capacity_N is not None:
         other = f"; the steel above it yields at {_in_units(floor.steel_capacity_N, KILONEWTON)}"
     return f"{_in_units(cap, KILONEWTON)} a corner at its surface, {in_figures(times, FEW)} times the weight{other}"
+
+
+def _pivot(floor: FloorNumbers) -> str:
+    inset = floor.pivot_inset_m
+    if not inset:
+        return ""
+    where = _in_units(inset, ("mm", 1e3))
+    return f"points {where} inside the edges of what touches: on so weak a floor the edge itself gives way"
 
 
 def _hit(floor: FloorNumbers) -> str:

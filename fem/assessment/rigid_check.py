@@ -108,9 +108,9 @@ def check_against_rigid_block(model: Model, history: History, verdict: Verdict) 
 
 
 def block_of(model: Model) -> RigidBlock:
-    """The rigid block with the mesh's mass centre and inertia on the ends of its base."""
+    """The rigid block with the mesh's mass centre and inertia on the points about which it turns."""
     mesh = model.container.mesh
-    half, height = 0.5 * mesh.width, mesh.centroid[1]
+    half, height = 0.5 * model.static.width, mesh.centroid[1]
     return RigidBlock(
         half_width=half,
         centroid_height=height,

@@ -23,7 +23,8 @@ from contact.stepping.ledger import (
 )
 from contact.stepping.observables import FORCE_WINDOW, HOPPING, ROCKING
 from fem.case.case import Case
-from fem.model.floor import YIELD_STRENGTH, is_steel_shell, plastic_work, slab_of, steel_capacity
+from fem.model.floor import YIELD_STRENGTH, is_steel_shell, slab_of, steel_capacity
+from fem.model.floor_numbers import plastic_work
 from fem.model.model import Model
 from fem.results.figures import BOX_FIGURES, FIGURES, BoxResult, Shown
 from fem.results.history import History

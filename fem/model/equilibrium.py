@@ -183,7 +183,7 @@ def _body(
     gravity, downhill = case.gravity_toward_floor, case.gravity_downhill
     nodes, monitors = container.nodes, container.monitors
     damping = container.damping(case.container.damping_ratio)
-    placed = base_points(case, elements.nodes[nodes], container.support.index.size)
+    placed = base_points(case, mesh, elements.nodes[nodes], container.support.index.size)
     links = slice(len(nodes) - len(case.links), None)
     if case.links and case.solver.model != "full":  # it has points wherever they are asked for
         placed[links] = places_of_links(case)
@@ -238,7 +238,7 @@ def _stance(case: Case, container: Container, contact: Contact, gravity: float) 
     downhill, mu = case.gravity_downhill, case.contact.mu_static
     base = container.support.index.size
     nodes = container.nodes[:base]
-    placed = base_points(case, elements.nodes[nodes], base)
+    placed = base_points(case, mesh, elements.nodes[nodes], base)
     point = placed - np.asarray(mesh.centroid)
     elastic = 0.0 if case.solver.model == "rigid" else 1.0
     compliance = elastic * container.response.compliance[: 2 * base, : 2 * base]

@@ -12,11 +12,9 @@ that has sunk in too far is destroyed: beyond that this law says nothing.
 import math
 from dataclasses import dataclass
 
-from contact.interface.penalty import contact_frequency, relaxation_time
+from contact.interface.penalty import relaxation_time
 from fem.case.case import Case, CaseError
 from fem.model.half_space import HalfSpace
-from fem.model.static_checks import StaticChecks
-from fem.results.run_result import FloorNumbers
 from mesh.container import ContainerMesh
 
 YIELD_STRENGTH = 235e6  #: [Pa], S235, EN 1993-1-1 Table 3.1
@@ -25,7 +23,9 @@ DEEPEST = 0.01  #: indentation up to which the law of a corner holds [m]
 WHOLE_DEPTH = 0.99  #: share of the depth of the container from which a patch is its whole edge
 #: of the weight: a corner that lifts the other one carries all of it, and more at a landing
 LEAST_BEARING = 1.2
-HIT_RATIO = 0.2  #: rotation over the slenderness angle from which a typical impact is reckoned
+#: weights that the floor under a corner carries: from the second on its pivot is taken at the edge, below the first
+#: where the weight is carried, and between the two in proportion
+WEAK, FIRM = 4.0, 5.0
 #: least damping ratio of a slab for which the case gives none. Waves into the floor alone (0.004 for the edge of a wall
 #: on concrete) let a corner ring after each hit: ten times the steps of a rigid container and the same motion, because
 #: crushing takes the energy, not the dashpot (`rocking`: restitution 0.867 and 0.866, rotation ratio 0.385 and 0.391)
@@ -64,6 +64,19 @@ class Slab:
         """Indentation beyond which the corner is destroyed: a side of the patch, and `DEEPEST` at most [m]."""
         along = self.patch[0] / (1.0 - self.widening) if self.widening < 1.0 else math.inf
         return min(DEEPEST, along, self.patch[1])
+
+    def pivot_inset(self, weight: float) -> float:
+        """How far inside its edge a corner turns that carries the weight [N] alone [m].
+
+        The floor is plastic under so much of the patch as carries the weight at its strength, from the edge inward:
+        c W/F of the patch c along x that bears F. The resultant is in the middle of it. Where the patch grows with the
+        indentation, its strength a length stays. Gajan and Kutter, J. Geotech. Geoenviron. Eng. 134 (2008) 1129, of
+        footings that rock: the moment is W B/2 (1 - A_c/A), A_c the area that carries the weight. A firm floor turns
+        the container about the edge itself; what that neglects, F/10 of the patch at most, is within the range of the
+        effective width.
+        """
+        share = weight / self.bearing_capacity
+        return 0.5 * self.patch[0] * share * min(max((FIRM - 1.0 / share) / (FIRM - WEAK), 0.0), 1.0)
 
     @property
     def yields_first(self) -> bool:
@@ -147,83 +160,18 @@ def _widening(case: Case, out_of_plane: float) -> float:
     return sum(box.height for box in case.stack) / case.stack[0].width
 
 
+def pivot_share(case: Case, mesh: ContainerMesh) -> float:
+    """Width between the points about which a container turns, over that of its base [-].
+
+    Castings and worn edges stand inside its sides, and a weak floor carries it inside the edge of what touches.
+    """
+    if not case.floor.is_slab:
+        return case.effective_width
+    inset = slab_of(case, mesh.mass).pivot_inset(mesh.mass * case.gravity_m_s2)
+    return case.effective_width - 2.0 * inset / mesh.width
+
+
 def slab_penalty(case: Case, mesh: ContainerMesh) -> float:
     """Normal stiffness of the slab over the area of the base that the support divides among its points [Pa/m]."""
     length = mesh.width if case.support.foot is None else sum(mesh.foot_widths(case.support.foot))
     return 2.0 * slab_of(case, mesh.mass).normal_stiffness / (length * case.container.depth_m)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Hit:
-    """An impact of one corner, of a rigid container that fell back from a rotation."""
-
-    closing_speed: float  #: of the corner [m/s]
-    plastic_work: float  #: that the corner or the floor takes [J]
-    crushing: float  #: permanent indentation of an intact corner [m]
-
-
-def hit_from(ratio: float, static: StaticChecks, slab: Slab, width: float) -> Hit:
-    """The impact after a rotation of so much of the slenderness angle, released at rest.
-
-    The energy M g R (cos(al - theta) - cos al) is that of the turn about one corner; Housner's impact, in which the
-    other corner does not rebound, takes 1 - e^2 of it, as a corner that crushes does.
-    """
-    angle = static.slenderness_angle
-    energy = static.weight * static.radius * (math.cos(angle * (1.0 - ratio)) - math.cos(angle))
-    inertia = static.weight * static.radius / static.frequency_parameter**2
-    lost = energy * (1.0 - max(static.housner_restitution, 0.0) ** 2)
-    work = plastic_work(math.sqrt(2.0 * slab.normal_stiffness * lost), slab.cap, slab.normal_stiffness)
-    speed = width * math.sqrt(2.0 * energy / inertia)
-    share = work / slab.cap
-    crushing = (
-        2.0 * share / (1.0 + math.sqrt(1.0 + 2.0 * slab.cap_growth * share))
-    )  # work = cap d (1 + growth d/2)
-    return Hit(closing_speed=speed, plastic_work=work, crushing=crushing)
-
-
-def floor_result(case: Case, mesh: ContainerMesh, static: StaticChecks) -> FloorNumbers | None:
-    """What the floor of a case amounts to; None where it is rigid and level."""
-    floor = case.floor
-    if not floor.is_slab:
-        slope = floor.slope_percent
-        return FloorNumbers(kind=floor.kind, slope_percent=slope) if slope else None
-    slab = slab_of(case, mesh.mass)
-    hit = hit_from(HIT_RATIO, static, slab, mesh.width)
-    return FloorNumbers(
-        kind=floor.kind,
-        slope_percent=floor.slope_percent,
-        preset=floor.preset,
-        youngs_modulus_Pa=floor.youngs_modulus_Pa,
-        poisson_ratio=floor.poisson_ratio,
-        bearing_strength_Pa=floor.bearing_strength_Pa,
-        corner_patch_m=slab.patch,
-        corner_stiffness_N_m=slab.normal_stiffness,
-        corner_tangential_stiffness_N_m=slab.tangential_stiffness,
-        contact_frequency_Hz=contact_frequency(mesh.mass, 2.0 * slab.normal_stiffness),
-        damping_ratio=slab.relaxation_time / relaxation_time(1.0, mesh.mass, 2.0 * slab.normal_stiffness),
-        static_indentation_m=0.5 * static.weight / slab.normal_stiffness,
-        corner_cap_N=slab.cap,
-        bearing_capacity_N=slab.bearing_capacity,
-        steel_capacity_N=slab.steel_capacity,
-        governs="container" if slab.yields_first else "floor",
-        cap_over_weight=slab.cap / static.weight,
-        hit_rotation_ratio=HIT_RATIO,
-        closing_speed_m_s=hit.closing_speed,
-        crushing_per_hit_m=hit.crushing,
-        crushing_per_hit_J=hit.plastic_work,
-    )
-
-
-def plastic_work(force: float, capacity: float, stiffness: float) -> float:
-    """Work that a rigid-plastic corner takes where an elastic one reaches this force [J]: (F^2 - F_c^2)/(2 k).
-
-    The spring below has stored F^2/(2 k) when the corner stands still; a corner that gives way at F_c leaves
-    F_c^2/(2 k) in the spring and takes the rest (energy of an elastoplastic spring, as in Biggs, Introduction to
-    Structural Dynamics, 1964, ch. 2).
-
-    Args:
-        force: of the elastic corner [N].
-        capacity: F_c, at which the corner gives way [N].
-        stiffness: k, of the floor under the corner [N/m].
-    """
-    return max(force**2 - capacity**2, 0.0) / (2.0 * stiffness)

@@ -103,7 +103,7 @@ def _modal_body(case: Case, container: Container, number: int, tolerance: float)
     centroid = np.asarray(box.mesh.centroid)
     damping = container.damping(case.container.damping_ratio)
     watched = _watched(container, number)
-    corner = base_points(case, box.elements.nodes[box.corners], 2 if number == 0 else 0)
+    corner = base_points(case, container.mesh, box.elements.nodes[box.corners], 2 if number == 0 else 0)
     return make_modal_body(
         mass=box.mesh.mass,
         inertia=box.mesh.inertia,

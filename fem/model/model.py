@@ -135,7 +135,7 @@ def build_model(
     contact, body = equilibrium.contact, equilibrium.body
     duration = longest_run(case, motion, vertical)
     static = static_checks_of(case, mesh, *peaks_in_run(case, motion, vertical))
-    require_loss(case, static, case.effective_width * mesh.width)
+    require_loss(case, static)
     largest, breaks = largest_step_of(case, static, motion, vertical)
     control = control_of(case, container, static, largest, contact)
     scheme = scheme_of(case, container, equilibrium.penalty, control, contact)

@@ -49,32 +49,28 @@ class Calibration:
         return None if np.isnan(values) else float(values)
 
 
-def contact_restitution(case: Case, static: StaticChecks, width: float) -> float | None:
-    """Restitution of a rigid container on the floor of a case; None on a slab, a cambered base, outside the table.
-
-    Args:
-        width: between the points about which it rocks [m].
-    """
+def contact_restitution(case: Case, static: StaticChecks) -> float | None:
+    """Restitution of a rigid container on the floor of a case; None on a slab, a cambered base, outside the table."""
     if case.floor.is_slab or case.support.camber_m > 0.0:
         return None
     own = apparent_restitution(
         support=case.support.kind,
-        foot_over_width=None if case.support.foot is None else case.support.foot / width,
-        slenderness=static.centroid / (0.5 * width),
+        foot_over_width=None if case.support.foot is None else case.support.foot / static.width,
+        slenderness=static.centroid / (0.5 * static.width),
         damping_ratio=case.contact.damping_ratio,
         housner=static.housner_restitution,
     )
     return None if own is None else own * (case.contact.restitution_over_housner or 1.0)
 
 
-def require_loss(case: Case, static: StaticChecks, width: float) -> None:
-    """Refuse impacts that would leave more than there was before them; `width` as for `contact_restitution`.
+def require_loss(case: Case, static: StaticChecks) -> None:
+    """Refuse impacts that would leave more than there was before them.
 
     Raises:
         CaseError: with the largest factor.
     """
     factor = case.contact.restitution_over_housner or 1.0
-    asked = contact_restitution(case, static, width) or factor * static.housner_restitution
+    asked = contact_restitution(case, static) or factor * static.housner_restitution
     if factor <= 1.0 or asked <= 1.0:
         return
     raise CaseError(

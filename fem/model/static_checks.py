@@ -17,6 +17,7 @@ from dataclasses import dataclass, replace
 
 from fem.case.case import Case
 from fem.case.tables import StaticTable
+from fem.model.floor import pivot_share
 from fem.results.run_result import ActionResult, CodeValues, StaticResult
 from fem.seismic.method import utilisation
 from mesh.container import ContainerMesh
@@ -131,6 +132,7 @@ class CodeChecks:
 class StaticChecks:
     """Results of the static rules for one container, and what follows from its mass alone."""
 
+    width: float  #: between the points about which it turns [m]
     weight: float  #: G, of all boxes with fill [N]
     gravity: float  #: g [m/s2]
     centroid: float  #: z_c, height of the mass centre above the floor [m]
@@ -229,7 +231,7 @@ def static_checks(
         mass: M of all boxes with fill [kg].
         centroid: z_c above the floor [m].
         inertia: polar in the plane about the mass centre [kg m2].
-        width: a, of the base between its corners [m].
+        width: a, of the base between the points about which it turns [m].
         beside: distance of the mass centre from the middle of the base, to either side [m]. All values are those of
             the nearer corner, about which it tilts first; the restitution is that of the impact there.
         gravity: g [m/s2].
@@ -288,6 +290,7 @@ def static_checks(
         )
 
     return StaticChecks(
+        width=width,
         weight=weight,
         gravity=gravity,
         centroid=centroid,
@@ -330,7 +333,7 @@ def static_checks_of(
         mass=mesh.mass,
         centroid=mesh.centroid[1],
         inertia=mesh.inertia,
-        width=case.effective_width * mesh.width,
+        width=pivot_share(case, mesh) * mesh.width,
         beside=distance_beside(mesh),
         gravity=case.gravity_m_s2,
         mu_static=case.contact.mu_static,

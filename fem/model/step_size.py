@@ -151,7 +151,7 @@ def control_of(
         frequency_parameter=rate,
         resting_energy=mesh.mass * case.gravity_toward_floor * mesh.centroid[1],
         slenderness_angle=static.slenderness_angle,
-        width=case.effective_width * mesh.width,
+        width=static.width,
         stop_when_overturned=case.output.stop_when_overturned,
         contents_cutoff=2.0 * math.pi * case.output.contents_filter_Hz,
         top_monitors=2,

@@ -8,7 +8,7 @@ import numpy as np
 from contact.interface.penalty import STIFFEST, choose_normal_penalty
 from contact.interface.support import Support, cambered, choose_support
 from fem.case.case import Case, CaseError
-from fem.model.floor import slab_penalty
+from fem.model.floor import pivot_share, slab_penalty
 from fem.model.geometry import base_positions
 from fem.model.static_checks import distance_beside, slenderness_angle
 from fem.runtime.arrays import FloatArray
@@ -118,10 +118,14 @@ def steel_penalty(case: Case, mesh: ContainerMesh) -> float:
     )
 
 
-def base_points(case: Case, place: FloatArray, count: int) -> FloatArray:
-    """Points of a container (n, 2), the first of which bear at the effective width of the base [m]."""
-    if case.effective_width == 1.0:
+def base_points(case: Case, mesh: ContainerMesh, place: FloatArray, count: int) -> FloatArray:
+    """Points of a container (n, 2), the first of which bear on the floor: corners where the container turns [m].
+
+    Many points of one patch find by themselves which of them carry the container on a weak floor.
+    """
+    share = pivot_share(case, mesh) if case.support.kind == "corners" else case.effective_width
+    if share == 1.0:
         return place
     factor = np.ones_like(place)
-    factor[:count, 0] = case.effective_width
+    factor[:count, 0] = share
     return factor * place

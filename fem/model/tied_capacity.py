@@ -9,6 +9,7 @@ import numpy as np
 from fem.case.boxes import Box
 from fem.case.case import Case
 from fem.case.links import StopTable, TieTable
+from fem.model.floor import pivot_share
 from mesh.container import ContainerMesh
 
 MOST_TURNED, TURNS = 0.5 * math.pi, 20_001  #: rotations at which a capacity is sought [rad]
@@ -54,7 +55,7 @@ def tied_capacities(case: Case, mesh: ContainerMesh) -> list[TiedCapacity]:
     found = []
     rotation = np.linspace(0.0, MOST_TURNED, TURNS)
     for side, sign in (("left", -1.0), ("right", 1.0)) if case.tie else ():
-        corner = 0.5 * case.effective_width * mesh.width
+        corner = 0.5 * pivot_share(case, mesh) * mesh.width
         arm = corner - sign * mesh.centroid[0]
         weight = mesh.mass * case.gravity_toward_floor
         downhill = sign * mesh.mass * case.gravity_downhill  # x falls toward +x

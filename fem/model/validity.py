@@ -55,12 +55,20 @@ def require_bearing(case: Case, mesh: ContainerMesh, use: float = 0.0) -> None:
 
     `use` is the largest force of a point at the start over its cap.
 
+    Also a full model whose corners turn inside the edges, where it has no nodes.
+
     Raises:
         CaseError: with the least patch that bears it.
     """
     if not case.floor.is_slab:
         return
     slab = slab_of(case, mesh.mass)
+    inset = slab.pivot_inset(mesh.mass * case.gravity_m_s2)
+    if inset > 0.0 and case.support.kind == "corners" and case.solver.model == "full":
+        raise CaseError(
+            f'[solver] model = "full": on so weak a floor a corner turns {1e3 * inset:.3g} mm inside its edge, and the '
+            'full model bears where its nodes are; take "reduced" or "rigid", or feet of the length of the patch'
+        )
     use = max(use, LEAST_BEARING * mesh.mass * case.gravity_m_s2 / slab.cap)
     if use <= 1.0:
         return

@@ -52,6 +52,11 @@ NEARER = SheetRow(
     *("mass centre to the nearer corner, along the floor", "b = a/2 − |x_c|", "{a:s4} / 2 − {x_c}", "b", "m"),
     "a, width of the base; x_c, of the mass centre from its middle",
 )
+INSIDE = NEARER._replace(
+    formula="b = a/2 − s − |x_c|",
+    numbers="{a:s4} / 2 − {s} − {x_c}",
+    source="a, width of the base; s, from its edge to where it turns; x_c, of the mass centre from its middle",
+)
 OFF_CENTRE = 1e-6  #: of the width, from which the mass centre is not above the middle of the base
 AMPLITUDE = SheetRow(
     *("largest floor acceleration of this run", "a_max = A Ω²", "{A:5} × {Ω:5}²"),
@@ -146,7 +151,7 @@ def static_sheet(static: StaticChecks, case: Case) -> list[tuple[str, list[Sheet
     if case.container.box is not None:
         weight = _weight_of_boxes(case), MASS
         height = [_height_of_boxes(case)] if height else []
-    nearer = [NEARER] if "b" in numbers else []
+    nearer = [INSIDE if "s" in numbers else NEARER] if "b" in numbers else []
     own = numbers | _action(static.own_motion)
     swings = case.motion.kind == "harmonic" and math.isclose(
         own["a_max"], case.nominal_peak_acceleration or 0.0, rel_tol=1e-6
@@ -239,9 +244,12 @@ def _numbers(static: StaticChecks, case: Case) -> Numbers:
     found |= {"G_n": weight * math.cos(static.slope)}
     if case.motion.kind == "harmonic":
         found |= {"A": case.amplitude, "Ω": case.angular_frequency}
-    nearer = static.centroid * math.tan(static.slenderness_angle)
-    if (beside := 0.5 * case.stack[0].width - nearer) > OFF_CENTRE * case.stack[0].width:
-        found |= {"b": nearer, "x_c": beside}
+    nearer, width = static.centroid * math.tan(static.slenderness_angle), case.stack[0].width
+    inside, beside = 0.5 * (width - static.width), 0.5 * static.width - nearer
+    if inside + beside > OFF_CENTRE * width:
+        found |= {"b": nearer, "x_c": beside if beside > OFF_CENTRE * width else 0.0}
+    if inside > OFF_CENTRE * width:
+        found["s"] = inside
     return {name: _Printed(value) for name, value in found.items() if value is not None}
 
 
@@ -277,8 +285,8 @@ def _utilisations(action: ActionCheck, numbers: Numbers, force: str, weight: str
 
 
 def _line(row: SheetRow, numbers: Numbers, verdict: str = "") -> SheetLine:
-    if "b" in numbers and row is not NEARER:
-        row = _off_centre(row)
+    if "b" in numbers and row.value != "b":
+        row = _off_centre(row, "s" in numbers)
     value = numbers[row.value]
     return SheetLine(
         name=row.name.format(**numbers),
@@ -292,9 +300,15 @@ def _line(row: SheetRow, numbers: Numbers, verdict: str = "") -> SheetLine:
     )
 
 
-def _off_centre(row: SheetRow) -> SheetRow:
+def _off_centre(row: SheetRow, inside: bool) -> SheetRow:
     """A row with the distance b from the nearer corner in place of half the width."""
-    factor = (" a/(2 b)", " × {a:s4} / (2 × {b})") if row is RESTITUTION else ("", "")
+    factor = "", ""
+    if row is RESTITUTION:
+        factor = (
+            (" (a/2 − s)/b", " × ({a:s4} / 2 − {s}) / {b}")
+            if inside
+            else (" a/(2 b)", " × {a:s4} / (2 × {b})")
+        )
     return row._replace(
         formula=row.formula.replace("(a/2)", "b").replace("a/2", "b") + factor[0],
         numbers=row.numbers.replace("({a:s4} / 2)", "{b}").replace("{a:s4} / 2", "{b}") + factor[1],

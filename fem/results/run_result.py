@@ -121,12 +121,16 @@ class FloorNumbers(JsonBlock):
     steel_capacity_N: float | None = (
         None  #: at which the wall over the corner yields; None without such a wall
     )
+    #: how far inside its edge the container turns on a weak floor; left out of a firm one
+    pivot_inset_m: float | None = None
     governs: str | None = None  #: floor | container: what gives way first
     cap_over_weight: float | None = None
     hit_rotation_ratio: float | None = None  #: from which the container falls back, for what follows
     closing_speed_m_s: float | None = None
     crushing_per_hit_m: float | None = None
     crushing_per_hit_J: float | None = None
+
+    written_where_given = frozenset({"pivot_inset_m"})
 
 
 @dataclass(frozen=True, kw_only=True)

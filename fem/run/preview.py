@@ -10,7 +10,7 @@ from fem.assessment.code_note import code_note
 from fem.assessment.motion_words import doubts
 from fem.case.case import Case
 from fem.case.rules import ends_at_rest
-from fem.model.floor import floor_result
+from fem.model.floor_numbers import floor_result
 from fem.model.geometry import node_count
 from fem.model.restitution import contact_restitution, require_loss
 from fem.model.static_checks import StaticChecks, static_checks_of
@@ -75,7 +75,7 @@ class Preview:
         springs = build_support(case, mesh).normal_stiffness(penalty)
         stiffness = float(springs.sum())
         require_stiff_contact(case, mesh, stiffness)
-        require_loss(case, self.static, case.effective_width * mesh.width)
+        require_loss(case, self.static)
         require_bearing(case, mesh)
         return {
             "model": solver.model,
@@ -161,9 +161,7 @@ class Preview:
             "floor": self.floor.to_json(),
             "static": self.static.to_result().to_json(),
             **({"tied": [one.to_json() for one in self.tied]} if self.case.tie else {}),
-            "contact_restitution": contact_restitution(
-                self.case, self.static, self.case.effective_width * self.mesh.width
-            ),
+            "contact_restitution": contact_restitution(self.case, self.static),
             "numerics": self.numerics,
             "notes": self.notes,
         }

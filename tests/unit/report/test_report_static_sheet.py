@@ -41,7 +41,11 @@ def calculated(numbers):
 
 
 @pytest.mark.parametrize("name", CASES)
-@pytest.mark.parametrize("slope", [{}, {"floor.slope_percent": -2.0}], ids=["level", "slope"])
+@pytest.mark.parametrize(
+    "slope",
+    [{}, {"floor.slope_percent": -2.0}, {"support.effective_width": 0.9}],
+    ids=["level", "slope", "inside"],
+)
 def test_every_line_gives_its_result_with_the_numbers_it_prints(name, slope):
     lines = [line for _, group in sheet_of(name, slope) for line in group]
     assert len(lines) >= 14

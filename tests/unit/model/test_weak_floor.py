@@ -1,0 +1,117 @@
+"""On a weak floor a container turns inside the edge of what touches: all that follows from the width follows it.
+
+By hand: the stack weighs W = 98.1 kN and stands on castings of c = 0.1 m; the floor is plastic under c W/F of them.
+"""
+
+import math
+
+import numpy as np
+import pytest
+from cases import named_case
+
+from contact.reference.floor_acceleration import half_sine_pulse, one_sine_pulse
+from contact.reference.rigid_block import RigidBlock
+from contact.reference.rocking import simulate_rocking
+from fem.assessment.rigid_check import block_of
+from fem.case.case import CaseError
+from fem.cli.check import preview_of
+from fem.model.model import build_model
+from fem.model.tied_capacity import tied_capacities
+from fem.run.outcome import run_without_history
+
+WEIGHT, LENGTH, EDGE = 98.1e3, 0.1, 0.55
+STRENGTH = 5e6  #: of asphalt [Pa]
+ASPHALT = {
+    "solver.model": "rigid",
+    "contact.mu_static": 2.0,
+    "contact.mu_kinetic": 2.0,
+    "floor.kind": "slab",
+    "floor.preset": "asphalt",
+    "output.fields_s": 0.0,
+}
+
+
+def on_asphalt(times, **values):
+    """The stack where the floor under a corner carries so many times its weight."""
+    patch = [LENGTH, times * WEIGHT / (STRENGTH * LENGTH)]
+    return named_case("seed_stack_plateau", ASPHALT | {"floor.corner_patch_m": patch} | values)
+
+
+def turns_at(times):
+    """Half the width between the points about which it turns [m]."""
+    model = build_model(on_asphalt(times))
+    bears = np.ptp(model.run.old.point[:, 0])
+    assert bears == pytest.approx(model.static.width, rel=1e-9)
+    return 0.5 * bears
+
+
+@pytest.mark.parametrize("times", [1.25, 2.0, 3.9])
+def test_it_turns_in_the_middle_of_what_carries_it(times):
+    assert turns_at(times) == pytest.approx(EDGE - 0.5 * LENGTH / times, rel=1e-9)
+
+
+def test_it_turns_about_the_edge_of_a_firm_floor_and_nothing_jumps_between():
+    assert turns_at(5.0) == turns_at(5.5) == EDGE
+    near = [turns_at(times) for times in (4.0 - 1e-6, 4.0 + 1e-6, 4.5, 5.0 - 1e-6)]
+    assert near[0] == pytest.approx(near[1], abs=1e-7)
+    assert near[2] == pytest.approx(EDGE - 0.5 * 0.5 * LENGTH / 4.5, rel=1e-9)
+    assert near[3] == pytest.approx(EDGE, abs=1e-7)
+
+
+def test_all_that_follows_from_the_width_follows_it():
+    case = on_asphalt(
+        1.25, tie=[{"from": "left", "height_m": 0.0, "slack_m": 9.0, "stiffness_N_m": 1e6, "strength_N": 1e5}]
+    )
+    model, half = build_model(case), EDGE - 0.04
+    static = model.static
+    assert static.slenderness_angle == pytest.approx(math.atan(half / 2.0))
+    assert static.uplift_acceleration == pytest.approx(9.81 * half / 2.0)
+    assert static.own_motion.overturning.capacity == pytest.approx(WEIGHT * half)
+    assert block_of(model).half_width == pytest.approx(half)
+    assert [one.moment for one in tied_capacities(case, model.container.mesh)] == pytest.approx(
+        [WEIGHT * half] * 2
+    )
+    assert preview_of(case).floor.pivot_inset_m == pytest.approx(0.04)
+
+
+def test_a_weak_wall_on_a_firm_floor_turns_about_its_edge():
+    # the steel yields at 1.3 times the weight, the floor bears 5.5 times it
+    yields = on_asphalt(5.5, **{"container.corner_post_N": 0.65 * WEIGHT})
+    assert build_model(yields).static.width == 2.0 * EDGE
+
+
+def test_the_full_model_is_refused_where_it_would_turn_between_its_nodes():
+    case = on_asphalt(2.0, **{"solver.model": "full"})
+    with pytest.raises(CaseError, match="a corner turns 25 mm inside its edge"):
+        build_model(case)
+
+
+def block(times):
+    """The event-driven block whose corners are where the stack turns."""
+    static = build_model(on_asphalt(times)).static
+    half = EDGE - 0.5 * LENGTH / times
+    inertia = 1.0 + static.inertia * 9.81 / (WEIGHT * (half**2 + 2.0**2))
+    return RigidBlock(half_width=half, centroid_height=2.0, gravity=9.81, inertia_ratio=inertia)
+
+
+@pytest.mark.parametrize(
+    ("times", "shape", "seconds", "peak"),
+    [
+        (1.25, "half-sine", 0.5, 4.5),  # about the edge: 25 % less
+        (2.0, "half-sine", 0.5, 4.5),
+        (3.0, "sine", 1.0, 3.4),
+        (3.0, "sine", 1.0, 3.6),
+        (3.0, "sine", 1.0, 3.8),
+    ],
+)
+def test_it_rocks_as_an_event_driven_block_of_that_width(times, shape, seconds, peak):
+    duration = 0.9 if shape == "half-sine" else 6.0  # the corners of the weakest do not survive an impact
+    keys = {"kind": "pulse", "shape": shape, "pulse_s": seconds, "peak_acceleration_m_s2": peak}
+    case = on_asphalt(
+        times, **{f"motion.{key}": value for key, value in keys.items()}, **{"solver.duration_s": duration}
+    )
+    verdict, error = run_without_history(build_model(case), None)
+    assert error is None and verdict.valid
+    pulse = half_sine_pulse if shape == "half-sine" else one_sine_pulse
+    expected = simulate_rocking(block(times), pulse(peak=peak, duration=seconds), duration=duration)
+    assert verdict.max_rotation_rad == pytest.approx(expected.largest_rotation, rel=0.05)
