@@ -5,6 +5,7 @@ Each box of [[container.box]] takes what it leaves out from [container]; without
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 from fem.case import quantities as q
@@ -43,6 +44,7 @@ def mass_of_box(container: Any, gravity: float, volume: float) -> float | None:
     return None if container.density_kg_m3 is None else float(container.density_kg_m3 * volume)
 
 
+@lru_cache(maxsize=64)  # every rule of every case of a study asks for the same few
 def boxes_of(container: Any, gravity: float) -> tuple[Box, ...]:
     """All boxes of a table [container], from the floor up; raises AttributeError where a box has no mass."""
     tables = container.box or (None,) * container.boxes

@@ -121,6 +121,11 @@ ANALYTIC = ColumnGroup(lambda case: (), (HistoryColumn("analytic_rotation_rad", 
 GROUPS = (ALWAYS, CRUSHING, IMPACTS, VERTICAL, JOINTS, BOXES, STOPS, TIES, ANALYTIC)
 
 
+def history_width(case: Any) -> int:
+    """How many columns the history of a case has, which may be read in part."""
+    return sum(len(group.columns) * sum(1 for _ in group.numbers(case)) for group in GROUPS)
+
+
 def history_columns(case: Any, joints: int | None = None) -> tuple[str, ...]:
     """The columns of the history of a case, in their order.
 

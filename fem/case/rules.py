@@ -5,7 +5,7 @@ from typing import Any
 
 from fem.case import quantities as q
 from fem.case.boxes import BOX_RULES, JOINT_RULES, boxes_of
-from fem.case.columns import history_columns
+from fem.case.columns import history_width
 from fem.case.floors import FLOOR_CASE_RULES
 from fem.case.links import LINK_RULES
 from fem.case.motion_rules import harmonic_angular_frequency
@@ -223,7 +223,7 @@ def _samples(case: Any) -> float:
 
 def _bytes_of_a_sample(case: Any) -> float:
     """Memory of one sample."""
-    return 8.0 * len(history_columns(case))
+    return 8.0 * history_width(case)
 
 
 def _too_many_samples(case: Any) -> str:

@@ -93,7 +93,7 @@ def read_case_tables(data: Mapping[str, Any]) -> tuple[dict[str, Any], list[Prob
             continue
         given, part, found = read_table(name, model, content)
         problems += found
-        partial[name] = SimpleNamespace(**part)
+        partial[name] = _ReadInPart(**part)
         if not found:
             read[name] = model.model_validate(given)
     for name in ROWS.keys() & data.keys():
@@ -103,6 +103,12 @@ def read_case_tables(data: Mapping[str, Any]) -> tuple[dict[str, Any], list[Prob
             read[name] = rows
         partial[name] = rows or ()
     return read, problems + broken(CASE_RULES, SimpleNamespace(**partial))
+
+
+class _ReadInPart(SimpleNamespace):
+    """The keys of a table that could be read; with a hash, as a whole table has one."""
+
+    __hash__ = object.__hash__  # type: ignore[assignment]
 
 
 def with_friction_range(data: Mapping[str, Any]) -> Mapping[str, Any]:

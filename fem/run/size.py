@@ -7,7 +7,7 @@ figures, and a page of results.
 import math
 
 from fem.case.case import Case
-from fem.case.columns import history_columns
+from fem.case.columns import history_width
 from fem.model.frames import frame_bytes, frame_interval
 from fem.results.disk import BYTES_BESIDE, in_units, table_bytes
 
@@ -27,7 +27,7 @@ def frames_of(case: Case, nodes: int, duration: float) -> int:
 
 def required_disk(case: Case, nodes: int, duration: float) -> float:
     """Size of the folder of a run of this duration [s], in bytes; `nodes` of the elements."""
-    history = table_bytes(samples_of(case, duration), len(history_columns(case)))
+    history = table_bytes(samples_of(case, duration), history_width(case))
     frames = frame_bytes(nodes) * frames_of(case, nodes, duration)
     return history + frames + BYTES_OF_A_CHECKPOINT_NODE * nodes + BYTES_BESIDE
 
