@@ -8,6 +8,7 @@ and zero at both ends; before and after, the floor keeps its velocity.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -44,7 +45,7 @@ class TableMotion:
                 f"motion table: unknown quantity {self.quantity!r}; known: acceleration, displacement"
             )
 
-    @property
+    @cached_property  # as what follows: the runs of a study share their motions
     def accelerations(self) -> FloatArray:
         """Acceleration at the samples, shape (n,) [m/s2]."""
         if self.quantity == "displacement":
@@ -62,7 +63,7 @@ class TableMotion:
         ends = self.times[[0, -1]]
         return ends[ends > 0.0]
 
-    @property
+    @cached_property
     def time_scale(self) -> float:
         """Shortest period that the samples resolve: ten times their median spacing [s]."""
         return SPACINGS_PER_PERIOD * float(np.median(np.diff(self.times)))
@@ -74,12 +75,23 @@ class TableMotion:
 
     def peak_within(self, duration: float) -> float:
         """Largest |acceleration| from 0 to `duration`, the end of the run [m/s2]."""
-        instants = np.append(self.times, [0.0, duration])  # linear between samples
-        inside = np.unique(instants[(instants >= 0.0) & (instants <= duration)])
-        return float(np.abs(self.evaluate(inside)[2]).max())
+        if duration not in self._peaks:
+            instants = np.append(self.times, [0.0, duration])  # linear between samples
+            inside = instants[(instants >= 0.0) & (instants <= duration)]
+            self._peaks[duration] = float(np.abs(self.evaluate(inside)[2]).max())
+        return self._peaks[duration]
+
+    @cached_property
+    def _peaks(self) -> dict[float, float]:
+        """Those asked for, by duration."""
+        return {}
 
     def compiled(self) -> FloorMotion:
         """Data for `floor_motion`: displacement, velocity, acceleration, jerk from each sample on."""
+        return self._compiled
+
+    @cached_property
+    def _compiled(self) -> FloorMotion:
         x, v, a = sampled_motion(self.times, self.values, self.quantity)
         jerk = np.append(np.diff(a) / np.diff(self.times), 0.0)
         rows = np.column_stack([x, v, a, jerk])

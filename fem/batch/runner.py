@@ -255,11 +255,17 @@ def run_chunk(make: Callable[[ItemT], Case], items: Sequence[ItemT]) -> list[Row
 
 
 def _model_of(case: Case, before: Model | None) -> Model:
-    """The model of a case; one that differs in its motion alone takes over the equilibrium of the one before."""
+    """The model of a case; it takes over the equilibrium and the motions of the one before where they are the same."""
     container = _CONTAINERS.container_of(case)
-    if before is None or before.container is not container or not same_equilibrium(case, before.case):
+    if before is None:
         return build_model(case, container)
-    return build_model(case, container, before.equilibrium)
+    alike = before.container is container and same_equilibrium(case, before.case)
+    return build_model(
+        case,
+        container,
+        before.equilibrium if alike else None,
+        build_motions(case, (before.case, before.motion, before.vertical)),
+    )
 
 
 def run_model(model: Model) -> Row:

@@ -133,7 +133,10 @@ def history_columns(case: Any, joints: int | None = None) -> tuple[str, ...]:
         case: or those of its tables that could be read.
         joints: with forces; None: those between its boxes.
     """
-    numbers = {group: group.numbers(case) for group in GROUPS}
-    if joints is not None:
-        numbers[JOINTS] = range(1, joints + 1)
-    return tuple(name for group in GROUPS for name in group.names(numbers[group]))
+    return tuple(
+        name
+        for group in GROUPS
+        for name in group.names(
+            range(1, joints + 1) if group is JOINTS and joints is not None else group.numbers(case)
+        )
+    )

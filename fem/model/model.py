@@ -134,9 +134,9 @@ def build_model(
     mesh, nodes = container.mesh, container.nodes
     contact, body = equilibrium.contact, equilibrium.body
     duration = longest_run(case, motion, vertical)
-    static = static_checks_of(case, mesh, *peaks_in_run(case, motion, vertical))
+    static = static_checks_of(case, mesh, *peaks_in_run(case, motion, vertical, duration))
     require_loss(case, static)
-    largest, breaks = largest_step_of(case, static, motion, vertical)
+    largest, breaks = largest_step_of(case, static, duration, motion, vertical)
     control = control_of(case, container, static, largest, contact)
     scheme = scheme_of(case, container, equilibrium.penalty, control, contact)
     full = case.solver.model == "full"

@@ -23,7 +23,9 @@ COARSE = 2.0 * math.sin(math.pi / 10.0)  #: change between samples over the ampl
 CYCLE_SAMPLES, MOST_CYCLES = 256, 4000  #: samples of a cycle for its peaks, of so many cycles at most
 
 #: rules of a case that limit what a long run makes
-BOUNDED = frozenset({"solver.step_s", "output.history_s", "output.fields_s"})
+BOUNDED = [
+    rule for rule in CASE_RULES if rule.place in ("solver.step_s", "output.history_s", "output.fields_s")
+]
 
 
 def build_motion(case: Case) -> BaseMotion:
@@ -44,13 +46,27 @@ def build_vertical(case: Case) -> BaseMotion:
     return _built(case, "vertical")
 
 
-def build_motions(case: Case) -> tuple[BaseMotion, BaseMotion]:
+def build_motions(
+    case: Case, before: tuple[Case, BaseMotion, BaseMotion] | None = None
+) -> tuple[BaseMotion, BaseMotion]:
     """How the floor of the case moves along x, and up and down.
+
+    Args:
+        case: with these motions.
+        before: another case with its motions, which are taken where they are recorded and the same.
 
     Raises:
         CaseError: as `build_motion`.
     """
-    return build_motion(case), build_vertical(case)
+    if before is None or not (case.motion.kind == "table" and same_record(case, before[0])):
+        return build_motion(case), build_vertical(case)
+    other, motion, vertical = before
+    return motion, vertical if case.vertical == other.vertical else build_vertical(case)
+
+
+def same_record(case: Case, other: Case) -> bool:
+    """Whether the floors of two cases follow one record along x."""
+    return case.motion == other.motion and case.folder == other.folder and case.recorded is other.recorded
 
 
 def _built(case: Case, table: MotionKey) -> BaseMotion:
@@ -77,8 +93,7 @@ def longest_run(case: Case, *motions: BaseMotion) -> float:
         return longest_time(case)
     longest = motions_end(*motions) + MOST_FREE_MOTION
     solver = case.solver.model_copy(update={"duration_s": longest})
-    bounds = [rule for rule in CASE_RULES if rule.place in BOUNDED]
-    if problems := broken(bounds, case.model_copy(update={"solver": solver})):
+    if problems := broken(BOUNDED, case.model_copy(update={"solver": solver})):
         raise CaseError("\n".join(problem_lines(problems)))
     return longest
 
@@ -147,9 +162,14 @@ def _zeros(times: FloatArray, values: FloatArray) -> FloatArray:
     return np.asarray(times[:-1][through] + share * np.diff(times)[through])
 
 
-def peaks_in_run(case: Case, motion: BaseMotion, vertical: BaseMotion) -> tuple[float, float | None]:
-    """Largest |acceleration| of the floor in the run, along x and vertical [m/s2]; None: no vertical motion."""
-    duration = longest_run(case, motion, vertical)
+def peaks_in_run(
+    case: Case, motion: BaseMotion, vertical: BaseMotion, duration: float | None = None
+) -> tuple[float, float | None]:
+    """Largest |acceleration| of the floor in the run, along x and vertical [m/s2]; None: no vertical motion.
+
+    `duration` is its `longest_run`, where that is known.
+    """
+    duration = longest_run(case, motion, vertical) if duration is None else duration
     upward = vertical.peak_within(duration) if case.has_vertical else None
     return motion.peak_within(duration), upward
 

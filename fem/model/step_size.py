@@ -12,7 +12,6 @@ from fem.case.case import Case, CaseError
 from fem.model.container import Container
 from fem.model.frames import INTERVALS
 from fem.model.loose_stack import struck_mass
-from fem.model.motion import longest_run
 from fem.model.static_checks import StaticChecks
 from fem.runtime.arrays import FloatArray
 
@@ -47,15 +46,18 @@ SOFT_CLOSING = 1e-6
 STIFF_CONTACT, LARGE_CONTACT_STEP = 3.0, 0.7
 
 
-def largest_step_of(case: Case, static: StaticChecks, *motions: BaseMotion) -> tuple[float, FloatArray]:
+def largest_step_of(
+    case: Case, static: StaticChecks, duration: float, *motions: BaseMotion
+) -> tuple[float, FloatArray]:
     """Largest step of the run [s], and the instants that a step must end on, rising [s].
 
-    A pulse or record much shorter than the run sets small steps only while it lasts, by closely spaced instants.
+    `duration` is its `longest_run` [s]. A pulse or record much shorter than the run sets small steps only while it
+    lasts, by closely spaced instants.
 
     Raises:
         CaseError: a given step that is too long for a motion.
     """
-    solver, output, duration = case.solver, case.output, longest_run(case, *motions)
+    solver, output = case.solver, case.output
     largest, ends = STEP_OF_ROCKING / static.frequency_parameter, set[float]()
     if solver.step_s != "auto":
         largest = solver.step_s

@@ -20,6 +20,7 @@ from fem.case.unknown_inputs import SUPPORT, TOLERANCE
 from fem.model.container import changed_container
 from fem.model.joints import Joints, joints_of
 from fem.model.model import Model, build_model
+from fem.model.motion import build_motions
 from fem.model.recovery import Recovery, recovery_of
 from fem.model.validity import runs_in_memory
 from fem.results.figures import Place
@@ -139,7 +140,8 @@ def _run_changed(run: Model, change: InputChange, shared: Shared, stop: Callable
         if change.kind == "draw" or SUPPORT in change.values:  # a flat base takes twenty times as long
             values[TOLERANCE] = max(DRAWN_TOLERANCE, run.case.solver.energy_tolerance)
         case = run.case.with_values(as_changed(run.case, values))
-        model = build_model(case, changed_container(case, run.container, run.case))
+        motions = build_motions(case, (run.case, run.motion, run.vertical))
+        model = build_model(case, changed_container(case, run.container, run.case), motions=motions)
         same_elements = model.container.elements is run.container.elements
         recovery = shared.recovery if same_elements or shared.recovery is None else recovery_of(model)
         # its forces follow from mass and weight

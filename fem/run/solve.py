@@ -51,16 +51,17 @@ def chosen_values(case: Case, mesh: ContainerMesh, motions: tuple[BaseMotion, Ba
         CaseError: a motion that the given step would step over.
     """
     chosen: dict[str, Any] = {}
+    longest = longest_run(case, *motions)
     if case.contact.normal_penalty_Pa_m == "auto" and not case.floor.is_slab:  # of a slab it follows
         chosen["contact.normal_penalty_Pa_m"] = normal_penalty(case, mesh)
     if case.solver.duration_s == "auto" and not ends_at_rest(case):
         chosen["solver.duration_s"] = longest_time(case)
     if case.solver.step_s == "auto":
-        static = static_checks_of(case, mesh, *peaks_in_run(case, *motions))
-        chosen["solver.step_s"], _ = largest_step_of(case, static, *motions)
+        static = static_checks_of(case, mesh, *peaks_in_run(case, *motions, longest))
+        chosen["solver.step_s"], _ = largest_step_of(case, static, longest, *motions)
     if case.output.fields_s == "auto":
         nodes = node_count(mesh, case.solver.order)
-        chosen["output.fields_s"] = frame_interval(case, nodes, longest_run(case, *motions))
+        chosen["output.fields_s"] = frame_interval(case, nodes, longest)
     return chosen
 
 

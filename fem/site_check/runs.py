@@ -86,10 +86,7 @@ class RunPlan:
         return sorted(SCANNED)
 
     def of_set(self) -> list[RunKey]:
-        """Every motion with both signs, over weights, elevations, periods and frictions.
-
-        Neighbours differ in their motion alone, so that they share the equilibrium that they start from.
-        """
+        """Every motion with both signs, over weights, elevations, periods and frictions."""
         return [
             RunKey(
                 stage=SET,

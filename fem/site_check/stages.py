@@ -229,14 +229,14 @@ class Stages:
         )
 
     def _left(self, keys: Sequence[RunKey]) -> list[RunKey]:
-        """Those that must be computed; those at rest by the rigid bound are noted."""
+        """Those that must be computed, by their motions; those at rest by the rigid bound are noted."""
         left = []
         for key in self.rows.missing(keys):
             if self.screening.at_rest(key):
                 self.rows.rest(key)
             else:
                 left.append(key)
-        return left
+        return sorted(left, key=lambda key: (key.factor, key.stem, key.vertical_sign))
 
     def _make(self, runner: Runner, keys: Sequence[RunKey]) -> None:
         """Make the further motions of these runs, and write their files."""

@@ -111,6 +111,11 @@ class FiniteElements:
         """The cells in blocks, for the internal forces."""
         return elasticity.cell_blocks(self.cells, self.gradient, self.weights)
 
+    @cached_property
+    def _parts(self) -> dict[bytes, Basis]:
+        """Bases of some cells alone, as asked for; the members of a band differ in their masses."""
+        return {}
+
     @property
     def nodal_mass(self) -> FloatArray:
         """Row sums of the mass, shape (n,) [kg]."""
@@ -126,7 +131,10 @@ class FiniteElements:
 
     def mass_of(self, cells: IntArray, areal_density: NDArray[np.floating]) -> csr_array:
         """Consistent mass of some cells alone, for the areal density (m,) of all [kg/m2]; shape (n, n) [kg]."""
-        part = self._basis.with_elements(cells)
+        key = cells.tobytes()
+        if key not in self._parts:
+            self._parts[key] = self._basis.with_elements(cells)
+        part = self._parts[key]
         return csr_array(_mass_form.assemble(part, areal_density=_at_points(part, areal_density[cells])))
 
     def force_and_energy(self, displacement: FloatArray) -> tuple[FloatArray, float]:
