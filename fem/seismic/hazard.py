@@ -182,6 +182,9 @@ class CountedRate:
     #: the strengths between which most of `rate` arises; the last end is inf where that is beyond all counts
     most_from: tuple[float, float]
     share: float  #: of `rate` that arises there; 0 where nothing happened
+    parts: tuple[
+        float, ...
+    ]  #: of `rate`, up to each strength from the one before, and beyond the last [1/year]
 
 
 def counted_rate(
@@ -226,4 +229,5 @@ def counted_rate(
         high=sum(parts(highs, highs[0], 1.0)),
         most_from=(edges[most], edges[most + 1]),
         share=found[most] / total if total > 0.0 else 0.0,
+        parts=tuple(found),
     )

@@ -115,6 +115,7 @@ def answer_of(
         hazard=beside.hazard,
         rule_range=span,
         scan=_scan(runs),
+        failed_between=sum(key.stage == REFINED and run.outcome is None for key, run in runs.items()),
         further=tuple(evidence.further),
         confirmed=tuple(beside.confirmed),
     )

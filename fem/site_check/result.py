@@ -253,6 +253,11 @@ class HazardLevel(JsonBlock):
     overturned: int
     slipped: int  #: beyond the limit, in the plane or in both directions
     failed: int = 0  #: motions without an outcome, which are none of `motions`
+    rate_per_year: float = 0.0  #: at which the hazard exceeds it
+    interval: tuple[float, ...] = ()  #: of the probability that it does not stand, 95 %, two-sided
+    overturning_per_year: float = (
+        0.0  #: what arises from the level before, or the first movement, up to this one
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -270,6 +275,7 @@ class AnnualRates(JsonBlock):
     rates_per_year: tuple[float, ...]
     levels: tuple[HazardLevel, ...]
     overturning_per_year: float
+    beyond_per_year: float = 0.0  #: of it beyond the strongest level, where the share stays as counted there
     #: with the 95 % intervals of all counts at once, the tails as bounds, and failed runs in the upper end
     interval: tuple[float, ...]
     in_50_years: float  #: probability
@@ -318,6 +324,7 @@ class SiteAnswer(ByRule):
     two_directions: TwoDirections | None = None
     rule_range: RuleRange | None = None
     scan: tuple[ScanPoint, ...] = ()
+    failed_between: int = 0  #: runs without an outcome at factors between those of the scan
     further: tuple[FurtherMotions, ...] = ()
     confirmed: tuple[ConfirmedRun, ...] = ()
 

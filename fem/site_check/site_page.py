@@ -195,6 +195,11 @@ def beside_the_set(result: SiteResult) -> list[str]:
             f"{sum(failed.values())} runs failed at the factors {', '.join(map(short, failed))} on the set: the margin "
             "does not know how they end."
         )
+    if answer.failed_between:
+        words.append(
+            f"{answer.failed_between} runs failed at factors between those of the scan: the margin does not know how "
+            "they end."
+        )
     if answer.hazard:
         words += rates_in_words(answer.hazard, result.inputs.slip_limit_m)
     return words
@@ -203,9 +208,6 @@ def beside_the_set(result: SiteResult) -> list[str]:
 def rates_in_words(rates: AnnualRates, slip_limit: float) -> list[str]:
     """How often a year it overturns and slides too far, and what that rests on."""
     unit = "m/s²" if rates.measure == ACCELERATION else "m/s"
-    counts = ", ".join(
-        f"{one.overturned} of {one.motions} at {short(one.strength, figures=3)}" for one in rates.levels
-    )
     low, high = rates.interval
     most = ""
     if rates.most_from is not None:
@@ -232,8 +234,8 @@ def rates_in_words(rates: AnnualRates, slip_limit: float) -> list[str]:
         f"Rate of overturning by counts: {rates.overturning_per_year:.2g} per year ({low:.2g} to {high:.2g} with the "
         f"95 % intervals of all counts and the tails as bounds), {100.0 * rates.in_50_years:.2g} % in 50 years"
         f"{most}. Slip beyond {quantity(slip_limit, 'mm', 1000, 3)}: {slip}",
-        f"The counts of overturning ({rates.mass}, friction {rates.mu_static:.3g}/{rates.mu_kinetic:.3g}): {counts} "
-        f"{unit}; {fitted}. Artificial motions scatter less than records; the hazard is spread by {rates.scatter:g} of "
+        f"The counts ({rates.mass}, friction {rates.mu_static:.3g}/{rates.mu_kinetic:.3g}) are in a table behind this "
+        f"sheet; {fitted}. Artificial motions scatter less than records; the hazard is spread by {rates.scatter:g} of "
         "the logarithm for it. Targets are the user's: none is compared.",
         *([f"{failed} of these runs failed; they count into the upper ends alone."] if failed else []),
     ]
@@ -244,8 +246,8 @@ def two_directions_in_words(slip: TwoDirections) -> str:
     largest, mean = millimetres(slip.slip_largest_m), millimetres(slip.slip_mean_m)
     return (
         f"Under both horizontal components at once, sliding without rocking: largest slip {largest} mm, mean {mean} "
-        f"mm, in the plane {millimetres(slip.slip_mean_in_plane_m)} mm. It is held against the clearance, too; rocking "
-        "is computed in the plane only."
+        f"mm, in the plane {millimetres(slip.slip_mean_in_plane_m)} mm. It is held against the clearance, too. "
+        "Rocking, and the slip of repetitions and further motions, are computed in the plane only."
     )
 
 
@@ -427,8 +429,15 @@ def confirmation(result: SiteResult) -> str:
     if failed or fell or invalid:
         corner = f", {invalid} can destroy a corner" if invalid else ""
         return f"{words}: {fell} can overturn{corner}, {failed} failed."
-    turned, slip = max(one.turned for one in again), max(one.slipped for one in again)
-    return f"{words}: none overturns, largest rotation ratio {ratio(turned)}, largest slip {millimetres(slip)} mm."
+    found, own = (
+        f"{ratio(max(one.turned for one in some))}, largest slip {millimetres(max(one.slipped for one in some))} mm"
+        for some in (again, [one.run for one in again])
+    )
+    return (
+        f"{words}: none overturns, largest rotation ratio {found}; in the set {own}. The answer rests on the set: a "
+        "single rotation is chaotic with either model, and a repetition counts where it overturns, destroys a corner, "
+        "fails or goes beyond a limit of a single motion."
+    )
 
 
 def bolts_in_words(confirmed: Sequence[ConfirmedRun]) -> str:

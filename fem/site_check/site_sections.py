@@ -13,9 +13,18 @@ from fem.html.page import svg_element
 from fem.html.units import ABSENT, figure_head, number, quantity, short, typeset
 from fem.results.figures import FIGURES, SLIPPED, TURNED, Place, keys_of
 from fem.results.outcome import ENDINGS, Outcome
+from fem.seismic.hazard import ACCELERATION
 from fem.site_check.figures import draw_floor, draw_methods, draw_scan
 from fem.site_check.reasons import destroyed
-from fem.site_check.result import ConfirmedRun, SiteMethod, SiteMotion, SiteResult, SiteRun
+from fem.site_check.result import (
+    AnnualRates,
+    ConfirmedRun,
+    HazardLevel,
+    SiteMethod,
+    SiteMotion,
+    SiteResult,
+    SiteRun,
+)
 from fem.site_check.rule import RunGroup, both_directions, groups_of
 from fem.site_check.tables import MotionsTable
 
@@ -117,6 +126,8 @@ def runs_section(view: SiteView, *, brief: bool = False) -> html.PageSection:
             draw_scan(result.result, result.inputs), "scan", "outcome over the factor on the motions"
         )
         blocks += [html.Heading("Margin"), drawn, html.Note(MARGIN)]
+    if result.result.hazard:
+        blocks += [html.Heading("The rate of overturning, level by level"), *_levels(result.result.hazard)]
     return html.section("What the runs found", "found", *blocks)
 
 
@@ -229,6 +240,37 @@ def _confirmed_table(confirmed: Sequence[ConfirmedRun]) -> html.Table:
         html.Column("outcomes over unknown inputs", lambda one: ", ".join(one.outcomes) or ABSENT),
     ]
     return html.table_of("the deciding runs, repeated", columns, confirmed, look="runs")
+
+
+def _levels(rates: AnnualRates) -> list[html.Block]:
+    """The counts at each level of the motion, and what of the rate arises up to it."""
+    unit = "m/s²" if rates.measure == ACCELERATION else "m/s"
+
+    def interval(level: HazardLevel) -> str:
+        return f"{' to '.join(short(end, 100, 2) for end in level.interval)} %" if level.interval else ABSENT
+
+    def share(level: HazardLevel) -> str:
+        whole = rates.overturning_per_year
+        return f"{short(level.overturning_per_year / whole, 100, 2)} %" if whole else ABSENT
+
+    columns: list[html.Column[HazardLevel]] = [
+        html.Column(f"level [{unit}]", lambda level: short(level.strength, figures=3), html.NUMBER),
+        html.Column("exceeded [1/year]", lambda level: f"{level.rate_per_year:.2g}", html.NUMBER),
+        html.Column("overturned", lambda level: f"{level.overturned} of {level.motions}", html.NUMBER),
+        html.Column("95 % interval", interval, html.NUMBER),
+        html.Column("slid too far", lambda level: f"{level.slipped} of {level.motions}", html.NUMBER),
+        html.Column("rate up to it [1/year]", lambda level: f"{level.overturning_per_year:.2g}", html.NUMBER),
+        html.Column("of the whole", share, html.NUMBER),
+    ]
+    return [
+        html.table_of("the rate of overturning, level by level", columns, rates.levels, look="runs"),
+        html.Note(
+            "The rate up to a level arises from the one before it; up to the first, from the first movement of a rigid "
+            f"body. Beyond the strongest level {rates.beyond_per_year:.2g} per year arise, if the share that overturns "
+            "stays as counted there. A level is exceeded as often as the user's hazard says; the rates hold for that "
+            "hazard spread by the scatter."
+        ),
+    ]
 
 
 def methods_section(view: SiteView) -> html.PageSection:

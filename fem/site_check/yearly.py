@@ -13,10 +13,12 @@ import numpy as np
 
 from fem.ensemble.fragility import fit_lognormal
 from fem.results.outcome import ENDINGS
+from fem.runtime.intervals import binomial_interval
 from fem.seismic.ground_motion import GroundMotion
 from fem.seismic.hazard import ACCELERATION, YEARS, CountedRate, HazardCurve, counted_rate, probability_in
 from fem.seismic.two_directions import slip_in_two_directions
 from fem.site_check.file import SiteRequest
+from fem.site_check.reasons import CONFIDENCE
 from fem.site_check.result import AnnualRates, HazardLevel, SiteBody, SiteRun, TwoDirections
 from fem.site_check.rule import RunGroup
 from fem.site_check.runs import HAZARD, SET, RunKey, key_of
@@ -156,6 +158,16 @@ def annual_rates(
     acting = scattered(hazard, request.motions.scatter, [level.strength for level in levels])
     falls = _rate(acting, levels, [one.overturned for one in levels], unit * rocks_from(body, motions))
     slips = _rate(acting, levels, [one.slipped for one in levels], unit * slides_from(body, pair[0], motions))
+    parts = iter(falls.parts)  # of the levels that have counts
+    levels = [
+        replace(
+            level,
+            rate_per_year=hazard.rate(level.strength),
+            interval=binomial_interval(level.overturned, level.motions, CONFIDENCE) if level.motions else (),
+            overturning_per_year=next(parts) if level.motions else 0.0,
+        )
+        for level in levels
+    ]
     counts = [(level.strength, level.overturned, level.motions) for level in levels if level.motions]
     fit = fit_lognormal(*np.array(counts, dtype=float).T)
     beta = None if fit is None else math.hypot(fit.deviation, request.motions.scatter)
@@ -171,6 +183,7 @@ def annual_rates(
         rates_per_year=tuple(hazard.rates.tolist()),
         levels=tuple(levels),
         overturning_per_year=falls.rate,
+        beyond_per_year=falls.parts[-1],
         interval=(falls.low, falls.high),
         in_50_years=probability_in(YEARS, falls.rate),
         most_from=falls.most_from[0] if falls.share else None,

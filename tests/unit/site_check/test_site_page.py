@@ -162,15 +162,22 @@ CONFIRMED = example()[0].result.confirmed[0]
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({}, "none overturns, largest rotation ratio 0.00400, largest slip 4.10 mm."),
+        (
+            {},
+            "none overturns, largest rotation ratio 0.00400, largest slip 4.10 mm; in the set {own}. The answer rests "
+            "on the set: a single rotation is chaotic with either model, and a repetition counts where it overturns, "
+            "destroys a corner, fails or goes beyond a limit of a single motion.",
+        ),
         ({"outcomes": ("rock", "overturned")}, "1 can overturn, 0 failed."),
         ({"outcome": None}, "0 can overturn, 1 failed."),
     ],
 )
 def test_what_decides_is_repeated(change, words):
     result, _ = example()
-    answer = replace(result.result, confirmed=(replace(CONFIRMED, **change),))
-    assert confirmation(replace(result, result=answer)).endswith(words)
+    once = replace(CONFIRMED.run, rotation_ratio=0.47, max_slip_m=0.0052)
+    answer = replace(result.result, confirmed=(replace(CONFIRMED, run=once, **change),))
+    own = "0.470, largest slip 5.20 mm"
+    assert confirmation(replace(result, result=answer)).endswith(words.format(own=own))
 
 
 def test_the_bolts_of_the_deciding_runs_are_told():
@@ -213,6 +220,12 @@ def test_runs_that_failed_at_other_factors_are_told():
     told = "4 runs failed at the factors 2.5, 4 on the set: the margin does not know how they end."
     assert told in words_of(box_of(replace(result, result=replace(result.result, scan=tuple(scan)))))
     assert "runs failed" not in words_of(box_of(result))
+
+
+def test_runs_that_failed_between_the_factors_of_the_scan_are_told():
+    result, _ = example()
+    told = "3 runs failed at factors between those of the scan: the margin does not know how they end."
+    assert told in words_of(box_of(replace(result, result=replace(result.result, failed_between=3))))
 
 
 def test_what_speaks_against_the_answer_stands_in_the_box_and_the_answer_has_its_colour():

@@ -6,9 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.special import ndtr
-from site_example import RUN, site_body
+from site_example import RUN, example, site_body
 
 from fem.case.validation import CaseError
+from fem.html.page import Page, html_of
 from fem.seismic.ground_motion import GroundMotion
 from fem.seismic.hazard import HazardCurve, counted_rate
 from fem.site_check.file import load_site
@@ -16,6 +17,7 @@ from fem.site_check.rule import groups_of
 from fem.site_check.run import site_hash
 from fem.site_check.runs import HAZARD, key_of
 from fem.site_check.site_page import rates_in_words
+from fem.site_check.site_sections import SiteView, runs_section
 from fem.site_check.yearly import (
     annual_rates,
     hazard_motions,
@@ -258,7 +260,23 @@ def test_the_page_says_what_was_counted_and_compares_no_target(tmp_path):
     found = rates(tmp_path, {1.0: 0, 1.5: 3, 2.0: 30, 3.0: 80, 4.0: 100})
     first, second = rates_in_words(found, 0.1)
     assert f"{found.overturning_per_year:.2g} per year" in first and "in 50 years" in first
-    assert "0 of 100 at 1.6, 3 of 100 at 2.4, 30 of 100 at 3.2" in second
     assert "spread by 0.4" in second and "none is compared" in second
     nothing = rates(tmp_path, {1.0: 0, 1.5: 0})
     assert "no lognormal curve fits the counts" in rates_in_words(nothing, 0.1)[1]
+
+
+def test_the_rate_arises_level_by_level(tmp_path):
+    counts = {1.0: 0, 1.5: 3, 2.0: 30, 3.0: 80, 4.0: 95}
+    found = rates(tmp_path, counts, failed={1.5: 1.0})  # a level without counts takes no part
+    assert [level.rate_per_year for level in found.levels] == pytest.approx(
+        [CURVE.rate(1.6 * factor) for factor in counts]
+    )
+    assert found.levels[1].overturning_per_year == 0.0 and found.levels[1].interval == ()
+    inner = [level.overturning_per_year for level in found.levels]
+    assert sum(inner) + found.beyond_per_year == pytest.approx(found.overturning_per_year)
+    low, high = found.levels[3].interval
+    assert low < 0.8 < high
+    result, _ = example()
+    page = runs_section(SiteView(result=replace(result, result=replace(result.result, hazard=found))))
+    table = html_of(Page(kind="", title="", name="", hash="", signature=None, sections=[page]))
+    assert "80 of 100" in table and "71 to 87 %" in table and "0 of 0" in table
