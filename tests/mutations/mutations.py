@@ -311,9 +311,15 @@ MUTATIONS = (
     ),
     Mutation(
         name="a member of an effective width that rocks about the corners of the mesh",
-        old="factor[:count, 0] = case.effective_width",
+        old="factor[:count, 0] = share",
         new="factor[:count, 0] = 1.0",
         tests=("unit/model/test_effective_width.py",),
+    ),
+    Mutation(
+        name="castings that stand at the sides, wherever they are inset",
+        old="(1.0 - 2.0 * self.support.inset / self.stack[0].width)",
+        new="(1.0 - 0.0 * self.support.inset / self.stack[0].width)",
+        tests=("unit/model/test_castings.py", "-k", "inside_its_sides"),
     ),
     Mutation(
         name="a material damping of a member that stays the run's",

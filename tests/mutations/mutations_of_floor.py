@@ -6,6 +6,7 @@ LANDING = ("verification/test_verification_checks.py", "-k", "landing")
 FLOOR = "verification/closed_forms/test_floor.py"
 SOLVER = "unit/contact/test_contact_solver.py"
 SLAB = "unit/model/test_floor.py"
+WEAK = "unit/model/test_weak_floor.py"
 
 CAMBER = "verification/closed_forms/test_camber.py"
 PLANE = "unit/contact/test_plane_slider.py"
@@ -129,13 +130,25 @@ FLOOR_FAULTS = (
         name="a corner that bears no more as it sinks in",
         old="(1.0 + contact.cap_growth[i] * old.crushed[i])",
         new="(1.0 + 0.0 * contact.cap_growth[i] * old.crushed[i])",
-        tests=LANDING,
+        tests=("verification/closed_forms/test_contact_drop.py", "-k", "crushes"),
     ),
     Mutation(
         name="an edge that wins as much width as a casting",
         old="return sum(box.height for box in case.stack) / case.stack[0].width",
         new="return 1.0",
         tests=(SLAB, "-k", "wins_more_width"),
+    ),
+    Mutation(
+        name="a weak floor that turns the container about the edge",
+        old="return case.effective_width - 2.0 * inset / mesh.width",
+        new="return case.effective_width - 0.0 * inset / mesh.width",
+        tests=(WEAK, "-k", "in_the_middle"),
+    ),
+    Mutation(
+        name="corners that stay where the container does not turn",
+        old='share = pivot_share(case, mesh) if case.support.kind == "corners" else case.effective_width',
+        new="share = case.effective_width",
+        tests=(WEAK, "-k", "in_the_middle"),
     ),
     Mutation(
         name="half the weight on the corner that carries all of it",

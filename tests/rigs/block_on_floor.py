@@ -46,6 +46,7 @@ class Block:
     weakening: float = 0.0  #: [m]
     stribeck_velocity: float = 0.0  #: [m/s]
     cap: float = math.inf  #: of the normal force of a corner [N]
+    cap_growth: float = 0.0  #: with the indentation, over the cap [1/m]
     slope: float = 0.0  #: angle of the floor, > 0: it falls toward +x [rad]
     impact_share: float = 1.0  #: of the angular momentum that an exchange of the pivot leaves
 
@@ -85,7 +86,7 @@ class Block:
             normal_stiffness=springs,
             tangential_stiffness=springs,
             cap=np.full(2, self.cap),
-            cap_growth=np.zeros(2),
+            cap_growth=np.full(2, self.cap_growth),
             relaxation_time=np.full(2, self.relaxation_time),
             mu_static=np.full(2, self.mu_static),
             mu_kinetic=np.full(2, self.mu_kinetic),

@@ -41,6 +41,23 @@ def test_an_undamped_drop_keeps_bouncing_to_the_same_height():
     assert abs(run.run.ledger[IMBALANCE]) <= 1e-3 * kinetic
 
 
+@pytest.mark.parametrize("growth", [0.0, 200.0])
+def test_a_landing_crushes_until_a_cap_that_grows_has_taken_its_energy(growth):
+    # m v^2/2 = 2 F d (1 + g d/2) for the two corners; the springs below store 0.2 J of the 312.5
+    block = Block(
+        height=1.0,
+        mass=2500.0,
+        gravity=0.0,
+        bounce_frequency=200.0,
+        damping_ratio=0.3,
+        cap=20e3,
+        cap_growth=growth,
+    )
+    share = 0.25 * block.mass * SPEED**2 / block.cap
+    depth = 2.0 * share / (1.0 + math.sqrt(1.0 + 2.0 * growth * share))
+    assert falling(block, 1e-3).advance(0.2).run.old.crushed == pytest.approx([depth] * 2, rel=0.02)
+
+
 def test_contact_forces_never_pull_in_a_landing_that_rocks():
     block = Block(height=1.0, mass=2500.0)
     stance = replace(
