@@ -42,6 +42,10 @@ def response(
         float, Parameter(help="Distance below which two sections are equal, over the slenderness angle.")
     ] = 5e-3,
     largest_period: Annotated[int, whole("Longest period to look for, in periods of the floor.")] = 16,
+    limit_slip: Annotated[
+        float | None,
+        Parameter(help="Slip within the observed periods beyond which the container does not stand [m]."),
+    ] = None,
     out: Annotated[
         Path | None, Parameter(help="Folder of the results; default: outputs/NAME-response.")
     ] = None,
@@ -66,6 +70,7 @@ def response(
         observe=observe,
         tolerance=tolerance,
         largest_period=largest_period,
+        limit_slip_m=limit_slip,
     )
     folder = out if out is not None else Path("outputs") / f"{loaded.name}-response"
     # Loaded late: bad input is refused before anything is compiled.

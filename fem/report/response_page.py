@@ -37,6 +37,7 @@ OPTIONS = {
     "--observe": "observe",
     "--tolerance": "tolerance",
     "--largest-period": "largest_period",
+    "--limit-slip": "limit_slip_m",
 }
 
 
@@ -110,6 +111,7 @@ def drive_rows(request: Mapping[str, Any]) -> list[tuple[str, str]]:
         "acceleration": f"peak acceleration {short(request['held_value'])} m/s²",
     }
     spacing = "equal ratios" if request["scale"] == "log" else "equal steps"
+    limit = request.get("limit_slip_m")
     return [
         ("held", held[request["held"]]),
         (
@@ -121,6 +123,11 @@ def drive_rows(request: Mapping[str, Any]) -> list[tuple[str, str]]:
         (
             "repeats",
             f"within {short(request['tolerance'])}, after at most {request['largest_period']} periods",
+        ),
+        *(
+            [("slip allowed", f"{short(limit, 1e3)} mm within the periods observed")]
+            if limit is not None
+            else []
         ),
     ]
 
@@ -167,5 +174,6 @@ def points_table(info: ResponseResult) -> html.Table:
 
 def _options(request: Mapping[str, Any]) -> Iterator[str]:
     for option, name in OPTIONS.items():
-        yield option
-        yield str(request[name])
+        if name in request:
+            yield option
+            yield str(request[name])

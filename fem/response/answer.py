@@ -1,7 +1,11 @@
 """The answer of a response curve in one sentence: overturning, largest rotation, coexisting motions."""
 
+import math
+from dataclasses import dataclass
+
 from fem.batch.answers import slip_in_words
 from fem.response.branches import Coexistence, DropOut, Jump
+from fem.response.records import PointRow
 from fem.response.result import ResponseResult
 from fem.results.outcome import Outcome
 from fem.runtime.units import MILLIMETRES
@@ -9,34 +13,65 @@ from fem.runtime.units import MILLIMETRES
 MOST_RANGES = 3  #: of frequencies that are named
 
 
+@dataclass(frozen=True, kw_only=True)
+class Fates:
+    """The points of a curve that have an outcome, by what became of the container."""
+
+    overturned: list[PointRow]
+    destroyed: list[PointRow]  #: one of its corners
+    slid: list[PointRow]  #: beyond the limit
+    standing: list[PointRow]
+
+    @property
+    def overturned_share(self) -> float | None:
+        """Of the points that do not stand; None where there is none."""
+        count = sum(map(len, (self.overturned, self.destroyed, self.slid, self.standing)))
+        return 1.0 - len(self.standing) / count if count else None
+
+
+def fates_of(result: ResponseResult) -> Fates:
+    """What became of the container at each point."""
+    found = Fates(overturned=[], destroyed=[], slid=[], standing=[])
+    limit = math.inf if result.limit_slip is None else result.limit_slip
+    for point in result.points:
+        if point.motion == Outcome.INVALID:
+            found.destroyed.append(point)
+        elif point.status == "overturned":
+            found.overturned.append(point)
+        elif point.status != "failed":
+            (found.slid if result.slid(point) > limit else found.standing).append(point)
+    return found
+
+
 def response_answer(result: ResponseResult) -> str | None:
     """The answer of a response curve; None of an unfinished one and one without an outcome."""
     points = [point for point in result.points if point.status != "failed"]
     if result.state != "finished" or not points:
         return None
-    destroyed = [point for point in points if point.motion == Outcome.INVALID]
-    standing = [point for point in points if point.rotation_ratio is not None and point not in destroyed]
+    fates, limit = fates_of(result), slip_in_words(result.limit_slip or 0.0)
     frequencies = [point.frequency_Hz for point in points]
     failed = len(result.points) - len(points)
     every = f"every frequency {'with an outcome' if failed else 'tried'}, {_range(min(frequencies), max(frequencies))}"
-    fallen = [f"{found_at(found)} going {found.direction}" for found in result.drop_outs]
-    if not fallen and not destroyed:
+    if len(fates.standing) == len(points):
         parts = [f"stood at {every}, up and down"]
-    elif not standing and not destroyed:
+        parts += [f"none slid beyond {limit}"] if result.limit_slip is not None else []
+    elif len(fates.overturned) == len(points):
         parts = [f"overturned at {every}"]
     else:
+        fallen = [f"{found_at(found)} going {found.direction}" for found in result.drop_outs]
         parts = [f"overturned at {_listed(fallen)}"] if fallen else []
-        if destroyed:
-            where = f"{destroyed[0].frequency_Hz:.4g} Hz going {destroyed[0].direction}"
-            count = f"{len(destroyed)} point{'s' * (len(destroyed) != 1)}"
-            parts.append(f"not valid at {count}, the first at {where}: a corner is destroyed")
-        parts += [f"stood at the other {len(standing)} points"] if standing else []
-    if standing:
-        most = max(standing, key=lambda point: point.rotation_ratio or 0.0)
+        if fates.destroyed:
+            parts.append(f"not valid at {_counted(fates.destroyed)}: a corner is destroyed")
+        if fates.slid:
+            there = slip_in_words(result.slid(fates.slid[0]))
+            parts.append(f"slid beyond {limit} at {_counted(fates.slid)} (slip there {there})")
+        parts += [f"stood at the other {len(fates.standing)} points"] if fates.standing else []
+    if fates.standing:
+        most = max(fates.standing, key=lambda point: point.rotation_ratio or 0.0)
         turned = f"{most.rotation_ratio:.2g} of the slenderness angle, at {most.frequency_Hz:.4g} Hz"
-        resting = all(point.long_time == "rest" for point in standing)
+        resting = all(point.long_time == "rest" for point in fates.standing)
         parts.append("at rest there" if resting else f"largest rotation {turned} going {most.direction}")
-        slid = max(standing, key=lambda point: point.slip_stroke_m or 0.0)
+        slid = max(fates.standing, key=lambda point: point.slip_stroke_m or 0.0)
         if (slid.slip_stroke_m or 0.0) >= MILLIMETRES.least:
             stroke = slip_in_words(slid.slip_stroke_m or 0.0)
             parts.append(
@@ -47,6 +82,11 @@ def response_answer(result: ResponseResult) -> str | None:
     if failed:
         parts.append(f"no outcome at {failed} of {len(result.points)} points")
     return "frequency: " + "; ".join(parts)
+
+
+def _counted(points: list[PointRow]) -> str:
+    count = f"{len(points)} point{'s' * (len(points) != 1)}"
+    return f"{count}, the first at {points[0].frequency_Hz:.4g} Hz going {points[0].direction}"
 
 
 def found_at(found: Coexistence | Jump | DropOut) -> str:

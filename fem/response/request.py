@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 
 from fem.case.case import Case, CaseError, case_hash
+from fem.case.quantities import SLIP_LIMIT
 from fem.response.stability import LARGEST_PERIOD, TOLERANCE
 
 Hold = Literal["displacement", "acceleration"]
@@ -40,6 +41,7 @@ class ResponseRequest:
     observe: int = 48  #: periods by which the long-time motion is judged
     tolerance: float = TOLERANCE  #: within which two sections count as the same, see `fem.response.stability`
     largest_period: int = LARGEST_PERIOD  #: tried, in periods of the drive
+    limit_slip_m: float | None = None  #: within the periods observed, beyond which a motion does not stand
 
     def __post_init__(self) -> None:
         motion, solver = self.case.motion, self.case.solver
@@ -99,6 +101,11 @@ class ResponseRequest:
                 f"--tolerance must lie between 1e-6 and 0.1 of the slenderness angle, got {self.tolerance:g}; "
                 f"{TOLERANCE:g} is usual"
             )
+        if self.limit_slip_m is not None:
+            try:
+                SLIP_LIMIT.check(self.limit_slip_m)
+            except ValueError as error:
+                raise CaseError(f"--limit-slip {error}") from None
         if not self.case.amplitude > 0.0:
             raise CaseError(
                 "[motion] a response curve needs a floor that moves: give amplitude_m or peak_acceleration_m_s2 above 0"
@@ -132,6 +139,8 @@ class ResponseRequest:
         """As the result states it, without the case."""
         numbers = asdict(self)
         del numbers["case"], numbers["hold"]
+        if self.limit_slip_m is None:
+            del numbers["limit_slip_m"]
         frequencies = self.frequencies.tolist()
         return numbers | {"held": self.held, "held_value": self.held_value, "frequencies_Hz": frequencies}
 

@@ -21,3 +21,15 @@ class ResponseResult(StudyResult):
     jumps: tuple[Jump, ...] = ()
     drop_outs: tuple[DropOut, ...] = ()
     stable_everywhere: bool | None = None  #: None without a point
+    #: of the points with an outcome that do not stand: overturned, a corner destroyed, slid beyond the limit
+    overturned_share: float | None = None
+
+    @property
+    def limit_slip(self) -> float | None:
+        """Slip within the periods observed beyond which a motion does not stand [m]."""
+        return self.request.get("limit_slip_m")
+
+    def slid(self, point: PointRow) -> float:
+        """How far a container slid within the periods observed: to and fro, or on and on [m]."""
+        walked = abs(point.slip_walk_m or 0.0) * float(self.request.get("observe", 1))
+        return max(point.slip_stroke_m or 0.0, walked)

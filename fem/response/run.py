@@ -17,7 +17,7 @@ from fem.batch.runner import Runner
 from fem.batch.study import COMPLETED, FAILED, INTERRUPTED, Study, StudyOptions, run_study
 from fem.case.case import Case, to_toml
 from fem.model.container import Container, discretise
-from fem.response.answer import response_answer
+from fem.response.answer import fates_of, response_answer
 from fem.response.branches import coexistences, drop_outs, jumps
 from fem.response.curve import PORTRAYED, case_at, plan_of, sweep_points
 from fem.response.figures import response_figures
@@ -98,6 +98,7 @@ def _compute(
     )
     if status == INTERRUPTED:
         return replace(result, missing=f"{len(records)} of {2 * request.count} points are computed")
+    result = replace(result, overturned_share=fates_of(result).overturned_share)
     return replace(result, answer=response_answer(result))
 
 

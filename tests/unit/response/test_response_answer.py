@@ -2,13 +2,15 @@
 
 import pytest
 
-from fem.response.answer import response_answer
+from fem.response.answer import fates_of, response_answer
 from fem.response.branches import Coexistence, DropOut
 from fem.response.records import PointRow
 from fem.response.result import ResponseResult
 
 
-def point(frequency, direction, ratio, long_time="periodic", status="completed", slip=0.0, motion="rock"):
+def point(
+    frequency, direction, ratio, long_time="periodic", status="completed", slip=0.0, motion="rock", walk=0.0
+):
     stands = ratio is not None
     return PointRow(
         number=0,
@@ -20,6 +22,7 @@ def point(frequency, direction, ratio, long_time="periodic", status="completed",
         direction=direction,
         rotation_ratio=ratio,
         slip_stroke_m=slip if stands else None,
+        slip_walk_m=walk if stands else None,
         motion=motion if stands else None,
         long_time=long_time if stands else None,
         status=status if stands or status == "failed" else "overturned",
@@ -31,6 +34,8 @@ def curve(*points, status="completed", **found):
 
 
 STANDS = (point(0.5, "up", 0.1), point(1.0, "up", 0.62), point(1.0, "down", 0.3), point(0.5, "down", 0.1))
+#: 2 mm a period to the left is 96 mm in 48 periods
+WALKS = (point(1.0, "down", 0.3, walk=-0.002), point(0.5, "down", 0.1, slip=0.064))
 FALL = DropOut(direction="down", from_Hz=0.9, to_Hz=0.5, frequencies=2, carried=True)
 TWO = Coexistence(from_Hz=1.0, to_Hz=1.0, frequencies=1, up=("rock",), down=("rest",))
 
@@ -67,9 +72,36 @@ TWO = Coexistence(from_Hz=1.0, to_Hz=1.0, frequencies=1, up=("rock",), down=("re
             "frequency: not valid at 1 point, the first at 0.5 Hz going down: a corner is destroyed; stood at the "
             "other 3 points; largest rotation 0.62 of the slenderness angle, at 1 Hz going up",
         ),
+        (
+            curve(*STANDS[:3], point(0.5, "down", 0.1, slip=0.064), request={"limit_slip_m": 0.07}),
+            "frequency: stood at every frequency tried, 0.5 to 1 Hz, up and down; none slid beyond 70 mm; largest "
+            "rotation 0.62 of the slenderness angle, at 1 Hz going up; slid by up to 64 mm a period, at 0.5 Hz going "
+            "down",
+        ),
+        (
+            curve(*STANDS[:2], *WALKS, request={"limit_slip_m": 0.05, "observe": 48}),
+            "frequency: slid beyond 50 mm at 2 points, the first at 1 Hz going down (slip there 96 mm); stood at the "
+            "other 2 points; largest rotation 0.62 of the slenderness angle, at 1 Hz going up",
+        ),
         (curve(*STANDS, status="interrupted"), None),
         (curve(point(0.5, "up", None, status="failed"), status="failed"), None),
     ],
 )
 def test_a_curve_has_one_sentence(result, sentence):
     assert response_answer(result) == sentence
+
+
+@pytest.mark.parametrize(
+    ("points", "limit", "share"),
+    [
+        (STANDS, None, 0.0),
+        ((*STANDS[:3], point(0.5, "down", None)), None, 0.25),
+        ((*STANDS[:3], point(0.5, "down", 0.1, motion="invalid")), None, 0.25),
+        ((*STANDS[:2], *WALKS), 0.05, 0.5),
+        ((STANDS[0], point(0.5, "down", None, status="failed")), None, 0.0),  # no outcome
+        ((), None, None),
+    ],
+)
+def test_the_share_that_does_not_stand_counts_points_with_an_outcome(points, limit, share):
+    result = curve(*points, request={"observe": 48, "limit_slip_m": limit})
+    assert fates_of(result).overturned_share == share

@@ -56,6 +56,7 @@ def test_what_is_held_is_what_the_case_states():
         ([], {"count": 1}, "--count must lie between 2 and 2000, got 1"),
         ([], {"observe": 4}, "--observe must lie between 8"),
         ([], {"tolerance": 0.0}, "--tolerance must lie between"),
+        ([], {"limit_slip_m": -0.1}, "--limit-slip must be between 0 and 100 m, got -0.1 m"),
     ],
 )
 def test_a_request_that_cannot_be_met_is_refused(changes, values, message):
