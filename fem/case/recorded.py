@@ -10,7 +10,7 @@ from fem.case.case import Case
 from fem.case.motion_tables import MotionTable, VerticalTable
 from fem.case.validation import CaseError
 from fem.records.files import read_record
-from fem.records.processing import DOUBTFUL, Processing, baseline_change, motion_of, processed
+from fem.records.processing import Processing, motion_of, processed, stated_baseline
 from fem.records.record import Component, Record, RecordError, require_together
 from fem.records.units import STANDARD_GRAVITY, UNITS
 
@@ -20,10 +20,6 @@ MOST_PEAK = 30.0
 #: peaks of a motion that moves a container, and is not beyond almost all records [m/s2]
 USUAL_PEAKS = (0.5, 20.0)
 WAYS_OUT = ', or set gaps = "bridge" where the motion is meant to go straight on between these samples'
-ALLOW_BASELINE = (
-    f"a change above {100.0 * DOUBTFUL:.2g} % is refused; take another baseline, or set allow_baseline = true "
-    "(--allow-baseline of run and check)"
-)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -77,11 +73,9 @@ def _recorded(case: Case, table: MotionKey) -> RecordedMotion:
     )
     made = processed(component, processing)
     notes = record.notes
-    change = baseline_change(component, processing)
-    if change is not None and change.is_said:
-        if change.is_doubtful and not keys.allow_baseline:
-            raise RecordError(f"{record.name}: baseline {change.in_words}; {ALLOW_BASELINE}")
-        notes += (f"{table}.baseline: {change.in_words}",)
+    said = stated_baseline(record.name, component, processing, allowed=bool(keys.allow_baseline))
+    if said:
+        notes += (f"{table}.baseline: {said}",)
     if keys.scale_to_m_s2 is None:
         peak = float(np.abs(motion_of(made)[2]).max())
         _require_plausible(record, component, peak, scale)

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-from fem.cli.console import STUDY, AllowOutside, StudyFlags, flag, print_result
+from fem.cli.console import STUDY, AllowBaseline, AllowOutside, StudyFlags, flag, print_result
 from fem.results.kinds import SITE
 from fem.runtime.progress import ScreenReporter
 
@@ -26,6 +26,7 @@ def assess(
         ),
     ] = (),
     allow_outside: AllowOutside = False,
+    allow_baseline: AllowBaseline = False,
     quick: Annotated[
         bool,
         flag('The set of motions and its repetitions alone; its answer is never "fulfilled" if it moves.'),
@@ -43,7 +44,9 @@ def assess(
     site:
         A site file or the name of a shipped one: site.
     """
-    request = importlib.import_module("fem.site_check.file").load_site(site, motion)
+    request = importlib.import_module("fem.site_check.file").load_site(
+        site, motion, allow_baseline=allow_baseline
+    )
     folder = flags.folder(request.name)
     # Loaded late: bad input is refused before anything is compiled.
     study = importlib.import_module("fem.site_check.run")
@@ -71,6 +74,8 @@ def page_of(result: "SiteResult", folder: Path) -> Iterator[str]:
         f"target {motions.least_ratio:.2f} at {motions.least_ratio_period_s:.2g} s, largest correlation "
         f"{motions.largest_correlation:.2f}: {'valid' if motions.valid else 'not valid'}"
     )
+
+    yield from (f"  note       {note}" for note in motions.notes)
 
     def destroyed(count: int) -> str:
         return f", {count} destroyed a corner" if count else ""

@@ -40,7 +40,8 @@ def check(
         if overrides or motion is not None:
             raise CaseError(f"{case}: a site file takes neither --set nor --motion; edit the file")
         files = importlib.import_module("fem.site_check.file")
-        previews, request = importlib.import_module("fem.site_check.preview"), files.load_site(case)
+        previews = importlib.import_module("fem.site_check.preview")
+        request = files.load_site(case, allow_baseline=allow_baseline)
         found = previews.preview_of(request, allow_outside=allow_outside)
         lines = previews.preview_lines(found, request)
         print(json.dumps(found.to_json(), indent=2) if as_json else "\n".join(lines))

@@ -124,6 +124,31 @@ def baseline_change(component: Component, processing: Processing) -> BaselineCha
     )
 
 
+def stated_baseline(
+    name: str, component: Component, processing: Processing, *, allowed: bool, instead: str = "baseline"
+) -> str | None:
+    """What the baseline changes, in words, where a user must know of it.
+
+    Args:
+        name: of the record.
+        component, processing: as for `baseline_change`.
+        allowed: take one that changes a peak by more than a fifth.
+        instead: what else a user can take.
+
+    Raises:
+        RecordError: it changes too much and is not allowed; or as `processed`.
+    """
+    change = baseline_change(component, processing)
+    if change is None or not change.is_said:
+        return None
+    if change.is_doubtful and not allowed:
+        raise RecordError(
+            f"{name}: baseline {change.in_words}; a change above {100.0 * DOUBTFUL:.2g} % is refused; take another "
+            f"{instead}, or set allow_baseline = true (--allow-baseline)"
+        )
+    return change.in_words
+
+
 def motion_of(component: Component) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Displacement [m], velocity [m/s] and acceleration [m/s2] of the floor at the samples, each of shape (n,)."""
     if component.quantity == "velocity":

@@ -29,6 +29,7 @@ class GroundMotion:
     second: FloatArray | None = None  #: horizontal, at right angles to the first, (n,) [m/s2]
     origin: str = ""  #: seed or files
     factor: float = 1.0  #: by which both components of the origin were multiplied
+    notes: tuple[str, ...] = ()  #: what its processing changed that a user must know of
     event: str = ""  #: of a record, where its file names it
     stationary: float | None = None  #: stationary part of an artificial motion [s]
 

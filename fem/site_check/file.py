@@ -232,22 +232,28 @@ class SiteRequest:
         return self.container.with_values({"container.mass_kg": mass, "container.centroid_m": height})
 
 
-def load_site(name_or_path: str | Path, records: Sequence[str] = ()) -> SiteRequest:
+def load_site(
+    name_or_path: str | Path, records: Sequence[str] = (), *, allow_baseline: bool = False
+) -> SiteRequest:
     """Read a site file, or a shipped one.
 
     Args:
         name_or_path: of the site file.
         records: files of motions in place of those of the site file, relative to the current folder; a pair of a
             horizontal and a vertical component as "H,V". Without any pair, there is no vertical motion.
+        allow_baseline: take matched records of which the baseline changes a peak by more than 20 %.
 
     Raises:
         CaseError: with one line for each reason why it cannot be used.
     """
 
     def read(data: Mapping[str, Any], origin: Origin) -> SiteRequest:
-        if not records:
+        allowed = allow_baseline and data.get("motions", {}).get("source") == "matched"
+        if not records and not allowed:
             return _request(data, origin)
-        changed = _with_records(data, origin.folder, records)
+        changed = _with_records(data, origin.folder, records) if records else dict(data)
+        if allowed:
+            changed["motions"] = {**changed["motions"], "allow_baseline": True}
         return _request(changed, replace(origin, text=toml_document(changed)))  # which the results keep
 
     return read_study(SITES.find(name_or_path), read)

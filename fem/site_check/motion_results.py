@@ -69,6 +69,7 @@ def set_result(
         largest_correlation=checked.largest_correlation,
         valid=checked.valid,
         reasons=checked.reasons,
+        notes=tuple(dict.fromkeys(note for motion in ground for note in motion.notes)),
         checks=_checks(checked),
         motions=tuple(
             replace(

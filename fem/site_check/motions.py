@@ -1,7 +1,7 @@
 """The motions of a site: made or read, on the ground and on the floor of a building."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from itertools import combinations
 
 import numpy as np
@@ -10,6 +10,7 @@ from fem.case.data_files import split_channel
 from fem.case.problem import outside_the_folder, stays_in_the_folder
 from fem.case.validation import CaseError
 from fem.records.files import read_record
+from fem.records.processing import Processing, stated_baseline
 from fem.records.record import Component, Direction, Record, RecordError, require_together
 from fem.runtime.arrays import FloatArray
 from fem.seismic.action import LAST_PERIOD_ANNEX_A_S, LAST_PERIOD_S
@@ -22,6 +23,7 @@ from fem.site_check.tables import BuildingTable
 
 #: largest difference of two intervals of a record that is sampled evenly, over the interval
 UNEVEN = 1e-3
+MATCHED = Processing(baseline="zero-end")  #: what matching does to a record besides
 
 
 def longest_period(rates: Sequence[float]) -> float:
@@ -106,6 +108,7 @@ def _record(request: SiteRequest, number: int, names: Sequence[str], allow_outsi
         require_together(components, [record.name for record in records])
     except RecordError as error:
         raise CaseError(f"[motions] files: {error}") from None
+    notes = _baselines_in_words(request, given, records, components)
     if len(set(map(id, components))) < len(components):
         raise CaseError(f"[motions] files: a component of {records[0].name} is named for two directions")
     step, values = _even(components)
@@ -117,8 +120,34 @@ def _record(request: SiteRequest, number: int, names: Sequence[str], allow_outsi
         vertical=by_letter.get("v"),
         second=by_letter.get("t"),
         origin=", ".join(dict.fromkeys(record.name for record in records)),
+        notes=notes,
         event=" ".join(f"{records[0].event} {records[0].date}".split()),
     )
+
+
+def _baselines_in_words(
+    request: SiteRequest, letters: Iterable[str], records: Sequence[Record], components: Sequence[Component]
+) -> tuple[str, ...]:
+    """What the baseline that matching removes changes in a record, component by component.
+
+    Raises:
+        CaseError: it changes a peak too much and is not allowed.
+    """
+    asked, notes = request.motions, dict[str, None]()
+    if asked.source != "matched":
+        return ()
+    for letter, record, component in zip(letters, records, components, strict=True):
+        if letter == "t" and asked.second_component == 0.0:
+            continue
+        try:
+            said = stated_baseline(
+                record.name, component, MATCHED, allowed=bool(asked.allow_baseline), instead="record"
+            )
+        except RecordError as error:
+            raise CaseError(f"[motions] files: {error}") from None
+        if said:
+            notes[f"{record.name}: matching removes a baseline; {said}"] = None
+    return tuple(notes)
 
 
 def _read(request: SiteRequest, name: str, allow_outside: bool) -> tuple[Record, str]:

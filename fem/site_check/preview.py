@@ -75,6 +75,7 @@ class SitePreview(JsonBlock):
     motions: int
     set_valid: bool
     reasons: tuple[str, ...]
+    notes: tuple[str, ...]  #: what the processing of the records changed
     factor_at_first_movement: float | None  #: on the motions, of a rigid body; None: not known
     wind_utilisation: float | None
     forecast: Forecast
@@ -103,6 +104,7 @@ def preview_of(request: SiteRequest, *, allow_outside: bool = False) -> SitePrev
         motions=len(ground),
         set_valid=checked.valid,
         reasons=checked.reasons,
+        notes=tuple(dict.fromkeys(note for motion in ground for note in motion.notes)),
         factor_at_first_movement=stages.first_movement,
         wind_utilisation=wind_utilisation(bodies, inputs_of(request)),
         forecast=forecast(stages, cores()),
@@ -121,6 +123,7 @@ def preview_lines(preview: SitePreview, request: SiteRequest) -> Iterator[str]:
         )
     said = "valid" if preview.set_valid else f"not valid: {'; '.join(preview.reasons)}"
     yield f"  motions    {preview.motions}, {request.motions.source}: {said}"
+    yield from (f"  note       {note}" for note in preview.notes)
     if preview.factor_at_first_movement is not None:
         yield f"  moves      first at {preview.factor_at_first_movement:.3g} times the set, as a rigid body"
     if preview.wind_utilisation is not None:

@@ -102,6 +102,7 @@ class MotionSet(JsonBlock):
     largest_correlation: float
     valid: bool
     reasons: tuple[str, ...] = ()  #: why not
+    notes: tuple[str, ...] = ()  #: what the processing of its records changed
     checks: tuple[SetCheck, ...]
     motions: tuple[SiteMotion, ...]
 

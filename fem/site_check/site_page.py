@@ -335,6 +335,7 @@ def set_section(result: SiteResult) -> html.PageSection:
         f"The set of motions: {'its checks' if result.set.valid else 'not valid'}",
         "set",
         html.table_of("checks of the set of motions", columns, result.set.checks),
+        *(html.Note(typeset(f"{note}.")) for note in result.set.notes),
     )
 
 

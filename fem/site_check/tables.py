@@ -265,6 +265,11 @@ class MotionsTable(CaseTable):
     sample_interval_s: Annotated[float, Quantity(unit="s", above=0.0, most=1.0)] | None = case_key(
         "of records of one column", None, example=0.01
     )
+    allow_baseline: Literal[True] | None = case_key(
+        "true takes matched records of which the baseline changes a peak by more than 20 %",
+        None,
+        example=True,
+    )
     scatter: Annotated[float, SCATTER] = case_key(
         "of motions about one strength in [hazard], of the logarithm: that of records, which artificial ones lack",
         0.4,
@@ -274,6 +279,11 @@ class MotionsTable(CaseTable):
     )
 
     rules = (
+        Rule(
+            "motions.allow_baseline",
+            lambda motions: motions.allow_baseline is None or motions.source == "matched",
+            'has no effect with source = "{source}": a baseline is removed where records are "matched"',
+        ),
         Rule(
             "motions.files",
             lambda motions: motions.source == "artificial" or bool(motions.files),

@@ -8,10 +8,11 @@ import pytest
 from fem.case.validation import CaseError
 from fem.seismic.artificial import artificial_motions
 from fem.seismic.floor import floor_motion, storey_modes
-from fem.seismic.motion_files import write_at2
+from fem.seismic.motion_files import in_whole_g, write_at2
 from fem.seismic.motion_set import check_set
 from fem.site_check.file import load_site
 from fem.site_check.motions import floor_motions, ground_motions
+from fem.site_check.preview import preview_lines, preview_of
 
 SITE = """
 container = "seed_stack"
@@ -73,6 +74,45 @@ def test_matched_records_have_their_second_component_matched_to_its_share(tmp_pa
     asked = request(tmp_path, f'[motions]\nsource = "matched"\nsecond_component = 0.7\nfiles = {names}')
     found = check_set(ground_motions(asked, 4.0), asked.action, second=0.7)
     assert found.valid and found.second_least_ratio > 0.9
+
+
+def with_a_fling(folder, seconds):
+    """The same motions without their vertical components; the first ends elsewhere, by a sine pulse of 0.8 s."""
+    names = [names[:1] for names in json.loads(three_records(folder, "h"))]
+    times = 0.005 * np.arange(round(seconds / 0.005))
+    pulse = np.where(times < 0.8, 3.4 * np.sin(2.0 * np.pi * times / 0.8), 0.0)
+    write_at2(folder / names[0][0], 0.005, in_whole_g(pulse), "EVENT 0, 1/1/20, STATION 0, 090")
+    return f'[motions]\nsource = "matched"\nvertical = false\nfiles = {json.dumps(names)}'
+
+
+def test_a_baseline_that_changes_a_matched_record_is_said_with_both_values(tmp_path):
+    asked = request(tmp_path, with_a_fling(tmp_path, 20.0))
+    first, *others = ground_motions(asked, 4.0)
+    (note,) = first.notes  # a sine pulse reaches A T/pi = 0.866 m/s
+    assert note.startswith(
+        "r0_h.at2: matching removes a baseline; 'zero-end' changes the peak acceleration from 3.4 "
+    )
+    assert "the peak velocity from 0.866 m/s with 'mean'" in note and "m/s (-8.8 %)" in note
+    assert not any(motion.notes for motion in others)
+    found = preview_of(asked)
+    assert found.notes == (note,) and f"  note       {note}" in preview_lines(found, asked)
+
+
+def test_a_baseline_that_takes_a_fifth_of_a_matched_record_must_be_allowed(tmp_path):
+    motions = with_a_fling(tmp_path, 5.0)
+    with pytest.raises(
+        CaseError, match=r"0\.866 m/s .* \(-59 %\).*take another record, or set allow_baseline"
+    ):
+        ground_motions(request(tmp_path, motions), 4.0)
+    site = str(tmp_path / "hall.toml")
+    asked = load_site(site, allow_baseline=True)
+    assert "allow_baseline = true" in asked.origin.text  # which the results keep
+    assert (
+        ground_motions(asked, 4.0)[0].notes
+        == ground_motions(request(tmp_path, f"{motions}\nallow_baseline = true"), 4.0)[0].notes
+    )
+    with pytest.raises(CaseError, match='allow_baseline has no effect with source = "artificial"'):
+        request(tmp_path, "[motions]\nallow_baseline = true")
 
 
 def test_pairs_of_records_have_no_second_component(tmp_path):
