@@ -7,7 +7,7 @@ from pathlib import Path
 
 from fem.evidence.findings import prediction
 from fem.evidence.suite import attempted
-from fem.evidence.validation import cube, impacts, pulses, rocks
+from fem.evidence.validation import contents, cube, impacts, pulses, rocks
 from fem.evidence.validation.experiments import Experiment, ValidationResult
 from fem.evidence.validation.shake_tests import read_series
 
@@ -40,6 +40,7 @@ def run_validation(
         ("cube", cube.compute),
         ("pulses", pulses.compute),
         ("impacts", impacts.compute),
+        ("contents", contents.compute),
     ):
         before(name)
         done = attempted(compute)

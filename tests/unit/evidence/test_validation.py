@@ -7,11 +7,14 @@ import numpy as np
 import pytest
 
 from fem.evidence.findings import prediction
+from fem.evidence.validation import contents
 from fem.evidence.validation.bodies import cross_validated, specimen
 from fem.evidence.validation.experiments import Experiment, ValidationResult
 from fem.evidence.validation.page import lines_of, page_of
 from fem.evidence.validation.vote import Vote, best_threshold, by_threshold, probabilities
 from fem.evidence.verification.runs import STACK
+from fem.seismic.action import SiteAction, eurocode_shape
+from fem.seismic.artificial import artificial_motions
 from mesh.errors import MeshError
 
 BLOCK = STACK.with_values(
@@ -139,3 +142,18 @@ def test_an_impossible_inertia_is_refused():
 def test_each_test_is_predicted_by_a_fit_on_the_others():
     halves = cross_validated([1, 2, 3, 4, 5], sum)
     assert halves == [(9, [2, 4]), (6, [1, 3, 5])]
+
+
+def test_the_published_medians_of_contents_are_one_share_of_a_velocity():
+    shares = [one.median / one.velocity for one in contents.read_contents()]
+    assert len(shares) == 9
+    assert np.mean(shares) == pytest.approx(0.79, abs=0.005) and np.ptp(shares) < 0.07
+
+
+def test_the_fragility_of_a_bookcase_is_counted_and_a_step_is_refused():
+    action = SiteAction(shape=eurocode_shape(1, "C"), reference_acceleration=2.0)
+    motions = artificial_motions(action, count=6, seed=1, stationary=10.0, vertical=False)
+    tall = contents.read_contents()[4]
+    assert contents.fragility(tall, motions).median == pytest.approx(0.88, rel=0.25)
+    with pytest.raises(ArithmeticError, match="no curve fits"):
+        contents.fragility(tall, motions[:1])
