@@ -42,7 +42,7 @@ def _range(margin: Margin) -> str:
     if not margin.draws:
         return ""
     if margin.low is None:
-        return f", nor in any of {margin.draws} draws of what is not known"
+        return f", nor do they in any of {margin.draws} draws of what is not known"
     low = FACTOR.in_figures(margin.low, 2)
     if margin.high is not None:
         return f" ({low} to {FACTOR.in_figures(margin.high, 2)} over what is not known)"
