@@ -108,11 +108,13 @@ def compute() -> Experiment:
     return Experiment(
         name="contents",
         title="Unanchored bookcases and file cabinets",
-        source="FEMA P-58, 2nd edition, medians of nine contents (github.com/NHERI-SimCenter/DamageAndLossModelLibrary)",
+        source="FEMA P-58, 2nd edition, medians of nine contents "
+        "(github.com/NHERI-SimCenter/DamageAndLossModelLibrary)",
         licence="BSD 3-Clause",
         tests=len(contents),
-        fitted="nothing; rigid blocks of the published width and height that do not slide, full to the top evenly, under "
-        f"{MOTIONS} artificial motions (EN 1998-1, type 1, ground {GROUND}, horizontal) at each of {LEVELS.size} levels",
+        fitted="nothing; rigid blocks of the published width and height that do not slide, evenly full to the top, "
+        f"under {MOTIONS} artificial motions (EN 1998-1, type 1, ground {GROUND}, horizontal) at each of "
+        f"{LEVELS.size} levels",
         findings=(
             prediction(
                 "medians over the velocity of Kaneko and Hayashi",
