@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -133,21 +134,38 @@ def short(undrawn, monkeypatch):
     monkeypatch.setattr("fem.site_check.runs.SCANNED", (0.5,))
 
 
+@pytest.fixture(scope="module")
+def kept():
+    """Folders of studies that were computed in one go, which tests compare with and copy."""
+    return {}
+
+
+@pytest.fixture
+def whole(kept, tmp_path_factory):
+    def folder_of(study):
+        if study not in kept:
+            place = tmp_path_factory.mktemp("kept")
+            study(place)(place / "whole")
+            kept[study] = place / "whole"
+        return kept[study]
+
+    return folder_of
+
+
 def files_of(folder):
-    """Content of the files of a folder, without times and numbers of cores."""
+    """Content of the files of a folder, without times, numbers of cores and where the input was."""
     files = {path.relative_to(folder).as_posix(): path for path in folder.rglob("*") if path.is_file()}
     found = {name: path.read_bytes() for name, path in files.items() if not path.name.startswith(".")}
     found.pop("report.html", None)
-    times = rb'"(wall_s|jobs)": [^,]*|(?<=,)\d[^,]*(?=,\d+,(true|false),)'
+    times = rb'"(wall_s|jobs|command)": [^,]*|(?<=,)\d[^,]*(?=,\d+,(true|false),)'
     for name in found.keys() & {"sweep.json", "table.csv", "assess.json", "size.json"}:
         found[name] = re.sub(times, b"", found[name])
     return found
 
 
 @STUDIES
-def test_an_interrupted_study_continues_to_the_same_files(tmp_path, study, mark, log):
+def test_an_interrupted_study_continues_to_the_same_files(tmp_path, whole, study, mark, log):
     run, folder = study(tmp_path), tmp_path / "interrupted"
-    run(tmp_path / "whole")
     for reports in (1, 20, 30):  # of few chunks, the later ones come to the end
         try:
             run(folder, resume=True, reporter=Interrupting(reports))
@@ -160,7 +178,7 @@ def test_an_interrupted_study_continues_to_the_same_files(tmp_path, study, mark,
                 with pytest.raises(FolderError, match=r"unfinished, with .* --resume continues it"):
                     run(folder)
     run(folder, resume=True)
-    assert files_of(folder) == files_of(tmp_path / "whole")
+    assert files_of(folder) == files_of(whole(study))
 
 
 @STUDIES
@@ -219,9 +237,9 @@ def test_sigterm_to_all_processes_of_an_assessment_ends_it_in_a_sentence(tmp_pat
 
 
 @STUDIES
-def test_a_finished_study_is_left_alone_and_another_is_refused(tmp_path, study, mark, log):
+def test_a_finished_study_is_left_alone_and_another_is_refused(tmp_path, whole, study, mark, log):
     run, folder = study(tmp_path), tmp_path / "out"
-    run(folder)
+    shutil.copytree(whole(study), folder)
     before = {path: path.stat().st_mtime_ns for path in folder.rglob("*")}
     run(folder)
     with pytest.raises(FolderError, match=r"holds the results of another .*--out DIR.*--force"):
@@ -249,9 +267,8 @@ SHARED = pytest.mark.parametrize("study", [ensemble, hall])
 
 
 @SHARED
-def test_shards_in_any_order_make_the_same_files_as_one_machine(tmp_path, study):
+def test_shards_in_any_order_make_the_same_files_as_one_machine(tmp_path, whole, study):
     run, parts = study(tmp_path), [tmp_path / f"part-{k}" for k in range(3)]
-    run(tmp_path / "whole")
     for number in (3, 1, 2):
         result = run(parts[number - 1], shard=Shard(number, 3))
         assert result.status == "interrupted" and result.shard == Shard(number, 3, done=True)
@@ -263,11 +280,11 @@ def test_shards_in_any_order_make_the_same_files_as_one_machine(tmp_path, study)
         run(parts[1], shard=Shard(3, 3))
     result = run(tmp_path / "merged", merge=[parts[1], parts[2], parts[0]])
     assert result.state == "finished" and result.shard is None
-    assert files_of(tmp_path / "merged") == files_of(tmp_path / "whole")
+    assert files_of(tmp_path / "merged") == files_of(whole(study))
 
 
 @SHARED
-def test_a_shard_is_resumed_and_an_unfinished_one_is_not_merged(tmp_path, study):
+def test_a_shard_is_resumed_and_an_unfinished_one_is_not_merged(tmp_path, whole, study):
     run, parts = study(tmp_path), [tmp_path / f"part-{k}" for k in range(2)]
     run(parts[0], shard=Shard(1, 2))
     with pytest.raises(KeyboardInterrupt):
@@ -276,11 +293,10 @@ def test_a_shard_is_resumed_and_an_unfinished_one_is_not_merged(tmp_path, study)
         run(tmp_path / "merged", merge=parts)
     run(parts[1], shard=Shard(2, 2), resume=True)
     run(tmp_path / "merged", merge=parts)
-    run(tmp_path / "whole")
-    assert files_of(tmp_path / "merged") == files_of(tmp_path / "whole")
+    assert files_of(tmp_path / "merged") == files_of(whole(study))
 
 
-def test_later_stages_are_shared_by_shards_of_a_merge(tmp_path):
+def test_later_stages_are_shared_by_shards_of_a_merge(tmp_path, whole):
     """The copies of a sweep depend on its cells: shards of the merged cells share them."""
     run, first = sweep(tmp_path), [tmp_path / f"first-{k}" for k in (1, 2)]
     for number, folder in enumerate(first, start=1):
@@ -297,9 +313,8 @@ def test_later_stages_are_shared_by_shards_of_a_merge(tmp_path):
     with pytest.raises(KeyboardInterrupt):
         run(tmp_path / "of first", merge=first[::-1], reporter=Interrupting(3))
     run(tmp_path / "of first", resume=True)
-    run(tmp_path / "whole")
     for name in ("of first", "of second"):
-        assert files_of(tmp_path / name) == files_of(tmp_path / "whole")
+        assert files_of(tmp_path / name) == files_of(whole(sweep))
 
 
 def test_shards_of_something_else_are_not_merged(tmp_path):
