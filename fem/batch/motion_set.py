@@ -16,8 +16,8 @@ import numpy as np
 from contact.motion.table import TableMotion
 from fem.batch.axes import MOTION_FILE, Axis, set_axis
 from fem.batch.case_maker import CaseMaker
-from fem.batch.log import table_text
 from fem.batch.runner import Runner, motion_left_out
+from fem.batch.table import table_text
 from fem.batch.workers import FoundT, ItemT
 from fem.case.case import Case, CaseError, case_hash
 from fem.case.recorded import MotionKey

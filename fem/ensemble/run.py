@@ -13,7 +13,7 @@ from typing import Any, Unpack
 import numpy as np
 
 from fem.batch.axes import Axis, AxisResult
-from fem.batch.log import LoggedRuns, fields_of, number_in, table_of_lines, table_text
+from fem.batch.log import LoggedRuns
 from fem.batch.motion_set import (
     FloorMotionPair,
     motion_cases,
@@ -23,6 +23,7 @@ from fem.batch.motion_set import (
 )
 from fem.batch.runner import Row, Runner
 from fem.batch.study import COMPLETED, FAILED, INTERRUPTED, Study, StudyOptions, hash_of, run_study, runner_of
+from fem.batch.table import Columns, row_of, table_of_lines, table_text
 from fem.case.case import case_hash, to_toml
 from fem.case.rules import ends_at_rest, longest_time
 from fem.ensemble.answers import ensemble_answer
@@ -33,7 +34,7 @@ from fem.ensemble.result import EnsembleResult
 from fem.ensemble.statistics import POINT_COLUMNS, PointResult, count_point, fragility_of
 from fem.ensemble.unknown import UnknownInputs
 from fem.results.disk import BYTES_BESIDE, table_bytes
-from fem.results.figures import SLIPPED, TURNED
+from fem.results.figures import SLIPPED, TURNED, Place, columns_of
 from fem.results.folder import ResultFolder
 from fem.results.kinds import ENSEMBLE
 from fem.results.outcome import COUNTED, Ending, ending_of
@@ -44,6 +45,8 @@ DRAWS = "draws.csv"
 OF_A_DRAW, OF_A_POINT, OF_A_MOTION = 3, 50, 200
 MOST_COPIED = 100  #: motions of a set that is copied into the results unless the file says otherwise
 WORDS = {ending: word for word, ending in COUNTED.items()}
+#: columns of a draw behind what is drawn
+SHOWN: Columns = {"outcome": str} | columns_of(Place.KEY)
 
 
 class DrawRows:
@@ -55,35 +58,24 @@ class DrawRows:
         self._following = [key for axis in sets_of(ensemble) for key in axis.following]
         keys = [f"{one.key}{' factor' if one.relative else ''}" for one in ensemble.random]
         keys += self._following
-        self.columns = (
-            "point",
-            "draw",
-            "replicate",
-            *keys,
-            *unknown.keys,
-            "outcome",
-            TURNED,
-            SLIPPED,
-        )
+        numbers: Columns = dict.fromkeys(("point", "draw", "replicate"), int)
+        self.columns = numbers | dict.fromkeys((*keys, *unknown.keys), str) | SHOWN
         self.codes = np.full((ensemble.count, ensemble.draws), Ending.UNKNOWN, dtype=np.int8)
         self.slips = np.full(self.codes.shape, np.nan)
         self._lines: dict[tuple[int, int], str] = {}
 
-    def values(self, draw: Draw, row: Row) -> tuple[Any, ...]:
-        """The row of a draw: what was drawn, and its result."""
+    def key(self, draw: Draw) -> tuple[Any, ...]:
+        """What was drawn."""
         replicate = draw.number // (self._ensemble.draws // self._ensemble.replicates)
-        figures = (row[TURNED], row[SLIPPED])
-        known = (one if one is not None and np.isfinite(one) else None for one in figures)
-        found = WORDS[ending_of(row["status"], row["outcome"])], *known
         unknown = (draw.unknown.get(key) for key in self._unknown.keys)
         following = (draw.following.get(key) for key in self._following)
-        return draw.cell, draw.number, replicate, *draw.values, *following, *unknown, *found
+        return draw.cell, draw.number, replicate, *draw.values, *following, *unknown
 
     def note(self, line: str) -> None:
         """Add a line of the log."""
-        cell, number, *_, outcome, _, slip = fields_of(line)
-        at, limit = (int(cell), int(number)), self._ensemble.limit_slip_m
-        self.codes[at], self.slips[at] = COUNTED[outcome], number_in(slip) or 0.0
+        row, limit = row_of(self.columns, line), self._ensemble.limit_slip_m
+        at = row["point"], row["draw"]
+        self.codes[at], self.slips[at] = COUNTED[row["outcome"]], row[SLIPPED] or 0.0
         if limit is not None and self.codes[at] == Ending.STANDING and self.slips[at] > limit:
             self.codes[at] = Ending.OVERTURNED
         self._lines[at] = line
@@ -105,6 +97,13 @@ class DrawRows:
         cells = np.flatnonzero((self.codes == Ending.UNKNOWN).any(axis=1)).tolist()
         draws = (draw for cell in cells for draw in self._unknown.draws_at(cell))
         return [draw for draw in draws if self.codes[draw.cell, draw.number] == Ending.UNKNOWN]
+
+
+def shown(row: Row) -> Row:
+    """The result of a draw, by the names of `SHOWN`."""
+    figures = {key: row[key] for key in (TURNED, SLIPPED)}
+    known = {key: one if one is not None and np.isfinite(one) else None for key, one in figures.items()}
+    return {"outcome": WORDS[ending_of(row["status"], row["outcome"])]} | known
 
 
 def run_ensemble(ensemble: Ensemble, *, folder: Path, **options: Unpack[StudyOptions]) -> EnsembleResult:
@@ -151,8 +150,9 @@ def _compute(
         columns=draws.columns,
         make=ensemble.of_draws.case,
         model_of=lambda draw: ensemble.base.solver.model,
-        values=draws.values,
+        key=draws.key,
         note=draws.note,
+        shown=shown,
         number=lambda draw: draw.cell * ensemble.draws + draw.number,
     ).run(runner, iter(draws.missing, []))
     complete = (draws.codes != Ending.UNKNOWN).all(axis=1)

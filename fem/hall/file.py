@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any, get_args
 
 from fem.batch.axes import NO_AXIS, AxisError, field_of
-from fem.batch.log import plain_text
+from fem.batch.table import plain_text
 from fem.case.tables import TABLES
 from fem.case.validation import CaseError, known_keys, quantity_of
 from fem.hall.result import RESULT_COLUMNS

@@ -3,30 +3,25 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
-from fem.batch.container_cache import ContainerCache
-from fem.batch.log import fields_of, number_in
+from fem.batch.checked import CHECKED
 from fem.batch.runner import Row
+from fem.batch.table import row_of
 from fem.hall.plan import Hall, HallItem
-from fem.hall.result import CHECKED, OF_A_RUN, STATIC
+from fem.hall.result import OF_A_RUN
 from fem.model.geometry import build_container
 from fem.model.motion import build_motions, peaks_in_run
 from fem.model.static_checks import static_checks_of
 from fem.results.figures import SLIPPED, TURNED
 from fem.results.outcome import Ending, ending_of
-from fem.run.checks import WantedChecks
-from fem.run.compute import compute_on
 
-RUN_COLUMNS = ("container", "motion", *OF_A_RUN)
-CHECK_COLUMNS = ("container", *CHECKED)
+RUN_COLUMNS = {"container": int, "motion": int} | OF_A_RUN
+CHECK_COLUMNS = {"container": int} | CHECKED
 #: rotation ratio below which containers are ranked by the static rule: nothing rocks
 ROCKS = 0.01
 #: share of the containers, the weakest first, whose run is repeated under stronger motions and with other inputs; at
 #: least so many
 SHARE, LEAST = 0.1, 30
-
-_CONTAINERS = ContainerCache()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,29 +46,23 @@ class HallRuns:
 
     hall: Hall
     found: dict[int, dict[int, RunFound]] = field(default_factory=dict)  #: by container and motion
-    checked: dict[int, Mapping[str, str]] = field(
-        default_factory=dict
-    )  #: fields of the repetition, by container
-
-    def values(self, item: HallItem, row: Row) -> tuple[Any, ...]:
-        """The line of a run."""
-        return (item.container, item.motion, *(row[name] for name in OF_A_RUN))
+    checked: dict[int, Row] = field(default_factory=dict)  #: what the repetition showed, by container
 
     def note(self, line: str) -> None:
         """Add a line of the log of the runs."""
-        fields = dict(zip(RUN_COLUMNS, fields_of(line), strict=True))
+        row = row_of(RUN_COLUMNS, line)
         run = RunFound(
             line=line,
-            ending=ending_of(fields["status"], fields["outcome"]),
-            ratio=number_in(fields[TURNED]) or 0.0,
-            slip=number_in(fields[SLIPPED]) or 0.0,
+            ending=ending_of(row["status"], row["outcome"]),
+            ratio=row[TURNED] or 0.0,
+            slip=row[SLIPPED] or 0.0,
         )
-        self.found.setdefault(int(fields["container"]), {})[int(fields["motion"])] = run
+        self.found.setdefault(row["container"], {})[row["motion"]] = run
 
     def note_check(self, line: str) -> None:
         """Add a line of the log of the repetitions."""
-        number, *fields = fields_of(line)
-        self.checked[int(number)] = dict(zip(CHECKED, fields, strict=True))
+        row = row_of(CHECK_COLUMNS, line)
+        self.checked[row.pop("container")] = row
 
     def missing(self) -> list[HallItem]:
         """Runs that have no line."""
@@ -129,32 +118,9 @@ def weakest_first(
         run = runs.found[number][runs.governing(number)]
         order, _, slip = run.weakness
         check = runs.checked.get(number, {}) if margins else {}
-        margin = number_in(check.get("margin", "")) or number_in(check.get("margin_tried_to", ""))
+        margin = check.get("margin") or check.get("margin_tried_to")
         turned = -run.ratio if run.ratio > ROCKS and run.ending == Ending.STANDING else 0.0
         known = margin is None, margin or 0.0
-        return order, *known, turned, -(static[number][STATIC[1]] or 0.0), slip, number
+        return order, *known, turned, -(static[number]["utilisation_overturning"] or 0.0), slip, number
 
     return sorted(runs.found, key=place)
-
-
-def check_chunk(make: Any, items: Sequence[HallItem]) -> list[Row]:
-    """Repeat runs as the command `run` does: with other inputs, and under stronger and weaker motions."""
-    rows = []
-    for item in items:
-        row: Row = dict.fromkeys(CHECKED) | {"status": "failed"}
-        try:
-            case = make(item)
-            run = compute_on(_CONTAINERS.container_of(case), case, WantedChecks())
-            verdict, margin = run.verdict, run.verdict.margin
-            row |= {"status": run.status, "sure": verdict.sure, "decided_by": " ".join(verdict.decided_by)}
-            if margin is not None:
-                row |= {
-                    "margin": margin.factor,
-                    "margin_low": margin.low,
-                    "margin_high": margin.high,
-                    "margin_tried_to": margin.largest_tried if margin.factor is None else None,
-                }
-        except (ValueError, ArithmeticError, RuntimeError):  # its run ended, the row has its outcome
-            pass
-        rows.append(row)
-    return rows

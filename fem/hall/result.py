@@ -3,28 +3,26 @@
 from dataclasses import dataclass, field
 from typing import Any
 
+from fem.batch.checked import CHECKED
 from fem.batch.study import StudyResult
-from fem.results.figures import BOXES, SCALARS, SLIPPED, TURNED
+from fem.batch.table import Columns
+from fem.results.figures import RUN_COLUMNS, SLIPPED, TURNED
 from fem.results.json_block import JsonBlock
 
 REFUSED = "refused"  #: status of a row that cannot be computed
 #: columns of a run, as in its log
-OF_A_RUN = ("status", *SCALARS, *BOXES, "reason")
-#: what the repetition of a run with other inputs and motions adds, as `run` does; empty where it was not made
-CHECKED = ("sure", "decided_by", "margin", "margin_low", "margin_high", "margin_tried_to")
-STATIC = ("utilisation_sliding", "utilisation_overturning")
+OF_A_RUN = {"status": str} | RUN_COLUMNS | {"reason": str}
+STATIC = dict.fromkeys(("utilisation_sliding", "utilisation_overturning"), float)
 #: of a container under several motions
-OF_MOTIONS = (
-    *("motion", "motions_overturned", "motions_invalid", "motions_failed"),
-    *("largest_slip_m", "largest_slip_motion"),
-)
+OF_MOTIONS: Columns = {"motion": str}
+OF_MOTIONS |= dict.fromkeys(("motions_overturned", "motions_invalid", "motions_failed"), int)
+OF_MOTIONS |= {"largest_slip_m": float, "largest_slip_motion": str}
 #: of a container at a site, by the rule of `assess`
-AT_SITE = ("answer", "reasons", "factor_at_first_overturning", "page")
-FIRST = ("status", "reason", "outcome", *CHECKED[:3], TURNED, SLIPPED, "tilt_rad")
+AT_SITE = {"answer": str, "reasons": str, "factor_at_first_overturning": float}
+COLUMNS = OF_A_RUN | CHECKED | STATIC | OF_MOTIONS | AT_SITE | {"page": str, "rank": int}
+FIRST = ("status", "reason", "outcome", *[*CHECKED][:3], TURNED, SLIPPED, "tilt_rad")
 #: behind the columns of the list
-RESULT_COLUMNS = tuple(
-    dict.fromkeys((*FIRST, *STATIC, *OF_MOTIONS, *CHECKED, *SCALARS, *BOXES, *AT_SITE, "rank"))
-)
+RESULT_COLUMNS = {name: COLUMNS[name] for name in (*FIRST, *STATIC, *OF_MOTIONS, *CHECKED, *COLUMNS)}
 
 
 @dataclass(frozen=True, kw_only=True)

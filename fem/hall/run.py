@@ -9,18 +9,20 @@ from functools import partial
 from pathlib import Path
 from typing import Any, Literal, Unpack
 
-from fem.batch.log import LoggedRuns, fields_of, table_of_lines, table_text
+from fem.batch.checked import check_chunk
+from fem.batch.log import LoggedRuns
 from fem.batch.motion_set import motions_left_out
 from fem.batch.runner import Runner
 from fem.batch.study import COMPLETED, FAILED, INTERRUPTED, Study, StudyOptions, hash_of, run_study, runner_of
+from fem.batch.table import row_of, table_of_lines, table_text
 from fem.case.case import Case
 from fem.case.toml import toml_document
 from fem.hall.file import HallFile
-from fem.hall.found import CHECK_COLUMNS, RUN_COLUMNS, HallRuns, check_chunk, static_use, weakest_first
+from fem.hall.found import CHECK_COLUMNS, RUN_COLUMNS, HallRuns, static_use, weakest_first
 from fem.hall.page import hall_report
 from fem.hall.places import PICTURE, draw_places, geojson
 from fem.hall.plan import Hall, Looked, plan_hall
-from fem.hall.result import CHECKED, OF_A_RUN, OF_MOTIONS, RESULT_COLUMNS, STATIC, HallResult
+from fem.hall.result import OF_A_RUN, OF_MOTIONS, RESULT_COLUMNS, STATIC, HallResult
 from fem.hall.table import HallTable, answer_of
 from fem.results.disk import BYTES_BESIDE, table_bytes
 from fem.results.folder import ResultFolder
@@ -123,7 +125,7 @@ def _compute(hall: Hall, begun: HallResult, place: ResultFolder, runner: Runner)
         columns=RUN_COLUMNS,
         make=hall.cases,
         model_of=hall.model_of,
-        values=runs.values,
+        key=lambda item: (item.container, item.motion),
         note=runs.note,
         number=lambda item: item.container * len(hall.cases.motions) + item.motion,
     ).run(runner, iter(runs.missing, []))
@@ -141,7 +143,7 @@ def _compute(hall: Hall, begun: HallResult, place: ResultFolder, runner: Runner)
         columns=CHECK_COLUMNS,
         make=hall.cases,
         model_of=hall.model_of,
-        values=lambda item, row: (item.container, *(row[name] for name in CHECKED)),
+        key=lambda item: (item.container,),
         note=runs.note_check,
         work=check_chunk,
     ).run(runner, iter(wanted, []))
@@ -186,10 +188,10 @@ def written(place: ResultFolder, table: HallTable, result: HallResult) -> HallRe
 
 
 def _shown(runs: HallRuns, container: int) -> dict[str, Any]:
-    """What a container showed, by column, in the texts of the logs."""
+    """What a container showed, by column."""
     some, motion = runs.found[container], runs.governing(container)
-    fields = dict(zip(RUN_COLUMNS, fields_of(some[motion].line), strict=True))
-    found: dict[str, Any] = {name: fields[name] for name in OF_A_RUN} | dict(runs.checked.get(container, {}))
+    row = row_of(RUN_COLUMNS, some[motion].line)
+    found: dict[str, Any] = {name: row[name] for name in OF_A_RUN} | runs.checked.get(container, {})
     if names := [pair.name for pair in runs.hall.motions]:
         slipped = max(sorted(some), key=lambda one: some[one].slip)
         counts = runs.counts(container)

@@ -12,14 +12,15 @@ from functools import partial
 from pathlib import Path
 from typing import Any, Unpack
 
-from fem.batch.log import RowLog, fields_of, line_of, number_in, table_of_lines
+from fem.batch.log import RowLog
 from fem.batch.runner import Runner
 from fem.batch.study import COMPLETED, FAILED, INTERRUPTED, StudyOptions, hash_of, run_study
+from fem.batch.table import fields_of, line_of, row_of, table_of_lines
 from fem.case.case import Case
 from fem.case.validation import CaseError
 from fem.hall.file import HallFile
 from fem.hall.plan import Looked, look_at
-from fem.hall.result import AT_SITE, HallResult
+from fem.hall.result import AT_SITE, RESULT_COLUMNS, HallResult
 from fem.hall.run import asked_of, study_of, written
 from fem.hall.table import HallTable
 from fem.results.errors import FolderError
@@ -42,7 +43,9 @@ MU = "contact.mu_static"
 #: tables of a case that a verification takes from its site file
 OF_THE_SITE = ("motion", "vertical", "initial", "static", "solver", "output", "uncertainty", "joints")
 FIGURES = ("outcome", "margin", TURNED, SLIPPED, "motions_overturned", "motions_failed")
-COLUMNS = ("container", "status", "reason", *FIGURES, *AT_SITE[:3])
+COLUMNS = {"container": int} | {
+    name: RESULT_COLUMNS[name] for name in ("status", "reason", *FIGURES, *AT_SITE)
+}
 NO_ANSWER = "no answer"
 WORST_FIRST = ("not fulfilled", NO_ANSWER, "not sure", "fulfilled")
 
@@ -141,10 +144,10 @@ class _AtSite:
             return replace(self.begun, status=INTERRUPTED, missing=missing)
         place.check()
         place.write_text(SITES, table_of_lines(COLUMNS, (line for _, line in sorted(self.lines.items()))))
-        found = {k: dict(zip(COLUMNS, fields_of(line), strict=True)) for k, line in self.lines.items()}
+        found = {k: row_of(COLUMNS, line) for k, line in self.lines.items()}
         for k, one in found.items():
             page = self._folder(k) / "report.html"
-            one["page"] = page.as_posix() if (place.path / page).is_file() else ""
+            one["page"] = page.as_posix() if (place.path / page).is_file() else None
         table = HallTable(
             file=self.file,
             looked=self.looked,
@@ -218,9 +221,7 @@ def _look(site: SiteRequest, start: Case, ground: Sequence[GroundMotion], values
     return hash_of([request.data, site_hash(request, ground)])
 
 
-def _weakness(found: Mapping[str, str]) -> tuple[float, ...]:
+def _weakness(found: Mapping[str, Any]) -> tuple[float, ...]:
     """Smaller for the worse: by the answer, then by the margin, then by rotation and slip."""
-    ratio, slip = (number_in(found[name]) or 0.0 for name in (TURNED, SLIPPED))
-    margin = number_in(found["margin"])
-    order = WORST_FIRST.index(found["answer"] or NO_ANSWER)
-    return order, math.inf if margin is None else margin, -ratio, -slip
+    order, margin = WORST_FIRST.index(found["answer"] or NO_ANSWER), found["margin"]
+    return order, math.inf if margin is None else margin, -(found[TURNED] or 0.0), -(found[SLIPPED] or 0.0)

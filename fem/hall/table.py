@@ -9,22 +9,6 @@ from fem.hall.file import HallFile, HallRow
 from fem.hall.plan import Looked
 from fem.hall.result import REFUSED, RESULT_COLUMNS, HallResult, TagCount
 
-WHOLE = frozenset({"impacts", "fell_box", "motions_overturned", "motions_invalid", "motions_failed"})
-TEXTS = frozenset(
-    {
-        "status",
-        "reason",
-        "outcome",
-        "sure",
-        "decided_by",
-        "motion",
-        "largest_slip_motion",
-        "answer",
-        "reasons",
-        "page",
-    }
-)
-
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class HallTable:
@@ -32,7 +16,7 @@ class HallTable:
 
     file: HallFile
     looked: Looked
-    #: of each container, by column, as values or as the texts of a log
+    #: of each container, by column
     found: Mapping[int, Mapping[str, Any]]
     words: Mapping[int, tuple[str, str]]  #: what the outcomes count each container as, and what the tags do
     order: list[int]  #: of the containers, the weakest first
@@ -57,7 +41,7 @@ class HallTable:
         """The result with counts and rows."""
         table, outcomes, tags = [], Counter[str](), dict[str, TagCount]()
         for number, (row, container, found) in enumerate(self._results(), start=1):
-            values = {name: _parsed(name, found.get(name)) for name in RESULT_COLUMNS}
+            values = {name: found.get(name) for name in RESULT_COLUMNS}
             outcome, counted = (REFUSED, REFUSED) if container is None else self.words[container]
             outcomes[outcome] += row.count
             tag = tags.get(row.tag, TagCount(tag=row.tag, containers=0, counts={}))
@@ -81,17 +65,6 @@ class HallTable:
             tags=tuple(tags[tag] for tag in sorted(tags)) if {*tags} != {""} else (),
             table=tuple(table),
         )
-
-
-def _parsed(name: str, value: Any) -> Any:
-    """A field of a log as a value."""
-    if not isinstance(value, str) or name in TEXTS:
-        return value if value != "" else None
-    if value in ("", "true", "false"):
-        return value == "true" if value else None
-    if " " in value:
-        return tuple(map(float, value.split()))
-    return int(value) if name in WHOLE else float(value)
 
 
 def answer_of(result: HallResult) -> str:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from fem.batch.log import table_text
+from fem.batch.table import table_text
 from fem.response.curve import PORTRAYED, CurvePoint
 from fem.response.model import SAMPLES_PER_PERIOD
 from fem.response.orbit import EXTREME_COLUMNS, SECTION_COLUMNS

@@ -8,8 +8,7 @@ container to +x.
 """
 # ruff: noqa: N815 - a field is named as its key in the file, unit and all
 
-from collections.abc import Iterator
-from dataclasses import KW_ONLY, dataclass, fields
+from dataclasses import KW_ONLY, dataclass
 from enum import Flag, auto
 from typing import Annotated, Any, Generic, TypeVar, get_args, get_type_hints
 
@@ -255,17 +254,36 @@ class RunFigures(Figures[float], RunOutcome):  # of several bases the last comes
         return {key: getattr(self, key) for key in keys_of(place)}
 
 
-def _declared(kind: type) -> Iterator[tuple[str, Shown]]:
-    """The figures of a class, by key: fields, then properties."""
-    hints = get_type_hints(kind, include_extras=True)
+def _hints(kind: type) -> dict[str, Any]:
+    """Fields of a class, then its properties, with their types."""
     derived = {key: one.fget for key, one in vars(kind).items() if isinstance(one, property)}
-    hints |= {key: get_type_hints(one, include_extras=True)["return"] for key, one in derived.items()}
-    for key in (*(one.name for one in fields(kind)), *derived):
-        yield from ((key, one) for one in get_args(hints[key]) if isinstance(one, Shown))
+    of_derived = {key: get_type_hints(one, include_extras=True)["return"] for key, one in derived.items()}
+    return get_type_hints(kind, include_extras=True) | of_derived
 
 
-FIGURES = dict(_declared(RunFigures))  #: by key, in the order of the columns of tables
-BOX_FIGURES = dict(_declared(BoxFigures))  #: of each box of a loose stack
+def shown_in(kind: type) -> dict[str, Shown]:
+    """How people are shown what a class holds, by key."""
+    return {
+        key: one for key, hint in _hints(kind).items() for one in get_args(hint) if isinstance(one, Shown)
+    }
+
+
+def types_of(kind: type) -> dict[str, type]:
+    """The types of what a class holds, by key: those of its own row of a table."""
+    return {key: _plain(hint) for key, hint in _hints(kind).items()}
+
+
+def _plain(hint: Any) -> type:
+    """`X` of `X | None` and of annotated types; float of a number in general."""
+    while parts := get_args(hint):
+        hint = parts[0]
+    return hint if isinstance(hint, type) else float
+
+
+#: by key, in the order of the columns of tables
+FIGURES = shown_in(RunFigures)
+#: of each box of a loose stack
+BOX_FIGURES = shown_in(BoxFigures)
 #: keys of the two figures that studies limit and rank by: how far a container turns, and how far it slips
 TURNED, SLIPPED = "rotation_ratio", "max_slip_m"
 
@@ -275,15 +293,23 @@ def keys_of(place: Place) -> tuple[str, ...]:
     return tuple(key for key, one in FIGURES.items() if place in one.places)
 
 
+def columns_of(place: Place) -> dict[str, type]:
+    """The figures of a place as columns of a table."""
+    types = types_of(RunFigures)
+    return {key: types[key] for key in keys_of(place)}
+
+
 def keys_beside(place: Place) -> frozenset[str]:
     """The keys of all other figures."""
     return frozenset(FIGURES) - {*keys_of(place)}
 
 
 #: scalars of a verdict, as columns of a table; None where they do not apply
-SCALARS = ("outcome", *keys_of(COLUMN))
+SCALARS = {"outcome": str} | columns_of(COLUMN)
 #: columns with one number for each box of a loose stack, from the floor up, by what they hold of it
 BOXES = {one.column: key for key, one in BOX_FIGURES.items() if one.column}
+#: of a run in the tables of studies
+RUN_COLUMNS = SCALARS | dict.fromkeys(BOXES, tuple)
 
 
 def summary_order() -> list[str]:

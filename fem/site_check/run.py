@@ -173,7 +173,7 @@ class _Verification:
                 columns=COLUMNS,
                 make=cases,
                 model_of=lambda key: key.model,
-                values=rows.values,
+                key=lambda key: key,
                 note=rows.note,
             ).run(runner, self._batches(runner))
             runs = rows.in_order()

@@ -8,12 +8,12 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from fem.batch.case_maker import CaseMaker
-from fem.batch.log import fields_of, line_of, number_in, table_of_lines
 from fem.batch.runner import Row
+from fem.batch.table import row_of, table_text
 from fem.case.case import Case, read_case
 from fem.case.data_files import FILE_KEYS
 from fem.case.toml import toml_document
-from fem.results.figures import Place, keys_of
+from fem.results.figures import Place, columns_of, types_of
 from fem.results.outcome import Outcome
 from fem.run.bracket import values_to_try
 from fem.site_check.file import FULL, SiteRequest
@@ -57,7 +57,8 @@ def key_of(run: SiteRun) -> RunKey:
     return RunKey(*(run[name] for name in RunKey._fields))
 
 
-COLUMNS = (*RunKey._fields, "outcome", *keys_of(Place.RUNS), "reason")
+FOUND = {"outcome": str} | columns_of(Place.RUNS)
+COLUMNS = {key: types_of(RunKey)[key] for key in RunKey._fields} | FOUND | {"reason": str}
 
 
 def motion_stem(number: int, period: float | None, stage: str = SET) -> str:
@@ -224,41 +225,24 @@ class RunRows:
     """The rows of the runs so far."""
 
     found: dict[RunKey, SiteRun] = field(default_factory=dict)
-    lines: dict[RunKey, str] = field(default_factory=dict)  #: of the log
-    reasons: list[str] = field(default_factory=list)  #: why runs failed
+    rows: dict[RunKey, Row] = field(default_factory=dict)  #: of the log
     still: set[RunKey] = field(default_factory=set)  #: those at rest that were not computed
-
-    def values(self, key: RunKey, row: Row) -> tuple[Any, ...]:
-        """The row of a run for the log."""
-        return (*key, *(row[name] for name in COLUMNS[len(key) :]))
 
     def note(self, line: str) -> None:
         """Add a line of the log."""
-        fields = dict(zip(COLUMNS, fields_of(line), strict=True))
-        key = RunKey(
-            stage=fields["stage"],
-            motion=int(fields["motion"]),
-            vertical_sign=int(fields["vertical_sign"]),
-            mu_static=float(fields["mu_static"]),
-            mu_kinetic=float(fields["mu_kinetic"]),
-            mass=fields["mass"],
-            elevation=fields["elevation"],
-            building_period_s=number_in(fields["building_period_s"]),
-            model=fields["model"],
-            factor=float(fields["factor"]),
-        )
-        figures: dict[str, Any] = {name: number_in(fields[name]) for name in keys_of(Place.RUNS)}
-        self.found[key] = SiteRun(**key._asdict(), outcome=fields["outcome"] or None, **figures)
-        self.lines[key] = line
-        if fields["reason"]:
-            self.reasons.append(fields["reason"])
+        self.add(row_of(COLUMNS, line))
+
+    def add(self, row: Row) -> None:
+        """Add the row of a run."""
+        key = RunKey(*(row[name] for name in RunKey._fields))
+        self.found[key] = SiteRun(**key._asdict(), **{name: row[name] for name in FOUND})
+        self.rows[key] = row
 
     def rest(self, key: RunKey) -> None:
         """Add a run that is at rest and was not computed."""
-        figures: dict[str, Any] = dict.fromkeys(keys_of(Place.RUNS), 0.0)
-        self.found[key] = SiteRun(**key._asdict(), outcome=Outcome.REST, **figures)
-        self.lines[key] = line_of([*key, Outcome.REST, *figures.values(), NOT_COMPUTED])
         self.still.add(key)
+        at_rest = dict.fromkeys(FOUND, 0.0) | {"outcome": Outcome.REST, "reason": NOT_COMPUTED}
+        self.add(key._asdict() | at_rest)
 
     def in_order(self) -> dict[RunKey, SiteRun]:
         """All of them, stage by stage: not in the order in which they were ready, which depends on the cores."""
@@ -266,7 +250,7 @@ class RunRows:
 
     def table(self) -> str:
         """`runs.csv`: a row a run, in the same order."""
-        return table_of_lines(COLUMNS, (self.lines[key] for key in self.in_order()))
+        return table_text(COLUMNS, (self.rows[key].values() for key in self.in_order()))
 
     def missing(self, keys: Iterable[RunKey]) -> list[RunKey]:
         """Those that have no row."""

@@ -11,11 +11,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from hashlib import sha256
 from pathlib import Path
-from typing import Any, NamedTuple, Unpack
+from typing import NamedTuple, Unpack
 
-from fem.batch.log import LoggedRuns, fields_of, line_of, table_of_lines
+from fem.batch.log import LoggedRuns
 from fem.batch.runner import Row, Runner
 from fem.batch.study import INTERRUPTED, Study, StudyOptions, hash_of, run_study
+from fem.batch.table import row_of, table_text
 from fem.case.case import Case
 from fem.results.disk import BYTES_BESIDE
 from fem.results.folder import ResultFolder
@@ -40,6 +41,7 @@ from fem.site_check.size_axis import at, followers
 from fem.site_check.stages import Stages
 
 RUNS, FIGURE = "runs.csv", "figures/size.svg"
+SIZE_COLUMNS = {"value": float} | COLUMNS
 WORKING = ".motions"  #: of the sets, as long as they are computed
 BYTES_OF_SETS = 50_000_000  #: of motions, as long as they are computed
 
@@ -141,22 +143,21 @@ class _Sizing:
     cases: SizeCases = field(default_factory=SizeCases)
     tried: dict[float, Tried] = field(default_factory=dict)
     #: rows of an earlier attempt, by value, until it is tried
-    early: dict[float, list[str]] = field(default_factory=dict)
+    early: dict[float, list[Row]] = field(default_factory=dict)
     #: motions by the folders that hold them, which values of the container share, and by stem
     made: dict[Path, dict[str, GroundMotion]] = field(default_factory=dict)
 
     def compute(self, place: ResultFolder, runner: Runner) -> SizeResult:
         """Run what is missing; the values are those that fulfil the rule."""
         began = time.perf_counter()
-        log, columns = place.path / RUNS, ("value", *COLUMNS)
         try:
             LoggedRuns(
                 what="runs",
-                path=log,
-                columns=columns,
+                path=place.path / RUNS,
+                columns=SIZE_COLUMNS,
                 make=self.cases,
                 model_of=lambda key: key.run.model,
-                values=self.values,
+                key=lambda key: (key.value, *key.run),
                 note=self.note,
             ).run(runner, self.batches(runner, place.path / WORKING))
         finally:
@@ -203,26 +204,23 @@ class _Sizing:
         """By value, as far as they were tried."""
         return {value: tried.answer for value, tried in self.tried.items()}
 
-    def values(self, key: SizeKey, row: Row) -> tuple[Any, ...]:
-        """The row of a run for the log."""
-        return (key.value, *self.tried[key.value].rows.values(key.run, row))
-
     def table(self) -> str:
         """`runs.csv`: by value, and in the order of each verification, whatever the order in which runs ended."""
-        lines = (
-            line_of([value, *fields_of(tried.rows.lines[key])])
+        rows = (
+            (value, *tried.rows.rows[key].values())
             for value, tried in sorted(self.tried.items())
             for key in tried.rows.in_order()
         )
-        return table_of_lines(("value", *COLUMNS), lines)
+        return table_text(SIZE_COLUMNS, rows)
 
     def note(self, line: str) -> None:
         """Add a line of the log."""
-        value, *fields = fields_of(line)
-        if (tried := self.tried.get(float(value))) is not None:
-            tried.rows.note(line_of(fields))
+        row = row_of(SIZE_COLUMNS, line)
+        value = row.pop("value")
+        if (tried := self.tried.get(value)) is not None:
+            tried.rows.add(row)
         else:
-            self.early.setdefault(float(value), []).append(line_of(fields))
+            self.early.setdefault(value, []).append(row)
 
     def _try(self, value: float, working: Path) -> None:
         """Make the motions of a value, and the cases of its runs."""
@@ -244,8 +242,8 @@ class _Sizing:
             wind=wind_utilisation(bodies, inputs_of(request)),
         )
         self.cases.cases[value] = RunCases.of(request, folder)
-        for line in self.early.pop(value, []):
-            tried.rows.note(line)
+        for row in self.early.pop(value, []):
+            tried.rows.add(row)
 
 
 def written_motions(

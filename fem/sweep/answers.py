@@ -14,7 +14,8 @@ import numpy as np
 from fem.batch.answers import Answer, Trial, answer_axis, answer_of, is_rising, sentence_of
 from fem.batch.axes import Axis, point_of, set_axis
 from fem.batch.labels import axis_name, place_in_words
-from fem.batch.log import fields_of, number_in, table_text
+from fem.batch.table import fields_of, table_text
+from fem.results.figures import SLIPPED
 from fem.results.outcome import ending_of
 from fem.sweep.motion_outcomes import sign_axes
 from fem.sweep.table import SweepTable
@@ -22,7 +23,7 @@ from fem.sweep.table import SweepTable
 TRIED = "tried.csv"
 #: columns of `answers.csv` behind those of the other axes
 COLUMNS = (
-    *("stood_to", "stood_max_slip_m", "overturned_from", "max_slip_m"),
+    *("stood_to", f"stood_{SLIPPED}", "overturned_from", SLIPPED),
     *("stood_again", "no_outcome", "unsure", "answer"),
 )
 
@@ -122,7 +123,7 @@ def _lines_of(table: SweepTable, axis: Axis, tried: Path) -> dict[int, list[Tria
     """What is known along the axis, by the first cell of each line."""
     place = table.axes.index(axis)
     cells = np.moveaxis(np.arange(len(table["cell"])).reshape(table.shape), place, -1)
-    slip, unsure = table.columns.get("max_slip_m"), table.columns.get("unsure")
+    slip, unsure = table.columns.get(SLIPPED), table.columns.get("unsure")
     lines: dict[int, list[Trial]] = defaultdict(list)
     for line in cells.reshape(-1, len(axis.values)).tolist():
         for cell, value in zip(line, axis.values, strict=True):
@@ -149,5 +150,11 @@ def _between(path: Path) -> Iterator[tuple[int, float, str, str, float | None]]:
     names = fields_of(header)
     for line in lines:
         row = dict(zip(names, fields_of(line), strict=False))
-        slip = number_in(row.get("max_slip_m", ""))
-        yield int(row["cell"]), float(row["value"]), row["status"], row["outcome"], slip
+        slip = row.get(SLIPPED)
+        yield (
+            int(row["cell"]),
+            float(row["value"]),
+            row["status"],
+            row["outcome"],
+            float(slip) if slip else None,
+        )

@@ -8,16 +8,16 @@ from typing import Any
 
 import numpy as np
 
-from fem.batch.log import fields_of, number_in, numbers_in
-from fem.results.figures import BOXES, BoxResult, Place, RunFigures, keys_of
+from fem.batch.table import row_of
+from fem.results.figures import BOXES, RUN_COLUMNS, TURNED, BoxResult, Place, RunFigures, columns_of
 from fem.results.outcome import Ending, ending_of
 from fem.runtime.arrays import BoolArray, FloatArray, IntArray
 from fem.sweep.plan import Sweep
 from fem.sweep.table import SweepTable, row_columns
 
-FIGURES = keys_of(Place.KEY)
+FIGURES = columns_of(Place.KEY)
 #: columns of what a row shows
-SHOWN = ("status", "outcome", *FIGURES, "fell_box", *BOXES)
+SHOWN = {"status": str} | {key: RUN_COLUMNS[key] for key in ("outcome", *FIGURES, "fell_box", *BOXES)}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -27,17 +27,15 @@ class RunShown(RunFigures):
     kind: Ending
 
 
-def shown_in(fields: Mapping[str, str]) -> RunShown:
-    """What the fields of a row show, by the names of `SHOWN`."""
-    kind = ending_of(fields["status"], fields["outcome"])
-    boxes = zip(*(numbers_in(fields[name]) for name in BOXES), strict=True)
-    figures: dict[str, Any] = {key: number_in(fields[key]) for key in FIGURES}
+def shown_in(row: Mapping[str, Any]) -> RunShown:
+    """What a row shows, by the names of `SHOWN`."""
+    kind = ending_of(row["status"], row["outcome"])
+    boxes = zip(*(row[name] or () for name in BOXES), strict=True)
     return RunShown(
         kind=kind,
-        outcome=None if kind is Ending.FAILED else fields["outcome"],
-        fell_box=int(fields["fell_box"]) if fields["fell_box"] else None,
+        outcome=None if kind is Ending.FAILED else row["outcome"],
         boxes=tuple(BoxResult(**dict(zip(BOXES.values(), box, strict=True))) for box in boxes),
-        **figures,
+        **{key: row[key] for key in ("fell_box", *FIGURES)},
     )
 
 
@@ -62,14 +60,14 @@ class CellRows:
 
     def note(self, line: str) -> None:
         """Add a line of the log."""
-        fields = dict(zip(self.columns, fields_of(line), strict=True))
-        cell = int(fields["cell"])
+        row = row_of(self.columns, line)
+        cell = row["cell"]
         if cell in self.lines:
             return
-        shown = shown_in(fields)
+        shown = shown_in(row)
         self.lines[cell], self.shown[cell], self.kind[cell] = line, shown, shown.kind
-        if shown.rotation_ratio is not None:
-            self.ratio[cell] = shown.rotation_ratio
+        if row[TURNED] is not None:
+            self.ratio[cell] = row[TURNED]
         self.outcomes[shown.outcome or "failed"] += 1
 
     @property

@@ -23,8 +23,10 @@ from fem.assessment.sureness import (
     deciding_inputs,
     difference,
 )
-from fem.batch.log import LoggedRuns, fields_of
-from fem.batch.runner import Row, Runner
+from fem.batch.log import LoggedRuns
+from fem.batch.runner import Runner
+from fem.batch.table import row_of
+from fem.results.figures import TURNED
 from fem.results.outcome import Ending
 from fem.runtime.arrays import BoolArray
 from fem.sweep.cells import SHOWN, CellRows, RunShown, shown_in
@@ -32,7 +34,10 @@ from fem.sweep.copies import CellCopies, Copy
 from fem.sweep.neighbours import around, band_width, coarse_cells, near_cells
 from fem.sweep.plan import CopyItem, Sweep
 
-COLUMNS = ("cell", "member", "change", *SHOWN[:3], "reason", *SHOWN[3:])
+FIRST = ("status", "outcome", TURNED)
+COLUMNS = (
+    {"cell": int, "member": int, "change": str} | {key: SHOWN[key] for key in FIRST} | {"reason": str} | SHOWN
+)
 #: cells around one with another outcome that try the same change
 REACH = 2
 
@@ -59,10 +64,10 @@ class PerturbedRows:
 
     def note(self, line: str) -> None:
         """Add a line of the log."""
-        fields = dict(zip(COLUMNS, fields_of(line), strict=True))
-        cell, number = int(fields["cell"]), int(fields["member"])
+        row = row_of(COLUMNS, line)
+        cell, number = row["cell"], row["member"]
         copy, own = self.copies.of(cell)[number], self._cells.shown[cell]
-        shown = shown_in(fields)
+        shown = shown_in(row)
         level = OTHER_END
         if shown.outcome is not None:
             level = difference(own, shown, self.copies.width(cell))
@@ -107,7 +112,7 @@ class PerturbedRows:
     def ratios(self, cell: int) -> tuple[float | None, float | None]:
         """Least and largest rotation ratio of a cell and its copies; None where there is none."""
         copies = self.rows.get(cell, {}).values()
-        ratios = [one.shown.rotation_ratio for one in copies if one.shown.rotation_ratio is not None]
+        ratios = [ratio for one in copies if (ratio := one.shown[TURNED]) is not None]
         own = float(self._cells.ratio[cell])
         return (min(own, *ratios), max(own, *ratios)) if ratios and np.isfinite(own) else (None, None)
 
@@ -173,7 +178,7 @@ def perturb_cells(runner: Runner, sweep: Sweep, cells: CellRows, log: Path) -> P
         columns=COLUMNS,
         make=sweep.copy_case,
         model_of=lambda item: sweep.model_of(item.cell),
-        values=_values,
+        key=_key,
         note=perturbed.note,
     ).run(runner, _missing(sweep, cells, perturbed))
     return perturbed
@@ -252,6 +257,5 @@ def _items(
     return [item for _, _, item in sorted(items, key=lambda one: (*one[:2], one[2].cell))]
 
 
-def _values(item: CopyItem, row: Row) -> Iterator[Any]:
-    yield from (item.cell, item.number, " ".join(f"{key}={value!r}" for key, value in item.change.items()))
-    yield from (row[name] for name in COLUMNS[3:])
+def _key(item: CopyItem) -> tuple[int, int, str]:
+    return item.cell, item.number, " ".join(f"{key}={value!r}" for key, value in item.change.items())

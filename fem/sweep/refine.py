@@ -6,16 +6,16 @@ from typing import Any
 
 import numpy as np
 
-from fem.batch.log import LoggedRuns, fields_of, table_text
+from fem.batch.log import LoggedRuns
 from fem.batch.runner import Runner
-from fem.results.figures import Place, keys_of
+from fem.batch.table import row_of, table_text
+from fem.results.figures import TURNED
 from fem.results.outcome import Ending, ending_of
 from fem.run.bracket import Change, changes_of, least_width, values_to_try
-from fem.sweep.cells import CellRows
+from fem.sweep.cells import FIGURES, CellRows
 from fem.sweep.plan import Sweep
 
-FIRST, *FURTHER = keys_of(Place.KEY)
-COLUMNS = ("cell", "value", "status", "outcome", FIRST, "reason", *FURTHER)
+COLUMNS = {"cell": int, "value": float, "status": str, "outcome": str, TURNED: float, "reason": str} | FIGURES
 
 #: outcomes by value along the axis, by the first cell of each line of cells
 Lines = dict[int, dict[float, str]]
@@ -34,8 +34,8 @@ def refine(runner: Runner, sweep: Sweep, cells: CellRows, log: Path) -> list[tup
     least = least_width(sweep.threshold_axis.values, wanted.resolution)
 
     def note(line: str) -> None:
-        first, value, status, outcome, *_ = fields_of(line)
-        lines[int(first)][float(value)] = ending_of(status, outcome).word
+        row = row_of(COLUMNS, line)
+        lines[row["cell"]][row["value"]] = ending_of(row["status"], row["outcome"]).word
 
     def between_cells() -> list[tuple[int, float]]:
         return [
@@ -52,7 +52,7 @@ def refine(runner: Runner, sweep: Sweep, cells: CellRows, log: Path) -> list[tup
         columns=COLUMNS,
         make=sweep.tried_case,
         model_of=lambda item: sweep.model_of(item[0]),
-        values=lambda item, row: (*item, *(row[name] for name in COLUMNS[2:])),
+        key=lambda item: item,
         note=note,
     ).run(runner, iter(between_cells, []))
     return [(first, change) for first in sorted(lines) for change in changes_of(lines[first])]

@@ -13,11 +13,13 @@ from typing import Any, Unpack
 
 from fem.assessment.sureness import REGIME_UNSURE, SURE, UNSURE
 from fem.batch.axes import AxisResult, with_following
+from fem.batch.checked import MARGIN
 from fem.batch.held import held_inputs
-from fem.batch.log import LoggedRuns, fields_of, line_of, read_lines, table_of_lines
+from fem.batch.log import LoggedRuns
 from fem.batch.motion_set import FloorMotionPair, motion_cases, motions_left_out, read_motion_set
-from fem.batch.runner import Row, Runner
+from fem.batch.runner import Runner
 from fem.batch.study import COMPLETED, FAILED, INTERRUPTED, Study, StudyOptions, hash_of, run_study
+from fem.batch.table import fields_of, line_of, read_lines, table_of_lines
 from fem.case.case import case_hash
 from fem.case.rules import ends_at_rest, longest_time
 from fem.case.tables import UncertaintyTable
@@ -34,13 +36,13 @@ from fem.sweep.answers import TRIED, sweep_answer
 from fem.sweep.cells import CellRows
 from fem.sweep.copies import left_out
 from fem.sweep.maps import draw_maps
-from fem.sweep.margins import MARGIN, find_margins
+from fem.sweep.margins import find_margins
 from fem.sweep.perturbed import PerturbedRows, band_rows, perturb_cells
 from fem.sweep.plan import Sweep
 from fem.sweep.refine import refine, table_of_changes
 from fem.sweep.result import SweepResult
 from fem.sweep.set_files import write_set
-from fem.sweep.table import FOUND, band_columns, open_sweep
+from fem.sweep.table import band_columns, open_sweep
 
 ROWS, TABLE, MEMBERS, MARGINS, CHANGES, ANSWERS = (
     "rows.csv",
@@ -292,7 +294,7 @@ class _Cells:
             columns=columns,
             make=self.sweep.case,
             model_of=self.sweep.model_of,
-            values=self._values,
+            key=self._key,
             note=self._note,
         ).run(runner, self._missing())
 
@@ -310,7 +312,7 @@ class _Cells:
     def _missing(self) -> Iterator[list[int]]:
         yield self.sweep.by_container(set(range(self.sweep.count)) - self.rows.lines.keys())
 
-    def _values(self, cell: int, row: Row) -> Iterator[Any]:
+    def _key(self, cell: int) -> Iterator[Any]:
         point = self.sweep.point(cell)
         following = with_following(self.sweep.axes, point)
         yield cell
@@ -322,7 +324,6 @@ class _Cells:
             except CaseError:  # the row has the reason
                 values = {}
             yield from (values.get(one.key) for one in self.sweep.derived)
-        yield from (row[name] for name in FOUND)
 
     def _note(self, line: str) -> None:
         self.rows.note(line)

@@ -8,8 +8,8 @@ import numpy as np
 from fem.batch.answers import STRENGTHS
 from fem.batch.axes import Axis
 from fem.batch.labels import axis_label, place_in_words
-from fem.batch.log import table_text
 from fem.batch.motion_set import FloorMotionPair, write_motions
+from fem.batch.table import table_text
 from fem.figures.motions import ShareCurve, draw_shares
 from fem.figures.style import svg_of
 from fem.html.units import rounded

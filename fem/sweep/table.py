@@ -14,27 +14,30 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem.batch.axes import Axis, shape_of
-from fem.batch.log import fields_of, read_lines
+from fem.batch.table import Columns, fields_of, read_lines
 from fem.results.errors import FolderError
-from fem.results.figures import BOXES, SCALARS
+from fem.results.figures import RUN_COLUMNS, TURNED
 from fem.results.kinds import SWEEP, read_result
 from fem.sweep.result import SweepResult
 
 #: columns behind the values of axes and derived keys in every row
-FOUND = ("status", *SCALARS, *BOXES, "reason", "wall_s")
+FOUND = {"status": str} | RUN_COLUMNS | {"reason": str, "wall_s": float}
+#: least and largest rotation ratio of a cell and its copies
+RATIOS = (f"band_{TURNED}_low", f"band_{TURNED}_high")
 #: columns of the perturbed copies of a cell; the width of the band along each numeric axis follows
-BAND = (
-    *("perturbed", "unsure", "sure", "decided_by"),
-    *("band_rotation_ratio_low", "band_rotation_ratio_high", "overturned_share"),
-)
+BAND: Columns = {
+    **{"perturbed": int, "unsure": bool, "sure": str, "decided_by": str},
+    **dict.fromkeys((*RATIOS, "overturned_share"), float),
+}
 WIDTH = "band_width."  #: before the key of an axis
-WORDS = frozenset({"status", "outcome", "reason", "sure", "decided_by", *BOXES})
+WORDS = frozenset(name for name, kind in (FOUND | BAND).items() if kind in (str, tuple))
 
 
-def row_columns(axes: Sequence[Axis], derived: Iterable[str]) -> tuple[str, ...]:
-    """Columns of the row of a run."""
+def row_columns(axes: Sequence[Axis], derived: Iterable[str]) -> Columns:
+    """Columns of the row of a run; values of axes and what follows from them are read elsewhere."""
     following = (key for axis in axes for key in axis.following)
-    return ("cell", *(axis.key for axis in axes), *following, *derived, *FOUND)
+    values = (*(axis.key for axis in axes), *following, *derived)
+    return {"cell": int} | dict.fromkeys(values, str) | FOUND
 
 
 def band_columns(axes: Sequence[Axis]) -> tuple[str, ...]:
@@ -86,7 +89,7 @@ def open_sweep(folder: Path | str) -> SweepTable:
         source = folder / "table.csv"
         if not source.is_file():
             source = folder / "rows.csv"
-        names = _header(source, ("cell", *(axis.key for axis in axes), "status", "outcome", "rotation_ratio"))
+        names = _header(source, ("cell", *(axis.key for axis in axes), "status", "outcome", TURNED))
         lines = [fields_of(line) for line in read_lines(source, names)]
         if info.state == "finished" and len(lines) != info.cells:
             raise ValueError(

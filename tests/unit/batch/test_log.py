@@ -2,7 +2,7 @@
 
 import pytest
 
-from fem.batch.log import fields_of, line_of
+from fem.batch.table import fields_of, line_of
 
 
 @pytest.mark.parametrize("name", ["=1+1.csv", "@SUM(A1).csv", "-2+3.csv", "+1.csv", "-2+3", "=1"])

@@ -11,8 +11,8 @@ import pytest
 from small_site import SITE
 
 from fem.__main__ import main
-from fem.batch.log import line_of
 from fem.batch.shard import Shard
+from fem.batch.table import line_of
 from fem.case.case import load_case
 from fem.case.validation import CaseError
 from fem.hall.file import read_hall

@@ -1,0 +1,91 @@
+"""Tables of rows: columns with the types of their fields, and rows as lines of text.
+
+Numbers are written in the shortest form that reads back to the same bits. A text that a spreadsheet would compute, such
+as a file name that begins with "=", has an apostrophe before it.
+"""
+
+import csv
+import io
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+#: by the names in the header, what the fields hold: text, one number, true or false; a tuple: several numbers
+Columns = dict[str, type]
+
+READERS: dict[type, Callable[[str], Any]] = {
+    str: str,
+    int: int,
+    float: float,
+    bool: lambda field: field == "true",
+    tuple: lambda field: tuple(map(float, field.split())),
+}
+
+
+def line_of(values: Iterable[Any]) -> str:
+    """Values as a line of a table, without its end."""
+    text = io.StringIO()
+    csv.writer(text, lineterminator="").writerow([_text(value) for value in values])
+    return text.getvalue()
+
+
+def fields_of(line: str) -> list[str]:
+    """The fields of one line."""
+    return [plain_text(field) for field in next(csv.reader([line]))]
+
+
+def plain_text(field: str) -> str:
+    """A field without the apostrophe before what a spreadsheet would compute."""
+    return field[1:] if field[:1] == "'" and _is_computed(field[1:]) else field
+
+
+def row_of(columns: Columns, line: str) -> dict[str, Any]:
+    """The values of a line by column; None where a field is empty."""
+    fields = zip(columns.items(), fields_of(line), strict=True)
+    return {name: READERS[kind](field) if field else None for (name, kind), field in fields}
+
+
+def table_text(columns: Iterable[str], rows: Iterable[Iterable[Any]]) -> str:
+    """A table as text."""
+    return table_of_lines(columns, map(line_of, rows))
+
+
+def table_of_lines(columns: Iterable[str], lines: Iterable[str]) -> str:
+    """A table as text, from lines."""
+    return "".join(f"{line}\n" for line in (line_of(columns), *lines))
+
+
+def read_lines(path: Path, columns: Iterable[str]) -> list[str]:
+    """The whole lines of a table below its header; none if the file is missing, or has other columns."""
+    try:
+        text = path.read_text(encoding="utf-8", errors="replace")
+    except FileNotFoundError:
+        return []
+    lines = text[: text.rfind("\n") + 1].split("\n")[:-1]
+    return lines[1:] if lines[:1] == [line_of(columns)] else []
+
+
+def _text(value: Any) -> str:
+    """One field: nothing for None, text on one line, spaces between several numbers."""
+    if value is None:
+        return ""
+    if isinstance(value, tuple):
+        return " ".join(map(_text, value))
+    if isinstance(value, bool | np.bool_):
+        return "true" if value else "false"
+    if isinstance(value, float | np.floating):
+        return repr(float(value))
+    text = " ".join(str(value).split())
+    return f"'{text}" if _is_computed(text) else text
+
+
+def _is_computed(text: str) -> bool:
+    """Whether a spreadsheet would take a text for a formula."""
+    if text[:1] not in ("=", "+", "-", "@"):
+        return False
+    try:
+        return not [float(word) for word in text.split()]
+    except ValueError:
+        return True
