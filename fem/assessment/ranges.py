@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from fem.results.figures import FIGURES
+from fem.results.figures import FIGURES, SLIPPED, TURNED
 from fem.results.run_result import Band, JointDemand, Numerics, RunResult, StaticResult, Verdict
 from fem.runtime.units import KILONEWTONS, Reach, figures_of
 
@@ -61,18 +61,18 @@ def crushes(verdict: Verdict) -> bool:
 
 def largest_slip(verdict: Verdict) -> str:
     """The largest slip with its range."""
-    return of_band(verdict, "max_slip_m")
+    return of_band(verdict, SLIPPED)
 
 
 def largest_ratio(verdict: Verdict) -> str:
     """The largest rotation over the slenderness angle, with its range."""
-    return of_band(verdict, "rotation_ratio")
+    return of_band(verdict, TURNED)
 
 
 def largest_rotation(verdict: Verdict) -> str:
     """The largest rotation alone, with the figures that the range of its ratio leaves."""
     shown = FIGURES["max_rotation_rad"]
-    figures = figures_of(reach_of(verdict, "rotation_ratio"), shown.unit.figures)
+    figures = figures_of(reach_of(verdict, TURNED), shown.unit.figures)
     return shown.unit.text(verdict.max_rotation_rad, figures=figures)
 
 

@@ -17,7 +17,7 @@ from fem.assessment.sureness import (
     static_use,
 )
 from fem.case.unknown_inputs import WORDS, in_words
-from fem.results.figures import FIGURES
+from fem.results.figures import FIGURES, SLIPPED, TURNED
 from fem.results.outcome import ROCKING, SLIDING, Ending, Outcome
 from fem.results.run_result import Band, ChangedRun, RunResult, Verdict
 from fem.runtime.intervals import binomial_interval
@@ -137,8 +137,7 @@ def _other_regime(verdict: Verdict, band: Band) -> str:
         return "Another box may fall first"
     may = _may(Outcome(own), {Outcome(one) for one in others}) if own else ""
     lead = f"It may {may}" if may else "How far it moves is not known"
-    slip = FIGURES["max_slip_m"].unit.range_text(band.max_slip_m)
-    ratio = FIGURES["rotation_ratio"].unit.range_text(band.rotation_ratio)
+    slip, ratio = (FIGURES[key].unit.range_text(band[key]) for key in (SLIPPED, TURNED))
     return f"{lead}: slip {slip}, rotation ratio {ratio}"
 
 

@@ -83,7 +83,7 @@ def response(
 
 def page_of(request: "ResponseRequest", result: "ResponseResult", folder: Path) -> Iterator[str]:
     """The lines of a response curve, for people."""
-    found_at = importlib.import_module("fem.response.answer").found_at
+    branches = importlib.import_module("fem.response.answer").branches_in_words
     yield f"{result.case}: {result.title}" if result.title else result.case
     yield (
         f"  drive       {request.held_in_words}, {request.count} frequencies from {request.first_Hz:g} to "
@@ -94,21 +94,8 @@ def page_of(request: "ResponseRequest", result: "ResponseResult", folder: Path) 
         counted = Counter(point.words for point in result.points if point.direction == direction)
         words = ", ".join(f"{count} x {word}" for word, count in counted.items())
         yield f"  {direction:<11} {words or 'not reached'}"
-    for pair in result.coexisting:
-        difference = pair.largest_difference
-        by = f", rotation ratios up to {difference:.3f} apart" if difference is not None else ""
-        yield (
-            f"  coexist     {found_at(pair)}: {' or '.join(pair.up)} going up, {' or '.join(pair.down)} going down{by}"
-        )
-    for jump in result.jumps:
-        before, after = jump.rotation_ratio
-        yield (
-            f"  jump        {jump.direction}, {found_at(jump)}: {jump.what}, "
-            f"rotation ratio {before:.3f} to {after:.3f}"
-        )
-    for fall in result.drop_outs:
-        how = "carried there" if fall.carried else "from its start"
-        yield f"  overturns   {fall.direction}, {found_at(fall)}, {how}"
+    for what, sweep, where, how in branches(result):
+        yield f"  {what:<11} {sweep}, {where}: {how}"
     judged = [point.stable for point in result.points if point.stable is not None]
     yield (
         f"  stable      {sum(judged)} of {len(judged)} points: amplitudes do not diverge, and without drive the "

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 
 from fem.case.unknown_inputs import WORDS
 from fem.figures import style
+from fem.results.figures import TURNED
 from fem.results.outcome import ENDINGS
 from fem.results.reader import RunData
 from fem.results.run_result import ChangedRun, RigidCheckResult, RunAndBlock, Verdict
@@ -99,7 +100,7 @@ def band_figure(run: RunData) -> Figure | None:
         axes.set_xlim(-0.6, len(groups) - 0.4)
     style.legend_above(above, columns=4)
     sure = verdict.sure or ("unsure" if band.unsure else "the same outcome throughout")
-    low, high = band.rotation_ratio or (0.0, 0.0)
+    low, high = band[TURNED] or (0.0, 0.0)
     ratios = " to ".join(map(RATIO.text, (low, high)))
     statement = f"rotation ratio {ratios}; the large mark is the run itself"
     style.head(figure, f"Band over what is not known, {sure}: {' or '.join(band.outcomes)}", statement)

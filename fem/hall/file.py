@@ -23,6 +23,7 @@ from fem.case.tables import TABLES
 from fem.case.validation import CaseError, known_keys, quantity_of
 from fem.hall.result import RESULT_COLUMNS
 from fem.records.source import as_numbers, decoded
+from fem.results.figures import TURNED
 
 LARGEST_FILE = 512 * 2**20  #: [bytes]
 #: tables whose keys a column may name without the table
@@ -119,7 +120,7 @@ def read_hall(path: Path) -> HallFile:
     text = _text_of(path)
     header, lines = _table(path, text)
     places = list(range(len(header)))
-    if {"status", "outcome", "rotation_ratio"} <= {*header}:  # an earlier result, given as a list again
+    if {"status", "outcome", TURNED} <= {*header}:  # an earlier result, given as a list again
         places = [k for k, column in enumerate(header) if column not in RESULT_COLUMNS]
     columns = tuple(header[k] for k in places)
     keys, kept = _keys_of(path, columns)

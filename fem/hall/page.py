@@ -15,15 +15,13 @@ from fem.hall.places import PICTURE
 from fem.hall.result import REFUSED, HallResult, TagCount
 from fem.html import sections as html
 from fem.html.page import Signature
-from fem.html.units import ABSENT, figure_cell, figure_head, number
+from fem.html.units import ABSENT, number
 from fem.report import studies
 from fem.report.comparison import asked_rows, limits_section
-from fem.results.figures import FIGURES, SLIPPED, TURNED
+from fem.results.figures import TURNED, Place, figures_of
 from fem.results.kinds import HALL
 from fem.results.outcome import Outcome
 
-#: figures of a container on the page
-SHOWN = (TURNED, SLIPPED)
 BRIEFLY = 30  #: containers on the short page
 MOST_INPUTS = 3  #: of those that decide
 LOOKS = {"overturned": "bad", "invalid": "bad", "failed": "bad"}
@@ -161,9 +159,9 @@ def tags_table(info: HallResult) -> html.Table:
 def weakest_table(rows: list[dict[str, Any]], most: int, *, linked: bool) -> html.Table:
     """A row a container, the weakest first; its name leads to its command."""
 
-    def figure(name: str, row: A_ROW) -> str:
+    def figure(row: A_ROW, name: str) -> Any:
         fallen = name == TURNED and row["outcome"] == Outcome.OVERTURNED  # how far it fell says nothing
-        return ABSENT if fallen else figure_cell(FIGURES[name], row[name])
+        return None if fallen else row[name]
 
     columns: list[html.Column[A_ROW]] = [
         html.Column(
@@ -182,7 +180,7 @@ def weakest_table(rows: list[dict[str, Any]], most: int, *, linked: bool) -> htm
         html.Column("margin", margin_words, html.NUMBER),
         html.Column("sure", lambda row: row["sure"] or "", optional=True),
         html.Column("decided by", _deciding, optional=True),
-        *(html.Column(figure_head(FIGURES[name]), partial(figure, name), html.NUMBER) for name in SHOWN),
+        *html.figure_columns(figures_of(Place.KEY), value=figure),
         html.Column("utilisation", _utilisation, html.NUMBER, optional=True),
         html.Column("motion", lambda row: row["motion"] or "", optional=True),
         html.Column("runs overturned", _share, html.NUMBER, optional=True),

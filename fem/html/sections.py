@@ -5,12 +5,13 @@ A text is escaped unless it is `Markup`; a text among blocks is a paragraph. A l
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass
-from operator import itemgetter
+from operator import getitem, itemgetter
 from typing import Any, Generic, NamedTuple, TypeVar
 
 from markupsafe import Markup
 
-from fem.html.units import typeset
+from fem.html.units import figure_cell, figure_head, typeset
+from fem.results.figures import Shown
 
 MOST_ROWS = 1000  #: of a table on a page
 NUMBER = "number"  #: look of a column that is aligned to the right
@@ -160,6 +161,26 @@ class Column(Generic[Item]):
 def in_order(*heads: str, look: str = "") -> list[Column[Sequence[str]]]:
     """Columns of items that are the texts of a row."""
     return [Column(head, itemgetter(k), look if k else "") for k, head in enumerate(heads)]
+
+
+def figure_columns(
+    figures: Mapping[str, Shown],
+    *,
+    text: Callable[[Shown, Any], str] = figure_cell,
+    value: Callable[[Any, str], Any] = getitem,
+) -> list[Column[Any]]:
+    """Columns of declared figures.
+
+    Args:
+        figures: how each is shown, by key.
+        text: of a value, without its unit.
+        value: that of an item by the key.
+    """
+
+    def column(key: str, shown: Shown) -> Column[Any]:
+        return Column(figure_head(shown), lambda item: text(shown, value(item, key)), NUMBER)
+
+    return [column(*one) for one in figures.items()]
 
 
 def table_of(

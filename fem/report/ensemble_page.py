@@ -18,10 +18,12 @@ from fem.html.units import ABSENT, number, short, typeset
 from fem.report import studies
 from fem.report.comparison import asked_rows, limits_section
 from fem.report.motion_part import motions_of_ensemble
-from fem.results.figures import SLIPPED
+from fem.results.figures import SLIPPED, Shown
 from fem.results.kinds import ENSEMBLE
 from fem.results.outcome import COUNTED
+from fem.runtime import units
 
+STOOD = Shown("slip of those that stood", units.MILLIMETRES)
 FIGURES = ("figures/fragility.svg", "figures/boundary.svg")
 
 
@@ -145,14 +147,9 @@ def points_table(info: EnsembleResult) -> html.Table:
             html.NUMBER,
         ),
         html.Column("region", lambda point: words[point["region"]]),
-        html.Column("slip of those that stood, mm", partial(_slip, SLIPPED), html.NUMBER),
+        *html.figure_columns({SLIPPED: STOOD}, value=lambda point, key: point.get(key)),
     ]
     return html.table_of("points", columns, info.points, file="points.csv")
-
-
-def _slip(name: str, point: Mapping[str, Any]) -> str:
-    slip = point.get(name)
-    return ABSENT if slip is None else number(slip, factor=1e3, figures=3)
 
 
 def _count(name: str, point: Mapping[str, Any]) -> str:

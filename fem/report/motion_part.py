@@ -9,12 +9,22 @@ from fem.html import sections as html
 from fem.html.units import ABSENT, millimetres, number, ratio, short
 from fem.records.units import STANDARD_GRAVITY
 from fem.report.studies import drawings
+from fem.results.figures import Shown
 from fem.results.outcome import COUNTED, ROCKING, SLIDING
+from fem.runtime import units
 from fem.sweep.cells import shown_at
-from fem.sweep.motion_outcomes import MotionOutcome, motions_at
+from fem.sweep.motion_outcomes import MEAN_TURNED, WORST_TURNED, MotionOutcome, motions_at
 from fem.sweep.result import SweepResult
 from fem.sweep.table import SweepTable
 
+PGA = "peak_acceleration_m_s2"
+#: what is shown of a motion
+MEASURES = {
+    PGA: Shown("PGA", units.ACCELERATION),
+    "peak_velocity_m_s": Shown("PGV", units.VELOCITY),
+    "peak_displacement_m": Shown("PGD", units.MILLIMETRES),
+    "significant_s": Shown("D5-95", units.SECONDS),
+}
 MOST_POINTS = 12  #: beside one another in the table of outcomes
 
 
@@ -86,36 +96,16 @@ def _section(
     )
 
 
-class _Component(NamedTuple):
-    """One direction of a motion."""
-
-    name: str
-    peaks: Mapping[str, Any]
-
-    def number(self, key: str, factor: float = 1.0) -> str:
-        """One of its numbers."""
-        return number(self.peaks[key], factor, 3)
-
-
 def _numbers(motions: Sequence[Mapping[str, Any]]) -> html.Table:
     """A row a component: peaks, significant duration, length, step."""
-    peak = "peak_acceleration_m_s2"
-    columns: list[html.Column[_Component]] = [
-        html.Column("motion", lambda one: one.name),
-        html.Column("PGA [m/s²]", lambda one: one.number(peak), html.NUMBER),
-        html.Column("PGA [g]", lambda one: one.number(peak, 1.0 / STANDARD_GRAVITY), html.NUMBER),
-        html.Column("PGV [m/s]", lambda one: one.number("peak_velocity_m_s"), html.NUMBER),
-        html.Column("PGD [mm]", lambda one: millimetres(one.peaks["peak_displacement_m"]), html.NUMBER),
-        html.Column("D5-95 [s]", lambda one: one.number("significant_s"), html.NUMBER),
-        html.Column("length [s]", lambda one: short(one.peaks["duration_s"]), html.NUMBER),
-        html.Column("step [s]", lambda one: short(one.peaks["step_s"]), html.NUMBER),
+    columns: list[html.Column[Mapping[str, Any]]] = [
+        html.Column("motion", lambda one: one["file"] + ("" if "vertical" in one else " (vertical)")),
+        html.Column("PGA [g]", lambda one: number(one[PGA], 1.0 / STANDARD_GRAVITY, 3), html.NUMBER),
+        *html.figure_columns(MEASURES),
+        html.Column("length [s]", lambda one: short(one["duration_s"]), html.NUMBER),
+        html.Column("step [s]", lambda one: short(one["step_s"]), html.NUMBER),
     ]
-    components = [
-        _Component(f"{part['file']}{word}", part)
-        for one in motions
-        for part, word in ((one, ""), (one["vertical"], " (vertical)"))
-        if part
-    ]
+    components = [part for one in motions for part in (one, one["vertical"]) if part]
     return html.table_of(
         "motions", columns, components, caption="The motions, as the base case takes them", file="motions.csv"
     )
@@ -131,7 +121,7 @@ class _Place(NamedTuple):
 def _together(places: Sequence[str], rows: Sequence[Mapping[str, Any]]) -> html.Table:
     def worst(place: _Place) -> str:
         one = place.counts
-        words = _words(one["worst_outcome"], one["worst_rotation_ratio"])
+        words = _words(one["worst_outcome"], one[WORST_TURNED])
         return f"{one['worst_motion']}: {words}" if one["worst_motion"] else ABSENT
 
     def slip(place: _Place) -> str:
@@ -141,7 +131,7 @@ def _together(places: Sequence[str], rows: Sequence[Mapping[str, Any]]) -> html.
     def mean_ratio(place: _Place) -> str:
         one = place.counts
         of = f" (of {one['stood']})" if 0 < one["stood"] < one["motions"] else ""
-        return ratio(one["mean_rotation_ratio"]) + of
+        return ratio(one[MEAN_TURNED]) + of
 
     def interval(place: _Place) -> str:
         return f"{short(place.counts['low'], 100.0, 3)} to {short(place.counts['high'], 100.0, 3)} %"

@@ -10,11 +10,11 @@ from fem.batch.study import read_study
 from fem.case.case import load_case
 from fem.html import sections as html
 from fem.html.page import Signature
-from fem.html.units import ABSENT, millimetres, number, ratio, short
+from fem.html.units import ABSENT, short
 from fem.report import studies
 from fem.report.comparison import asked_rows, limits_section
-from fem.response.answer import found_at, response_answer
-from fem.response.records import PointRow
+from fem.response.answer import branches_in_words, response_answer
+from fem.response.records import POINT_FIGURES, PointRow
 from fem.response.result import ResponseResult
 from fem.results.kinds import RESPONSE
 
@@ -134,38 +134,22 @@ def drive_rows(request: Mapping[str, Any]) -> list[tuple[str, str]]:
 
 def branch_tables(info: ResponseResult) -> list[html.Block]:
     """Coexisting motions, jumps and drop-outs, where there are any."""
-
-    def rows() -> Iterator[list[str]]:
-        for fall in info.drop_outs:
-            how = "a motion that was carried there" if fall.carried else "from its start"
-            yield ["overturns", fall.direction, found_at(fall), how]
-        for pair in info.coexisting:
-            words = f"{' or '.join(pair.up)} going up, {' or '.join(pair.down)} going down"
-            yield ["coexist", "up and down", found_at(pair), words]
-        for jump in info.jumps:
-            before, after = (ratio(one) for one in jump.rotation_ratio)
-            words = f"{jump.what}, rotation ratio {before} to {after}"
-            yield ["jump", jump.direction, found_at(jump), words]
-
-    found = list(rows())
-    return [html.table_of("branches", html.in_order("what", "sweep", "where", "how"), found)] if found else []
+    rows = list(branches_in_words(info))
+    return [html.table_of("branches", html.in_order("what", "sweep", "where", "how"), rows)] if rows else []
 
 
 def points_table(info: ResponseResult) -> html.Table:
     """A row a point, in the order in which they were swept."""
+    *amplitudes, dies_out = html.figure_columns(POINT_FIGURES)
     columns: list[html.Column[PointRow]] = [
         html.Column("sweep", lambda point: point.direction),
         html.Column("frequency [Hz]", lambda point: short(point.frequency_Hz), html.NUMBER),
         html.Column(
             "motion", lambda point: point.words + (", from its start" if point.began == "case" else "")
         ),
-        html.Column("rotation ratio", lambda point: ratio(point.rotation_ratio), html.NUMBER),
-        html.Column("slip stroke [mm]", lambda point: millimetres(point.slip_stroke_m), html.NUMBER),
-        html.Column(
-            "impacts a period", lambda point: number(point.impacts_per_period, figures=3), html.NUMBER
-        ),
+        *amplitudes,
         html.Column("without drive", lambda point: point.undriven or ABSENT),
-        html.Column("dies out in [s]", lambda point: number(point.undriven_s, figures=3), html.NUMBER),
+        dies_out,
         html.Column("stable", lambda point: {None: ABSENT, True: "yes", False: "no"}[point.stable]),
         html.Column("why failed", lambda point: point.reason or "", optional=True),
     ]

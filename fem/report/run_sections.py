@@ -16,7 +16,7 @@ from fem.case.case import Case
 from fem.figures.style import Drawing
 from fem.html import sections as html
 from fem.html.page import svg_element
-from fem.html.units import millimetres, number, quantity, ratio, short, typeset
+from fem.html.units import number, quantity, ratio, short, typeset
 from fem.model.model import Model
 from fem.report.animation import (
     COLOURS,
@@ -30,6 +30,7 @@ from fem.report.comparison import Compared, compared_rows
 from fem.report.static_sheet import SheetLine, static_sheet
 from fem.report.stills import stills
 from fem.report.variations import VariationTable, Varied
+from fem.results.figures import JOINT_SLIP, TURNED, Place, figures_of
 from fem.results.history import History
 from fem.results.kinds import RUN
 from fem.results.outcome import Outcome
@@ -242,23 +243,16 @@ def _varied_table(variations: VariationTable, *, loose: bool) -> html.Table:
 
     def turned(line: Varied) -> str:
         fell = line.run.outcome == Outcome.OVERTURNED
-        return "≥ 1, fell" if fell else ratio(line.run.rotation_ratio)
+        return "≥ 1, fell" if fell else ratio(line.run[TURNED])
 
-    def length(name: str, line: Varied) -> str:
-        return millimetres(getattr(line.run, name))
-
-    lengths = {
-        f"{'slip on floor' if loose else 'largest slip'} [mm]": "max_slip_m",
-        **({"between boxes [mm]": "max_joint_slip_m"} if loose else {}),
-        "slip left [mm]": "residual_slip_m",
-        "uplift [mm]": "max_uplift_m",
-    }
+    _, *lengths = figures_of(Place.RUNS).items()
+    between = {"max_joint_slip_m": JOINT_SLIP} if loose else {}
     columns: list[html.Column[Varied]] = [
         html.Column("changed", lambda line: line.change.in_words[0]),
         html.Column("to", lambda line: typeset(line.change.in_words[1])),
         html.Column("outcome", outcome),
         html.Column("rotation ratio", turned, html.NUMBER),
-        *(html.Column(head, partial(length, name), html.NUMBER) for head, name in lengths.items()),
+        *html.figure_columns(dict(lengths) | between, value=lambda line, key: getattr(line.run, key)),
     ]
     first = variations.lines[0]
     return html.table_of(

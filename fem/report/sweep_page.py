@@ -30,21 +30,16 @@ from fem.report.animation import colour_scale, packed
 from fem.report.comparison import asked_rows, limits_section
 from fem.report.motion_part import motions_of_sweep
 from fem.results.errors import FolderError
-from fem.results.figures import FIGURES, Place, keys_of
+from fem.results.figures import Place, Shown, figures_of
 from fem.runtime import units
 from fem.sweep.answers import AnswerRow, SweepAnswer, sweep_answer
 from fem.sweep.maps import SHARE_COLOURS, shares_of
 from fem.sweep.perturbation import input_in_words
 from fem.sweep.result import SweepResult
-from fem.sweep.table import SweepTable, open_sweep
+from fem.sweep.table import RATIOS, SweepTable, open_sweep
 
-#: what can be shown: column, words for it, its unit
-QUANTITIES = (
-    *((key, FIGURES[key].map_words or FIGURES[key].words, FIGURES[key].unit) for key in keys_of(Place.MAP)),
-    ("band_rotation_ratio_low", "rotation ratio, perturbed, least", units.RATIO),
-    ("band_rotation_ratio_high", "rotation ratio, perturbed, most", units.RATIO),
-    ("wall_s", "computing time", units.SECONDS),
-)
+#: what can be shown, by column
+QUANTITIES = figures_of(Place.MAP) | RATIOS | {"wall_s": Shown("computing time", units.SECONDS)}
 #: shown by a colour for every word; the last in folders of before
 FLAGS = (("overturned_share", "variations that do not stand"), ("sure", "how sure"), ("unsure", "unsure"))
 SURENESS = {SURE: "#e3e8ee", REGIME_UNSURE: "#f2c879", UNSURE: "#c2410c", "not tried": "#ffffff"}
@@ -167,7 +162,12 @@ def cell_map(table: SweepTable, data: Mapping[str, Any]) -> html.CellMap:
     """The map, first over the one or two longest axes."""
     labels, known = [axis_label(axis) for axis in table.axes], {column["name"] for column in data["columns"]}
     longest = sorted(sorted(range(len(labels)), key=lambda k: -len(table.axes[k].values))[:2])
-    shown = (FLAGS[0], ("outcome", "outcome"), *FLAGS[1:], *((name, label) for name, label, *_ in QUANTITIES))
+    shown = (
+        FLAGS[0],
+        ("outcome", "outcome"),
+        *FLAGS[1:],
+        *((name, one.on_map) for name, one in QUANTITIES.items()),
+    )
     return html.CellMap(
         [html.Choice(name, label) for name, label in shown if name in known],
         *([html.Choice(k, label, k == first) for k, label in enumerate(labels)] for first in longest),
@@ -267,10 +267,10 @@ def map_data(table: SweepTable, folder: Path) -> dict[str, Any]:
     if _has(table, "unsure"):
         columns += _sureness(table)
     room = MOST_BYTES - sum(len(one["values"]) for one in columns)
-    for k, (name, label, unit) in enumerate(QUANTITIES):
+    for k, (name, shown) in enumerate(QUANTITIES.items()):
         if k >= 1 and not _has(table, name):
             continue
-        column = _column(table, name, label, unit)
+        column = _column(table, name, shown)
         room -= len(column["values"])
         if room < 0 and k < NEEDED:
             raise FolderError(
@@ -356,9 +356,10 @@ def _has(table: SweepTable, name: str) -> bool:
     return name in table.columns and bool(np.isfinite(table[name].astype(float)).any())
 
 
-def _column(table: SweepTable, name: str, label: str, unit: units.DisplayUnit) -> dict[str, Any]:
+def _column(table: SweepTable, name: str, shown: Shown) -> dict[str, Any]:
     values: NDArray[Any] = table.columns.get(name, np.full(len(table["cell"]), np.nan)).astype("<f4")
-    column = {"name": name, "label": label, "unit": typeset(unit.name), "factor": unit.factor}
+    unit = shown.unit
+    column = {"name": name, "label": shown.on_map, "unit": typeset(unit.name), "factor": unit.factor}
     return column | {"values": packed(values, "<f4")}
 
 

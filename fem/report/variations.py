@@ -17,6 +17,7 @@ from fem.case.strength import scaled_motion
 from fem.case.uncertainty import InputChange, changes_of, largest_first
 from fem.html.units import degrees, quantity
 from fem.model.model import build_model
+from fem.results.figures import TURNED
 from fem.results.files import write_atomically
 from fem.results.outcome import ENDINGS, Outcome
 from fem.results.reader import OpenedRun
@@ -104,7 +105,7 @@ class VariationTable:
         if invalid:
             words.append(f"It destroys a corner in {invalid}.")
         runs = [line.run for line in self.lines if line.run.outcome not in ENDINGS]
-        ratios = [run.rotation_ratio for run in runs if run.rotation_ratio is not None]
+        ratios = [run[TURNED] for run in runs if run[TURNED] is not None]
         if ratios:
             low, high = RATIO.text(min(ratios)), RATIO.text(max(ratios))
             reach = f"ranges from {low} to {high}" if low != high else f"is {low}"

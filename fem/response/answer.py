@@ -1,14 +1,16 @@
 """The answer of a response curve in one sentence: overturning, largest rotation, coexisting motions."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from fem.batch.answers import slip_in_words
 from fem.response.branches import Coexistence, DropOut, Jump
 from fem.response.records import PointRow
 from fem.response.result import ResponseResult
+from fem.results.figures import TURNED
 from fem.results.outcome import Outcome
-from fem.runtime.units import MILLIMETRES
+from fem.runtime.units import MILLIMETRES, RATIO
 
 MOST_RANGES = 3  #: of frequencies that are named
 
@@ -67,8 +69,8 @@ def response_answer(result: ResponseResult) -> str | None:
             parts.append(f"slid beyond {limit} at {_counted(fates.slid)} (slip there {there})")
         parts += [f"stood at the other {len(fates.standing)} points"] if fates.standing else []
     if fates.standing:
-        most = max(fates.standing, key=lambda point: point.rotation_ratio or 0.0)
-        turned = f"{most.rotation_ratio:.2g} of the slenderness angle, at {most.frequency_Hz:.4g} Hz"
+        most = max(fates.standing, key=lambda point: point.turned)
+        turned = f"{most.turned:.2g} of the slenderness angle, at {most.frequency_Hz:.4g} Hz"
         resting = all(point.long_time == "rest" for point in fates.standing)
         parts.append("at rest there" if resting else f"largest rotation {turned} going {most.direction}")
         slid = max(fates.standing, key=lambda point: point.slip_stroke_m or 0.0)
@@ -87,6 +89,21 @@ def response_answer(result: ResponseResult) -> str | None:
 def _counted(points: list[PointRow]) -> str:
     count = f"{len(points)} point{'s' * (len(points) != 1)}"
     return f"{count}, the first at {points[0].frequency_Hz:.4g} Hz going {points[0].direction}"
+
+
+def branches_in_words(result: ResponseResult) -> Iterator[tuple[str, str, str, str]]:
+    """Where the curve changes: what happens there, on which sweep, at which frequencies, and how."""
+    for fall in result.drop_outs:
+        how = "a motion that was carried there" if fall.carried else "from its start"
+        yield "overturns", fall.direction, found_at(fall), how
+    for pair in result.coexisting:
+        words = f"{' or '.join(pair.up)} going up, {' or '.join(pair.down)} going down"
+        if pair.largest_difference is not None:
+            words += f", rotation ratios up to {RATIO.text(pair.largest_difference)} apart"
+        yield "coexist", "up and down", found_at(pair), words
+    for jump in result.jumps:
+        before, after = map(RATIO.text, jump[TURNED])
+        yield "jump", jump.direction, found_at(jump), f"{jump.what}, rotation ratio {before} to {after}"
 
 
 def found_at(found: Coexistence | Jump | DropOut) -> str:

@@ -7,6 +7,7 @@ from itertools import groupby, pairwise
 import numpy as np
 
 from fem.response.records import PointRecord
+from fem.results.figures import TURNED
 from fem.results.json_block import JsonBlock
 
 APART = 0.02  #: difference of rotation ratios that counts at least
@@ -67,10 +68,8 @@ def differ(one: PointRecord, other: PointRecord) -> bool:
         return one.stands != other.stands
     if (one.row.long_time == "rest") != (other.row.long_time == "rest"):
         return True
-    spread = max(
-        record.number("rotation_ratio") - record.number("median_rotation_ratio") for record in (one, other)
-    )
-    if _apart(one, other, "rotation_ratio") > max(APART, spread):
+    spread = max(record.row.turned - record.number("median_rotation_ratio") for record in (one, other))
+    if _apart(one, other, TURNED) > max(APART, spread):
         return True
     strokes = [record.extremes[:, 4] for record in (one, other)]
     spread = max(float(stroke.max() - np.median(stroke)) for stroke in strokes)
@@ -87,7 +86,7 @@ def jumps(records: Sequence[PointRecord]) -> list[Jump]:
             for before, after in pairwise(swept)
             if before.stands and after.stands and after.row.began == "carried"
         ]
-        changes = [_apart(before, after, "rotation_ratio") for before, after in carried]
+        changes = [_apart(before, after, TURNED) for before, after in carried]
         for k, ((before, after), change) in enumerate(zip(carried, changes, strict=True)):
             kinds = before.row.words, after.row.words
             beside = max([*changes[max(k - 1, 0) : k], *changes[k + 1 : k + 2]], default=0.0)
@@ -99,7 +98,7 @@ def jumps(records: Sequence[PointRecord]) -> list[Jump]:
                     from_Hz=before.row.frequency_Hz,
                     to_Hz=after.row.frequency_Hz,
                     what=f"{kinds[0]} to {kinds[1]}" if kinds[0] != kinds[1] else "in size",
-                    rotation_ratio=(before.number("rotation_ratio"), after.number("rotation_ratio")),
+                    rotation_ratio=(before.row.turned, after.row.turned),
                 )
             )
     return jumped
@@ -126,7 +125,7 @@ def drop_outs(records: Sequence[PointRecord]) -> list[DropOut]:
 
 
 def _coexistence(pairs: Sequence[tuple[PointRecord, PointRecord]]) -> Coexistence:
-    apart = [_apart(one, other, "rotation_ratio") for one, other in pairs if one.stands and other.stands]
+    apart = [_apart(one, other, TURNED) for one, other in pairs if one.stands and other.stands]
     return Coexistence(
         from_Hz=pairs[0][0].row.frequency_Hz,
         to_Hz=pairs[-1][0].row.frequency_Hz,

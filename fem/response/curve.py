@@ -46,11 +46,6 @@ class CurvePoint:
         return relative_rotation(self.orbit.extremes[:, 0], self.slenderness_angle)
 
     @property
-    def rotation_ratio(self) -> float | None:
-        """Largest |rotation| in the window over the slenderness angle; None where it overturned or failed."""
-        return float(self.amplitudes.max()) if self.long_time is not None else None
-
-    @property
     def growth(self) -> float | None:
         """Of the amplitudes within the window [-]."""
         return amplitude_growth(self.amplitudes) if self.long_time is not None else None

@@ -136,7 +136,7 @@ def choose_portraits(records: Sequence[PointRecord]) -> list[PointRecord]:
     """A few motions: one of each kind there is, the largest first, then those in between."""
     standing = [record for record in records if record.stands and record.row.long_time != "rest"]
     standing = standing or [record for record in records if record.stands]
-    by_size = sorted(standing, key=lambda record: -record.number("rotation_ratio"))
+    by_size = sorted(standing, key=lambda record: -record.row.turned)
     kinds: dict[str, PointRecord] = {}
     for record in by_size:
         kinds.setdefault(record.row.words, record)

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import astuple, dataclass, fields
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -11,7 +11,9 @@ from fem.batch.table import table_text
 from fem.response.curve import PORTRAYED, CurvePoint
 from fem.response.model import SAMPLES_PER_PERIOD
 from fem.response.orbit import EXTREME_COLUMNS, SECTION_COLUMNS
+from fem.results.figures import FIGURES, TURNED, Shown, shown_in
 from fem.results.json_block import JsonBlock
+from fem.runtime import units
 from fem.runtime.arrays import FloatArray
 
 PORTRAIT_COLUMNS = ("rotation_rad", "angular_velocity_rad_s")
@@ -38,20 +40,25 @@ class PointRow(JsonBlock):
     settling: float | None = None
     pairs_compared: int | None = None
     periods: int
-    rotation_ratio: float | None = None
+    rotation_ratio: Annotated[float | None, FIGURES[TURNED]] = None
     median_rotation_ratio: float | None = None
     max_rotation_rad: float | None = None
     least_rotation_rad: float | None = None
     most_rotation_rad: float | None = None
-    slip_stroke_m: float | None = None
+    slip_stroke_m: Annotated[float | None, Shown("slip stroke", units.MILLIMETRES)] = None
     slip_walk_m: float | None = None
-    impacts_per_period: float | None = None
+    impacts_per_period: Annotated[float | None, Shown("impacts a period", units.COUNT)] = None
     growth: float | None = None
     bounded: bool | None = None
     undriven: str | None = None
-    undriven_s: float | None = None
+    undriven_s: Annotated[float | None, Shown("dies out in", units.SECONDS)] = None
     stable: bool | None = None
     reason: str | None = None
+
+    @property
+    def turned(self) -> float:
+        """Largest |rotation| over the slenderness angle; 0 where none is known."""
+        return self.rotation_ratio or 0.0
 
     @property
     def words(self) -> str:
@@ -61,6 +68,9 @@ class PointRow(JsonBlock):
         if self.long_time in (None, "rest"):
             return self.long_time or self.status
         return f"{self.motion}, {self.long_time}"
+
+
+POINT_FIGURES = shown_in(PointRow)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -95,7 +105,7 @@ def record_of(point: CurvePoint) -> PointRecord:
             "scatter": long_time.scatter,
             "settling": long_time.settling,
             "pairs_compared": long_time.compared,
-            "rotation_ratio": point.rotation_ratio,
+            TURNED: float(point.amplitudes.max()),
             "median_rotation_ratio": float(np.median(point.amplitudes)),
             "max_rotation_rad": float(extremes[:, 0].max()),
             "least_rotation_rad": float(extremes[:, 1].min()),

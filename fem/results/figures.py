@@ -34,6 +34,7 @@ class Place(Flag):
 
 
 KEY, RUNS, COLUMN, BAND, SUMMARY, MAP, BRIEF = Place
+NOWHERE = Place(0)  #: what is no figure of a run
 TABLES, READ = RUNS | COLUMN | BAND, SUMMARY | MAP
 
 
@@ -43,7 +44,7 @@ class Shown:
 
     words: str
     unit: units.DisplayUnit
-    places: Place
+    places: Place = NOWHERE
     of: str = ""  #: what the stepper records of it: a field of the (lowest) "joint" or of the "track"
     _: KW_ONLY
     head: str = ""  #: over a narrow column; empty: the words
@@ -55,6 +56,11 @@ class Shown:
     window: str = ""  #: key of `Numerics`: the time over which it is a mean
     cutoff: str = ""  #: key of `Numerics`: that of the filter in place of a mean
     column: str = ""  #: of a box: with the numbers of all boxes
+
+    @property
+    def on_map(self) -> str:
+        """The words for it on a map."""
+        return self.map_words or self.words
 
     def text(self, value: float | None, reach: units.Reach | None = None, *, bare: bool = False) -> str:
         """The figure with its range and unit; empty where there is none."""
@@ -202,7 +208,9 @@ class Figures(JsonBlock, Generic[ValueT]):
 
 
 JOINT_SLIP = Shown(
-    "largest slip between boxes", JOINT_MM, COLUMN | MAP, map_words="largest slip between loose boxes"
+    *("largest slip between boxes", JOINT_MM, COLUMN | MAP),
+    head="between boxes",
+    map_words="largest slip between loose boxes",
 )
 JOINT_OPENING = Shown(
     "largest opening between boxes", MM, COLUMN | MAP, map_words="largest opening between loose boxes"
@@ -297,6 +305,11 @@ def columns_of(place: Place) -> dict[str, type]:
     """The figures of a place as columns of a table."""
     types = types_of(RunFigures)
     return {key: types[key] for key in keys_of(place)}
+
+
+def figures_of(place: Place) -> dict[str, Shown]:
+    """The figures of a place, by key."""
+    return {key: FIGURES[key] for key in keys_of(place)}
 
 
 def keys_beside(place: Place) -> frozenset[str]:

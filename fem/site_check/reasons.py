@@ -7,8 +7,8 @@ from typing import NamedTuple
 from fem.results.figures import SLIPPED, TURNED
 from fem.results.outcome import Outcome
 from fem.runtime.intervals import binomial_interval, least_draws
-from fem.runtime.units import RATIO, SHORT_MILLIMETRES, DisplayUnit, plain_number
-from fem.site_check.result import ConfirmedRun, FurtherMotions, RuleRange, SiteRun
+from fem.runtime.units import SHORT_MILLIMETRES, DisplayUnit, plain_number
+from fem.site_check.result import BY_RULE, ConfirmedRun, FurtherMotions, RuleRange, SiteRun
 from fem.site_check.rule import FIGURE_OF, MEAN_FROM, RuleFound, RunGroup
 from fem.site_check.tables import LimitsTable
 
@@ -218,4 +218,4 @@ def places_of(key: str, limit: float, values: Sequence[float]) -> int:
 
 def unit_of(key: str) -> DisplayUnit:
     """The unit in which people read a figure of the rule."""
-    return SHORT_MILLIMETRES if key == "slip_m" else RATIO
+    return BY_RULE[FIGURE_OF.get(key, key)].unit

@@ -5,10 +5,12 @@ Every field has the name of its key in the file, with its SI unit. Accelerations
 # ruff: noqa: N815 - a field is named as its key in the file, unit and all
 
 from dataclasses import dataclass
+from typing import Annotated
 
 from fem.batch.study import StudyResult
-from fem.results.figures import SLIPPED, TURNED, Place, RunFigures, keys_beside
+from fem.results.figures import SLIPPED, TURNED, Place, RunFigures, Shown, keys_beside, shown_in
 from fem.results.json_block import JsonBlock
+from fem.runtime import units
 
 RESULT_FILE = "assess.json"
 USUAL_BEHAVIOUR_FACTOR = 1.5
@@ -72,13 +74,13 @@ class SiteMotion(JsonBlock):
     number: int  #: from 1
     origin: str  #: "seed 1", or the names of the record's files
     scale: float = 1.0  #: on the record, or of the whole set
-    pga_m_s2: float
-    pgv_m_s: float
-    pgd_m: float
-    d5_95_s: float
-    vertical_pga_m_s2: float | None = None
-    end_velocity_m_s: float
-    end_displacement_m: float
+    pga_m_s2: Annotated[float, Shown("PGA", units.ACCELERATION)]
+    pgv_m_s: Annotated[float, Shown("PGV", units.VELOCITY)]
+    pgd_m: Annotated[float, Shown("PGD", units.MILLIMETRES)]
+    d5_95_s: Annotated[float, Shown("D5-95", units.SECONDS)]
+    vertical_pga_m_s2: Annotated[float | None, Shown("vertical PGA", units.ACCELERATION)] = None
+    end_velocity_m_s: Annotated[float, Shown("end velocity", units.VELOCITY)]
+    end_displacement_m: Annotated[float, Shown("end displacement", units.MILLIMETRES)]
     spectrum_m_s2: tuple[float, ...]  #: at the periods of the action
     vertical_spectrum_m_s2: tuple[float, ...] = ()
     files: tuple[str, ...]  #: in the folder of results
@@ -149,12 +151,16 @@ class SiteRun(RunFigures):
 class ByRule(JsonBlock):
     """What counts by the rule; None where a run overturned or failed."""
 
-    rotation_ratio: float | None = None  #: of seven and more motions the mean, of fewer the largest
-    rotation_ratio_largest: float | None = None  #: of a single motion
-    slip_m: float | None = None  #: of a single motion, the largest: a clearance is used up once
-    slip_mean_m: float | None = None
+    #: of seven and more motions the mean, of fewer the largest
+    rotation_ratio: Annotated[float | None, Shown("rotation ratio, by the rule", units.RATIO)] = None
+    #: of a single motion
+    rotation_ratio_largest: Annotated[float | None, Shown("largest of one motion", units.RATIO)] = None
+    #: of a single motion, the largest: a clearance is used up once
+    slip_m: Annotated[float | None, Shown("slip, largest", units.SHORT_MILLIMETRES)] = None
+    slip_mean_m: Annotated[float | None, Shown("mean", units.SHORT_MILLIMETRES)] = None
 
 
+BY_RULE = shown_in(ByRule)
 #: the figure of a run that each of these is on
 LIMITED = {"rotation_ratio": TURNED, "slip_m": SLIPPED}
 

@@ -13,7 +13,7 @@ from fem.html import sections as html
 from fem.html.page import Page, Signature, html_of
 from fem.html.units import ABSENT, millimetres, number, quantity, ratio, short, typeset
 from fem.results.errors import FolderError
-from fem.results.figures import FIGURES
+from fem.results.figures import FIGURES, TURNED
 from fem.results.kinds import SITE
 from fem.results.outcome import Outcome
 from fem.runtime.arrays import FloatArray
@@ -31,6 +31,7 @@ from fem.site_check.result import (
     MotionSet,
     RuleRange,
     SetCheck,
+    SiteAnswer,
     SiteBody,
     SiteDocument,
     SiteMotion,
@@ -260,7 +261,6 @@ def _headlines(result: SiteResult) -> list[html.Headline]:
         moves = f"a rigid body moves from {short(answer.factor_at_first_movement, figures=3)} on"
     else:
         moves = far
-    largest, mean = answer.rotation_ratio_largest, answer.slip_mean_m
     both = answer.two_directions
     across = f"; in two directions {millimetres(both.slip_largest_m)}" if both else ""
 
@@ -274,27 +274,26 @@ def _headlines(result: SiteResult) -> list[html.Headline]:
         html.Headline("overturned", f"{answer.overturned} of {answer.runs} runs{destroyed(answer.invalid)}"),
         html.Headline(
             "rotation, by the rule",
-            _with_range("rotation_ratio", answer.rotation_ratio, span.rotation_ratio),
+            _with_range(TURNED, answer, span),
             f"limit {short(inputs.rotation_ratio_limit)}; a single motion "
-            f"{_with_range('rotation_ratio', largest, span.rotation_ratio_largest)}, limit "
-            f"{short(inputs.single_rotation_ratio_limit)}",
+            f"{_with_range('rotation_ratio_largest', answer, span)}, limit {short(inputs.single_rotation_ratio_limit)}",
         ),
         html.Headline(
             "slip, largest",
-            f"{_with_range('slip_m', answer.slip_m, span.slip_m)} mm",
-            f"limit {quantity(inputs.slip_limit_m, 'mm', 1000, 3)}; mean {millimetres(mean)}{across}",
+            f"{_with_range('slip_m', answer, span)} mm",
+            f"limit {quantity(inputs.slip_limit_m, 'mm', 1000, 3)}; mean {millimetres(answer.slip_mean_m)}{across}",
         ),
         html.Headline("the rule first fails at", at(answer.margin_factor), far),
         html.Headline("first overturned at", at(answer.factor_at_first_overturning), moves),
     ]
 
 
-def _with_range(key: str, value: float | None, span: Sequence[float]) -> str:
+def _with_range(key: str, answer: SiteAnswer, span: RuleRange) -> str:
     """A figure of the rule, with the range that it has over the repetitions."""
-    if value is None:
+    if answer[key] is None:
         return ABSENT
-    shown = unit_of(key).text(value, figures=2, bare=True)
-    ends = span_in_words(key, span[0], span[-1]) if span else ""
+    shown = unit_of(key).text(answer[key], figures=2, bare=True)
+    ends = span_in_words(key, span[key][0], span[key][-1]) if span[key] else ""
     return typeset(f"{shown} ({ends})" if " to " in ends else shown)
 
 

@@ -11,13 +11,15 @@ from fem.html import sections as html
 from fem.html.formula import formula_markup
 from fem.html.page import svg_element
 from fem.html.units import ABSENT, figure_head, number, quantity, short, typeset
-from fem.results.figures import FIGURES, SLIPPED, TURNED, Place, keys_of
+from fem.results.figures import FIGURES, SLIPPED, TURNED, Place, Shown, figures_of, keys_of, shown_in
 from fem.results.outcome import ENDINGS, Outcome
 from fem.seismic.hazard import ACCELERATION
 from fem.site_check.figures import draw_floor, draw_methods, draw_scan
 from fem.site_check.reasons import destroyed
 from fem.site_check.result import (
+    BY_RULE,
     AnnualRates,
+    ByRule,
     ConfirmedRun,
     HazardLevel,
     SiteMethod,
@@ -137,10 +139,7 @@ class _GroupRow(NamedTuple):
     group: RunGroup
     elevation: str
     overturned: str
-    rotation: str
-    largest: str
-    slip: str
-    mean: str
+    by_rule: ByRule
     look: str = ""
 
 
@@ -154,10 +153,7 @@ def _groups_table(
             group,
             group.first.elevation,
             f"{group.overturned} of {len(group.runs)}{destroyed(group.invalid)}{failed}",
-            two_figures(TURNED, group.by_rule.rotation_ratio),
-            two_figures(TURNED, group.by_rule.rotation_ratio_largest),
-            two_figures(SLIPPED, group.by_rule.slip_m),
-            two_figures(SLIPPED, group.by_rule.slip_mean_m),
+            group.by_rule,
             "failed" if group.overturned or group.invalid or group.failed else look,
         )
 
@@ -170,14 +166,11 @@ def _groups_table(
         *([period] if view.result.floor else []),
         html.Column("friction, static / kinetic", lambda row: friction(row.group.first), html.NUMBER),
         html.Column("overturned", lambda row: row.overturned, html.NUMBER),
-        html.Column("rotation ratio, by the rule", lambda row: row.rotation, html.NUMBER),
-        html.Column("largest of one motion", lambda row: row.largest, html.NUMBER),
-        html.Column("slip, largest [mm]", lambda row: row.slip, html.NUMBER),
-        html.Column("mean", lambda row: row.mean, html.NUMBER),
+        *html.figure_columns(BY_RULE, text=two_figures, value=lambda row, key: row.by_rule[key]),
     ]
     rows = [row_of(group) for group in groups]
     rows += [
-        _GroupRow(group, "both, 100 % + 30 %", ABSENT, ABSENT, ABSENT, two_figures(SLIPPED, slip), ABSENT)
+        _GroupRow(group, "both, 100 % + 30 %", ABSENT, ByRule(slip_m=slip))
         for group, slip in both
         if not group.rests
     ]
@@ -194,7 +187,7 @@ def _run_columns(
 
     def found(key: str, run: SiteRun) -> str:
         fell = key == TURNED and run.outcome == Outcome.OVERTURNED
-        return "fell" if fell else two_figures(key, run[key])
+        return "fell" if fell else two_figures(FIGURES[key], run[key])
 
     return [
         html.Column(head, partial(of, lambda run: run.outcome or "failed")),
@@ -223,19 +216,13 @@ def _governing_table(group: RunGroup) -> html.Table:
 
 
 def _confirmed_table(confirmed: Sequence[ConfirmedRun]) -> html.Table:
-    def found(key: str, one: ConfirmedRun) -> str:
-        return two_figures(key, one[key])
-
     columns: list[html.Column[ConfirmedRun]] = [
         html.Column("motion", lambda one: str(one.run.motion), html.NUMBER),
         html.Column("weight", lambda one: one.run.mass),
         html.Column("friction", lambda one: friction(one.run), html.NUMBER),
         html.Column("model", lambda one: one.model),
         html.Column("outcome", lambda one: one.outcome or "failed"),
-        *(
-            html.Column(figure_head(FIGURES[key]), partial(found, key), html.NUMBER)
-            for key in keys_of(Place.KEY)
-        ),
+        *html.figure_columns(figures_of(Place.KEY), text=two_figures),
         html.Column("how sure", lambda one: one.sure or ABSENT),
         html.Column("outcomes over unknown inputs", lambda one: ", ".join(one.outcomes) or ABSENT),
     ]
@@ -350,15 +337,7 @@ def motions_section(motions: Sequence[DrawnMotion]) -> html.PageSection:
         html.Column("motion", lambda one: str(one.number), html.NUMBER),
         html.Column("origin", lambda one: Markup.escape(one.origin)),
         html.Column("scale", lambda one: short(one.scale), html.NUMBER),
-        html.Column("PGA [m/s²]", lambda one: number(one.pga_m_s2, figures=3), html.NUMBER),
-        html.Column("vertical", lambda one: number(one.vertical_pga_m_s2, figures=3), html.NUMBER),
-        html.Column("PGV [m/s]", lambda one: number(one.pgv_m_s, figures=3), html.NUMBER),
-        html.Column("PGD [m]", lambda one: number(one.pgd_m, figures=3), html.NUMBER),
-        html.Column("D5-95 [s]", lambda one: number(one.d5_95_s, figures=3), html.NUMBER),
-        html.Column("end velocity [m/s]", lambda one: number(one.end_velocity_m_s, figures=2), html.NUMBER),
-        html.Column(
-            "end displacement [m]", lambda one: number(one.end_displacement_m, figures=2), html.NUMBER
-        ),
+        *html.figure_columns(shown_in(SiteMotion)),
     ]
     curves = [
         figure(svg, f"motion-{motion.number}", f"motion {motion.number}") for motion, svg in motions if svg
@@ -490,9 +469,9 @@ def pairs_of(group: RunGroup) -> list[RunPair]:
     ]
 
 
-def two_figures(key: str, value: float | None) -> str:
-    """A figure of a run as far as it is known."""
-    return ABSENT if value is None else typeset(FIGURES[key].unit.text(value, figures=2, bare=True))
+def two_figures(shown: Shown, value: float | None) -> str:
+    """A figure as far as it is known."""
+    return ABSENT if value is None else typeset(shown.unit.text(value, figures=2, bare=True))
 
 
 def friction(run: SiteRun) -> str:

@@ -22,10 +22,11 @@ from fem.batch.labels import axis_label, axis_name
 from fem.figures import style
 from fem.figures.heat_map import Look, MapAxis, Panel, draw_heat_map, value_label
 from fem.html.units import rounded
+from fem.results.figures import TURNED
 from fem.results.files import write_atomically
 from fem.results.outcome import ENDINGS, Outcome
 from fem.sweep.plan import MapChoice
-from fem.sweep.table import SweepTable
+from fem.sweep.table import RATIOS, SweepTable
 
 OUTCOME_COLOURS = {**style.STATE_COLOURS, "failed": style.VERMILLION, "": style.WHITE}
 #: shares of a cell and its copies that overturn, up to so much each; their brightness falls, so that the order is seen
@@ -103,7 +104,7 @@ def sweep_map(table: SweepTable, kind: str, choice: MapChoice) -> Figure:
         return _map(
             table,
             choice,
-            np.where(fallen, np.nan, table["rotation_ratio"]),
+            np.where(fallen, np.nan, table[TURNED]),
             title="Largest rotation over slenderness angle, where it stands",
             colours=matplotlib.colormaps["viridis"],
             norm=Normalize(0.0, 1.0),
@@ -128,9 +129,9 @@ def rotation_curve(table: SweepTable) -> Figure:
     axis = max(table.axes, key=lambda one: len(one.values))
     numeric = all(not isinstance(value, bool | str) for value in axis.values)
     places = np.array(axis.values, dtype=float) if numeric else np.arange(len(axis.values), dtype=float)
-    ratio = np.where(table.outcome == Outcome.OVERTURNED, 1.0, table["rotation_ratio"])
+    ratio = np.where(table.outcome == Outcome.OVERTURNED, 1.0, table[TURNED])
     unsure = table.columns.get("unsure")
-    low, high = table.columns.get("band_rotation_ratio_low"), table.columns.get("band_rotation_ratio_high")
+    low, high = map(table.columns.get, RATIOS)
     with style.house_style():
         figure = Figure(figsize=(style.WIDTH, 3.4), layout="constrained")
         axes = figure.add_subplot()

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from fem.batch.axes import MOTION_FILE, Axis, point_of, shape_of
+from fem.results.figures import SLIPPED, TURNED
 from fem.results.outcome import COUNTED, NOT_STANDING, Ending
 from fem.runtime.arrays import IntArray
 from fem.runtime.intervals import estimate
@@ -22,11 +23,12 @@ from fem.sweep.cells import RunShown
 CONFIDENCE = 0.95
 #: keys whose values of one magnitude are the signs of a motion
 SIGNS = ("motion.scale", "vertical.scale")
+WORST_TURNED, MEAN_TURNED = f"worst_{TURNED}", f"mean_{TURNED}"
 #: columns of `motion_set.csv` behind those of the other axes
 SET_COLUMNS = (
     *("motions", *COUNTED, "overturned_share", "low", "high"),
-    *("worst_motion", "worst_outcome", "worst_rotation_ratio", "worst_slip_motion", "worst_slip_m"),
-    *("mean_rotation_ratio", "mean_slip_m"),
+    *("worst_motion", "worst_outcome", WORST_TURNED, "worst_slip_motion", "worst_slip_m"),
+    *(MEAN_TURNED, "mean_slip_m"),
 )
 
 
@@ -82,20 +84,17 @@ def set_row(outcomes: Sequence[MotionOutcome]) -> dict[str, Any]:
     slipped = max(computed, key=lambda one: one.slipped, default=None)
     return {
         "motions": len(outcomes),
-        "stood": len(standing),
-        "overturned": int((kinds == Ending.OVERTURNED).sum()),
-        "invalid": int((kinds == Ending.INVALID).sum()),
-        "failed": int((kinds == Ending.FAILED).sum()),
+        **{word: int((kinds == ending).sum()) for word, ending in COUNTED.items()},
         "overturned_share": share.value,
         "low": share.low,
         "high": share.high,
         "worst_motion": worst and worst.motion,
         "worst_outcome": worst and worst.outcome,
-        "worst_rotation_ratio": worst and worst.rotation_ratio,
+        WORST_TURNED: worst and worst[TURNED],
         "worst_slip_motion": slipped and slipped.motion,
-        "worst_slip_m": slipped and slipped.max_slip_m,
-        "mean_rotation_ratio": _mean([one.rotation_ratio for one in standing]),
-        "mean_slip_m": _mean([one.max_slip_m for one in standing]),
+        "worst_slip_m": slipped and slipped[SLIPPED],
+        MEAN_TURNED: _mean([one[TURNED] for one in standing]),
+        "mean_slip_m": _mean([one[SLIPPED] for one in standing]),
     }
 
 
@@ -112,16 +111,16 @@ def set_in_words(row: Mapping[str, Any]) -> str:
     parts = [", ".join([begin, *(f"{number} {word}" for word, number in others.items() if number)])]
     if overturned:
         parts.append(f"worst {row['worst_motion']}")
-    elif row["worst_rotation_ratio"] is not None:
-        ratio = RATIO.text(row["worst_rotation_ratio"])
+    elif row[WORST_TURNED] is not None:
+        ratio = RATIO.text(row[WORST_TURNED])
         parts.append(f"worst {row['worst_motion']}, {row['worst_outcome']}, rotation ratio {ratio}")
     if (row["worst_slip_m"] or 0.0) >= SHORT_MILLIMETRES.least:
         parts.append(
             f"largest slip {SHORT_MILLIMETRES.text(row['worst_slip_m'])}, {row['worst_slip_motion']}"
         )
-    if row["mean_rotation_ratio"] is not None:
+    if row[MEAN_TURNED] is not None:
         of = f"mean of {row['stood']}" + (f" that stood, {overturned} overturned" if overturned else "")
-        ratio = RATIO.text(row["mean_rotation_ratio"])
+        ratio = RATIO.text(row[MEAN_TURNED])
         parts.append(f"{of}: rotation ratio {ratio}, slip {SHORT_MILLIMETRES.text(row['mean_slip_m'])}")
     return "; ".join(parts)
 
@@ -133,16 +132,16 @@ def by_motion(points: Sequence[Sequence[MotionOutcome]]) -> dict[str, dict[str, 
         standing = [one for one in outcomes if one.kind == Ending.STANDING]
         counts = {word: sum(one.kind == kind for one in outcomes) for word, kind in COUNTED.items()}
         rows[outcomes[0].motion] = counts | {
-            "max_rotation_ratio": max((one.turned for one in standing), default=None),
-            "max_slip_m": max((one.slipped for one in standing), default=None),
+            f"max_{TURNED}": max((one.turned for one in standing), default=None),
+            SLIPPED: max((one.slipped for one in standing), default=None),
         }
     return rows
 
 
 def _worst(motion: str, signs: Sequence[RunShown]) -> MotionOutcome:
     """The outcome of a motion, with the worse of its signs; a failed run hides no fall and never counts as standing."""
-    slip = max((one.max_slip_m for one in signs if one.max_slip_m is not None), default=None)
-    return MotionOutcome(**vars(max(signs, key=severity)) | {"motion": motion, "max_slip_m": slip})
+    slip = max((one[SLIPPED] for one in signs if one[SLIPPED] is not None), default=None)
+    return MotionOutcome(**vars(max(signs, key=severity)) | {"motion": motion, SLIPPED: slip})
 
 
 def _mean(values: Sequence[float | None]) -> float | None:

@@ -16,14 +16,18 @@ from numpy.typing import NDArray
 from fem.batch.axes import Axis, shape_of
 from fem.batch.table import Columns, fields_of, read_lines
 from fem.results.errors import FolderError
-from fem.results.figures import RUN_COLUMNS, TURNED
+from fem.results.figures import RUN_COLUMNS, TURNED, Shown
 from fem.results.kinds import SWEEP, read_result
+from fem.runtime.units import RATIO
 from fem.sweep.result import SweepResult
 
 #: columns behind the values of axes and derived keys in every row
 FOUND = {"status": str} | RUN_COLUMNS | {"reason": str, "wall_s": float}
-#: least and largest rotation ratio of a cell and its copies
-RATIOS = (f"band_{TURNED}_low", f"band_{TURNED}_high")
+#: of a cell and its copies
+RATIOS = {
+    f"band_{TURNED}_low": Shown("rotation ratio, perturbed, least", RATIO),
+    f"band_{TURNED}_high": Shown("rotation ratio, perturbed, most", RATIO),
+}
 #: columns of the perturbed copies of a cell; the width of the band along each numeric axis follows
 BAND: Columns = {
     **{"perturbed": int, "unsure": bool, "sure": str, "decided_by": str},
