@@ -16,10 +16,12 @@ from typing import Any, Generic, TypedDict, TypeVar, Unpack
 from fem.batch.runner import Runner
 from fem.batch.shard import Shard, Share, join_logs, read_shards
 from fem.batch.workers import LocalWorkers, WorkersOf
+from fem.case.case import Case
 from fem.results.errors import OTHER_FOLDER, FolderError
 from fem.results.folder import ResultFolder, open_result_folder, program_of_results
 from fem.results.json_block import JsonBlock
 from fem.results.kinds import ResultKind, read_result, typed_result
+from fem.results.run_files import copy_data_files, require_free_names
 from fem.runtime.progress import Reporter, SilentReporter
 from fem.runtime.signals import interruptible
 from fem.runtime.threads import cores
@@ -92,6 +94,8 @@ class Study(Generic[ResultT]):
     subject: str  #: of a refusal, such as "the ensemble"
     way_out: str  #: where the disk has too little room
     progress: Callable[[Path], str]  #: of an unfinished one in a folder, in words; "" where nothing is lost
+    cases: Sequence[Case] = ()  #: whose mesh and motions its folder keeps
+    motions: Sequence[Case] = ()  #: likewise; their motions were read
     begun: StudyResult = field(default_factory=StudyResult)  #: its marking file while it runs
     #: a finished result as it is asked for now; None: there is more to compute
     again: Callable[[ResultFolder, ResultT], ResultT | None] = as_it_is
@@ -101,12 +105,15 @@ def run_study(study: Study[ResultT], folder: Path, **options: Unpack[StudyOption
     """Compute a study into a folder; a finished one is not computed again.
 
     Raises:
+        CaseError: a record or mesh with the name of a result, a file that is no motion.
         FolderError: the folder holds something else, or an unfinished study (without `resume` or `force`).
         FolderLockedError: another process writes into it.
         WorkersLostError: a worker died; what was computed is kept.
         OutputError: the disk is full, the folder was removed; what was written is kept.
     """
     kind, force, resume = study.kind, options.get("force", False), options.get("resume", False)
+    for case in (*study.cases, *study.motions):
+        require_free_names(case, kind, study.texts)
     with (
         runner_of(**options) as runner,
         open_result_folder(folder, kind, study.request, force=force, resume=resume) as place,
@@ -137,6 +144,10 @@ def run_study(study: Study[ResultT], folder: Path, **options: Unpack[StudyOption
             join_logs(folder, kind, merge)
             place = replace(place, found=place.found or dict(parts[0]))
         halted = (lambda: stop() or share.waits) if share else stop
+        for case in study.cases:
+            copy_data_files(case, place.path)
+        for case in study.motions:
+            copy_data_files(case, place.path, read=True)
         result = study.compute(place, replace(runner, stop=halted, share=share))
         if shard and share:
             result = replace(result, shard=replace(shard, done=share.waits or result.status in kind.finished))

@@ -38,7 +38,6 @@ from fem.results.figures import SLIPPED, TURNED, Place, columns_of
 from fem.results.folder import ResultFolder
 from fem.results.kinds import ENSEMBLE
 from fem.results.outcome import COUNTED, Ending, ending_of
-from fem.results.run_files import copy_data_files
 
 DRAWS = "draws.csv"
 #: numbers in a row of draws.csv besides what is drawn, of a point in its files, of a motion: spectrum and measures
@@ -120,7 +119,9 @@ def run_ensemble(ensemble: Ensemble, *, folder: Path, **options: Unpack[StudyOpt
             request=asked,
             result=EnsembleResult,
             begun=begun,
-            compute=partial(_compute, ensemble, unknown, motions, copied, begun),
+            cases=[ensemble.base],
+            motions=[one.case for one in copied],
+            compute=partial(_compute, ensemble, unknown, motions, begun),
             texts={"ensemble.toml": ensemble.text, "base.toml": to_toml(ensemble.base)},
             size=required_disk(ensemble, unknown, copied),
             subject="the ensemble",
@@ -134,15 +135,11 @@ def _compute(
     ensemble: Ensemble,
     unknown: UnknownInputs,
     motions: Sequence[FloorMotionPair],
-    copied: Sequence[FloorMotionPair],
     begun: EnsembleResult,
     place: ResultFolder,
     runner: Runner,
 ) -> EnsembleResult:
     """Compute the draws that are missing, count what there is, and write it."""
-    copy_data_files(ensemble.base, place.path)
-    for motion in copied:
-        copy_data_files(motion.case, place.path, read=True)
     draws = DrawRows(ensemble, unknown)
     LoggedRuns(
         what="draws",

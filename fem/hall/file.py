@@ -10,10 +10,11 @@ import io
 import re
 import tomllib
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
+from itertools import islice
 from pathlib import Path
 from typing import Any, get_args
 
@@ -60,17 +61,39 @@ class HallFile:
 
     path: Path
     text: str
-    columns: tuple[str, ...]
+    names: Sequence[str]  #: in the header; empty for a column without
+    columns: tuple[str, ...]  #: those that are read
     keys: Mapping[str, str]  #: dotted keys by column
     kept: tuple[str, ...]  #: columns that are neither keys nor known by themselves
-    lines: Sequence[tuple[int, list[str]]]  #: below the header: number and fields
-    width: int  #: columns of the file
-    places: tuple[int, ...]  #: of the columns in it
+    places: tuple[int, ...]  #: of the columns in the file
 
     @property
     def name(self) -> str:
         """File stem."""
         return self.path.stem
+
+    @property
+    def count(self) -> int:
+        """Lines below the header, before any is read; a line break within a field counts."""
+        return sum(map(bool, map(str.strip, self.text.split("\n")))) - 1
+
+    @cached_property
+    def lines(self) -> list[tuple[int, list[str]]]:
+        """Below the header: number and fields.
+
+        Raises:
+            CaseError: there are none, or values below no name.
+        """
+        _, *lines = _records(self.path, self.text)
+        if not lines:
+            raise CaseError(f"{self.path}: the list has a header and no rows; give one row a container")
+        nameless = [k for k, name in enumerate(self.names) if not name]
+        for line, fields in lines if nameless else ():
+            if filled := [k for k in nameless if k < len(fields) and fields[k]]:
+                raise CaseError(
+                    f"{self.path}, line {line}: column {filled[0] + 1} has values and no name; name it in line 1"
+                )
+        return lines
 
     @cached_property
     def rows(self) -> tuple[HallRow, ...]:
@@ -85,9 +108,10 @@ class HallFile:
     def _row(self, number: int, line: int, fields: list[str], *, comma: bool) -> HallRow:
         given = tuple(fields[k] if k < len(fields) else "" for k in self.places)
         row = _row(number, line, given, self.columns, self.keys, comma=comma)
-        if len(fields) == self.width or (len(fields) > self.width and not any(fields[self.width :])):
+        named = [k for k, name in enumerate(self.names) if name]
+        if len(fields) > named[-1] and not any(fields[len(self.names) :]):
             return row
-        reason = f"{len(fields)} fields, and the header names {self.width} columns"
+        reason = f"{len(fields)} fields, and the header names {len(named)} columns"
         return replace(row, values={}, reason=reason)
 
     def _has_decimal_commas(self) -> bool:
@@ -118,22 +142,12 @@ def read_hall(path: Path) -> HallFile:
         CaseError: no such file, no text, no header, a column that names no key or one twice, no rows.
     """
     text = _text_of(path)
-    header, lines = _table(path, text)
-    places = list(range(len(header)))
-    if {"status", "outcome", TURNED} <= {*header}:  # an earlier result, given as a list again
-        places = [k for k, column in enumerate(header) if column not in RESULT_COLUMNS]
-    columns = tuple(header[k] for k in places)
+    names = _names(path, text)
+    is_result = {"status", "outcome", TURNED} <= {*names}  # an earlier one, given as a list again
+    places = tuple(k for k, name in enumerate(names) if name and not (is_result and name in RESULT_COLUMNS))
+    columns = tuple(names[k] for k in places)
     keys, kept = _keys_of(path, columns)
-    return HallFile(
-        path=path,
-        text=text,
-        columns=columns,
-        keys=keys,
-        kept=kept,
-        lines=lines,
-        width=len(header),
-        places=tuple(places),
-    )
+    return HallFile(path=path, text=text, names=names, columns=columns, keys=keys, kept=kept, places=places)
 
 
 def _text_of(path: Path) -> str:
@@ -148,39 +162,30 @@ def _text_of(path: Path) -> str:
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
-def _table(path: Path, text: str) -> tuple[list[str], list[tuple[int, list[str]]]]:
-    """The names of the columns, and the lines with something in them, each with its number."""
+def _records(path: Path, text: str) -> Iterator[tuple[int, list[str]]]:
+    """The lines with something in them: number and fields."""
     told = re.match(r"sep=(.)\n", text, re.IGNORECASE)  # as Excel writes it
-    first = next((line for line in text[told.end() if told else 0 :].split("\n") if line.strip()), "")
+    first = next((line for line in text[told.end() if told else 0 :].split("\n", 99) if line.strip()), "")
     separator = told[1] if told else next((mark for mark in ";\t" if mark in first), ",")
+    reader = csv.reader(io.StringIO(text, newline=""), delimiter=separator)
     try:
-        read = csv.reader(io.StringIO(text, newline=""), delimiter=separator)
-        lines = [(read.line_num, [field.strip() for field in fields]) for fields in read]
+        for line in islice(reader, int(bool(told)), None):
+            fields = [field.strip() for field in line]
+            if any(fields):
+                yield reader.line_num, fields
     except csv.Error as error:
         raise CaseError(f"{path}: no table in CSV ({error})") from None
-    lines = [(number, fields) for number, fields in lines[bool(told) :] if any(fields)]
-    if not lines:
+
+
+def _names(path: Path, text: str) -> list[str]:
+    """The names of the columns, empty for one without."""
+    _, header = next(_records(path, text), (0, []))
+    if not header:
         raise CaseError(f"{path}: the list is empty; {A_HEADER}")
-    (_, header), *rows = lines
     names = [plain_text(name) for name in header]
     if not any(_is_known(name) for name in names):
         raise CaseError(f"{path}: line 1 names no key of a case, so there is no header; {A_HEADER}")
-    if not rows:
-        raise CaseError(f"{path}: the list has a header and no rows; give one row a container")
-    last = max((k + 1 for k, name in enumerate(names) if name), default=0)
-    nameless = [k for k, name in enumerate(names[:last]) if not name] + list(range(last, len(names)))
-    for line, fields in rows:
-        if filled := [k for k in nameless if k < len(fields) and fields[k]]:
-            raise CaseError(
-                f"{path}, line {line}: column {filled[0] + 1} has values and no name; name it in line 1"
-            )
-    keep = [k for k in range(len(names)) if k not in nameless]
-    if len(keep) < len(names):  # separators at the ends of the lines
-        rows = [
-            (line, [*(fields[k] for k in keep if k < len(fields)), *fields[len(names) :]])
-            for line, fields in rows
-        ]
-    return [names[k] for k in keep], rows
+    return names
 
 
 def _keys_of(path: Path, columns: Sequence[str]) -> tuple[dict[str, str], tuple[str, ...]]:

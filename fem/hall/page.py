@@ -113,7 +113,8 @@ def again(info: HallResult) -> str:
     """The command that computes the hall."""
     words = ["python", "-m", "fem", "batch", "list.csv", "--case", "base.toml"]
     motions = ["--motion", *info.motions] if info.motions else ["--site", info.site] if info.site else []
-    return shlex.join([*words, *motions, *(["--margins", info.checks] * (info.checks != "weakest"))])
+    words += [*motions, *(["--margins", info.checks] * (info.checks != "weakest"))]
+    return shlex.join([*words, *(["--allow-outside"] if info.allow_outside else [])])
 
 
 def found_section(info: HallResult) -> html.PageSection:

@@ -103,6 +103,7 @@ class Hall:
     def command(self, row: HallRow, motion: int) -> str:
         """The command that computes a row under a motion by itself."""
         words = ["python", "-m", "fem", "run", self.base_place]
+        words += ["--allow-outside"] * self.base.origin_with({}).allow_outside
         if self.named:
             words += ["--motion", self.named[motion].partition(",")[0].strip()]
         # of a pair its vertical file; of a motion alone among pairs that it has none
@@ -165,16 +166,17 @@ def plan_hall(
 
 
 def check_size(file: HallFile, base: Case, motions: int, jobs: int, *, force: bool, say: Any) -> None:
-    """Say how long a long list takes before its rows are looked at, and refuse more runs than anybody means.
+    """Say how long a long list takes before its rows are read, and refuse more runs than anybody means.
 
     Raises:
         CaseError: with the number, the time and the way out.
     """
-    runs, each = len(file.lines) * motions, 1.0
+    rows, each = file.count, 1.0
+    runs = rows * motions
     with suppress(ValueError):
         each = expected_s(base)
-    seconds = float(f"{runs * each / jobs + OF_A_ROW * len(file.lines):.1g}")
-    words = f"{len(file.lines)} rows" + (f" under {motions} motions" if motions > 1 else "")
+    seconds = float(f"{runs * each / jobs + OF_A_ROW * rows:.1g}")
+    words = f"{rows} rows" + (f" under {motions} motions" if motions > 1 else "")
     time = f"roughly {clock_time(seconds)} on {jobs} core{'s' * (jobs > 1)}"
     if runs > MOST_RUNS and not force:
         raise CaseError(

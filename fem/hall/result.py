@@ -39,6 +39,7 @@ class TagCount(JsonBlock):
 class HallResult(StudyResult):
     """Everything about a hall."""
 
+    written_where_given = StudyResult.written_where_given | {"allow_outside"}
     hall: str
     case: str
     asked: str  #: hash of what is computed
@@ -60,6 +61,7 @@ class HallResult(StudyResult):
     tags: tuple[TagCount, ...] = ()
     kept: tuple[str, ...] = ()  #: columns of the list that set nothing
     columns: tuple[str, ...] = ()  #: of the list
+    allow_outside: bool | None = None  #: files of the case or the site may lie outside its folder
     table: tuple[
         dict[str, Any], ...
     ] = ()  #: a row of `hall.csv` each, with `row`, `name`, `count`, `command`

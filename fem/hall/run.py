@@ -28,7 +28,6 @@ from fem.results.disk import BYTES_BESIDE, table_bytes
 from fem.results.folder import ResultFolder
 from fem.results.kinds import HALL
 from fem.results.outcome import COUNTED, Ending
-from fem.results.run_files import copy_data_files
 
 RUNS, CHECKS, TABLE, PAGE, GEOJSON = "runs.csv", "checks.csv", "hall.csv", "report.html", "hall.geojson"
 Checks = Literal["weakest", "all", "none"]
@@ -68,17 +67,10 @@ def run_hall(
             motion_covered=motions_left_out(base, hall.motions),
             checks=checks,
         )
-        return run_study(
-            study_of(
-                file,
-                base,
-                begun,
-                partial(_compute, hall, begun),
-                2.0 * table_bytes(len(hall.items()), len(RUN_COLUMNS)),
-            ),
-            folder,
-            **options,
-        )
+        size = 2.0 * table_bytes(len(hall.items()), len(RUN_COLUMNS))
+        study = study_of(file, base, begun, partial(_compute, hall, begun), size)
+        copied = [pair.case for pair in hall.motions]
+        return run_study(replace(study, cases=[] if copied else [base], motions=copied), folder, **options)
 
 
 def study_of(file: HallFile, base: Case, begun: HallResult, compute: Any, size: float) -> Study[HallResult]:
@@ -111,13 +103,12 @@ def asked_of(file: HallFile, base: Case, looked: Looked) -> HallResult:
         refused=sum(map(bool, looked.reasons)),
         kept=file.kept,
         columns=file.columns,
+        allow_outside=base.origin_with({}).allow_outside or None,
     )
 
 
 def _compute(hall: Hall, begun: HallResult, place: ResultFolder, runner: Runner) -> HallResult:
     """Compute what is missing, and write the list with its results, and its page."""
-    for case in [pair.case for pair in hall.motions] or [hall.base]:
-        copy_data_files(case, place.path, read=bool(hall.motions))
     runs = HallRuns(hall=hall)
     LoggedRuns(
         what="runs",

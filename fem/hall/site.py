@@ -6,7 +6,7 @@ The verifications follow one another, each on all cores. What is kept of a finis
 import math
 import shlex
 from collections.abc import Mapping, Sequence
-from contextlib import closing
+from contextlib import closing, suppress
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
@@ -27,6 +27,7 @@ from fem.results.errors import FolderError
 from fem.results.figures import SLIPPED, TURNED
 from fem.results.folder import ResultFolder, program_of_results
 from fem.results.kinds import SITE, read_result
+from fem.results.run_files import copy_data_files
 from fem.runtime.progress import SilentReporter
 from fem.seismic.action import LAST_PERIOD_S
 from fem.seismic.ground_motion import GroundMotion
@@ -90,6 +91,7 @@ def run_hall_at_site(
         model=site.heading.model,
         asked=hash_of(looked.hashes),
         listed=hash_of(file.text),
+        allow_outside=allow_outside or None,
     )
     force = options.get("force", False)
     work = _AtSite(file=file, site=site, start=start, looked=looked, begun=begun, force=force)
@@ -180,7 +182,10 @@ class _AtSite:
             return line_of(found.get(name) for name in COLUMNS)
         if result.state != "finished":
             return ""
-        if request.hazard is not None and request.hazard.file is not None:  # for the command of the row
+        # for the command of the row; what is no motion is not handed on
+        with suppress(CaseError):
+            copy_data_files(request.container, folder)
+        if request.hazard is not None and request.hazard.file is not None:
             copy = folder / request.hazard.file
             copy.parent.mkdir(parents=True, exist_ok=True)
             copy.write_bytes((request.origin.folder / request.hazard.file).read_bytes())
@@ -193,7 +198,8 @@ class _AtSite:
 
     def _command(self, folder: Path) -> str:
         words = ["python", "-m", "fem", "assess", str(folder / "site.toml")]
-        return shlex.join([*words, *(["--allow-outside"] if self.site.motions.files else [])])
+        outside = self.site.motions.files or self.begun.allow_outside
+        return shlex.join([*words, *(["--allow-outside"] if outside else [])])
 
     def _folder(self, number: int) -> Path:
         return Path(FOLDERS) / f"{number + 1:03d}-{self.looked.hashes[number][:8]}"
@@ -218,7 +224,7 @@ def _look(site: SiteRequest, start: Case, ground: Sequence[GroundMotion], values
     """
     request = request_of(site, start, values, "container")
     wind_utilisation([body_of(variant) for variant in request.variants], inputs_of(request))
-    return hash_of([request.data, site_hash(request, ground)])
+    return hash_of([request.portable, site_hash(request, ground)])
 
 
 def _weakness(found: Mapping[str, Any]) -> tuple[float, ...]:

@@ -1,11 +1,14 @@
 """Places of the files of a run in its folder."""
 
 import shutil
+from collections.abc import Iterable
 from pathlib import Path
 
 from fem.case.case import Case, CaseError
+from fem.case.data_files import place_of
 from fem.case.recorded import recorded_motion
 from fem.records.columns import written
+from fem.results.kinds import ResultKind
 
 
 class RunFiles:
@@ -27,21 +30,25 @@ class RunFiles:
         self.checkpoint = path / "checkpoint.npz"  #: of an unfinished run
         self.band = path / "band.json"  #: finished members of an unfinished band
 
-    def require_free_names(self, case: Case) -> None:
-        """Refuse a mesh or motion file whose copy would replace a result.
 
-        Raises:
-            CaseError: with the key and the name.
-        """
-        taken = {value for value in vars(self).values() if value != self.path}
-        for key, file in case.files.items():
-            name = file.copy
-            if self.path / name.parts[0] in taken:
-                table, _, word = key.partition(".")
-                raise CaseError(
-                    f"[{table}] {word} is named {str(name)!r}, like a result of the run, which would replace it in the "
-                    "folder of results; rename the file"
-                )
+def require_free_names(case: Case, kind: ResultKind, texts: Iterable[str] = ()) -> None:
+    """Refuse a mesh or motion file whose copy in a folder of results would be taken for a result.
+
+    Args:
+        case: that names the files.
+        kind: of the results.
+        texts: names of further files in the folder.
+
+    Raises:
+        CaseError: with the key and the name.
+    """
+    taken = {name.partition("/")[0] for name in (kind.mark, *kind.own, *texts)}
+    for key, file in case.files.items():
+        if file.copy.parts[0] in taken:
+            raise CaseError(
+                f"{place_of(key)}is named {str(file.copy)!r}, like a result of the {kind.name}, which would replace it "
+                "in the folder of results; rename the file"
+            )
 
 
 def copy_data_files(case: Case, folder: Path, *, read: bool = False) -> None:

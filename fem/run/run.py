@@ -23,7 +23,7 @@ from fem.results.folder import ResultFolder, find_result, open_result_folder
 from fem.results.history import History, add_analytic_rotation, read_history
 from fem.results.kinds import RUN, typed_result
 from fem.results.reader import OpenedRun, open_run
-from fem.results.run_files import RunFiles, copy_data_files
+from fem.results.run_files import RunFiles, copy_data_files, require_free_names
 from fem.results.run_result import RunResult
 from fem.run.changed_runs_file import ChangedRunsFile
 from fem.run.checkpoint import CheckpointWriter
@@ -71,7 +71,7 @@ def run_case(
     """
     options, reporter, watch = options or RunOptions(), reporter or SilentReporter(), Stopwatch()
     files, mesh = RunFiles(folder), build_container(case)
-    files.require_free_names(case)
+    require_free_names(case, RUN, (files.case.name, files.resolved.name))
     motions = build_motions(case)
     case = resolve(case, mesh, motions)  # what is changed later on is this case, too
     request = case_hash(case)

@@ -113,7 +113,7 @@ def run_site(
 def site_hash(request: SiteRequest, ground: Sequence[GroundMotion]) -> str:
     """Equal for requests that give the same result."""
     for_people = ("title", "document", "sources", "container")
-    data = {key: value for key, value in request.data.items() if key not in for_people}
+    data = {key: value for key, value in request.portable.items() if key not in for_people}
     digest = hashlib.sha256()
     for motion in ground:
         for component in motion.components:

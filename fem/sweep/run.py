@@ -28,7 +28,6 @@ from fem.case.validation import CaseError
 from fem.results.disk import BYTES_BESIDE, table_bytes
 from fem.results.folder import ResultFolder
 from fem.results.kinds import SWEEP
-from fem.results.run_files import copy_data_files
 from fem.runtime.progress import clock_time
 from fem.runtime.threads import cores
 from fem.sweep import perturbed
@@ -76,6 +75,8 @@ def run_sweep(sweep: Sweep, folder: Path, **options: Unpack[StudyOptions]) -> Sw
         request=asked.sweep_hash,
         result=SweepResult,
         begun=replace(asked, band_hash=None),  # until the copies of another band are gone
+        cases=[sweep.base],
+        motions=[one.case for one in motions],
         compute=partial(_compute, sweep, motions, asked),
         texts={"sweep.toml": sweep.text, "base.toml": toml_document(sweep.base.given())},
         size=table_bytes(sweep.count, OF_A_CELL) + BYTES_BESIDE,
@@ -200,9 +201,6 @@ def _compute(
     began, stop = time.perf_counter(), runner.stop
     if (place.found or {}).get("band_hash") != asked.band_hash:
         place.remove(MEMBERS, MARGINS, TRIED, CHANGES, ANSWERS)
-    copy_data_files(sweep.base, place.path)
-    for pair in motions:
-        copy_data_files(pair.case, place.path, read=True)
     cells = _Cells(sweep=sweep, place=place, asked=asked)
     cells.update()
     cells.compute(runner)
