@@ -295,10 +295,42 @@ def test_a_bad_row_has_its_reason_and_strict_refuses(tmp_path, base, monkeypatch
     assert "no row can be computed" in capsys.readouterr().err
 
 
-def test_too_many_rows_are_told_the_time_before_any_is_looked_at(tmp_path, base):
-    file = read_hall(listed(tmp_path, "width_m\n" + "1.0\n" * 250_000))
+def test_too_many_rows_are_told_the_time_before_any_is_read(tmp_path, base):
+    file = read_hall(listed(tmp_path, "width_m,\n" + "1.0,without a name\n" * 250_000))
     with pytest.raises(CaseError, match=r"250000 rows, 250000 runs: roughly \d+ .* or say --force"):
         run_hall(file, load_case(base), tmp_path / "out")
+
+
+RECORD = "0 0\n0.1 1.5\n0.2 -2.5\n0.3 1\n0.4 0\n"
+
+
+def test_files_outside_the_folder_need_the_flag_in_all_commands(tmp_path, base, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "record.txt").write_text(RECORD, encoding="utf-8")
+    (tmp_path / "below").mkdir()
+    motion = '[motion]\nkind = "table"\nfile = "../record.txt"\nunit = "m/s2"\n['
+    text = re.sub(r"\[motion\].*?\[", motion, BASE, flags=re.DOTALL)
+    (tmp_path / "below" / "base.toml").write_text(text, encoding="utf-8")
+    words = ["batch", str(listed(tmp_path, LIST)), "--case", "below/base.toml", "--margins", "none", "-q"]
+    assert main([*words, "--out", "out"]) == 2
+    assert main([*words, "--out", "out", "--allow-outside"]) == 0
+    row = json.loads((tmp_path / "out" / "hall.json").read_text(encoding="utf-8"))["table"][0]
+    command = shlex.split(row["command"])[3:]
+    capsys.readouterr()
+    assert main([*command, "--out", "one", "--no-band", "--json", "-q"]) == 0
+    assert json.loads(capsys.readouterr().out)["verdict"]["max_slip_m"] == row["max_slip_m"]
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert "--case base.toml --margins none --allow-outside" in page
+
+
+@pytest.mark.parametrize("name", ["runs.csv", "list.csv", "figures"])
+def test_a_record_with_the_name_of_a_result_is_refused_before_anything_is_written(tmp_path, base, name):
+    (tmp_path / name).write_text(RECORD, encoding="utf-8")
+    motion = {"motion.kind": "table", "motion.file": name, "motion.unit": "m/s2"}
+    case = load_case(base).replace(motion)
+    with pytest.raises(CaseError, match="like a result of the hall"):
+        run_hall(read_hall(listed(tmp_path, LIST)), case, tmp_path / "out")
+    assert not (tmp_path / "out").exists()
 
 
 def test_a_result_may_be_the_list_of_the_next_hall(tmp_path, base):

@@ -5,8 +5,10 @@ import shlex
 from pathlib import Path
 from types import SimpleNamespace
 
+import meshio
 import numpy as np
 import pytest
+from skfem import MeshQuad
 
 from fem.case.validation import CaseError
 from fem.hall.file import read_hall
@@ -130,7 +132,8 @@ def test_with_force_and_after_a_change_of_program_every_container_is_verified_ag
 
 def test_records_outside_the_folder_need_the_flag_and_the_command_of_a_row_runs(asked, tmp_path):
     hall, _ = asked
-    row = hall().table[0]
+    first = hall()
+    row = first.table[0]
     words = shlex.split(row["command"])
     assert words[-1] == "--allow-outside"
     again = load_site(words[4])
@@ -146,3 +149,15 @@ def test_records_outside_the_folder_need_the_flag_and_the_command_of_a_row_runs(
         run_hall_at_site(listed, site, None, tmp_path / "other")
     found = run_hall_at_site(listed, site, None, tmp_path / "other", allow_outside=True)
     assert found.table[0]["answer"] == "fulfilled"
+    assert found.asked == first.asked  # wherever the records lie
+
+
+def test_the_folder_of_a_container_holds_its_mesh(asked, tmp_path):
+    mesh = MeshQuad.init_tensor(np.linspace(-0.5, 0.5, 4), np.linspace(0.0, 3.0, 10))
+    cells = [("quad", mesh.t.T)]
+    solid = {"solid": [np.arange(mesh.t.shape[1])]}
+    meshio.Mesh(np.column_stack([mesh.p.T, 0.0 * mesh.p[0]]), cells, cell_sets=solid).write("box.inp")
+    Path("hall.csv").write_text("name,mesh_file,mass_kg\nbox,box.inp,2000\n", encoding="utf-8")
+    (row,) = asked[0]().table
+    again = load_site(shlex.split(row["command"])[4])
+    assert again.container.data_files["container.mesh_file"].parent != tmp_path
