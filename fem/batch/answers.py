@@ -39,9 +39,8 @@ class Trial(NamedTuple):
     line: int  #: runs of one line differ in that value alone
     kind: Ending
     slip: float | None = None  #: largest |slip| [m]
-    unsure: bool | None = (
-        None  #: whether unknown inputs or small changes turn the outcome; None where not tried
-    )
+    #: whether unknown inputs or small changes turn the outcome; None where not tried
+    unsure: bool | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

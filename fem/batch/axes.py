@@ -139,9 +139,8 @@ def check_varied(key: str) -> FieldInfo:
     return field
 
 
-NAMED = (
-    TABLES | ROWS
-)  #: what the first part of a dotted key names; of [[stop]] and [[tie]] a key is that of all
+#: what the first part of a dotted key names; of [[stop]] and [[tie]] a key is that of all
+NAMED = TABLES | ROWS
 
 
 def field_of(key: str) -> FieldInfo:

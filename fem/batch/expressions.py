@@ -46,9 +46,8 @@ ARITHMETIC: dict[str, Callable[[float, float], float]] = {
 NUMBER = re.compile(r"(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 KEY = re.compile(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)?", re.ASCII)
 WORD = re.compile(r"[A-Za-z_]\w*", re.ASCII)
-FOREIGN = re.compile(
-    r"[^\w\s.+\-*/^(),]|,(?=\s*\))", re.ASCII
-)  #: what Python may read, and an expression may not hold
+#: what Python may read, and an expression may not hold
+FOREIGN = re.compile(r"[^\w\s.+\-*/^(),]|,(?=\s*\))", re.ASCII)
 LONGEST = 400  #: characters
 
 

@@ -61,9 +61,8 @@ class LoggedRuns(Generic[ItemT]):
     columns: Columns  #: of the log
     make: Callable[[ItemT], Case]  #: the case of an item; picklable
     model_of: Callable[[ItemT], str]
-    key: Callable[
-        [ItemT], Iterable[Any]
-    ]  #: values of the first columns; the others are of the row of an item
+    #: values of the first columns; the others are of the row of an item
+    key: Callable[[ItemT], Iterable[Any]]
     note: Callable[[str], None]  #: called with every line of the log, old and new
     shown: Callable[[Row], Row] = lambda row: row  #: a row as the log holds it
     work: ChunkWork | None = None  #: what is done with some items in place of their runs

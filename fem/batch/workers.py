@@ -77,9 +77,8 @@ class LocalWorkers:
     def __init__(self, jobs: int, worth: Mapping[str, float] | None = None) -> None:
         self._jobs, self._worth = jobs, worth or WORTH_PROCESSES
         self._held = ExitStack()
-        self._over: Semaphore | None = (
-            None  #: released for each process at the end; a dead one blocks no other
-        )
+        #: released for each process at the end; a dead one blocks no other
+        self._over: Semaphore | None = None
         self._pools: dict[tuple[type[Executor], int], Executor] = {}
 
     def __call__(self, model: str, count: int) -> Sequence[Pool]:

@@ -55,9 +55,8 @@ class Origin:
     overrides: tuple[str, ...] = field(default=(), compare=False)  #: as given, `table.key=value`
     trusted: frozenset[str] = field(default=frozenset(), compare=False)  #: keys whose files may lie anywhere
     allow_outside: bool = field(default=False, compare=False)  #: all of them may, whoever sets them
-    recorded: "Record | None" = field(
-        default=None, compare=False
-    )  #: a motion given by arrays, in place of a file
+    #: a motion given by arrays, in place of a file
+    recorded: "Record | None" = field(default=None, compare=False)
 
 
 @dataclass(frozen=True)

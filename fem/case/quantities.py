@@ -24,9 +24,8 @@ class Quantity:
     most: float | None = None  #: largest value allowed
     below: float | None = None  #: every value allowed is less than this
     typical: float | None = None  #: an ordinary magnitude, to choose between guesses
-    slips: Mapping[str, float] = field(
-        default_factory=dict, hash=False
-    )  #: other unit -> what one of it is in SI
+    #: other unit -> what one of it is in SI
+    slips: Mapping[str, float] = field(default_factory=dict, hash=False)
     advice: str = ""  #: for a value out of range that is no slip
 
     def allows(self, value: float) -> bool:

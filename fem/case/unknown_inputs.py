@@ -44,11 +44,12 @@ RESTITUTIONS = (0.95, 1.06)  #: over Housner's, of sharp corners whose restituti
 WEAKENING_M, STRIBECK_M_S = 5e-3, 0.3  #: largest slip and velocity over which friction falls
 WEAKENINGS_BETWEEN_M = (1e-4, 1e-3)
 RAMP_CYCLES = 2.0
+#: of stops and ties over those of the case
 GAPS, LINK_STIFFNESS, LINK_FRICTION = (
     (0.8, 1.2),
     (0.5, 2.0),
     (0.5, 2.0),
-)  #: of stops and ties over those of the case
+)
 MOVES = 1e-9  #: cosine of the phase of a floor that starts at rest
 
 MU_KINETIC, WEAKENING, STRIBECK = "contact.mu_kinetic", "contact.weakening_m", "contact.stribeck_velocity_m_s"
@@ -107,9 +108,8 @@ class UnknownNumber(NamedTuple):
     matters: Callable[[Any], bool] = lambda case: True  #: where the case has a value at all
     #: of the draws: with a power above 1 most lie near the lower end; None: logarithmic, unless it begins at zero
     power: float | None = None
-    between: Callable[[float, float], tuple[float, ...]] = (
-        lambda low, high: ()
-    )  #: values tried between the ends
+    #: values tried between the ends
+    between: Callable[[float, float], tuple[float, ...]] = lambda low, high: ()
     alone: Callable[[Any], bool] = lambda case: True  #: where a change of it alone makes a difference
     same: Callable[[float], float] = lambda value: value  #: the value that means the same, of an angle
     varies: Callable[[Any], bool] = lambda case: True  #: where it is drawn with all others

@@ -8,16 +8,8 @@ from fem.batch.axes import Range
 from fem.case.tables import DocumentTable
 from fem.ensemble.distributions import Distribution
 from fem.ensemble.file import EnsembleHeading
+from fem.site_check import tables
 from fem.site_check.file import SiteHeading
-from fem.site_check.tables import (
-    BuildingTable,
-    FrictionTable,
-    LimitsTable,
-    MotionsTable,
-    SiteTable,
-    SourcesTable,
-    WindTable,
-)
 from fem.sweep.file import SweepHeading
 from fem.sweep.perturbation import Perturbation
 from fem.sweep.plan import MapChoice, Threshold
@@ -52,13 +44,13 @@ class EnsembleFile(EnsembleHeading):
 class SiteFile(SiteHeading):
     """A site: action, motions, container, friction and limits."""
 
-    site: SiteTable
-    building: BuildingTable | None = None
-    motions: MotionsTable = MotionsTable()
-    friction: FrictionTable
-    limits: LimitsTable
-    wind: WindTable | None = None
-    sources: SourcesTable = SourcesTable()
+    site: tables.SiteTable
+    building: tables.BuildingTable | None = None
+    motions: tables.MotionsTable = tables.MotionsTable()
+    friction: tables.FrictionTable
+    limits: tables.LimitsTable
+    wind: tables.WindTable | None = None
+    sources: tables.SourcesTable = tables.SourcesTable()
     document: DocumentTable | None = None
 
 

@@ -74,9 +74,8 @@ class EnsembleResult(StudyResult):
     confidence: float
     probability: float
     unknown_inputs: str = ""
-    limit_slip_m: float | None = (
-        None  #: beyond which a draw does not stand, and counts as one that overturned
-    )
+    #: beyond which a draw does not stand, and counts as one that overturned
+    limit_slip_m: float | None = None
     axes: tuple[AxisResult, ...]
     random: dict[str, Any]  #: what is drawn, by key
     derived: dict[str, str] = field(default_factory=dict)

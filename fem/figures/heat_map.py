@@ -26,9 +26,8 @@ from fem.runtime.arrays import BoolArray, FloatArray
 COLUMNS = 3  #: of panels
 TICKS = 7
 HATCH = "////"
-CASED: list[AbstractPathEffect] = [
-    withStroke(linewidth=2.8, foreground=WHITE)
-]  #: seen on black cells as well
+#: seen on black cells as well
+CASED: list[AbstractPathEffect] = [withStroke(linewidth=2.8, foreground=WHITE)]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -5,18 +5,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from fem.figures.style import (
-    BLACK,
-    BLUE,
-    ORANGE,
-    SKY,
-    VERMILLION,
-    head,
-    house_style,
-    legend_above,
-    panels,
-    svg_of,
-)
+from fem.figures import style
 from fem.hall.result import RESULT_COLUMNS, HallResult
 from fem.results.outcome import ENDINGS, Outcome
 
@@ -31,13 +20,13 @@ OVERTURNED, INVALID, NONE, UNKNOWN, BEYOND = (
     "stood, margin not sought",
     "stood, margin above 3",
 )
-MARGINS = ((1.5, VERMILLION, "s"), (2.0, ORANGE, "s"), (3.0, SKY, "o"))
+MARGINS = ((1.5, style.VERMILLION, "s"), (2.0, style.ORANGE, "s"), (3.0, style.SKY, "o"))
 LOOKS = {
-    OVERTURNED: (BLACK, "s"),
-    INVALID: (BLACK, "D"),
-    NONE: (BLACK, "x"),
+    OVERTURNED: (style.BLACK, "s"),
+    INVALID: (style.BLACK, "D"),
+    NONE: (style.BLACK, "x"),
     **{f"stood, margin up to {limit:g}": (colour, mark) for limit, colour, mark in MARGINS},
-    BEYOND: (BLUE, "o"),
+    BEYOND: (style.BLUE, "o"),
     UNKNOWN: ("#BBBBBB", "o"),
 }
 
@@ -77,9 +66,9 @@ def draw_places(result: HallResult) -> str:
         return ""
     classes = [class_of(row) for _, _, row in placed]
     size = max(3.0, min(9.0, 90.0 / math.sqrt(len(placed))))
-    with house_style():
+    with style.house_style():
         present = [name for name in LOOKS if name in classes]
-        figure, (axes,) = panels([4.0], header=1 + (len(present) + 2) // 3, below=0.5)
+        figure, (axes,) = style.panels([4.0], header=1 + (len(present) + 2) // 3, below=0.5)
         axes.margins(0.12)
         for name in reversed(present):  # the weakest on top
             at = [(x, y) for (x, y, _), own in zip(placed, classes, strict=True) if own == name]
@@ -97,9 +86,9 @@ def draw_places(result: HallResult) -> str:
         local = bool(placed[0][2]["place_m"])
         axes.set_xlabel("x [m]" if local else "east of the middle [m]")
         axes.set_ylabel("y [m]" if local else "north of the middle [m]")
-        legend_above(axes, 3)
-        head(figure, "The hall in plan")
-        return svg_of(figure)
+        style.legend_above(axes, 3)
+        style.head(figure, "The hall in plan")
+        return style.svg_of(figure)
 
 
 def geojson(result: HallResult) -> str:

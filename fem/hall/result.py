@@ -55,9 +55,8 @@ class HallResult(StudyResult):
     runs: int = 0
     checks: str = "weakest"  #: which runs are repeated: weakest | all | none
     checked: int = 0  #: containers whose run was repeated
-    outcomes: dict[str, int] = field(
-        default_factory=dict
-    )  #: of containers, by count; at a site their answers
+    #: of containers, by count; at a site their answers
+    outcomes: dict[str, int] = field(default_factory=dict)
     tags: tuple[TagCount, ...] = ()
     kept: tuple[str, ...] = ()  #: columns of the list that set nothing
     columns: tuple[str, ...] = ()  #: of the list

@@ -27,9 +27,8 @@ MOST_COLUMNS = 3
 MOST_HEADER = 1000  #: lines
 NOT_NUMBERS = ("nan", "inf", "+inf", "-inf")
 DECIMAL_COMMA = re.compile(r"[-+]?\d+,\d+(\s+[-+]?\d+,\d+)+\s*", re.ASCII)
-BRACKETED = re.compile(
-    r"[\[(]([^\])]{0,40})[\])]"
-)  #: bounded: a line of brackets would be scanned for each of them
+#: bounded: a line of brackets would be scanned for each of them
+BRACKETED = re.compile(r"[\[(]([^\])]{0,40})[\])]")
 DIRECTIONS: dict[int, tuple[Direction | None, ...]] = {
     1: (None,),
     2: (None,),

@@ -35,9 +35,8 @@ COLOURS = 64  #: of the stress scale
 SHOWN_ELASTIC = 0.03  #: elastic displacement as first shown, over the height
 SHOWN_ROUNDING = 0.002  #: rounding of the files that may show, over the height
 TYPICAL = 90  #: per cent of the frames are shown with less than that: impacts must not set the scale
-STRESS_SHARE = (
-    98.0  #: per cent of all stresses within the colour scale: a corner's peak must not pale the rest
-)
+#: per cent of all stresses within the colour scale: a corner's peak must not pale the rest
+STRESS_SHARE = 98.0
 #: history columns of the player, by their name there
 COLUMNS = {
     "rotation": "rotation_rad",

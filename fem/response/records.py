@@ -32,9 +32,8 @@ class PointRow(JsonBlock):
     began: str  #: carried | case
     status: str  #: completed | overturned | failed
     motion: str | None = None
-    long_time: str | None = (
-        None  #: rest | periodic | not settled | not periodic; None without a long-time motion
-    )
+    #: rest | periodic | not settled | not periodic; None without a long-time motion
+    long_time: str | None = None
     period_n: int | None = None
     scatter: float | None = None
     settling: float | None = None

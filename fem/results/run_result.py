@@ -108,9 +108,8 @@ class FloorNumbers(JsonBlock):
     youngs_modulus_Pa: float | None = None
     poisson_ratio: float | None = None
     bearing_strength_Pa: float | None = None
-    corner_patch_m: tuple[float, ...] | None = (
-        None  #: under one corner of the elevation, along x and out of plane
-    )
+    #: under one corner of the elevation, along x and out of plane
+    corner_patch_m: tuple[float, ...] | None = None
     corner_stiffness_N_m: float | None = None
     corner_tangential_stiffness_N_m: float | None = None
     contact_frequency_Hz: float | None = None  #: of the container on both corners
@@ -118,9 +117,8 @@ class FloorNumbers(JsonBlock):
     static_indentation_m: float | None = None  #: elastic, under the weight
     corner_cap_N: float | None = None  #: largest normal force of a corner
     bearing_capacity_N: float | None = None  #: strength times patch
-    steel_capacity_N: float | None = (
-        None  #: at which the wall over the corner yields; None without such a wall
-    )
+    #: at which the wall over the corner yields; None without such a wall
+    steel_capacity_N: float | None = None
     #: how far inside its edge the container turns on a weak floor; left out of a firm one
     pivot_inset_m: float | None = None
     governs: str | None = None  #: floor | container: what gives way first
@@ -180,9 +178,8 @@ class Margin(JsonBlock):
     """How much stronger the motion may be (`fem.run.margin`); factors on the whole motion of the run."""
 
     factor: float | None = None  #: of the first overturning; None: none was found
-    stands_up_to: float | None = (
-        None  #: the largest factor below it that was tried; None: none stood, or none fell
-    )
+    #: the largest factor below it that was tried; None: none stood, or none fell
+    stands_up_to: float | None = None
     #: least and largest factor of the first overturning over the draws and the run; at a tenth below `low` none of
     #: them overturns; `high` None: not all overturn
     low: float | None = None

@@ -107,9 +107,8 @@ SHORT_MILLIMETRES = replace(MILLIMETRES, figures=3)
 #: what loose boxes slip at impacts is less known than that: their joints' dashpots decide it
 JOINT_MILLIMETRES = replace(SHORT_MILLIMETRES, least=1e-3, under="under")
 DEGREES = DisplayUnit(name="degrees", factor=math.degrees(1.0), least=math.radians(0.01), figures=3)
-RATIO = DisplayUnit(
-    least=1e-3, figures=3
-)  #: of a rotation to the slenderness angle; a tenth of what counts as rocking
+#: of a rotation to the slenderness angle; a tenth of what counts as rocking
+RATIO = DisplayUnit(least=1e-3, figures=3)
 KILONEWTONS = DisplayUnit(name="kN", factor=1e-3)
 VELOCITY, ACCELERATION = DisplayUnit(name="m/s", least=1e-5), DisplayUnit(name="m/s2")
 MEGAPASCALS = DisplayUnit(name="MPa", factor=1e-6)

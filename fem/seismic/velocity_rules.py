@@ -13,9 +13,8 @@ from fem.seismic.method import MethodQuantity, MethodRow, MethodSource, SourceSt
 
 SPREAD = 0.5  #: logarithmic standard deviation of Kaneko and Hayashi's curve
 CONTENTS_SHARE = 0.790  #: of Kaneko and Hayashi's velocity, in FEMA P-58
-ULTIMATE_SHARE = (
-    2.0 / 3.0
-)  #: of the width: displacement at which a body overturns, at two thirds of its height
+#: of the width: displacement at which a body overturns, at two thirds of its height
+ULTIMATE_SHARE = 2.0 / 3.0
 ALLOWED_SHARE = 0.5  #: of that displacement
 
 

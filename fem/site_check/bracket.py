@@ -70,9 +70,8 @@ class SizeResult(StudyResult):
     unit: str
     low: float  #: ends of the range that was tried
     high: float
-    value: float | None = (
-        None  #: the least or the largest; None where there is none in the range, or a window is asked
-    )
+    #: the least or the largest; None where there is none in the range, or a window is asked
+    value: float | None = None
     intervals: tuple[
         tuple[float, ...], ...
     ] = ()  #: of the values that fulfil it, by their outermost values tried

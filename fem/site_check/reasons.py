@@ -14,9 +14,8 @@ from fem.site_check.tables import LimitsTable
 
 NOT_FULFILLED, NOT_SURE = "not fulfilled", "not sure"
 CONFIDENCE = 0.95
-MOST_OVERTURNING = (
-    0.05  #: probability of overturning under further motions that "fulfilled" bears, and beyond a limit
-)
+#: probability of overturning under further motions that "fulfilled" bears, and beyond a limit
+MOST_OVERTURNING = 0.05
 ALIKE = "in which the motions differ by 1 in 10 000 at most"
 FIGURES = 2  #: of what rocking makes of a motion; more would not be known
 

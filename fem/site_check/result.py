@@ -173,9 +173,8 @@ class RuleRange(JsonBlock):
     rotation_ratio_largest: tuple[float, ...] = ()
     slip_m: tuple[float, ...] = ()
     repetitions: int = 0
-    overturned: int = (
-        0  #: repetitions in which a run overturned or destroyed a corner, of which the ranges know nothing
-    )
+    #: repetitions in which a run overturned or destroyed a corner, of which the ranges know nothing
+    overturned: int = 0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -225,9 +224,8 @@ class ActionAnswer(JsonBlock):
 
     name: str  #: earthquake | wind
     answer: str | None = None
-    utilisation: float | None = (
-        None  #: the largest over all checks; None where a run overturned, or without answer
-    )
+    #: the largest over all checks; None where a run overturned, or without answer
+    utilisation: float | None = None
     words: str = ""  #: what it rests on
 
 
@@ -245,9 +243,8 @@ class TwoDirections(JsonBlock):
     mu_kinetic: float
     motion: int
     building_period_s: float | None = None
-    margin_factor: float | None = (
-        None  #: least factor on the motions, of those tried, at which it slides too far
-    )
+    #: least factor on the motions, of those tried, at which it slides too far
+    margin_factor: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -286,18 +283,15 @@ class AnnualRates(JsonBlock):
     #: with the 95 % intervals of all counts at once, the tails as bounds, and failed runs in the upper end
     interval: tuple[float, ...]
     in_50_years: float  #: probability
-    most_from: float | None = (
-        None  #: strengths between which most of the rate arises; None: nothing overturned
-    )
+    #: strengths between which most of the rate arises; None: nothing overturned
+    most_from: float | None = None
     most_to: float | None = None  #: None also: beyond the strongest level
     share: float  #: of the rate that arises there
-    slip_per_year: (
-        float | None
-    )  #: with the friction that slides furthest in the set; None: on a sloping floor
+    #: with the friction that slides furthest in the set; None: on a sloping floor
+    slip_per_year: float | None
     slip_interval: tuple[float, ...]
-    median: float | None = (
-        None  #: of the lognormal curve fitted to the counts of overturning; None: there is none
-    )
+    #: of the lognormal curve fitted to the counts of overturning; None: there is none
+    median: float | None = None
     beta: float | None = None  #: with the scatter
     fit_per_year: float | None = None  #: of that curve
     closed_form_per_year: float | None = None  #: of it with one power law: H(median) exp(k^2 beta^2/2)
@@ -319,13 +313,11 @@ class SiteAnswer(ByRule):
     exceeded: tuple[str, ...] = ()  #: keys of the limits that the set exceeds
     governing: SiteRun | None = None
     actions: tuple[ActionAnswer, ...] = ()
-    margin_factor: float | None = (
-        None  #: least factor on the motions, of those tried, at which the rule fails
-    )
+    #: least factor on the motions, of those tried, at which the rule fails
+    margin_factor: float | None = None
     factor_at_first_overturning: float | None = None
-    factor_at_first_movement: float | None = (
-        None  #: at which a rigid body first uplifts or slips; None: not known
-    )
+    #: at which a rigid body first uplifts or slips; None: not known
+    factor_at_first_movement: float | None = None
     hazard: AnnualRates | None = None  #: None: no hazard was given
     #: None: motions.second_component = 0, or not known on a sloping floor or for motions without that component
     two_directions: TwoDirections | None = None
@@ -354,9 +346,8 @@ class SiteMethod(JsonBlock):
     source: str
     validity: str
     checked: bool = True  #: against the text of its source
-    median: bool = (
-        False  #: half of such motions or bodies exceed it, so that it is not compared with the runs
-    )
+    #: half of such motions or bodies exceed it, so that it is not compared with the runs
+    median: bool = False
     beyond: str = ""  #: why it does not hold here, and is not compared; empty: it does
     found: str = ""
     compared: str = ""  #: the method against the rule's value: agrees | conservative | not conservative
@@ -376,9 +367,8 @@ class SiteInputs(JsonBlock):
     wind_pressure_Pa: float | None = None
     wind_pressure_source: str = ""
     gamma_mu: float = 1.0  #: partial factor on friction in the wind rows
-    behaviour_factor: float = (
-        USUAL_BEHAVIOUR_FACTOR  #: of the plateau rows: that of [static] of the container
-    )
+    #: of the plateau rows: that of [static] of the container
+    behaviour_factor: float = USUAL_BEHAVIOUR_FACTOR
     model: str
     #: where site, container, friction and limits come from, in the words of the user; empty: not stated
     sources: tuple[tuple[str, str], ...] = ()

@@ -76,9 +76,8 @@ class Tried:
     motions: MotionSet
     stages: Stages
     wind: float | None  #: utilisation under it
-    confirmed: Sequence[ConfirmedRun] | None = (
-        None  #: the deciding runs, repeated; None: not yet, or not needed
-    )
+    #: the deciding runs, repeated; None: not yet, or not needed
+    confirmed: Sequence[ConfirmedRun] | None = None
 
     @property
     def rows(self) -> RunRows:

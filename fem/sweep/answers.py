@@ -32,9 +32,8 @@ COLUMNS = (
 class AnswerRow:
     """The answer of the lines that have some values of the other axes in common."""
 
-    point: Mapping[
-        str, Any
-    ]  #: these values; without the motion where the row is that of all motions of a set
+    #: these values; without the motion where the row is that of all motions of a set
+    point: Mapping[str, Any]
     answer: Answer
     sentence: str
 

@@ -19,18 +19,9 @@ from fem.batch.workers import LocalWorkers
 from fem.case.case import Case
 from fem.case.validation import CaseError
 from fem.evidence.findings import Finding, prediction
-from fem.evidence.validation import drawings
+from fem.evidence.validation import drawings, shake_tests
 from fem.evidence.validation.bodies import rigid_case, specimen
 from fem.evidence.validation.experiments import Experiment, Predictor
-from fem.evidence.validation.shake_tests import (
-    ROCKS_LICENCE,
-    ROCKS_SOURCE,
-    ROCKS_TITLE,
-    Body,
-    Series,
-    ShakeTest,
-    read_series,
-)
 from fem.evidence.validation.vote import Block, BoolArray, Vote, brier, by_threshold, probabilities
 from fem.model.container import Container
 from fem.model.model import build_model
@@ -52,9 +43,9 @@ LEAST_AGREEMENT, SHARE_WITHIN, UNSURE_SHARE = 0.82, 0.08, 0.5
 AGREED = 0.95  #: share of the votes from which the blocks agree
 DESCRIBED = Experiment(
     name="rocks",
-    title=ROCKS_TITLE,
-    source=ROCKS_SOURCE,
-    licence=ROCKS_LICENCE,
+    title=shake_tests.ROCKS_TITLE,
+    source=shake_tests.ROCKS_SOURCE,
+    licence=shake_tests.ROCKS_LICENCE,
     tests=0,
     fitted="slenderness angle, loss at an impact, camber of the base",
 )
@@ -70,7 +61,7 @@ def compute(folder: Path | None) -> Experiment:
         return replace(
             DESCRIBED, not_computed="the motions are not part of the program: name their folder with --data"
         )
-    series = read_series(folder)
+    series = shake_tests.read_series(folder)
     tried = blocks(series.body)
     with LocalWorkers(cores()) as workers_of:
         runner = Runner(workers_of=workers_of)
@@ -110,7 +101,7 @@ def compute(folder: Path | None) -> Experiment:
     )
 
 
-def blocks(body: Body) -> tuple[Block, ...]:
+def blocks(body: shake_tests.Body) -> tuple[Block, ...]:
     """The blocks tried for a body."""
     angles = np.linspace(*body.angles, ANGLES).tolist()
     sharp = [Block(angle=angle, restitution=one) for one in RESTITUTIONS for angle in angles]
@@ -123,7 +114,7 @@ def blocks(body: Body) -> tuple[Block, ...]:
     return (*sharp, *cambered)
 
 
-def falls(series: Series, pair: tuple[Block, int]) -> bool | None:
+def falls(series: shake_tests.Series, pair: tuple[Block, int]) -> bool | None:
     """Whether a block overturns in the test of a number; None where there is no such block, as on too round a base."""
     block, number = pair
     try:
@@ -132,7 +123,7 @@ def falls(series: Series, pair: tuple[Block, int]) -> bool | None:
         return None
 
 
-def overturns(body: Body, block: Block, test: ShakeTest) -> bool:
+def overturns(body: shake_tests.Body, block: Block, test: shake_tests.ShakeTest) -> bool:
     """Whether the program's rigid block overturns.
 
     Raises:
@@ -148,7 +139,7 @@ def overturns(body: Body, block: Block, test: ShakeTest) -> bool:
 
 
 @cache
-def _block(body: Body, block: Block) -> tuple[Case, Container]:
+def _block(body: shake_tests.Body, block: Block) -> tuple[Case, Container]:
     """A block with the mass centre and inertia of the body, which does not slide."""
     width = 2.0 * body.centroid * math.tan(block.angle)
     size = 0.5 * body.height
@@ -257,7 +248,7 @@ def _findings(name: str, votes: FloatArray, overturned: BoolArray, *, judged: bo
     ]
 
 
-def _measures(tests: Sequence[ShakeTest]) -> dict[str, list[FloatArray]]:
+def _measures(tests: Sequence[shake_tests.ShakeTest]) -> dict[str, list[FloatArray]]:
     """Measures of strength on which a threshold is fitted, each (tests,), by the predictor that chooses among them."""
     sampled = [evenly_sampled(test.times, test.acceleration) for test in tests]
     spectra = [
@@ -273,7 +264,7 @@ def _measures(tests: Sequence[ShakeTest]) -> dict[str, list[FloatArray]]:
 
 
 def _scores(
-    series: Series,
+    series: shake_tests.Series,
     number: int,
     fitted: BoolArray,
     asked: BoolArray,

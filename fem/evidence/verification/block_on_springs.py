@@ -15,9 +15,8 @@ from fem.runtime.arrays import FloatArray
 
 FRICTION = 3.0
 CREEP_VELOCITY = 1e-3  #: below which friction is less than its limit [m/s]
-LONGEST_STEP = (
-    2e-3  #: [s]; a turning point between two steps is missed by less than 1e-6 of the slenderness angle
-)
+#: [s]; a turning point between two steps is missed by less than 1e-6 of the slenderness angle
+LONGEST_STEP = 2e-3
 
 
 def evenly_spaced(width: float, count: int) -> FloatArray:
