@@ -13,7 +13,7 @@ from fem.batch.labels import axis_label
 from fem.ensemble.fragility import Lognormal
 from fem.ensemble.plan import Ensemble
 from fem.ensemble.result import Fragility, Resampled
-from fem.ensemble.statistics import PointResult
+from fem.ensemble.statistics import PointRow
 from fem.ensemble.unknown import UnknownInputs
 from fem.figures import style
 from fem.figures.heat_map import Panel, draw_heat_map
@@ -30,7 +30,7 @@ MOST_NUMBERS = 320  #: cells of a panel up to which each holds its number
 def ensemble_figures(
     ensemble: Ensemble,
     unknown: UnknownInputs,
-    points: Sequence[PointResult],
+    points: Sequence[PointRow],
     fragility: Fragility | None,
 ) -> dict[str, str]:
     """Figures as SVG documents, by name."""
@@ -43,7 +43,7 @@ def ensemble_figures(
 def draw_fragility(
     ensemble: Ensemble,
     unknown: UnknownInputs,
-    points: Sequence[PointResult],
+    points: Sequence[PointRow],
     fragility: Fragility | None,
 ) -> Figure:
     """Counts with their intervals, and the lognormal curve with its band."""
@@ -61,12 +61,12 @@ def draw_fragility(
             )
         word = "lognormal fitted" if fitted.adequate else "lognormal, which does not fit"
         axes.plot(strengths, curve.probability(strengths), color=style.BLUE, linestyle="--", label=word)
-    known = [point for point in points if point.estimate.value is not None]
-    value = np.array([point.estimate.value for point in known], dtype=float)
-    low = np.array([point.estimate.low for point in known])
-    high = np.array([point.estimate.high for point in known])
+    known = [point for point in points if point["probability"] is not None]
+    value = np.array([point["probability"] for point in known], dtype=float)
+    low = np.array([point["low"] for point in known])
+    high = np.array([point["high"] for point in known])
     axes.errorbar(
-        [point.values[axis.key] for point in known],
+        [point[axis.key] for point in known],
         value,
         yerr=[np.maximum(value - low, 0.0), np.maximum(high - value, 0.0)],
         color=style.BLACK,
@@ -86,7 +86,7 @@ def draw_fragility(
     return figure
 
 
-def draw_boundary(ensemble: Ensemble, unknown: UnknownInputs, points: Sequence[PointResult]) -> Figure:
+def draw_boundary(ensemble: Ensemble, unknown: UnknownInputs, points: Sequence[PointRow]) -> Figure:
     """Which points overturn with at most the probability asked for, which with more, which is undecided."""
     *outer, down, across = ensemble.axes
     outside = outer[0].values if outer else (None,)
@@ -97,8 +97,8 @@ def draw_boundary(ensemble: Ensemble, unknown: UnknownInputs, points: Sequence[P
         "undecided": "not decided by the draws",
         "above": f"more than {limit}",
     }
-    codes = np.array([list(COLOURS).index(point.region) for point in points]).reshape(shape)
-    shares = [point.estimate.value for point in points]
+    codes = np.array([list(COLOURS).index(point["region"]) for point in points]).reshape(shape)
+    shares = [point["probability"] for point in points]
     texts = np.array(["?" if share is None else f"{100.0 * share:.0f}" for share in shares]).reshape(shape)
     maps = [
         Panel(

@@ -31,13 +31,13 @@ from fem.ensemble.distributions import RandomChoice
 from fem.ensemble.figures import ensemble_figures
 from fem.ensemble.plan import Draw, Ensemble
 from fem.ensemble.result import EnsembleResult
-from fem.ensemble.statistics import POINT_COLUMNS, PointResult, count_point, fragility_of
+from fem.ensemble.statistics import POINT_COLUMNS, PointRow, count_point, fragility_of
 from fem.ensemble.unknown import UnknownInputs
 from fem.results.disk import BYTES_BESIDE, table_bytes
 from fem.results.figures import SLIPPED, TURNED, Place, columns_of
 from fem.results.folder import ResultFolder
 from fem.results.kinds import ENSEMBLE
-from fem.results.outcome import COUNTED, Ending, ending_of
+from fem.results.outcome import COUNTED, Ending, counts_of, ending_of
 
 DRAWS = "draws.csv"
 #: numbers in a row of draws.csv besides what is drawn, of a point in its files, of a motion: spectrum and measures
@@ -86,10 +86,7 @@ class DrawRows:
     def by_replicate(self) -> list[dict[str, int]]:
         """How many draws of each replicate stood, overturned and failed, over all points."""
         blocks = self.codes.reshape(len(self.codes), self._ensemble.replicates, -1)
-        return [
-            {word: int((block == code).sum()) for word, code in COUNTED.items()}
-            for block in np.moveaxis(blocks, 1, 0)
-        ]
+        return [counts_of(block) for block in np.moveaxis(blocks, 1, 0)]
 
     def missing(self) -> list[Draw]:
         """The draws that have no row."""
@@ -157,20 +154,20 @@ def _compute(
     place.check()
     place.write_text("points.csv", csv_of_points(ensemble, points))
     place.write_text(DRAWS, draws.table())
-    regions = [point.region for point in points]
+    regions = [point["region"] for point in points]
     result = replace(
         begun,
         status=INTERRUPTED,
-        points=tuple(point.row() for point in points),
+        points=tuple(points),
         regions={name: regions.count(name) for name in ("below", "undecided", "above")},
-        failed=sum(point.failed for point in points),
+        failed=sum(point["failed"] for point in points),
     )
     if not complete.all():
         return replace(result, missing=f"{len(points)} of {ensemble.count} points have all their draws")
     fragility = fragility_of(ensemble, draws.codes, points)
     for name, svg in ensemble_figures(ensemble, unknown, points, fragility).items():
         place.write_text(f"figures/{name}.svg", svg)
-    failed = all(point.failed == ensemble.draws for point in points)
+    failed = all(point["failed"] == ensemble.draws for point in points)
     result = replace(result, status=FAILED if failed else COMPLETED, fragility=fragility)
     if motions:
         measures = [one.numbers() | found for one, found in zip(motions, draws.by_replicate(), strict=True)]
@@ -253,8 +250,7 @@ def asked_of(
     )
 
 
-def csv_of_points(ensemble: Ensemble, points: Sequence[PointResult]) -> str:
+def csv_of_points(ensemble: Ensemble, points: Sequence[PointRow]) -> str:
     """`points.csv`: a row a point of the axes."""
     names = [*(axis.key for axis in ensemble.axes), *POINT_COLUMNS]
-    rows = [point.row() for point in points]
-    return table_text(names, ([row[name] for name in names] for row in rows))
+    return table_text(names, ([point[name] for name in names] for point in points))

@@ -1,7 +1,7 @@
 """The results of an ensemble: a row a point, and the fragility curve of all points."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -10,54 +10,25 @@ from fem.ensemble.fragility import BOOTSTRAPS, bootstrap_fits, falls, fit_lognor
 from fem.ensemble.plan import Ensemble
 from fem.ensemble.result import FittedLognormal, Fragility, Resampled
 from fem.results.figures import SLIPPED
-from fem.results.outcome import COUNTED, NOT_STANDING, Ending
+from fem.results.outcome import COUNTED, NOT_STANDING, Ending, counts_of
 from fem.runtime.arrays import FloatArray
-from fem.runtime.intervals import Estimate, estimate
+from fem.runtime.intervals import estimate
 
 #: columns of `points.csv` behind those of the axes
 POINT_COLUMNS = ("draws", *COUNTED, "probability", "low", "high", "region", SLIPPED)
+PointRow = dict[str, Any]  #: of a point, by the keys of the axes and these columns
 FEWEST_FITTED = 4  #: levels from which a curve is fitted
 NO_CURVE = "the counts are a step, fall, or hold nothing that overturned or nothing that stood"
 FEWEST_RESAMPLED = 0.9  #: share of the resamples that must have a curve, else there is no band
 
 
-@dataclass(frozen=True, kw_only=True)
-class PointResult:
-    """One point of an ensemble."""
-
-    values: dict[str, Any]  #: of the axes
-    stood: int
-    overturned: int
-    invalid: int  #: that destroyed a corner
-    failed: int
-    estimate: Estimate  #: of the probability not to stand
-    region: str  #: below | above | undecided: the probability not to stand against the limit asked for
-    slip: float | None = None  #: largest of the draws that stood [m]
-
-    def row(self) -> dict[str, Any]:
-        """By the axes' keys and `POINT_COLUMNS`."""
-        return self.values | {
-            "draws": self.stood + self.overturned + self.invalid + self.failed,
-            "stood": self.stood,
-            "overturned": self.overturned,
-            "invalid": self.invalid,
-            "failed": self.failed,
-            "probability": self.estimate.value,
-            "low": self.estimate.low,
-            "high": self.estimate.high,
-            "region": self.region,
-            SLIPPED: self.slip,
-        }
-
-
 def count_point(
     ensemble: Ensemble, cell: int, codes: np.ndarray, slips: FloatArray | None = None
-) -> PointResult:
-    """The result of a point from the endings (draws,) of its draws, and their slips [m], nan for none."""
-    fallen, failed = np.isin(codes, NOT_STANDING), codes == Ending.FAILED
+) -> PointRow:
+    """A point from the endings (draws,) of its draws, and their slips [m], nan for none."""
     share = estimate(
-        fallen,
-        failed,
+        np.isin(codes, NOT_STANDING),
+        codes == Ending.FAILED,
         replicates=ensemble.replicates,
         confidence=ensemble.confidence,
         independent=None if ensemble.motions is None else ensemble.replicates,
@@ -67,21 +38,17 @@ def count_point(
         region = "below"
     elif share.low > ensemble.probability:
         region = "above"
-    standing = codes == Ending.STANDING
-    slid = np.empty(0) if slips is None else slips[standing & np.isfinite(slips)]
-    return PointResult(
-        values=ensemble.point(cell),
-        stood=int(standing.sum()),
-        overturned=int((codes == Ending.OVERTURNED).sum()),
-        invalid=int((codes == Ending.INVALID).sum()),
-        failed=int(failed.sum()),
-        estimate=share,
-        region=region,
-        slip=float(slid.max()) if slid.size else None,
+    slid = () if slips is None else slips[(codes == Ending.STANDING) & np.isfinite(slips)]
+    return (
+        ensemble.point(cell)
+        | {"draws": codes.size}
+        | counts_of(codes)
+        | {"probability": share.value, "low": share.low, "high": share.high, "region": region}
+        | {SLIPPED: max(map(float, slid), default=None)}
     )
 
 
-def fragility_of(ensemble: Ensemble, codes: np.ndarray, points: Sequence[PointResult]) -> Fragility | None:
+def fragility_of(ensemble: Ensemble, codes: np.ndarray, points: Sequence[PointRow]) -> Fragility | None:
     """The curve over the only axis: where it falls, the fitted lognormal, its band; None with more axes.
 
     Args:
@@ -91,8 +58,7 @@ def fragility_of(ensemble: Ensemble, codes: np.ndarray, points: Sequence[PointRe
         return None
     strengths = np.array(ensemble.axes[0].values, dtype=float)
     low, high, values = (
-        np.array([getattr(point.estimate, name) for point in points], dtype=float)
-        for name in ("low", "high", "value")
+        np.array([point[name] for point in points], dtype=float) for name in ("low", "high", "probability")
     )
     known = np.isfinite(values)
     fallen = falls(strengths[known], values[known], low[known], high[known])

@@ -3,6 +3,9 @@
 from enum import IntEnum, StrEnum
 from typing import Self
 
+import numpy as np
+from numpy.typing import ArrayLike
+
 from contact.stepping import observables
 
 UPRIGHT_OR_FALLEN = ("completed", "overturned")  #: statuses of a run that has an outcome
@@ -71,6 +74,11 @@ COUNTED = {
 NOT_STANDING = (Ending.OVERTURNED, Ending.INVALID)
 #: of the outcomes of what does not stand
 ENDINGS: dict[str, Ending] = {Outcome.OVERTURNED: Ending.OVERTURNED, Outcome.INVALID: Ending.INVALID}
+
+
+def counts_of(endings: ArrayLike) -> dict[str, int]:
+    """How many of some endings there are, by column."""
+    return {word: int(np.count_nonzero(np.equal(endings, ending))) for word, ending in COUNTED.items()}
 
 
 def ending_of(status: str, outcome: str | None) -> Ending:

@@ -16,8 +16,7 @@ from fem.runtime.arrays import FloatArray
 from fem.seismic.action import LAST_PERIOD_S, SiteAction
 from fem.seismic.ground_motion import GroundMotion, sampled_at
 
-#: (4)a, and the number from which the mean of the responses counts (4.3.3.4.3(3))
-LEAST_MOTIONS, MOTIONS_FOR_MEAN = 3, 7
+LEAST_MOTIONS = 3  #: (4)a
 #: (4)c
 LEAST_SHARE = 0.9
 #: of accelerations, at no shift; between motions, and between the components of one (ASCE/SEI 43-05 asks the latter)

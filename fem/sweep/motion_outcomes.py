@@ -14,7 +14,7 @@ import numpy as np
 
 from fem.batch.axes import MOTION_FILE, Axis, point_of, shape_of
 from fem.results.figures import SLIPPED, TURNED
-from fem.results.outcome import COUNTED, NOT_STANDING, Ending
+from fem.results.outcome import COUNTED, NOT_STANDING, Ending, counts_of
 from fem.runtime.arrays import IntArray
 from fem.runtime.intervals import estimate
 from fem.runtime.units import RATIO, SHORT_MILLIMETRES
@@ -84,7 +84,7 @@ def set_row(outcomes: Sequence[MotionOutcome]) -> dict[str, Any]:
     slipped = max(computed, key=lambda one: one.slipped, default=None)
     return {
         "motions": len(outcomes),
-        **{word: int((kinds == ending).sum()) for word, ending in COUNTED.items()},
+        **counts_of(kinds),
         "overturned_share": share.value,
         "low": share.low,
         "high": share.high,
@@ -130,8 +130,7 @@ def by_motion(points: Sequence[Sequence[MotionOutcome]]) -> dict[str, dict[str, 
     rows: dict[str, dict[str, Any]] = {}
     for outcomes in zip(*points, strict=True):
         standing = [one for one in outcomes if one.kind == Ending.STANDING]
-        counts = {word: sum(one.kind == kind for one in outcomes) for word, kind in COUNTED.items()}
-        rows[outcomes[0].motion] = counts | {
+        rows[outcomes[0].motion] = counts_of([one.kind for one in outcomes]) | {
             f"max_{TURNED}": max((one.turned for one in standing), default=None),
             SLIPPED: max((one.slipped for one in standing), default=None),
         }

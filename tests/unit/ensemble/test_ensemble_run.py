@@ -173,9 +173,9 @@ def test_a_point_with_failed_draws_is_judged_with_them_against_it(tmp_path):
     ensemble = load_ensemble(changed(tmp_path))
     codes = np.array([Ending.STANDING] * 5 + [Ending.FAILED] * 3)
     point = count_point(ensemble, 0, codes)
-    assert point.estimate.value == 0.0 and point.failed == 3
-    assert point.estimate.high > 0.5 and point.region == "undecided"
-    assert count_point(ensemble, 0, np.array([Ending.STANDING] * 8)).region == "below"
+    assert point["probability"] == 0.0 and point["failed"] == 3
+    assert point["high"] > 0.5 and point["region"] == "undecided"
+    assert count_point(ensemble, 0, np.array([Ending.STANDING] * 8))["region"] == "below"
 
 
 def test_a_draw_that_slides_beyond_the_limit_does_not_stand(tmp_path):
