@@ -61,7 +61,7 @@ def figure_head(shown: Shown) -> str:
 def _in_unit(value: float | None, unit: DisplayUnit) -> str:
     """Three significant figures without the unit; below the least only that limit."""
     if value is not None and 0.0 < abs(value) < unit.least:
-        return f"< {short(unit.least, unit.factor)}"
+        return f"< {rounded(unit.factor * unit.least)}"
     return number(value, unit.factor, 3)
 
 
