@@ -69,9 +69,12 @@ def page_of(result: "SiteResult", folder: Path) -> Iterator[str]:
     yield (
         f"  action     {action.source}; a_g S = {action.ag_S_m_s2:.3g} m/s2, a_vg = {action.avg_m_s2:.3g} m/s2"
     )
+    if result.floor and result.floor.z_over_h is None:
+        yield f"  floor      given by {result.floor.building}; taken as it is, without any factor"
+    least = f"least mean over target {motions.least_ratio:.2f} at {motions.least_ratio_period_s:.2g} s, "
     yield (
-        f"  motions    {motions.count}, {motions.source}: mean peak {motions.mean_pga_m_s2:.3g} m/s2, least mean over "
-        f"target {motions.least_ratio:.2f} at {motions.least_ratio_period_s:.2g} s, largest correlation "
+        f"  motions    {motions.count}, {motions.source}: mean peak {motions.mean_pga_m_s2:.3g} m/s2, "
+        f"{'' if motions.source == 'floor' else least}largest correlation "
         f"{motions.largest_correlation:.2f}: {'valid' if motions.valid else 'not valid'}"
     )
 

@@ -7,6 +7,7 @@ ratios of critical damping.
 
 import math
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 
@@ -22,6 +23,20 @@ LEAST_DAMPING_CORRECTION = 0.55
 LAST_PERIOD_S, LAST_PERIOD_ANNEX_A_S = 4.0, 10.0
 #: gamma_I and gamma_a that are accepted
 FACTORS = (0.5, 2.0)
+
+
+class MotionTarget(Protocol):
+    """What motions are made to fit: elastic spectra, and the peak that belongs to them."""
+
+    @property
+    def surface_acceleration(self) -> float:
+        """Horizontal spectrum at T = 0 [m/s2]."""
+
+    def horizontal(self, periods: FloatArray, damping_ratio: float = DAMPING_RATIO) -> FloatArray:
+        """At periods (n,) [s], shape (n,) [m/s2]."""
+
+    def vertical(self, periods: FloatArray, damping_ratio: float = DAMPING_RATIO) -> FloatArray:
+        """At periods (n,) [s], shape (n,) [m/s2]."""
 
 
 @dataclass(frozen=True, kw_only=True)

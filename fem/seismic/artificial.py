@@ -19,7 +19,7 @@ from scipy.fft import irfft, next_fast_len, rfft
 
 from fem.records.zero_end import ZeroEnd
 from fem.runtime.arrays import FloatArray
-from fem.seismic.action import LAST_PERIOD_ANNEX_A_S, LAST_PERIOD_S, SiteAction
+from fem.seismic.action import LAST_PERIOD_ANNEX_A_S, LAST_PERIOD_S, MotionTarget
 from fem.seismic.ground_motion import GroundMotion
 from fem.seismic.motion_set import LEAST_SHARE, MOST_CORRELATION, check_set, largest_correlation
 from fem.seismic.oscillators import pseudo_accelerations
@@ -179,7 +179,7 @@ def raised(times: FloatArray, motion: FloatArray, peak: float) -> FloatArray:
 
 
 def artificial_motions(
-    action: SiteAction,
+    action: MotionTarget,
     *,
     count: int,
     seed: int,
@@ -218,7 +218,7 @@ def artificial_motions(
 
 
 def artificial_set(
-    action: SiteAction,
+    action: MotionTarget,
     *,
     count: int,
     seed: int,

@@ -19,7 +19,7 @@ from scipy.signal import lfilter
 from fem.records.spectrum import exact_recursion, response_spectrum
 from fem.records.zero_end import ZeroEnd
 from fem.runtime.arrays import FloatArray
-from fem.seismic.action import DAMPING_RATIO, LAST_PERIOD_S, SiteAction
+from fem.seismic.action import DAMPING_RATIO, LAST_PERIOD_S, MotionTarget
 from fem.seismic.artificial import Target
 from fem.seismic.ground_motion import GroundMotion, sampled_at
 from fem.seismic.motion_set import FIRST_PERIOD_S, LEAST_SHARE, check_set, periods_of_check
@@ -37,7 +37,7 @@ SHARE_OF_A_PASS, SHARE_OF_OTHERS = 0.8, 0.7
 
 
 def scaled_records(
-    records: Sequence[GroundMotion], action: SiteAction, *, longest: float = LAST_PERIOD_S
+    records: Sequence[GroundMotion], action: MotionTarget, *, longest: float = LAST_PERIOD_S
 ) -> list[GroundMotion]:
     """Records scaled so that they fulfil 3.2.3.1.2(4)b and c together, and by no more than that.
 
@@ -60,7 +60,7 @@ def scaled_records(
 
 def matched_records(
     records: Sequence[GroundMotion],
-    action: SiteAction,
+    action: MotionTarget,
     *,
     longest: float = LAST_PERIOD_S,
     second: float = 1.0,
@@ -98,7 +98,7 @@ def matched_records(
     return [record.scaled(needed) for record in matched]
 
 
-def _factor_needed(motions: Sequence[GroundMotion], action: SiteAction, longest: float) -> float:
+def _factor_needed(motions: Sequence[GroundMotion], action: MotionTarget, longest: float) -> float:
     """Least factor on a set with which its mean peak and mean spectrum fulfil the code."""
     found = check_set(motions, action, longest=longest)
     return max(found.wanted_peak / found.mean_peak, LEAST_SHARE / found.least_ratio)

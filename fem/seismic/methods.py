@@ -28,18 +28,20 @@ class MethodCapacity:
 
 
 def methods_of(
-    body: LooseBody, limits: Limits, *, behaviour_factor: float, height_ratio: float = 0.0
+    body: LooseBody, limits: Limits, *, behaviour_factor: float, height_ratio: float | None = 0.0
 ) -> list[Method]:
     """Every method but the wind, for one body on one floor.
 
     Args:
         behaviour_factor: q of the plateau of the design spectrum; q = 1 stands beside it.
-        height_ratio: z/H of the floor in its building; 0: on the ground.
+        height_ratio: z/H of the floor in its building; 0: on the ground; None: the motion of the floor is given, which
+            no formula for elements on floors may raise again.
     """
     pairs = [partial(peak_rows, body, horizontal=one, vertical=other) for one, other in COMBINATIONS]
     elements = [
         partial(element_rows, body, height_ratio=height_ratio, period_ratio=period_ratio)
-        for period_ratio in ((0.0, 1.0) if height_ratio > 0.0 else (0.0,))
+        for period_ratio in ((0.0, 1.0) if height_ratio else (0.0,))
+        if height_ratio is not None
     ]
     plateaus = [
         partial(plateau_rows, body, behaviour_factor=q) for q in sorted({behaviour_factor, 1.0})[::-1]

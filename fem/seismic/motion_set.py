@@ -13,7 +13,7 @@ import numpy as np
 
 from fem.records.spectrum import response_spectrum
 from fem.runtime.arrays import FloatArray
-from fem.seismic.action import LAST_PERIOD_S, SiteAction
+from fem.seismic.action import LAST_PERIOD_S, MotionTarget
 from fem.seismic.ground_motion import GroundMotion, sampled_at
 
 LEAST_MOTIONS = 3  #: (4)a
@@ -102,7 +102,7 @@ def _suffices(ratio: float | None) -> bool:
 
 def check_set(
     motions: Sequence[GroundMotion],
-    action: SiteAction,
+    action: MotionTarget,
     *,
     longest: float = LAST_PERIOD_S,
     second: float = 1.0,
@@ -146,7 +146,7 @@ def check_set(
         ),
         (
             peak < action.surface_acceleration * (1.0 - ROUNDING),
-            f"the mean peak, {peak:.3g} m/s², is below a_g S = {action.surface_acceleration:.3g} m/s² "
+            f"the mean peak, {peak:.3g} m/s², is below that of the target, {action.surface_acceleration:.3g} m/s² "
             "(3.2.3.1.2(4)b)",
         ),
         (

@@ -66,7 +66,7 @@ def draw_floor(action: result.SiteActionResult, floor: result.FloorResult) -> st
         )
         periods = np.array(action.periods_s)
         formula = action.ag_S_m_s2 * np.array(
-            [floor_factor(floor.z_over_h, one / period) for one in action.periods_s]
+            [floor_factor(floor.z_over_h or 0.0, one / period) for one in action.periods_s]
         )
         axes.plot(periods, floor.mean_m_s2, color=style.BLUE, linewidth=1.8, label="floor, mean")
         axes.plot(periods, action.mean_m_s2, color=style.GREY, label="ground, mean")

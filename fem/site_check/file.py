@@ -26,10 +26,12 @@ from fem.seismic.action import (
     german_shape,
     second_generation_shape,
 )
-from fem.seismic.hazard import HazardCurve, read_hazard
+from fem.seismic.floor_spectrum import HORIZONTAL, PERIOD, VERTICAL, FloorSpectrum, read_spectrum
+from fem.seismic.hazard import ACCELERATION, HazardCurve, read_hazard
 from fem.seismic.wind import german_pressure, terrain_pressure
 from fem.site_check.tables import (
     BuildingTable,
+    FloorSpectrumTable,
     FrictionTable,
     HazardTable,
     LimitsTable,
@@ -48,6 +50,7 @@ REQUIRED = {
 TABLES: dict[str, type[CaseTable]] = {
     "site": SiteTable,
     "building": BuildingTable,
+    "floor_spectrum": FloorSpectrumTable,
     "motions": MotionsTable,
     "friction": FrictionTable,
     "limits": LimitsTable,
@@ -97,6 +100,7 @@ class SiteRequest:
     container: Case  #: as its file has it, with what was changed
     site: SiteTable
     building: BuildingTable | None
+    floor_spectrum: FloorSpectrumTable | None
     motions: MotionsTable
     friction: FrictionTable
     limits: LimitsTable
@@ -127,6 +131,33 @@ class SiteRequest:
             return _action(self.site)
         except ValueError as error:
             raise CaseError(f"[site] {error}") from None
+
+    @property
+    def on_given_floor(self) -> bool:
+        """Whether the motions are those of the floor on which the container stands: no building filters them."""
+        return self.floor_spectrum is not None or self.motions.source == "floor"
+
+    @cached_property
+    def floor_target(self) -> FloorSpectrum | None:
+        """The spectrum of the floor, where it is given.
+
+        Raises:
+            CaseError: points that are no spectrum, or a file that holds none.
+        """
+        if (floor := self.floor_spectrum) is None:
+            return None
+        try:
+            points = (
+                floor.model_dump() if floor.file is None else read_spectrum(self.origin.folder / floor.file)
+            )
+            return FloorSpectrum(
+                periods=tuple(points[PERIOD]),
+                accelerations=tuple(points[HORIZONTAL]),
+                vertical_accelerations=tuple(points.get(VERTICAL) or ()),
+                ground=self.action,
+            )
+        except (OSError, ValueError) as error:
+            raise CaseError(f"[floor_spectrum] {error}") from None
 
     @property
     def frictions(self) -> list[tuple[float, float]]:
@@ -268,7 +299,7 @@ def load_site(
 def _with_records(data: Mapping[str, Any], folder: Path, records: Sequence[str]) -> dict[str, Any]:
     """The tables of a site file with these records as its motions."""
     motions = dict(data.get("motions", {}))
-    if motions.get("source") != "matched":
+    if motions.get("source") not in ("matched", "floor"):
         motions["source"] = "records"
     motions["files"] = [[as_named_from(folder, name.strip()) for name in pair.split(",")] for pair in records]
     if max(map(len, motions["files"])) == 1:
@@ -303,6 +334,7 @@ def _request(data: Mapping[str, Any], origin: Origin, container: Case | None = N
         container=container or base_case(heading.container, {}, origin),
         site=read["site"],
         building=read.get("building"),
+        floor_spectrum=read.get("floor_spectrum"),
         motions=read["motions"],
         friction=read["friction"],
         limits=read["limits"],
@@ -329,9 +361,29 @@ def _check(request: SiteRequest) -> None:
             "container: [[stop]] and [[tie]] are not verified at a site, whose second component, rigid bound and "
             "simplified methods know a container that nothing holds; leave them out, or run the motions one by one"
         )
-    _ = request.action, request.variants, request.wind_pressure, request.hazard_curve
+    _ = request.action, request.variants, request.wind_pressure, request.hazard_curve, request.floor_target
+    _check_floor(request)
     if request.heading.empty_centroid_m is not None and request.heading.empty_mass_kg is None:
         raise CaseError("empty_centroid_m has no effect without empty_mass_kg")
+
+
+def _check_floor(request: SiteRequest) -> None:
+    """Refuse a floor whose motion is given twice."""
+    given = "[floor_spectrum]" if request.floor_spectrum is not None else '[motions] source = "floor"'
+    if request.on_given_floor and request.building is not None:
+        raise CaseError(
+            f"{given} and [building] both say how the floor moves: the storey would be counted twice; keep one of them"
+        )
+    if request.floor_spectrum is not None and request.motions.source == "floor":
+        raise CaseError(
+            '[floor_spectrum] and [motions] source = "floor" both say how the floor moves; leave the spectrum out, or '
+            'fit the records to it with source = "records" or "matched"'
+        )
+    curve = request.hazard_curve
+    if request.on_given_floor and curve is not None and curve.measure != ACCELERATION:
+        raise CaseError(
+            f"[hazard] file: rates of the velocity of the ground say nothing of {given}; give them over {ACCELERATION}"
+        )
 
 
 def _action(site: SiteTable) -> SiteAction:

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -130,7 +131,7 @@ def floor_action(
     """The motion below the body: that of the site, or in a building the mean of the floor motions.
 
     On a floor only the spectrum at 5 % damping is known; at another damping ratio it is corrected by Eq. (3.6).
-    The vertical motion is that of the ground.
+    The vertical motion is that of the ground, unless that of the floor is given.
     """
     velocity = sum(motion.pgv_m_s for motion in motions) / len(motions)
     ground = FloorAction.on_ground(site, velocity)
@@ -139,16 +140,20 @@ def floor_action(
     known = np.array([0.0, *periods_s])
     values = np.array([floor.peak_m_s2, *floor.mean_m_s2])
 
-    def spectrum(periods: FloatArray, damping_ratio: float) -> FloatArray:
+    def spectrum(periods: FloatArray, damping_ratio: float, values: FloatArray = values) -> FloatArray:
         corrected = damping_correction(damping_ratio) / damping_correction(DAMPING_RATIO)
         return np.asarray(corrected * np.interp(periods, known, values))
 
+    upward, upward_peak = ground.vertical_spectrum, ground.vertical_peak
+    if floor.vertical_peak_m_s2 is not None:
+        upward_peak = floor.vertical_peak_m_s2
+        upward = partial(spectrum, values=np.array([upward_peak, *floor.vertical_mean_m_s2]))
     return FloorAction(
         peak=floor.peak_m_s2,
-        vertical_peak=ground.vertical_peak,
+        vertical_peak=upward_peak,
         peak_velocity=floor.peak_velocity_m_s,
         spectrum=spectrum,
-        vertical_spectrum=ground.vertical_spectrum,
+        vertical_spectrum=upward,
         ground_peak=ground.ground_peak,
         in_building=True,
     )

@@ -19,6 +19,10 @@ from fem.site_check.result import MOTIONS, FloorResult, MotionSet, SetCheck, Sit
 from fem.site_check.tables import BuildingTable
 
 HEADINGS = {"h": "HORIZONTAL", "v": "UP", "t": "SECOND HORIZONTAL"}
+GIVEN_FLOORS = {
+    True: "its motions as they were recorded or computed",
+    False: "its spectrum, which the motions fit",
+}
 CLAUSE = "EN 1998-1:2004, 3.2.3.1.2 (4) "
 
 
@@ -70,7 +74,7 @@ def set_result(
         valid=checked.valid,
         reasons=checked.reasons,
         notes=tuple(dict.fromkeys(note for motion in ground for note in motion.notes)),
-        checks=_checks(checked),
+        checks=_checks(checked, fitted=asked.source != "floor"),
         motions=tuple(
             replace(
                 one,
@@ -82,7 +86,8 @@ def set_result(
     )
 
 
-def _checks(checked: MotionSetCheck) -> tuple[SetCheck, ...]:
+def _checks(checked: MotionSetCheck, *, fitted: bool) -> tuple[SetCheck, ...]:
+    """What is required of the set; of motions that fit no target, their number and independence alone."""
     band = f"{checked.band[0]:g} to {checked.band[1]:.3g} s"
     checks = [
         SetCheck(
@@ -107,13 +112,19 @@ def _checks(checked: MotionSetCheck) -> tuple[SetCheck, ...]:
             fulfilled=checked.spectrum_fulfilled,
             clause=CLAUSE + "c)",
         ),
+    ]
+    if not fitted:
+        checks = checks[:1]
+    checks.append(
         SetCheck(
             name="largest correlation of two accelerations",
             found=checked.largest_correlation,
             demanded=f"at most {MOST_CORRELATION:g}",
             fulfilled=checked.largest_correlation <= MOST_CORRELATION,
-        ),
-    ]
+        )
+    )
+    if not fitted:
+        return tuple(checks)
     if checked.vertical_least_ratio is not None and checked.vertical_least_ratio_period is not None:
         needed = checked.stationary is not None
         checks.append(
@@ -191,9 +202,19 @@ def write_csv_files(folder: Path, motion: GroundMotion, stem: str) -> list[str]:
 
 
 def floor_result(
-    request: SiteRequest, floors: Mapping[float | None, Sequence[GroundMotion]], periods: FloatArray
+    request: SiteRequest, floors: Mapping[float | None, Sequence[GroundMotion]], checked: MotionSetCheck
 ) -> FloorResult | None:
-    """What the motions are on the floor of a building: means over the set; None on the ground."""
+    """What the motions are on the floor of a building, or on a given floor: means over the set; None on the ground."""
+    if request.on_given_floor:
+        given, upward = floors[None], [one.vertical for one in floors[None] if one.vertical is not None]
+        return FloorResult(
+            building=GIVEN_FLOORS[request.motions.source == "floor"],
+            peak_m_s2=float(np.mean([one.peak for one in given])),
+            peak_velocity_m_s=float(np.mean([one.intensities["h"].peak_velocity_m_s for one in given])),
+            mean_m_s2=_numbers(checked.horizontal.mean),
+            vertical_peak_m_s2=float(np.mean([np.abs(one).max() for one in upward])) if upward else None,
+            vertical_mean_m_s2=_numbers(checked.vertical.mean) if checked.vertical else (),
+        )
     if request.building is None or None in floors:
         return None
     varied = {period: motions for period, motions in floors.items() if period is not None}
@@ -201,7 +222,8 @@ def floor_result(
     worst = max(peaks, key=lambda period: peaks[period])
     motions = varied[worst]
     spectra = [
-        response_spectrum(one.step, one.horizontal, periods).pseudo_acceleration_m_s2 for one in motions
+        response_spectrum(one.step, one.horizontal, checked.periods).pseudo_acceleration_m_s2
+        for one in motions
     ]
     return FloorResult(
         z_over_h=request.building.z_over_h,

@@ -12,17 +12,21 @@ from fem.case.validation import CaseError
 from fem.records.files import read_record
 from fem.records.processing import Processing, stated_baseline
 from fem.records.record import Component, Direction, Record, RecordError, require_together
+from fem.records.spectrum import response_spectrum
 from fem.runtime.arrays import FloatArray
-from fem.seismic.action import LAST_PERIOD_ANNEX_A_S, LAST_PERIOD_S
+from fem.seismic.action import LAST_PERIOD_ANNEX_A_S, LAST_PERIOD_S, MotionTarget
 from fem.seismic.artificial import artificial_set
 from fem.seismic.floor import PERIOD_FACTORS, floor_motion, one_mode, storey_modes
+from fem.seismic.floor_spectrum import FloorSpectrum
 from fem.seismic.ground_motion import GroundMotion
 from fem.seismic.matched import matched_records, scaled_records
+from fem.seismic.motion_set import periods_of_check
 from fem.site_check.file import SiteRequest
 from fem.site_check.tables import BuildingTable
 
 #: largest difference of two intervals of a record that is sampled evenly, over the interval
 UNEVEN = 1e-3
+RIGID_PERIOD_S = 0.01  #: of an oscillator that moves with its floor
 MATCHED = Processing(baseline="zero-end")  #: what matching does to a record besides
 
 
@@ -38,16 +42,16 @@ def longest_period(rates: Sequence[float]) -> float:
 def ground_motions(
     request: SiteRequest, longest: float, *, allow_outside: bool = False
 ) -> list[GroundMotion]:
-    """The set of motions of the ground, scaled or matched where it is recorded.
+    """The set of motions of the ground, scaled or matched where it is recorded; or of a given floor.
 
     Raises:
         CaseError: a record that is missing, outside the folder, no motion, or not independent of another.
     """
-    asked = request.motions
+    asked, target = request.motions, request.floor_target or request.action
     if asked.source == "artificial":
         try:
             return artificial_set(
-                request.action,
+                target,
                 count=asked.count,
                 seed=asked.seed,
                 stationary=asked.stationary_s,
@@ -62,9 +66,37 @@ def ground_motions(
         for number, names in enumerate(asked.files or [], start=1)
     ]
     _require_independent(records)
+    if asked.source == "floor":
+        return records
     if asked.source == "records":
-        return scaled_records(records, request.action, longest=longest)
-    return matched_records(records, request.action, longest=longest, second=asked.second_component)
+        return scaled_records(records, target, longest=longest)
+    return matched_records(records, target, longest=longest, second=asked.second_component)
+
+
+def motion_target(request: SiteRequest, motions: Sequence[GroundMotion], longest: float) -> MotionTarget:
+    """What the set is compared with, and what further motions fit: the site, a given floor, or its motions' mean.
+
+    Args:
+        motions: of the set; longest: end of the band of periods [s].
+    """
+    if request.motions.source != "floor":
+        return request.floor_target or request.action
+    periods = periods_of_check(longest)
+
+    def mean(components: Sequence[tuple[float, FloatArray]]) -> tuple[float, ...]:
+        peak = float(np.mean([np.abs(values).max() for _, values in components]))
+        spectra = [
+            response_spectrum(step, values, periods).pseudo_acceleration_m_s2 for step, values in components
+        ]
+        return peak, *np.mean(spectra, axis=0).tolist()
+
+    upward = [(one.step, one.vertical) for one in motions if one.vertical is not None]
+    return FloorSpectrum(
+        periods=(RIGID_PERIOD_S, *periods.tolist()),
+        accelerations=mean([(one.step, one.horizontal) for one in motions]),
+        vertical_accelerations=mean(upward) if upward else (),
+        ground=request.action,
+    )
 
 
 def floor_motions(

@@ -90,10 +90,10 @@ def preview_of(request: SiteRequest, *, allow_outside: bool = False) -> SitePrev
     bodies = tuple(map(body_of, request.variants))
     longest = longest_period([body.frequency_parameter_1_s for body in bodies])
     ground = ground_motions(request, longest, allow_outside=allow_outside)
-    checked = check_set(
-        ground, request.action, longest=longest, second=request.motions.second_component or 1.0
-    )
     stages = Stages.of(request, floor_motions(request, ground), longest=longest, folder=Path())
+    checked = check_set(
+        ground, stages.target, longest=longest, second=request.motions.second_component or 1.0
+    )
     return SitePreview(
         site=request.name,
         title=request.heading.title,

@@ -43,16 +43,19 @@ class SiteActionResult(JsonBlock):
 
 @dataclass(frozen=True, kw_only=True)
 class FloorResult(JsonBlock):
-    """The floor of a building on which the container stands, and what the motions are there."""
+    """The floor on which the container stands, of a building or given, and what the motions are there."""
 
-    z_over_h: float
-    building: str = ""  #: its modes, in words
-    building_periods_s: tuple[float, ...]  #: the one given, and varied both ways
-    damping_ratio: float
+    z_over_h: float | None = None  #: None: the motion of the floor is given, and no building is known
+    building: str = ""  #: its modes, in words; of a given floor, what it was given by
+    building_periods_s: tuple[float, ...] = ()  #: the one given, and varied both ways
+    damping_ratio: float = 0.05  #: of the building
     #: of the building's period with the largest mean peak; all are means over the motions
     peak_m_s2: float
     peak_velocity_m_s: float
     mean_m_s2: tuple[float, ...]  #: spectrum (5 %) at the periods of the action
+    #: of a given floor with a vertical motion, the same; else it is that of the ground
+    vertical_peak_m_s2: float | None = None
+    vertical_mean_m_s2: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)

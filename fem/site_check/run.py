@@ -141,7 +141,7 @@ class _Verification:
         """Write the motions, compute what is missing, and write runs and page."""
         checked = check_set(
             self.ground,
-            self.request.action,
+            self.stages.target,
             longest=self.stages.longest,
             second=self.request.motions.second_component or 1.0,
         )
@@ -199,7 +199,7 @@ class _Verification:
         own = rows.of(self.stages.plan.of_set())
         missing = None if answer else self._missing()
         action = action_result(request.action, checked)
-        floor = floor_result(request, self.floors, checked.periods)
+        floor = floor_result(request, self.floors, checked)
         document = request.document.model_dump(exclude_none=True) if request.document else None
         return SiteResult(
             status=COMPLETED if answer else INTERRUPTED,

@@ -176,6 +176,7 @@ def beside_the_set(result: SiteResult) -> list[str]:
     if known := [one for one in answer.further if one.motions]:
         worst = max(known, key=lambda one: (one.overturned + one.invalid, one.beyond_limits))
         low, high = (short(end, 100, 2) for end in worst.interval)
+        place = "floor" if result.floor and result.floor.z_over_h is None else "site"
         of_both = " of both" if worst.invalid else ""
         pairs = (
             f", for each of {len(known)} combinations of weight and friction at most"
@@ -185,7 +186,7 @@ def beside_the_set(result: SiteResult) -> list[str]:
         words.append(
             f"Of {worst.motions} further motions{pairs} {worst.overturned} overturned it{destroyed(worst.invalid)} "
             f"(95 % interval{of_both} {low} to {high} %) and {max(one.beyond_limits for one in known)} went beyond a "
-            "limit of a single motion. All these motions have the spectrum of the site; recorded ones scatter more."
+            f"limit of a single motion. All these motions have the spectrum of the {place}; recorded ones scatter more."
         )
     if repeated := confirmation(result):
         words.append(repeated)
@@ -377,6 +378,21 @@ def site_rows(result: SiteResult) -> list[tuple[str, str]]:
     ]
     if floor is None:
         return [*rows, ("level", "on the ground: the motions of the ground")]
+    if floor.z_over_h is None:
+        upward = (
+            f"{quantity(floor.vertical_peak_m_s2, 'm/s²')} vertically"
+            if floor.vertical_peak_m_s2 is not None
+            else "no vertical motion"
+        )
+        return [
+            *rows,
+            (
+                "level",
+                f"on a floor, given by {floor.building}: mean peak {quantity(floor.peak_m_s2, 'm/s²')}, {upward}. It "
+                "is taken as it is: no building, storey, importance or element factor is applied to it. The numbers "
+                "above are those of the ground",
+            ),
+        ]
     periods = ", ".join(short(period) for period in floor.building_periods_s)
     model = f" ({floor.building})" if floor.building else ""
     words = (
@@ -475,6 +491,8 @@ def found_in_words(check: SetCheck) -> str:
 def period_sentence(motions: MotionSet) -> str:
     """The band of periods, and why a rocking body has no period."""
     low, high = motions.band_s[0], motions.band_s[-1]
+    if motions.source == "floor":
+        return "The motions of the floor are taken as they are: the target shown is the mean of their own spectra."
     return (
         "T_1 does not exist for a rocking body: below the uplift moment it does not rotate, then its period grows with "
         f"its rotation. The mean spectrum is compared from {short(low)} s to {short(high)} s, which holds 0.2 T_1 to "

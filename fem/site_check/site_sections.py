@@ -111,7 +111,7 @@ def runs_section(view: SiteView, *, brief: bool = False) -> html.PageSection:
         blocks.append(f"{count} combinations of weight, elevation and friction are at rest in every motion.")
     if both and moving:
         blocks.append(html.Note(BOTH))
-    if result.floor and not brief:
+    if result.floor and result.floor.z_over_h is not None and not brief:
         drawn = figure(draw_floor(result.action, result.floor), "floor", "spectra of the floor")
         blocks += [html.Heading("The floor in the building"), drawn]
     if governing and not governing.rests and not brief:
@@ -163,7 +163,7 @@ def _groups_table(
     columns: list[html.Column[_GroupRow]] = [
         html.Column("weight", lambda row: row.group.first.mass),
         html.Column("elevation", lambda row: row.elevation),
-        *([period] if view.result.floor else []),
+        *([period] if view.result.floor and view.result.floor.building_periods_s else []),
         html.Column("friction, static / kinetic", lambda row: friction(row.group.first), html.NUMBER),
         html.Column("overturned", lambda row: row.overturned, html.NUMBER),
         *html.figure_columns(BY_RULE, text=two_figures, value=lambda row, key: row.by_rule[key]),
@@ -365,7 +365,7 @@ def every_run_section(view: SiteView) -> html.PageSection:
     columns: list[html.Column[RunPair]] = [
         html.Column("motion", lambda pair: str(pair.motion), html.NUMBER),
         html.Column("weight", lambda pair: pair.group.first.mass + _elevation(pair.group.first.elevation)),
-        *([period] if view.result.floor else []),
+        *([period] if view.result.floor and view.result.floor.building_periods_s else []),
         html.Column("friction", lambda pair: friction(pair.group.first), html.NUMBER),
         *(
             column

@@ -58,6 +58,8 @@ def size_axis(
         low, high = begin if low is None else low, end if high is None else high
     if not low < high:
         raise CaseError(f"--from {low:g} --to {high:g}: the range of {key} must rise")
+    if key.startswith("site.") and request.on_given_floor:
+        raise CaseError(f"--over {key}: the motion of the floor is given, which [site] does not change")
     for name, bound in (("--from", low), ("--to", high)):
         try:
             quantity.check(bound)

@@ -229,15 +229,16 @@ class _Sizing:
         ground = ground_motions(request, longest, allow_outside=self.allow_outside)
         floors = floor_motions(request, ground)
         folder = written_motions(request, floors, longest, working)
+        stages = Stages.of(
+            request, floors, longest=longest, folder=folder, made=self.made.setdefault(folder, {})
+        )
         checked = check_set(
-            ground, request.action, longest=longest, second=request.motions.second_component or 1.0
+            ground, stages.target, longest=longest, second=request.motions.second_component or 1.0
         )
         self.tried[value] = tried = Tried(
             request=request,
             motions=set_result(request, checked, ground, ()),
-            stages=Stages.of(
-                request, floors, longest=longest, folder=folder, made=self.made.setdefault(folder, {})
-            ),
+            stages=stages,
             wind=wind_utilisation(bodies, inputs_of(request)),
         )
         self.cases.cases[value] = RunCases.of(request, folder)
@@ -251,7 +252,14 @@ def written_motions(
     """The folder of these motions, and of the further ones that go with them; values of the container share it."""
     asked = request.motions
     # what the further motions depend on, which the set does not where it is one of records
-    further = request.action, request.building, longest, asked.seed, asked.stationary_s, asked.vertical
+    further = (
+        request.floor_target or request.action,
+        request.building,
+        longest,
+        asked.seed,
+        asked.stationary_s,
+        asked.vertical,
+    )
     digest = sha256(repr(further).encode())
     for motion in (one for floor in floors.values() for one in floor):
         for component in motion.components:

@@ -7,13 +7,14 @@ from pathlib import Path
 
 from fem.batch.runner import Runner
 from fem.batch.workers import hand_out
+from fem.seismic.action import MotionTarget
 from fem.seismic.artificial import artificial_motions
 from fem.seismic.ground_motion import GroundMotion
 from fem.seismic.two_directions import slip_in_two_directions
 from fem.site_check.answer import Beside
 from fem.site_check.file import SiteRequest
 from fem.site_check.motion_results import write_csv_files
-from fem.site_check.motions import on_floor
+from fem.site_check.motions import motion_target, on_floor
 from fem.site_check.result import ConfirmedRun, SiteBody, TwoDirections
 from fem.site_check.rule import RuleFound, governing_groups, groups_of
 from fem.site_check.runs import HAZARD, REPETITIONS, SCAN, SET, RunKey, RunPlan, RunRows, motion_stem
@@ -42,6 +43,7 @@ class Stages:
     screening: Screening
     floors: Mapping[float | None, Sequence[GroundMotion]]  #: by building period
     longest: float  #: period of the band [s]
+    target: MotionTarget  #: of the motions
     folder: Path  #: that holds the motions
     rows: RunRows = field(default_factory=RunRows)
 
@@ -79,7 +81,13 @@ class Stages:
             for number, motion in enumerate(floor, start=1):
                 screening.motions[motion_stem(number, period)] = motion
         return cls(
-            request=request, plan=plan, screening=screening, floors=floors, longest=longest, folder=folder
+            request=request,
+            plan=plan,
+            screening=screening,
+            floors=floors,
+            longest=longest,
+            target=motion_target(request, any_floor, longest),
+            folder=folder,
         )
 
     def of_the_answer(self, runner: Runner, *, quick: bool = False) -> Iterator[Sequence[RunKey]]:
@@ -246,7 +254,14 @@ class Stages:
             if stage == HAZARD:
                 first, second = FIRST_OF_HAZARD, self.request.motions.second_component
             make = partial(
-                further_motions, self.request, self.plan.vertical, self.longest, period, first, second
+                further_motions,
+                self.request,
+                self.target,
+                self.plan.vertical,
+                self.longest,
+                period,
+                first,
+                second,
             )
             pools = runner.workers_of(self.request.heading.model, len(keys))
             for chunk, made in hand_out(numbers, make, pools, at_a_time=4, stop=runner.stop):
@@ -258,6 +273,7 @@ class Stages:
 
 def further_motions(
     request: SiteRequest,
+    target: MotionTarget,
     vertical: bool,
     longest: float,
     period: float | None,
@@ -269,7 +285,7 @@ def further_motions(
     asked, made = request.motions, []
     for number in numbers:
         (motion,) = artificial_motions(
-            request.action,
+            target,
             count=1,
             seed=asked.seed,
             stationary=asked.stationary_s,

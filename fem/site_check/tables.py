@@ -30,6 +30,7 @@ TOPOGRAPHY = Quantity(
     "top of cliffs, slopes and ridges, 1.4 on narrow ridges steeper than 30 degrees, 20 % more on loose ground",
 )
 SPECTRAL = Quantity(unit="m/s2", above=0.0, below=100.0, slips={"g": 9.81})
+SPECTRUM_POINT = Quantity(unit="", above=0.0, below=1000.0)
 SPECTRUM_PERIOD = Quantity(unit="s", above=0.0, most=4.0, advice="T_B, T_C, T_D are 0.05 to 2 s")
 LEVEL = Quantity(unit="", least=0.0, most=1.0, advice="0 is the foundation, 1 the roof")
 BUILDING_PERIOD = Quantity(
@@ -56,6 +57,7 @@ SOME_FRICTION = replace(q.FRICTION, least=None, above=0.0)
 FrictionRange = Annotated[list[Annotated[float, SOME_FRICTION]], Field(min_length=1, max_length=2)]
 ShareRange = Annotated[list[Annotated[float, SHARE]], Field(min_length=1, max_length=2)]
 OfSource = Annotated[str, Field(max_length=500)]
+SpectrumPoints = Annotated[list[Annotated[float, SPECTRUM_POINT]], Field(min_length=2)] | None
 Corners = Annotated[list[Annotated[float, SPECTRUM_PERIOD]], Field(min_length=3, max_length=3)] | None
 
 #: keys of [site] that a spectrum needs, and those that it has of its own
@@ -235,11 +237,53 @@ class BuildingTable(CaseTable):
     )
 
 
+class FloorSpectrumTable(CaseTable):
+    """The spectrum of the floor on which the container stands, for the action of [site]; in place of [building]."""
+
+    period_s: SpectrumPoints = case_key("rising, from 0.05 s or less", None, example=[0.03, 0.2, 0.5, 4.0])
+    acceleration_m_s2: SpectrumPoints = case_key(
+        "pseudo-acceleration at 5 % damping at these periods; at the first the peak of the floor",
+        None,
+        example=[3.0, 9.0, 9.0, 0.4],
+    )
+    vertical_acceleration_m_s2: SpectrumPoints = case_key(
+        "vertical, at the same periods; left out: that of the ground", None, example=[2.0, 5.0, 1.5, 0.1]
+    )
+    file: str | None = case_key(
+        "in their place, columns period_s, acceleration_m_s2 and perhaps vertical_acceleration_m_s2",
+        None,
+        example="floor.csv",
+    )
+
+    rules = (
+        Rule(
+            "floor_spectrum.period_s",
+            lambda floor: (floor.file is None) == (floor.period_s is not None),
+            "or file: exactly one of the two must be given",
+        ),
+        Rule(
+            "floor_spectrum.acceleration_m_s2",
+            lambda floor: (
+                (floor.period_s is None) == (floor.acceleration_m_s2 is None)
+                and (floor.vertical_acceleration_m_s2 is None or floor.period_s is not None)
+            ),
+            "and period_s belong together",
+        ),
+        Rule(
+            "floor_spectrum.file",
+            lambda floor: stays_in_the_folder(floor.file),
+            lambda floor: outside_the_folder(floor.file),
+        ),
+    )
+
+
 class MotionsTable(CaseTable):
     """The motions that represent the action."""
 
-    source: Literal["artificial", "records", "matched"] = case_key(
-        '"artificial" | "records": scaled | "matched": records changed by wavelets', "artificial"
+    source: Literal["artificial", "records", "matched", "floor"] = case_key(
+        '"artificial" | "records": scaled | "matched": records changed by wavelets | "floor": motions of the floor on '
+        "which the container stands, recorded or computed, taken as they are",
+        "artificial",
     )
     count: Annotated[int, Strict(), Quantity(unit="", least=3, most=MOST_MOTIONS)] = case_key(
         "artificial motions; the mean counts from 7", 7

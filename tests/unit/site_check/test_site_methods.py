@@ -130,6 +130,31 @@ def test_in_a_building_the_methods_take_the_motion_of_the_floor():
     assert {row.found for row in rows} == {"no runs"}
 
 
+def test_on_a_given_floor_no_formula_raises_its_motion_again_and_the_vertical_is_its_own():
+    motions = [site_motion(1)[0]]
+    floor = FloorResult(
+        peak_m_s2=5.0,
+        peak_velocity_m_s=0.9,
+        mean_m_s2=tuple(np.full(PERIODS.size, 7.0).tolist()),
+        vertical_peak_m_s2=2.0,
+        vertical_mean_m_s2=tuple(np.full(PERIODS.size, 4.0).tolist()),
+    )
+    action = floor_action(SITE, motions, PERIODS.tolist(), floor)
+    assert (action.peak, action.vertical_peak) == (5.0, 2.0)
+    found = action.vertical_spectrum(np.array([0.0, 0.01, 1.0]), 0.05)
+    np.testing.assert_allclose(found, [2.0, 3.0, 4.0])
+    rows = site_methods(
+        bodies=[site_body("full")],
+        inputs=replace(INPUTS, wind_pressure_Pa=None),
+        site=SITE,
+        motions=motions,
+        periods_s=PERIODS.tolist(),
+        floor=floor,
+        runs=[],
+    )
+    assert rows and not [row for row in rows if row.name.startswith("element")]
+
+
 def test_the_wind_is_on_the_lightest_body():
     rows = site_methods(
         bodies=[site_body("full"), site_body("empty")],

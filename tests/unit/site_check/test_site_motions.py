@@ -11,7 +11,7 @@ from fem.seismic.floor import floor_motion, storey_modes
 from fem.seismic.motion_files import in_whole_g, write_at2
 from fem.seismic.motion_set import check_set
 from fem.site_check.file import load_site
-from fem.site_check.motions import floor_motions, ground_motions
+from fem.site_check.motions import floor_motions, ground_motions, motion_target
 from fem.site_check.preview import preview_lines, preview_of
 
 SITE = """
@@ -158,3 +158,63 @@ def test_a_building_that_cannot_be_is_refused(tmp_path, building, words):
 
 def test_one_mode_is_taken_up_to_a_period(tmp_path):
     assert request(tmp_path, "[building]\nz_over_h = 1.0\nbuilding_period_s = 0.7").building.storeys is None
+
+
+SPECTRUM = """[floor_spectrum]
+period_s = [0.03, 0.2, 0.5, 4.0]
+acceleration_m_s2 = [3.0, 9.0, 9.0, 0.3]
+"""
+
+
+def test_the_motions_of_a_site_fit_the_given_spectrum_of_the_floor_and_no_building_filters_them(tmp_path):
+    asked = request(tmp_path, SPECTRUM, "[motions]\ncount = 3")
+    ground = ground_motions(asked, 4.0)
+    target = motion_target(asked, ground, 4.0)
+    assert target.surface_acceleration == 3.0
+    assert check_set(ground, target).valid and not check_set(ground, asked.action).valid
+    assert floor_motions(asked, ground) == {None: ground}
+    points = "period_s,acceleration_m_s2\n0.03,3.0\n0.2,9.0\n0.5,9.0\n4.0,0.3\n"
+    (tmp_path / "floor.csv").write_text(points)
+    assert request(tmp_path, '[floor_spectrum]\nfile = "floor.csv"').floor_target == target
+
+
+def test_records_of_a_floor_are_taken_as_they_are_and_further_motions_fit_their_mean(tmp_path):
+    names = three_records(tmp_path, "hv")
+    asked = request(tmp_path, f'[motions]\nsource = "floor"\nfiles = {names}\nsecond_component = 0.0')
+    ground = ground_motions(asked, 4.0)
+    (first, *_) = artificial_motions(asked.action, count=3, seed=5, second=1.0)
+    np.testing.assert_allclose(ground[0].horizontal, 0.5 * first.horizontal, rtol=1e-12)
+    assert all(motion.factor == 1.0 for motion in ground)
+    target = motion_target(asked, ground, 4.0)
+    found = check_set(ground, target)
+    assert found.valid
+    np.testing.assert_allclose(found.horizontal.mean, found.horizontal.target, rtol=1e-9)
+    again = artificial_motions(target, count=1, seed=1)[0]
+    assert again.peak == pytest.approx(np.mean([one.peak for one in ground]), rel=0.1)
+
+
+@pytest.mark.parametrize(
+    ("tables", "words"),
+    [
+        ((SPECTRUM, "[building]\nz_over_h = 1.0\nbuilding_period_s = 0.3"), "counted twice"),
+        (
+            ('[motions]\nsource = "floor"\nfiles = [["a"], ["b"], ["c"]]\nvertical = false', SPECTRUM),
+            "both say",
+        ),
+        (("[floor_spectrum]\nperiod_s = [0.03, 4.0]",), "belong together"),
+        (('[floor_spectrum]\nperiod_s = [0.03, 4.0]\nfile = "a.csv"',), "exactly one of the two"),
+        (('[floor_spectrum]\nfile = "none.csv"',), "none.csv"),
+        (('[floor_spectrum]\nfile = "../up.csv"',), "folder"),
+        (("[floor_spectrum]\nperiod_s = [0.2, 4.0]\nacceleration_m_s2 = [3.0, 1.0]",), "0.05 s or less"),
+        (('[motions]\nsource = "floor"',), "is missing"),
+    ],
+)
+def test_a_floor_that_is_given_twice_or_not_at_all_is_refused(tmp_path, tables, words):
+    with pytest.raises(CaseError, match=words):
+        request(tmp_path, *tables)
+
+
+def test_rates_over_the_velocity_of_the_ground_are_refused_on_a_given_floor(tmp_path):
+    (tmp_path / "curve.csv").write_text("velocity_m_s,rate_per_year\n0.1,1e-2\n0.6,1e-4\n")
+    with pytest.raises(CaseError, match="velocity of the ground"):
+        request(tmp_path, SPECTRUM, '[hazard]\nfile = "curve.csv"')

@@ -131,6 +131,24 @@ def test_a_floor_that_moves_less_than_its_ground_is_explained():
     assert "a building (10 storeys) with T_1 = 2 s" in rows["level"]
     assert "below that of the ground" in rows["level"] and "modes act against each other" in rows["level"]
     assert "S_T = 1.2 for topography" in rows["reference acceleration"]
+    given = replace(
+        floor, z_over_h=None, building="its spectrum", building_periods_s=(), vertical_peak_m_s2=1.0
+    )
+    words = dict(site_rows(replace(result, floor=given)))["level"].replace("\xa0", " ")
+    assert "given by its spectrum: mean peak 1.900 m/s², 1.000 m/s² vertically" in words
+    assert "no building, storey, importance or element factor" in words
+    assert "The floor in the building" not in words_of(
+        html_of(
+            Page(
+                kind="",
+                title="",
+                name="",
+                hash="",
+                signature=None,
+                sections=[runs_section(SiteView(result=replace(result, floor=given)))],
+            )
+        )
+    )
     high = dict(site_rows(replace(result, floor=replace(floor, peak_m_s2=9.0))))
     assert "below that of the ground" not in high["level"]
 
