@@ -4,7 +4,6 @@ Cells are numbered as in `table.csv`, the last axis the fastest. The map shows a
 numbers go in single precision; the values of axes and derived keys, from which the command of a cell is made, in full.
 """
 
-import csv
 import re
 import shlex
 from collections import Counter
@@ -20,6 +19,7 @@ from numpy.typing import NDArray
 from fem.assessment.sureness import REGIME_UNSURE, SURE, UNSURE
 from fem.batch.answers import ends_in_words, ranges_in_words
 from fem.batch.labels import axis_label, unit_in_words
+from fem.batch.log import fields_of
 from fem.case.case import load_case
 from fem.figures.style import STATE_COLOURS, VERMILLION
 from fem.html import sections as html
@@ -236,8 +236,7 @@ def _thresholds(folder: Path, info: SweepResult) -> list[html.Block]:
     if not path.is_file():
         return []
     try:
-        with path.open(encoding="utf-8", newline="") as stream:
-            header, *rows = list(csv.reader(stream))
+        header, *rows = map(fields_of, path.read_text(encoding="utf-8").splitlines())
     except (OSError, ValueError) as error:
         raise FolderError(f"{path}: cannot be read ({error}); repeat the sweep with --force") from None
     shown = ([short(float(one), figures=5) if NUMBER.fullmatch(one) else one for one in row] for row in rows)
