@@ -310,8 +310,7 @@ def modes_section(view: RunView) -> html.PageSection:
         "Elastic modes",
         "modes",
         f"Modes of the container without contact{used}.{contact}",
-        html.columns(html.table_of("elastic modes", columns, modes)),
-        *view.figures("modes"),
+        html.columns(html.table_of("elastic modes", columns, modes), *view.figures("modes")),
     )
 
 

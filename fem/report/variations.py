@@ -6,7 +6,7 @@ are. Then what is known or chosen: the phase of the floor, its vertical motion, 
 """
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
@@ -104,13 +104,28 @@ class VariationTable:
             words.append(f"It overturns in {overturned}.")
         if invalid:
             words.append(f"It destroys a corner in {invalid}.")
-        runs = [line.run for line in self.lines if line.run.outcome not in ENDINGS]
-        ratios = [run[TURNED] for run in runs if run[TURNED] is not None]
-        if ratios:
-            low, high = RATIO.text(min(ratios)), RATIO.text(max(ratios))
-            reach = f"ranges from {low} to {high}" if low != high else f"is {low}"
-            words.append(f"Where it stands, the rotation ratio {reach}.")
+        own, *others = self.lines
+        chosen = _reach([line for line in others if line.change.kind == "further"])
+        unknown = _reach([own, *(line for line in others if line.change.kind != "further")])
+        reaches = [
+            f"{unknown} with one input changed that is not known" if unknown else "",
+            f"{chosen} with another floor, motion or start, which no range in the verdict covers"
+            if chosen
+            else "",
+        ]
+        if any(reaches):
+            words.append(f"Where it stands, the rotation ratio is {', and '.join(filter(None, reaches))}.")
         return " ".join(words)
+
+
+def _reach(lines: Sequence[Varied]) -> str:
+    """The rotation ratios of those that stand, least to largest; empty for none."""
+    runs = [line.run for line in lines if line.run.outcome not in ENDINGS]
+    ratios = [run[TURNED] for run in runs if run[TURNED] is not None]
+    if not ratios:
+        return ""
+    low, high = RATIO.text(min(ratios)), RATIO.text(max(ratios))
+    return f"{low} to {high}" if low != high else low
 
 
 def variation_table(

@@ -52,8 +52,8 @@ class CurvePoint:
 
     @property
     def bounded(self) -> bool | None:
-        """(a) of the paper's stability: it did not overturn, and amplitudes do not diverge; None where failed."""
-        if self.orbit.status == "failed":
+        """(a) of the paper's stability: it did not overturn, and amplitudes do not diverge; None where not valid."""
+        if self.orbit.status == "failed" or self.motion == Outcome.INVALID:
             return None
         return self.long_time is not None and not amplitudes_diverge(self.amplitudes)
 

@@ -13,6 +13,7 @@ from fem.response.model import SAMPLES_PER_PERIOD
 from fem.response.orbit import EXTREME_COLUMNS, SECTION_COLUMNS
 from fem.results.figures import FIGURES, TURNED, Shown, shown_in
 from fem.results.json_block import JsonBlock
+from fem.results.outcome import Outcome
 from fem.runtime import units
 from fem.runtime.arrays import FloatArray
 
@@ -61,7 +62,9 @@ class PointRow(JsonBlock):
 
     @property
     def words(self) -> str:
-        """The long-time motion: `rest`, `rock of period 1`, `slide-rock, not periodic`, `overturned`."""
+        """The long-time motion: `rest`, `rock of period 1`, `slide-rock, not periodic`, `a corner destroyed`."""
+        if self.motion == Outcome.INVALID:
+            return "a corner destroyed"
         if self.long_time == "periodic":
             return f"{self.motion} of period {self.period_n}"
         if self.long_time in (None, "rest"):

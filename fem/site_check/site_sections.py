@@ -318,7 +318,7 @@ def _methods_table(caption: str, rows: Sequence[SiteMethod]) -> html.Table:
         html.Column("weight", lambda row: row.mass + _elevation(row.elevation)),
         html.Column("utilisation", lambda row: _utilisation(row, 3), html.NUMBER),
         html.Column("conclusion", lambda row: row.says),
-        html.Column("the rule counts", lambda row: Markup.escape(row.found)),
+        html.Column("the rule counts", lambda row: html.Cell(Markup.escape(row.found), "wide")),
         html.Column("the method is", compared),
         html.Column("source", lambda row: html.Cell(Markup.escape(row.source), "note")),
     ]

@@ -22,7 +22,7 @@ def test_tables_are_written_in_one_place():
     written = [
         path for path in ROOT.rglob("fem/**/*.py") if re.search(r"csv\.(Dict)?[wW]riter", path.read_text())
     ]
-    assert [path.name for path in written] == ["log.py"]
+    assert [path.name for path in written] == ["table.py"]
 
 
 @pytest.mark.parametrize("value", [-1.5, (-0.5, 2.0), "-1e-05 2.0", "a=1", None, "-inf"])

@@ -98,6 +98,14 @@ class TestEveryReport:
         browser.open(pages / name)
         assert browser.evaluate(FAINT) == []
 
+    def test_no_drawing_leaves_half_of_a_wide_page_white(self, browser, pages, name):
+        browser.open(pages / name)
+        shares = (
+            "[...document.querySelectorAll('section > .scroll > .curve')].map((one) => "
+            "one.getBoundingClientRect().width / one.closest('section').getBoundingClientRect().width)"
+        )
+        assert min(browser.evaluate(shares), default=1.0) > 0.7
+
     def test_a_telephone_needs_no_scrolling_sideways(self, browser, pages, name):
         browser.window(390, 844)
         try:

@@ -85,6 +85,20 @@ def test_variations_are_kept_beside_the_run(folder, page):
     assert all(escape(word) in page for word in shown)
 
 
+def test_what_is_not_known_and_what_is_chosen_have_ranges_of_their_own(folder):
+    table = variation_table(open_run(folder), every=True)
+    own, *others = table.lines
+    chosen = [line.run.rotation_ratio for line in others if line.change.kind == "further"]
+    unknown = [
+        line.run.rotation_ratio for line in (own, *others) if line.change.kind != "further" or line is own
+    ]
+    said = re.search(
+        r"is (\S+) to (\S+) with one input .* and (\S+) to (\S+) with another floor", table.sentence
+    )
+    expected = [min(unknown), max(unknown), min(chosen), max(chosen)]
+    assert [float(one) for one in said.groups()] == pytest.approx(expected, abs=5e-4)
+
+
 def test_variations_that_take_long_are_named_and_computed_when_asked_for(folder, tmp_path, monkeypatch):
     copied = shutil.copytree(folder, tmp_path / "copied")
     (copied / "variations.json").unlink(missing_ok=True)
