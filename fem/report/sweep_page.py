@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from fem.assessment.sureness import REGIME_UNSURE, SURE, UNSURE
 from fem.batch.answers import ends_in_words, ranges_in_words
 from fem.batch.labels import axis_label, unit_in_words
-from fem.batch.log import fields_of
+from fem.batch.table import fields_of
 from fem.case.case import load_case
 from fem.figures.style import STATE_COLOURS, VERMILLION
 from fem.html import sections as html
