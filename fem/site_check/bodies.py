@@ -27,7 +27,7 @@ def body_of(variant: Variant) -> SiteBody:
         mass_kg=mesh.mass,
         centroid_m=static.centroid,
         inertia_kg_m2=static.inertia,
-        support_width_m=mesh.width,
+        support_width_m=static.width,
         width_m=case.container.width_m,
         height_m=case.container.total_height,
         depth_m=case.container.depth_m,

@@ -121,7 +121,7 @@ class SiteBody(JsonBlock):
     mass_kg: float
     centroid_m: float
     inertia_kg_m2: float  #: polar, in the elevation, about the mass centre
-    support_width_m: float  #: between the outer points of the support
+    support_width_m: float  #: between the points about which it turns
     width_m: float  #: of the shell along the motion
     height_m: float
     depth_m: float  #: of the shell across the motion

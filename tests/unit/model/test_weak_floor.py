@@ -18,6 +18,8 @@ from fem.cli.check import preview_of
 from fem.model.model import build_model
 from fem.model.tied_capacity import tied_capacities
 from fem.run.outcome import run_without_history
+from fem.site_check.bodies import body_of
+from fem.site_check.file import Variant
 
 WEIGHT, LENGTH, EDGE = 98.1e3, 0.1, 0.55
 STRENGTH = 5e6  #: of asphalt [Pa]
@@ -72,6 +74,8 @@ def test_all_that_follows_from_the_width_follows_it():
         [WEIGHT * half] * 2
     )
     assert preview_of(case).floor.pivot_inset_m == pytest.approx(0.04)
+    at_a_site = body_of(Variant(mass="full", elevation="width", case=case))
+    assert at_a_site.support_width_m == pytest.approx(2.0 * half)
 
 
 def test_a_weak_wall_on_a_firm_floor_turns_about_its_edge():
@@ -84,6 +88,25 @@ def test_the_full_model_is_refused_where_it_would_turn_between_its_nodes():
     case = on_asphalt(2.0, **{"solver.model": "full"})
     with pytest.raises(CaseError, match="a corner turns 25 mm inside its edge"):
         build_model(case)
+
+
+@pytest.mark.parametrize(("share", "falls"), [(0.94, False), (1.03, True)])
+def test_the_points_of_a_flat_base_find_by_themselves_where_it_turns(share, falls):
+    # half the base, 0.55 x 1.1 m, bears 363 kN: it turns 74 mm inside the edge, by half of 0.55 x 98.1/363
+    flat = {"support.kind": "flat", "support.casting_m": None, "container.corner_post_N": None}
+    soft = {
+        "floor.preset": "compacted gravel",
+        "floor.bearing_strength_Pa": 0.6e6,
+        "floor.corner_patch_m": None,
+    }
+    uplift = 9.81 * (EDGE - 0.25 * 1.1 * 98.1 / 363.0) / 2.0
+    push = {"kind": "pulse", "shape": "half-sine", "pulse_s": 6.0, "peak_acceleration_m_s2": share * uplift}
+    motion = {f"motion.{key}": value for key, value in push.items()}
+    case = named_case("seed_stack_plateau", ASPHALT | flat | soft | motion | {"solver.duration_s": 6.0})
+    model = build_model(case)
+    assert model.static.uplift_acceleration == pytest.approx(uplift)
+    verdict, error = run_without_history(model, None)
+    assert error is None and (verdict.rotation_ratio > 1.0) == falls
 
 
 def block(times):
