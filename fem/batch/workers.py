@@ -25,8 +25,9 @@ from multiprocessing.synchronize import Semaphore
 from types import TracebackType
 from typing import Self, TypeVar
 
-#: number of cases from which processes, which take some seconds to start, pay off for the compiled models
-WORTH_PROCESSES = {"rigid": 500, "reduced": 100, "full": 1}
+#: number of cases from which processes pay off for the compiled models: to start they take as long as a thousand rigid
+#: runs, and runs that follow records step for so long that threads do as well
+WORTH_PROCESSES = {"rigid": 2000, "reduced": 100, "full": 1}
 IN_THREADS = dict.fromkeys(WORTH_PROCESSES, math.inf)  #: no number: threads alone
 ENDING = (signal.SIGINT, signal.SIGTERM)  #: signals that end a process
 STDIN = "<stdin>"  #: file of a script that Python reads from its standard input

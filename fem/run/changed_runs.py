@@ -144,15 +144,15 @@ def _run_changed(run: Model, change: InputChange, shared: Shared, stop: Callable
         model = build_model(case, changed_container(case, run.container, run.case), motions=motions)
         same_elements = model.container.elements is run.container.elements
         recovery = shared.recovery if same_elements or shared.recovery is None else recovery_of(model)
-        # its forces follow from mass and weight
-        same_load = model.container is run.container and case.floor.slope == run.case.floor.slope
-        joints = shared.joints if same_load or shared.joints is None else joints_of(model)
         if shared.short and (change.kind != "one" or case.container.bolted_joints == 0):
             verdict, error = run_without_history(model, recovery)
             status = "completed" if verdict.overturned_at_s is None else "overturned"
             if error is not None:
                 return _without_outcome(change, "failed", error)
             return changed_run(change, model, status, verdict, None)
+        # the forces in its joints follow from mass and weight
+        same_load = model.container is run.container and case.floor.slope == run.case.floor.slope
+        joints = shared.joints if same_load or shared.joints is None else joints_of(model)
         recorder = Recorder(model, recovery, joints=joints)
         ending = simulate(model, recorder, stop=stop)
     # bad input, no equilibrium, a singular matrix

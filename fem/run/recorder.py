@@ -73,6 +73,7 @@ class Recorder:
             self._joint_forces = joints.initial_forces(initial, time_scale)
             rotation = initial.pose[ROTATION : ROTATION + 1]
             self.joint_motion = joints.motion(initial.position[None], initial.velocity[None], rotation)[0]
+        self._numbers = numbers_of(history_columns(self._model.case, len(self._joint_forces)))
 
     def drain(self, run: RunState) -> None:
         """Empty the run's arrays of samples."""
@@ -82,9 +83,8 @@ class Recorder:
 
     def history(self) -> History:
         """Everything sampled so far."""
-        numbers = self._numbers
-        values = np.concatenate([np.zeros((0, len(numbers))), *self._rows])
-        return History(numbers=numbers, values=values, modes=tuple(self._modes))
+        values = np.concatenate([np.zeros((0, len(self._numbers))), *self._rows])
+        return History(numbers=self._numbers, values=values, modes=tuple(self._modes))
 
     @property
     def largest_von_mises(self) -> float | None:
@@ -92,10 +92,6 @@ class Recorder:
         if self._recovery is None or self._recovery.full:
             return self._stress
         return self._recovery.largest_of_steps(self._model.run.strained)
-
-    @property
-    def _numbers(self) -> tuple[str, ...]:
-        return numbers_of(history_columns(self._model.case, len(self._joint_forces)))
 
     def memory(self) -> dict[str, FloatArray]:
         """State of the recorder on which the next samples depend, by name."""
