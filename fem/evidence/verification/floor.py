@@ -20,7 +20,7 @@ from fem.evidence.verification import runs
 from fem.evidence.verification.bodies import Flight, free_run
 from fem.evidence.verification.checks import Findings, check
 from fem.evidence.verification.restitution import peaks
-from fem.evidence.verification.rocking import BLOCK, RELEASED, difference_of_rotation
+from fem.evidence.verification.rocking import RELEASED, difference_of_rotation
 from fem.evidence.verification.sliding import slip_of_a_driven_box
 from fem.model.model import Model, build_model
 from fem.solid.nodal_body import advance_body
@@ -162,7 +162,7 @@ def restitution() -> Findings:
     free: runs.Keys = RELEASED | {"contact.mu_static": 0.8, "solver.duration_s": 2.5}
     for stiffness, cap, (ratios, tolerance) in product(STIFFNESSES, CAPS, RATIOS.items()):
         found = {ratio: runs.run(runs.STACK, free | slab(stiffness, cap, ratio)) for ratio in ratios}
-        exact = BLOCK.housner_restitution
+        exact = next(iter(found.values())).block.housner_restitution  # about where it turns on a weak floor
         worst, value = max(
             ((ratio, peaks(done)) for ratio, done in found.items()), key=lambda one: abs(one[1] - exact)
         )
@@ -171,7 +171,7 @@ def restitution() -> Findings:
             "velocity ratio at the first impact",
             value,
             exact,
-            source="1 - 1.5 sin^2 al, Housner 1963",
+            source="1 - (M R^2/I_O)(1 - cos 2 al), Housner 1963",
             absolute=tolerance,
         )
 
