@@ -39,8 +39,8 @@ class Shard(JsonBlock):
         Raises:
             CaseError: no such part.
         """
-        found = re.fullmatch(r"(\d{1,6})/(\d{1,6})", text.strip(), re.ASCII)
-        number, count = map(int, found.groups()) if found else (0, 0)
+        match = re.fullmatch(r"(\d{1,6})/(\d{1,6})", text.strip(), re.ASCII)
+        number, count = map(int, match.groups()) if match else (0, 0)
         if not 1 <= number <= count <= MOST_SHARDS:
             raise CaseError(f"--shard {text}: a part and how many there are is needed, from 1/64 to 64/64")
         return cls(number, count)
@@ -79,7 +79,7 @@ def read_shards(place: ResultFolder, request: str, folders: Sequence[Path]) -> l
         FolderError: a folder of something else or of another program, an unfinished shard, missing shards.
     """
     marks: list[Mapping[str, Any]] = []
-    found: set[tuple[int, int]] = set()
+    numbers: set[tuple[int, int]] = set()
     for folder in folders:
         if folder.resolve() == place.path.resolve():
             raise FolderError(
@@ -91,21 +91,21 @@ def read_shards(place: ResultFolder, request: str, folders: Sequence[Path]) -> l
             other = f"of another {place.kind.asked}" if shard else f"of no shard of a {place.kind.name}"
             raise FolderError(f"--merge {folder}: it holds the results {other}")
         ResultFolder(
-            path=folder, kind=place.kind, lock=place.lock, found=mark, resume=True
+            path=folder, kind=place.kind, lock=place.lock, earlier=mark, resume=True
         ).require_same_program()
         if not shard.done:
             raise FolderError(
                 f"--merge {folder}: shard {shard} is not finished; --shard {shard} --resume continues it"
             )
         marks.append(mark)
-        found.add((shard.number, shard.count))
-    counts = {count for _, count in found}
+        numbers.add((shard.number, shard.count))
+    counts = {count for _, count in numbers}
     if len(counts) > 1:
         raise FolderError(
             f"--merge: shards of {' and of '.join(map(str, sorted(counts)))}; give those of one set"
         )
     count = counts.pop()
-    if missing := [f"{number}/{count}" for number in range(1, count + 1) if (number, count) not in found]:
+    if missing := [f"{number}/{count}" for number in range(1, count + 1) if (number, count) not in numbers]:
         more = f" and {len(missing) - MOST_NAMED} more" if len(missing) > MOST_NAMED else ""
         raise FolderError(f"--merge: missing shards {', '.join(missing[:MOST_NAMED])}{more}")
     if len({str(mark.get(place.kind.later)) for mark in marks}) > 1:

@@ -120,14 +120,16 @@ def run_study(study: Study[ResultT], folder: Path, **options: Unpack[StudyOption
         interruptible(runner.reporter) as stop,
     ):
         shard, merge = options.get("shard"), options.get("merge") or ()
-        before = Shard.from_json(place.found["shard"]) if place.found and place.found.get("shard") else None
+        before = (
+            Shard.from_json(place.earlier["shard"]) if place.earlier and place.earlier.get("shard") else None
+        )
         if before and shard and (before.number, before.count) != (shard.number, shard.count):
             raise FolderError(f"{folder} holds shard {before} of this {kind.name}; {OTHER_FOLDER}")
         if before and before.done and shard and not merge:
             runner.reporter.message(f"{folder} holds shard {shard} of this {kind.name} already")
-            return typed_result(study.result, place.found or {}, folder / kind.mark)
-        if place.finished and place.found:
-            known = study.again(place, typed_result(study.result, place.found, folder / kind.mark))
+            return typed_result(study.result, place.earlier or {}, folder / kind.mark)
+        if place.finished and place.earlier:
+            known = study.again(place, typed_result(study.result, place.earlier, folder / kind.mark))
             if known is not None:
                 runner.reporter.message(f"{folder} holds this {kind.name} already; --force computes it again")
                 return known
@@ -139,10 +141,10 @@ def run_study(study: Study[ResultT], folder: Path, **options: Unpack[StudyOption
         parts = read_shards(place, study.request, merge) if merge else []
         share = Share(shard) if shard else None
         place = replace(place, beside={"shard": shard.to_json()} if shard else {})
-        place.begin(study.begun.to_json() | mark, study.texts, keep=place.found is not None)
+        place.begin(study.begun.to_json() | mark, study.texts, keep=place.earlier is not None)
         if parts:
             join_logs(folder, kind, merge)
-            place = replace(place, found=place.found or dict(parts[0]))
+            place = replace(place, earlier=place.earlier or dict(parts[0]))
         halted = (lambda: stop() or share.waits) if share else stop
         for case in study.cases:
             copy_data_files(case, place.path)

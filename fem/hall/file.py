@@ -247,11 +247,11 @@ def _key(column: str, problems: list[str]) -> str | None:
             problems.append(f"column {column!r} {error}")
             return ""
         return None if column in NO_AXIS or table == "document" else column
-    found = _plain_keys().get(column.lower(), [])
-    if len(found) == 1:
-        return found[0]
-    if found:
-        problems.append(f"column {column!r} may be {' or '.join(found)}; write one of them")
+    keys = _plain_keys().get(column.lower(), [])
+    if len(keys) == 1:
+        return keys[0]
+    if keys:
+        problems.append(f"column {column!r} may be {' or '.join(keys)}; write one of them")
         return ""
     if meant := _meant(column):
         problems.append(
@@ -295,11 +295,11 @@ def _row(
         texts = [own.get(one, "") for one in pair]
         if not any(texts):
             return None
-        found = [_number(text, comma=comma) for text in texts]
-        for one, text, value, limit in zip(pair, texts, found, limits, strict=True):
+        values = [_number(text, comma=comma) for text in texts]
+        for one, text, value, limit in zip(pair, texts, values, limits, strict=True):
             if value is None or abs(value) > limit:
                 problems.append(f"{one} must be a number of at most {limit:g}, got {text!r}")
-        return None if None in found else (found[0] or 0.0, found[1] or 0.0)
+        return None if None in values else (values[0] or 0.0, values[1] or 0.0)
 
     place, geographic = numbers(PLACE, (1e6, 1e6)), numbers(GEOGRAPHIC, (180.0, 90.0))
     count = _number(own.get(COUNT) or "1", comma=comma)
@@ -323,8 +323,8 @@ def _row(
 def _number(text: str, *, comma: bool) -> float | None:
     if comma and DECIMAL_COMMA.fullmatch(text):
         text = text.replace(",", ".")
-    found = as_numbers([text]) if text else None
-    return None if found is None else float(found[0])
+    numbers = as_numbers([text]) if text else None
+    return None if numbers is None else float(numbers[0])
 
 
 def _value(key: str, text: str, *, comma: bool) -> Any:

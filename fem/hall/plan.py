@@ -59,7 +59,7 @@ class HallCases:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Looked:
+class Inventory:
     """The rows of a list, looked at."""
 
     reasons: tuple[str, ...]  #: why each is refused; empty where it is not
@@ -76,13 +76,13 @@ class Hall:
     base: Case
     motions: tuple[FloorMotionPair, ...]
     cases: HallCases
-    looked: Looked
+    inventory: Inventory
     named: tuple[str, ...] = ()  #: motions as they were named on the command line
 
     @property
     def containers(self) -> tuple[Mapping[str, Any], ...]:
         """What the rows of each set that differ."""
-        return self.looked.containers
+        return self.inventory.containers
 
     def items(self) -> list[HallItem]:
         """All runs; those of a container follow one another."""
@@ -158,7 +158,7 @@ def plan_hall(
         base=base,
         motions=pairs,
         cases=cases,
-        looked=look_at(
+        inventory=take_inventory(
             file, partial(_hash_of, cases, outside=bool(motions)), base.origin_with({}).place, strict=strict
         ),
         named=tuple(motions),
@@ -195,7 +195,9 @@ def _axis(folder: Path, motions: Sequence[str]) -> Axis:
     return Axis(key=MOTION_FILE, values=names, following=following)
 
 
-def look_at(file: HallFile, look: Callable[[Mapping[str, Any]], str], place: str, *, strict: bool) -> Looked:
+def take_inventory(
+    file: HallFile, look: Callable[[Mapping[str, Any]], str], place: str, *, strict: bool
+) -> Inventory:
     """Look at every row before any is computed; equal ones are one container.
 
     Args:
@@ -229,7 +231,7 @@ def look_at(file: HallFile, look: Callable[[Mapping[str, Any]], str], place: str
         lines = [f"{file.name}, line {row.line} ({row.name}): {reason}" for row, reason in bad[:20]]
         lines += [f"and {len(bad) - 20} more rows"] * (len(bad) > 20)
         raise CaseError("\n".join(lines + ["no row can be computed"] * (not containers)))
-    return Looked(
+    return Inventory(
         reasons=tuple(reasons),
         of_row=tuple(of_row),
         containers=tuple(containers.values()),

@@ -18,10 +18,10 @@ from fem.batch.table import row_of, table_of_lines, table_text
 from fem.case.case import Case
 from fem.case.toml import toml_document
 from fem.hall.file import HallFile
-from fem.hall.found import CHECK_COLUMNS, RUN_COLUMNS, HallRuns, static_use, weakest_first
 from fem.hall.page import hall_report
 from fem.hall.places import PICTURE, draw_places, geojson
-from fem.hall.plan import Hall, Looked, plan_hall
+from fem.hall.plan import Hall, Inventory, plan_hall
+from fem.hall.ranking import CHECK_COLUMNS, RUN_COLUMNS, HallRuns, static_use, weakest_first
 from fem.hall.result import OF_A_RUN, OF_MOTIONS, RESULT_COLUMNS, STATIC, HallResult
 from fem.hall.table import HallTable, answer_of
 from fem.results.disk import BYTES_BESIDE, table_bytes
@@ -60,8 +60,8 @@ def run_hall(
         hall = plan_hall(file, base, motions, runner, strict=strict, force=options.get("force", False))
         options["workers_of"] = runner.workers_of
         begun = replace(
-            asked_of(file, base, hall.looked),
-            asked=hash_of([hall.looked.hashes, [pair.case_hash for pair in hall.motions]]),
+            asked_of(file, base, hall.inventory),
+            asked=hash_of([hall.inventory.hashes, [pair.case_hash for pair in hall.motions]]),
             listed=hash_of([file.text, checks]),
             motions=hall.named,
             motion_covered=motions_left_out(base, hall.motions),
@@ -90,7 +90,7 @@ def study_of(file: HallFile, base: Case, begun: HallResult, compute: Any, size: 
     )
 
 
-def asked_of(file: HallFile, base: Case, looked: Looked) -> HallResult:
+def asked_of(file: HallFile, base: Case, inventory: Inventory) -> HallResult:
     """What is known before any run, but for hashes."""
     return HallResult(
         hall=file.name,
@@ -99,8 +99,8 @@ def asked_of(file: HallFile, base: Case, looked: Looked) -> HallResult:
         model=base.solver.model,
         rows=len(file.rows),
         containers=sum(row.count for row in file.rows),
-        distinct=len(looked.containers),
-        refused=sum(map(bool, looked.reasons)),
+        distinct=len(inventory.containers),
+        refused=sum(map(bool, inventory.reasons)),
         kept=file.kept,
         columns=file.columns,
         allow_outside=base.origin_with({}).allow_outside or None,
@@ -125,7 +125,7 @@ def _compute(hall: Hall, begun: HallResult, place: ResultFolder, runner: Runner)
         return replace(begun, status=INTERRUPTED, missing=f"{total - missing} of {total} runs are computed")
     static = {
         number: dict(zip(STATIC, static_use(hall, hall.item(number, runs.governing(number))), strict=True))
-        for number in runs.found
+        for number in runs.by_container
     }
     wanted = partial(runs.to_check, begun.checks, weakest_first(runs, static, margins=False))
     LoggedRuns(
@@ -144,13 +144,13 @@ def _compute(hall: Hall, begun: HallResult, place: ResultFolder, runner: Runner)
     place.write_text(RUNS, table_of_lines(RUN_COLUMNS, runs.lines()))
     checked = sorted(runs.checked.items())
     place.write_text(CHECKS, table_text(CHECK_COLUMNS, ([k, *one.values()] for k, one in checked)))
-    found = {number: static[number] | _shown(runs, number) for number in runs.found}
-    endings = {number: runs.found[number][runs.governing(number)].ending for number in runs.found}
+    values = {number: static[number] | _shown(runs, number) for number in runs.by_container}
+    endings = {number: runs.worst(number).ending for number in runs.by_container}
     table = HallTable(
         file=hall.file,
-        looked=hall.looked,
-        found=found,
-        words={k: (str(one["outcome"] or WORDS[endings[k]]), WORDS[endings[k]]) for k, one in found.items()},
+        inventory=hall.inventory,
+        values=values,
+        words={k: (str(one["outcome"] or WORDS[endings[k]]), WORDS[endings[k]]) for k, one in values.items()},
         order=weakest_first(runs, static),
         command=lambda row, container: hall.command(row, runs.governing(container)),
     )
@@ -180,13 +180,13 @@ def written(place: ResultFolder, table: HallTable, result: HallResult) -> HallRe
 
 def _shown(runs: HallRuns, container: int) -> dict[str, Any]:
     """What a container showed, by column."""
-    some, motion = runs.found[container], runs.governing(container)
-    row = row_of(RUN_COLUMNS, some[motion].line)
-    found: dict[str, Any] = {name: row[name] for name in OF_A_RUN} | runs.checked.get(container, {})
+    some, motion = runs.by_container[container], runs.governing(container)
+    row = row_of(RUN_COLUMNS, runs.worst(container).line)
+    values: dict[str, Any] = {name: row[name] for name in OF_A_RUN} | runs.checked.get(container, {})
     if names := [pair.name for pair in runs.hall.motions]:
         slipped = max(sorted(some), key=lambda one: some[one].slip)
         counts = runs.counts(container)
-        found |= dict(
+        values |= dict(
             zip(OF_MOTIONS, (names[motion], *counts, some[slipped].slip, names[slipped]), strict=True)
         )
-    return found
+    return values

@@ -19,7 +19,7 @@ from fem.batch.table import fields_of, line_of, row_of, table_of_lines
 from fem.case.case import Case
 from fem.case.validation import CaseError
 from fem.hall.file import HallFile
-from fem.hall.plan import Looked, look_at
+from fem.hall.plan import Inventory, take_inventory
 from fem.hall.result import AT_SITE, RESULT_COLUMNS, HallResult
 from fem.hall.run import asked_of, study_of, written
 from fem.hall.table import HallTable
@@ -84,17 +84,19 @@ def run_hall_at_site(
         )
     # of records the contents, too: their names stay where they change
     ground = ground_motions(site, LAST_PERIOD_S, allow_outside=allow_outside) if site.motions.files else []
-    looked = look_at(file, partial(_look, site, start, ground), start.origin_with({}).place, strict=strict)
+    inventory = take_inventory(
+        file, partial(_look, site, start, ground), start.origin_with({}).place, strict=strict
+    )
     begun = replace(
-        asked_of(file, start, looked),
+        asked_of(file, start, inventory),
         site=site.origin.place,
         model=site.heading.model,
-        asked=hash_of(looked.hashes),
+        asked=hash_of(inventory.hashes),
         listed=hash_of(file.text),
         allow_outside=allow_outside or None,
     )
     force = options.get("force", False)
-    work = _AtSite(file=file, site=site, start=start, looked=looked, begun=begun, force=force)
+    work = _AtSite(file=file, site=site, start=start, inventory=inventory, begun=begun, force=force)
     return run_study(study_of(file, start, begun, work.compute, 0.0), folder, **options)
 
 
@@ -119,14 +121,14 @@ class _AtSite:
     file: HallFile
     site: SiteRequest
     start: Case
-    looked: Looked
+    inventory: Inventory
     begun: HallResult
     force: bool  #: verify every container again
     lines: dict[int, str] = field(default_factory=dict)  #: of the log, by container
 
     def compute(self, place: ResultFolder, runner: Runner) -> HallResult:
         """Verify what is missing, and write the list with the answers, and its page."""
-        count, path = len(self.looked.containers), place.path / SITES
+        count, path = len(self.inventory.containers), place.path / SITES
         numbers = list(range(count))
         mine = runner.share.of(numbers, numbers) if runner.share else numbers
         with closing(RowLog(path, COLUMNS)) as log:
@@ -146,25 +148,27 @@ class _AtSite:
             return replace(self.begun, status=INTERRUPTED, missing=missing)
         place.check()
         place.write_text(SITES, table_of_lines(COLUMNS, (line for _, line in sorted(self.lines.items()))))
-        found = {k: row_of(COLUMNS, line) for k, line in self.lines.items()}
-        for k, one in found.items():
+        rows = {k: row_of(COLUMNS, line) for k, line in self.lines.items()}
+        for k, one in rows.items():
             page = self._folder(k) / "report.html"
             one["page"] = page.as_posix() if (place.path / page).is_file() else None
         table = HallTable(
             file=self.file,
-            looked=self.looked,
-            found=found,
-            words={k: (one["answer"] or NO_ANSWER,) * 2 for k, one in found.items()},
-            order=sorted(found, key=lambda k: _weakness(found[k])),
+            inventory=self.inventory,
+            values=rows,
+            words={k: (one["answer"] or NO_ANSWER,) * 2 for k, one in rows.items()},
+            order=sorted(rows, key=lambda k: _weakness(rows[k])),
             command=lambda row, container: self._command(place.path / self._folder(container)),
         )
-        status = FAILED if {one["status"] for one in found.values()} == {FAILED} else COMPLETED
+        status = FAILED if {one["status"] for one in rows.values()} == {FAILED} else COMPLETED
         return written(place, table, replace(self.begun, status=status, runs=count))
 
     def _verify(self, number: int, folder: Path, runner: Runner) -> str:
         """The line of a container; empty where it was interrupted."""
-        own = self.looked.of_row.index(number)
-        request = request_of(self.site, self.start, self.looked.containers[number], self.file.rows[own].name)
+        own = self.inventory.of_row.index(number)
+        request = request_of(
+            self.site, self.start, self.inventory.containers[number], self.file.rows[own].name
+        )
         folder /= self._folder(number)
         try:
             result = run_site(
@@ -178,8 +182,10 @@ class _AtSite:
                 reporter=SilentReporter(),
             )
         except (CaseError, MeshError) as error:
-            found = {"container": number, "status": FAILED} | dict.fromkeys(("reason", "reasons"), str(error))
-            return line_of(found.get(name) for name in COLUMNS)
+            row: dict[str, Any] = {"container": number, "status": FAILED} | dict.fromkeys(
+                ("reason", "reasons"), str(error)
+            )
+            return line_of(row.get(name) for name in COLUMNS)
         if result.state != "finished":
             return ""
         # for the command of the row; what is no motion is not handed on
@@ -202,7 +208,7 @@ class _AtSite:
         return shlex.join([*words, *(["--allow-outside"] if outside else [])])
 
     def _folder(self, number: int) -> Path:
-        return Path(FOLDERS) / f"{number + 1:03d}-{self.looked.hashes[number][:8]}"
+        return Path(FOLDERS) / f"{number + 1:03d}-{self.inventory.hashes[number][:8]}"
 
 
 def _is_of_another_program(folder: Path) -> bool:
@@ -210,10 +216,10 @@ def _is_of_another_program(folder: Path) -> bool:
     if not (folder / SITE.mark).exists():
         return False
     try:
-        found = read_result(folder / SITE.mark, SITE)
+        mark = read_result(folder / SITE.mark, SITE)
     except FolderError:  # damaged
         return True
-    return any(found.get(name) != value for name, value in program_of_results().items())
+    return any(mark.get(name) != value for name, value in program_of_results().items())
 
 
 def _look(site: SiteRequest, start: Case, ground: Sequence[GroundMotion], values: Mapping[str, Any]) -> str:
@@ -227,7 +233,7 @@ def _look(site: SiteRequest, start: Case, ground: Sequence[GroundMotion], values
     return hash_of([request.portable, site_hash(request, ground)])
 
 
-def _weakness(found: Mapping[str, Any]) -> tuple[float, ...]:
+def _weakness(row: Mapping[str, Any]) -> tuple[float, ...]:
     """Smaller for the worse: by the answer, then by the margin, then by rotation and slip."""
-    order, margin = WORST_FIRST.index(found["answer"] or NO_ANSWER), found["margin"]
-    return order, math.inf if margin is None else margin, -(found[TURNED] or 0.0), -(found[SLIPPED] or 0.0)
+    order, margin = WORST_FIRST.index(row["answer"] or NO_ANSWER), row["margin"]
+    return order, math.inf if margin is None else margin, -(row[TURNED] or 0.0), -(row[SLIPPED] or 0.0)

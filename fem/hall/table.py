@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from fem.hall.file import HallFile, HallRow
-from fem.hall.plan import Looked
+from fem.hall.plan import Inventory
 from fem.hall.result import REFUSED, RESULT_COLUMNS, HallResult, TagCount
 
 
@@ -15,9 +15,9 @@ class HallTable:
     """The rows of a list with what their containers showed."""
 
     file: HallFile
-    looked: Looked
+    inventory: Inventory
     #: of each container, by column
-    found: Mapping[int, Mapping[str, Any]]
+    values: Mapping[int, Mapping[str, Any]]
     words: Mapping[int, tuple[str, str]]  #: what the outcomes count each container as, and what the tags do
     order: list[int]  #: of the containers, the weakest first
     command: Callable[[HallRow, int], str]  #: of a row, whose container this is
@@ -25,23 +25,23 @@ class HallTable:
     def _results(self) -> Iterator[tuple[HallRow, int | None, dict[str, Any]]]:
         ranks = {number: place for place, number in enumerate(self.order, start=1)}
         for row, container, reason in zip(
-            self.file.rows, self.looked.of_row, self.looked.reasons, strict=True
+            self.file.rows, self.inventory.of_row, self.inventory.reasons, strict=True
         ):
             if container is None:
                 yield row, None, {"status": REFUSED, "reason": reason}
             else:
-                yield row, container, {**self.found[container], "rank": ranks[container]}
+                yield row, container, {**self.values[container], "rank": ranks[container]}
 
     def rows(self) -> Iterator[tuple[Any, ...]]:
         """`hall.csv`: the fields of the list as they were given, then the results."""
-        for row, _, found in self._results():
-            yield *row.given, *(found.get(name) for name in RESULT_COLUMNS)
+        for row, _, values in self._results():
+            yield *row.given, *(values.get(name) for name in RESULT_COLUMNS)
 
     def added_to(self, result: HallResult) -> HallResult:
         """The result with counts and rows."""
         table, outcomes, tags = [], Counter[str](), dict[str, TagCount]()
-        for number, (row, container, found) in enumerate(self._results(), start=1):
-            values = {name: found.get(name) for name in RESULT_COLUMNS}
+        for number, (row, container, results) in enumerate(self._results(), start=1):
+            values = {name: results.get(name) for name in RESULT_COLUMNS}
             outcome, counted = (REFUSED, REFUSED) if container is None else self.words[container]
             outcomes[outcome] += row.count
             tag = tags.get(row.tag, TagCount(tag=row.tag, containers=0, counts={}))

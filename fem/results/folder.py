@@ -36,19 +36,19 @@ class ResultFolder:
     path: Path
     kind: ResultKind
     lock: FolderLock
-    found: dict[str, Any] | None  #: an earlier result of the same request, unless --force is given
+    earlier: dict[str, Any] | None  #: an earlier result of the same request, unless --force is given
     resume: bool  #: --resume was given
     beside: Mapping[str, Any] = field(default_factory=dict)  #: what its marking file holds besides the result
 
     @property
     def finished(self) -> bool:
         """Whether the folder holds the finished result: there is nothing to compute."""
-        return self.found is not None and self.found.get("status") in self.kind.finished
+        return self.earlier is not None and self.earlier.get("status") in self.kind.finished
 
     @property
     def resuming(self) -> bool:
         """Whether an unfinished result is to be continued."""
-        return self.resume and self.found is not None and not self.finished
+        return self.resume and self.earlier is not None and not self.finished
 
     def begin(
         self, mark: Mapping[str, Any], texts: Mapping[str, str] | None = None, *, keep: bool | None = None
@@ -131,11 +131,11 @@ class ResultFolder:
         Raises:
             FolderError: names what differs.
         """
-        if self.found is None:
+        if self.earlier is None:
             return
-        if self.found.get("program") != program_identity()["sources"]:
+        if self.earlier.get("program") != program_identity()["sources"]:
             raise FolderError(f"{self.path} holds results of another version of the program; {REMEDY}")
-        theirs = self.found.get("versions")
+        theirs = self.earlier.get("versions")
         for name, mine in versions().items():
             other = theirs.get(name) if isinstance(theirs, dict) else None
             if other != mine:
@@ -152,7 +152,7 @@ class ResultFolder:
         Raises:
             FolderError: neither --resume nor --force was given.
         """
-        if self.found is not None and not self.finished and not self.resume:
+        if self.earlier is not None and not self.finished and not self.resume:
             raise FolderError(
                 f"{self.path} holds this {self.kind.name}, unfinished, with {progress}; --resume continues it, --force "
                 "starts over"
@@ -179,9 +179,9 @@ def open_result_folder(
     """
     find_result(path, kind, request, force=force)  # before a lock is written into somebody's folder
     with locked_folder(path) as lock:
-        found = find_result(path, kind, request, force=force)
+        earlier = find_result(path, kind, request, force=force)
         with writing_into(path, way_on or "--resume continues"):
-            yield ResultFolder(path=path, kind=kind, lock=lock, found=found, resume=resume and not force)
+            yield ResultFolder(path=path, kind=kind, lock=lock, earlier=earlier, resume=resume and not force)
 
 
 def find_result(path: Path, kind: ResultKind, request: str, *, force: bool = False) -> dict[str, Any] | None:
@@ -203,12 +203,12 @@ def find_result(path: Path, kind: ResultKind, request: str, *, force: bool = Fal
     if kind.mark not in names:
         raise FolderError(f"{path} is not empty and holds no {kind.name}; {REMEDY}")
     try:
-        found = read_result(path / kind.mark, kind)
+        mark = read_result(path / kind.mark, kind)
     except FolderError as error:
         raise FolderError(f"{error}; {REMEDY}") from None
-    if found[kind.request] != request:
+    if mark[kind.request] != request:
         raise FolderError(f"{path} holds the results of another {kind.asked}; {REMEDY}")
-    return found
+    return mark
 
 
 def _names_in(path: Path) -> list[str]:

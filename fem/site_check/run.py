@@ -155,7 +155,7 @@ class _Verification:
         place.check()
         result = self._result(checked, motions, answer)
         if result.status == COMPLETED:
-            if self.stages.rows.found:
+            if self.stages.rows.runs:
                 place.write_text(RUNS, self.stages.rows.table())
             place.write_text(PAGE, site_report(place.path, result))
         return result

@@ -224,7 +224,7 @@ def still(case: Case, model: str) -> Case:
 class RunRows:
     """The rows of the runs so far."""
 
-    found: dict[RunKey, SiteRun] = field(default_factory=dict)
+    runs: dict[RunKey, SiteRun] = field(default_factory=dict)
     rows: dict[RunKey, Row] = field(default_factory=dict)  #: of the log
     still: set[RunKey] = field(default_factory=set)  #: those at rest that were not computed
 
@@ -235,7 +235,7 @@ class RunRows:
     def add(self, row: Row) -> None:
         """Add the row of a run."""
         key = RunKey(*(row[name] for name in RunKey._fields))
-        self.found[key] = SiteRun(**key._asdict(), **{name: row[name] for name in FOUND})
+        self.runs[key] = SiteRun(**key._asdict(), **{name: row[name] for name in FOUND})
         self.rows[key] = row
 
     def rest(self, key: RunKey) -> None:
@@ -246,7 +246,7 @@ class RunRows:
 
     def in_order(self) -> dict[RunKey, SiteRun]:
         """All of them, stage by stage: not in the order in which they were ready, which depends on the cores."""
-        return dict(sorted(self.found.items(), key=lambda pair: _place(pair[0])))
+        return dict(sorted(self.runs.items(), key=lambda pair: _place(pair[0])))
 
     def table(self) -> str:
         """`runs.csv`: a row a run, in the same order."""
@@ -254,11 +254,11 @@ class RunRows:
 
     def missing(self, keys: Iterable[RunKey]) -> list[RunKey]:
         """Those that have no row."""
-        return [key for key in keys if key not in self.found]
+        return [key for key in keys if key not in self.runs]
 
     def of(self, keys: Sequence[RunKey]) -> list[SiteRun]:
         """The runs of these keys, in their order, as far as they are there."""
-        return [self.found[key] for key in keys if key in self.found]
+        return [self.runs[key] for key in keys if key in self.runs]
 
 
 def _place(key: RunKey) -> tuple[Any, ...]:

@@ -137,12 +137,12 @@ class Stages:
         before = 1.0
         for factor in self.plan.factors:
             if factor > 1.0:
-                found = RuleFound.of(groups_of(self.plan.by_factor(self.rows.found)[before]))
+                found = RuleFound.of(groups_of(self.plan.by_factor(self.rows.runs)[before]))
                 if found.overturned + found.invalid or (self.rests and found.fails(self.request.limits)):
                     break
                 before = factor
             yield self._left(self.plan.scanned(factor))
-        yield self._left(self.plan.refined(self.rows.found))
+        yield self._left(self.plan.refined(self.rows.runs))
 
     @property
     def first_movement(self) -> float | None:
@@ -224,7 +224,7 @@ class Stages:
             slid = slip_in_two_directions(motions, [pair], gravity=gravity)
             return slid is not None and slid.largest > self.request.limits.slip_m
 
-        tried = sorted({1.0, *(key.factor for key in self.rows.found if key.stage in (SET, SCAN))})
+        tried = sorted({1.0, *(key.factor for key in self.rows.runs if key.stage in (SET, SCAN))})
         return TwoDirections(
             slip_mean_m=longest.mean,
             slip_largest_m=first.largest,

@@ -199,7 +199,7 @@ def _compute(
 ) -> SweepResult:
     """Compute what is missing, and write tables and maps."""
     began, stop = time.perf_counter(), runner.stop
-    if (place.found or {}).get("band_hash") != asked.band_hash:
+    if (place.earlier or {}).get("band_hash") != asked.band_hash:
         place.remove(MEMBERS, MARGINS, TRIED, CHANGES, ANSWERS)
     cells = _Cells(sweep=sweep, place=place, asked=asked)
     cells.update()

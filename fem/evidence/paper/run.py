@@ -109,7 +109,7 @@ def _document(status: str, entries: Entries, began: float) -> dict[str, Any]:
 
 def _decided(place: ResultFolder) -> Entries:
     """Claims in the folder that this version of the program decided, and whose figures are there."""
-    found, program = place.found or {}, program_of_results()
+    found, program = place.earlier or {}, program_of_results()
     try:
         entries = [entry for group in found.get("groups", ()) for entry in group["statements"]]
         return {

@@ -16,8 +16,8 @@ from fem.batch.table import line_of
 from fem.case.case import load_case
 from fem.case.validation import CaseError
 from fem.hall.file import read_hall
-from fem.hall.found import RUN_COLUMNS, HallRuns, weakest_first
 from fem.hall.places import INVALID, UNKNOWN, class_of, draw_places, plan_of
+from fem.hall.ranking import RUN_COLUMNS, HallRuns, weakest_first
 from fem.hall.run import run_hall
 from fem.hall.site import run_hall_at_site
 from fem.results.figures import SCALARS

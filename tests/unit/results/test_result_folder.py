@@ -43,7 +43,7 @@ def computed(path, kind, status="completed", request="ours", **options):
 def test_a_new_folder_is_marked_as_running_with_what_was_asked(tmp_path, kind):
     place = tmp_path / "outputs" / "result"
     with open_result_folder(place, kind, "ours") as folder:
-        assert (folder.found, folder.finished, folder.resuming) == (None, False, False)
+        assert (folder.earlier, folder.finished, folder.resuming) == (None, False, False)
         folder.begin(mark(kind), TEXTS)
     assert json.loads((place / kind.mark).read_text()) == mark(kind)
     assert (place / "case.toml").read_text(encoding="utf-8") == TEXTS["case.toml"]
@@ -54,7 +54,7 @@ def test_a_finished_result_of_the_same_request_is_not_touched_unless_forced(tmp_
     for status in kind.finished:
         computed(tmp_path, kind, status, force=True)
         before = files_of(tmp_path)
-        assert computed(tmp_path, kind).found == mark(kind, status)
+        assert computed(tmp_path, kind).earlier == mark(kind, status)
         assert files_of(tmp_path) == before
     with open_result_folder(tmp_path, kind, "ours", force=True, resume=True) as folder:
         assert not folder.finished and not folder.resuming
@@ -111,7 +111,7 @@ def test_a_damaged_mark_is_refused_by_name(tmp_path, kind, text):
     (tmp_path / kind.mark).write_text(text)
     with pytest.raises(FolderError, match=rf"{kind.mark}: damaged.*the result of.*--force"):
         computed(tmp_path, kind)
-    assert computed(tmp_path, kind, force=True).found is None
+    assert computed(tmp_path, kind, force=True).earlier is None
 
 
 def test_the_program_that_wrote_an_unfinished_result_must_be_this_one(tmp_path, kind):

@@ -25,7 +25,7 @@ SHARE, LEAST = 0.1, 30
 
 
 @dataclass(frozen=True, kw_only=True)
-class RunFound:
+class ContainerRun:
     """A run as it is in the log."""
 
     line: str
@@ -45,19 +45,19 @@ class HallRuns:
     """The runs so far, and what their repetition showed."""
 
     hall: Hall
-    found: dict[int, dict[int, RunFound]] = field(default_factory=dict)  #: by container and motion
+    by_container: dict[int, dict[int, ContainerRun]] = field(default_factory=dict)  #: and by motion
     checked: dict[int, Row] = field(default_factory=dict)  #: what the repetition showed, by container
 
     def note(self, line: str) -> None:
         """Add a line of the log of the runs."""
         row = row_of(RUN_COLUMNS, line)
-        run = RunFound(
+        run = ContainerRun(
             line=line,
             ending=ending_of(row["status"], row["outcome"]),
             ratio=row[TURNED] or 0.0,
             slip=row[SLIPPED] or 0.0,
         )
-        self.found.setdefault(row["container"], {})[row["motion"]] = run
+        self.by_container.setdefault(row["container"], {})[row["motion"]] = run
 
     def note_check(self, line: str) -> None:
         """Add a line of the log of the repetitions."""
@@ -66,20 +66,26 @@ class HallRuns:
 
     def missing(self) -> list[HallItem]:
         """Runs that have no line."""
-        return [one for one in self.hall.items() if one.motion not in self.found.get(one.container, {})]
+        return [
+            one for one in self.hall.items() if one.motion not in self.by_container.get(one.container, {})
+        ]
 
     def lines(self) -> list[str]:
         """`runs.csv`, in the order of containers and motions."""
-        return [run.line for _, some in sorted(self.found.items()) for _, run in sorted(some.items())]
+        return [run.line for _, some in sorted(self.by_container.items()) for _, run in sorted(some.items())]
 
     def governing(self, container: int) -> int:
         """The motion under which a container does worst, the first of equals."""
-        runs = self.found[container]
+        runs = self.by_container[container]
         return min(sorted(runs), key=lambda motion: runs[motion].weakness)
+
+    def worst(self, container: int) -> ContainerRun:
+        """The run under that motion."""
+        return self.by_container[container][self.governing(container)]
 
     def counts(self, container: int) -> tuple[int, ...]:
         """How many motions overturn a container, destroy a corner of it, have no outcome."""
-        endings = [run.ending for run in self.found[container].values()]
+        endings = [run.ending for run in self.by_container[container].values()]
         return tuple(map(endings.count, (Ending.OVERTURNED, Ending.INVALID, Ending.FAILED)))
 
     def to_check(self, wanted: str, order: Sequence[int]) -> list[HallItem]:
@@ -91,7 +97,7 @@ class HallRuns:
         """
         count = {"none": 0, "all": len(order)}.get(wanted, max(math.ceil(SHARE * len(order)), LEAST))
         items = [self.hall.item(number, self.governing(number)) for number in order]
-        ended = [one for one in items if self.found[one.container][one.motion].ending != Ending.FAILED]
+        ended = [one for one in items if self.by_container[one.container][one.motion].ending != Ending.FAILED]
         able = [one for one in ended if self.hall.model_of(one) != "full"]
         return [one for one in able[:count] if one.container not in self.checked]
 
@@ -100,8 +106,8 @@ def static_use(hall: Hall, item: HallItem) -> tuple[float | None, float | None]:
     """Utilisations of the static rules for sliding and overturning under the peak of a run's own motion."""
     case = hall.cases(item)
     checks = static_checks_of(case, build_container(case), *peaks_in_run(case, *build_motions(case)))
-    found = checks.ruling.to_result()
-    return found.utilisation_sliding, found.utilisation_overturning
+    static = checks.ruling.to_result()
+    return static.utilisation_sliding, static.utilisation_overturning
 
 
 def weakest_first(
@@ -114,8 +120,8 @@ def weakest_first(
     rule; then by slip.
     """
 
-    def place(number: int) -> tuple[float, ...]:
-        run = runs.found[number][runs.governing(number)]
+    def weakness(number: int) -> tuple[float, ...]:
+        run = runs.worst(number)
         order, _, slip = run.weakness
         check = runs.checked.get(number, {}) if margins else {}
         margin = check.get("margin") or check.get("margin_tried_to")
@@ -123,4 +129,4 @@ def weakest_first(
         known = margin is None, margin or 0.0
         return order, *known, turned, -(static[number]["utilisation_overturning"] or 0.0), slip, number
 
-    return sorted(runs.found, key=place)
+    return sorted(runs.by_container, key=weakness)
