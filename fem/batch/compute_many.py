@@ -111,14 +111,14 @@ def compute_many(
 
 def _objections(cases: Sequence[Case]) -> dict[int, Run | ValueError]:
     """What is wrong with the containers and motions of cases, by their numbers; little beside computing them."""
-    found: dict[int, Run | ValueError] = {}
+    objections: dict[int, Run | ValueError] = {}
     for number, case in enumerate(cases):
         try:
             build_container(case)
             build_motions(case)
         except ValueError as error:
-            found[number] = _noted(error, number, len(cases))
-    return found
+            objections[number] = _noted(error, number, len(cases))
+    return objections
 
 
 def _noted(error: ValueError, number: int, count: int) -> ValueError:

@@ -57,14 +57,14 @@ class ContainerCache:
         key = container_key(case)
         alike = container_key(case, mass=False) if case.solver.model == "rigid" else key
         with self._lock:
-            found = self._held.pop(key, None)
-            promise = found or Future[Container]()
+            earlier = self._held.pop(key, None)
+            promise = earlier or Future[Container]()
             self._held[key] = promise  # the one used last is last
             own, first = self._alike.setdefault(alike, (case, promise))
             for held in (self._held, self._alike):
                 while len(held) > self._most:
                     del held[next(iter(held))]
-        if found is None:
+        if earlier is None:
             try:
                 unlike = first is promise or first.exception() is not None
                 built = discretise(case) if unlike else changed_container(case, first.result(), own)
@@ -75,10 +75,10 @@ class ContainerCache:
 
     def recovery_of(self, model: Model) -> Recovery:
         """What recovers the stresses of a model's container; built once a container."""
-        found = self._recoveries.get(model.container)
-        if found is None:
-            found = self._recoveries[model.container] = recovery_of(model)
-        return found
+        recovery = self._recoveries.get(model.container)
+        if recovery is None:
+            recovery = self._recoveries[model.container] = recovery_of(model)
+        return recovery
 
 
 class PenaltyCache:

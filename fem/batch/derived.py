@@ -83,10 +83,10 @@ def number_of(key: str, values: Mapping[str, Any], base: Case) -> float:
     Raises:
         CaseError: it has none.
     """
-    found = float(values[key]) if key in values else value_in(base, key, values)
-    if found is None:
+    number = float(values[key]) if key in values else value_in(base, key, values)
+    if number is None:
         raise CaseError(f"{key!r} has no number; set it under [set], or let it vary")
-    return found
+    return number
 
 
 def value_in(base: Case, key: str, values: Mapping[str, Any]) -> float | None:

@@ -171,10 +171,10 @@ def spectra_of(
     step = max(one.step_s for motion in motions for one in motion.components)
     periods = log_spaced_periods(step, longest_s=max(LONGEST_PERIOD_S, 10.0 * step))
     work = partial(_spectra, CaseMaker(motions[0].case), periods)
-    found = _each(runner, "spectra", [one.keys for one in motions], work)
+    by_motion = _each(runner, "spectra", [one.keys for one in motions], work)
     return periods, {
         one.name: values
-        for motion, spectra in zip(motions, found, strict=True)
+        for motion, spectra in zip(motions, by_motion, strict=True)
         for one, values in zip(motion.components, spectra, strict=True)
     }
 

@@ -213,13 +213,13 @@ def run_cases(
     finished = 0
     with LocalWorkers(jobs or cores()) as workers_of:
         runner = Runner(workers_of=workers_of, stop=stop)
-        for chunk, found in runner.rows(
+        for chunk, computed in runner.rows(
             "cases",
             [(k, cases[k]) for k in order],
             itemgetter(1),
             lambda item: item[1].solver.model,
         ):
-            for (k, _), row in zip(chunk, found, strict=True):
+            for (k, _), row in zip(chunk, computed, strict=True):
                 rows[k] = row
             finished += len(chunk)
             done(finished)

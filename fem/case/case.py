@@ -327,19 +327,19 @@ def load_case(
     Raises:
         CaseError: with one line for each reason why the case cannot be used.
     """
-    found = CASES.shipped(DEFAULT_CASE) if name_or_path is None else CASES.find(name_or_path)
+    source = CASES.shipped(DEFAULT_CASE) if name_or_path is None else CASES.find(name_or_path)
     values = dict(parse_override(text) for text in overrides)
     if motion is not None:
-        recorded = {"motion.kind": "table", "motion.file": data_files.as_named_from(found.folder, motion)}
+        recorded = {"motion.kind": "table", "motion.file": data_files.as_named_from(source.folder, motion)}
         values = recorded | {key: value for key, value in values.items() if key not in recorded}
         overrides = (*(f"{key}={value}" for key, value in recorded.items()), *overrides)
     if allow_baseline:
-        kinds = kinds_of(with_overrides(parse_case(found), values))
+        kinds = kinds_of(with_overrides(parse_case(source), values))
         allowed = [f"{table}.allow_baseline" for table, kind in kinds.items() if kind == "table"]
         values |= dict.fromkeys(allowed, True)
         overrides = (*overrides, *(f"{key}=true" for key in allowed))
     trusted = frozenset(data_files.FILE_KEYS if allow_outside else values.keys() & set(data_files.FILE_KEYS))
-    origin = replace(found, overrides=tuple(overrides), trusted=trusted, allow_outside=allow_outside)
+    origin = replace(source, overrides=tuple(overrides), trusted=trusted, allow_outside=allow_outside)
     case = _read(with_overrides(parse_case(origin), values), origin, values)
     if reasons := excluded_values(case):
         raise CaseError("\n".join(f"{origin.place}: {reason}" for reason in reasons))

@@ -63,14 +63,14 @@ def find_data_files(
     Raises:
         CaseError: a file is missing, or outside that folder and not to be trusted.
     """
-    found: dict[str, DataFile] = {}
+    files: dict[str, DataFile] = {}
     for key, name in named.items():
         if name is None:
             continue
         path, channel = split_channel(folder, name)
         _require_file(folder, key, name, path, trusted=key in trusted)
-        found[key] = DataFile(path=path, channel=channel, copy=_copy(folder, name, channel, path, found))
-    return found
+        files[key] = DataFile(path=path, channel=channel, copy=_copy(folder, name, channel, path, files))
+    return files
 
 
 def copied_name(folder: Path, name: str) -> str:
@@ -92,10 +92,10 @@ def outside_problems(tables: Mapping[str, Any], *, trusted: frozenset[str]) -> l
     return problems
 
 
-def _copy(folder: Path, name: str, channel: str, path: Path, found: Mapping[str, DataFile]) -> PurePosixPath:
+def _copy(folder: Path, name: str, channel: str, path: Path, others: Mapping[str, DataFile]) -> PurePosixPath:
     plain = copied_name(folder, name)
     copy = PurePosixPath(plain[: -len(channel) - 1] if channel else plain)
-    for key, other in found.items():
+    for key, other in others.items():
         if other.copy == copy and other.path.resolve() != path.resolve():
             raise CaseError(
                 place_of("vertical.file")

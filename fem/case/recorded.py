@@ -39,10 +39,10 @@ def recorded_motion(case: Case, table: MotionKey) -> RecordedMotion:
         CaseError: its file is missing, or no motion, or its components do not belong together, or the keys do not fit.
     """
     try:
-        found = _recorded(case, table)
+        motion = _recorded(case, table)
         if table == "vertical" and case.motion.kind == "table":
-            _require_pair(_recorded(case, "motion"), found)
-        return found
+            _require_pair(_recorded(case, "motion"), motion)
+        return motion
     except RecordError as error:
         raise CaseError(f"[{table}] {error}") from None
 

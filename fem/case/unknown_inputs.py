@@ -479,16 +479,16 @@ def in_words(values: Mapping[str, Value]) -> str:
 
 def excluded_values(case: Any) -> list[str]:
     """What is wrong with stated ranges that do not hold the value of the case; one sentence each."""
-    found = []
+    reasons = []
     for one in UNKNOWN:
         stated = getattr(case.uncertainty, one.name)
         own = _own(case, one.key, None) if isinstance(stated, list) else None
         if isinstance(own, float) and not stated[0] - 1e-9 <= own <= stated[1] * (1.0 + 1e-9) + 1e-9:
-            found.append(
+            reasons.append(
                 f"[uncertainty] {one.name} = {stated} excludes the value of the case, {one.key} = {own:g}; widen "
                 "the range, or change the value"
             )
-    return found
+    return reasons
 
 
 def ranges_of(case: Any, penalty: float | None) -> tuple[InputRange, ...]:

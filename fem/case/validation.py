@@ -50,9 +50,9 @@ def quantity_of(annotation: Any, metadata: Iterable[Any] = ()) -> Quantity | Non
         if isinstance(item, Quantity):
             return item
     for part in get_args(annotation):
-        found = part if isinstance(part, Quantity) else quantity_of(part)
-        if found is not None:
-            return found
+        quantity = part if isinstance(part, Quantity) else quantity_of(part)
+        if quantity is not None:
+            return quantity
     return None
 
 
@@ -83,23 +83,23 @@ def read_case_tables(data: Mapping[str, Any]) -> tuple[dict[str, Any], list[Prob
             problems.append(Problem(table=key, key="", reason=_unknown_table(key)))
         elif key not in TABLES and key not in ROWS:
             heading[key] = value
-    read, partial, found = read_table("", CaseHeading, heading)
-    problems += found
+    read, partial, faults = read_table("", CaseHeading, heading)
+    problems += faults
     for name, model in TABLES.items():
         content = data.get(name, {})
         if name in OPTIONAL and name not in data:
             continue
         if not isinstance(content, dict):
             continue
-        given, part, found = read_table(name, model, content)
-        problems += found
+        given, part, faults = read_table(name, model, content)
+        problems += faults
         partial[name] = _ReadInPart(**part)
-        if not found:
+        if not faults:
             read[name] = model.model_validate(given)
     for name in ROWS.keys() & data.keys():
-        rows, found = _read_rows(name, ROWS[name], data[name], range(MOST_ROWS + 1))
-        problems += found
-        if not found:
+        rows, faults = _read_rows(name, ROWS[name], data[name], range(MOST_ROWS + 1))
+        problems += faults
+        if not faults:
             read[name] = rows
         partial[name] = rows or ()
     return read, problems + broken(CASE_RULES, SimpleNamespace(**partial))

@@ -38,21 +38,21 @@ def modes(
     if count is not None and not 1 <= count <= available:
         raise CaseError(f"--count {count}: this mesh has from 1 to {available} elastic modes")
     # A case may keep no elastic modes, or more than a coarse mesh has.
-    found = modes_of(count or min(loaded.solver.elastic_modes or SHOWN, available))
+    shapes = modes_of(count or min(loaded.solver.elastic_modes or SHOWN, available))
     with house_style():
         drawn = modes_figure(
             points=elements.nodes,
             cells=elements.cells,
             box=elements.box,
-            modes=found,
+            modes=shapes,
             name=loaded.name,
         )
     folder = out if out is not None else Path("outputs") / loaded.name / "modes"
     with writing_into(folder, ELSEWHERE_OUT):
-        path = write_modes(elements, found, folder)
+        path = write_modes(elements, shapes, folder)
         figure = path.with_suffix(".svg")
         write_atomically(figure, svg_of(drawn))
-    rows = elastic_mode_table(found)
+    rows = elastic_mode_table(shapes)
     if as_json:
         print(
             json.dumps(

@@ -57,9 +57,11 @@ def picture(
         if time is not None:
             raise CaseError("--time is for a run, and this is a motion file")
         record = read_record(path, unit=unit, sample_interval=sample_interval)
-        found = record.component("horizontal", quantity=quantity, channel=channel) if channel else None
+        component = record.component("horizontal", quantity=quantity, channel=channel) if channel else None
         shown = (
-            [one for one in record.components if one.quantity == quantity][:3] if found is None else [found]
+            [one for one in record.components if one.quantity == quantity][:3]
+            if component is None
+            else [component]
         )
         if not shown:
             record.component("horizontal", quantity=quantity)  # raises, with what it holds

@@ -167,8 +167,10 @@ def _legend(view: RunView, more: str = "") -> html.Legend | None:
 
 def _stills(view: RunView) -> list[html.Block]:
     mesh, angle = view.model.container.mesh, view.model.static.slenderness_angle
-    found = stills(view.shown, view.history, view.verdict, angle=angle, width=mesh.width, height=mesh.height)
-    if not found:
+    pictures = stills(
+        view.shown, view.history, view.verdict, angle=angle, width=mesh.width, height=mesh.height
+    )
+    if not pictures:
         return []
     legend = _legend(view, f"; elastic part × {short(exaggeration(view.shown, mesh.height))}")
     level = view.note_on_level
@@ -177,7 +179,7 @@ def _stills(view: RunView) -> list[html.Block]:
             "whole",
             [
                 html.Heading("Stills"),
-                html.Group("stills", [html.Figure(one.svg, caption=one.caption) for one in found]),
+                html.Group("stills", [html.Figure(one.svg, caption=one.caption) for one in pictures]),
                 *([legend] if legend else []),
                 *([html.Note(f"In these drawings {level}.")] if level else []),
             ],

@@ -230,27 +230,27 @@ def _numbers(static: StaticChecks, case: Case) -> Numbers:
     """The numbers of the calculation by their symbols."""
     box, rule = case.container, case.static
     weight, mass = static.weight / 1e3, static.weight / case.gravity_m_s2 / 1e3
-    found = {"n": box.boxes, "G": weight, "G_box": weight / box.boxes, "g": case.gravity_m_s2, "m": mass}
-    found |= {"a": case.stack[0].width, "c": box.height_m, "z_box": box.centroid_m, "z_c": static.centroid}
-    found |= {"α": math.degrees(static.slenderness_angle), "R": static.radius, "I": static.inertia / 1e3}
-    found |= {"I_O": static.inertia / 1e3 + mass * static.radius**2, "p": static.frequency_parameter}
-    found |= {"e": static.housner_restitution, "a_up": static.uplift_acceleration, "T": static.period_eq3}
-    found |= {"μ_s": case.contact.mu_static}
+    numbers = {"n": box.boxes, "G": weight, "G_box": weight / box.boxes, "g": case.gravity_m_s2, "m": mass}
+    numbers |= {"a": case.stack[0].width, "c": box.height_m, "z_box": box.centroid_m, "z_c": static.centroid}
+    numbers |= {"α": math.degrees(static.slenderness_angle), "R": static.radius, "I": static.inertia / 1e3}
+    numbers |= {"I_O": static.inertia / 1e3 + mass * static.radius**2, "p": static.frequency_parameter}
+    numbers |= {"e": static.housner_restitution, "a_up": static.uplift_acceleration, "T": static.period_eq3}
+    numbers |= {"μ_s": case.contact.mu_static}
     if rule is not None:
-        found |= {"T_C": rule.corner_period_s, "S": rule.soil_factor}
-        found |= {"γ_I": rule.importance_factor, "a_gR": rule.ground_acceleration_m_s2}
-    found |= {"a_max": static.own_motion.sliding.demand / 1e3 / mass - static.downhill}
-    found |= {"θ": math.degrees(static.slope), "slope": abs(case.floor.slope_percent)}
-    found |= {"G_n": weight * math.cos(static.slope)}
+        numbers |= {"T_C": rule.corner_period_s, "S": rule.soil_factor}
+        numbers |= {"γ_I": rule.importance_factor, "a_gR": rule.ground_acceleration_m_s2}
+    numbers |= {"a_max": static.own_motion.sliding.demand / 1e3 / mass - static.downhill}
+    numbers |= {"θ": math.degrees(static.slope), "slope": abs(case.floor.slope_percent)}
+    numbers |= {"G_n": weight * math.cos(static.slope)}
     if case.motion.kind == "harmonic":
-        found |= {"A": case.amplitude, "Ω": case.angular_frequency}
+        numbers |= {"A": case.amplitude, "Ω": case.angular_frequency}
     nearer, width = static.centroid * math.tan(static.slenderness_angle), case.stack[0].width
     inside, beside = 0.5 * (width - static.width), 0.5 * static.width - nearer
     if inside + beside > OFF_CENTRE * width:
-        found |= {"b": nearer, "x_c": beside if beside > OFF_CENTRE * width else 0.0}
+        numbers |= {"b": nearer, "x_c": beside if beside > OFF_CENTRE * width else 0.0}
     if inside > OFF_CENTRE * width:
-        found["s"] = inside
-    return {name: _Printed(value) for name, value in found.items() if value is not None}
+        numbers["s"] = inside
+    return {name: _Printed(value) for name, value in numbers.items() if value is not None}
 
 
 def _action(action: ActionCheck) -> Numbers:

@@ -258,11 +258,11 @@ def map_data(table: SweepTable, folder: Path) -> dict[str, Any]:
         FolderError: more cells than one page can carry.
     """
     names = [name for name, *_ in OUTCOMES]
-    found = np.array(
+    outcomes = np.array(
         [names.index(str(word)) if str(word) in names else len(names) - 1 for word in table.outcome]
     )
     outcome = {"name": "outcome", "label": "outcome", "unit": "", "factor": 1.0, "words": True}
-    columns: list[dict[str, Any]] = [outcome | {"values": packed(found, "u1")}]
+    columns: list[dict[str, Any]] = [outcome | {"values": packed(outcomes, "u1")}]
     if _has(table, "unsure"):
         columns += _sureness(table)
     room = MOST_BYTES - sum(len(one["values"]) for one in columns)
@@ -273,8 +273,8 @@ def map_data(table: SweepTable, folder: Path) -> dict[str, Any]:
         room -= len(column["values"])
         if room < 0 and k < NEEDED:
             raise FolderError(
-                f"{folder}: {len(found)} cells are more than one page can carry; table.csv holds them; report a sweep "
-                "with fewer values per axis"
+                f"{folder}: {len(outcomes)} cells are more than one page can carry; table.csv holds them; report a "
+                "sweep with fewer values per axis"
             )
         if room >= 0:
             columns.append(column)
@@ -331,18 +331,18 @@ def _words(name: str, label: str, values: NDArray[Any], colours: Mapping[str, st
 
 def counts(table: SweepTable) -> list[tuple[str, str, int, float]]:
     """Outcome, its colour, number of cells and their share, those that occur."""
-    found = Counter(map(str, table.outcome))
+    tally = Counter(map(str, table.outcome))
     return [
-        (label, colour, found[name], found[name] / found.total())
+        (label, colour, tally[name], tally[name] / tally.total())
         for name, label, colour, _ in OUTCOMES
-        if found[name]
+        if tally[name]
     ]
 
 
 def deciding(table: SweepTable) -> list[tuple[str, int]]:
     """The inputs that decide unsure cells, and how many each; none for a folder of before."""
-    found = table.info.decided_by or {}
-    return sorted(found.items(), key=lambda pair: -pair[1])
+    inputs = table.info.decided_by or {}
+    return sorted(inputs.items(), key=lambda pair: -pair[1])
 
 
 def failures(table: SweepTable) -> list[tuple[int, str]]:

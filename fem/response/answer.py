@@ -33,16 +33,16 @@ class Fates:
 
 def fates_of(result: ResponseResult) -> Fates:
     """What became of the container at each point."""
-    found = Fates(overturned=[], destroyed=[], slid=[], standing=[])
+    fates = Fates(overturned=[], destroyed=[], slid=[], standing=[])
     limit = math.inf if result.limit_slip is None else result.limit_slip
     for point in result.points:
         if point.motion == Outcome.INVALID:
-            found.destroyed.append(point)
+            fates.destroyed.append(point)
         elif point.status == "overturned":
-            found.overturned.append(point)
+            fates.overturned.append(point)
         elif point.status != "failed":
-            (found.slid if result.slid(point) > limit else found.standing).append(point)
-    return found
+            (fates.slid if result.slid(point) > limit else fates.standing).append(point)
+    return fates
 
 
 def response_answer(result: ResponseResult) -> str | None:
@@ -106,9 +106,9 @@ def branches_in_words(result: ResponseResult) -> Iterator[tuple[str, str, str, s
         yield "jump", jump.direction, found_at(jump), f"{jump.what}, rotation ratio {before} to {after}"
 
 
-def found_at(found: Coexistence | Jump | DropOut) -> str:
+def found_at(change: Coexistence | Jump | DropOut) -> str:
     """The frequencies of a coexistence, a jump or a drop-out, in the order of its sweep."""
-    return _range(found.from_Hz, found.to_Hz)
+    return _range(change.from_Hz, change.to_Hz)
 
 
 def _range(low: float, high: float) -> str:

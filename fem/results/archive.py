@@ -89,18 +89,18 @@ def read_checkpoint(path: Path, *, case_hash: str, program: Mapping[str, str]) -
     Raises:
         CheckpointError: missing, damaged, of another format, of another version of the program, of another case.
     """
-    found = read_archive(path)
-    theirs = found.about.get("program")
-    if found.about.get("format") != FORMAT or theirs != dict(program):
+    checkpoint = read_archive(path)
+    theirs = checkpoint.about.get("program")
+    if checkpoint.about.get("format") != FORMAT or theirs != dict(program):
         raise CheckpointError(
             path,
             "written by another version of the program or of a library it computes with "
             f"({_difference(theirs, program)}), which would not give the same bits",
             f"continue with that version, or {REMEDY}",
         )
-    if found.about.get("case_hash") != case_hash:
-        raise CheckpointError(path, f"belongs to another case ({found.about.get('case_hash')!s:.12})")
-    return found
+    if checkpoint.about.get("case_hash") != case_hash:
+        raise CheckpointError(path, f"belongs to another case ({checkpoint.about.get('case_hash')!s:.12})")
+    return checkpoint
 
 
 def _read(content: bytes) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
@@ -132,8 +132,8 @@ def _to_array(content: bytes) -> NDArray[Any]:
         return np.asarray(np.lib.format.read_array(io.BytesIO(content), allow_pickle=False))
 
 
-def _difference(found: Any, program: Mapping[str, str]) -> str:
-    if not isinstance(found, dict):
+def _difference(theirs: Any, program: Mapping[str, str]) -> str:
+    if not isinstance(theirs, dict):
         return "unknown"
-    names = [name for name in {**program, **found} if found.get(name) != program.get(name)]
-    return ", ".join(f"{name} {found.get(name)!s:.16}, here {program.get(name)!s:.16}" for name in names)
+    names = [name for name in {**program, **theirs} if theirs.get(name) != program.get(name)]
+    return ", ".join(f"{name} {theirs.get(name)!s:.16}, here {program.get(name)!s:.16}" for name in names)

@@ -114,10 +114,10 @@ def _acquire(folder: Path, file: FileLock) -> None:
 def _owner_of(folder: Path) -> dict[str, Any]:
     """Who holds a folder, as far as the file tells."""
     try:
-        found = json.loads((folder / OWNER_NAME).read_text(encoding="utf-8"))
+        owner = json.loads((folder / OWNER_NAME).read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return {}
-    return found if isinstance(found, dict) else {}
+    return owner if isinstance(owner, dict) else {}
 
 
 def _refusal(folder: Path) -> str:

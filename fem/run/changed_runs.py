@@ -99,7 +99,7 @@ def run_changes(
         joints=joints_of(model) if short else None,
     )
     kept = {key_of(one.values): one for one in (kept_in.read() if kept_in else ())}
-    found = {key_of(one.values): one for one in known} | kept
+    by_key = {key_of(one.values): one for one in known} | kept
     one_at_a_time, broken = threading.Lock(), threading.Event()
     stored, unstored = time.monotonic(), False
 
@@ -109,15 +109,15 @@ def run_changes(
     def run_of(change: InputChange) -> ChangedRun:
         nonlocal stored, unstored
         key = key_of(change.values)
-        if key in found:
-            return replace(found[key], kind=change.kind, change=change.label)
+        if key in by_key:
+            return replace(by_key[key], kind=change.kind, change=change.label)
         if halted():
             return _without_outcome(change, "interrupted")
         try:
             one = _run_changed(model, change, shared, halted)
             with one_at_a_time:
                 if one.status != "interrupted":
-                    found[key] = kept[key] = one
+                    by_key[key] = kept[key] = one
                     unstored = True
                     if kept_in and (not short or time.monotonic() - stored > STORED_S):
                         kept_in.store(list(kept.values()))

@@ -35,10 +35,10 @@ class ChangedRunsFile:
         if not self._path.exists():
             return []
         try:
-            found = json.loads(self._path.read_text(encoding="utf-8"))
-            if any(found[key] != value for key, value in self._owner.items()):
+            content = json.loads(self._path.read_text(encoding="utf-8"))
+            if any(content[key] != value for key, value in self._owner.items()):
                 raise ValueError("of another case or another version of the program")
-            return [ChangedRun.from_json(member) for member in found["members"]]
+            return [ChangedRun.from_json(member) for member in content["members"]]
         except (OSError, ValueError, KeyError, TypeError) as error:
             self._message(f"{self._path} is refused ({error}): its members are computed again")
             return []

@@ -102,11 +102,11 @@ def read_state(path: Path, model: Model, case_hash: str) -> SavedState:
     Raises:
         CheckpointError: damaged, of another case or another version, or not of this model's run.
     """
-    found = read_checkpoint(path, case_hash=case_hash, program=program_identity())
-    require_same(path, found.arrays, changing(model))
-    require_same(path, found.arrays, _waiting(model.run, found.arrays["clock"]))
+    archive = read_checkpoint(path, case_hash=case_hash, program=program_identity())
+    require_same(path, archive.arrays, changing(model))
+    require_same(path, archive.arrays, _waiting(model.run, archive.arrays["clock"]))
     try:
-        about = found.about["progress"]
+        about = archive.about["progress"]
         undriven, under_way = about["undriven"], about["slice"]
         progress = Progress(
             stepping_cpu_s=float(about["stepping_cpu_s"]),
@@ -117,7 +117,7 @@ def read_state(path: Path, model: Model, case_hash: str) -> SavedState:
         )
     except (KeyError, TypeError, ValueError, IndexError) as error:
         raise misfit(path, f"its notes cannot be read ({error!r})") from None
-    return SavedState(progress=progress, arrays=found.arrays, notes=found.about)
+    return SavedState(progress=progress, arrays=archive.arrays, notes=archive.about)
 
 
 def misfit(path: Path, reason: str) -> CheckpointError:
@@ -127,48 +127,48 @@ def misfit(path: Path, reason: str) -> CheckpointError:
 
 def state_of(model: Model, recorder: Recorder) -> Arrays:
     """Everything that changes in a run, by name; the arrays themselves, not copies."""
-    found = changing(model) | _waiting(model.run, model.run.clock)
+    arrays = changing(model) | _waiting(model.run, model.run.clock)
     if not isinstance(model.body, ModalBody | LooseStack | LinkedBody):
-        found |= {BODY + name: array for name, array in model.body.memory().items()}
-    return found | {RECORDED + name: array for name, array in recorder.memory().items()}
+        arrays |= {BODY + name: array for name, array in model.body.memory().items()}
+    return arrays | {RECORDED + name: array for name, array in recorder.memory().items()}
 
 
 def changing(model: Model) -> Arrays:
     """All of a model that changes from step to step, but for its samples, by name; the arrays themselves."""
-    found = model.run.progress()
+    arrays = model.run.progress()
     stack = model.body.stack if isinstance(model.body, FullStack) else model.body
     # a step begins with the weights and the linearisation of the one before
     if isinstance(stack, LooseStack):
-        found["faces.weight"], found["faces.gradient"] = stack.faces.weight, stack.faces.gradient
-        found["contact.normal_stiffness"] = model.run.problem.contact.normal_stiffness
-        found["contact.tangential_stiffness"] = model.run.problem.contact.tangential_stiffness
-    return found
+        arrays["faces.weight"], arrays["faces.gradient"] = stack.faces.weight, stack.faces.gradient
+        arrays["contact.normal_stiffness"] = model.run.problem.contact.normal_stiffness
+        arrays["contact.tangential_stiffness"] = model.run.problem.contact.tangential_stiffness
+    return arrays
 
 
 def _waiting(run: RunState, clock: NDArray[Any]) -> Arrays:
     """The samples of a run that are in no file yet, as many as this clock says."""
-    found: Arrays = {}
+    arrays: Arrays = {}
     for name, samples, so_far, gone in (
         ("history", run.buffers.history, "samples", "samples_drained"),
         ("frames", run.buffers.frames, "frames", "frames_drained"),
     ):
         count = int(clock[so_far][0] - clock[gone][0])
         parts = samples._asdict().items()
-        found |= {f"{name}.{key}": array[:count] for key, array in parts if isinstance(array, np.ndarray)}
-    return found
+        arrays |= {f"{name}.{key}": array[:count] for key, array in parts if isinstance(array, np.ndarray)}
+    return arrays
 
 
 def _named(arrays: Arrays, prefix: str) -> Arrays:
     return {name.removeprefix(prefix): array for name, array in arrays.items() if name.startswith(prefix)}
 
 
-def require_same(path: Path, found: Arrays, wanted: Arrays) -> None:
+def require_same(path: Path, arrays: Arrays, wanted: Arrays) -> None:
     """Refuse arrays that are not those of this model's run.
 
     Raises:
         CheckpointError: names the first that does not fit.
     """
     for name, mine in wanted.items():
-        theirs = found.get(name)
+        theirs = arrays.get(name)
         if theirs is None or theirs.shape != mine.shape or theirs.dtype.descr != mine.dtype.descr:
             raise misfit(path, f"its {name} is not that of this run")

@@ -100,15 +100,15 @@ def margin_of(model: Model, result: RunResult, *, drawn: bool, stop: Callable[[]
     except StoppedError:
         return None
     factor = None if first is None else first.high
-    found = [one for one in ends if one is None or not math.isnan(one)]
+    factors = [one for one in ends if one is None or not math.isnan(one)]
     return Margin(
         factor=factor,
         stands_up_to=None if first is None or first.low == 0.0 else first.low,
         low=lowest,
-        high=_highest([factor, *found]) if found else None,
-        draws=len(found),
-        draws_standing=found.count(None),
-        draws_failed=len(ends) - len(found),
+        high=_highest([factor, *factors]) if factors else None,
+        draws=len(factors),
+        draws_standing=factors.count(None),
+        draws_failed=len(ends) - len(factors),
         draws_tried_to=most if ends else None,
         islands=_islands(known),
         least_tried=min(ended),
@@ -208,15 +208,15 @@ def _first(known: dict[float, Ending]) -> Change | None:
 
 def _islands(known: dict[float, Ending]) -> tuple[tuple[float, float], ...]:
     """Where it stands again beyond the first factor that overturns: the least and the largest factor of each."""
-    found: list[list[float]] = []
+    islands: list[list[float]] = []
     fallen = False
     for factor in sorted(known):
         if known[factor] == Ending.OVERTURNED:
             fallen = True
-            found.append([])
+            islands.append([])
         elif known[factor] == Ending.STANDING and fallen:
-            found[-1].append(factor)
-    return tuple((island[0], island[-1]) for island in found if island)
+            islands[-1].append(factor)
+    return tuple((island[0], island[-1]) for island in islands if island)
 
 
 def _near(trial: Trial, start: float, least: float, most: float) -> float | None:

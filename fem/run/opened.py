@@ -29,8 +29,8 @@ def open_run(folder: str | Path) -> PlottedRun:
     Raises:
         FolderError: it holds no run, or its `run.json` is damaged.
     """
-    found = reader.open_run(folder)
-    return PlottedRun(place=found.place, result=found.result)
+    run = reader.open_run(folder)
+    return PlottedRun(place=run.place, result=run.result)
 
 
 def plotted(run: reader.RunData, name: str) -> "Figure":

@@ -171,11 +171,11 @@ def compute_into(
 
 def finished_result(folder: Path, request: str, options: RunOptions, reporter: Reporter) -> RunResult | None:
     """The result of a finished run of this case in a folder, unless it is to be overwritten."""
-    found = find_result(folder, RUN, request, force=options.force)
-    if found is None or found.get("status") not in RUN.finished:
+    mark = find_result(folder, RUN, request, force=options.force)
+    if mark is None or mark.get("status") not in RUN.finished:
         return None
     reporter.message(f"{folder} holds this run already; --force computes it again")
-    return typed_result(RunResult, found, folder / RUN.mark)
+    return typed_result(RunResult, mark, folder / RUN.mark)
 
 
 @contextmanager

@@ -15,13 +15,13 @@ CHECKS = WantedChecks(band=False, margin=True)  #: as `run` makes them, without 
 
 def find_margins(runner: Runner, sweep: Sweep, log: Path) -> dict[int, tuple[str, ...]]:
     """The fields of `MARGIN` by cell, none where none are asked for; what the log holds is not computed again."""
-    found: dict[int, tuple[str, ...]] = {}
+    margins: dict[int, tuple[str, ...]] = {}
     if not sweep.margin:
-        return found
+        return margins
 
     def note(line: str) -> None:
         cell, *fields = fields_of(line)
-        found[int(cell)] = tuple(fields)
+        margins[int(cell)] = tuple(fields)
 
     LoggedRuns(
         what="margins of cells",
@@ -32,5 +32,5 @@ def find_margins(runner: Runner, sweep: Sweep, log: Path) -> dict[int, tuple[str
         key=lambda cell: (cell,),
         note=note,
         work=partial(check_chunk, checks=CHECKS),
-    ).run(runner, (sweep.by_container(set(range(sweep.count)) - found.keys()) for _ in range(1)))
-    return found
+    ).run(runner, (sweep.by_container(set(range(sweep.count)) - margins.keys()) for _ in range(1)))
+    return margins
