@@ -83,5 +83,5 @@ def _shown(joints: Sequence[JointDemand]) -> Sequence[JointDemand]:
 def unbolted(joint: JointDemand) -> str:
     """What the joint would do without bolts."""
     events = (("opens", joint.opens_at_s), ("slides", joint.slides_at_s))
-    found = [f"{verb} at {instant:.3g} s" for verb, instant in events if instant is not None]
-    return ", ".join(found) or "stays closed, sticks"
+    instants = [f"{verb} at {instant:.3g} s" for verb, instant in events if instant is not None]
+    return ", ".join(instants) or "stays closed, sticks"

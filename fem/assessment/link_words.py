@@ -12,7 +12,7 @@ def link_results(model: Model) -> tuple[tuple[LinkResult, ...] | None, tuple[Lin
     """What stops and ties did in a model that was stepped, in the order of the case; None where there are none."""
     case, records, container = model.case, model.run.links, model.container
     heights = heights_of_links(case, container.elements.nodes[container.nodes])
-    found = [
+    results = [
         LinkResult(
             side=link.side,
             height_m=height,
@@ -27,7 +27,7 @@ def link_results(model: Model) -> tuple[tuple[LinkResult, ...] | None, tuple[Lin
         for link, height, record in zip(case.links, heights, records, strict=True)
     ]
     stops = len(case.stop)
-    return tuple(found[:stops]) or None, tuple(found[stops:]) or None
+    return tuple(results[:stops]) or None, tuple(results[stops:]) or None
 
 
 def links_in_words(result: RunResult) -> str:

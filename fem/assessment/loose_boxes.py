@@ -92,8 +92,8 @@ def box_rows(result: RunResult) -> list[tuple[str, ...]]:
 
 def _reaches(verdict: Verdict) -> Sequence[BoxReach | None]:
     """The ranges of each box over the band, where there is one."""
-    found = verdict.band.boxes if verdict.band is not None else None
-    return found or [None] * len(verdict.boxes or ())
+    ranges = verdict.band.boxes if verdict.band is not None else None
+    return ranges or [None] * len(verdict.boxes or ())
 
 
 def box_table(result: RunResult) -> Iterator[RenderableType]:

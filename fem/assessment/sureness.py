@@ -56,12 +56,12 @@ def judged(
         sure = UNSURE
     else:
         sure = REGIME_UNSURE if OTHER_REGIME in levels else SURE
-    found = {one.outcome for one in members}
+    outcomes = {one.outcome for one in members}
     alike = [one for one in members if ending(one) == ending(own) and one.outcome is not None]
     draws = [one for one in others if one.kind == "draw"]
     ranges: dict[str, Any] = {key: _reach(one[key] for one in alike) for key in keys_of(Place.BAND)}
     band = Band(
-        outcomes=tuple(outcome for outcome in Outcome if outcome in found),
+        outcomes=tuple(outcome for outcome in Outcome if outcome in outcomes),
         unsure=sure == UNSURE,
         draws=len(draws),
         draws_overturned=sum(one.outcome == Outcome.OVERTURNED for one in draws),
@@ -158,12 +158,12 @@ def _reach_of_boxes(
 ) -> tuple[BoxReach, ...] | None:
     """The ranges of each box over the members that end as the run does, and in how many of all it fell first."""
     fell = Counter(one.fell_box for one in members)
-    found = []
+    ranges = []
     for number, same in enumerate(zip(*(one.boxes for one in alike if one.boxes), strict=True), 1):
         values = {name: [box[name] for box in same] for name in BOX_FIGURES}
         reach = {name: (min(some), max(some)) for name, some in values.items()}
-        found.append(BoxReach(fell=fell[number], **reach))
-    return tuple(found) or None
+        ranges.append(BoxReach(fell=fell[number], **reach))
+    return tuple(ranges) or None
 
 
 def deciding_inputs(levels: Sequence[int], changes: Sequence[InputChange]) -> Iterator[str]:
@@ -174,14 +174,14 @@ def deciding_inputs(levels: Sequence[int], changes: Sequence[InputChange]) -> It
     """
     named: list[str] = []
     for level in (OTHER_END, OTHER_REGIME):
-        differing = [one for one, found in zip(changes, levels, strict=True) if found == level]
+        differing = [one for one, reached in zip(changes, levels, strict=True) if reached == level]
         smallest: dict[str, float] = {}
         for kind in (("one", "floor"), ("pair",)):
             for one in differing if not smallest else ():
                 if one.kind in kind:
                     smallest |= {key: min(one.share, smallest.get(key, 1.0)) for key in one.inputs}
-        found = sorted(smallest, key=lambda key: (smallest[key], ORDER.get(key, -1)))
-        named += found or _drawn_together(changes, [one == level for one in levels])
+        keys = sorted(smallest, key=lambda key: (smallest[key], ORDER.get(key, -1)))
+        named += keys or _drawn_together(changes, [one == level for one in levels])
     yield from dict.fromkeys(named)
 
 

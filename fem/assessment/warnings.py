@@ -38,14 +38,14 @@ def warnings_for(result: run_result.RunResult, case: Case) -> list[str]:
 def verdict_is_unsure(result: run_result.RunResult, case: Case) -> str | None:
     """The outcome changes within the uncertainty of the inputs."""
     verdict = _verdict(result)
-    found = sureness_in_words(result)
-    if verdict.band is None or verdict.sure not in (UNSURE, None) or not found:
+    words = sureness_in_words(result)
+    if verdict.band is None or verdict.sure not in (UNSURE, None) or not words:
         return None
     failed = "; ".join(
         in_words(member.values or {}) for member in verdict.band.members if member.outcome is None
     )
     failures = f" No outcome, because the solution failed, with {failed}." if failed else ""
-    return f"{found[0].lower()}{found[1:]}{failures}"
+    return f"{words[0].lower()}{words[1:]}{failures}"
 
 
 def energy_is_near_its_limits(result: run_result.RunResult, case: Case) -> str | None:

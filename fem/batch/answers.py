@@ -185,7 +185,9 @@ def sentence_of(answer: Answer, axis: Axis, *, rising: bool, where: str = "") ->
         "no outcome at": answer.failed,
         "unsure at": answer.unsure,
     }
-    parts += [f"{words} {ranges_in_words(found, axis)}" for words, found in ranges.items() if found]
+    parts += [
+        f"{words} {ranges_in_words(stretches, axis)}" for words, stretches in ranges.items() if stretches
+    ]
     return "; ".join(filter(None, parts))
 
 

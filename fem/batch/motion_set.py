@@ -216,8 +216,8 @@ def _components_of(case: Case, numbers: Iterable[Mapping[str, Any]]) -> tuple[Fl
     if case.vertical.kind == "table" and case.vertical.file is not None:
         tables.append(("vertical", case.vertical.file))
     return tuple(
-        FloorComponent(name=name or "", case=case, table=table, numbers=found)
-        for (table, name), found in zip(tables, numbers, strict=False)
+        FloorComponent(name=name or "", case=case, table=table, numbers=facts)
+        for (table, name), facts in zip(tables, numbers, strict=False)
     )
 
 

@@ -158,7 +158,7 @@ def hand_out(
             finished, _ = wait(waiting, timeout=0.5, return_when=FIRST_COMPLETED)
             for future in finished:
                 try:
-                    found = future.result()
+                    results = future.result()
                 except BrokenExecutor as error:
                     if stop():  # the signal that asked for it ended the workers, too
                         return
@@ -168,7 +168,7 @@ def hand_out(
                     ) from None
                 pool, chunk = waiting.pop(future)
                 pool.given -= 1
-                yield chunk, found
+                yield chunk, results
             if stop():
                 for future in [future for future in waiting if future.cancel()]:
                     del waiting[future]

@@ -152,10 +152,10 @@ def read_table(
     ]
     given = model.as_meant({key: value for key, value in content.items() if key in known})
     if model is TABLES["container"] and "box" in given:
-        given["box"], found = _read_rows(
+        given["box"], faults = _read_rows(
             "container.box", BoxTable, given["box"], MOST_BOXES, "from the floor up"
         )
-        problems += found
+        problems += faults
     reasons: dict[str, list[ErrorDetails]] = {}
     try:
         model.model_validate(given)
@@ -181,11 +181,11 @@ def _read_rows(
         return None, [Problem(table=table, key=key, reason=reason)]
     rows, problems = [], []
     for number, one in enumerate(content, 1):
-        given, part, found = read_table(name, model, one)
-        rows.append(model.model_construct(**part) if found else model.model_validate(given))
+        given, part, faults = read_table(name, model, one)
+        rows.append(model.model_construct(**part) if faults else model.model_validate(given))
         problems += [
             Problem(table=table, key=f"{key} {number}: {problem.key}".rstrip(), reason=problem.reason)
-            for problem in found
+            for problem in faults
         ]
     return tuple(rows), problems
 

@@ -42,9 +42,9 @@ def check(
         files = importlib.import_module("fem.site_check.file")
         previews = importlib.import_module("fem.site_check.preview")
         request = files.load_site(case, allow_baseline=allow_baseline)
-        found = previews.preview_of(request, allow_outside=allow_outside)
-        lines = previews.preview_lines(found, request)
-        print(json.dumps(found.to_json(), indent=2) if as_json else "\n".join(lines))
+        outlook = previews.preview_of(request, allow_outside=allow_outside)
+        lines = previews.preview_lines(outlook, request)
+        print(json.dumps(outlook.to_json(), indent=2) if as_json else "\n".join(lines))
         return
     loaded = load_case(
         case, overrides, motion=motion, allow_outside=allow_outside, allow_baseline=allow_baseline

@@ -170,7 +170,7 @@ def _compute(
     failed = all(point["failed"] == ensemble.draws for point in points)
     result = replace(result, status=FAILED if failed else COMPLETED, fragility=fragility)
     if motions:
-        measures = [one.numbers() | found for one, found in zip(motions, draws.by_replicate(), strict=True)]
+        measures = [one.numbers() | counts for one, counts in zip(motions, draws.by_replicate(), strict=True)]
         figures = write_motions(place, motions, measures, runner)
         result = replace(result, motions=tuple(measures), motion_figures=tuple(figures))
     answer = ensemble_answer(result)

@@ -76,7 +76,7 @@ def _side_by_side(figure: Figure) -> list[Axes]:
     wide, tall = figure.get_size_inches()
     each = (wide - style.LEFT - style.RIGHT - 2.0 * BETWEEN) / 3.0
     bottom = tall - 0.08 - HEADER * style.LINE - RANGES
-    found: list[Axes] = []
+    panels: list[Axes] = []
     for place in range(3):
         rectangle = (
             (style.LEFT + place * (each + BETWEEN)) / wide,
@@ -84,10 +84,10 @@ def _side_by_side(figure: Figure) -> list[Axes]:
             each / wide,
             RANGES / tall,
         )
-        found.append(figure.add_axes(rectangle, sharey=found[0] if found else None))
-        found[-1].tick_params(labelleft=place == 0)
-    found[0].set_ylabel("above the floor [m]")
-    return found
+        panels.append(figure.add_axes(rectangle, sharey=panels[0] if panels else None))
+        panels[-1].tick_params(labelleft=place == 0)
+    panels[0].set_ylabel("above the floor [m]")
+    return panels
 
 
 def _draw_ranges(

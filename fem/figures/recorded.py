@@ -31,18 +31,18 @@ def spectrum_figure(run: RunData) -> Figure | None:
     case = run.case
     tables: dict[MotionKey, str] = {"motion": "along x", "vertical": "upward"}
     try:
-        found = [
+        curves = [
             (name, recorded_motion(case, table).motion)
             for table, name in tables.items()
             if getattr(case, table).kind == "table"
         ]
     except CaseError:
         return None
-    if not found:
+    if not curves:
         return None
-    figure, (axes,) = style.panels((2.4,), header=2 + (len(found) > 1))
-    _draw_spectra(axes, found)
-    periods, largest = _largest(found[0][1])
+    figure, (axes,) = style.panels((2.4,), header=2 + (len(curves) > 1))
+    _draw_spectra(axes, curves)
+    periods, largest = _largest(curves[0][1])
     style.head(
         figure,
         f"Response spectrum of the floor's motion: {rounded(largest)} m/s² at {rounded(periods)} s",

@@ -14,12 +14,12 @@ SYMBOL = re.compile(
 def formula_markup(text: str, *, prose: bool = False) -> Markup:
     """A formula, escaped; of prose only the symbols that bear an index are set: a letter alone may be a word."""
     parts, end = [], 0
-    for found in SYMBOL.finditer(text):
-        letter, index, power = found.groups()
+    for match in SYMBOL.finditer(text):
+        letter, index, power = match.groups()
         if prose and letter and index is None:
             continue
-        parts.append(escape(text[end : found.start()]))
+        parts.append(escape(text[end : match.start()]))
         parts += [Markup("<sup>{}</sup>").format(power)] if power else [Markup("<i>{}</i>").format(letter)]
         parts += [Markup("<sub>{}</sub>").format(index)] if index else []
-        end = found.end()
+        end = match.end()
     return Markup("").join([*parts, escape(text[end:])])

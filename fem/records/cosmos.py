@@ -143,6 +143,6 @@ def _direction(whole: FloatArray, name: str, stream: str) -> tuple[Direction | N
     """Direction by its code, else by the stream that the comments name; None where these contradict each other."""
     code, named = int(whole[AZIMUTH]), stream_direction(stream)
     if code in DIRECTION_CODES or 0 < code <= 360:
-        found = DIRECTION_CODES.get(code, ("horizontal", 1.0))
-        return found if named in (found[0], None) else (None, 1.0)
+        direction = DIRECTION_CODES.get(code, ("horizontal", 1.0))
+        return direction if named in (direction[0], None) else (None, 1.0)
     return (named, 1.0) if named else direction_of(name.partition("(")[0])

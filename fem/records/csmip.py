@@ -53,8 +53,8 @@ def read(source: MotionText, unit: str | None) -> Record:
         text = source.line(line)
         opening = _opening(source, line)
         if opening is None:
-            found = CHANNEL.search(text)
-            name = found[2].split("  ")[0].strip() if found else name
+            match = CHANNEL.search(text)
+            name = match[2].split("  ")[0].strip() if match else name
             line += 1
             continue
         layout = fortran_format(text) or opening.layout
@@ -99,20 +99,20 @@ class _Opening:
 
 
 def _opening(source: MotionText, line: int) -> _Opening | None:
-    if found := SPACED.match(source.line(line)):
+    if match := SPACED.match(source.line(line)):
         return _Opening(
-            count=whole_number(source, found[1], "number of samples", line),
-            step=positive_number(source, found[3], "interval of the samples", line),
-            quantity=QUANTITIES[found[2].lower()],
-            unit=found[4],
+            count=whole_number(source, match[1], "number of samples", line),
+            step=positive_number(source, match[3], "interval of the samples", line),
+            quantity=QUANTITIES[match[2].lower()],
+            unit=match[4],
             layout=LAYOUTS["spaced"],
         )
-    if found := RATED.match(source.line(line)):
+    if match := RATED.match(source.line(line)):
         return _Opening(
-            count=whole_number(source, found[1], "number of samples", line),
-            step=1.0 / positive_number(source, found[2], "sampling rate", line),
+            count=whole_number(source, match[1], "number of samples", line),
+            step=1.0 / positive_number(source, match[2], "sampling rate", line),
             quantity="acceleration",
-            unit=found[3],
+            unit=match[3],
             layout=LAYOUTS["rated"],
         )
     return None

@@ -30,7 +30,7 @@ def direction_of(word: str) -> tuple[Direction | None, float]:
 
 def stream_direction(code: str) -> Direction | None:
     """Direction by the code of a stream, such as HNE or HNZ."""
-    found = re.fullmatch(r"[a-z][nlghj]([zne123rtxy])", code.casefold())
-    if found is None:
+    match = re.fullmatch(r"[a-z][nlghj]([zne123rtxy])", code.casefold())
+    if match is None:
         return None
-    return "vertical" if found[1] == "z" else "horizontal"
+    return "vertical" if match[1] == "z" else "horizontal"

@@ -26,8 +26,8 @@ def read(source: MotionText, unit: str | None) -> Record:
     """
     header: dict[str, str] = {}
     first = 1
-    while first <= MOST_LINES and (found := KEY.match(source.line(first))):
-        header[found[1]] = found[2].strip()
+    while first <= MOST_LINES and (match := KEY.match(source.line(first))):
+        header[match[1]] = match[2].strip()
         first += 1
     for key in ("SAMPLING_INTERVAL_S", "NDATA", "DATA_TYPE"):
         if not header.get(key):

@@ -36,15 +36,15 @@ def read_record(path: Path, *, unit: str | None = None, sample_interval: float |
 @lru_cache(maxsize=64)  # the runs of a sweep and of a band follow the same motions: a set of 32 pairs
 def _read(path: Path, changed: int, size: int, unit: str | None, sample_interval: float | None) -> Record:
     source = read_source(path)
-    found = next((form for form in FORMATS if form.recognises(source)), None)
+    reader = next((form for form in FORMATS if form.recognises(source)), None)
     try:
-        if found is None:
+        if reader is None:
             return read_columns(source, unit=unit, sample_interval=sample_interval)
         if sample_interval is not None:
             raise source.refused(
-                f"sample_interval_s is for a file of one column, and this is a {found.NAME} file"
+                f"sample_interval_s is for a file of one column, and this is a {reader.NAME} file"
             )
-        return found.read(source, unit)
+        return reader.read(source, unit)
     except RecordError as error:
         named = str(error).startswith(source.name)
         raise error if named else RecordError(f"{source.name}: {error}") from None

@@ -15,10 +15,10 @@ FORMAT = re.compile(r"\(\s*(?:1P\s*,?\s*)?(\d+)\s*[FEGDI]\s*(\d+)(?:\.\d+)?(?:E\
 
 def fortran_format(text: str) -> tuple[int, int] | None:
     """Numbers a line and their width from a Fortran format in a line of text; None where there is none."""
-    found = FORMAT.search(text)
-    if found is None or not 0 < int(found[1]) <= 100 or not 0 < int(found[2]) <= 100:
+    match = FORMAT.search(text)
+    if match is None or not 0 < int(match[1]) <= 100 or not 0 < int(match[2]) <= 100:
         return None
-    return int(found[1]), int(found[2])
+    return int(match[1]), int(match[2])
 
 
 def read_block(
@@ -52,10 +52,10 @@ def read_block(
     for number, row in enumerate(rows, start=first):
         expected = per_line if number < behind - 1 else count - per_line * (len(rows) - 1)
         if len(row) != expected:
-            found = per_line * (number - first) + len(row)
+            read = per_line * (number - first) + len(row)
             raise source.refused(
                 f"the header says {count} values, {per_line} in a line of {width} columns each; found {len(row)} in "
-                f"this line, {found} up to it",
+                f"this line, {read} up to it",
                 number,
             )
     if len(rows) < behind - first:
@@ -103,10 +103,10 @@ def positive_number(source: MotionText, text: str, what: str, number: int | None
     Raises:
         RecordError: it is none.
     """
-    found = as_numbers([text])
-    if found is None or not found[0] > 0.0:
+    numbers = as_numbers([text])
+    if numbers is None or not numbers[0] > 0.0:
         raise source.refused(f"the header gives no {what}", number)
-    return float(found[0])
+    return float(numbers[0])
 
 
 def regular_times(readings: FloatArray, step: float) -> FloatArray:

@@ -45,9 +45,9 @@ def read(source: MotionText, unit: str | None) -> Record:
         RecordError: counts, units or numbers that do not fit; with the line.
     """
     last = _sampling_line(source) or 1
-    found = LABELLED.search(source.line(last)) or BEFORE.match(source.line(last))
-    count = whole_number(source, found[1] if found else "", "number of samples", last)
-    step = positive_number(source, found[2] if found else "", "interval of the samples", last)
+    match = LABELLED.search(source.line(last)) or BEFORE.match(source.line(last))
+    count = whole_number(source, match[1] if match else "", "number of samples", last)
+    step = positive_number(source, match[2] if match else "", "interval of the samples", last)
     stated = None
     quantity = next((q for q in map(QUANTITY.search, source.lines[:last]) if q), None)
     if quantity is not None and quantity[2]:

@@ -137,15 +137,15 @@ class Record:
                 f"{self.name}: it holds {held}, and {needed} are needed; take the file of {needed}"
                 + ('; or set quantity = "displacement"' if "displacement" in held else "")
             )
-        found = [one for one in of_quantity if one.direction == direction] or [
+        components = [one for one in of_quantity if one.direction == direction] or [
             one for one in of_quantity if one.direction is None
         ]
-        if len(found) == 1:
-            return found[0]
+        if len(components) == 1:
+            return components[0]
         problem = (
             f"no {direction} component"
-            if not found
-            else f"{len(found)} components may be the {direction} one"
+            if not components
+            else f"{len(components)} components may be the {direction} one"
         )
         raise RecordError(
             f"{self.name}: {problem} ({self._channels()}); choose one as {self.name}#NUMBER or {self.name}#NAME"
@@ -154,17 +154,17 @@ class Record:
     def _by_channel(self, channel: str, quantity: Quantity) -> Component:
         number = int(channel) if channel.isascii() and channel.isdigit() and len(channel) < 4 else 0
         if 1 <= number <= len(self.components):
-            found = [self.components[number - 1]]
+            components = [self.components[number - 1]]
         else:
-            found = [one for one in self.components if one.name.casefold() == channel.casefold()]
-        if len(found) != 1:
+            components = [one for one in self.components if one.name.casefold() == channel.casefold()]
+        if len(components) != 1:
             raise RecordError(f"{self.name}: no channel {channel[:40]!r} ({self._channels()})")
-        if found[0].quantity != quantity:
+        if components[0].quantity != quantity:
             raise RecordError(
-                f"{self.name}: channel {channel[:40]!r} holds {PLURALS[found[0].quantity]}, and "
+                f"{self.name}: channel {channel[:40]!r} holds {PLURALS[components[0].quantity]}, and "
                 f"{PLURALS[quantity]} are needed"
             )
-        return found[0]
+        return components[0]
 
     def _channels(self) -> str:
         return "; ".join(f"#{number} {one.described}" for number, one in enumerate(self.components, start=1))

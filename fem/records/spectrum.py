@@ -86,9 +86,9 @@ def response_spectrum(
     ten samples a period the lines are sampled more densely, and each peak is that of a cubic.
     """
     values, periods = _checked(step_s, acceleration, periods_s, damping_ratio)
-    found = np.empty((periods.size, 2))
-    peaks_of(values, step_s, damping_ratio, _steps_of(step_s, periods, damping_ratio), found)
-    displacement, absolute = found.T
+    peaks = np.empty((periods.size, 2))
+    peaks_of(values, step_s, damping_ratio, _steps_of(step_s, periods, damping_ratio), peaks)
+    displacement, absolute = peaks.T
     rates = 2.0 * math.pi / periods
     return Spectrum(
         periods_s=periods,

@@ -111,11 +111,13 @@ def answer_table(answer: EnsembleAnswer, info: EnsembleResult) -> html.Table:
     rows = (
         [
             place_in_words(answer.others, point),
-            f"{in_axis(found.value)}{' or before' if found.at_once else ''}",
-            ABSENT if found.value is None else interval_in_words(answer.axis, found, rising=answer.rising),
-            in_axis(found.few_to),
+            f"{in_axis(crossing.value)}{' or before' if crossing.at_once else ''}",
+            ABSENT
+            if crossing.value is None
+            else interval_in_words(answer.axis, crossing, rising=answer.rising),
+            in_axis(crossing.few_to),
         ]
-        for point, found, _ in answer.rows
+        for point, crossing, _ in answer.rows
     )
     fell = falling_in_words(info.limit_slip_m, past=True)
     heads = ("", f"half of the draws {fell} at", f"{100.0 * info.confidence:g} % interval", few)

@@ -27,7 +27,7 @@ class PrintingError(OutputError):
 
 def find_browser() -> str | None:
     """The browser that prints; None where none is found."""
-    return next((found for name in (*NAMES, *PLACES) if (found := shutil.which(name))), None)
+    return next((path for name in (*NAMES, *PLACES) if (path := shutil.which(name))), None)
 
 
 def print_page(page: Path) -> Path | None:

@@ -154,8 +154,8 @@ def _sure_lines(table: SweepTable) -> Iterator[str]:
         "A copy changes one input over its range in [uncertainty], a pair of them or all at once, or the motion, "
         f"friction or damping a little: {info.copies} copies of {info.perturbed} cells.{left_out}"
     )
-    if found := [f"{input_in_words(key)} ({count})" for key, count in deciding(table)]:
-        yield f"Unsure cells are decided by {', '.join(found)}."
+    if inputs := [f"{input_in_words(key)} ({count})" for key, count in deciding(table)]:
+        yield f"Unsure cells are decided by {', '.join(inputs)}."
 
 
 def cell_map(table: SweepTable, data: Mapping[str, Any]) -> html.CellMap:

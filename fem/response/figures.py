@@ -60,9 +60,9 @@ def draw_curves(request: ResponseRequest, records: Sequence[PointRecord]) -> Fig
             transform=rotation.get_xaxis_transform(),
             label=f"{direction}: overturned" if fallen else None,
         )
-    for found in coexistences(records):
+    for pair in coexistences(records):
         for axes in (rotation, slip, life):
-            axes.axvspan(found.from_Hz, found.to_Hz, color="#DDDDDD", alpha=0.6, linewidth=0, zorder=0)
+            axes.axvspan(pair.from_Hz, pair.to_Hz, color="#DDDDDD", alpha=0.6, linewidth=0, zorder=0)
     for axes, label, least in (
         (rotation, "largest rotation [deg]", 0.1),
         (slip, "slip stroke [mm]", 1.0),

@@ -248,9 +248,9 @@ def artificial_set(
         )
         if largest_correlation([*kept, motion]) <= MOST_CORRELATION:
             kept.append(replace(motion, name=f"motion_{len(kept) + 1:02d}"))
-    found = check_set(kept, action, longest=longest)
-    needed = max(found.wanted_peak / found.mean_peak, LEAST_SHARE / found.least_ratio)
-    upward = LEAST_SHARE / (found.vertical_least_ratio or LEAST_SHARE)
+    check = check_set(kept, action, longest=longest)
+    needed = max(check.wanted_peak / check.mean_peak, LEAST_SHARE / check.least_ratio)
+    upward = LEAST_SHARE / (check.vertical_least_ratio or LEAST_SHARE)
     factors = [min(max(1.0, one), MOST_FACTOR) for one in (needed, upward)]
     return kept if factors == [1.0, 1.0] else [motion.scaled(*factors) for motion in kept]
 

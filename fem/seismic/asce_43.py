@@ -132,20 +132,20 @@ class RockingOscillator:
 def sliding_row(body: LooseBody, limits: Limits, action: FloorAction) -> MethodRow:
     """Sliding distance, under the vector spectrum where there are two components, against the slip allowed."""
     both = action.second_component
-    found = slide(body.mu_kinetic, body.block.gravity, action, second_component=both)
+    slipped = slide(body.mu_kinetic, body.block.gravity, action, second_component=both)
     vector = math.sqrt(1.0 + (VERTICAL_SHARE * both) ** 2)
     components = f"two horizontal components, F_H = {vector:.4g}" if both else "motion in a plane"
-    said = "does not slide" if found.period == 0.0 else f"slides {length_in_words(found.distance)}"
+    said = "does not slide" if slipped.period == 0.0 else f"slides {length_in_words(slipped.distance)}"
     return MethodRow(
         name="ASCE/SEI 43 approximate sliding",
         quantity=MethodQuantity.SLIP,
         formula="δ_s = c_s (T_es/2π)², c_s = 2 μ_k (1 − 0.4 a_v/g) g",
-        numbers=f"c_s = 2 × {found.friction:.4g} × {body.block.gravity:g} = {found.coefficient:.4g} m/s²; "
-        + ("10 % spectrum below c_s" if found.period == 0.0 else f"T_es = {found.period:.4g} s"),
-        demand=found.distance,
+        numbers=f"c_s = 2 × {slipped.friction:.4g} × {body.block.gravity:g} = {slipped.coefficient:.4g} m/s²; "
+        + ("10 % spectrum below c_s" if slipped.period == 0.0 else f"T_es = {slipped.period:.4g} s"),
+        demand=slipped.distance,
         capacity=limits.slip,
         unit="m",
-        says=said if math.isfinite(found.distance) else "slides further than the spectrum shows",
+        says=said if math.isfinite(slipped.distance) else "slides further than the spectrum shows",
         source=SOURCE,
         validity=f"meant to be conservative; one friction coefficient, the kinetic one; {components}",
         beyond=ON_A_FLOOR if action.in_building else "",

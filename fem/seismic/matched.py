@@ -52,8 +52,8 @@ def scaled_records(
     target = action.horizontal(periods)
     scaled = []
     for record in records:
-        found = response_spectrum(record.step, record.horizontal, periods).pseudo_acceleration_m_s2
-        scaled.append(record.scaled(math.exp(float(np.mean(np.log(target / found))))))
+        spectrum = response_spectrum(record.step, record.horizontal, periods).pseudo_acceleration_m_s2
+        scaled.append(record.scaled(math.exp(float(np.mean(np.log(target / spectrum))))))
     needed = _factor_needed(scaled, action, longest)
     return [record.scaled(needed) for record in scaled]
 
@@ -100,8 +100,8 @@ def matched_records(
 
 def _factor_needed(motions: Sequence[GroundMotion], action: MotionTarget, longest: float) -> float:
     """Least factor on a set with which its mean peak and mean spectrum fulfil the code."""
-    found = check_set(motions, action, longest=longest)
-    return max(found.wanted_peak / found.mean_peak, LEAST_SHARE / found.least_ratio)
+    check = check_set(motions, action, longest=longest)
+    return max(check.wanted_peak / check.mean_peak, LEAST_SHARE / check.least_ratio)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -53,13 +53,13 @@ def pseudo_accelerations(step: float, acceleration: FloatArray, periods: FloatAr
     Args:
         step: between samples [s]; acceleration: (n,) [m/s2]; periods: (k,) [s].
     """
-    found = np.empty(periods.size)
+    accelerations = np.empty(periods.size)
     for members, parts, coefficients in _groups(step, tuple(periods.tolist())):
         forces = np.zeros(2 + math.ceil(parts * acceleration.size / AT_ONCE) * AT_ONCE)
         work = np.zeros((3, coefficients.shape[1]))
         _largest(acceleration, parts, coefficients, forces, work[0], work[1], work[2])
-        found[members] = work[2]
-    return found
+        accelerations[members] = work[2]
+    return accelerations
 
 
 def _largest_of(

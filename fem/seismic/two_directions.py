@@ -96,14 +96,14 @@ def _largest(motion: GroundMotion, friction: tuple[float, float], gravity: float
     """Largest distance from where the body stood, with the worse sign of the vertical [m]."""
     second = motion.second if both and motion.second is not None else np.zeros_like(motion.horizontal)
     ups = [None] if motion.vertical is None else [motion.vertical, -motion.vertical]
-    found = 0.0
+    largest = 0.0
     for up in ups:
         slip, velocity = _slid(motion.times, motion.horizontal, second, up, friction, gravity)
         speed = math.hypot(*velocity)
         # after the last sample the floor moves on at constant velocity, and the body stops on a straight line
         rest = slip[-1] + velocity * speed / (2.0 * friction[1] * gravity) if speed > 0.0 else slip[-1]
-        found = max(found, float(np.hypot(slip[:, 0], slip[:, 1]).max()), math.hypot(*rest))
-    return found
+        largest = max(largest, float(np.hypot(slip[:, 0], slip[:, 1]).max()), math.hypot(*rest))
+    return largest
 
 
 def _slid(

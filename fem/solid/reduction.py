@@ -117,10 +117,10 @@ def _stress_of(elements: FiniteElements, shapes: FloatArray) -> FloatArray:
 
 def _products(rows: FloatArray, matrix: csc_array) -> FloatArray:
     """rows matrix rows^T, symmetric to the bit."""
-    found = np.empty((len(rows), len(rows)))
+    products = np.empty((len(rows), len(rows)))
     for block in blocks(len(rows), _affordable(rows)):
-        found[block] = (rows[block] @ matrix) @ rows.T
-    return 0.5 * (found + found.T)
+        products[block] = (rows[block] @ matrix) @ rows.T
+    return 0.5 * (products + products.T)
 
 
 def _combine(
