@@ -9,22 +9,16 @@ from fem.html import sections as html
 from fem.html.units import ABSENT, millimetres, number, ratio, short
 from fem.records.units import STANDARD_GRAVITY
 from fem.report.studies import drawings
-from fem.results.figures import Shown
+from fem.results.figures import DURATION, PGA, PGD, PGV
 from fem.results.outcome import COUNTED, ROCKING, SLIDING
-from fem.runtime import units
 from fem.sweep.cells import shown_at
 from fem.sweep.motion_outcomes import MEAN_TURNED, WORST_TURNED, MotionOutcome, motions_at
 from fem.sweep.result import SweepResult
 from fem.sweep.table import SweepTable
 
-PGA = "peak_acceleration_m_s2"
+PEAK = "peak_acceleration_m_s2"
 #: what is shown of a motion
-MEASURES = {
-    PGA: Shown("PGA", units.ACCELERATION),
-    "peak_velocity_m_s": Shown("PGV", units.VELOCITY),
-    "peak_displacement_m": Shown("PGD", units.MILLIMETRES),
-    "significant_s": Shown("D5-95", units.SECONDS),
-}
+MEASURES = {PEAK: PGA, "peak_velocity_m_s": PGV, "peak_displacement_m": PGD, "significant_s": DURATION}
 MOST_POINTS = 12  #: beside one another in the table of outcomes
 
 
@@ -100,7 +94,7 @@ def _numbers(motions: Sequence[Mapping[str, Any]]) -> html.Table:
     """A row a component: peaks, significant duration, length, step."""
     columns: list[html.Column[Mapping[str, Any]]] = [
         html.Column("motion", lambda one: one["file"] + ("" if "vertical" in one else " (vertical)")),
-        html.Column("PGA [g]", lambda one: number(one[PGA], 1.0 / STANDARD_GRAVITY, 3), html.NUMBER),
+        html.Column("PGA [g]", lambda one: number(one[PEAK], 1.0 / STANDARD_GRAVITY, 3), html.NUMBER),
         *html.figure_columns(MEASURES),
         html.Column("length [s]", lambda one: short(one["duration_s"]), html.NUMBER),
         html.Column("step [s]", lambda one: short(one["step_s"]), html.NUMBER),

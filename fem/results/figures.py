@@ -262,6 +262,11 @@ class RunFigures(Figures[float], RunOutcome):  # of several bases the last comes
         return {key: getattr(self, key) for key in keys_of(place)}
 
 
+#: of a motion of the floor
+PGA, PGV = Shown("PGA", units.ACCELERATION), Shown("PGV", units.VELOCITY)
+PGD, DURATION = Shown("PGD", MM), Shown("D5-95", units.SECONDS)
+
+
 def _hints(kind: type) -> dict[str, Any]:
     """Fields of a class, then its properties, with their types."""
     derived = {key: one.fget for key, one in vars(kind).items() if isinstance(one, property)}

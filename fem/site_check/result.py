@@ -8,9 +8,10 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from fem.batch.study import StudyResult
-from fem.results.figures import SLIPPED, TURNED, Place, RunFigures, Shown, keys_beside, shown_in
+from fem.results import figures
 from fem.results.json_block import JsonBlock
 from fem.runtime import units
+from fem.runtime.units import RATIO
 
 RESULT_FILE = "assess.json"
 USUAL_BEHAVIOUR_FACTOR = 1.5
@@ -77,13 +78,13 @@ class SiteMotion(JsonBlock):
     number: int  #: from 1
     origin: str  #: "seed 1", or the names of the record's files
     scale: float = 1.0  #: on the record, or of the whole set
-    pga_m_s2: Annotated[float, Shown("PGA", units.ACCELERATION)]
-    pgv_m_s: Annotated[float, Shown("PGV", units.VELOCITY)]
-    pgd_m: Annotated[float, Shown("PGD", units.MILLIMETRES)]
-    d5_95_s: Annotated[float, Shown("D5-95", units.SECONDS)]
-    vertical_pga_m_s2: Annotated[float | None, Shown("vertical PGA", units.ACCELERATION)] = None
-    end_velocity_m_s: Annotated[float, Shown("end velocity", units.VELOCITY)]
-    end_displacement_m: Annotated[float, Shown("end displacement", units.MILLIMETRES)]
+    pga_m_s2: Annotated[float, figures.PGA]
+    pgv_m_s: Annotated[float, figures.PGV]
+    pgd_m: Annotated[float, figures.PGD]
+    d5_95_s: Annotated[float, figures.DURATION]
+    vertical_pga_m_s2: Annotated[float | None, figures.Shown("vertical PGA", units.ACCELERATION)] = None
+    end_velocity_m_s: Annotated[float, figures.Shown("end velocity", units.VELOCITY)]
+    end_displacement_m: Annotated[float, figures.Shown("end displacement", units.MILLIMETRES)]
     spectrum_m_s2: tuple[float, ...]  #: at the periods of the action
     vertical_spectrum_m_s2: tuple[float, ...] = ()
     files: tuple[str, ...]  #: in the folder of results
@@ -133,7 +134,7 @@ class SiteBody(JsonBlock):
 
 
 @dataclass(frozen=True, kw_only=True)
-class SiteRun(RunFigures):
+class SiteRun(figures.RunFigures):
     """One run."""
 
     stage: str = "set"  #: set | repeated | scan | refined | further: what it is for
@@ -147,7 +148,7 @@ class SiteRun(RunFigures):
     building_period_s: float | None = None
     factor: float = 1.0
 
-    written_where_given = keys_beside(Place.RUNS) | {"boxes"}
+    written_where_given = figures.keys_beside(figures.Place.RUNS) | {"boxes"}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -155,17 +156,17 @@ class ByRule(JsonBlock):
     """What counts by the rule; None where a run overturned or failed."""
 
     #: of seven and more motions the mean, of fewer the largest
-    rotation_ratio: Annotated[float | None, Shown("rotation ratio, by the rule", units.RATIO)] = None
+    rotation_ratio: Annotated[float | None, figures.Shown("rotation ratio, by the rule", RATIO)] = None
     #: of a single motion
-    rotation_ratio_largest: Annotated[float | None, Shown("largest of one motion", units.RATIO)] = None
+    rotation_ratio_largest: Annotated[float | None, figures.Shown("largest of one motion", RATIO)] = None
     #: of a single motion, the largest: a clearance is used up once
-    slip_m: Annotated[float | None, Shown("slip, largest", units.SHORT_MILLIMETRES)] = None
-    slip_mean_m: Annotated[float | None, Shown("mean", units.SHORT_MILLIMETRES)] = None
+    slip_m: Annotated[float | None, figures.Shown("slip, largest", units.SHORT_MILLIMETRES)] = None
+    slip_mean_m: Annotated[float | None, figures.Shown("mean", units.SHORT_MILLIMETRES)] = None
 
 
-BY_RULE = shown_in(ByRule)
+BY_RULE = figures.shown_in(ByRule)
 #: the figure of a run that each of these is on
-LIMITED = {"rotation_ratio": TURNED, "slip_m": SLIPPED}
+LIMITED = {"rotation_ratio": figures.TURNED, "slip_m": figures.SLIPPED}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -209,7 +210,7 @@ class FurtherMotions(JsonBlock):
 
 
 @dataclass(frozen=True, kw_only=True)
-class ConfirmedRun(RunFigures):
+class ConfirmedRun(figures.RunFigures):
     """A deciding run, repeated with another model over its unknown inputs."""
 
     run: SiteRun
@@ -218,7 +219,7 @@ class ConfirmedRun(RunFigures):
     outcomes: tuple[str, ...] = ()  #: over the band
     bolt_utilisation: float | None = None  #: largest tension over joints.bolt_capacity_N; None: not given
 
-    written_where_given = keys_beside(Place.KEY) | {"boxes", "bolt_utilisation"}
+    written_where_given = figures.keys_beside(figures.Place.KEY) | {"boxes", "bolt_utilisation"}
 
 
 @dataclass(frozen=True, kw_only=True)
