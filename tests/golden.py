@@ -36,6 +36,8 @@ case = "seed_stack_plateau"
 [derived]
 "contact.mu_kinetic" = "0.5 * contact.mu_static"
 """
+#: a hall
+LIST = "name,count,tag,width_m,mu_static,x_m,y_m\nA,2,a,1.0,0.5,0,0\nB,1,b,0.6,,3,0\nbad,1,a,-1,,,\nC,1,a,2.4,0.2,0,3\n"
 RECORD = "0 1.2 -2.5 3.9 -4.4 3.0 -1.1 0.4 0 0 0"
 PULSE = ("motion.kind=pulse", "motion.shape=sine", "motion.peak_acceleration_m_s2=3.8", "motion.pulse_s=1.0")
 LINKS = (
@@ -103,6 +105,8 @@ ITEMS = (
     *(study("ensemble", name, long=True) for name in ("boundary", "fragility")),
     study("response", "rocking", "--from", "0.8", "--to", "1.6", "--count", "5"),
     study("assess", "site", long=True),
+    study("batch", "list.csv", "--case", "rocking.toml"),
+    Item("batch at a site", (("batch", "list.csv", "--site", "site.toml", "--out", "out"),), long=True),
     Item(
         "size width",
         (
@@ -144,6 +148,7 @@ def compute_item(checkout: Path, results: Path, item: Item) -> bool:
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     (folder / "small.toml").write_text(SWEEP)
+    (folder / "list.csv").write_text(LIST)
     rows = "\n".join(f"{0.1 * k:.1f} {value}" for k, value in enumerate(RECORD.split()))
     (folder / "record.txt").write_text(rows + "\n")
     python = own if (own := checkout / ".venv/bin/python").exists() else Path(sys.executable)
