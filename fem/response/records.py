@@ -11,7 +11,7 @@ from fem.batch.table import table_text
 from fem.response.curve import PORTRAYED, CurvePoint
 from fem.response.model import SAMPLES_PER_PERIOD
 from fem.response.orbit import EXTREME_COLUMNS, SECTION_COLUMNS
-from fem.results.figures import FIGURES, TURNED, Shown, shown_in
+from fem.results.figures import FIGURES, TURNED, Shown, declared_in
 from fem.results.json_block import JsonBlock
 from fem.results.outcome import Outcome
 from fem.runtime import units
@@ -72,7 +72,7 @@ class PointRow(JsonBlock):
         return f"{self.motion}, {self.long_time}"
 
 
-POINT_FIGURES = shown_in(PointRow)
+POINT_FIGURES = declared_in(PointRow)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -10,7 +10,7 @@ container to +x.
 
 from dataclasses import KW_ONLY, dataclass
 from enum import Flag, auto
-from typing import Annotated, Any, Generic, TypeVar, get_args, get_type_hints
+from typing import Annotated, Any, Generic, TypeVar, get_args, get_origin, get_type_hints
 
 from fem.results.json_block import JsonBlock
 from fem.runtime import units
@@ -274,7 +274,7 @@ def _hints(kind: type) -> dict[str, Any]:
     return get_type_hints(kind, include_extras=True) | of_derived
 
 
-def shown_in(kind: type) -> dict[str, Shown]:
+def declared_in(kind: type) -> dict[str, Shown]:
     """How people are shown what a class holds, by key."""
     return {
         key: one for key, hint in _hints(kind).items() for one in get_args(hint) if isinstance(one, Shown)
@@ -287,16 +287,18 @@ def types_of(kind: type) -> dict[str, type]:
 
 
 def _plain(hint: Any) -> type:
-    """`X` of `X | None` and of annotated types; float of a number in general."""
-    while parts := get_args(hint):
-        hint = parts[0]
+    """`X` of `X | None` and of annotated types; float of a number in general, tuple of several."""
+    if get_origin(hint) is tuple:
+        return tuple
+    if parts := get_args(hint):
+        return _plain(parts[0])
     return hint if isinstance(hint, type) else float
 
 
 #: by key, in the order of the columns of tables
-FIGURES = shown_in(RunFigures)
+FIGURES = declared_in(RunFigures)
 #: of each box of a loose stack
-BOX_FIGURES = shown_in(BoxFigures)
+BOX_FIGURES = declared_in(BoxFigures)
 #: keys of the two figures that studies limit and rank by: how far a container turns, and how far it slips
 TURNED, SLIPPED = "rotation_ratio", "max_slip_m"
 

@@ -164,7 +164,7 @@ class ByRule(JsonBlock):
     slip_mean_m: Annotated[float | None, figures.Shown("mean", units.SHORT_MILLIMETRES)] = None
 
 
-BY_RULE = figures.shown_in(ByRule)
+BY_RULE = figures.declared_in(ByRule)
 #: the figure of a run that each of these is on
 LIMITED = {"rotation_ratio": figures.TURNED, "slip_m": figures.SLIPPED}
 

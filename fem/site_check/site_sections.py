@@ -11,7 +11,7 @@ from fem.html import sections as html
 from fem.html.formula import formula_markup
 from fem.html.page import svg_element
 from fem.html.units import ABSENT, figure_head, number, quantity, short, typeset
-from fem.results.figures import FIGURES, SLIPPED, TURNED, Place, Shown, figures_of, keys_of, shown_in
+from fem.results.figures import FIGURES, SLIPPED, TURNED, Place, Shown, declared_in, figures_of, keys_of
 from fem.results.outcome import ENDINGS, Outcome
 from fem.seismic.hazard import ACCELERATION
 from fem.site_check.figures import draw_floor, draw_methods, draw_scan
@@ -339,7 +339,7 @@ def motions_section(motions: Sequence[DrawnMotion]) -> html.PageSection:
         html.Column("motion", lambda one: str(one.number), html.NUMBER),
         html.Column("origin", lambda one: Markup.escape(one.origin)),
         html.Column("scale", lambda one: short(one.scale), html.NUMBER),
-        *html.figure_columns(shown_in(SiteMotion)),
+        *html.figure_columns(declared_in(SiteMotion)),
     ]
     curves = [
         figure(svg, f"motion-{motion.number}", f"motion {motion.number}") for motion, svg in motions if svg
