@@ -5,7 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from fem.batch.table import fields_of, line_of
+from fem.batch.table import fields_of, line_of, row_of
+from fem.results.figures import RUN_COLUMNS, types_of
+from fem.site_check.runs import RunKey
 
 ROOT = Path(__file__).parents[3]
 
@@ -30,3 +32,16 @@ def test_numbers_and_other_texts_stay_as_they_are(value):
     line = line_of([value, "x"])
     assert "'" not in line
     assert line_of(fields_of(line)) == line
+
+
+def test_a_row_reads_back_with_the_types_of_its_columns():
+    samples = {str: "-rock", int: 3, float: 0.1 + 0.2, bool: False, tuple: (0.1, -2.5e-17)}
+    assert {*RUN_COLUMNS.values()} == {*samples}
+    row = {name: samples[kind] for name, kind in RUN_COLUMNS.items()}
+    for values in (row, dict.fromkeys(RUN_COLUMNS)):
+        assert row_of(RUN_COLUMNS, line_of(values.values())) == values
+
+
+def test_the_columns_of_a_class_have_the_types_of_its_fields():
+    columns = types_of(RunKey)
+    assert [columns[name] for name in ("stage", "motion", "building_period_s")] == [str, int, float]
