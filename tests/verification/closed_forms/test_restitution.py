@@ -142,12 +142,12 @@ FLOORS = {"rigid": {}, "slab": {"floor.preset": "concrete C25/30", "floor.corner
 @pytest.mark.parametrize("floor", FLOORS)
 @pytest.mark.parametrize(("peak", "asked"), [(3.8, (0.9, 0.96, 1.0, 1.06)), (4.0, (0.93, 1.03))])
 def test_less_restitution_rocks_less_under_a_pulse(floor, peak, asked):
-    block = RigidBlock.homogeneous(width=1.1, height=4.0, gravity=9.81)
     keys = pulse(peak, 1.0, "sine") | {"contact.mu_static": 3.0, "solver.duration_s": 6.0} | FLOORS[floor]
     found, exact = [], []
     for factor in asked:
         done = run(STACK.with_values(keys | {"contact.restitution_over_housner": factor}))
         found.append(float(done.track.max_rotation))
+        block = done.block  # the end of its wall turns 0.5 mm inside the edge on concrete
         reference = simulate_rocking(
             block,
             one_sine_pulse(peak=peak, duration=1.0),
