@@ -101,7 +101,7 @@ ITEMS = (
     study("sweep", "small.toml"),
     *(study("sweep", name, long=True) for name in ("friction_slenderness", "outcome_map", "rigid_to_soft")),
     study("sweep", "loose_stack", long=True),
-    study("sweep", "kerb_gap", long=True),
+    *(study("sweep", name, long=True) for name in ("kerb_gap", "neighbour_gap")),
     *(study("ensemble", name, long=True) for name in ("boundary", "fragility")),
     study("response", "rocking", "--from", "0.8", "--to", "1.6", "--count", "5"),
     study("assess", "site", long=True),

@@ -1,9 +1,13 @@
-"""Corners on faces: the contact points of boxes that stand on one another, from the corners of the boxes.
+"""Corners on faces: the contact points of boxes that stand on one another, or beside one another, from their corners.
 
 A contact point is a corner on a face. A face is the floor, or the straight line between two corners of the box above or
 below. N boxes have 4 N corners - bottom left, bottom right, top left, top right of each, from the floor up - and
 4 N - 2 contact points: the two lower corners of the lowest box on the floor; then in each joint the left corner of the
 upper box on the face below and the left corner of the lower box on the face above, and so both right corners.
+
+Bodies beside one another all stand on the floor, and where two face each other their sides are such a joint, turned by
+90 degrees: "lower" is then the left body, "upper" the right one, and a face leads from its top to its bottom. Each
+body's corners are in a frame of its own, so that nothing but the gaps depends on how far apart the bodies are.
 
 A point of a joint has the coordinates x along the face, of the upper box relative to the lower one, and the gap. The
 force (tangential, normal) acts on the upper box. That on the face goes to its two corners by the lever rule; a pair of
@@ -15,13 +19,13 @@ The weight of a point, a factor of its stiffness, falls from 1 to 0 where its co
 one has left, the other carries all. A point of no weight is open, by the length of its face.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from contact.arrays import FloatArray, IntArray
 from contact.interface.workspace import Contact, Workspace
-from contact.jit import compiled
+from contact.jit import compiled, inlined
 from contact.structs import struct
 
 EDGE = 1e-3  #: half of the length over which a corner leaves a face, over the shorter of the two faces of the joint
@@ -29,13 +33,22 @@ CORNERS = 4  #: of a box
 BOTTOM_LEFT, BOTTOM_RIGHT, TOP_LEFT, TOP_RIGHT = range(CORNERS)
 #: corners of a contact point: the one on the face, and the left and right end of the face
 TOUCHING, LEFT, RIGHT = 0, 1, 2
+LOWER, UPPER = 0, 1  #: boxes of a contact point
+ASIDE = (
+    64.0  #: distance of the points of pairs from those on the floor and from each other, over a body's size
+)
 
 
 @struct
 class Faces(NamedTuple):
-    """The contact points of N boxes, n = 4 N - 2, and scratch."""
+    """The contact points of N boxes, n, and scratch."""
 
-    corner: IntArray  #: (n, 3) TOUCHING, LEFT and RIGHT corner of a point; of the floor's points all the same
+    corner: IntArray  #: (n, 3) TOUCHING, LEFT and RIGHT corner of a point; a point over the floor is between the latter
+    bodies: IntArray  #: (n, 2) lower and upper box of a point; -1, and its box, of a point over the floor
+    parts: IntArray  #: (n,) how many of its corners move a point
+    reach: IntArray  #: (n,) behind the last point that shares a box with it
+    place: FloatArray  #: (n,) of a point over the floor, between its LEFT and RIGHT corner: 0 to 1
+    apart: FloatArray  #: (n,) how much further along x the frame of the corner is than that of the face [m]
     side: FloatArray  #: (n,) 1: a corner of the upper box on the face below; -1: of the lower box on the face above
     length: FloatArray  #: (n,) of the face, undeformed [m]
     origin: (
@@ -46,6 +59,7 @@ class Faces(NamedTuple):
     tangential_stiffness: FloatArray  #: (n,)
     weight: FloatArray  #: (n,) in this step
     #: scratch, of the linearisation about positions of the corners
+    placed: FloatArray  #: (n, 2) the points at these positions
     gradient: FloatArray  #: (n, 2, 3, 2) derivatives of x and gap by x and z of the point's three corners
     moved: (
         FloatArray  #: (2 n, 2, 8) displacement of the corners of lower and upper box under a unit force [m/N]
@@ -58,39 +72,123 @@ def points_of_joint(joint: int) -> slice:
 
 
 def make_faces(corner: FloatArray, normal_stiffness: FloatArray, tangential_stiffness: FloatArray) -> Faces:
-    """The contact points of boxes.
+    """The contact points of boxes that stand on one another.
 
     Args:
         corner: (4 N, 2) corners of the undeformed stack [m].
         normal_stiffness, tangential_stiffness: (4 N - 2,) springs of the points at full weight [N/m].
     """
     boxes = len(corner) // CORNERS
-    places = [[BOTTOM_LEFT] * 3, [BOTTOM_RIGHT] * 3]
-    side, length, origin, edge = [1.0, 1.0], [1.0, 1.0], [0.0, 0.0], [0.0, 0.0]
-    for upper in range(1, boxes):
-        below, above = CORNERS * (upper - 1), CORNERS * upper
-        top = [below + TOP_LEFT, below + TOP_RIGHT]
-        bottom = [above + BOTTOM_LEFT, above + BOTTOM_RIGHT]
-        of_top, of_bottom = (float(np.linalg.norm(corner[b] - corner[a])) for a, b in (top, bottom))
-        for end in range(2):
-            places += [[bottom[end], *top], [top[end], *bottom]]
-            side += [1.0, -1.0]
-            length += [of_top, of_bottom]
-            origin += [0.0, (of_top + of_bottom) * end]
-            edge += 2 * [EDGE * min(of_top, of_bottom)]
-    n = len(places)
+    joints = [
+        _joint(
+            corner,
+            [CORNERS * (upper - 1) + TOP_LEFT, CORNERS * (upper - 1) + TOP_RIGHT],
+            [CORNERS * upper + BOTTOM_LEFT, CORNERS * upper + BOTTOM_RIGHT],
+        )
+        for upper in range(1, boxes)
+    ]
+    return _faces([_on_floor(0, 0.0), _on_floor(0, 1.0)], joints, normal_stiffness, tangential_stiffness)
+
+
+def make_row(
+    corner: FloatArray,
+    pairs: IntArray,
+    distance: FloatArray,
+    inset: FloatArray,
+    normal_stiffness: FloatArray,
+    tangential_stiffness: FloatArray,
+) -> Faces:
+    """The contact points of bodies beside one another: two of each on the floor, then four of each pair.
+
+    Args:
+        corner: (4 N, 2) corners of the undeformed bodies, each in its own frame [m].
+        pairs: (g, 2) left and right body of those that face each other.
+        distance: (g,) how much further to the right the frame of the right one is [m].
+        inset: (N,) of the points over the floor from the sides, over the width of the base.
+        normal_stiffness, tangential_stiffness: (2 N + 4 g,) springs of the points at full weight [N/m].
+    """
+    floor = [
+        _on_floor(b, end + (1.0 - 2.0 * end) * inset[b]) for b in range(len(inset)) for end in (0.0, 1.0)
+    ]
+    joints = []
+    for number, ((left, right), along) in enumerate(zip(pairs, distance, strict=True), 1):
+        face = [CORNERS * left + TOP_RIGHT, CORNERS * left + BOTTOM_RIGHT]
+        other = [CORNERS * right + TOP_LEFT, CORNERS * right + BOTTOM_LEFT]
+        own = _joint(corner, face, other, apart=along)
+        # points across their faces are told from those on the floor and of other pairs by it
+        own["origin"] = [one + number * ASIDE * float(np.abs(corner).max()) for one in own["origin"]]
+        joints.append(own)
+    return _faces(floor, joints, normal_stiffness, tangential_stiffness)
+
+
+def _on_floor(box: int, place: float) -> dict[str, Any]:
+    """A point over the floor, at a place between the lower corners of a box."""
+    at_corner = place in (0.0, 1.0)
+    left, right = CORNERS * box + BOTTOM_LEFT, CORNERS * box + BOTTOM_RIGHT
+    nearest = left if place < 0.5 else right
+    return {
+        "corner": [[nearest] * 3 if at_corner else [nearest, left, right]],
+        "bodies": [[-1, box]],
+        "parts": [1 if at_corner else 3],
+        "place": [0.0 if at_corner else place],
+        "apart": [0.0],
+        "side": [1.0],
+        "length": [1.0],
+        "origin": [0.0],
+        "edge": [0.0],
+    }
+
+
+def _joint(corner: FloatArray, face: list[int], other: list[int], apart: float = 0.0) -> dict[str, Any]:
+    """The four points of two faces: that of the lower box and that of the upper one, by their corners."""
+    of_face, of_other = (float(np.linalg.norm(corner[b] - corner[a])) for a, b in (face, other))
+    return {
+        "corner": [one for end in range(2) for one in ([other[end], *face], [face[end], *other])],
+        "bodies": 4 * [[face[0] // CORNERS, other[0] // CORNERS]],
+        "parts": 4 * [3],
+        "place": 4 * [0.0],
+        "apart": 2 * [apart, -apart],
+        "side": 2 * [1.0, -1.0],
+        "length": 2 * [of_face, of_other],
+        "origin": [one for end in range(2) for one in (0.0, (of_face + of_other) * end)],
+        "edge": 4 * [EDGE * min(of_face, of_other)],
+    }
+
+
+def _faces(
+    floor: list[dict[str, Any]],
+    joints: list[dict[str, Any]],
+    normal_stiffness: FloatArray,
+    tangential_stiffness: FloatArray,
+) -> Faces:
+    parts = [*floor, *joints]
+    arrays: Any = {name: np.array([one for part in parts for one in part[name]]) for name in parts[0]}
+    bodies, n = arrays["bodies"], len(arrays["side"])
+    shared = (bodies[:, None, :, None] == bodies[None, :, None, :]) & (bodies >= 0)[:, None, :, None]
     return Faces(
-        corner=np.array(places),
-        side=np.array(side),
-        length=np.array(length),
-        origin=np.array(origin),
-        edge=np.array(edge),
+        **arrays,
+        reach=n - np.argmax(shared.any(axis=(2, 3))[:, ::-1], axis=1),
         normal_stiffness=np.array(normal_stiffness, dtype=float),
         tangential_stiffness=np.array(tangential_stiffness, dtype=float),
         weight=np.ones(n),
+        placed=np.zeros((n, 2)),
         gradient=np.zeros((n, 2, 3, 2)),
         moved=np.zeros((2 * n, 2, 2 * CORNERS)),
     )
+
+
+@inlined
+def is_over_floor(faces: Faces, i: int) -> bool:
+    """Whether a contact point is one over the floor, and not a corner on the face of a box."""
+    return bool(faces.bodies[i, LOWER] < 0)
+
+
+@inlined
+def side_of_point(faces: Faces, i: int, box: int) -> int:
+    """Which of the two boxes of a contact point a box is: LOWER or UPPER, -1: none of them."""
+    if faces.bodies[i, UPPER] == box:
+        return UPPER
+    return LOWER if faces.bodies[i, LOWER] == box else -1
 
 
 @compiled(inline=True)
@@ -102,7 +200,7 @@ def place_on_face(faces: Faces, i: int, corner: FloatArray) -> tuple[float, floa
     """
     touching, left, right = faces.corner[i, TOUCHING], faces.corner[i, LEFT], faces.corner[i, RIGHT]
     along_x, along_z = corner[right, 0] - corner[left, 0], corner[right, 1] - corner[left, 1]
-    x, z = corner[touching, 0] - corner[left, 0], corner[touching, 1] - corner[left, 1]
+    x, z = corner[touching, 0] - corner[left, 0] + faces.apart[i], corner[touching, 1] - corner[left, 1]
     length = np.sqrt(along_x * along_x + along_z * along_z)
     along_x, along_z = along_x / length, along_z / length
     share = (x * along_x + z * along_z) / length
@@ -112,9 +210,14 @@ def place_on_face(faces: Faces, i: int, corner: FloatArray) -> tuple[float, floa
 @compiled(inline=True)
 def place_points(faces: Faces, corner: FloatArray, point: FloatArray) -> None:
     """Contact points (n, 2) from the corners (4 N, 2), both relative to the floor [m]."""
-    for i in range(2):
-        point[i, 0], point[i, 1] = corner[i, 0], corner[i, 1]
-    for i in range(2, faces.weight.size):
+    for i in range(faces.weight.size):
+        if is_over_floor(faces, i):
+            left, right = faces.corner[i, LEFT], faces.corner[i, RIGHT]
+            for k in range(2):
+                point[i, k] = corner[left, k]
+                if faces.parts[i] > 1:
+                    point[i, k] += faces.place[i] * (corner[right, k] - corner[left, k])
+            continue
         share, gap, _, _, _ = place_on_face(faces, i, corner)
         point[i, 0] = faces.origin[i] + faces.side[i] * share * faces.length[i]
         point[i, 1] = gap
@@ -123,7 +226,7 @@ def place_points(faces: Faces, corner: FloatArray, point: FloatArray) -> None:
 @compiled(inline=True)
 def open_unweighted(faces: Faces, point: FloatArray) -> None:
     """Open the points of no weight."""
-    for i in range(2, faces.weight.size):
+    for i in range(faces.weight.size):
         if faces.weight[i] == 0.0:
             point[i, 1] = faces.length[i]
 
@@ -134,7 +237,9 @@ def weigh_points(faces: Faces, corner: FloatArray, point: FloatArray, contact: C
 
     A corner that comes from beside the face deeper below it than the edge is wide is not on it.
     """
-    for i in range(2, faces.weight.size):
+    for i in range(faces.weight.size):
+        if is_over_floor(faces, i):
+            continue
         share, gap, _, _, _ = place_on_face(faces, i, corner)
         inside = min(share, 1.0 - share) * faces.length[i] / faces.edge[i]
         weight = min(max(0.5 + 0.5 * inside, 0.0), 1.0)
@@ -149,9 +254,15 @@ def weigh_points(faces: Faces, corner: FloatArray, point: FloatArray, contact: C
 def linearise_points(faces: Faces, corner: FloatArray, point: FloatArray) -> None:
     """Contact points (n, 2) of the corners (4 N, 2), and their derivatives in `faces.gradient`."""
     place_points(faces, corner, point)
-    for i in range(2):
-        faces.gradient[i, 0, 0, 0], faces.gradient[i, 1, 0, 1] = 1.0, 1.0
-    for i in range(2, faces.weight.size):
+    for i in range(faces.weight.size):
+        if is_over_floor(faces, i):
+            for k in range(2):
+                if faces.parts[i] == 1:
+                    faces.gradient[i, k, TOUCHING, k] = 1.0
+                else:
+                    faces.gradient[i, k, LEFT, k] = 1.0 - faces.place[i]
+                    faces.gradient[i, k, RIGHT, k] = faces.place[i]
+            continue
         share, gap, along_x, along_z, length = place_on_face(faces, i, corner)
         stretch, leaning = faces.side[i] * faces.length[i] / length, gap * faces.side[i] / length
         gradient = faces.gradient[i]
@@ -173,7 +284,7 @@ def share_forces(faces: Faces, force: FloatArray, corner_force: FloatArray) -> N
     for i in range(force.shape[0]):
         tangential, normal = force[i, 0], force[i, 1]
         if tangential != 0.0 or normal != 0.0:
-            for k in range(3 if i > 1 else 1):
+            for k in range(faces.parts[i]):
                 c = faces.corner[i, k]
                 for d in range(2):
                     corner_force[c, d] += (
@@ -210,7 +321,7 @@ def condense_points(faces: Faces, corners: Workspace, work: Workspace) -> None:
     for i in range(n):
         for a in range(2):
             moved, speed = 0.0, 0.0
-            for k in range(3 if i > 1 else 1):
+            for k in range(faces.parts[i]):
                 c = faces.corner[i, k]
                 for d in range(2):
                     by = faces.gradient[i, a, k, d]
@@ -219,44 +330,40 @@ def condense_points(faces: Faces, corners: Workspace, work: Workspace) -> None:
             work.free[i, a] += moved
             work.free_velocity[i, a] = speed
     for i in range(n):
-        if i > 1 and faces.weight[i] == 0.0:  # it never carries a force
+        if faces.weight[i] == 0.0:  # it never carries a force
             for b in range(2 * n):
                 for a in range(2):
                     work.compliance[2 * i + a, b], work.compliance[b, 2 * i + a] = 0.0, 0.0
             continue
-        upper = (i + 2) // 4
         for a in range(2):
             for b in range(2 * CORNERS):
                 faces.moved[2 * i + a, 0, b], faces.moved[2 * i + a, 1, b] = 0.0, 0.0
-            for k in range(3 if i > 1 else 1):
+            for k in range(faces.parts[i]):
                 c = faces.corner[i, k]
-                which = 1 if c >= CORNERS * upper else 0
-                first = 2 * CORNERS * (upper - 1 + which)
+                which = side_of_point(faces, i, c // CORNERS)
+                first = 2 * CORNERS * (c // CORNERS)
                 for d in range(2):
                     by, column = faces.gradient[i, a, k, d], 2 * c + d
                     if by != 0.0:
                         for b in range(2 * CORNERS):
                             faces.moved[2 * i + a, which, b] += by * corners.compliance[first + b, column]
     for i in range(n):
-        if i > 1 and faces.weight[i] == 0.0:
+        if faces.weight[i] == 0.0:
             continue
-        joint = (i + 2) // 4
-        for j in range(i, min(n, 4 * joint + 6)):
-            if j > 1 and faces.weight[j] == 0.0:
+        for j in range(i, faces.reach[i]):
+            if faces.weight[j] == 0.0:
                 continue
-            apart = (j + 2) // 4 - joint  # 0: the same joint, 1: the next
             for a in range(2):
                 for b in range(2):
                     total = 0.0
-                    for k in range(3 if i > 1 else 1):
+                    for k in range(faces.parts[i]):
                         c = faces.corner[i, k]
-                        which = 1 if c >= CORNERS * joint else 0
-                        if which >= apart:  # the box below the joint of j is the one above that of i
-                            local = 2 * (c - CORNERS * (joint - 1 + which))
+                        which = side_of_point(faces, j, c // CORNERS)
+                        if which >= 0:
                             for d in range(2):
                                 total += (
                                     faces.gradient[i, a, k, d]
-                                    * faces.moved[2 * j + b, which - apart, local + d]
+                                    * faces.moved[2 * j + b, which, 2 * (c % CORNERS) + d]
                                 )
                     work.compliance[2 * i + a, 2 * j + b] = total
                     work.compliance[2 * j + b, 2 * i + a] = total

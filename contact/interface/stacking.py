@@ -134,6 +134,6 @@ def _dense_gradient(faces: Faces, boxes: int) -> FloatArray:
     n = faces.weight.size
     dense = np.zeros((n, 2, CORNERS * boxes, 2))
     for i in range(n):
-        for k in range(3 if i > 1 else 1):
+        for k in range(faces.parts[i]):
             dense[i, :, faces.corner[i, k]] += faces.gradient[i, :, k]
     return dense

@@ -1,10 +1,10 @@
-"""What the boxes of a loose stack do: rotations, openings, falls; and when a container has fallen."""
+"""What the boxes of a loose stack, or bodies in a row, do: rotations, openings, hits, falls."""
 
 import math
 
 from contact.jit import compiled, inlined
 from contact.stepping.body import ANGULAR_VELOCITY, CENTRE_X, CENTRE_Z, ROTATION
-from contact.stepping.joints import points_of
+from contact.stepping.joints import in_a_row, points_of
 from contact.stepping.observables import FALLEN, NEVER, OPENING, REST, ROCK, ROCKING, SLIDE, SLIDE_ROCK
 from contact.stepping.scheme import hermite
 from contact.stepping.state import RunState
@@ -12,6 +12,7 @@ from contact.stepping.state import RunState
 OVERTURNING_ROTATION = 0.5 * math.pi
 #: without stop at overturning, it counts this much earlier, where the side of the container meets the floor [rad]
 LYING_MARGIN = 2e-3
+POINTS_OF_GAP = 4  #: contact points of two bodies that face each other
 
 
 @inlined
@@ -44,7 +45,7 @@ def follow_stack(run: RunState, step: float) -> None:
                 joint.opens = max(joint.opens, new.point[i, 1])
         joint.max_opening = max(joint.max_opening, joint.opens)
         fallen = abs(box[ROTATION]) >= OVERTURNING_ROTATION
-        if j > 0:
+        if joint.below >= 0:
             leaning = abs(box[ROTATION] - new.boxes[j - 1, ROTATION]) > ROCKING * control.slenderness_angle
             rocks = rocks or (joint.opens > OPENING * control.width and leaning)
             slides = slides or joint.slides == 1
@@ -57,8 +58,43 @@ def follow_stack(run: RunState, step: float) -> None:
 
 
 @inlined
+def follow_gaps(run: RunState, step: float, loose: bool | None, apart: float) -> None:
+    """Update the records of the gaps of a row from the step [s] about to be accepted.
+
+    A touch is another hit where the bodies have been further `apart` [m] since the last one.
+    """
+    if loose is not None:
+        for g in range(run.joints.shape[0] - 1 if in_a_row(run) else 0):
+            follow_gap(run, step, g, apart)
+
+
+@compiled
+def follow_gap(run: RunState, step: float, g: int, apart: float) -> None:
+    """`follow_gaps` of one gap; its force is that of its four points together."""
+    old, new, record = run.old, run.attempt.new, run.links[g]
+    first = run.joints[run.joints.shape[0] - 1].end + POINTS_OF_GAP * g
+    before, after, force, speed = NEVER, NEVER, 0.0, 0.0
+    for i in range(first, first + POINTS_OF_GAP):
+        before, after = min(before, old.point[i, 1]), min(after, new.point[i, 1])
+        force += new.force[i, 1]
+        if new.point[i, 1] < 0.0 <= old.point[i, 1]:
+            speed = max(speed, old.descent[i, 0])
+            if run.clock[0].steps == 0:  # the velocity of a touch at t = 0 follows from the step alone
+                speed = max(speed, (old.point[i, 1] - new.point[i, 1]) / step)
+    record.max_force = max(record.max_force, force)
+    record.least_gap = min(record.least_gap, max(after, 0.0))
+    if after > 0.0 and record.away < NEVER:
+        record.away = max(record.away, after)
+    if after < 0.0 and (before >= 0.0 or record.away == NEVER):
+        record.largest_closing_velocity = max(record.largest_closing_velocity, speed)
+        if record.away > apart:
+            record.hits += 1
+        record.away = 0.0
+
+
+@inlined
 def has_fallen(run: RunState) -> bool:
-    """Whether the container has overturned, or a box of a loose stack has fallen."""
+    """Whether the container has overturned, or a box of a loose stack or a body of a row has fallen."""
     if run.joints.shape[0] == 1:
         lying = 0.0 if run.problem.control.stop_when_overturned else LYING_MARGIN
         return bool(abs(run.old.pose[ROTATION]) >= OVERTURNING_ROTATION - lying)
@@ -70,7 +106,12 @@ def has_fallen(run: RunState) -> bool:
 
 @inlined
 def has_footing(run: RunState, j: int) -> bool:
-    """Whether the mass centre of a box of a loose stack is between the ends of the face below."""
+    """Whether the mass centre of a box of a loose stack is between the ends of the face below.
+
+    A body in a row has none beyond its own slenderness angle: there it leans on the next one.
+    """
+    if in_a_row(run):
+        return bool(abs(run.old.boxes[j, ROTATION]) <= run.joints[j].angle)
     if j == 0:
         return True
     left, right = run.old.corner[4 * j - 2], run.old.corner[4 * j - 1]
@@ -82,10 +123,10 @@ def has_footing(run: RunState, j: int) -> bool:
 
 @inlined
 def is_unsettled(run: RunState) -> bool:
-    """Whether a box of a loose stack has lost its footing, or is beyond the slenderness angle of the stack."""
+    """Whether a box has lost its footing, or is beyond the slenderness angle of its stack."""
     unsettled = False
     for j in range(run.joints.shape[0]):
-        turned = abs(run.old.boxes[j, ROTATION]) > run.problem.control.slenderness_angle
+        turned = abs(run.old.boxes[j, ROTATION]) > run.joints[j].angle
         unsettled = unsettled or turned or not has_footing(run, j)
     return unsettled
 

@@ -15,7 +15,7 @@ from contact.jit import compiled, inlined
 from contact.motion.kernel import UNIFORM
 from contact.stepping import modal_kernels  # noqa: F401 - registers the operations of a modal body
 from contact.stepping.body import complete, prepared, shift_velocity, stands_loose, weigh
-from contact.stepping.boxes import follow_boxes, has_fallen
+from contact.stepping.boxes import follow_boxes, follow_gaps, has_fallen
 from contact.stepping.contents import follow_contents, shift_contents
 from contact.stepping.control import (
     GROWTH,
@@ -32,8 +32,8 @@ from contact.stepping.impact import lose_at_impact
 from contact.stepping.joints import (
     begin_friction,
     settle_friction,
+    slide_apart,
     slide_joints,
-    slide_links,
     update_joints,
     weaken_friction,
 )
@@ -136,7 +136,7 @@ def advance(body: Any, run: RunState, until: float) -> int:
             if iterations < 0:
                 break
             slide_joints(run, step)
-            slide_links(run, step, links)
+            slide_apart(run, step, loose, links)
             if not weaken_friction(run):
                 break
         if iterations < 0:
@@ -148,7 +148,7 @@ def advance(body: Any, run: RunState, until: float) -> int:
             continue
         switches = settle_friction(run, step, loose, links)
         switches = reach_strength(run, links) or switches
-        dissipated = account(run, step, links)
+        dissipated = account(run, step, loose, links)
         allowed = allowed_imbalance(run, step, dissipated)
         allowed = min(allowed, ledger_allowance(run, step))
         used = abs(run.attempt.change[IMBALANCE]) / allowed
@@ -166,7 +166,9 @@ def advance(body: Any, run: RunState, until: float) -> int:
             dissipated, 0.0
         )
         update_joints(run, step)
-        follow_links(run, step, links, IMPACT_GAP * control.width * control.slenderness_angle)
+        counts = IMPACT_GAP * control.width * control.slenderness_angle
+        follow_links(run, step, links, counts)
+        follow_gaps(run, step, loose, counts)
         update_observables(
             track,
             control,

@@ -6,6 +6,7 @@ Static and kinetic friction are states of a joint, not of a point: see "Static a
 
 import math
 
+from contact.arrays import FloatArray
 from contact.interface.laws import ELASTIC_STICK, REGULARISED, relaxed_stick, weakened_mu
 from contact.jit import compiled, inlined
 from contact.stepping.body import ANGULAR_VELOCITY, CENTRE_X, CENTRE_Z, ROTATION, VELOCITY_X, VELOCITY_Z
@@ -26,7 +27,7 @@ def points_of(run: RunState, j: int) -> tuple[int, int]:
     """First contact point of a joint, and the one behind its last."""
     if run.joints.shape[0] == 1:
         return 0, run.attempt.new.point.shape[0] - run.links.shape[0]
-    return (0, 2) if j == 0 else (4 * j - 2, 4 * j + 2)
+    return run.joints[j].begin, run.joints[j].end
 
 
 @inlined
@@ -119,6 +120,8 @@ def slides_on(
             # a stop within an impact does not last
             weight = 0.0
             for k in range(j, run.joints.shape[0]):
+                if k > j and run.joints[k].below < 0:
+                    break
                 weight += run.joints[k].mass * (run.problem.control.gravity + run.lift[1, 2])
             if turned and normal < IMPACT_LOAD * weight:
                 slide(run, j, step, holding)
@@ -135,41 +138,88 @@ def holding_force(run: RunState, j: int, loose: bool | None, links: LinkedBody |
     around them. In an impact the normal force is larger. On a floor that accelerates upward by a_v gravity is g + a_v;
     a slope acts as an acceleration of the floor uphill. What links push is taken from what the joint must hold.
     """
+    track, pushed = run.track[0], (0.0, 0.0, 0.0)
     if loose is not None:
-        return holding_in_stack(run, j)
-    new, track, joint = run.attempt.new, run.track[0], run.joints[j]
-    acceleration = run.floor[1, 2] - run.problem.control.downhill
-    gravity, moment = run.problem.control.gravity + run.lift[1, 2], 0.0
+        if not in_a_row(run):
+            return holding_in_stack(run, j)
+        first, last = run.joints[j].begin, run.joints[j].end - 1
+        stands = (run.attempt.new.force[first, 1] > 0.0) == (run.attempt.new.force[last, 1] > 0.0)
+        return holding_on_floor(
+            run, j, run.attempt.new.boxes[j], stands, first, last, load_from_beside(run, j)
+        )
     if links is not None:
-        push_x, push_z, moment = load_of_links(run, links)
-        acceleration -= push_x / joint.mass
-        gravity -= push_z / joint.mass
+        pushed = load_of_links(run, links)
+    stands = track.left_open == track.right_open
+    last = run.problem.control.base_points - 1
+    return holding_on_floor(run, j, run.attempt.new.pose, stands, 0, last, pushed)
+
+
+@inlined
+def in_a_row(run: RunState) -> bool:
+    """Whether the boxes of a run stand beside one another, each on the floor."""
+    last = run.joints.shape[0] - 1
+    return bool(last > 0 and run.joints[last].below < 0)
+
+
+@inlined
+def holding_on_floor(
+    run: RunState,
+    j: int,
+    pose: FloatArray,
+    stands: bool,
+    first: int,
+    last: int,
+    pushed: tuple[float, float, float],
+) -> tuple[float, float]:
+    """`holding_force` of a body on the floor.
+
+    Args:
+        pose: of the body; stands: on both sides of its base; first, last: its outermost base points.
+        pushed: other forces on it than those of floor and gravity, along x and upward [N], and their moment about its
+            mass centre [Nm].
+    """
+    new, joint = run.attempt.new, run.joints[j]
+    acceleration = run.floor[1, 2] - run.problem.control.downhill - pushed[0] / joint.mass
+    gravity = run.problem.control.gravity + run.lift[1, 2] - pushed[1] / joint.mass
     normal, x, z = 0.0, 0.0, 0.0
     begin, end = points_of(run, j)
     for i in range(begin, end):
         normal += new.force[i, 1]
         x += new.force[i, 1] * new.point[i, 0]
         z += new.force[i, 1] * new.point[i, 1]
-    stands = normal <= 0.0 or track.left_open == track.right_open
+    stands = normal <= 0.0 or stands
     if stands:
-        x, z = new.point[0, 0], new.point[0, 1]
+        x, z = new.point[first, 0], new.point[first, 1]
         if acceleration <= 0.0:
-            last = run.problem.control.base_points - 1
             x, z = new.point[last, 0], new.point[last, 1]
     else:
         x, z = x / normal, z / normal
-    arm_x = new.pose[CENTRE_X] - run.floor[1, 0] - x
-    arm_z = new.pose[CENTRE_Z] - run.lift[1, 0] - z
+    arm_x = pose[CENTRE_X] - run.floor[1, 0] - x
+    arm_z = pose[CENTRE_Z] - run.lift[1, 0] - z
     inertia = joint.inertia / joint.mass + arm_x * arm_x + arm_z * arm_z
-    turning = (gravity * arm_x - acceleration * arm_z) / inertia
-    if links is not None:
-        turning += moment / joint.mass / inertia
+    turning = (gravity * arm_x - acceleration * arm_z + pushed[2] / joint.mass) / inertia
     push, load = acceleration, gravity
     if not stands or turning * acceleration < 0.0:
-        spin = new.pose[ANGULAR_VELOCITY] ** 2
+        spin = pose[ANGULAR_VELOCITY] ** 2
         push += turning * arm_z - spin * arm_x
         load -= turning * arm_x + spin * arm_z
     return joint.mass * push, max(normal, joint.mass * load)
+
+
+@compiled
+def load_from_beside(run: RunState, j: int) -> tuple[float, float, float]:
+    """Forces on a body in a row but those of floor and gravity: x, z [N], their moment about its centre [Nm]."""
+    new = run.attempt.new
+    first = j * (new.external.size // run.joints.shape[0])
+    x, z, moment = new.external[first], new.external[first + 1], new.external[first + 2]
+    begin, end = points_of(run, j)
+    for i in range(begin, end):
+        arm_x = new.point[i, 0] + run.floor[1, 0] - new.boxes[j, CENTRE_X]
+        arm_z = new.point[i, 1] - new.crushed[i] + run.lift[1, 0] - new.boxes[j, CENTRE_Z]
+        x -= new.force[i, 0]
+        z -= new.force[i, 1]
+        moment -= arm_z * new.force[i, 0] - arm_x * new.force[i, 1]
+    return x, z, moment
 
 
 @inlined
@@ -270,7 +320,7 @@ def carrier_of(run: RunState, j: int) -> int:
     A box that sticks to what is below it and stands on both sides of its base moves with that. On its springs it swings
     about this motion, most of all when the friction on top of it turns round: that does not end a stop.
     """
-    box = j - 1
+    box = run.joints[j].below
     while box >= 0 and run.joints[box].slides == 0:
         begin, end = points_of(run, box)
         half, left, right = (end - begin) // 2, 0.0, 0.0
@@ -279,7 +329,7 @@ def carrier_of(run: RunState, j: int) -> int:
             right += run.attempt.new.force[begin + half + i, 1]
         if left <= 0.0 or right <= 0.0:
             break
-        box -= 1
+        box = run.joints[box].below
     return box
 
 
@@ -382,12 +432,19 @@ def slide_point(run: RunState, i: int, step: float, start: float) -> None:
 
 
 @inlined
-def slide_links(run: RunState, step: float, links: LinkedBody | None) -> None:
-    """Sliding of the points of links after a converged step of this size [s], each for itself."""
-    if links is not None:
-        n = run.attempt.new.point.shape[0]
-        for i in range(n - run.links.shape[0], n):
+def slide_apart(run: RunState, step: float, loose: bool | None, links: LinkedBody | None) -> None:
+    """Sliding of the points of no joint after a converged step of this size [s], each for itself."""
+    if links is not None or loose is not None:
+        for i in range(points_of(run, run.joints.shape[0] - 1)[1], run.attempt.new.point.shape[0]):
             slide_point(run, i, step, SLIDES_ON)
+
+
+@inlined
+def rub_apart(run: RunState, loose: bool | None, links: LinkedBody | None) -> None:
+    """Coefficients of friction of the points of no joint in a step, those of links and sides: they do not change."""
+    if links is not None or loose is not None:
+        for i in range(points_of(run, run.joints.shape[0] - 1)[1], run.work.mu.size):
+            run.work.mu[i] = run.problem.contact.mu_static[i]
 
 
 @compiled(inline=True)

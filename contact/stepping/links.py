@@ -187,16 +187,6 @@ def prepared(links: LinkedBody, step: float) -> bool:
 
 
 @inlined
-def rub_links(run: RunState, links: LinkedBody | None) -> None:
-    """Coefficients of friction of the links in a step: they do not change."""
-    if links is not None:
-        line = links.line
-        n = run.work.mu.size
-        for i in range(n - line.shape[0], n):
-            run.work.mu[i] = run.problem.contact.mu_static[i]
-
-
-@inlined
 def push_of_links(run: RunState, links: LinkedBody | None) -> float:
     """Force of all links along x, mean over the attempted step [N]."""
     push = 0.0

@@ -1,5 +1,6 @@
 """Boxes that stand on one another without bolts, as one body: corners of any body over `contact.interface.faces`.
 
+So do stacks beside one another, each a "box" that stands on the floor; the first is the one that a run is about.
 The body beneath has the corners of all boxes as its base points, four of each from the floor up, and no compliance
 between boxes; in `complete` it writes `State.boxes`. This layer gives the stepping the contact points in their place.
 """
@@ -10,6 +11,7 @@ from contact.arrays import FloatArray
 from contact.interface.faces import (
     Faces,
     condense_points,
+    is_over_floor,
     linearise_points,
     move_corners,
     open_unweighted,
@@ -38,12 +40,13 @@ with_points = exchanging(State, "point", "force")
 
 @struct
 class LooseStack(NamedTuple):
-    """N boxes on one another."""
+    """N boxes on one another, or beside one another."""
 
     body: Any  #: of all boxes; its base points are their corners
     faces: Faces
     mass: FloatArray  #: (N,) of the boxes [kg]
     tolerance: float  #: error of a contact point at which an iteration stops [m]
+    in_a_row: bool  #: the boxes are stacks beside one another
     corners: Workspace  #: scratch, of the corners
 
 
@@ -61,7 +64,7 @@ def predict(stack: LooseStack, scheme: Scheme, step: float, old: State, new: Sta
     has none of these.
     """
     interface.predict(stack.body, scheme, step, old, new)
-    linearise_points(stack.faces, old.corner, stack.corners.trial)
+    linearise_points(stack.faces, old.corner, stack.faces.placed)
 
 
 @implements(interface.release, LooseStack, inline=True)
@@ -98,8 +101,11 @@ def respond(stack: LooseStack, scheme: Scheme, step: float, old: State, new: Sta
     error = interface.respond(stack.body, scheme, step, old, new, corners)
     move_corners(corners)
     place_points(stack.faces, corners.point, work.trial)
-    for i in range(2, work.trial.shape[0]):
-        if stack.faces.weight[i] > 0.0:
+    for i in range(work.trial.shape[0]):
+        if is_over_floor(stack.faces, i) or stack.faces.weight[i] == 0.0:
+            continue
+        apart = stack.in_a_row and work.trial[i, 1] > 0.0 and work.point[i, 1] > 0.0
+        if not apart:  # the sides of a row are seldom where it matters how far they are from each other
             for k in range(2):
                 error = max(error, abs(work.trial[i, k] - work.point[i, k]) / stack.tolerance)
     return error

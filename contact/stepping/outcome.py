@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from contact.arrays import FloatArray
-from contact.jit import compiled
+from contact.jit import compiled, inlined
 from contact.motion.kernel import UNIFORM, as_floor_motion, floor_motion
 from contact.stepping.block_on_corners import FloatingBody, advance_on
 from contact.stepping.body import KINETIC, ROTATION, VELOCITY_X
@@ -31,6 +31,7 @@ from contact.stepping.integrator import (
     REACHED,
     enter_floor_frame_compiled,
 )
+from contact.stepping.joints import in_a_row
 from contact.stepping.links import LinkedBody
 from contact.stepping.loose_stack import LooseStack
 from contact.stepping.modal_body import with_own_scratch
@@ -129,6 +130,17 @@ def on_resting_floor(run: RunState, since: float, place: Sequence[float]) -> Run
     return run.with_problem(motion=still, vertical=level, breaks=np.full(1, np.inf))
 
 
+@inlined
+def mean_of_row(run: RunState) -> float:
+    """How much lower the mass centre of a row is, where the floor is crushed [m]."""
+    sunk, mass = 0.0, 0.0
+    for j in range(run.joints.shape[0]):
+        joint = run.joints[j]
+        sunk += 0.5 * joint.mass * (run.old.crushed[joint.begin] + run.old.crushed[joint.end - 1])
+        mass += joint.mass
+    return sunk / mass
+
+
 @compiled
 def is_over(run: RunState, part: int) -> bool:
     """Whether a part of a run (DRIVEN, FREE or UNDECIDED) is over before its time; asked before each of its slices.
@@ -154,6 +166,8 @@ def is_over(run: RunState, part: int) -> bool:
         0.5 * floor_velocity - run.old.pose[VELOCITY_X]
     )
     sunk = 0.5 * (run.old.crushed[0] + run.old.crushed[control.base_points - 1])
+    if in_a_row(run):
+        sunk = mean_of_row(run)
     raised = max(0.0, lifting_energy(control, run.old, run.floor[0, 0], sunk)) if part == FREE else 0.0
     if moving + raised > RESTING_ENERGY * control.reference_energy:
         clock.rest_since = NEVER

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from contact.arrays import FloatArray, IntArray
-from contact.interface.faces import CORNERS, linearise_points, make_faces, weigh_points
+from contact.interface.faces import CORNERS, linearise_points, make_faces, make_row, weigh_points
 from contact.interface.laws import ELASTIC_STICK
 from contact.interface.stacking import stacked
 from contact.interface.workspace import Contact, Workspace, make_workspace
@@ -47,14 +47,18 @@ work_of_box = exchanging(Workspace, "free", "free_velocity", "compliance", "poin
 
 
 def make_stack(
-    boxes: Sequence[ModalBody], normal_stiffness: FloatArray, tangential_stiffness: FloatArray
+    boxes: Sequence[ModalBody],
+    normal_stiffness: FloatArray,
+    tangential_stiffness: FloatArray,
+    row: tuple[IntArray, FloatArray, FloatArray] | None = None,
 ) -> LooseStack:
-    """A loose stack of boxes, from the floor up.
+    """A loose stack of boxes, from the floor up; or bodies beside one another.
 
     Args:
         boxes: each with its four corners as base points, see `contact.interface.faces`, and `rest` its mass centre in
             the undeformed stack. Monitored points are those of the uppermost box first, then downwards.
-        normal_stiffness, tangential_stiffness: (4 N - 2,) of the contact points at full weight [N/m].
+        normal_stiffness, tangential_stiffness: of the contact points at full weight [N/m].
+        row: of bodies beside one another what `contact.interface.faces.make_row` says of them: pairs, distance, inset.
     """
     n, most = len(boxes), max(box.stiffness.size for box in boxes)
     # A mode without shape stays at rest.
@@ -100,9 +104,12 @@ def make_stack(
     corner = (together.rest[:, None] + together.point).reshape(-1, 2)
     return LooseStack(
         body=body,
-        faces=make_faces(corner, normal_stiffness, tangential_stiffness),
+        faces=make_faces(corner, normal_stiffness, tangential_stiffness)
+        if row is None
+        else make_row(corner, *row, normal_stiffness, tangential_stiffness),
         mass=mass,
         tolerance=together.tolerance,
+        in_a_row=row is not None,
         corners=make_workspace(CORNERS * n),
     )
 
@@ -122,6 +129,7 @@ def stack_with_own_scratch(stack: LooseStack) -> LooseStack:
         body=body._replace(boxes=boxes, energy=np.empty_like(body.energy)),
         faces=faces._replace(
             weight=np.ones_like(faces.weight),
+            placed=np.empty_like(faces.placed),
             gradient=faces.gradient.copy(),
             moved=np.empty_like(faces.moved),
         ),
@@ -308,12 +316,29 @@ def settle_stack(
     coordinates[:, 3:] = np.einsum("bi,bim->bm", own.reshape(n, -1), flat) / body.stiffness
     rates[:] = 0.0
     rates[:, :2] = velocity
+    start_stack(stack, state, place=place, lift_velocity=lift_velocity)
+
+
+def start_stack(stack: LooseStack, state: State, *, place: tuple[float, float], lift_velocity: float) -> None:
+    """Complete an initial state from its coordinates, their rates and the contact forces, with the acceleration.
+
+    Args:
+        stack: of boxes in floating frames, with the weights of its points.
+        state: written.
+        place: of the floor, along x and upward [m]; lift_velocity: of it, upward [m/s].
+    """
+    body, modes = stack.body.boxes, stack.body.modes
+    n, size = len(body.mass), 3 + modes
+    flat = body.shape.reshape(n, 2 * CORNERS, modes)
+    coordinates = state.position.reshape(n, size)
     complete_compiled(stack, state, place[0], place[1], lift_velocity)
     masses = np.ones((n, size))
     masses[:, :2], masses[:, 2] = body.mass[:, None], body.inertia
     external = np.zeros((n, size))
     corner = state.corner.reshape(n, CORNERS, 2) + np.array(place) - coordinates[:, None, :2]
     forces = stack.corners.force.reshape(n, CORNERS, 2)
+    cosine, sine = np.cos(coordinates[:, 2]), np.sin(coordinates[:, 2])
+    turn = np.moveaxis(np.array([[cosine, sine], [-sine, cosine]]), -1, 0)
     external[:, :2] = forces.sum(axis=1)
     external[:, 2] = (corner[..., 1] * forces[..., 0] - corner[..., 0] * forces[..., 1]).sum(axis=1)
     external[:, 3:] = np.einsum("bi,bim->bm", (forces @ turn).reshape(n, -1), flat)
@@ -327,5 +352,5 @@ def complete_compiled(
 ) -> None:
     """Linearise the contact at the corners of the state, and complete it."""
     interface.complete(stack, state, floor, lift, lift_velocity)
-    linearise_points(stack.faces, state.corner, stack.corners.trial)
+    linearise_points(stack.faces, state.corner, stack.faces.placed)
     interface.complete(stack, state, floor, lift, lift_velocity)

@@ -140,13 +140,18 @@ STEP_RECORD = np.dtype(
 
 
 #: a joint is where a box stands on what is below it: joint 0 is the floor under the lowest box, joint j carries box j;
-#: a body that moves as one has joint 0 alone. `RunState.joints` has one of these for each
+#: of bodies in a row each stands on the floor; a body that moves as one has joint 0 alone. `RunState.joints` has one of
+#: these for each
 JOINT_RECORD = np.dtype(
     [
         # constants
         ("mass", "f8"),  # of the box on the joint
         ("inertia", "f8"),  # .. about its mass centre
         ("width", "f8"),  # .. of its base
+        ("begin", "i8"),  # first contact point of the joint, unless it is the only one
+        ("end", "i8"),  # .. and the one behind its last
+        ("below", "i8"),  # box on which the box stands; -1: the floor
+        ("angle", "f8"),  # rotation beyond which the box does not come back by itself
         # friction
         ("sliding", "i8"),  # 1 while every loaded point slides: kinetic friction
         ("slip_since_break", "f8"),  # path since the joint broke loose
@@ -176,7 +181,8 @@ JOINT_RECORD = np.dtype(
 )
 
 
-#: a stop or a tie, see `contact.stepping.links`; `RunState.links` has one of these for each
+#: a stop or a tie, or the gap between two bodies in a row, see `contact.stepping.links` and `contact.stepping.row`;
+#: `RunState.links` has one of these for each
 LINK_RECORD = np.dtype(
     [
         ("max_force", "f8"),  # along its line
@@ -197,11 +203,27 @@ def make_links(count: int) -> Any:
     return links
 
 
-def make_joints(mass: npt.ArrayLike, inertia: npt.ArrayLike, width: npt.ArrayLike) -> Any:
-    """A record array (N,) of JOINT_RECORD at the start; mass, inertia, width of the boxes (N,), from the floor up."""
+def make_joints(
+    mass: npt.ArrayLike,
+    inertia: npt.ArrayLike,
+    width: npt.ArrayLike,
+    angle: npt.ArrayLike,
+    *,
+    in_a_row: bool = False,
+) -> Any:
+    """A record array (N,) of JOINT_RECORD at the start.
+
+    Args:
+        mass, inertia, width, angle: of the boxes (N,), from the floor up, or of bodies in a row, see `JOINT_RECORD`.
+        in_a_row: each stands on the floor with two points.
+    """
     boxes = np.atleast_1d(mass)
+    number = np.arange(boxes.size)
     joints = np.zeros(boxes.size, JOINT_RECORD).view(np.recarray)
-    joints["mass"], joints["inertia"], joints["width"] = boxes, inertia, width
+    joints["mass"], joints["inertia"], joints["width"], joints["angle"] = boxes, inertia, width, angle
+    joints["begin"] = 2 * number if in_a_row else np.maximum(4 * number - 2, 0)
+    joints["end"] = 2 * number + 2 if in_a_row else 4 * number + 2
+    joints["below"] = -1 if in_a_row else number - 1
     joints["fell_at"] = NEVER
     return joints
 
@@ -381,7 +403,9 @@ def make_run(
         lift=np.tile(floor_motion(vertical, 0.0), (2, 1)),
         ledger=np.zeros(LEDGER_ROWS),
         clock=clock,
-        joints=make_joints(control.mass, control.inertia, control.width) if joints is None else joints,
+        joints=make_joints(control.mass, control.inertia, control.width, control.slenderness_angle)
+        if joints is None
+        else joints,
         links=make_links(links),
         track=make_observables(),
         contents=np.zeros((8, 2 * (monitors - control.top_monitors))),

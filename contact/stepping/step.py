@@ -24,8 +24,9 @@ from contact.stepping.body import (
     predict,
     release,
     respond,
+    stands_loose,
 )
-from contact.stepping.joints import points_of
+from contact.stepping.joints import in_a_row, points_of, rub_apart
 from contact.stepping.ledger import (
     BASE_WORK,
     CONTACT_DAMPING,
@@ -39,7 +40,7 @@ from contact.stepping.ledger import (
     spring_energy,
     work_of_lift,
 )
-from contact.stepping.links import LinkedBody, links_of, push_of_links, rub_links
+from contact.stepping.links import LinkedBody, links_of, push_of_links
 from contact.stepping.scheme import Scheme
 from contact.stepping.state import RunState
 
@@ -224,7 +225,7 @@ def attempt(body: Any, run: RunState, step: float) -> int:
             work.mu[i] = stribeck_mu(
                 run.joints[j].mu, contact.mu_kinetic[i], contact.stribeck_velocity, velocity
             )
-    rub_links(run, links_of(body))
+    rub_apart(run, stands_loose(body), links_of(body))
     rolls = contact.rolling_time > 0.0
     clock.rolling = rolling_share(run, step) if rolls else 0.0
     for iteration in range(ITERATION_LIMIT):
@@ -253,11 +254,13 @@ def attempt(body: Any, run: RunState, step: float) -> int:
 
 
 @compiled(inline=True)
-def account(run: RunState, step: float, links: LinkedBody | None) -> float:
+def account(run: RunState, step: float, loose: bool | None, links: LinkedBody | None) -> float:
     """Write the ledger terms of the attempted step; returns its dissipation but for crushing [J]."""
     old, new, change = run.old, run.attempt.new, run.attempt.change
     shear = 0.0
     begin, end = points_of(run, 0)
+    if loose is not None and in_a_row(run):
+        end = run.joints[run.joints.shape[0] - 1].end
     for i in range(begin, end):
         shear += 0.5 * (old.force[i, 0] + new.force[i, 0])
     if links is not None:  # what holds them moves with the floor

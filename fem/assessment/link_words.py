@@ -1,16 +1,17 @@
-"""What stops and ties did in a run: its records, and one sentence for each that held."""
+"""What stops, ties and neighbours did in a run: its records, and one sentence for each."""
 
 import math
 
 from fem.model.links import heights_of_links
 from fem.model.model import Model
-from fem.results.run_result import LinkResult, RunResult
-from fem.runtime.units import visible_number
+from fem.results.run_result import LinkResult, NeighbourResult, RunResult, Verdict
+from fem.runtime.units import KILONEWTONS, visible_number
 
 
 def link_results(model: Model) -> tuple[tuple[LinkResult, ...] | None, tuple[LinkResult, ...] | None]:
     """What stops and ties did in a model that was stepped, in the order of the case; None where there are none."""
-    case, records, container = model.case, model.run.links, model.container
+    case, container = model.case, model.container
+    records = model.run.links if case.links else ()  # those of a row are of its gaps
     heights = heights_of_links(case, container.elements.nodes[container.nodes])
     results = [
         LinkResult(
@@ -31,9 +32,45 @@ def link_results(model: Model) -> tuple[tuple[LinkResult, ...] | None, tuple[Lin
 
 
 def links_in_words(result: RunResult) -> str:
-    """What each stop and tie did, without a full stop; empty where there are none."""
+    """What each stop, tie and neighbour did, without a full stop; empty where there are none."""
     stops, ties = result.stops or (), result.ties or ()
-    return "; ".join([*(_of_stop(one) for one in stops), *(_of_tie(one) for one in ties)])
+    beside = enumerate((result.verdict or Verdict()).neighbours or (), 1)
+    return "; ".join(
+        [
+            *(_of_stop(one) for one in stops),
+            *(_of_tie(one) for one in ties),
+            *(_of_neighbour(number, one) for number, one in beside),
+        ]
+    )
+
+
+def fall_in_row(verdict: Verdict) -> str:
+    """Who overturned first in a row, and when; empty where there are no neighbours or none of them did."""
+    fallen = [
+        (one.overturned_at_s, number, one)
+        for number, one in enumerate(verdict.neighbours or (), 1)
+        if one.overturned_at_s is not None
+    ]
+    if not fallen:
+        return ""
+    at, number, one = min(fallen)
+    return f"{_neighbour(number, one)} overturned at t = {at:.3f} s, where the run ends"
+
+
+def _neighbour(number: int, one: NeighbourResult) -> str:
+    return f"neighbour {number} on the {one.side}"
+
+
+def _of_neighbour(number: int, one: NeighbourResult) -> str:
+    ratio = f", rotation ratio {one.rotation_ratio:.3f}" if one.overturned_at_s is None else ""
+    moved = f"{_neighbour(number, one)}: {one.outcome}{ratio}"
+    if one.hits == 0:
+        return f"{moved}, not touched, {1e3 * one.gap_left_m:.3g} mm of the gap were left"
+    hits = "once" if one.hits == 1 else f"{one.hits} times"
+    speed = f"{one.largest_closing_velocity_m_s:.2g} m/s"
+    return (
+        f"{moved}, hit {hits}, at {speed} at most, with up to {KILONEWTONS.text(one.max_force_N, figures=3)}"
+    )
 
 
 def _of_stop(one: LinkResult) -> str:

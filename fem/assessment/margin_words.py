@@ -16,7 +16,8 @@ def margin_in_words(verdict: Verdict | None) -> str:
     if margin.factor is None:
         most, others = f"{margin.largest_tried:.3g}", f"other motion{'s' * (margin.runs != 1)}"
         none = f"none of {margin.runs}" if margin.runs > 1 else "not one"
-        words = f"{lead}; {none} {others} up to {most} times as strong overturns it"
+        whom = "one of the row" if verdict.neighbours else "it"
+        words = f"{lead}; {none} {others} up to {most} times as strong overturns {whom}"
     elif margin.stands_up_to is None:
         still = "overturns" if stands else "still does"
         words = f"{lead}; {still} at {margin.factor:.3g} times this motion, the weakest tried"
@@ -24,17 +25,20 @@ def margin_in_words(verdict: Verdict | None) -> str:
         up_to = "" if stands else f"stands up to {FACTOR.text(margin.stands_up_to)} times this motion, "
         times = " times this motion" if stands else ""
         words = f"{lead}; {up_to}overturns first at {FACTOR.text(margin.factor)}{times}"
-    return f"{words}{_range(margin)}{_islands(margin)}{_destroyed(margin)}{_failed(margin)}{_without_links(margin)}."
+    words += f"{_range(margin)}{_islands(margin)}{_destroyed(margin)}{_failed(margin)}"
+    return (
+        f"{words}{_without_links(margin, 'alone' if verdict.neighbours else 'without its stops and ties')}."
+    )
 
 
-def _without_links(margin: Margin) -> str:
-    """What the same container does without its stops and ties."""
+def _without_links(margin: Margin, without: str) -> str:
+    """What the same container does without its stops and ties, or its neighbours."""
     most = margin.without_links_tried_to
     if most is None:
         return ""
     if margin.factor_without_links is None:
-        return f"; without its stops and ties it stands up to {most:.3g}"
-    return f"; without its stops and ties it overturns first at {FACTOR.text(margin.factor_without_links)}"
+        return f"; {without} it stands up to {most:.3g}"
+    return f"; {without} it overturns first at {FACTOR.text(margin.factor_without_links)}"
 
 
 def _range(margin: Margin) -> str:

@@ -250,6 +250,8 @@ def reasons_against(model: Model, history: History, verdict: Verdict, reference:
         reasons.append("the floor starts with a jerk up or down, which the block does not feel")
     if model.case.links:
         reasons.append("stops or ties hold it")
+    if model.case.neighbour:
+        reasons.append("it stands in a row")
     if impact is None and verdict.first_impact_s is None:
         reasons.append("no impact in the run or the block")
     return reasons

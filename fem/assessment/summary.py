@@ -18,7 +18,7 @@ from rich.text import Text
 from fem.assessment.code_note import code_note
 from fem.assessment.floor_words import floor_rows
 from fem.assessment.joint_tables import joint_tables, titled_table
-from fem.assessment.link_words import links_in_words
+from fem.assessment.link_words import fall_in_row, links_in_words
 from fem.assessment.loose_boxes import box_table, fall_in_words, joints_in_words, largest_joint_slip
 from fem.assessment.margin_words import margin_in_words
 from fem.assessment.motion_words import covered_in_words, missing_peak, motion_in_words
@@ -133,7 +133,11 @@ def _found(result: run_result.RunResult) -> str:
         )
     if verdict.outcome == Outcome.OVERTURNED:
         at = verdict.overturned_at_s
-        fell = fall_in_words(verdict) or "overturned" + (f" at t = {at:.3f} s" if at is not None else "")
+        fell = (
+            fall_in_words(verdict)
+            or fall_in_row(verdict)
+            or "overturned" + (f" at t = {at:.3f} s" if at is not None else "")
+        )
         return "; ".join(filter(None, (fell, links_in_words(result))))
     restored = ", returned upright" if verdict.restored else _leaning(verdict, result.static)
     under = f"{covered_in_words(motion)}{missing_peak(motion)}"

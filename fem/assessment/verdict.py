@@ -29,7 +29,7 @@ from fem.model.model import Model
 from fem.results.figures import BOX_FIGURES, FIGURES, BoxResult, Shown
 from fem.results.history import History
 from fem.results.outcome import Outcome, least_slide
-from fem.results.run_result import Energy, Numerics, Verdict
+from fem.results.run_result import Energy, NeighbourResult, Numerics, Verdict
 from fem.runtime.arrays import FloatArray
 from fem.runtime.units import SECONDS
 
@@ -68,17 +68,21 @@ def _motion_of(model: Model) -> Outcome:
         return Outcome.OVERTURNED
     angle = ROCKING * model.static.slenderness_angle
     rocks = track.max_rocking > angle
-    for joint in model.run.joints[1:]:  # of a loose stack, what its other boxes do counts as well
+    for joint in _further_boxes(model):
         rocks = rocks or min(joint.max_rotation, joint.max_opening / joint.width) > angle
     return Outcome.of(slides=_slides(model), rocks=rocks, hops=_hops(model))
 
 
 def _slides(model: Model) -> bool:
     """True if it slid by more than the limit; in a loose stack, if any box did."""
-    lowest, *further = model.run.joints
-    if lowest.max_slip > least_slide(model.container.mesh.width):
+    if model.run.joints[0].max_slip > least_slide(model.container.mesh.width):
         return True
-    return any(joint.max_slip > least_slide(joint.width) for joint in further)
+    return any(joint.max_slip > least_slide(joint.width) for joint in _further_boxes(model))
+
+
+def _further_boxes(model: Model) -> Any:
+    """The joints under the upper boxes of a loose stack, of which what they do counts as well."""
+    return model.run.joints[1:] if not model.container.row else ()
 
 
 def _hops(model: Model) -> bool:
@@ -130,7 +134,7 @@ def verdict_from(
         tilt_rad=None if outcome == Outcome.OVERTURNED else _tilt(run.old, track),
         restored=rocked and _largest_rotation(run.old) < ROCKING * angle,
         at_rest_s=_finite(float(run.clock[0].rest_since)),
-        restitution_first=_restitution(track),
+        restitution_first=None if model.container.row else _restitution(track),
         max_top_displacement_m=track.max_top_displacement if sampled else None,
         max_acceleration_m_s2=track.max_acceleration if sampled else None,
         max_von_mises_Pa=largest_von_mises,
@@ -141,6 +145,7 @@ def verdict_from(
         else plastic_work(track.max_corner_force, capacity, 0.5 * model.base_stiffness),
         boxes=boxes or None,
         fell_box=first_fallen_box(model),
+        neighbours=neighbour_results(model) or None,
     )
 
 
@@ -153,19 +158,48 @@ def _recorded(figures: Mapping[str, Shown], **records: Any) -> dict[str, Any]:
 
 def box_results(model: Model) -> tuple[BoxResult, ...]:
     """What each box of a loose stack did, from the floor up; empty for a container that moves as one body."""
-    joints = [
-        _numbers(model.run.joints[k:]) for k in range(len(model.run.joints) if model.container.boxes else 0)
-    ]
+    joints = [_numbers(model.run.joints[k:]) for k in range(len(model.run.joints) if _is_loose(model) else 0)]
     return tuple(
         BoxResult(**_recorded(BOX_FIGURES, joint=joint), fell=math.isfinite(joint.fell_at))
         for joint in joints
     )
 
 
+def _is_loose(model: Model) -> bool:
+    return bool(model.container.boxes) and not model.container.row
+
+
+def neighbour_results(model: Model) -> tuple[NeighbourResult, ...]:
+    """What each neighbour in a row did, and what happened across the gap before it, in the order of the case."""
+    found = []
+    for number, one in enumerate(model.case.neighbour, 1):
+        joint, gap = _numbers(model.run.joints[number:]), _numbers(model.run.links[number - 1 :])
+        rocks = min(joint.max_rotation, joint.max_opening / joint.width) > ROCKING * joint.angle
+        slides = joint.max_slip > least_slide(joint.width)
+        fell = math.isfinite(joint.fell_at)
+        found.append(
+            NeighbourResult(
+                side=one.side,
+                outcome=Outcome.OVERTURNED if fell else Outcome.of(slides=slides, rocks=rocks, hops=False),
+                max_rotation_rad=joint.max_rotation,
+                rotation_ratio=relative_rotation(joint.max_rotation, joint.angle),
+                max_slip_m=joint.max_slip,
+                residual_slip_m=joint.slip,
+                max_uplift_m=joint.max_opening,
+                overturned_at_s=_finite(joint.fell_at),
+                hits=gap.hits,
+                max_force_N=gap.max_force,
+                largest_closing_velocity_m_s=gap.largest_closing_velocity,
+                gap_left_m=gap.least_gap,
+            )
+        )
+    return tuple(found)
+
+
 def first_fallen_box(model: Model) -> int | None:
     """Number of the box of a loose stack that fell first, from 1 at the floor; None where none did."""
     fell_at = model.run.joints["fell_at"]
-    if not model.container.boxes or not np.isfinite(fell_at).any():
+    if not _is_loose(model) or not np.isfinite(fell_at).any():
         return None
     return 1 + int(np.argmin(fell_at))
 
@@ -184,7 +218,7 @@ def _tilt(state: State, track: SimpleNamespace) -> float | None:
 
 def _indentation(model: Model) -> float | None:
     """Largest permanent indentation under a base point [m]; None where the floor does not crush."""
-    run, base = model.run, model.run.problem.control.base_points
+    run, base = model.run, model.run.problem.control.base_points * max(1, len(model.container.row))
     return float(run.old.crushed[:base].max()) if np.isfinite(run.problem.contact.cap[:base]).any() else None
 
 

@@ -189,7 +189,8 @@ def read_axis(key: str, given: Any) -> Axis:
             f"must be a list or a range, got {with_unit(given, unit)}; "
             "for instance [0.2, 0.3] or { from = 1.0, to = 4.0, count = 13 }"
         )
-    if field.annotation is int or int in get_args(field.annotation):
+    kinds = (field.annotation, *get_args(field.annotation))
+    if any(one is int or get_args(one)[:1] == (int,) for one in kinds):
         values = tuple(_whole(value) for value in values)
     for value in values:
         _check(field, quantity, unit, value)

@@ -34,6 +34,7 @@ def container_key(case: Case, *, mass: bool = True) -> Hashable:
         solver.order,
         case.output.stop_when_overturned,
         tuple((one.side, one.height_m) for one in case.links),
+        case.neighbour,
     )
 
 

@@ -19,6 +19,7 @@ from fem.case import data_files
 from fem.case.boxes import Box, boxes_of, joint_friction
 from fem.case.files import CASES, DEFAULT_CASE, Origin, parse_case
 from fem.case.links import StopTable, TieTable, links_of_case
+from fem.case.neighbours import NeighbourTable, case_of
 from fem.case.overrides import kinds_of, naming_overrides, parse_override, with_overrides
 from fem.case.resolved import resolved_tables
 from fem.case.rules import CASE_RULES
@@ -73,6 +74,7 @@ class Case(CaseHeading):
     document: DocumentTable | None = None  #: None: the pages bear no names
     stop: tuple[StopTable, ...] = ()
     tie: tuple[TieTable, ...] = ()
+    neighbour: tuple[NeighbourTable, ...] = ()
 
     _origin: Origin = PrivateAttr(default_factory=Origin)
 
@@ -112,6 +114,26 @@ class Case(CaseHeading):
     def links(self) -> tuple[StopTable | TieTable, ...]:
         """Stops and ties, the stops first."""
         return links_of_case(self)
+
+    @property
+    def bodies(self) -> int:
+        """How many bodies move each for itself."""
+        return self.container.bodies + len(self.neighbour)
+
+    @property
+    def row(self) -> tuple["Case", ...]:
+        """The case of each container of its row alone, its own first; empty without neighbours.
+
+        Raises:
+            CaseError: a neighbour that cannot be.
+        """
+        found = []
+        for number, one in enumerate((None, *self.neighbour) if self.neighbour else ()):
+            try:
+                found.append(self.with_values(case_of(self, one)))
+            except CaseError as error:
+                raise CaseError(f"[[neighbour]] {number}, as a container: {error}") from error
+        return tuple(found)
 
     @property
     def effective_width(self) -> float:

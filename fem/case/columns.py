@@ -116,9 +116,21 @@ STOPS = ColumnGroup(
 TIES = ColumnGroup(
     lambda case: range(1, 1 + len(getattr(case, "tie", ()))), (HistoryColumn("tie_{}_force_N", "N"),)
 )
+#: neighbours, in the order of the case, from 1: their motion, and the force across the gap before them
+NEIGHBOURS = ColumnGroup(
+    lambda case: range(1, 1 + len(getattr(case, "neighbour", ()))),
+    (
+        HistoryColumn("neighbour_{}_rotation_rad", "rad", GROUND),
+        HistoryColumn("neighbour_{}_slip_m", "m", FLOOR),
+        HistoryColumn("neighbour_{}_uplift_m", "m", FLOOR),
+        HistoryColumn("neighbour_{}_x_m", "m", FLOOR),
+        HistoryColumn("neighbour_{}_z_m", "m", FLOOR),
+        HistoryColumn("neighbour_{}_force_N", "N"),
+    ),
+)
 #: a run that was compared with the rigid block (`fem.assessment.rigid_check`): nan where that is not followed
 ANALYTIC = ColumnGroup(lambda case: (), (HistoryColumn("analytic_rotation_rad", "rad", GROUND),))
-GROUPS = (ALWAYS, CRUSHING, IMPACTS, VERTICAL, JOINTS, BOXES, STOPS, TIES, ANALYTIC)
+GROUPS = (ALWAYS, CRUSHING, IMPACTS, VERTICAL, JOINTS, BOXES, STOPS, TIES, NEIGHBOURS, ANALYTIC)
 
 
 def history_width(case: Any) -> int:

@@ -10,6 +10,7 @@ from pydantic import Field
 
 from fem.case import quantities as q
 from fem.case.boxes import boxes_of
+from fem.case.neighbours import NeighbourTable
 from fem.case.problem import Rule
 from fem.case.table import CaseTable, case_key
 
@@ -74,8 +75,8 @@ class TieTable(CaseTable):
         return self.slack_m
 
 
-#: tables of which a case may have several, [[stop]] and [[tie]]
-ROWS: dict[str, type[CaseTable]] = {"stop": StopTable, "tie": TieTable}
+#: tables of which a case may have several
+ROWS: dict[str, type[CaseTable]] = {"stop": StopTable, "tie": TieTable, "neighbour": NeighbourTable}
 MOST_ROWS = 20
 
 
@@ -85,8 +86,10 @@ def links_of_case(case: Any) -> tuple[Any, ...]:
 
 
 def held_above(case: Any) -> bool:
-    """Whether a link holds the container above its lowest box: the forces in the joints then do not follow from it."""
+    """Whether something may push the container above its lowest box: its joint forces do not follow from its motion."""
     links = links_of_case(case)
+    if getattr(case, "neighbour", ()):
+        return True
     if not links:
         return False
     first = case.container.height_m if case.container.box is None else case.container.box[0].height_m

@@ -9,6 +9,7 @@ from fem.case.columns import history_width
 from fem.case.floors import FLOOR_CASE_RULES
 from fem.case.links import LINK_RULES
 from fem.case.motion_rules import harmonic_angular_frequency
+from fem.case.neighbours import NEIGHBOUR_RULES
 from fem.case.problem import Rule, is_a_file_name, outside_the_folder
 
 MOST_SAMPLES = 2e7
@@ -263,6 +264,7 @@ CASE_RULES = (
     *BOX_RULES,
     *JOINT_RULES,
     *LINK_RULES,
+    *NEIGHBOUR_RULES,
     _plausible_density("weight_N"),
     _plausible_density("mass_kg"),
     Rule(

@@ -433,6 +433,15 @@ class UncertaintyTable(CaseTable):
     tie_stiffness_N_m: Unknown = case_key(  # noqa: N815
         "of all ties, likewise; default: half to twice", None, example=[5e5, 2e6]
     )
+    neighbour_gap_m: Unknown = case_key(
+        "between all neighbours, where they have one; default: 0.8 to 1.2 times", None, example=[0.08, 0.12]
+    )
+    neighbour_stiffness_N_m: Unknown = case_key(  # noqa: N815
+        "of the sides, likewise; default: half to twice", None, example=[5e7, 2e8]
+    )
+    neighbour_mu: Unknown = case_key(
+        "friction between the sides, likewise; default: half to twice", None, example=[0.1, 0.4]
+    )
     centroid_m: Unknown = case_key(
         "height of the mass centre in a box; default: 0.98 to 1.02 times", None, example=[0.45, 0.55]
     )

@@ -44,7 +44,7 @@ RESTITUTIONS = (0.95, 1.06)  #: over Housner's, of sharp corners whose restituti
 WEAKENING_M, STRIBECK_M_S = 5e-3, 0.3  #: largest slip and velocity over which friction falls
 WEAKENINGS_BETWEEN_M = (1e-4, 1e-3)
 RAMP_CYCLES = 2.0
-#: of stops and ties over those of the case
+#: of stops, ties and sides over those of the case
 GAPS, LINK_STIFFNESS, LINK_FRICTION = (
     (0.8, 1.2),
     (0.5, 2.0),
@@ -69,6 +69,7 @@ PENALTY, DASHPOT, RESTITUTION, MATERIAL = (
 CAMBER, ROCKING = "support.camber_m", "support.rocking_damping_ratio"
 STOP_GAP, STOP_STIFFNESS, STOP_FRICTION = "stop.gap_m", "stop.stiffness_N_m", "stop.mu"
 TIE_SLACK, TIE_STIFFNESS = "tie.slack_m", "tie.stiffness_N_m"
+SIDE_GAP, SIDE_STIFFNESS, SIDE_FRICTION = "neighbour.gap_m", "neighbour.stiffness_N_m", "neighbour.mu"
 STRENGTH, MODULUS = "floor.bearing_strength_Pa", "floor.youngs_modulus_Pa"
 
 Value = float | str
@@ -296,7 +297,8 @@ def _first_cambers(low: float, high: float) -> tuple[float, ...]:
 def _has_impacts(case: Any) -> bool:
     """Whether an impact exchanges the pivot as Housner's does, or leaves a restitution that is given."""
     given = case.contact.restitution_over_housner is not None
-    return given or (case.support.kind == "corners" and not case.support.rolls)
+    sharp = case.support.kind == "corners" and not case.support.rolls
+    return given or (sharp and not getattr(case, "neighbour", ()))
 
 
 def _restitutions(case: Any, ratio: float) -> Ends:
@@ -368,6 +370,8 @@ def _other_support(case: Any) -> Value | None:
     """Corners and flat stand for one another; feet, castings and the boxes of a loose stack stay."""
     kind = {"corners": "flat", "flat": "corners"}.get(case.support.kind)
     if kind is None or case.support.rolls or case.container.is_loose or case.container.box is not None:
+        return None
+    if case.neighbour:
         return None
     if case.floor.is_slab:
         stated = case.floor.corner_patch_m
@@ -445,6 +449,9 @@ UNKNOWN: tuple[UnknownNumber | UnknownChoice, ...] = (
     Number(STOP_FRICTION, "stop_mu", "friction on the stops", q.FRICTION, LINK_FRICTION, power=1.0),
     Number(TIE_SLACK, "tie_slack_m", "slack of the ties", q.GAP, GAPS, power=1.0),
     Number(TIE_STIFFNESS, "tie_stiffness_N_m", "stiffness of the ties", q.LINK_STIFFNESS, LINK_STIFFNESS),
+    Number(SIDE_GAP, "neighbour_gap_m", "gap to the neighbours", q.GAP, GAPS, power=1.0),
+    Number(SIDE_STIFFNESS, "neighbour_stiffness_N_m", "stiffness of the sides", q.LINK_STIFFNESS, LINK_STIFFNESS),
+    Number(SIDE_FRICTION, "neighbour_mu", "friction between the sides", q.FRICTION, LINK_FRICTION, power=1.0),
     Number(PENALTY, "normal_penalty_Pa_m", "stiffness of the contact", q.PENALTY, (SOFTEST, STIFFEST)),
     Number(STRENGTH, "bearing_strength_Pa", "strength of the floor", q.BEARING_STRENGTH, SLAB),
     Number(MODULUS, "floor_youngs_modulus_Pa", "stiffness of the floor", q.FLOOR_STIFFNESS, SLAB),

@@ -8,13 +8,15 @@ import numpy as np
 from contact.interface.faces import TOUCHING, make_faces
 from contact.interface.support import Support
 from fem.case.case import Case
+from fem.case.neighbours import places_of
 from fem.model.geometry import build_container, node_count
 from fem.model.links import nodes_of_links
+from fem.model.row import mesh_of_row, points_of_row
 from fem.model.support import build_support
 from fem.model.validity import require_memory
 from fem.runtime.arrays import IntArray
 from fem.runtime.threads import use_one_blas_thread
-from fem.solid.assembly import FiniteElements, assemble
+from fem.solid.assembly import FiniteElements, QuadMesh, assemble
 from fem.solid.modes import ElasticModes, elastic_modes, signs_of
 from fem.solid.reduction import ReducedBasis, StaticResponse, reduced_basis, static_response
 from mesh.container import ContainerMesh
@@ -52,7 +54,10 @@ class Container:
     basis: ReducedBasis  #: elastic modes of a reduced model; none of the others
     free_modes: int  #: of the basis, the lowest so many are those of the free container
     first: float  #: lowest elastic angular frequency; infinite for a rigid container [rad/s]
-    boxes: tuple[BoxModel, ...] = ()  #: of a loose stack, from the floor up
+    boxes: tuple[
+        BoxModel, ...
+    ] = ()  #: of a loose stack, from the floor up; or each container of a row as one
+    row: tuple["Container", ...] = ()  #: the containers of a row alone, that of the case first
     box_nodes: tuple[IntArray, ...] = ()  #: the node of the container for each node of each box
 
     @property
@@ -107,6 +112,8 @@ def discretise(case: Case, mesh: ContainerMesh | None = None) -> Container:
         CaseError, MeshError: bad input.
     """
     use_one_blas_thread()
+    if case.neighbour:
+        return _in_a_row(case, mesh)
     mesh = mesh or build_container(case)
     support = build_support(case, mesh)
     require_memory(case, node_count(mesh, case.solver.order), support.index.size)
@@ -146,6 +153,10 @@ def changed_container(case: Case, container: Container, own: Case) -> Container:
         CaseError, MeshError: bad input.
     """
     given, there = case.container, own.container
+    if case.neighbour:
+        parts = ("container", "support", "neighbour", "gravity_m_s2")
+        same = all(getattr(case, one) == getattr(own, one) for one in parts)
+        return container if same else discretise(case)
     if (given.centroid_m, given.eccentricity_m) != (there.centroid_m, there.eccentricity_m):
         mesh = build_container(case)
         boxes = tuple(replace(box, mesh=box_mesh(mesh, number)) for number, box in enumerate(container.boxes))
@@ -159,7 +170,9 @@ def changed_container(case: Case, container: Container, own: Case) -> Container:
 
 
 def without_links(case: Case, container: Container) -> Container:
-    """The container of a case without the contact nodes of its links; their attachment modes stay."""
+    """The container of a case without neighbours and the contact nodes of its links; their attachment modes stay."""
+    if container.row:
+        return container.row[0]
     points = len(container.nodes) - len(case.links)
     response = container.response
     return replace(
@@ -172,7 +185,7 @@ def without_links(case: Case, container: Container) -> Container:
     )
 
 
-def _assembled(case: Case, mesh: ContainerMesh) -> FiniteElements:
+def _assembled(case: Case, mesh: QuadMesh) -> FiniteElements:
     box = case.container
     order = case.solver.order
     return assemble(mesh, youngs_modulus=box.youngs_modulus_Pa, poisson_ratio=box.poisson_ratio, order=order)
@@ -241,6 +254,52 @@ def _loose(case: Case, mesh: ContainerMesh, elements: FiniteElements, support: S
     )
     touching = make_faces(elements.nodes[container.corners], np.ones(0), np.ones(0)).corner[:, TOUCHING]
     return replace(container, nodes=container.corners[touching])
+
+
+def _in_a_row(case: Case, mesh: ContainerMesh | None) -> Container:
+    """The containers of a row, of which equal ones are built once; the elements and boxes are those of all."""
+    known: dict[str, Container] = {}
+    row = []
+    for number, alone in enumerate(case.row):
+        key = repr((alone.container, alone.support))
+        if key not in known:
+            known[key] = discretise(alone, None if number else mesh)
+        row.append(known[key])
+    meshes = [one.mesh for one in row]
+    elements = _assembled(case, mesh_of_row(meshes, places_of(case, [one.width for one in meshes])))
+    first, nodes = 0, []
+    for one in row:
+        behind = first + len(one.elements.cells)
+        nodes.append(np.empty(len(one.elements.nodes), dtype=np.int64))
+        nodes[-1][one.elements.cells] = elements.cells[first:behind]
+        first = behind
+    boxes = tuple(
+        BoxModel(
+            mesh=one.mesh,
+            elements=one.elements,
+            corners=np.concatenate([one.elements.base_nodes[[0, -1]], _upper_corners(one.elements)]),
+            monitors=one.monitors,
+            response=one.response,
+            basis=one.basis,
+            first=one.first,
+        )
+        for one in row
+    )
+    corners = np.concatenate([own[box.corners] for box, own in zip(boxes, nodes, strict=True)])
+    return Container(
+        mesh=meshes[0],
+        elements=elements,
+        support=row[0].support,
+        nodes=points_of_row(case, corners),
+        monitors=nodes[0][row[0].monitors],
+        response=_no_response(elements),
+        basis=_no_modes(elements),
+        free_modes=0,
+        first=math.inf,
+        boxes=boxes,
+        row=tuple(row),
+        box_nodes=tuple(nodes),
+    )
 
 
 def _box(case: Case, mesh: ContainerMesh) -> BoxModel:

@@ -1,7 +1,7 @@
 """Static equilibrium of a container on its floor at t = 0: contact, body, settled stance."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from fem.model.container import Container
 from fem.model.floor import slab_of
 from fem.model.links import lines_at, places_of_links, shapes_at_links, with_links
 from fem.model.loose_stack import make_stack_state, own_stiffness, settle, stack_of, with_joints
+from fem.model.row import body_of_row, contact_of_row
 from fem.model.support import Rolling, base_points, normal_penalty, steel_penalty
 from fem.model.validity import require_bearing, require_stiff_contact, require_stiff_container
 from fem.runtime.arrays import FloatArray
@@ -41,7 +42,8 @@ class Equilibrium:
     gravity: float  #: toward the floor, with its upward acceleration at t = 0 [m/s2]
     contact: Contact  #: of a loose stack at the full weight of all its points
     body: Body
-    stance: Stance | None  #: None of a loose stack, which is settled by `settle_stack`
+    stance: Stance | None  #: None of a loose stack, which is settled by `settle_stack`, and of a row
+    row: tuple["Equilibrium", ...] = ()  #: of the containers of a row alone
 
 
 def find_equilibrium(case: Case, container: Container, gravity: float) -> Equilibrium:
@@ -57,6 +59,8 @@ def find_equilibrium(case: Case, container: Container, gravity: float) -> Equili
             f"[vertical] at t = 0 the floor accelerates downward by {case.gravity_toward_floor - gravity:.4g} m/s2, "
             "which leaves nothing of gravity to settle the container; begin with a ramp, a delay or another phase"
         )
+    if container.row:
+        return _of_row(case, container, gravity)
     penalty = normal_penalty(case, container.mesh)
     springs = container.support.normal_stiffness(penalty)
     base = springs.size
@@ -91,6 +95,16 @@ def find_equilibrium(case: Case, container: Container, gravity: float) -> Equili
     )
 
 
+def _of_row(case: Case, container: Container, gravity: float) -> Equilibrium:
+    """The containers of a row, each at rest for itself: their sides carry nothing."""
+    row = [find_equilibrium(*one, gravity) for one in zip(case.row, container.row, strict=True)]
+    meshes = [one.mesh for one in container.row]
+    contact = contact_of_row(case, [one.contact for one in row], [mesh.mass for mesh in meshes])
+    bodies = [one.body for one in row if isinstance(one.body, ModalBody)]
+    body = body_of_row(case, bodies, meshes, contact)
+    return replace(row[0], contact=contact, body=body, stance=None, row=tuple(row))
+
+
 def _settled_stack(
     case: Case, container: Container, contact: Contact, gravity: float
 ) -> tuple[LooseStack | FullStack, FloatArray, float]:
@@ -115,6 +129,7 @@ def same_equilibrium(case: Case, other: Case) -> bool:
         and case.floor == other.floor
         and case.initial == other.initial
         and case.links == other.links
+        and case.neighbour == other.neighbour
         and case.container.centroid_m == other.container.centroid_m
         and case.container.eccentricity_m == other.container.eccentricity_m
         and case.container.damping_ratio == other.container.damping_ratio

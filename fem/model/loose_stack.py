@@ -165,11 +165,14 @@ def own_stiffness(contact: Contact) -> Contact:
     )
 
 
-def joints_of_stack(container: Container) -> Any:
-    """Records of the joints of a loose stack, see `contact.stepping.state.JOINT_RECORD`."""
+def joints_of_stack(container: Container, angle: float) -> Any:
+    """Records of the joints of a loose stack of this slenderness angle, or of a row: `JOINT_RECORD`."""
     meshes = [box.mesh for box in container.boxes]
     return make_joints(
-        [mesh.mass for mesh in meshes], [mesh.inertia for mesh in meshes], [mesh.width for mesh in meshes]
+        [mesh.mass for mesh in meshes],
+        [mesh.inertia for mesh in meshes],
+        [mesh.width for mesh in meshes],
+        angle,
     )
 
 

@@ -32,6 +32,7 @@ from fem.model.links import begin_links
 from fem.model.loose_stack import joints_of_stack, make_stack_state, own_stiffness, settle
 from fem.model.motion import build_motions, longest_run, peaks_in_run, rest_sought_from
 from fem.model.restitution import require_loss
+from fem.model.row import begin_row, joints_of_row
 from fem.model.static_checks import StaticChecks, static_checks_of
 from fem.model.step_size import control_of, largest_step_of, scheme_of
 from fem.model.validity import require_stiff_corner
@@ -85,13 +86,10 @@ class Model:
     @property
     def contact_areas(self) -> FloatArray:
         """What contact points bear on, shape (n_c,) [m2]: on a slab shares of a patch, else of the face."""
-        stiffness, base = self.equilibrium.contact.normal_stiffness, self.container.support.index.size
-        if not self.case.floor.is_slab:
-            return stiffness / self.penalty
-        slab = slab_of(self.case, self.container.mesh.mass)
-        areas = slab.area / slab.normal_stiffness * stiffness
-        areas[base:] = slab.area  # of loose boxes on one another
-        return areas
+        if self.equilibrium.row:  # the sides carry forces, but no pressure that is shown
+            row = zip(self.case.row, self.container.row, self.equilibrium.row, strict=True)
+            return np.concatenate([_areas(*one) for one in row])
+        return _areas(self.case, self.container, self.equilibrium)
 
     @property
     def spectra(self) -> list[FloatArray]:
@@ -142,20 +140,21 @@ def build_model(
     full = case.solver.model == "full"
     x, velocity_x, _ = floor_motion(compiled_motion, 0.0)
     velocity = (velocity_x, velocity_z) if case.starts_moving else (0.0, 0.0)
-    if isinstance(body, LooseStack | FullStack):
+    if container.row:
+        assert isinstance(body, LooseStack)
+        contact = own_stiffness(contact)
+        alone = [
+            _begun(*one, (x, z, velocity_z), velocity)
+            for one in zip(case.row, container.row, equilibrium.row, strict=True)
+        ]
+        old = begin_row(case, body, contact, alone, place=(x, z), lift_velocity=velocity_z)
+    elif isinstance(body, LooseStack | FullStack):
         contact = own_stiffness(contact)
         old = make_stack_state(body)
         velocity = velocity[0] + case.initial.velocity_m_s, velocity[1]
         settle(body, contact, old, gravity=gravity, place=(x, z), velocity=velocity, lift_velocity=velocity_z)
     else:
-        assert equilibrium.stance is not None
-        own = body.body if isinstance(body, LinkedBody) else body
-        coordinates = 3 + own.stiffness.size if isinstance(own, ModalBody) else own.coordinates
-        old = make_state(coordinates, nodes.size, container.monitors.size)
-        stance = equilibrium.stance.moved(x, z)
-        if case.starts_moving:
-            stance = stance.moving(*velocity)
-        _place(own, old, stance, container.response, (x, z, velocity_z), contact)
+        old = _begun(case, container, equilibrium, (x, z, velocity_z), velocity)
         begin_links(case, body, old)
         old.point[:, 1] += contact.camber
     coordinates = old.position.size
@@ -181,7 +180,7 @@ def build_model(
             _chunk(FULL_HISTORY_CHUNK if full else HISTORY_CHUNK, control.largest_step, interval),
             nodes.size,
             columns=True,
-            boxes=case.container.bodies,
+            boxes=case.bodies,
             position=coordinates if stacked else 0,
             velocity=coordinates if stacked else 0,
         ),
@@ -192,8 +191,8 @@ def build_model(
             position=coordinates if fields > 0.0 else 0,
             velocity=coordinates if fields > 0.0 else 0,
         ),
-        joints=joints_of_stack(container) if container.boxes else None,
-        links=len(case.links),
+        joints=_joints(case, container, static),
+        links=len(case.links) + len(case.neighbour),
         strained=_strained_steps(case, duration),
         stress=_stresses_at_contacts(container),
     )
@@ -211,6 +210,26 @@ def build_model(
         duration=duration,
         rest_from=rest_sought_from(case, motion, vertical),
     )
+
+
+def _areas(case: Case, container: Container, equilibrium: Equilibrium) -> FloatArray:
+    """`Model.contact_areas` of one container."""
+    stiffness, base = equilibrium.contact.normal_stiffness, container.support.index.size
+    if not case.floor.is_slab:
+        return stiffness / equilibrium.penalty
+    slab = slab_of(case, container.mesh.mass)
+    areas = slab.area / slab.normal_stiffness * stiffness
+    areas[base:] = slab.area  # of loose boxes on one another
+    return areas
+
+
+def _joints(case: Case, container: Container, static: StaticChecks) -> Any:
+    """Records of the joints of a loose stack or a row; None of a container that moves as one."""
+    if container.row:
+        meshes = [one.mesh for one in container.row]
+        alone = [static_checks_of(*one, 0.0) for one in zip(case.row, meshes, strict=True)]
+        return joints_of_row(meshes, [one.slenderness_angle for one in alone])
+    return joints_of_stack(container, static.slenderness_angle) if container.boxes else None
 
 
 def _stresses_at_contacts(container: Container) -> Stresses:
@@ -244,6 +263,29 @@ def _strained_steps(case: Case, duration: float) -> int:
 def _chunk(wanted: int, largest_step: float, interval: float) -> int:
     """Samples to keep at a time: never fewer than two largest steps make."""
     return max(wanted, 2 * math.ceil(largest_step / interval) + 4)
+
+
+def _begun(
+    case: Case,
+    container: Container,
+    equilibrium: Equilibrium,
+    floor: tuple[float, float, float],
+    velocity: tuple[float, float],
+) -> State:
+    """The initial state of one body at its stance, on a floor given by its places and its upward velocity [m], [m/s].
+
+    `velocity`: that it has with the floor, where it starts so, along x and upward [m/s].
+    """
+    assert equilibrium.stance is not None
+    body: Any = equilibrium.body
+    own = body.body if isinstance(body, LinkedBody) else body
+    coordinates = 3 + own.stiffness.size if isinstance(own, ModalBody) else own.coordinates
+    state = make_state(coordinates, container.nodes.size, container.monitors.size)
+    stance = equilibrium.stance.moved(floor[0], floor[1])
+    if case.starts_moving:
+        stance = stance.moving(*velocity)
+    _place(own, state, stance, container.response, floor, equilibrium.contact)
+    return state
 
 
 def _place(

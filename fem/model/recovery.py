@@ -98,7 +98,7 @@ class PlacedBody:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Recovery:
-    """Fields of a model from its coordinates: of one body, or of the boxes of a loose stack."""
+    """Fields of a model from its coordinates: of one body, of the boxes of a loose stack, or of a row."""
 
     elements: FiniteElements  #: of the container
     full: bool
@@ -155,7 +155,9 @@ def recovery_of(model: Model) -> Recovery:
                 body=known[id(box)],
                 coordinates=slice(start, start + own),
                 nodes=nodes,
-                place=container.elements.nodes[nodes[0]] - box.elements.nodes[0],
+                place=container.elements.nodes[nodes[0]] - box.elements.nodes[0]
+                if not container.row
+                else np.zeros(2),  # its coordinates are in a frame of its own
             )
         )
         start += own if full else size

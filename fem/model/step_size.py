@@ -120,16 +120,18 @@ def control_of(
     """Limits of the stepping, from the time scales and energies of container and contact; `largest` step [s]."""
     mesh, base = container.mesh, container.support.index.size
     # Energy to overturn the container quasi-statically.
+    bodies = [one.mesh for one in container.row] or [mesh]
+    mass = sum(one.mass for one in bodies)
     reference = static.weight * static.radius * (1.0 - math.cos(static.slenderness_angle))
     rate = static.frequency_parameter
     loose = case.solver.energy_tolerance
     share, trail, eager = MOST_SHARE, MOST_TRAIL, False
     if case.solver.model == "rigid":
         share = MOST_RATTLING_SHARE
-        if not container.boxes:
+        if container.row or not container.boxes:
             share, trail, eager = MOST_RIGID_SHARE, MOST_RIGID_TRAIL, loose > EAGER_TOLERANCE
     spring, dashpots = float(contact.normal_stiffness[0]), contact.normal_stiffness * contact.relaxation_time
-    dashpot = float(dashpots.max() if container.boxes else dashpots[0])
+    dashpot = float(dashpots.max() if container.boxes and not container.row else dashpots[0])
     struck = _struck_mass(case, container)
     # Time constants of a mass on the dashpot and on the spring of a corner.
     closing = CLOSING_SHARE_OF_TIME / (dashpot / struck + 0.2 * math.sqrt(2.0 * spring / mesh.mass))
@@ -146,12 +148,12 @@ def control_of(
         recent_share=min(loose * TRAIL_SHARE, trail),
         recent_time=TRAIL_TIME / rate,
         closing_share=loose * CLOSING_SHARE * max(1.0 - static.housner_restitution**2, LEAST_LOSS),
-        mass=mesh.mass,
+        mass=mass,
         inertia=mesh.inertia,
         gravity=case.gravity_toward_floor,
         downhill=case.gravity_downhill,
         frequency_parameter=rate,
-        resting_energy=mesh.mass * case.gravity_toward_floor * mesh.centroid[1],
+        resting_energy=sum(one.mass * case.gravity_toward_floor * one.centroid[1] for one in bodies),
         slenderness_angle=static.slenderness_angle,
         width=static.width,
         stop_when_overturned=case.output.stop_when_overturned,

@@ -13,6 +13,7 @@ import pyvista
 
 from fem.assessment.floor_words import drawn_level
 from fem.assessment.verdict import relative_rotation
+from fem.case.columns import NEIGHBOURS
 from fem.html.units import rounded
 from fem.render.scene import BAR, BOTTOM, SIDE, View
 from fem.results.errors import FolderError
@@ -32,13 +33,16 @@ FONTS = Path(matplotlib.get_data_path()) / "fonts" / "ttf"
 def rotations_at(run: OpenedRun, times: FloatArray) -> FloatArray:
     """Rotation at some times (n,) of the container, or of each loose box, from the history, shape (b, n) [rad].
 
+    Of a row that of the container itself.
+
     Raises:
         FolderError: the history is missing, damaged or empty.
     """
     history = run.history
     if not len(history):
         raise FolderError(f"{run.place.history}: holds no sample yet")
-    names = [name for name in history.numbers if name.endswith("rotation_rad") and name != ANALYTIC_COLUMN]
+    others = (ANALYTIC_COLUMN, *NEIGHBOURS.names(NEIGHBOURS.numbers(run.case)))
+    names = [name for name in history.numbers if name.endswith("rotation_rad") and name not in others]
     return np.array([np.interp(times, history["time_s"], history[name]) for name in names])
 
 

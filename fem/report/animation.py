@@ -53,10 +53,10 @@ COLUMNS = {
 LIFT = {"lift": "base_vertical_displacement_m"}
 #: columns of a further box of a loose stack, whose number takes the place of the braces
 BOX = {
-    "rotation_{}": "box_{}_rotation_rad",
-    "slip_{}": "box_{}_slip_m",
-    "x_{}": "box_{}_x_m",
-    "z_{}": "box_{}_z_m",
+    "rotation_{}": "{1}_{0}_rotation_rad",
+    "slip_{}": "{1}_{0}_slip_m",
+    "x_{}": "{1}_{0}_x_m",
+    "z_{}": "{1}_{0}_z_m",
 }
 SINGLE_PRECISION = 2.0**-24
 
@@ -129,7 +129,11 @@ def animation_of(model: Model, fields: Fields | None) -> Animation:
     stride = max(1, math.ceil(count * 5 * drawn.size / FIELD_BYTES))
     place = np.full(len(elements.nodes), -1)
     place[drawn] = np.arange(drawn.size)
-    bodies = bodies_of(elements, loose=loose)
+    bodies = (
+        [_body(elements, nodes) for nodes in model.container.box_nodes]
+        if model.container.row
+        else bodies_of(elements, loose=loose)
+    )
     centroid = np.array([one.centre for one in bodies])
     body = np.zeros(len(elements.nodes), dtype=np.int64)
     for k, one in enumerate(bodies):
@@ -216,7 +220,9 @@ def player_data(shown: Animation, history: History, *, model: Model) -> dict[str
     stride = max(1, math.ceil(len(history) / MOST_SAMPLES))
     names = COLUMNS | (LIFT if history.vertical else {})
     further = range(2, len(shown.centroid) + 1)
-    names |= {name.format(k): column.format(k) for k in further for name, column in BOX.items()}
+    for k in further:
+        beside = (k - 1, "neighbour") if model.container.row else (k, "box")
+        names |= {name.format(k): column.format(*beside) for name, column in BOX.items()}
     columns = {name: history[column][::stride] for name, column in names.items()}
     journey = max(float(np.ptp(columns[name])) for name in ("base", "lift") if name in columns)
     modes = sorted(set(history.modes))

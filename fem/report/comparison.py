@@ -213,6 +213,12 @@ def assumptions(case: Case, result: RunResult | None = None) -> list[str]:
         )
     if case.stop:
         lines.append("A stop moves with the floor, and meets the one point of the container beside it.")
+    if case.neighbour:
+        lines.append(
+            f"In the row stand {1 + len(case.neighbour)} containers on one floor. Corners of a side meet the side of "
+            "the next, with the laws of the floor. The run ends when one of them has overturned; one at rest that "
+            "leans on the next beyond its slenderness angle counts as overturned."
+        )
     if case.tie:
         lines.append(
             "A tie pulls straight down, however far the container slides; it is elastic until it breaks."
@@ -266,9 +272,14 @@ def exclusions(case: Case) -> list[str]:
         f"{vertical}torsion, motion out of the plane, wind",
         "sloshing, plasticity, buckling and bending of the sheets out of their plane",
         *(["boxes without bolts, which open and slide on one another"] if bolted else []),
-        f"{ground}, neighbouring containers{', ropes or stops' * (not case.links)}",
+        ", ".join([ground, *_not_beside(case)]),
         "partial factors, and further ground motions: EN 1998-1:2004, 3.2.3.1.2 (4) asks for three or more",
     ]
+
+
+def _not_beside(case: Case) -> list[str]:
+    """What may stand beside a container and does not here."""
+    return ["neighbouring containers"] * (not case.neighbour) + ["ropes or stops"] * (not case.links)
 
 
 def motion_in_words(motion: FloorMotionTable) -> str:

@@ -18,6 +18,7 @@ from matplotlib.transforms import Affine2D
 
 from fem.case.boxes import Box, centre_above, shared_face
 from fem.case.case import Case
+from fem.case.neighbours import places_of
 from fem.figures.style import BLACK, BLUE, GREY, house_style, svg_of
 from fem.html.page import svg_element
 from fem.html.units import degrees, quantity, short
@@ -54,6 +55,7 @@ def sketch(
         _draw_floor(axes, case, unit)
         _draw_container(axes, case, unit)
         _draw_links(axes, case, unit)
+        _draw_neighbours(axes, case)
         middle = centre_above(boxes, 0)
         _draw_mass_centre(axes, 0.5 * width, middle, centroid, unit, slope=case.floor.slope)
         _dimension(axes, (-0.5 * width, -7 * unit), (0.5 * width, -7 * unit), f"a = {short(width)} m")
@@ -77,7 +79,7 @@ def sketch(
         f"Sketch: container{stack}, {short(high - low)} m wide and {short(height)} m high, mass centre at "
         f"{short(centroid)} m, on {case.support.kind}"
     )
-    held = ((len(case.stop), "stop"), (len(case.tie), "tie"))
+    held = ((len(case.stop), "stop"), (len(case.tie), "tie"), (len(case.neighbour), "neighbour"))
     label += "".join(f", {count} {name}{'s' * (count > 1)}" for count, name in held if count)
     return svg_element(svg_of(figure), label=label, prefix="sketch")
 
@@ -160,6 +162,17 @@ def _draw_links(axes: Axes, case: Case, unit: float) -> None:
         x = side_of(case, tie)
         axes.plot((x, x), (0.0, tie.height_m), color=BLUE, linewidth=1.2, linestyle=":", zorder=6)
         axes.plot((x,), (tie.height_m,), color=BLUE, marker="o", markersize=3, zorder=6)
+
+
+def _draw_neighbours(axes: Axes, case: Case) -> None:
+    """The neighbours, as far as the figure is wide."""
+    row = case.row
+    places = places_of(case, [one.stack[0].width for one in row])
+    for one, x in zip(row[1:], places.x[1:], strict=True):
+        width, height = one.stack[0].width, one.stack[-1].top
+        axes.add_patch(
+            Rectangle((x - 0.5 * width, 0.0), width, height, fc=BODY, ec=GREY, lw=0.8, clip_on=True)
+        )
 
 
 def _draw_loose_joints(axes: Axes, case: Case, unit: float) -> None:

@@ -68,6 +68,11 @@ class ResponseRequest:
                 "[stop] and [tie] must be left out for a response curve, which follows a container that nothing holds; "
                 "take --set stop=[] --set tie=[], or a sweep over motion.frequency_Hz"
             )
+        if self.case.neighbour:
+            raise CaseError(
+                "[neighbour] must be left out for a response curve, which follows one body; take --set neighbour=[], "
+                "or a sweep over motion.frequency_Hz"
+            )
         if solver.model == "full":
             raise CaseError(
                 '[solver] model = "full" would take days over the hundreds of periods of a response curve; '

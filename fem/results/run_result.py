@@ -193,7 +193,7 @@ class Margin(JsonBlock):
     largest_tried: float
     runs: int  #: with the inputs of the run, besides itself
     destroyed_from: float | None = None  #: least factor of those tried at which a corner is destroyed
-    #: of a container with stops or ties: the factor of its first overturning without them, None where none was found;
+    #: of a container with stops, ties or neighbours: the factor of its first overturning without, None where none was;
     #: and the largest factor tried so
     factor_without_links: float | None = None
     without_links_tried_to: float | None = None
@@ -202,8 +202,28 @@ class Margin(JsonBlock):
 
 
 @dataclass(frozen=True, kw_only=True)
+class NeighbourResult(JsonBlock):
+    """What a neighbour did, and what happened across the gap before it."""
+
+    side: str  #: of the container: left | right
+    outcome: str  #: of the neighbour: rest | slide | rock | slide-rock | overturned
+    max_rotation_rad: float
+    rotation_ratio: float  #: over its own slenderness angle
+    max_slip_m: float  #: over the floor
+    residual_slip_m: float
+    max_uplift_m: float
+    overturned_at_s: float | None = None  #: or when it was at rest, leaning beyond its slenderness angle
+    hits: int  #: how often the gap closed
+    max_force_N: float  #: across the gap
+    largest_closing_velocity_m_s: float
+    gap_left_m: float  #: least gap that was left
+
+
+@dataclass(frozen=True, kw_only=True)
 class Verdict(RunFigures):
-    """Outcome, extremes and events of a run."""
+    """Outcome, extremes and events of a run; of a row those of the container itself, but that any fall is its end."""
+
+    neighbours: tuple[NeighbourResult, ...] | None = None  #: in the order of the case; None where it has none
 
     invalid_reason: str | None = None  #: what is destroyed, in words
     modes: tuple[str, ...] = ()  #: states passed through
@@ -226,6 +246,7 @@ class Verdict(RunFigures):
         {
             *("boxes", "fell_box", "corner_capacity_N", "plastic_work_J", "bolt_tension_N", "bolt_shear_N"),
             "invalid_reason",
+            "neighbours",
         }
     )
 

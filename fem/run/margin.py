@@ -123,11 +123,11 @@ def margin_of(model: Model, result: RunResult, *, drawn: bool, stop: Callable[[]
 def _bare(
     model: Model, least: float, most: float, pool: Executor, stop: Callable[[], bool]
 ) -> tuple[float | None, float] | None:
-    """The first factor that overturns the container without its stops and ties, and the largest one tried.
+    """The first factor that overturns the container without stops, ties and neighbours, and the largest one tried.
 
-    None where it has no links.
+    None where it has none of them.
     """
-    if not model.case.links:
+    if not (model.case.links or model.case.neighbour):
         return None
     free = model.case.with_values({name: [] for name in ROWS})
     try:
@@ -149,7 +149,7 @@ def _least(case: Case, result: RunResult) -> float:
         return LEAST
     rule = (result.static or StaticResult()).ruling
     use = rule.utilisation_overturning
-    if case.stop:  # what slides against a stop may fall over it
+    if case.stop or case.neighbour:  # what slides against one may fall over it
         use = max(use or 0.0, rule.utilisation_sliding or math.inf)
     return LEAST if not use or use < 0.0 else min(LARGEST, max(LEAST, SURELY_AT_REST / use))
 

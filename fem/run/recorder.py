@@ -10,8 +10,10 @@ import numpy as np
 
 from contact.motion.kernel import floor_history, floor_motion
 from contact.stepping.body import ROTATION, State
+from contact.stepping.boxes import POINTS_OF_GAP
 from contact.stepping.state import ROW_ROTATION, RunState, Samples, row_names
-from fem.case.columns import JOINTS, STOPS, TIES, VERTICAL, history_columns
+from fem.case.columns import BOXES, JOINTS, NEIGHBOURS, STOPS, TIES, VERTICAL, history_columns
+from fem.case.neighbours import places_of
 from fem.model.joints import Joints, joints_of
 from fem.model.model import Model
 from fem.model.recovery import Recovery
@@ -124,9 +126,8 @@ class Recorder:
         if count == 0:
             return
         times: FloatArray = np.arange(first, first + count, dtype=np.float64) * samples.interval
-        columns = dict(
-            zip(row_names(self._model.case.container.bodies), samples.columns[:count].T, strict=True)
-        )
+        columns = dict(zip(row_names(self._model.case.bodies), samples.columns[:count].T, strict=True))
+        columns |= self._columns_of_row(columns, samples.force[:count])
         columns["time_s"] = as_written(times)
         columns |= zip(BASE, floor_history(run.problem.motion, times), strict=True)
         columns |= zip(VERTICAL.names((0,)), floor_history(run.problem.vertical, times), strict=True)
@@ -134,8 +135,8 @@ class Recorder:
         columns |= zip(joints, self._forces_in_joints(samples, first, count).T, strict=True)
         case = self._model.case
         links = (*STOPS.names(STOPS.numbers(case)), *TIES.names(TIES.numbers(case)))
-        floor_points = samples.force.shape[1] - len(links)
-        columns |= zip(links, samples.force[:count, floor_points:, 1].T, strict=True)
+        if case.links:
+            columns |= zip(links, samples.force[:count, -len(links) :, 1].T, strict=True)
         rows = np.column_stack([columns[name] for name in self._numbers])
         rows += 0.0  # no minus zero
         modes = [MODES[int(mode)] for mode in samples.mode[:count]]
@@ -144,6 +145,19 @@ class Recorder:
         if self._history_sink is not None:
             self._history_sink(rows, modes)
         clock.samples_drained = clock.samples
+
+    def _columns_of_row(self, columns: Mapping[str, FloatArray], force: FloatArray) -> dict[str, FloatArray]:
+        """The columns of neighbours, of which the stepper has those of further boxes in frames of their own."""
+        container, case = self._model.container, self._model.case
+        x = places_of(case, [one.mesh.width for one in container.row]).x if container.row else ()
+        found: dict[str, FloatArray] = {}
+        for number in NEIGHBOURS.numbers(case):
+            begin = 2 * len(x) + POINTS_OF_GAP * (number - 1)
+            values = [columns[name] for name in BOXES.names((number + 1,))]
+            values[3] = values[3] + x[number]
+            side = force[:, begin : begin + POINTS_OF_GAP, 1].sum(axis=1)
+            found |= zip(NEIGHBOURS.names((number,)), [*values, side], strict=True)
+        return found
 
     def _forces_in_joints(self, samples: Samples, first: int, count: int) -> FloatArray:
         """Of new samples (count, 3 J): means since the sample before; the first of a run has its own acceleration."""
@@ -185,9 +199,11 @@ class Recorder:
                     self._note_stress(float(np.max(frame.von_mises)))
                 if self._frame_sink is not None:
                     pressure = np.zeros(len(frame.displacement))
-                    floor_points = len(self._area) - len(self._model.case.links)
+                    floor_points = len(self._area) - len(
+                        self._model.case.links
+                    )  # of a row those of its sides are no area
                     nodes = self._model.container.nodes[:floor_points]
-                    pressure[nodes] = (samples.force[k, :, 1] / self._area)[:floor_points]
+                    pressure[nodes] = samples.force[k, :floor_points, 1] / self._area[:floor_points]
                     floor, _, _ = floor_motion(run.problem.motion, time)
                     lift, _, _ = floor_motion(run.problem.vertical, time)
                     self._frame_sink(

@@ -361,6 +361,11 @@ def _check(request: SiteRequest) -> None:
             "container: [[stop]] and [[tie]] are not verified at a site, whose second component, rigid bound and "
             "simplified methods know a container that nothing holds; leave them out, or run the motions one by one"
         )
+    if request.container.neighbour:
+        raise CaseError(
+            "container: [[neighbour]] is not verified at a site, whose second component, rigid bound and simplified "
+            "methods know a container that stands alone; leave it out, or run the motions one by one"
+        )
     _ = request.action, request.variants, request.wind_pressure, request.hazard_curve, request.floor_target
     _check_floor(request)
     if request.heading.empty_centroid_m is not None and request.heading.empty_mass_kg is None:

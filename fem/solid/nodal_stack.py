@@ -307,6 +307,7 @@ class FullStack:
             faces=self._faces,
             mass=np.array([box.mass for box in self.boxes]),
             tolerance=self._tolerance,
+            in_a_row=False,
             corners=self._corners,
         )
 
@@ -317,5 +318,5 @@ def interface_complete(
 ) -> None:
     """Linearise the contact at the corners of the state, and complete it."""
     interface.complete(stack, state, floor, lift, lift_velocity)
-    linearise_points(stack.faces, state.corner, stack.corners.trial)
+    linearise_points(stack.faces, state.corner, stack.faces.placed)
     interface.complete(stack, state, floor, lift, lift_velocity)

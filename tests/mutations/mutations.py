@@ -8,6 +8,7 @@ from mutations_of_floor import FLOOR_FAULTS
 from mutations_of_impacts import IMPACTS
 from mutations_of_links import LINK_FAULTS
 from mutations_of_loose_stacks import LOOSE_STACKS
+from mutations_of_rows import ROW_FAULTS
 from mutations_of_vertical_motion import VERTICAL_MOTION
 
 ELASTICITY = (
@@ -349,5 +350,6 @@ MUTATIONS = (
     *FLOOR_FAULTS,
     *IMPACTS,
     *LINK_FAULTS,
+    *ROW_FAULTS,
     *LOOSE_STACKS,
 )

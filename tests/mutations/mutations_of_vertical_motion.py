@@ -37,8 +37,8 @@ VERTICAL_MOTION = (
     ),
     Mutation(
         name="gravity less the vertical acceleration where the support holds",
-        old="gravity, moment = run.problem.control.gravity + run.lift[1, 2]",
-        new="gravity, moment = run.problem.control.gravity - run.lift[1, 2]",
+        old="gravity = run.problem.control.gravity + run.lift[1, 2] - pushed",
+        new="gravity = run.problem.control.gravity - run.lift[1, 2] - pushed",
         tests=("verification/test_verification_checks.py", "-k", "vertical and slider"),
     ),
     Mutation(

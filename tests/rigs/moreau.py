@@ -397,3 +397,40 @@ def slide_and_rock_batch(block, mu, gravity, amplitude, frequency, jerk, h, step
         q[1], v[0] = c, -amplitude[r] * rate if jerk else 0.0
         angle, slip, fell = slide_and_rock(b, c, ratio, mu[r, 0], mu[r, 1], gravity, along, h, q, v)
         found[r, 0], found[r, 1], found[r, 2] = angle, slip, fell
+
+
+@numba.njit(cache=True)
+def slide_in_a_row(mass, gap, velocity, mu, restitution, pulse, duration, gravity=9.81, step=1e-5):
+    """Where blocks that only slide, side by side, end on a floor under a rectangular pulse: their slip, shape (n,) [m].
+
+    Per step an impulse of friction, at most that which stops a block; then Newton's law of restitution at the gaps that
+    are closed and close, one after the other until none does.
+
+    Args:
+        mass: shape (n,); gap: between them, shape (n - 1,) [m]; velocity: at the start, over the floor [m/s].
+        pulse: acceleration of the floor [m/s2] and its length [s].
+    """
+    n = mass.size
+    slip, speed = np.zeros(n), velocity.copy()
+    for k in range(int(duration / step)):
+        push = -pulse[0] * step if k * step < pulse[1] else 0.0
+        for b in range(n):
+            free = speed[b] + push
+            most = mu * gravity * step
+            speed[b] = math.copysign(max(abs(free) - most, 0.0), free)
+        for _ in range(100):
+            closes = False
+            for g in range(n - 1):
+                closing = speed[g] - speed[g + 1]
+                if slip[g] - slip[g + 1] >= gap[g] and closing > 0.0:
+                    # what closes no faster than friction and pulse make it in a step does not bounce
+                    rebound = restitution if closing > 2.0 * (mu * gravity + abs(pulse[0])) * step else 0.0
+                    impulse = (1.0 + rebound) * closing * mass[g] * mass[g + 1] / (mass[g] + mass[g + 1])
+                    speed[g] -= impulse / mass[g]
+                    speed[g + 1] += impulse / mass[g + 1]
+                    closes = True
+            if not closes:
+                break
+        for b in range(n):
+            slip[b] += step * speed[b]
+    return slip

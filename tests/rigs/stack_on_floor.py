@@ -144,6 +144,7 @@ def stack_rig(
             [box.mass for box in boxes],
             [body.inertia for body in bodies],
             [box.width for box in boxes],
+            whole.slenderness_angle,
         ),
     )
     return StackRig(stack, run, whole)

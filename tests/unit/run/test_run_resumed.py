@@ -37,8 +37,17 @@ HELD = (
     "tie=[{from = 'left', height_m = 0.5, slack_m = 0.001, stiffness_N_m = 1e6, strength_N = 1e3}]",
 )
 
+#: it rocks between two others
+ROW = (
+    *RIGID,
+    "motion.peak_acceleration_m_s2=6",
+    "neighbour=[{side = 'right', gap_m = 0.01, stiffness_N_m = 1e8, mu = 0.3, height_m = 0.8, mass_kg = 2000.0, "
+    "centroid_m = 0.4}, {side = 'left', gap_m = 0.0, stiffness_N_m = 1e8}]",
+)
+
 CASES = {
     "stop and tie": ("rocking", HELD),
+    "row": ("rocking", ROW),
     "loose": ("seed_stack_plateau", (*RIGID, *LOOSE)),
     "loose, reduced": (
         "seed_stack_plateau",

@@ -47,6 +47,10 @@ def test_the_shipped_study_of_a_kerb_can_be_read():
     assert sweep.shape == (20, 14)
 
 
+def test_the_shipped_study_of_a_neighbour_can_be_read():
+    assert load_sweep("neighbour_gap").shape == (2, 20, 10)
+
+
 def test_a_key_that_no_stop_has_is_no_axis():
     with pytest.raises(AxisError, match="height_m"):
         field_of("stop.heigth_m")

@@ -1,0 +1,155 @@
+"""Other containers beside that of a case: tables [[neighbour]], their rules, and what stands in the row.
+
+They stand under the same motion of the floor, each on the floor for itself; where two face each other their sides touch
+once the gap is used up. The tables of a side go outward: the first stands next to the container, the second behind it.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Annotated, Any, Literal
+
+from pydantic import Strict
+
+from fem.case import quantities as q
+from fem.case.boxes import boxes_of
+from fem.case.problem import Rule
+from fem.case.table import CaseTable, case_key
+
+MOST_NEIGHBOURS = 5
+USUAL_DAMPING = 2.0  #: damping ratio of two sides of which nothing is said: they do not bounce
+#: keys that a neighbour may have other than the container; mass_kg replaces what gives the mass there
+OWN = ("boxes", "width_m", "height_m", "mass_kg", "centroid_m", "wall_m")
+
+
+class NeighbourTable(CaseTable):
+    """Another container beside it, on the same floor; equal but for what is given here."""
+
+    side: Literal["left", "right"] = case_key("of the container at which it stands", example="right")
+    gap_m: Annotated[float, q.GAP] = case_key("between it and what stands before it, at rest", example=0.1)
+    stiffness_N_m: Annotated[float, q.LINK_STIFFNESS] = case_key(  # noqa: N815
+        "of the two sides, over all their height; half of it at their top, half at their foot", example=1e8
+    )
+    damping_ratio: Annotated[float, q.CONTACT_DAMPING] | None = case_key(
+        "of the two masses on this stiffness; default: 2", None, example=0.5
+    )
+    restitution: Annotated[float, q.STOP_RESTITUTION] | None = case_key(
+        "in place of damping_ratio: of two that run against each other without turning", None, example=0.5
+    )
+    mu: Annotated[float, q.FRICTION] = case_key("of friction between the sides", 0.0)
+    boxes: Annotated[int, Strict(), q.BOXES] | None = case_key(
+        "as all below by default as [container]", None, example=4
+    )
+    width_m: Annotated[float, q.LENGTH] | None = case_key("of one box", None, example=1.1)
+    height_m: Annotated[float, q.LENGTH] | None = case_key("of one box", None, example=1.0)
+    mass_kg: Annotated[float, q.MASS] | None = case_key("of one box with its fill", None, example=2500.0)
+    centroid_m: Annotated[float, q.LENGTH] | None = case_key(
+        "height of the mass centre in its box", None, example=0.5
+    )
+    wall_m: Annotated[float, q.WALL] | None = case_key("of the shell", None, example=0.008)
+
+    rules = (
+        Rule(
+            "neighbour.restitution",
+            lambda table: table.restitution is None or table.damping_ratio is None,
+            "and damping_ratio say the same; keep one of them",
+        ),
+    )
+
+
+def case_of(case: Any, neighbour: NeighbourTable | None) -> dict[str, Any]:
+    """What to set in a case so that it is that of one stack of its row alone; None: of the container itself."""
+    alone: dict[str, Any] = {"neighbour": []}
+    if neighbour is None:
+        return alone
+    given = {name: getattr(neighbour, name) for name in OWN}
+    still = {f"initial.{name}": 0.0 for name in type(case.initial).model_fields}
+    return alone | still | {f"container.{name}": value for name, value in given.items() if value is not None}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Places:
+    """Where the N containers of a row stand, that of the case first, and which face each other at each gap."""
+
+    x: tuple[float, ...]  #: (N,) of their axes, from that of the first [m]
+    pairs: tuple[tuple[int, int], ...]  #: (N - 1,) left and right one
+    distance: tuple[float, ...]  #: (N - 1,) of their axes [m]
+
+
+def places_of(case: Any, widths: Sequence[float]) -> Places:
+    """The row of a case, of whose containers these are the widths [m]."""
+    x, pairs, distance = [0.0], [], []
+    last = {"left": 0, "right": 0}
+    for number, one in enumerate(case.neighbour, 1):
+        before = last[one.side]
+        apart = 0.5 * (widths[before] + widths[number]) + one.gap_m
+        x.append(x[before] + (apart if one.side == "right" else -apart))
+        pairs.append((before, number) if one.side == "right" else (number, before))
+        distance.append(apart)
+        last[one.side] = number
+    return Places(x=tuple(x), pairs=tuple(pairs), distance=tuple(distance))
+
+
+def _uneven(case: Any) -> bool:
+    """Whether the sides of the stack are not straight from the floor to its top."""
+    boxes = boxes_of(case.container, case.gravity_m_s2)
+    return any(box.width != boxes[0].width or box.axis != boxes[0].axis for box in boxes)
+
+
+def _alone(place: str, applies: Any, reason: str) -> Rule:
+    """What cannot stand beside neighbours."""
+    return Rule(place, lambda case: not getattr(case, "neighbour", ()) or not applies(case), reason)
+
+
+NEIGHBOUR_RULES = (
+    Rule(
+        "neighbour.",
+        lambda case: len(getattr(case, "neighbour", ())) <= MOST_NEIGHBOURS,
+        lambda case: (
+            f"stands {len(case.neighbour)} times; a row has six containers at most, so five neighbours"
+        ),
+    ),
+    _alone(
+        "solver.model",
+        lambda case: case.solver.model != "rigid",
+        'must be "rigid" with [[neighbour]]: the shells of a reduced or full model have no contact points on their '
+        "sides yet; a blow against a side would need them",
+    ),
+    _alone(
+        "container.joints",
+        lambda case: case.container.joints != "bolted",
+        'must be "bolted" with [[neighbour]]: a side of loose boxes is no straight face',
+    ),
+    _alone(
+        "container.mesh_file",
+        lambda case: case.container.mesh_file is not None,
+        "cannot stand beside [[neighbour]]: the sides of a mesh are not known",
+    ),
+    _alone(
+        "container.box",
+        _uneven,
+        "cannot stand beside [[neighbour]] unless all boxes have one width and no offset_m: a side must be straight",
+    ),
+    _alone(
+        "support.kind",
+        lambda case: case.support.kind != "corners" or case.support.camber_m > 0.0,
+        'must be "corners" without camber_m with [[neighbour]]: each container of a row touches the floor with its '
+        "corners",
+    ),
+    _alone(
+        "contact.restitution_over_housner",
+        lambda case: case.contact.restitution_over_housner is not None,
+        "does not apply to [[neighbour]]: in a row an impact on the floor and one against a side may be one event; "
+        "take damping_ratio",
+    ),
+    _alone(
+        "output.stop_when_overturned",
+        lambda case: not case.output.stop_when_overturned,
+        "must be true with [[neighbour]]: what a fallen container strikes is not modelled; leave it out",
+    ),
+    _alone(
+        "stop.",
+        lambda case: bool(getattr(case, "stop", ())),
+        "cannot stand beside [[neighbour]] yet; a very heavy neighbour is a wall",
+    ),
+    _alone("tie.", lambda case: bool(getattr(case, "tie", ())), "cannot stand beside [[neighbour]] yet"),
+)

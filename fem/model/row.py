@@ -1,0 +1,178 @@
+"""A row: containers beside one another on one floor, as one body whose sides may touch.
+
+Each is built and settled alone, by its own case. The first is that of the case itself; behind it stand the neighbours
+in the order of the case. Its coordinates are in a frame of its own, so that a gap that nothing uses up changes no bit.
+"""
+
+import math
+from collections.abc import Sequence
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from contact.interface.faces import CORNERS, TOUCHING, make_row, weigh_points
+from contact.interface.laws import ELASTIC_STICK
+from contact.interface.penalty import damping_ratio_of
+from contact.interface.workspace import Contact
+from contact.stepping.body import State, make_state
+from contact.stepping.boxes import POINTS_OF_GAP
+from contact.stepping.loose_stack import LooseStack
+from contact.stepping.modal_body import ModalBody, make_modal_body
+from contact.stepping.stack_body import make_stack, start_stack
+from contact.stepping.state import make_joints
+from fem.case.case import Case, CaseError
+from fem.case.neighbours import USUAL_DAMPING, Places, places_of
+from fem.model.links import OVERLAP
+from fem.runtime.arrays import FloatArray, IntArray
+from mesh.container import ContainerMesh
+
+
+def mesh_of_row(meshes: Sequence[ContainerMesh], places: Places) -> Any:
+    """What the assembly needs of all meshes as one, one behind the other, each at its place."""
+    starts = np.cumsum([0, *(len(one.points) for one in meshes)])
+    boxes = np.cumsum([0, *(1 + one.box.max() for one in meshes)])
+    return SimpleNamespace(
+        points=np.concatenate(
+            [one.points + np.array([x, 0.0]) for one, x in zip(meshes, places.x, strict=True)]
+        ),
+        quads=np.concatenate([one.quads + start for one, start in zip(meshes, starts, strict=False)]),
+        box=np.concatenate([one.box + start for one, start in zip(meshes, boxes, strict=False)]),
+        **{
+            name: np.concatenate([getattr(one, name) for one in meshes])
+            for name in ("region", "thickness", "areal_density")
+        },
+    )
+
+
+def points_of_row(case: Case, corners: IntArray) -> IntArray:
+    """The corner, of all (4 N,), that touches at each contact point of a row."""
+    n, nothing = len(corners) // CORNERS, np.zeros(0)
+    places = places_of(case, [1.0] * n)
+    faces = make_row(np.ones((CORNERS * n, 2)), *_arrays(places), np.zeros(n), nothing, nothing)
+    return corners[faces.corner[:, TOUCHING]]
+
+
+def _arrays(places: Places) -> tuple[IntArray, FloatArray]:
+    """Pairs (g, 2) that face each other, and the distance of their axes (g,) [m]."""
+    return np.array(places.pairs, dtype=np.int64).reshape(-1, 2), np.array(places.distance)
+
+
+def contact_of_row(case: Case, contacts: Sequence[Contact], masses: Sequence[float]) -> Contact:
+    """The contact of containers of these masses [kg] with the floor, each its own, and of their sides."""
+    sides = []
+    places = places_of(case, [1.0] * len(masses))
+    for one, (left, right) in zip(case.neighbour, places.pairs, strict=True):
+        ratio = USUAL_DAMPING if one.damping_ratio is None else one.damping_ratio
+        if one.restitution is not None:
+            ratio = damping_ratio_of(one.restitution)
+        mass = masses[left] * masses[right] / (masses[left] + masses[right])
+        sides.append((0.5 * one.stiffness_N_m, 2.0 * ratio * math.sqrt(mass / one.stiffness_N_m), one.mu))
+    stiffness, relaxation, mu = (np.repeat(one, POINTS_OF_GAP) for one in zip(*sides, strict=True))
+    nothing = np.zeros_like(mu)
+    added = {
+        "normal_stiffness": stiffness,
+        "tangential_stiffness": stiffness,
+        "cap": np.full_like(mu, math.inf),
+        "cap_growth": nothing,
+        "relaxation_time": relaxation,
+        "mu_static": mu,
+        "mu_kinetic": mu,
+        "weakening": nothing,
+        "camber": nothing,
+    }
+    arrays: Any = {
+        name: np.concatenate([*(getattr(one, name) for one in contacts), of_sides])
+        for name, of_sides in added.items()
+    }
+    return contacts[0]._replace(resolution=contacts[0].resolution * (1.0 + 64.0 * len(sides)), **arrays)
+
+
+def body_of_row(
+    case: Case, bodies: Sequence[ModalBody], meshes: Sequence[ContainerMesh], contact: Contact
+) -> LooseStack:
+    """The containers of a row as one body.
+
+    Args:
+        case: of the row.
+        bodies: of the containers alone, rigid, with their points over the floor; meshes: of them.
+        contact: of all points at full weight.
+    """
+    places = places_of(case, [one.width for one in meshes])
+    corners = [_with_corners(body, mesh) for body, mesh in zip(bodies, meshes, strict=True)]
+    nobody = np.zeros((0, 2))
+    watched = [
+        corners[0],
+        *(one._replace(monitor=nobody, monitor_shape=np.zeros((0, 2, 0))) for one in corners[1:]),
+    ]
+    inset = [
+        0.5 * (1.0 - float(np.ptp(one.point[:, 0])) / mesh.width)
+        for one, mesh in zip(bodies, meshes, strict=True)
+    ]
+    springs = contact.normal_stiffness.copy(), contact.tangential_stiffness.copy()
+    return make_stack(watched, *springs, (*_arrays(places), np.maximum(np.round(inset, 12), 0.0)))
+
+
+def _with_corners(body: ModalBody, mesh: ContainerMesh) -> ModalBody:
+    """The body with the corners of its elevation in place of its points over the floor."""
+    corner = [(x, z) for z in (0.0, mesh.height) for x in (-0.5 * mesh.width, 0.5 * mesh.width)]
+    return make_modal_body(
+        mass=body.mass,
+        inertia=body.inertia,
+        gravity=body.gravity,
+        downhill=body.downhill,
+        point=np.array(corner) - body.rest,
+        rest=(float(body.rest[0]), float(body.rest[1])),
+        monitor=body.monitor,
+        tolerance=body.tolerance,
+    )
+
+
+def begin_row(
+    case: Case,
+    body: LooseStack,
+    contact: Contact,
+    alone: Sequence[State],
+    *,
+    place: tuple[float, float],
+    lift_velocity: float,
+) -> State:
+    """The initial state of a row from those of its containers alone.
+
+    Args:
+        contact: of its own stiffness, which is written.
+        alone: states of the containers, each completed on the floor.
+        place: of the floor, along x and upward [m]; lift_velocity: of it, upward [m/s].
+
+    Raises:
+        CaseError: two of them overlap.
+    """
+    boxes, points = body.body.boxes, contact.cap.size
+    state = make_state(3 * len(alone), points, len(boxes.monitor), len(alone))
+    for name in ("position", "velocity"):
+        getattr(state, name)[:] = np.concatenate([getattr(one, name) for one in alone])
+    floor = 2 * len(alone)
+    state.force[:floor] = np.concatenate([one.force for one in alone])
+    if contact.friction == ELASTIC_STICK:
+        state.stick[:floor] = np.concatenate([one.stick for one in alone])
+    weigh_points(body.faces, (boxes.rest[:, None] + boxes.point).reshape(-1, 2), state.point, contact)
+    start_stack(body, state, place=place, lift_velocity=lift_velocity)
+    gaps = state.point[floor:, 1].reshape(-1, POINTS_OF_GAP).min(axis=1)
+    for number, (one, gap) in enumerate(zip(case.neighbour, gaps, strict=True), 1):
+        if gap < -OVERLAP:
+            raise CaseError(
+                f"[neighbour] neighbour {number}: gap_m = {one.gap_m:g} m is overlapped by {-gap:.3g} m at the start, "
+                "as the containers stand; take a wider one, or another [initial]"
+            )
+    return state
+
+
+def joints_of_row(meshes: Sequence[ContainerMesh], angles: Sequence[float]) -> Any:
+    """Records of where the containers of a row stand on the floor; `angles`: of slenderness [rad]."""
+    return make_joints(
+        [one.mass for one in meshes],
+        [one.inertia for one in meshes],
+        [one.width for one in meshes],
+        angles,
+        in_a_row=True,
+    )

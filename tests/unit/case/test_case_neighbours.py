@@ -1,0 +1,105 @@
+"""[[neighbour]] of a case file: reading, refusing, changing and writing it, and the cases of a row."""
+
+import pytest
+
+from fem.batch.container_cache import container_key
+from fem.case.case import CaseError, case_hash, load_case, read_case, to_toml
+from fem.case.columns import history_columns
+from fem.case.neighbours import places_of
+from fem.case.template import case_template
+from fem.case.unknown_inputs import ranges_of
+
+BESIDE = {"side": "right", "gap_m": 0.05, "stiffness_N_m": 1e8}
+RIGID = load_case("rocking", ["solver.model=rigid"])
+
+
+def test_neighbours_are_read_written_and_are_part_of_the_hash():
+    case = RIGID.with_values({"neighbour": [{**BESIDE, "boxes": 2}, {**BESIDE, "side": "left", "mu": 0.2}]})
+    for text in (to_toml(case), case_template(case)):
+        again = read_case(text)
+        assert again.neighbour == case.neighbour
+        assert case_hash(again) == case_hash(case)
+    assert case_hash(case) != case_hash(RIGID)
+    assert case_hash(case.with_values({"neighbour": []})) == case_hash(RIGID)
+    assert sum(name.startswith("neighbour_2_") for name in history_columns(case)) == 6
+
+
+def test_a_neighbour_is_the_container_but_for_what_is_given():
+    keys = {"width_m": 2.0, "boxes": 2, "mass_kg": 3000.0}
+    pushed = RIGID.with_values({"initial.velocity_m_s": 0.5})
+    own, equal, other = pushed.with_values({"neighbour": [BESIDE, {**BESIDE, **keys}]}).row
+    assert case_hash(own) == case_hash(pushed)
+    assert equal.container == own.container
+    assert (other.container.width_m, other.mass) == (2.0, 6000.0)
+    assert other.container.height_m == own.container.height_m
+    assert not equal.initial.is_pushed
+    assert own.initial.is_pushed
+    assert RIGID.row == ()
+
+
+def test_cases_share_a_container_where_all_of_the_row_is_equal():
+    row = RIGID.with_values({"neighbour": [BESIDE]})
+    keys = [container_key(one) for one in (RIGID, row, row.with_values({"neighbour.gap_m": 0.2}))]
+    assert len(set(keys)) == 3
+    assert container_key(row.with_values({"contact.mu_static": 0.3})) == keys[1]
+
+
+def test_neighbours_stand_outward_in_the_order_given():
+    rows = [BESIDE, {**BESIDE, "side": "left", "gap_m": 0.1}, {**BESIDE, "gap_m": 0.2}]
+    places = places_of(RIGID.with_values({"neighbour": rows}), [1.0, 2.0, 3.0, 4.0])
+    assert places.x == pytest.approx((0.0, 1.55, -2.1, 4.75))
+    assert places.pairs == ((0, 1), (2, 0), (1, 3))
+
+
+def test_a_key_of_a_neighbour_is_that_of_all_and_unknown_in_a_band():
+    case = RIGID.with_values({"neighbour": [BESIDE, {**BESIDE, "side": "left"}], "neighbour.gap_m": 0.2})
+    assert [one.gap_m for one in case.neighbour] == [0.2, 0.2]
+    ranges = {one.key: one.ends for one in ranges_of(case, 1e9)}
+    assert ranges["neighbour.gap_m"] == pytest.approx((0.16, 0.24))
+    assert ranges["neighbour.stiffness_N_m"] == pytest.approx((5e7, 2e8))
+    # no base but on corners, and no restitution, in a row
+    assert not ranges.keys() & {"support.kind", "contact.restitution_over_housner"}
+
+
+@pytest.mark.parametrize(
+    ("keys", "reason"),
+    [
+        ({"gap_m": -0.01}, "neighbour 1: gap_m must be between 0 and"),
+        ({"side": "top"}, 'neighbour 1: side must be "left" or "right"'),
+        ({"stiffness_N_m": 0.0}, "neighbour 1: stiffness_N_m must be"),
+        ({"restitution": 0.5, "damping_ratio": 1.0}, "restitution and damping_ratio say the same"),
+        ({"mu_static": 0.1}, "unknown key 'mu_static'"),
+    ],
+)
+def test_a_neighbour_that_cannot_be_is_refused(keys, reason):
+    with pytest.raises(CaseError, match=reason):
+        RIGID.with_values({"neighbour": [{**BESIDE, **keys}]})
+
+
+@pytest.mark.parametrize(
+    ("changes", "reason"),
+    [
+        ({"solver.model": "reduced"}, r'model must be "rigid" with \[\[neighbour\]\]: the shells'),
+        ({"solver.model": "full"}, r'model must be "rigid" with \[\[neighbour\]\]: the shells'),
+        ({"container.joints": "loose"}, 'joints must be "bolted"'),
+        ({"support.kind": "flat"}, 'kind must be "corners"'),
+        ({"contact.restitution_over_housner": 0.95}, "one event"),
+        ({"output.stop_when_overturned": False}, "what a fallen container strikes is not modelled"),
+        (
+            {"tie": [{"from": "left", "height_m": 0.5, "stiffness_N_m": 1e6}]},
+            r"cannot stand beside \[\[neighbour\]\]",
+        ),
+        ({"neighbour": [BESIDE] * 6}, "six containers at most"),
+    ],
+)
+def test_what_does_not_go_with_a_row_is_refused_with_its_reason(changes, reason):
+    with pytest.raises(CaseError, match=reason):
+        RIGID.with_values({"neighbour": [BESIDE], **changes})
+
+
+def test_a_neighbour_of_impossible_size_is_refused_by_its_number():
+    case = RIGID.with_values({"neighbour": [BESIDE, {**BESIDE, "centroid_m": 50.0}]})
+    with pytest.raises(
+        CaseError, match=r"\[\[neighbour\]\] 2, as a container: .*centroid_m must be less than"
+    ):
+        _ = case.row

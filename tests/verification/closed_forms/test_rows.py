@@ -1,0 +1,207 @@
+"""Containers in a row: gaps in phase, momentum and energy of hits, walls, mirror images, and what must change nothing.
+
+The references are closed forms, and a stepper of sliders with impulses that shares nothing with the program.
+"""
+
+import math
+
+import numpy as np
+import pytest
+from moreau import slide_in_a_row
+
+from contact.stepping.ledger import CONTACT_DAMPING, FRICTION
+from fem.case.case import Case, CaseError
+from fem.evidence.verification.runs import STACK, Finished, harmonic, pulse, run
+
+MASS, WIDTH, SPEED = 1e4, 1.1, 0.5
+BESIDE = {"side": "right", "gap_m": 0.1, "stiffness_N_m": 1e8}
+#: held by friction, so that it rocks
+HELD = STACK.with_values({"contact.mu_static": 3.0, "solver.duration_s": 3.0, **pulse(4.5, 0.4)})
+#: slides without friction toward +x, and is too low to turn
+SLIDER = STACK.with_values(
+    {
+        "container.width_m": 4.0,
+        "container.height_m": 1.0,
+        "contact.mu_static": 0.0,
+        "initial.velocity_m_s": SPEED,
+        "solver.duration_s": 0.8,
+        "solver.energy_tolerance": 0.1,  # of blocks so low the energy to overturn is a thousand times that of a hit
+    }
+)
+
+
+def in_a_row(case: Case, *neighbours: dict) -> Case:
+    return case.with_values({"neighbour": list(neighbours)})
+
+
+def velocities(found: Finished) -> np.ndarray:
+    """Of all mass centres along x at the end [m/s], that of the container first."""
+    return found.model.run.old.boxes[:, 4]
+
+
+def test_in_phase_two_equal_containers_use_up_a_gap_as_two_leaning_faces_do():
+    found = run(in_a_row(HELD, BESIDE))
+    turned = found.track.max_rotation
+    assert turned > 0.1
+    left = (WIDTH + BESIDE["gap_m"]) * math.cos(turned) - WIDTH
+    assert found.model.run.links[0].least_gap == pytest.approx(left, abs=1e-5)
+    # they touch where the gap is narrower than the width times 1/cos - 1
+    needed = WIDTH * (1.0 / math.cos(turned) - 1.0)
+    wider, narrower = (run(in_a_row(HELD, {**BESIDE, "gap_m": share * needed})) for share in (1.02, 0.98))
+    assert wider.model.run.links[0].hits == 0
+    assert narrower.model.run.links[0].hits > 0
+
+
+def test_a_gap_that_is_not_used_up_changes_no_bit_however_wide_it_is():
+    wide = run(in_a_row(HELD, {**BESIDE, "gap_m": 0.3}))
+    wider = run(in_a_row(HELD, {**BESIDE, "gap_m": 7.0, "stiffness_N_m": 1e6, "mu": 0.5}))
+    for column in ("rotation_rad", "slip_m", "neighbour_1_rotation_rad", "imbalance_J"):
+        assert wide.history[column].tobytes() == wider.history[column].tobytes()
+    # and alone it moves alike, but for the sizes of its steps
+    alone = run(HELD)
+    early = alone.history["time_s"] < 1.0
+    assert wide.history["rotation_rad"][early] == pytest.approx(
+        alone.history["rotation_rad"][early], abs=5e-5
+    )
+    assert wide.history["neighbour_1_rotation_rad"] == pytest.approx(wide.history["rotation_rad"], abs=1e-12)
+    assert wide.history["neighbour_1_x_m"][0] == pytest.approx(WIDTH + 0.3, abs=1e-12)
+
+
+@pytest.mark.parametrize("restitution", [1.0, 0.5, 0.1])
+@pytest.mark.parametrize("mass", [1e4, 3e4])
+def test_two_sliders_keep_their_momentum_and_leave_with_their_restitution(restitution, mass):
+    beside = {**BESIDE, "restitution": restitution, "mass_kg": mass}
+    found = run(in_a_row(SLIDER, beside), {"output.history_s": 2e-5})
+    first, other = velocities(found)
+    assert MASS * first + mass * other == pytest.approx(MASS * SPEED, rel=1e-6)
+    assert other - first == pytest.approx(restitution * SPEED, abs=1e-3 * SPEED)
+    record, reduced = found.model.run.links[0], MASS * mass / (MASS + mass)
+    assert record.hits == 1
+    assert record.largest_closing_velocity == pytest.approx(SPEED, rel=1e-6)
+    lost = 0.5 * reduced * SPEED**2
+    assert found.model.run.ledger[CONTACT_DAMPING] == pytest.approx(
+        (1.0 - restitution**2) * lost, abs=1e-3 * lost
+    )
+    impulse = float(np.trapezoid(found.history["neighbour_1_force_N"], found.history["time_s"]))
+    assert impulse == pytest.approx(reduced * (1.0 + restitution) * SPEED, rel=5e-3)
+    if restitution == 1.0:
+        assert record.max_force == pytest.approx(
+            SPEED * math.sqrt(reduced * BESIDE["stiffness_N_m"]), rel=2e-3
+        )
+
+
+@pytest.mark.parametrize("count", [2, 5])
+def test_a_chain_of_equal_sliders_passes_the_momentum_on(count):
+    beside = {**BESIDE, "gap_m": 0.02, "restitution": 1.0}
+    found = run(in_a_row(SLIDER, *[beside] * count))
+    assert velocities(found) == pytest.approx([*[0.0] * count, SPEED], abs=2e-3 * SPEED)
+    assert list(found.model.run.links.hits) == [1] * count
+
+
+def test_a_heavy_neighbour_is_a_wall():
+    light = SLIDER.with_values(
+        {"container.weight_N": 4e3, "container.width_m": 1.0, "container.depth_m": 4.0}
+    )
+    heavy = {**BESIDE, "width_m": 15.0, "mass_kg": 1e6, "restitution": 0.5}
+    stop = {"side": "right", "height_m": 0.5, "gap_m": 0.1, "stiffness_N_m": 1e8, "restitution": 0.5}
+    beside, before = run(in_a_row(light, heavy)), run(light.with_values({"stop": [stop]}))
+    assert velocities(beside)[0] == pytest.approx(-0.5 * SPEED, abs=2e-3 * SPEED)
+    assert velocities(beside)[0] == pytest.approx(before.model.run.old.pose[4], abs=2e-3 * SPEED)
+    assert beside.model.run.links[0].max_force == pytest.approx(before.model.run.links[0].max_force, rel=2e-3)
+
+
+SHAKEN = STACK.with_values(
+    {**harmonic(0.12, 6.0), "contact.mu_static": 0.4, "contact.mu_kinetic": 0.3, "solver.duration_s": 4.0}
+)
+PAIR = (
+    {**BESIDE, "gap_m": 0.01, "mu": 0.3, "height_m": 3.0, "mass_kg": 8e3},
+    {**BESIDE, "gap_m": 0.02, "side": "left", "width_m": 1.5, "restitution": 0.4},
+)
+OTHER = {"left": "right", "right": "left"}
+
+
+def test_the_mirrored_row_moves_as_the_mirror_image():
+    right = run(in_a_row(SHAKEN, *PAIR))
+    mirrored = tuple({**one, "side": OTHER[one["side"]]} for one in PAIR)
+    left = run(in_a_row(SHAKEN, *mirrored), {"motion.phase_rad": math.pi})
+    assert right.model.run.links.hits.min() > 0
+    early = right.history["time_s"] < 1.0
+    for column in (
+        "rotation_rad",
+        "slip_m",
+        "neighbour_1_rotation_rad",
+        "neighbour_2_slip_m",
+        "neighbour_2_x_m",
+    ):
+        assert left.history[column][early] == pytest.approx(-right.history[column][early], abs=1e-8)
+
+
+def test_the_order_of_neighbours_on_two_sides_does_not_matter():
+    one, other = (run(in_a_row(SHAKEN, *pair)) for pair in (PAIR, PAIR[::-1]))
+    early = one.history["time_s"] < 1.0
+    assert other.history["slip_m"][early] == pytest.approx(one.history["slip_m"][early], abs=1e-8)
+    assert other.history["neighbour_2_rotation_rad"][early] == pytest.approx(
+        one.history["neighbour_1_rotation_rad"][early], abs=1e-8
+    )
+
+
+def test_the_ledger_of_a_row_closes_with_friction_between_the_sides():
+    found = run(in_a_row(SHAKEN, *PAIR))
+    ledger, reference = found.model.run.ledger, found.model.run.problem.control.reference_energy
+    assert found.model.run.links.hits.min() > 0
+    assert abs(ledger[-1]) < 0.01 * (ledger[FRICTION] + ledger[CONTACT_DAMPING]) + 1e-3 * reference
+
+
+def test_friction_between_the_sides_drags_a_container_that_rocks_beside_another():
+    # pushed against a heavy neighbour that stands, it turns about its far corner only against friction
+    smooth, rough = (
+        run(in_a_row(HELD, {**BESIDE, "gap_m": 0.0, "width_m": 3.0, "mu": mu}), {**pulse(-4.5, 0.4)}).track
+        for mu in (0.0, 0.5)
+    )
+    assert rough.max_rotation < 0.97 * smooth.max_rotation
+
+
+def test_one_that_comes_to_rest_leaning_on_the_next_has_overturned():
+    tilted = HELD.with_values({"motion.kind": "none", "initial.rotation_rad": 0.3, "solver.duration_s": 20.0})
+    heavy = {**BESIDE, "gap_m": 1.5, "width_m": 6.0}
+    found = run(in_a_row(tilted, heavy))
+    assert found.status == found.outcome == "overturned"
+    rotation = abs(found.history["rotation_rad"][-1])
+    assert found.block.slenderness_angle < rotation < 0.5 * math.pi
+    upright = run(in_a_row(tilted.with_values({"initial.rotation_rad": 0.2}), heavy))
+    assert upright.status == "completed"
+
+
+def test_containers_that_overlap_at_the_start_are_refused():
+    with pytest.raises(CaseError, match=r"neighbour 1: gap_m = 0.2 m is overlapped by 0\.\d+ m at the start"):
+        run(in_a_row(HELD, {**BESIDE, "gap_m": 0.2}), {"initial.rotation_rad": 0.2})
+
+
+def test_two_sliders_under_pulses_end_where_impulses_leave_them():
+    rng, apart = np.random.default_rng(35), []
+    for _ in range(50):
+        peak, length, speed = rng.uniform(2.5, 6.0), rng.uniform(0.2, 0.6), rng.uniform(-1.0, 1.0)
+        mu, restitution, mass = rng.uniform(0.1, 0.25), rng.uniform(0.05, 0.9), rng.uniform(0.5, 3.0)
+        keys = {
+            **pulse(peak, length),
+            "contact.mu_static": mu,
+            "initial.velocity_m_s": speed,
+            "motion.start": "rest",
+            "solver.duration_s": 3.0,
+        }
+        beside = {**BESIDE, "gap_m": 0.02, "mass_kg": mass * MASS, "restitution": restitution}
+        # at 1e8 N/m a hit lasts 26 ms, in which friction and pulse shift the ends ten times as far
+        beside["stiffness_N_m"] = 1e10
+        found = run(in_a_row(SLIDER.with_values(keys), beside))
+        expected = slide_in_a_row(
+            mass=np.array([1.0, mass]),
+            gap=np.array([0.02]),
+            velocity=np.array([speed, 0.0]),
+            mu=mu,
+            restitution=restitution,
+            pulse=(peak, length),
+            duration=3.0,
+        )
+        ends = np.array([found.history["slip_m"][-1], found.history["neighbour_1_slip_m"][-1]])
+        apart.append(np.abs(ends - expected).max())
+    assert (np.percentile(apart, [50, 90, 100]) < [3e-4, 2e-3, 1e-2]).all()
