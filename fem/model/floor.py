@@ -72,8 +72,8 @@ class Slab:
         c W/F of the patch c along x that bears F. The resultant is in the middle of it. Where the patch grows with the
         indentation, its strength a length stays. Gajan and Kutter, J. Geotech. Geoenviron. Eng. 134 (2008) 1129, of
         footings that rock: the moment is W B/2 (1 - A_c/A), A_c the area that carries the weight. A firm floor turns
-        the container about the edge itself; what that neglects, F/10 of the patch at most, is within the range of the
-        effective width.
+        the container about the edge itself: for what that neglects, a tenth of the patch at most, the range of the
+        effective width stands.
         """
         share = weight / self.bearing_capacity
         return 0.5 * self.patch[0] * share * min(max((FIRM - 1.0 / share) / (FIRM - WEAK), 0.0), 1.0)
