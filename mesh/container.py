@@ -197,21 +197,22 @@ def build_container_mesh(
     quads = grid_quads(columns.count, rows.count * geometry.boxes)
     box_quads = quads[: rows.count * columns.count]
     area, centroid = areas_and_centroids(points, box_quads)
+    thickness = cell_thickness(geometry, box_region, centroid[:, 0])
     cells = BoxCells(
         region=box_region,
+        thickness=thickness,
         area=area,
         centroid=centroid[:, 1],
         bottom=points[box_quads[:, 0], 1],
         top=points[box_quads[:, 2], 1],
     )
     density, box_region = distribute_mass(geometry, fill, cells)
-    region = np.tile(box_region, geometry.boxes)
     return ContainerMesh(
         points=points,
         quads=quads,
-        region=region,
+        region=np.tile(box_region, geometry.boxes),
         box=np.repeat(np.arange(geometry.boxes), len(box_quads)),
-        thickness=cell_thickness(geometry, region),
+        thickness=np.tile(thickness, geometry.boxes),
         areal_density=np.tile(density, geometry.boxes),
     )
 

@@ -198,13 +198,14 @@ def _container(
     require_tiling(points, quads, geometry.width, geometry.total_height)
 
     region = cell_regions(tags, _allowed(geometry))
-    density, region, box = _fill_boxes(points, quads, region, geometry, fill)
+    thickness = cell_thickness(geometry, region, areas_and_centroids(points, quads)[1][:, 0])
+    density, region, box = _fill_boxes(points, quads, region, thickness, geometry, fill)
     return ContainerMesh(
         points=points,
         quads=quads,
         region=region,
         box=box,
-        thickness=cell_thickness(geometry, region),
+        thickness=thickness,
         areal_density=density,
     )
 
@@ -260,7 +261,12 @@ def _plane(points: FloatArray) -> FloatArray:
 
 
 def _fill_boxes(
-    points: FloatArray, quads: IntArray, region: IntArray, geometry: ContainerGeometry, fill: MassFill
+    points: FloatArray,
+    quads: IntArray,
+    region: IntArray,
+    thickness: FloatArray,
+    geometry: ContainerGeometry,
+    fill: MassFill,
 ) -> tuple[FloatArray, IntArray, IntArray]:
     """Areal density, region and box of all cells, box by box."""
     area, centroid = areas_and_centroids(points, quads)
@@ -285,6 +291,7 @@ def _fill_boxes(
             fill,
             BoxCells(
                 region=region[cells],
+                thickness=thickness[cells],
                 area=area[cells],
                 centroid=centroid[cells, 1] - floor,
                 bottom=bottom[cells] - floor,

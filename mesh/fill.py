@@ -45,17 +45,24 @@ class BoxCells:
     """The cells of one box; heights above the floor of the box."""
 
     region: IntArray  #: (m,) values of Region; FILL marks the cells that may carry fill
+    thickness: FloatArray  #: (m,) of the material out of the plane [m]
     area: FloatArray  #: (m,) [m2]
     centroid: FloatArray  #: (m,) heights of the centroids [m]
     bottom: FloatArray  #: (m,) lowest points [m]
     top: FloatArray  #: (m,) highest points [m]
 
 
-def cell_thickness(geometry: ContainerGeometry, region: IntArray) -> FloatArray:
-    """Thickness of the material out of the plane (m,): the depth, or both sheets together [m]."""
+def cell_thickness(geometry: ContainerGeometry, region: IntArray, x: FloatArray) -> FloatArray:
+    """Thickness of the material out of the plane (m,): the depth, or both sheets together, and the posts [m].
+
+    `x` is that of the cells' centroids, from the axis of the box [m].
+    """
     if geometry.wall is None:
         return np.full(len(region), geometry.depth)
-    return np.where(region == Region.WALL, geometry.depth, 2.0 * geometry.wall)
+    plates = np.where(region == Region.WALL, geometry.depth, 2.0 * geometry.wall)
+    if geometry.post is None:
+        return plates
+    return plates + geometry.post.thickness(0.5 * geometry.width - np.abs(x))
 
 
 def distribute_mass(
@@ -108,14 +115,14 @@ def _solid_density(geometry: ContainerGeometry, fill: MassFill, cells: BoxCells)
 def _shell_density(
     geometry: ContainerGeometry, fill: MassFill, cells: BoxCells
 ) -> tuple[FloatArray, IntArray]:
-    density = fill.wall_density * cell_thickness(geometry, cells.region)
+    density = fill.wall_density * cells.thickness
     wall_masses = density * cells.area
     wall_mass = float(wall_masses.sum())
     fill_mass = fill.mass - wall_mass
     if fill_mass < -ROUNDING * fill.mass:
         raise MeshError(
-            f"the walls of one box weigh {wall_mass:.6g} kg (wall {geometry.wall} m, "
-            f"{fill.wall_density:g} kg/m3), more than the box with its fill, {fill.mass:.6g} kg; "
+            f"the walls{' and posts' if geometry.post else ''} of one box weigh {wall_mass:.6g} kg (wall "
+            f"{geometry.wall} m, {fill.wall_density:g} kg/m3), more than the box with its fill, {fill.mass:.6g} kg; "
             "check weight, wall and depth"
         )
     wall_moment = float(wall_masses @ cells.centroid)

@@ -4,6 +4,9 @@ import math
 from dataclasses import dataclass
 from enum import Enum
 
+import numpy as np
+
+from mesh.cells import FloatArray
 from mesh.errors import MeshError
 
 
@@ -12,6 +15,39 @@ class Section(Enum):
 
     SHELL = "shell"  #: a steel box: ring, front and back sheets, fill
     SOLID = "solid"  #: a block without walls, for benchmarks
+
+
+@dataclass(frozen=True, kw_only=True)
+class CornerPost:
+    """A square hollow section of steel over the height of a box, flush with its sides, at each of its four edges.
+
+    Raises MeshError for dimensions that are not positive and finite, or walls thicker than half the width.
+    """
+
+    width: float  #: outer width [m]
+    wall: float  #: thickness [m]
+
+    def __post_init__(self) -> None:
+        for name in ("width", "wall"):
+            _require_length(f"post {name}", getattr(self, name))
+        if not 2.0 * self.wall <= self.width:
+            raise MeshError(
+                f"two walls of {self.wall} m leave no room in a post of {self.width} m; take half of it for a solid one"
+            )
+
+    @property
+    def lines(self) -> tuple[float, ...]:
+        """Distances of its faces from the side of the box, rising [m]."""
+        inner = (self.wall, self.width - self.wall, self.width)
+        return inner if inner[0] < inner[1] else inner[1:]
+
+    def thickness(self, distance: FloatArray) -> FloatArray:
+        """Of both posts behind each other, out of the plane, at distances from the side of the box [m].
+
+        That of their four flanges and four webs, so that area, second moment and shear area are theirs.
+        """
+        flange = (distance < self.wall) | (distance > self.width - self.wall)
+        return np.where(distance < self.width, np.where(flange, 2.0 * self.width, 4.0 * self.wall), 0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,6 +64,7 @@ class ContainerGeometry:
     boxes: int = 1  #: bolted boxes, one on top of the other
     section: Section = Section.SHELL
     wall: float | None = None  #: thickness of the steel, shell only [m]
+    post: CornerPost | None = None  #: shell only
 
     def __post_init__(self) -> None:
         for name in ("width", "height", "depth"):
@@ -40,6 +77,8 @@ class ContainerGeometry:
             self._require_room_between_walls()
         elif self.wall is not None:
             raise MeshError(f"a solid section has no wall, got wall {self.wall} m; use section shell")
+        if self.post is not None:
+            self._require_room_between_posts(self.post)
 
     def _require_room_between_walls(self) -> None:
         if self.wall is None:
@@ -50,6 +89,15 @@ class ContainerGeometry:
                 raise MeshError(
                     f"two walls of {self.wall} m leave no room in a {name} of {getattr(self, name)} m; "
                     "thinner walls, or section solid"
+                )
+
+    def _require_room_between_posts(self, post: CornerPost) -> None:
+        if self.section is not Section.SHELL:
+            raise MeshError("a solid section has no posts; use section shell")
+        for name in ("width", "depth"):
+            if not 2.0 * post.width < getattr(self, name):
+                raise MeshError(
+                    f"two posts of {post.width} m leave no room in a {name} of {getattr(self, name)} m"
                 )
 
     @property

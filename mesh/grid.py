@@ -1,7 +1,7 @@
 """Mesh lines of a structured container.
 
-There are always lines at the faces of the walls and at the edges of the feet; between them the spacing is even and as
-near to the element size as whole cells permit.
+There are always lines at the faces of the walls and posts and at the edges of the feet; between them the spacing is
+even and as near to the element size as whole cells permit.
 """
 
 import math
@@ -58,6 +58,8 @@ def segments_between(ends: FloatArray, element_size: float) -> Segments:
 def column_segments(geometry: ContainerGeometry, element_size: float, foot: float | None = None) -> Segments:
     """Columns of the container from its left to its right side, symmetric."""
     distances = {geometry.wall} if geometry.wall is not None else set()
+    if geometry.post is not None:
+        distances.update(geometry.post.lines)
     if foot is not None:
         distances.add(foot_line(geometry, element_size, foot))
     return _mirrored(sorted(distances), geometry.width, element_size)

@@ -194,15 +194,18 @@ def _cells_of(box: StackedBox, x: FloatArray, z: FloatArray) -> tuple[IntArray, 
     quads = grid_quads(len(x) - 1, len(z) - 1)
     area, centroid = areas_and_centroids(points, quads)
     geometry = box.geometry
+    region = ring_regions(geometry, x - box.axis + 0.5 * geometry.width, z)
+    thickness = cell_thickness(geometry, region, centroid[:, 0])
     cells = BoxCells(
-        region=ring_regions(geometry, x - box.axis + 0.5 * geometry.width, z),
+        region=region,
+        thickness=thickness,
         area=area,
         centroid=centroid[:, 1],
         bottom=points[quads[:, 0], 1],
         top=points[quads[:, 2], 1],
     )
     density, region = distribute_mass(geometry, box.fill, cells)
-    return region, cell_thickness(geometry, region), density
+    return region, thickness, density
 
 
 def _near(boxes: Sequence[StackedBox]) -> float:

@@ -94,6 +94,8 @@ def largest_stress(verdict: Verdict) -> str:
     """The largest stress; beyond yield, the elastic value is not the stress in the container."""
     words, reach = of_band(verdict, "max_von_mises_Pa"), reach_of(verdict, "max_von_mises_Pa")
     stress, limit = verdict.max_von_mises_Pa, verdict.yield_strength_Pa
+    if words and verdict.stress_from_corner_m is not None:
+        words += f", {1e3 * verdict.stress_from_corner_m:.3g} mm and more from a corner"
     if stress is None or limit is None or max(reach or (0.0,)) <= limit >= stress:
         return f"{words}{impact_note(verdict)}" if words else ""
     where = "beyond yield" if stress > limit else "beyond yield within the band"

@@ -23,9 +23,10 @@ from contact.stepping.ledger import (
 )
 from contact.stepping.observables import FORCE_WINDOW, HOPPING, ROCKING
 from fem.case.case import Case
-from fem.model.floor import YIELD_STRENGTH, is_steel_shell, slab_of, steel_capacity
+from fem.model.floor import YIELD_STRENGTH, is_steel_shell, post_strength, slab_of, steel_capacity
 from fem.model.floor_numbers import plastic_work
 from fem.model.model import Model
+from fem.model.peaks import casting_length
 from fem.results.figures import BOX_FIGURES, FIGURES, BoxResult, Shown
 from fem.results.history import History
 from fem.results.outcome import Outcome, least_slide
@@ -56,7 +57,7 @@ def destroyed_corner(model: Model) -> str | None:
     slab = slab_of(model.case, model.container.mesh.mass)
     if depth <= slab.deepest:
         return None
-    steel = "its wall is" if model.case.container.corner_post_N is None else "its posts are"
+    steel = "its wall is" if post_strength(model.case) is None else "its posts are"
     what = steel if slab.yields_first else "the floor under it is"
     return f"{what} crushed by more than {1e3 * slab.deepest:.3g} mm"
 
@@ -139,6 +140,7 @@ def verdict_from(
         max_acceleration_m_s2=track.max_acceleration if sampled else None,
         max_von_mises_Pa=largest_von_mises,
         yield_strength_Pa=YIELD_STRENGTH if is_steel_shell(model.case) else None,
+        stress_from_corner_m=None if largest_von_mises is None else casting_length(model.case),
         corner_capacity_N=capacity,
         plastic_work_J=None
         if capacity is None

@@ -162,10 +162,11 @@ def stress_is_beyond_yield(result: run_result.RunResult, case: Case) -> str | No
     stress, limit = _verdict(result).max_von_mises_Pa, _verdict(result).yield_strength_Pa
     if limit is None or stress is None or stress <= limit:
         return None
+    peak = ", and stress at a corner that carries the weight grows as the mesh is refined"
     corner = plastic_corner(_verdict(result))
     return (
         f"von Mises stress reached {stress / 1e6:.0f} MPa, beyond the yield strength of S235 (235 MPa): the "
-        "model is elastic, and stress at a corner that carries the weight grows as the mesh is refined"
+        f"model is elastic{peak if _verdict(result).stress_from_corner_m is None else ''}"
         + (f"; {corner}" if corner else "")
     )
 

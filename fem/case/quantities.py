@@ -117,6 +117,7 @@ TONNES = {"t/m3 (g/cm3)": 1e3}
 LENGTH = Quantity(unit="m", least=1e-3, most=100.0, typical=1.0, slips=MILLI_AND_CENTI)
 WALL = Quantity(unit="m", least=1e-6, most=50.0, typical=0.01, slips=MILLI_AND_CENTI)
 CASTING = Quantity(unit="m", least=0.0, most=10.0, typical=0.17, slips=MILLI_AND_CENTI)
+POST = Quantity(unit="m", least=1e-4, most=10.0, typical=0.05, slips=MILLI_AND_CENTI)
 CORNER_FORCE = Quantity(
     unit="N", least=1.0, most=1e12, typical=5e5, slips={"kilonewtons": 1e3, "tonnes": 9.81e3}
 )

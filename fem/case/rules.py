@@ -259,6 +259,20 @@ def _casting_does_not_fit(case: Any) -> str:
     return ""
 
 
+def _posts_do_not_fit(case: Any) -> str:
+    """Why posts do not fit into the boxes, empty where they do."""
+    if case.container.post_m is None or case.container.section != "shell":
+        return ""
+    width, wall = case.container.post_m
+    boxes = boxes_of(case.container, case.gravity_m_s2)
+    narrowest = min(case.container.depth_m, *(box.width for box in boxes))
+    if 2.0 * wall > width:
+        return f"must be [width, wall] with a wall of at most half the width, got {case.container.post_m}"
+    if 2.0 * width >= narrowest:
+        return f"= {case.container.post_m}: two posts must leave room in {narrowest:g} m, the least of width and depth"
+    return ""
+
+
 CASE_RULES = (
     *FLOOR_CASE_RULES,
     *BOX_RULES,
@@ -278,6 +292,7 @@ CASE_RULES = (
         lambda case: case.support.casting_m is None or not _casting_does_not_fit(case),
         lambda case: _casting_does_not_fit(case),
     ),
+    Rule("container.post_m", lambda case: not _posts_do_not_fit(case), lambda case: _posts_do_not_fit(case)),
     Rule(
         "container.corner_post_N",
         lambda case: case.container.corner_post_N is None or case.support.kind == "corners",

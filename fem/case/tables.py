@@ -109,8 +109,17 @@ class ContainerTable(CaseTable):
     damping_ratio: Annotated[float, q.MATERIAL_DAMPING] = case_key(
         "of the first elastic mode; it grows with frequency, zeta_n = zeta f_n/f_1", 0.02
     )
+    post_m: Annotated[
+        tuple[Annotated[float, q.POST], Annotated[float, q.POST]] | None, BeforeValidator(_as_tuple)
+    ] = case_key(
+        "[width, wall] of the square hollow section at each of the four edges of a box, shell only",
+        None,
+        example=[0.12, 0.008],
+        only=("section", "shell"),
+    )
     corner_post_N: Annotated[float, q.CORNER_FORCE] | None = case_key(  # noqa: N815
-        "strength of the post above each bottom corner, of which two stand behind each other; default: the wall yields",
+        "strength of the post above each bottom corner, of which two stand behind each other; default: on "
+        "castings that of post_m, S355; else the wall yields",
         None,
         example=848e3,
     )
@@ -130,6 +139,11 @@ class ContainerTable(CaseTable):
                 f"{len(info.data['box'])}); keep one of them"
             )
         return value
+
+    @property
+    def post_section(self) -> tuple[float, float] | None:
+        """Width and wall of the posts of a shell [m]; None without."""
+        return self.post_m if self.section == "shell" else None
 
     @property
     def is_loose(self) -> bool:

@@ -18,6 +18,7 @@ from fem.model.half_space import HalfSpace
 from mesh.container import ContainerMesh
 
 YIELD_STRENGTH = 235e6  #: [Pa], S235, EN 1993-1-1 Table 3.1
+POST_YIELD_STRENGTH = 355e6  #: of a hollow section [Pa], S355, EN 1993-1-1 Table 3.1
 STEEL_MODULUS = 1.5e11  #: [Pa], from which a shell is taken for steel
 DEEPEST = 0.01  #: indentation up to which the law of a corner holds [m]
 WHOLE_DEPTH = 0.99  #: share of the depth of the container from which a patch is its whole edge
@@ -89,14 +90,26 @@ def is_steel_shell(case: Case) -> bool:
     return case.container.section == "shell" and case.container.youngs_modulus_Pa > STEEL_MODULUS
 
 
+def post_strength(case: Case) -> float | None:
+    """Force at which one post yields [N]: as given, or that of its section of S355 on a casting; None where none bears.
+
+    The area of a square hollow section with rounded corners, EN 10210-2 Annex A: 4 t (b - t) - (4 - pi) 1.25 t^2.
+    """
+    given, section = case.container.corner_post_N, case.container.post_section
+    if given is not None or section is None or case.support.casting_m is None:
+        return given
+    width, wall = section
+    return POST_YIELD_STRENGTH * (4.0 * wall * (width - wall) - (4.0 - math.pi) * 1.25 * wall**2)
+
+
 def steel_capacity(case: Case) -> float | None:
     """Force at which the wall over one corner yields, yield strength x wall x depth of the patch [N].
 
     Where a container has corner posts, that of the two above the castings of a corner. None where no wall of steel
     carries a corner: solid blocks, feet, a flat base.
     """
-    wall, post = case.stack[0].wall, case.container.corner_post_N
-    if post is not None:
+    wall, post = case.stack[0].wall, post_strength(case)
+    if post is not None and case.support.kind == "corners":
         return 2.0 * post
     if not is_steel_shell(case) or wall is None or case.support.kind != "corners":
         return None

@@ -10,7 +10,7 @@ from fem.runtime.arrays import FloatArray
 from mesh.container import ContainerMesh, build_container_mesh, with_mass_beside
 from mesh.files import read_container_mesh, read_stack_mesh
 from mesh.fill import MassFill
-from mesh.geometry import ContainerGeometry, Section
+from mesh.geometry import ContainerGeometry, CornerPost, Section
 from mesh.stack import StackedBox, build_bolted_mesh, build_loose_mesh
 
 
@@ -44,6 +44,7 @@ def _centred(case: Case) -> ContainerMesh:
 
 def _stacked(case: Case, box: Box) -> StackedBox:
     container = case.container
+    post = container.post_section
     return StackedBox(
         geometry=ContainerGeometry(
             width=box.width,
@@ -51,6 +52,7 @@ def _stacked(case: Case, box: Box) -> StackedBox:
             depth=container.depth_m,
             section=Section(container.section),
             wall=box.wall,
+            post=None if post is None else CornerPost(width=post[0], wall=post[1]),
         ),
         fill=MassFill(mass=box.mass, centroid_height=box.centroid, wall_density=container.wall_density_kg_m3),
         axis=box.axis,

@@ -31,6 +31,7 @@ from fem.model.frames import frame_interval
 from fem.model.links import begin_links
 from fem.model.loose_stack import joints_of_stack, make_stack_state, own_stiffness, settle
 from fem.model.motion import build_motions, longest_run, peaks_in_run, rest_sought_from
+from fem.model.peaks import stressed_nodes
 from fem.model.restitution import require_loss
 from fem.model.row import begin_row, joints_of_row
 from fem.model.static_checks import StaticChecks, static_checks_of
@@ -194,7 +195,7 @@ def build_model(
         joints=_joints(case, container, static),
         links=len(case.links) + len(case.neighbour),
         strained=_strained_steps(case, duration),
-        stress=_stresses_at_contacts(container),
+        stress=_watched_stresses(case, container),
     )
     if full:  # its first steps settle vibrations of the mesh, which a large step would turn into a jump off the floor
         run.clock.level = step_level(control.largest_step, control.event_step)
@@ -232,15 +233,18 @@ def _joints(case: Case, container: Container, static: StaticChecks) -> Any:
     return joints_of_stack(container, static.slenderness_angle) if container.boxes else None
 
 
-def _stresses_at_contacts(container: Container) -> Stresses:
-    """The stress of a reduced model at its contact points: impacts strain it there, where the energy shows it least."""
-    if container.boxes:
-        bases = [(box.basis, box.corners) for box in container.boxes]
-    else:
-        bases = [(container.basis, container.nodes)]
-    most = max(basis.angular_frequencies.size for basis, _ in bases)
-    if most == 0:
+def _watched_stresses(case: Case, container: Container) -> Stresses:
+    """The stress of a reduced model beside its contacts: impacts strain it there, where the energy shows it least."""
+    if case.solver.model != "reduced":
         return NO_STRESSES
+    if container.boxes:
+        bases = [
+            (box.basis, stressed_nodes(case, box.elements, box.basis, box.corners)) for box in container.boxes
+        ]
+    else:
+        nodes = stressed_nodes(case, container.elements, container.basis, container.nodes)
+        bases = [(container.basis, nodes)]
+    most = max(basis.angular_frequencies.size for basis, _ in bases)
     first = np.concatenate([np.full(nodes.size, 3 + k * (3 + most)) for k, (_, nodes) in enumerate(bases)])
     of_modes = np.zeros((first.size, 3, most))
     end = 0

@@ -6,7 +6,9 @@ from functools import cached_property
 
 import numpy as np
 
+from fem.case.case import Case
 from fem.model.model import Model
+from fem.model.peaks import counted_nodes
 from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid.assembly import FiniteElements
 from fem.solid.elasticity import von_mises
@@ -37,6 +39,7 @@ class BodyRecovery:
     shapes: FloatArray  #: (m, n, 2) elastic modes [1/sqrt(kg)]
     full: bool
     angular_frequencies: FloatArray  #: (m,) of the modes [rad/s]
+    counted: IntArray  #: nodes whose stress counts
     _stress: FloatArray = field(repr=False)  # (3, m, n) stress of each mode
 
     def frame(self, position: FloatArray, velocity: FloatArray) -> NodalFields:
@@ -60,7 +63,7 @@ class BodyRecovery:
         )
 
     def largest_von_mises(self, position: FloatArray) -> float:
-        """Largest nodal von Mises stress over rows of coordinates (n_s, n_d) [Pa]; 0 without modes.
+        """Largest counted nodal von Mises stress over rows of coordinates (n_s, n_d) [Pa]; 0 without modes.
 
         Starts with the row of the largest strain energy. Of the others, only rows and nodes are evaluated whose bound,
         the root of twice the strain energy times `_bounds`, reaches that stress.
@@ -70,18 +73,24 @@ class BodyRecovery:
         modal = position[:, 3:]
         energies = np.linalg.norm(modal * self.angular_frequencies, axis=1)
         most = int(np.argmax(energies))
-        found = float(von_mises(modal[most] @ self._stress).max())
+        found = float(von_mises(modal[most] @ self._counted_stress).max())
         least = found * (1.0 - ROUNDING)
         nodes = np.flatnonzero(self._bounds * energies[most] >= least)
         rows = np.flatnonzero(energies * self._bounds.max() >= least)
         if not nodes.size or not rows.size:
             return found
-        return max(found, float(von_mises(modal[rows] @ self._stress[:, :, nodes]).max()))
+        return max(found, float(von_mises(modal[rows] @ self._counted_stress[:, :, nodes]).max()))
+
+    @cached_property
+    def _counted_stress(self) -> FloatArray:
+        """Stress of each mode at the counted nodes, (3, m, n_counted)."""
+        every = self.counted.size == self._stress.shape[2]
+        return self._stress if every else self._stress[:, :, self.counted]
 
     @cached_property
     def _bounds(self) -> FloatArray:
-        """Largest von Mises stress of each node (n,), over the root of twice the strain energy [Pa/sqrt(J)]."""
-        scaled = self._stress / self.angular_frequencies[:, None]
+        """Largest von Mises stress of each counted node, over the root of twice the strain energy [Pa/sqrt(J)]."""
+        scaled = self._counted_stress / self.angular_frequencies[:, None]
         rooted = np.tensordot(VON_MISES_ROOT, scaled, axes=1)
         return np.asarray(np.linalg.norm(np.moveaxis(rooted, -1, 0), ord=2, axis=(1, 2)))
 
@@ -120,8 +129,12 @@ class Recovery:
         stressed = any(part.von_mises is not None for _, part in parts)
         return NodalFields(displacement=displacement, velocity=speed, von_mises=stress if stressed else None)
 
+    def largest_in(self, stress: FloatArray) -> float:
+        """Largest counted one of the nodal stresses (n,) of a frame [Pa]."""
+        return max(float(stress[one.nodes][one.body.counted].max()) for one in self.bodies)
+
     def largest_von_mises(self, position: FloatArray) -> float:
-        """Largest nodal von Mises stress over rows of coordinates (n_s, n_d) [Pa]; 0 without modes."""
+        """Largest counted nodal von Mises stress over rows of coordinates (n_s, n_d) [Pa]; 0 without modes."""
         return max(one.body.largest_von_mises(position[:, one.coordinates]) for one in self.bodies)
 
     def largest_of_steps(self, strained: FloatArray) -> float | None:
@@ -136,7 +149,7 @@ def recovery_of(model: Model) -> Recovery:
     if not container.boxes:
         centroid = np.asarray(container.mesh.centroid)
         whole = PlacedBody(
-            body=_of_body(container.elements, container.basis, centroid, full=full),
+            body=_of_body(model.case, container.elements, container.basis, centroid),
             coordinates=slice(None),
             nodes=slice(None),
             place=np.zeros(2),
@@ -148,7 +161,7 @@ def recovery_of(model: Model) -> Recovery:
     for box, nodes in zip(container.boxes, container.box_nodes, strict=True):
         if id(box) not in known:
             centroid = np.asarray(box.mesh.centroid)
-            known[id(box)] = _of_body(box.elements, box.basis, centroid, full=full)
+            known[id(box)] = _of_body(model.case, box.elements, box.basis, centroid)
         own = 2 * len(nodes) if full else 3 + box.basis.angular_frequencies.size
         bodies.append(
             PlacedBody(
@@ -164,14 +177,13 @@ def recovery_of(model: Model) -> Recovery:
     return Recovery(elements=container.elements, full=full, bodies=tuple(bodies))
 
 
-def _of_body(
-    elements: FiniteElements, basis: ReducedBasis, centroid: FloatArray, *, full: bool
-) -> BodyRecovery:
+def _of_body(case: Case, elements: FiniteElements, basis: ReducedBasis, centroid: FloatArray) -> BodyRecovery:
     return BodyRecovery(
         elements=elements,
         centroid=centroid,
         shapes=basis.shapes,
-        full=full,
+        full=case.solver.model == "full",
         angular_frequencies=basis.angular_frequencies,
+        counted=counted_nodes(case, elements),
         _stress=basis.stress,
     )

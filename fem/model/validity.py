@@ -7,7 +7,7 @@ import math
 import os
 
 from fem.case.case import Case, CaseError
-from fem.model.floor import LEAST_BEARING, slab_of
+from fem.model.floor import LEAST_BEARING, post_strength, slab_of
 from fem.model.support import normal_penalty
 from mesh.container import ContainerMesh
 
@@ -78,10 +78,10 @@ def require_bearing(case: Case, mesh: ContainerMesh, use: float = 0.0) -> None:
         f"and has {1e-3 * slab.cap:.4g} kN on its patch of {patch}: the container would sink in at once"
     )
     if slab.yields_first:
-        if case.container.corner_post_N is not None:
-            raise CaseError(
-                f"[container] corner_post_N = {case.container.corner_post_N:g} N: {carries}, because its posts yield"
-            )
+        post = post_strength(case)
+        if post is not None:
+            given = "post_m" if case.container.corner_post_N is None else "corner_post_N"
+            raise CaseError(f"[container] {given}: {carries}, because its posts yield at {post:g} N each")
         raise CaseError(f"[container] wall_m = {case.stack[0].wall:g} m: {carries}, because its wall yields")
     raise CaseError(
         f"[floor] bearing_strength_Pa = {case.floor.bearing_strength_Pa:g} Pa: {carries}; the least patch has "

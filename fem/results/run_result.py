@@ -229,6 +229,9 @@ class Verdict(RunFigures):
     modes: tuple[str, ...] = ()  #: states passed through
     at_rest_s: float | None = None  #: since when it is at rest, of a run that ended for it
     yield_strength_Pa: float | None = None  #: that of S235 of a steel shell; None of another container
+    stress_from_corner_m: float | None = (
+        None  #: where posts stand on castings, no stress counts nearer to a corner
+    )
     #: at which the wall over a corner yields, and the work that a rigid-plastic corner would take (`fem.model.floor`)
     corner_capacity_N: float | None = None
     plastic_work_J: float | None = None
@@ -245,8 +248,7 @@ class Verdict(RunFigures):
     written_where_given = frozenset(
         {
             *("boxes", "fell_box", "corner_capacity_N", "plastic_work_J", "bolt_tension_N", "bolt_shear_N"),
-            "invalid_reason",
-            "neighbours",
+            *("invalid_reason", "neighbours", "stress_from_corner_m"),
         }
     )
 

@@ -181,7 +181,7 @@ class Recorder:
             position = run.strained[0, 0, 1:]
             frame = self._recovery.frame(position, np.zeros_like(position))
             if frame.von_mises is not None:
-                self._note_stress(float(np.max(frame.von_mises)))
+                self._note_stress(self._recovery.largest_in(frame.von_mises))
         self._most_strain = max(self._most_strain, energy)
         run.strained[0, 0, 0] = -1.0
 
@@ -196,7 +196,7 @@ class Recorder:
                 time = (first + k) * samples.interval
                 frame = self._recovery.frame(samples.position[k], samples.velocity[k])
                 if frame.von_mises is not None and self._recovery.full:
-                    self._note_stress(float(np.max(frame.von_mises)))
+                    self._note_stress(self._recovery.largest_in(frame.von_mises))
                 if self._frame_sink is not None:
                     pressure = np.zeros(len(frame.displacement))
                     floor_points = len(self._area) - len(

@@ -25,7 +25,7 @@ BAD_INPUT = [
     (["check", "seed_stak"], "did you mean 'seed_stack'?"),
     (["check", "--set", "container.width_m=1100"], "looks like millimetres: 1.1 m?"),
     (["check", "--set", "container.heigth_m=1"], "did you mean 'height_m'?"),
-    (["check", "--set", "container.weight_N=2500"], "the walls of one box weigh"),
+    (["check", "--set", "container.weight_N=2500"], "the walls and posts of one box weigh"),
     (
         ["check", "--set", "support.kind=feet", "--set", "support.foot_m=0.6"],
         "foot_m must be less than half of",
@@ -362,7 +362,7 @@ class TestRun:
         assert command_line.main(["run", "seed_stack", "--dry-run", "--out", "here"]) == 0
         printed = capsys.readouterr().out
         assert "here" in printed
-        assert "624 elements, 2619 nodes (5238 unknowns), 2 contact nodes" in printed
+        assert "720 elements, 3007 nodes (6014 unknowns), 2 contact nodes" in printed
         assert list(tmp_path.iterdir()) == []
 
     def test_a_dry_run_in_json(self, capsys):

@@ -7,8 +7,10 @@ import pytest
 
 import fem
 from fem.case.case import CaseError
+from fem.model.container import discretise
 from fem.model.floor import slab_of
 from fem.model.model import build_model
+from fem.model.peaks import counted_nodes
 
 CASTINGS = "support.casting_m=[0.162, 0.178, 0.0]"
 
@@ -21,6 +23,51 @@ def test_castings_and_posts_say_what_a_corner_bears():
     assert slab.cap == slab.steel_capacity == 2.0 * 848e3  # and not 235 MPa on a sheet of 2 mm
     weaker = case.replace({"floor.bearing_strength_Pa": 1e7})
     assert slab_of(weaker, case.mass).cap == pytest.approx(1e7 * 0.162 * 0.356)
+
+
+def test_the_strength_of_posts_follows_from_their_section_unless_it_is_given():
+    # EN 10210-2, 120 x 8: 35.2 cm2; of S355 1250 kN
+    case = fem.load_case("rocking")
+    assert slab_of(case, case.mass).cap == pytest.approx(2.0 * 35.2e-4 * 355e6, rel=2e-3)
+    given = case.replace({"container.corner_post_N": 900e3})
+    assert slab_of(given, case.mass).cap == 2.0 * 900e3
+    flat = case.replace({"support.kind": "flat"})  # their section stays, but no corner stands on them
+    assert slab_of(flat, case.mass).steel_capacity is None and flat.container.post_m == (0.12, 0.008)
+    wall = case.replace({"floor.corner_patch_m": [0.008, 1.1]})  # which bears then
+    assert slab_of(wall, case.mass).steel_capacity == pytest.approx(235e6 * 0.008 * 1.1)
+    weak = case.replace({"container.post_m": [0.12, 1e-4]})
+    with pytest.raises(CaseError, match="post_m: a corner must carry"):
+        build_model(weak)
+
+
+def test_a_container_with_posts_is_stiffer_by_their_section_along_its_height():
+    energies = []
+    for posts in ("[0.12, 0.008]", None):
+        values = ["container.poisson_ratio=0", *([f"container.post_m={posts}"] if posts else [])]
+        case = fem.load_case("rocking", values)
+        if posts is None:
+            case = case.replace({"container.post_m": None, "support.casting_m": None})
+        elements = discretise(case).elements
+        stretched = np.zeros_like(elements.nodes)
+        stretched[:, 1] = 1e-6 * elements.nodes[:, 1]
+        energies.append(0.5 * stretched.ravel() @ (elements.stiffness @ stretched.ravel()))
+    area = 4.0 * (0.12**2 - 0.104**2)
+    assert energies[0] - energies[1] == pytest.approx(0.5 * 2.1e11 * area * 4.0 * 1e-12, rel=1e-6)
+
+
+def test_the_stress_beyond_the_castings_does_not_depend_on_the_mesh():
+    stresses, peaks = [], []
+    for size in (0.1, 0.05, 0.03):
+        case = fem.load_case("rocking", [f"solver.element_size_m={size}"])
+        container = discretise(case)
+        pushed = container.elements.nodal_von_mises(1e6 * container.response.displacement[-1])
+        counted = counted_nodes(case, container.elements)
+        stresses.append(pushed[counted].max())
+        peaks.append(pushed.max())
+        corner = np.abs(container.elements.nodes[counted] - [0.55, 0.0]).max(axis=1)
+        assert corner.min() == pytest.approx(0.2, abs=0.06) and corner.min() > 0.199
+    assert stresses[0] == pytest.approx(stresses[1], rel=0.02)
+    assert min(peaks) > 5.0 * max(stresses)
 
 
 @pytest.mark.parametrize("joints", ["", "_two_loose"])
@@ -64,6 +111,9 @@ def test_the_bolts_of_locked_containers_have_a_utilisation():
         (["support.kind=flat", CASTINGS], 'belongs to support.kind = "corners"'),
         (["floor.corner_patch_m=[0.1, 0.2]", CASTINGS], "keep one of them"),
         (["container.corner_post_N=0"], "corner_post_N"),
+        (["container.post_m=[0.15, 0.1]"], "a wall of at most half the width"),
+        (["container.post_m=[1.3, 0.01]"], r"two posts must leave room in 2.438 m"),
+        (["container.post_m=[150, 6]"], "looks like millimetres"),
         (["container.joints=loose", "container.boxes=2", "joints.bolt_capacity_N=5e5"], "have no bolts"),
         (
             ["support.casting_m=[0.162, 0.178, 0.1]", "solver.model=full"],

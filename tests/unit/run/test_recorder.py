@@ -57,5 +57,7 @@ def test_the_largest_stress_of_the_full_model_is_that_of_its_steps_whatever_is_r
         ),
         band=False,
     )
-    at_rest = float(still.frame(0.0).von_mises.max())
-    assert still.verdict.max_von_mises_Pa == pytest.approx(at_rest, rel=0.05)
+    frame = still.frame(0.0)
+    low, high = frame.points.min(axis=0), frame.points.max(axis=0)
+    beyond = np.minimum(frame.points - low, high - frame.points).max(axis=1) > 0.199  # the castings
+    assert still.verdict.max_von_mises_Pa == pytest.approx(float(frame.von_mises[beyond].max()), rel=0.05)

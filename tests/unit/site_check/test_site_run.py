@@ -309,4 +309,4 @@ def test_an_empty_box_lighter_than_its_walls_is_refused(tmp_path, capsys):
         load_site("site").origin.text.replace("empty_mass_kg = 600.0", "empty_mass_kg = 400.0")
     )
     assert main(["assess", str(tmp_path / "site.toml"), "--out", str(tmp_path / "out"), "-q"]) == 2
-    assert "empty_mass_kg: the walls of one box weigh" in capsys.readouterr().err
+    assert "empty_mass_kg: the walls and posts of one box weigh" in capsys.readouterr().err

@@ -1,0 +1,46 @@
+"""Where the stress of a container with posts counts: outside the castings of its corners.
+
+A corner bears on one node. The stress beside it is that of the force over an element, and grows without limit as the
+mesh is refined; a casting spreads the force, and the mesh has none. A casting's length away the stress no longer
+depends on that (Saint-Venant's principle; `README.md` has figures). Without posts it counts everywhere.
+"""
+
+import numpy as np
+
+from fem.case.case import Case
+from fem.runtime.arrays import IntArray
+from fem.solid.assembly import FiniteElements
+from fem.solid.elasticity import von_mises
+from fem.solid.reduction import ReducedBasis
+
+LOWEST = 4  #: modes by which nodes are chosen whose stress is looked at
+
+
+def casting_length(case: Case) -> float | None:
+    """Length of the castings along x, without them the width of the posts [m]; None of a container without posts."""
+    post, casting = case.container.post_section, case.support.casting_m
+    if post is None:
+        return None
+    return post[0] if casting is None else casting[0]
+
+
+def counted_nodes(case: Case, elements: FiniteElements) -> IntArray:
+    """Nodes of a body outside the squares of the castings at its four corners; of one without posts, all."""
+    length, nodes = casting_length(case), elements.nodes
+    low, high = nodes.min(axis=0), nodes.max(axis=0)
+    outside = np.minimum(nodes - low, high - nodes).max(axis=1) >= 0.999 * (length or 0.0)
+    return np.flatnonzero(outside if outside.any() else ~outside)
+
+
+def stressed_nodes(case: Case, elements: FiniteElements, basis: ReducedBasis, loaded: IntArray) -> IntArray:
+    """Nodes whose stress is looked at in every step of a reduced body that bears at the nodes `loaded`.
+
+    These; with posts, the counted ones that a force at one of these, or one of the lowest modes, stresses most.
+    """
+    if casting_length(case) is None:
+        return loaded
+    counted = counted_nodes(case, elements)
+    amplitudes = basis.shapes[:, loaded].reshape(len(basis.shapes), -1).T / basis.angular_frequencies**2
+    shapes = np.concatenate([amplitudes, np.eye(LOWEST, len(basis.shapes))])
+    stresses = (von_mises(one @ basis.stress)[counted] for one in shapes)
+    return counted[np.unique([np.argmax(stress) for stress in stresses])]
