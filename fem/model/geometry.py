@@ -30,16 +30,18 @@ def _centred(case: Case) -> ContainerMesh:
     container, size, foot = case.container, case.solver.element_size_m, case.support.foot
     file = case.data_files["container.mesh_file"] if container.mesh_file is not None else None
     boxes = [_stacked(case, box) for box in case.stack]
+    bears = case.solver.model != "rigid" and (case.support.kind != "corners" or case.support.rolls)
     if container.box is None and not container.is_loose:
         lowest = boxes[0]
         geometry = replace(lowest.geometry, boxes=container.boxes)
         if file is not None:
             return read_container_mesh(file, geometry, lowest.fill)
-        return build_container_mesh(geometry, lowest.fill, element_size=size, foot=foot)
+        return build_container_mesh(geometry, lowest.fill, element_size=size, foot=foot, bears=bears)
     if file is not None:
         return read_stack_mesh(file, boxes, loose=container.is_loose)
-    build = build_loose_mesh if container.is_loose else build_bolted_mesh
-    return build(boxes, element_size=size, foot=foot)
+    if container.is_loose:
+        return build_loose_mesh(boxes, element_size=size, foot=foot)
+    return build_bolted_mesh(boxes, element_size=size, foot=foot, bears=bears)
 
 
 def _stacked(case: Case, box: Box) -> StackedBox:
