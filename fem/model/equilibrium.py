@@ -15,6 +15,7 @@ from contact.stepping.loose_stack import LooseStack
 from contact.stepping.modal_body import ModalBody, make_modal_body
 from fem.case.case import Case, CaseError
 from fem.model.container import Container
+from fem.model.edge_springs import edge_factors
 from fem.model.floor import slab_of
 from fem.model.links import lines_at, places_of_links, shapes_at_links, with_links
 from fem.model.loose_stack import make_stack_state, own_stiffness, settle, stack_of, with_joints
@@ -170,9 +171,14 @@ def _contact(case: Case, container: Container, springs: FloatArray) -> Contact:
     rolling = Rolling.of(case, mesh)
     if rolling is not None:  # the dashpots of the points resist slow rolling, too, but hardly a fast one
         relaxation = min(relaxation, POINT_SHARE * rolling.time)
+    base = camber.size
+    places = container.elements.nodes[container.nodes[:base], 0]
+    stiffness = np.concatenate(
+        [springs[:base] * edge_factors(case, container.support, places), springs[base:]]
+    )
     return Contact(
-        normal_stiffness=springs,
-        tangential_stiffness=ratio * springs,
+        normal_stiffness=stiffness,
+        tangential_stiffness=ratio * stiffness,
         cap=cap,
         cap_growth=np.full(springs.size, growth),
         relaxation_time=np.full(springs.size, relaxation),

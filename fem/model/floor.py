@@ -130,16 +130,27 @@ def corner_patch(case: Case) -> tuple[float, float]:
     return along, case.container.depth_m
 
 
+def half_space_of(case: Case) -> HalfSpace:
+    """What is under the container.
+
+    Raises:
+        CaseError: the floor is no slab.
+    """
+    floor = case.floor
+    if floor.youngs_modulus_Pa is None or floor.poisson_ratio is None:
+        raise CaseError('[floor] kind = "slab" is needed')
+    return HalfSpace(youngs_modulus=floor.youngs_modulus_Pa, poisson_ratio=floor.poisson_ratio)
+
+
 def slab_of(case: Case, mass: float) -> Slab:
     """The slab of a case under a container of this mass [kg].
 
     Raises:
         CaseError: the floor is no slab.
     """
-    floor = case.floor
-    if floor.youngs_modulus_Pa is None or floor.poisson_ratio is None or floor.bearing_strength_Pa is None:
+    floor, below = case.floor, half_space_of(case)
+    if floor.bearing_strength_Pa is None:
         raise CaseError('[floor] kind = "slab" is needed')
-    below = HalfSpace(youngs_modulus=floor.youngs_modulus_Pa, poisson_ratio=floor.poisson_ratio)
     along, out_of_plane = corner_patch(case)
     halves = 2 if case.support.kind == "flat" else 1
     normal = below.vertical_stiffness(halves * along, out_of_plane) / halves

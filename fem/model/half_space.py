@@ -41,6 +41,16 @@ class HalfSpace:
         shape = 6.8 * ratio**0.65 + (2.4 if along >= across else 0.8 * ratio + 1.6)
         return self.shear_modulus * half_short / (2.0 - self.poisson_ratio) * shape
 
+    def rocking_stiffness(self, along: float, across: float) -> float:
+        """Of a patch turned in the plane of its first side [Nm/rad]; the sides in m.
+
+        G B^3/(1 - nu) (3.73 (L/B)^2.4 + 0.27) along the longer side, .. 3.2 L/B + 0.8) along the shorter one.
+        """
+        half_long, half_short = _halves(along, across)
+        ratio = half_long / half_short
+        shape = 3.73 * ratio**2.4 + 0.27 if along >= across else 3.2 * ratio + 0.8
+        return self.shear_modulus * half_short**3 / (1.0 - self.poisson_ratio) * shape
+
     def vertical_dashpot(self, area: float, density: float) -> float:
         """Waves that a patch sends down, rho V_La A, V_La = 3.4 V_s/(pi (1 - nu)) Lysmer's velocity [N s/m].
 

@@ -215,12 +215,12 @@ def build_model(
 
 def _areas(case: Case, container: Container, equilibrium: Equilibrium) -> FloatArray:
     """`Model.contact_areas` of one container."""
-    stiffness, base = equilibrium.contact.normal_stiffness, container.support.index.size
+    contact, base = equilibrium.contact, container.support.index.size
     if not case.floor.is_slab:
-        return stiffness / equilibrium.penalty
+        return contact.normal_stiffness / equilibrium.penalty
     slab = slab_of(case, container.mesh.mass)
-    areas = slab.area / slab.normal_stiffness * stiffness
-    areas[base:] = slab.area  # of loose boxes on one another
+    areas = np.full(contact.cap.size, slab.area)  # of loose boxes on one another as on the floor
+    areas[:base] *= contact.cap[:base] / slab.cap
     return areas
 
 

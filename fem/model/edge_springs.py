@@ -1,0 +1,63 @@
+"""Springs of a flat base on a half-space: stiffer near its edges, so that it resists tilting as the half-space does.
+
+Under a rigid base the pressure of a half-space is largest at the edges. Springs shared evenly have 0.3 to 0.8 of its
+rocking stiffness. Two intensities, one outside and one inside, meet the vertical and the rocking stiffness of the
+source (NIST GCR 12-917-21, 2.2.3, has end zones too, but lets the vertical stiffness grow). No springs that push can
+resist tilting by more than all of them at the edges, three times the even ones: a base more than about 1.5 times as
+deep as it is wide has less than the half-space. On a weak floor the edges would be crushed at rest, and have less, too.
+"""
+
+import numpy as np
+
+from contact.interface.support import Support
+from fem.case.case import Case
+from fem.model.floor import corner_patch, half_space_of, slab_of
+from fem.runtime.arrays import FloatArray
+
+LARGEST = 2.9  #: rocking stiffness over that of even springs; 3 takes all of them to the edges
+MOST_AT_REST = 0.5  #: of its strength that the floor carries at the edges at rest
+WHOLE_WIDTH = 0.99  #: share of the width of the base from which two patches are all of it
+
+
+def rocking_ratio(case: Case) -> float | None:
+    """Rocking stiffness of the half-space over that of springs shared evenly; None where no flat base bears on one."""
+    support, floor = case.support, case.floor
+    if not floor.is_slab or support.kind != "flat" or support.camber_m > 0.0:
+        return None
+    half, across = corner_patch(case)
+    along, below = 2.0 * half, half_space_of(case)
+    if along < WHOLE_WIDTH * case.stack[0].width:
+        return None
+    return below.rocking_stiffness(along, across) / (
+        below.vertical_stiffness(along, across) * along**2 / 12.0
+    )
+
+
+def edge_factors(case: Case, support: Support, x: FloatArray) -> FloatArray:
+    """Factors (n,) on the springs of the points of a base at x (n,) [m], shared by their lengths; their sum stays."""
+    wanted = rocking_ratio(case)
+    if wanted is None:
+        return np.ones(x.size)
+    ratio, half = min(wanted, LARGEST), 0.5 * float(x[-1] - x[0])
+    squares, lengths = ((x - x[0]) / half - 1.0) ** 2, support.length
+    outside = (
+        squares >= 0.25 + 0.25 * ratio
+    )  # farther out than the radius wanted, so that the inside pushes, too
+    zones = (~outside, outside)
+    sums = np.array([[(lengths * power)[zone].sum() for zone in zones] for power in (squares**0, squares)])
+    inside, edge = np.linalg.solve(sums, lengths.sum() * np.array([1.0, ratio / 3.0]))
+    # of edges that would be crushed at rest, only as much as they carry
+    bearable = MOST_AT_REST * 2.0 * slab_of(case, case.mass).cap / (case.mass * case.gravity_m_s2)
+    elastic = float(np.clip((bearable - 1.0) / (edge - 1.0), 0.0, 1.0))
+    return 1.0 + elastic * (np.where(outside, edge, inside) - 1.0)
+
+
+def missing_stiffness(case: Case) -> str | None:
+    """Where the springs of a flat base resist tilting less than the half-space does, in words."""
+    ratio = rocking_ratio(case)
+    if ratio is None or ratio <= LARGEST:
+        return None
+    return (
+        f"the base is so much deeper than wide that springs under it have {LARGEST / ratio:.2f} of the stiffness with "
+        "which an elastic half-space resists tilting: it uplifts somewhat more softly than on such a floor"
+    )

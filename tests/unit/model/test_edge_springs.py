@@ -1,0 +1,65 @@
+"""The springs of a flat base on a half-space: its vertical and its rocking stiffness."""
+
+import math
+
+import numpy as np
+import pytest
+
+from fem.case.case import load_case
+from fem.model.edge_springs import edge_factors, missing_stiffness
+from fem.model.half_space import HalfSpace
+from fem.model.model import build_model
+
+CONCRETE = HalfSpace(youngs_modulus=31e9, poisson_ratio=0.2)
+
+
+def springs_under(*values: str) -> tuple[np.ndarray, np.ndarray]:
+    model = build_model(load_case("rocking", ["solver.model=rigid", "support.kind=flat", *values]))
+    nodes = model.container.nodes
+    return model.container.elements.nodes[nodes, 0], model.run.problem.contact.normal_stiffness
+
+
+def test_a_square_resists_tilting_like_a_circle_of_its_second_moment():
+    # 8 G R^3/(3 (1 - nu)) of a rigid circle (Johnson, Contact Mechanics, 1985, 5.5), pi R^4/4 = a^4/12
+    radius = (1.0 / (3.0 * math.pi)) ** 0.25
+    circle = 8.0 * CONCRETE.shear_modulus * radius**3 / (3.0 * (1.0 - 0.2))
+    assert CONCRETE.rocking_stiffness(1.0, 1.0) == pytest.approx(circle, rel=0.01)
+    assert CONCRETE.rocking_stiffness(2.0, 1.0) > 2.0 * CONCRETE.rocking_stiffness(1.0, 2.0)
+
+
+@pytest.mark.parametrize("width", [0.75, 1.1, 2.4])
+@pytest.mark.parametrize(
+    "mesh", [(), ("solver.order=1", "solver.element_size_m=0.3"), ("container.section=solid",)]
+)
+def test_a_flat_base_has_both_stiffnesses_of_the_half_space(width, mesh):
+    x, springs = springs_under(f"container.width_m={width}", "container.depth_m=1.1", *mesh)
+    assert springs.min() > 0.0
+    assert springs.sum() == pytest.approx(CONCRETE.vertical_stiffness(width, 1.1), rel=1e-9)
+    assert springs @ x**2 == pytest.approx(CONCRETE.rocking_stiffness(width, 1.1), rel=1e-9)
+    assert springs == pytest.approx(springs[::-1], rel=1e-9)
+
+
+def test_a_deep_base_has_as_much_as_springs_can_and_says_so():
+    deep = ("container.width_m=1.1", "container.depth_m=2.2", "container.mass_kg=5000")
+    x, springs = springs_under(*deep)
+    rocking = CONCRETE.rocking_stiffness(1.1, 2.2)
+    assert springs.min() > 0.0 and 0.90 < springs @ x**2 / rocking < 0.93
+    case = load_case("rocking", ["support.kind=flat", *deep])
+    assert "0.91 of the stiffness" in missing_stiffness(case)
+    assert missing_stiffness(load_case("rocking", ["support.kind=flat"])) is None
+
+
+def test_the_edges_of_a_weak_floor_carry_half_its_strength_at_rest():
+    model = build_model(
+        load_case("rocking", ["solver.model=rigid", "support.kind=flat", "floor.preset=compacted gravel"])
+    )
+    used = model.run.old.force[:, 1] / model.run.problem.contact.cap
+    assert used.max() == pytest.approx(0.5, rel=1e-3)
+    assert used.min() < 0.2
+
+
+@pytest.mark.parametrize("values", [["support.kind=corners"], ["support.kind=flat", "floor.kind=rigid"]])
+def test_other_bases_share_their_springs_as_before(values):
+    model = build_model(load_case("rocking", ["solver.model=rigid", *values]))
+    x = model.container.elements.nodes[model.container.nodes, 0]
+    assert (edge_factors(model.case, model.container.support, x) == 1.0).all()
