@@ -41,6 +41,8 @@ KINDS = {
     "int_from_float": "a whole number",
     "bool_type": "true or false",
     "string_type": "text in quotes",
+    "list_type": "a list in brackets",
+    "tuple_type": "a list in brackets",
 }
 
 

@@ -161,6 +161,8 @@ def test_an_override_that_breaks_a_rule_of_another_key_is_named():
         ("contact.mu_static=0.4\n[motion]", "must be a number, got the text"),
         ("contact.mu_static=0.4\nmu_kinetic=0.3", "must be a number, got the text"),
         ("contact.mu_static=[0.4]", "must be a number, got a list"),
+        ("support.casting_m=0.1", "must be a list in brackets, got 0.1"),
+        ("container.post_m=0.1", "must be a list in brackets, got 0.1"),
         ("contact.mu_static={a=1}", "must be a number, got a table"),
         ("contact.mu_static=" + "[" * 2000, "must be a number, got the text"),
         ("solver.duration_s=0", "duration_s must be between"),
