@@ -8,6 +8,7 @@ from textwrap import fill
 from typing import Any
 
 from fem.assessment.floor_words import floor_rows
+from fem.assessment.link_words import link_rows
 from fem.assessment.motion_words import covered_in_words, is_cut, missing_peak, motion_in_words
 from fem.case.case import Case, case_hash, load_case
 from fem.case.files import is_site
@@ -104,7 +105,7 @@ def _page(preview: Preview, document: dict[str, Any]) -> str:
         ),
         *(
             fill(f"{name:<11} {value}", WIDTH, initial_indent="  ", subsequent_indent=14 * " ")
-            for name, value in floor_rows(preview.floor)
+            for name, value in [*floor_rows(preview.floor), *link_rows(case)]
         ),
         "",
         f"  slenderness angle      {math.degrees(static.slenderness_angle):8.3f} deg   "

@@ -6,6 +6,7 @@ from typing import NamedTuple, assert_never
 
 from markupsafe import Markup
 
+from fem.assessment.link_words import link_rows
 from fem.assessment.summary import own_motion_name, rule_says, run_lifted, run_slid, run_tilted
 from fem.case.boxes import Box
 from fem.case.case import Case
@@ -124,6 +125,7 @@ def asked_rows(case: Case) -> list[tuple[str, str]]:
         *([("friction between boxes", _joint_friction(case, mu))] if box.is_loose else []),
         ("floor", motion_in_words(case.motion)),
         *([("floor, vertical", motion_in_words(case.vertical))] if case.has_vertical else []),
+        *((name, typeset(value)) for name, value in link_rows(case)),
         ("start", _start(case)),
         ("model", models[case.solver.model]),
         ("time", f"{_duration(case)}, g = {short(case.gravity_m_s2)} m/s²"),
