@@ -61,7 +61,7 @@ def test_every_key_of_the_schema_is_fuzzed():
 def test_random_valid_cases_end_with_an_outcome_a_failure_or_a_refusal():
     ends = [end_of(lambda number=number: random_case(number, "rigid", 5.0)) for number in range(1, 17)]
     assert not [end for end in ends if end.startswith("BROKEN")]
-    assert sum(not end.startswith(("failed", "refused")) for end in ends) > 10
+    assert sum(not end.startswith(("failed", "refused")) for end in ends) > 8
 
 
 @pytest.mark.parametrize("overrides", EXTREMES, ids=" ".join)

@@ -39,7 +39,9 @@ def model_of(elements, *, loose: bool):
     """As much of a model as is asked for; it stands on the corners of the wide box."""
     nodes = np.array([0, 2])
     return SimpleNamespace(
-        container=SimpleNamespace(elements=elements, nodes=nodes, support=SimpleNamespace(index=nodes)),
+        container=SimpleNamespace(
+            elements=elements, nodes=nodes, support=SimpleNamespace(index=nodes), row=()
+        ),
         case=SimpleNamespace(
             container=SimpleNamespace(is_loose=loose), solver=SimpleNamespace(model="reduced")
         ),
