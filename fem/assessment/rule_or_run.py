@@ -6,6 +6,7 @@ The rule treats the container as one body on its floor; it does not cover the jo
 
 from collections.abc import Sequence
 
+from fem.assessment.link_words import fall_in_row
 from fem.assessment.loose_boxes import largest_joint_slip, limits
 from fem.assessment.sureness import below_uplift, rests_on_stiff_floor
 from fem.case.unknown_inputs import MU_KINETIC, STRIBECK, WEAKENING, WORDS, in_words
@@ -35,7 +36,7 @@ def governing(result: RunResult) -> tuple[str, ...]:
             f"does not cover the joints between its boxes, where the run slid {slip} ({joint})."
         )
     use = own.utilisation_overturning
-    if use and use <= 1.0 and verdict.outcome in (*ROCKING, Outcome.OVERTURNED):
+    if use and use <= 1.0 and verdict.outcome in (*ROCKING, Outcome.OVERTURNED) and not fall_in_row(verdict):
         sentences.append(
             f"Rocking: the static rule stands at {use:.3f} and the run rocked{_on_rocking(members)}"
         )

@@ -75,7 +75,7 @@ def _brief_parts(result: run_result.RunResult, folder: Path) -> Iterator[Rendera
     verdict, motion = result.verdict or run_result.Verdict(), result.motion or run_result.MotionResult()
     rows = [("floor motion", motion_in_words(motion)), *_figure_rows(result, BRIEF)]
     rows.append(("outcomes of the band", _band(verdict.band)))
-    yield from _table_of_pairs("The run", [row for row in rows if row[1]])
+    yield from _table_of_pairs(_of_whom(verdict), [row for row in rows if row[1]])
     of_record = (*motion.notes, *(motion.vertical.notes if motion.vertical else ()))
     if of_record:  # what was read is no detail
         yield Text("".join(f"Warning: {note}\n" for note in of_record))
@@ -87,7 +87,7 @@ def _parts(result: run_result.RunResult, folder: Path) -> Iterator[RenderableTyp
     verdict = result.verdict or run_result.Verdict()
     yield Text(result.title or result.case or folder.name)
     yield Text(f"{outcome_sentence(result)}\n")
-    yield from _table_of_pairs("The run", result_rows(result))
+    yield from _table_of_pairs(_of_whom(verdict), result_rows(result))
     if result.static is not None:
         yield _static_table(result.static, verdict)
         yield from (Text(f"{sentence}\n") for sentence in governing(result))
@@ -233,11 +233,18 @@ def run_lifted(verdict: run_result.Verdict) -> str:
 
 
 def run_tilted(verdict: run_result.Verdict) -> str:
-    """Whether the run overturned, and how far it turned."""
+    """Whether the run overturned, and how far it turned; in a row the container itself."""
+    if verdict.outcome == Outcome.OVERTURNED and fall_in_row(verdict):
+        return f"stood until a neighbour fell, ratio {largest_ratio(verdict)}"
     if verdict.outcome and verdict.outcome in ENDINGS:
         return Outcome(verdict.outcome).verb
     ratio = largest_ratio(verdict)
     return f"stood, ratio {ratio}" if ratio else "-"
+
+
+def _of_whom(verdict: run_result.Verdict) -> str:
+    """The title of the figures of a run."""
+    return "The run, of the container itself" if verdict.neighbours else "The run"
 
 
 def _table_of_pairs(title: str, rows: Sequence[tuple[str, str]]) -> Iterator[Table]:
@@ -246,6 +253,11 @@ def _table_of_pairs(title: str, rows: Sequence[tuple[str, str]]) -> Iterator[Tab
         for row in rows:
             table.add_row(*map(Text, row))
         yield table
+
+
+def _states(verdict: run_result.Verdict) -> list[str]:
+    """The states that the container itself passed through."""
+    return [mode for mode in verdict.modes if mode != Outcome.OVERTURNED or not fall_in_row(verdict)]
 
 
 def result_rows(result: run_result.RunResult) -> list[tuple[str, str]]:
@@ -262,7 +274,7 @@ def result_rows(result: run_result.RunResult) -> list[tuple[str, str]]:
         ("floor motion", motion_in_words(motion)),
         ("vertical motion", motion_in_words(motion.vertical or run_result.MotionResult())),
         ("simulated time", _simulated(verdict, result.numerics or run_result.Numerics())),
-        ("states seen", ", ".join(verdict.modes)),
+        ("states seen", ", ".join(_states(verdict))),
     ]
     rows += _figure_rows(result, SUMMARY, behind)
     rows += [

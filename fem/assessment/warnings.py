@@ -147,7 +147,7 @@ def motion_is_doubtful(result: run_result.RunResult, case: Case) -> str | None:
 def rest_proves_nothing(result: run_result.RunResult, case: Case) -> str | None:
     """Where the static rule also says that it stands, a run at rest is no argument against the rule."""
     own = _own_motion(result)
-    if _verdict(result).outcome != Outcome.REST or own == run_result.ActionResult():
+    if _verdict(result).outcome != Outcome.REST or case.neighbour or own == run_result.ActionResult():
         return None
     uses = (own.utilisation_sliding, own.utilisation_overturning)
     if any(use is None or use > 1.0 for use in uses):

@@ -46,9 +46,10 @@ def energy_figure(run: RunData) -> Figure:
 def _draw_stored(axes: Axes, run: RunData, reference: float | None, unit: str, size: float) -> None:
     """Kinetic, gravitational and strain energy, and the energy to overturn [J]; drawn in units of `size` [J]."""
     history = run.history
-    # From the mass centre of the standing container: the work that its weight can still do.
-    static = run.typed_result.static or StaticResult()
-    raised = history["potential_J"] - run.case.weight * (static.centroid_m or 0.0)
+    # From the mass centre of the standing container: the work that its weight can still do; of a row from the start.
+    static, row = run.typed_result.static or StaticResult(), bool(run.case.neighbour)
+    standing = history["potential_J"][0] if row else run.case.weight * (static.centroid_m or 0.0)
+    raised = history["potential_J"] - standing
     style.curve_panel(
         axes,
         f"stored [{unit}]",
@@ -58,7 +59,7 @@ def _draw_stored(axes: Axes, run: RunData, reference: float | None, unit: str, s
         (history["strain_J"] / size, style.GREEN, ":", "strain"),
         zero=False,
     )
-    if reference and raised.max() > style.NEAR_LIMIT * reference:
+    if reference and not row and raised.max() > style.NEAR_LIMIT * reference:
         label = f"to overturn, {rounded(reference / size)} {unit}"
         axes.axhline(reference / size, color=style.BLACK, linestyle="-.", linewidth=0.9, label=label)
 

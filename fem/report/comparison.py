@@ -218,8 +218,8 @@ def assumptions(case: Case, result: RunResult | None = None) -> list[str]:
     if case.neighbour:
         lines.append(
             f"In the row stand {1 + len(case.neighbour)} containers on one floor. Corners of a side meet the side of "
-            "the next, with the laws of the floor. The run ends when one of them has overturned; one at rest that "
-            "leans on the next beyond its slenderness angle counts as overturned."
+            "the next, with one coefficient of friction. The run ends when one of them has overturned; one at rest "
+            "that leans on the next beyond its slenderness angle counts as overturned."
         )
     if case.tie:
         lines.append(

@@ -234,6 +234,7 @@ def static_section(view: RunView) -> html.PageSection:
         note += [" See ", html.link("the static calculation", "sheet"), " for the numbers."]
     given = dict(floor_rows(view.result.floor))
     figures = [(name, typeset(value)) for name, value in result_rows(view.result) if name not in given]
+    of_itself = ", of the container itself" if view.case.neighbour else ""
     return html.section(
         "Static rule and run",
         "static",
@@ -241,7 +242,7 @@ def static_section(view: RunView) -> html.PageSection:
         *(typeset(sentence) for sentence in governing(view.result)),
         html.Note(html.joined(*note)),
         html.Note(html.joined(html.strong("Read as:"), READ_AS)),
-        html.Pairs(figures, caption="What the run found", look="found"),
+        html.Pairs(figures, caption="What the run found" + of_itself, look="found"),
     )
 
 

@@ -290,6 +290,7 @@ def modes_section(view: RunView) -> html.PageSection:
     """The elastic modes of the container, also of a rigid run."""
     solver, numerics = view.case.solver, view.result.numerics
     modes = elastic_mode_table(view.model.container.lowest_modes(FEW))
+    whose = "each container of the row, alone and" if view.case.neighbour else "the container"
     used = {
         "rigid": "; this rigid run uses none",
         "reduced": f"; this run uses {solver.elastic_modes}, with a damping ratio of "
@@ -311,7 +312,7 @@ def modes_section(view: RunView) -> html.PageSection:
     return html.section(
         "Elastic modes",
         "modes",
-        f"Modes of the container without contact{used}.{contact}",
+        f"Modes of {whose} without contact{used}.{contact}",
         html.columns(html.table_of("elastic modes", columns, modes), *view.figures("modes")),
     )
 

@@ -42,7 +42,8 @@ def stills(
         angle: slenderness angle [rad].
         width, height: of the container [m].
     """
-    chosen = _instants(shown, history, verdict)
+    judged = 1 if verdict.neighbours else None  # in a row the container itself, which is the first
+    chosen = _instants(shown, history, verdict, judged)
     factor = exaggeration(shown, height)
     frames = {k: shown.frames[k] for k in chosen}
     factors = {k: _bearable(frame, factor, height) for k, frame in frames.items()}
@@ -51,7 +52,7 @@ def stills(
     top = 103.0 / span * max((float(points[:, 1].max()) for points in placed.values()), default=0.0)
     return [
         Still(
-            f"t = {frame.time:.3f} s, {chosen[k]}; {_rotation_in_words(frame.rotation, angle)}"
+            f"t = {frame.time:.3f} s, {chosen[k]}; {_rotation_in_words(frame.rotation[:judged], angle)}"
             + (f"; elastic part × {factors[k]:g}" if factors[k] != factor else ""),
             _drawing(shown, frame, placed[k] * [100.0 / span, -100.0 / span], top),
         )
@@ -66,13 +67,17 @@ def _bearable(frame: AnimationFrame, factor: float, height: float) -> float:
     return factor if factor * largest <= most else max(1.0, round_down(most / largest))
 
 
-def _instants(shown: Animation, history: History, verdict: Verdict) -> dict[int, str]:
-    """Frames to show, in the order of time, and why."""
+def _instants(
+    shown: Animation, history: History, verdict: Verdict, judged: int | None = None
+) -> dict[int, str]:
+    """Frames to show, in the order of time, and why, by the rotation of so many bodies; None: of all."""
     if not shown.frames or not len(history):
         return {}
     times = np.array([frame.time for frame in shown.frames])
-    rotation = np.array([frame.rotation[_most_turned(frame.rotation)] for frame in shown.frames])
-    slips = [np.abs(history[name]) for name in history.numbers if name.endswith("slip_m")]  # one a loose box
+    rotation = np.array([frame.rotation[_most_turned(frame.rotation[:judged])] for frame in shown.frames])
+    slips = [np.abs(history[name]) for name in history.numbers if name.endswith("slip_m")][
+        :judged
+    ]  # a loose box each
     slip = np.interp(times, history["time_s"], np.max(slips, axis=0))
     wanted = [(0, "start")]
     if verdict.first_uplift_s is not None:

@@ -224,7 +224,6 @@ class Verdict(RunFigures):
     """Outcome, extremes and events of a run; of a row those of the container itself, but that any fall is its end."""
 
     neighbours: tuple[NeighbourResult, ...] | None = None  #: in the order of the case; None where it has none
-
     invalid_reason: str | None = None  #: what is destroyed, in words
     modes: tuple[str, ...] = ()  #: states passed through
     at_rest_s: float | None = None  #: since when it is at rest, of a run that ended for it

@@ -19,8 +19,10 @@ from fem.case.unknown_inputs import TOLERANCE, Value
 from fem.model.container import Container, changed_container, without_links
 from fem.model.equilibrium import same_equilibrium
 from fem.model.model import Model, build_model
+from fem.model.motion import peaks_in_run
+from fem.model.static_checks import static_checks_of
 from fem.results.outcome import Ending, Outcome, ending_of
-from fem.results.run_result import Margin, Numerics, RunResult, StaticResult, Verdict
+from fem.results.run_result import Margin, Numerics, RunResult, Verdict
 from fem.run.bracket import Change, changes_of
 from fem.run.changed_runs import DRAWN_TOLERANCE, cost_of, workers_for
 from fem.run.outcome import run_without_history
@@ -74,7 +76,7 @@ def margin_of(model: Model, result: RunResult, *, drawn: bool, stop: Callable[[]
     """
     verdict = result.verdict or Verdict()
     own = ending_of(result.status, verdict.outcome)
-    least = _least(model.case, result)
+    least = _least(model)
     most = _largest(model.case)
     trial = _trial(model, {}, stop)
     try:
@@ -143,15 +145,18 @@ def _bare(
     return (None if first is None else first.high, max(ended)) if ended else None
 
 
-def _least(case: Case, result: RunResult) -> float:
-    """The least factor that may overturn; what is pushed or tilted at the start may fall at any."""
+def _least(model: Model) -> float:
+    """The least factor that may overturn one of the row; what is pushed or tilted at the start may fall at any."""
+    case, peaks = model.case, peaks_in_run(model.case, model.motion, model.vertical)
     if case.initial.is_pushed:
         return LEAST
-    rule = (result.static or StaticResult()).ruling
-    use = rule.utilisation_overturning
+    row = zip(case.row, model.container.row, strict=True)
+    rules = [model.static.ruling, *(static_checks_of(one, alone.mesh, *peaks).ruling for one, alone in row)]
+    uses = [rule.overturning.utilisation for rule in rules]
     if case.stop or case.neighbour:  # what slides against one may fall over it
-        use = max(use or 0.0, rule.utilisation_sliding or math.inf)
-    return LEAST if not use or use < 0.0 else min(LARGEST, max(LEAST, SURELY_AT_REST / use))
+        uses += [rule.sliding.utilisation or math.inf for rule in rules]
+    use = max((one for one in uses if one is not None), default=0.0)
+    return LEAST if use <= 0.0 else min(LARGEST, max(LEAST, SURELY_AT_REST / use))
 
 
 def _largest(case: Case) -> float:

@@ -1,0 +1,53 @@
+"""A row of containers as a run: the fall of a neighbour is not taken for one of the container itself."""
+
+import pytest
+
+import fem
+from fem.assessment.rule_or_run import governing
+from fem.assessment.summary import run_tilted
+from fem.run.band import wants_band
+
+SQUAT = {
+    "container": {"width_m": 4.0, "height_m": 1.5, "depth_m": 1.1, "mass_kg": 1e4},
+    "contact": {"mu_static": 3.0},
+    "motion": {"kind": "pulse", "shape": "rectangular", "peak_acceleration_m_s2": 2.5, "pulse_s": 1.2},
+    "solver": {"model": "rigid", "duration_s": 6.0},
+    "neighbour": [
+        {
+            "side": "right",
+            "gap_m": 3.0,
+            "stiffness_N_m": 1e8,
+            "width_m": 0.4,
+            "height_m": 3.0,
+            "mass_kg": 2000.0,
+        }
+        | {"centroid_m": 1.5}
+    ],
+}
+
+
+@pytest.fixture(scope="module")
+def fallen():
+    return fem.compute(fem.case_from(SQUAT), band=False, margin=True)
+
+
+def test_what_falls_is_named_and_the_container_is_compared_with_its_own_rule(fallen):
+    assert fallen.verdict.outcome == "overturned"
+    assert fallen.verdict.neighbours[0].outcome == "overturned" and fallen.verdict.rotation_ratio < 0.001
+    assert run_tilted(fallen.verdict) == "stood until a neighbour fell, ratio < 0.001"
+    assert governing(fallen.typed_result) == ()
+
+
+def test_the_margin_begins_below_what_the_most_slender_of_the_row_bears(fallen):
+    margin = fallen.verdict.margin
+    assert margin.least_tried < 0.4 / 3.0 * 9.81 / 2.5  # its static limit over the peak
+    assert margin.factor is not None and 0.5 < margin.factor < 1.0
+    assert margin.factor_without_links is None and margin.without_links_tried_to == 4.0
+
+
+def test_a_container_at_rest_beside_another_is_repeated(fallen):
+    weak = fem.case_from(SQUAT).with_values({"motion.peak_acceleration_m_s2": 0.5})
+    rest = fem.compute(weak, band=False, margin=False)
+    assert rest.verdict.outcome == "rest" and wants_band(None, weak, rest.typed_result)
+    alone = weak.with_values({"neighbour": []})
+    assert not wants_band(None, alone, rest.typed_result)
