@@ -73,7 +73,13 @@ def _recorded(case: Case, table: MotionKey) -> RecordedMotion:
     )
     made = processed(component, processing)
     notes = record.notes
-    said = stated_baseline(record.name, component, processing, allowed=bool(keys.allow_baseline))
+    said = stated_baseline(
+        record.name,
+        component,
+        processing,
+        allowed=bool(keys.allow_baseline),
+        way_out="take another baseline, or set allow_baseline = true (--allow-baseline)",
+    )
     if said:
         notes += (f"{table}.baseline: {said}",)
     if keys.scale_to_m_s2 is None:

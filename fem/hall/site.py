@@ -191,10 +191,6 @@ class _AtSite:
         # for the command of the row; what is no motion is not handed on
         with suppress(CaseError):
             copy_data_files(request.container, folder)
-        if request.hazard is not None and request.hazard.file is not None:
-            copy = folder / request.hazard.file
-            copy.parent.mkdir(parents=True, exist_ok=True)
-            copy.write_bytes((request.origin.folder / request.hazard.file).read_bytes())
         answer = result.result
         outcome = answer.governing.outcome if answer.governing else None
         shown = (outcome, answer.margin_factor, answer.rotation_ratio, answer.slip_m, answer.overturned, None)

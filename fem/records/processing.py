@@ -125,7 +125,7 @@ def baseline_change(component: Component, processing: Processing) -> BaselineCha
 
 
 def stated_baseline(
-    name: str, component: Component, processing: Processing, *, allowed: bool, instead: str = "baseline"
+    name: str, component: Component, processing: Processing, *, allowed: bool, way_out: str
 ) -> str | None:
     """What the baseline changes, in words, where a user must know of it.
 
@@ -133,7 +133,7 @@ def stated_baseline(
         name: of the record.
         component, processing: as for `baseline_change`.
         allowed: take one that changes a peak by more than a fifth.
-        instead: what else a user can take.
+        way_out: what a user can do.
 
     Raises:
         RecordError: it changes too much and is not allowed; or as `processed`.
@@ -143,8 +143,7 @@ def stated_baseline(
         return None
     if change.is_doubtful and not allowed:
         raise RecordError(
-            f"{name}: baseline {change.in_words}; a change above {100.0 * DOUBTFUL:.2g} % is refused; take another "
-            f"{instead}, or set allow_baseline = true (--allow-baseline)"
+            f"{name}: baseline {change.in_words}; a change above {100.0 * DOUBTFUL:.2g} % is refused; {way_out}"
         )
     return change.in_words
 

@@ -88,7 +88,7 @@ class ResultFolder:
     def write_text(self, name: str, text: str) -> None:
         """Replace a file, in a subfolder if its name says so."""
         place = self.path / name
-        place.parent.mkdir(exist_ok=True)
+        place.parent.mkdir(parents=True, exist_ok=True)
         write_atomically(place, text)
 
     def write_arrays(self, name: str, arrays: Mapping[str, np.ndarray]) -> None:

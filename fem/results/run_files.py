@@ -2,7 +2,7 @@
 
 import shutil
 from collections.abc import Iterable
-from pathlib import Path
+from pathlib import Path, PurePath
 
 from fem.case.case import Case, CaseError
 from fem.case.data_files import place_of
@@ -42,13 +42,17 @@ def require_free_names(case: Case, kind: ResultKind, texts: Iterable[str] = ()) 
     Raises:
         CaseError: with the key and the name.
     """
-    taken = {name.partition("/")[0] for name in (kind.mark, *kind.own, *texts)}
     for key, file in case.files.items():
-        if file.copy.parts[0] in taken:
-            raise CaseError(
-                f"{place_of(key)}is named {str(file.copy)!r}, like a result of the {kind.name}, which would replace it "
-                "in the folder of results; rename the file"
-            )
+        require_free_name(place_of(key), file.copy, kind, texts)
+
+
+def require_free_name(place: str, name: PurePath, kind: ResultKind, texts: Iterable[str] = ()) -> None:
+    """Refuse the file of one key, whose place is said in front of the reason; as `require_free_names`."""
+    if name.parts[0] in {own.partition("/")[0] for own in (kind.mark, *kind.own, *texts)}:
+        raise CaseError(
+            f"{place}is named {str(name)!r}, like a result of the {kind.name}, which would replace it in the folder of "
+            "results; rename the file"
+        )
 
 
 def copy_data_files(case: Case, folder: Path, *, read: bool = False) -> None:

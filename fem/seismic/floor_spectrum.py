@@ -13,6 +13,7 @@ import numpy as np
 
 from fem.runtime.arrays import FloatArray
 from fem.seismic.action import DAMPING_RATIO, SiteAction, damping_correction
+from fem.seismic.point_files import read_points
 
 PERIOD, HORIZONTAL, VERTICAL = "period_s", "acceleration_m_s2", "vertical_acceleration_m_s2"
 #: the first period, at which the spectrum is taken for the peak of the floor, and the last, at least [s]
@@ -76,21 +77,6 @@ def read_spectrum(path: Path) -> dict[str, tuple[float, ...]]:
     """The columns of a CSV file, by name: period_s, acceleration_m_s2 and, if it has one, vertical_acceleration_m_s2.
 
     Raises:
-        OSError: it cannot be read.
-        ValueError: other columns, or a line that has not a number for each.
+        OSError, ValueError: as `read_points`.
     """
-    first, *lines = path.read_text(encoding="utf-8").split()
-    names = first.split(",")
-    if names not in ([PERIOD, HORIZONTAL], [PERIOD, HORIZONTAL, VERTICAL]):
-        raise ValueError(
-            f"{path.name}: the first line must be {PERIOD},{HORIZONTAL} or {PERIOD},{HORIZONTAL},{VERTICAL}, got "
-            f"{first[:80]!r}"
-        )
-    try:
-        rows = [tuple(float(one) for one in line.split(",")) for line in lines]
-        columns = list(zip(*rows, strict=True))
-    except ValueError:
-        columns = []
-    if len(columns) != len(names):
-        raise ValueError(f"{path.name}: every further line must hold {len(names)} numbers")
-    return dict(zip(names, columns, strict=True))
+    return read_points(path, [(PERIOD, HORIZONTAL), (PERIOD, HORIZONTAL, VERTICAL)])

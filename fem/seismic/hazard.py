@@ -18,8 +18,9 @@ from scipy.special import log_ndtr
 
 from fem.runtime.arrays import FloatArray
 from fem.runtime.intervals import binomial_interval
+from fem.seismic.point_files import read_points
 
-ACCELERATION, VELOCITY = "acceleration_m_s2", "velocity_m_s"
+ACCELERATION, VELOCITY, RATE = "acceleration_m_s2", "velocity_m_s", "rate_per_year"
 YEARS = 50.0  #: of the probability that is printed
 
 
@@ -121,21 +122,10 @@ def read_hazard(path: Path) -> HazardCurve:
         OSError: it cannot be read.
         ValueError: other columns, or numbers that are no hazard curve.
     """
-    first, *lines = path.read_text(encoding="utf-8").split()
-    names = first.split(",")
-    if len(names) != 2 or names[0] not in (ACCELERATION, VELOCITY) or names[1] != "rate_per_year":
-        raise ValueError(
-            f"{path.name}: the first line must be {ACCELERATION},rate_per_year or {VELOCITY},rate_per_year, got "
-            f"{first[:60]!r}"
-        )
-    try:
-        numbers = np.array([[float(one) for one in line.split(",")] for line in lines])
-    except ValueError:
-        raise ValueError(f"{path.name}: every further line must hold two numbers") from None
-    if numbers.ndim != 2 or numbers.shape[1] != 2:
-        raise ValueError(f"{path.name}: every further line must hold two numbers")
-    ordered = numbers[np.argsort(numbers[:, 0])]
-    return HazardCurve(strengths=ordered[:, 0], rates=ordered[:, 1], measure=names[0])
+    columns = read_points(path, [(measure, RATE) for measure in (ACCELERATION, VELOCITY)])
+    measure = next(iter(columns))
+    ordered = np.array(sorted(zip(columns[measure], columns[RATE], strict=True)))
+    return HazardCurve(strengths=ordered[:, 0], rates=ordered[:, 1], measure=measure)
 
 
 def _log_share(low: FloatArray, high: FloatArray) -> FloatArray:

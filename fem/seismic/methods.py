@@ -35,7 +35,7 @@ def methods_of(
     Args:
         behaviour_factor: q of the plateau of the design spectrum; q = 1 stands beside it.
         height_ratio: z/H of the floor in its building; 0: on the ground; None: the motion of the floor is given, which
-            no formula for elements on floors may raise again.
+            no formula for elements on floors may raise again, and to which the plateau of the ground says nothing.
     """
     pairs = [partial(peak_rows, body, horizontal=one, vertical=other) for one, other in COMBINATIONS]
     elements = [
@@ -44,7 +44,9 @@ def methods_of(
         if height_ratio is not None
     ]
     plateaus = [
-        partial(plateau_rows, body, behaviour_factor=q) for q in sorted({behaviour_factor, 1.0})[::-1]
+        partial(plateau_rows, body, behaviour_factor=q)
+        for q in sorted({behaviour_factor, 1.0})[::-1]
+        if height_ratio is not None
     ]
     rocking = [partial(rocking_row, body, limits, vertical=vertical) for vertical in (False, True)]
     return [

@@ -20,8 +20,14 @@ MARKERS = {"overturning": "o", "sliding": "s", "slip": "D"}
 FACTORS = (0.1, 10.0)
 
 
-def draw_spectra(action: result.SiteActionResult, motions: result.MotionSet) -> str:
-    """Target, mean and every motion, with the 90 % line in the band; horizontal and, where there is one, vertical."""
+def draw_spectra(
+    action: result.SiteActionResult, motions: result.MotionSet, floor: result.FloorResult | None
+) -> str:
+    """Target, mean and every motion, with the 90 % line in the band; horizontal and, where there is one, vertical.
+
+    Of motions of a floor that are taken as they are neither target nor 90 %: their mean would be the target.
+    """
+    fitted, given = motions.source != "floor", floor is not None and floor.z_over_h is None
     rows = [(action.target_m_s2, action.mean_m_s2, "horizontal")]
     if action.vertical_target_m_s2:
         rows.append((action.vertical_target_m_s2, action.vertical_mean_m_s2, "vertical"))
@@ -31,8 +37,10 @@ def draw_spectra(action: result.SiteActionResult, motions: result.MotionSet) -> 
         low, last = motions.band_s[0], motions.band_s[-1]
         style.head(
             figure,
-            "Response spectra at the ground, 5 % damping",
-            f"the mean must not be below 90 % of the target from {low:g} to {last:g} s",
+            f"Response spectra {'of the floor' if given else 'at the ground'}, 5 % damping",
+            f"the mean must not be below 90 % of the target from {low:g} to {last:g} s"
+            if fitted
+            else "the motions are taken as they are: nothing is demanded of their mean",
         )
         periods, gap = np.array(action.periods_s), 0.65
         width = (style.WIDTH - style.LEFT - style.RIGHT - gap * (len(rows) - 1)) / len(rows)
@@ -48,7 +56,9 @@ def draw_spectra(action: result.SiteActionResult, motions: result.MotionSet) -> 
                 for motion in motions.motions
             ]
             panel = figure.add_axes(place)
-            _draw_spectrum(panel, periods, target, mean, spectra, (low, last), f"{name} [m/s²]")
+            _draw_spectrum(
+                panel, periods, target if fitted else (), mean, spectra, (low, last), f"{name} [m/s²]"
+            )
             if k == 0:
                 style.legend_above(panel, columns=5)
         return style.svg_of(figure)
@@ -264,20 +274,22 @@ def _draw_spectrum(
     band: tuple[float, float],
     label: str,
 ) -> None:
-    inside = (periods >= band[0]) & (periods <= band[1])
-    axes.axvspan(*band, color=style.SKY, alpha=0.12, linewidth=0, label="band")
+    if target:
+        axes.axvspan(*band, color=style.SKY, alpha=0.12, linewidth=0, label="band")
     for k, one in enumerate(spectra):
         axes.plot(
             periods, one, color=style.GREY, linewidth=0.6, alpha=0.7, label="motions" if k == 0 else None
         )
-    axes.plot(periods, target, color=style.BLACK, linestyle="--", label="target")
-    axes.plot(
-        periods[inside],
-        LEAST_RATIO * np.array(target)[inside],
-        color=style.VERMILLION,
-        linestyle=":",
-        label="90 %",
-    )
+    if target:
+        inside = (periods >= band[0]) & (periods <= band[1])
+        axes.plot(periods, target, color=style.BLACK, linestyle="--", label="target")
+        axes.plot(
+            periods[inside],
+            LEAST_RATIO * np.array(target)[inside],
+            color=style.VERMILLION,
+            linestyle=":",
+            label="90 %",
+        )
     axes.plot(periods, mean, color=style.BLUE, linewidth=1.8, label="mean")
     _period_axis(axes, list(TICKS))
     axes.set_xlabel("period [s]")

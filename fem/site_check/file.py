@@ -160,6 +160,12 @@ class SiteRequest:
             raise CaseError(f"[floor_spectrum] {error}") from None
 
     @property
+    def point_files(self) -> dict[str, str]:
+        """Names of the files of points beside the site file, by the tables that name them."""
+        given = {"hazard": self.hazard, "floor_spectrum": self.floor_spectrum}
+        return {table: one.file for table, one in given.items() if one is not None and one.file is not None}
+
+    @property
     def frictions(self) -> list[tuple[float, float]]:
         """Pairs of static and kinetic friction: the corners of the ranges, and the middle."""
         static, share = _ends(self.friction.mu_static), _ends(self.friction.mu_kinetic_over_static)
@@ -285,12 +291,11 @@ def load_site(
     """
 
     def read(data: Mapping[str, Any], origin: Origin) -> SiteRequest:
-        allowed = allow_baseline and data.get("motions", {}).get("source") == "matched"
-        if not records and not allowed:
+        if not records and not allow_baseline:
             return _request(data, origin)
         changed = _with_records(data, origin.folder, records) if records else dict(data)
-        if allowed:
-            changed["motions"] = {**changed["motions"], "allow_baseline": True}
+        if allow_baseline:  # refused as the key is, where nothing is matched
+            changed["motions"] = {**changed.get("motions", {}), "allow_baseline": True}
         return _request(changed, replace(origin, text=toml_document(changed)))  # which the results keep
 
     return read_study(SITES.find(name_or_path), read)
@@ -373,11 +378,18 @@ def _check(request: SiteRequest) -> None:
 
 
 def _check_floor(request: SiteRequest) -> None:
-    """Refuse a floor whose motion is given twice."""
+    """Refuse a floor whose motion is given twice, or with factors."""
     given = "[floor_spectrum]" if request.floor_spectrum is not None else '[motions] source = "floor"'
     if request.on_given_floor and request.building is not None:
         raise CaseError(
             f"{given} and [building] both say how the floor moves: the storey would be counted twice; keep one of them"
+        )
+    factors = request.site.importance_factor, request.site.element_importance_factor
+    if request.on_given_floor and factors != (1.0, 1.0):
+        raise CaseError(
+            f"[site] importance_factor and element_importance_factor have no effect with {given}: the motion of the "
+            "floor is taken as it is; leave them out, and if that motion holds them, let reference_acceleration_m_s2 "
+            "hold them too"
         )
     if request.floor_spectrum is not None and request.motions.source == "floor":
         raise CaseError(

@@ -1,5 +1,11 @@
-"""What was asked, for the page and the simplified methods."""
+"""What was asked, for the page and the simplified methods, and as files in the folder of results."""
 
+from pathlib import PurePath
+
+from fem.case.data_files import place_of
+from fem.records.source import decoded
+from fem.results.kinds import ResultKind
+from fem.results.run_files import require_free_name
 from fem.site_check.file import SiteRequest
 from fem.site_check.result import USUAL_BEHAVIOUR_FACTOR, SiteInputs
 
@@ -21,3 +27,17 @@ def inputs_of(request: SiteRequest) -> SiteInputs:
         model=request.heading.model,
         sources=tuple(request.sources.model_dump().items()),
     )
+
+
+def texts_of(request: SiteRequest, kind: ResultKind) -> dict[str, str]:
+    """The site file, its container, and the files of points that it names, by their names in a folder of results.
+
+    Raises:
+        CaseError: a file of points is named like a result, which would replace it.
+        OSError: it cannot be read.
+    """
+    own = {"site.toml": request.origin.text, "container.toml": request.container.text}
+    for table, name in request.point_files.items():
+        require_free_name(place_of(f"{table}.file"), PurePath(name), kind, own)
+    files = {name: (request.origin.folder / name).read_bytes() for name in request.point_files.values()}
+    return own | {name: decoded(content) or "" for name, content in files.items()}

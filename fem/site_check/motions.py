@@ -28,6 +28,7 @@ from fem.site_check.tables import BuildingTable
 UNEVEN = 1e-3
 RIGID_PERIOD_S = 0.01  #: of an oscillator that moves with its floor
 MATCHED = Processing(baseline="zero-end")  #: what matching does to a record besides
+BASELINE = "take another record, or set allow_baseline = true"  #: where one is refused
 
 
 def longest_period(rates: Sequence[float]) -> float:
@@ -173,7 +174,7 @@ def _baselines_in_words(
             continue
         try:
             said = stated_baseline(
-                record.name, component, MATCHED, allowed=bool(asked.allow_baseline), instead="record"
+                record.name, component, MATCHED, allowed=bool(asked.allow_baseline), way_out=BASELINE
             )
         except RecordError as error:
             raise CaseError(f"[motions] files: {error}") from None

@@ -13,6 +13,7 @@ from fem.site_check.bodies import body_of
 from fem.site_check.file import SiteRequest
 from fem.site_check.inputs import inputs_of
 from fem.site_check.methods import wind_utilisation
+from fem.site_check.motion_results import GIVEN_FLOORS
 from fem.site_check.motions import floor_motions, ground_motions, longest_period
 from fem.site_check.result import SiteBody
 from fem.site_check.runs import still
@@ -72,6 +73,7 @@ class SitePreview(JsonBlock):
     ag_S_m_s2: float  # noqa: N815 - a key of the file
     avg_m_s2: float
     bodies: tuple[SiteBody, ...]
+    floor: str | None  #: what it is given by; None: the site moves it, perhaps through a building
     motions: int
     set_valid: bool
     reasons: tuple[str, ...]
@@ -101,6 +103,7 @@ def preview_of(request: SiteRequest, *, allow_outside: bool = False) -> SitePrev
         ag_S_m_s2=request.action.surface_acceleration,
         avg_m_s2=request.action.vertical_acceleration,
         bodies=bodies,
+        floor=GIVEN_FLOORS[request.motions.source == "floor"] if request.on_given_floor else None,
         motions=len(ground),
         set_valid=checked.valid,
         reasons=checked.reasons,
@@ -115,6 +118,8 @@ def preview_lines(preview: SitePreview, request: SiteRequest) -> Iterator[str]:
     """The lines of a preview, for people."""
     yield f"{preview.site}: {preview.title}" if preview.title else preview.site
     yield f"  action     {preview.spectrum}; a_g S = {preview.ag_S_m_s2:.3g} m/s2, a_vg = {preview.avg_m_s2:.3g} m/s2"
+    if preview.floor is not None:
+        yield f"  floor      given by {preview.floor}; taken as it is, without any factor"
     for body in preview.bodies:
         yield (
             f"  {body.mass:<10} {body.mass_kg:.6g} kg, {body.elevation} {body.width_m:g} m along the motion: uplift "

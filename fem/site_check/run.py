@@ -27,7 +27,7 @@ from fem.site_check.answer import answer_of, governing_run, no_answer_yet
 from fem.site_check.bodies import body_of
 from fem.site_check.confirm import confirmed, deciding
 from fem.site_check.file import SiteRequest
-from fem.site_check.inputs import inputs_of
+from fem.site_check.inputs import inputs_of, texts_of
 from fem.site_check.methods import site_methods, wind_utilisation
 from fem.site_check.motion_results import (
     action_result,
@@ -99,7 +99,7 @@ def run_site(
         request=asked,
         result=SiteResult,
         compute=work.compute,
-        texts={"site.toml": request.origin.text, "container.toml": request.container.text},
+        texts=texts_of(request, SITE),
         size=table_bytes(files, OF_A_MOTION)
         + table_bytes(TIMES_THE_SET * len(stages.plan.of_set()), len(COLUMNS))
         + BYTES_BESIDE,
@@ -120,6 +120,9 @@ def site_hash(request: SiteRequest, ground: Sequence[GroundMotion]) -> str:
             digest.update(component.tobytes())
     if (curve := request.hazard_curve) is not None:  # of its file the request has the name alone
         digest.update(curve.measure.encode() + curve.strengths.tobytes() + curve.rates.tobytes())
+    if (floor := request.floor_target) is not None:  # likewise
+        points = floor.periods, floor.accelerations, floor.vertical_accelerations
+        digest.update(repr(points).encode())
     return hash_of([data, case_hash(request.container), digest.hexdigest()])
 
 

@@ -341,9 +341,8 @@ def set_section(result: SiteResult) -> html.PageSection:
 
 def spectra_section(result: SiteResult) -> html.PageSection:
     """The mean spectrum of the set, and those of its motions."""
-    drawn = site_sections.figure(
-        draw_spectra(result.action, result.set), "spectra", "target, mean and every motion"
-    )
+    shown = "mean and every motion" if result.set.source == "floor" else "target, mean and every motion"
+    drawn = site_sections.figure(draw_spectra(result.action, result.set, result.floor), "spectra", shown)
     words = html.Note(site_sections.symbols(period_sentence(result.set)))
     return html.section("Spectra of the set", "spectra-of-the-set", drawn, words)
 
@@ -492,7 +491,10 @@ def period_sentence(motions: MotionSet) -> str:
     """The band of periods, and why a rocking body has no period."""
     low, high = motions.band_s[0], motions.band_s[-1]
     if motions.source == "floor":
-        return "The motions of the floor are taken as they are: the target shown is the mean of their own spectra."
+        return (
+            "The motions of the floor are taken as they are, and no spectrum is demanded of them. The target drawn "
+            "beside a motion is the mean of their own spectra."
+        )
     return (
         "T_1 does not exist for a rocking body: below the uplift moment it does not rotate, then its period grows with "
         f"its rotation. The mean spectrum is compared from {short(low)} s to {short(high)} s, which holds 0.2 T_1 to "

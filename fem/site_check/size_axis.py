@@ -59,7 +59,9 @@ def size_axis(
     if not low < high:
         raise CaseError(f"--from {low:g} --to {high:g}: the range of {key} must rise")
     if key.startswith("site.") and request.on_given_floor:
-        raise CaseError(f"--over {key}: the motion of the floor is given, which [site] does not change")
+        raise CaseError(
+            f"--over {key}: the horizontal motion of the floor is given, which [site] does not change"
+        )
     for name, bound in (("--from", low), ("--to", high)):
         try:
             quantity.check(bound)

@@ -29,7 +29,7 @@ from fem.site_check.bracket import SizeAxis, SizeResult, next_values, size_asked
 from fem.site_check.confirm import confirmed, deciding
 from fem.site_check.figures import draw_size
 from fem.site_check.file import SiteRequest
-from fem.site_check.inputs import inputs_of
+from fem.site_check.inputs import inputs_of, texts_of
 from fem.site_check.methods import wind_utilisation
 from fem.site_check.motion_results import set_result, write_csv_files
 from fem.site_check.motions import floor_motions, ground_motions, longest_period
@@ -122,7 +122,7 @@ def run_size(
         result=SizeResult,
         begun=begun,
         compute=_Sizing(request=request, axis=axis, begun=begun, allow_outside=allow_outside).compute,
-        texts={"site.toml": request.origin.text, "container.toml": request.container.text},
+        texts=texts_of(request, SIZE),
         size=BYTES_OF_SETS + BYTES_BESIDE,
         subject="the result",
         way_out="take fewer motions",

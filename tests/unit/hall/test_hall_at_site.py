@@ -14,7 +14,9 @@ from fem.case.validation import CaseError
 from fem.hall.file import read_hall
 from fem.hall.site import run_hall_at_site
 from fem.results.folder import program_of_results
+from fem.results.kinds import SITE as KIND
 from fem.site_check.file import load_site
+from fem.site_check.inputs import texts_of
 from fem.site_check.motions import ground_motions
 
 BASE = """
@@ -70,8 +72,8 @@ def asked(tmp_path, monkeypatch):
         if request.container.container.width_m == 2.0:
             raise CaseError("the deciding run cannot be computed")
         folder.mkdir(parents=True, exist_ok=True)
-        (folder / "site.toml").write_text(request.origin.text, encoding="utf-8")
-        (folder / "container.toml").write_text(request.container.text, encoding="utf-8")
+        for name, text in texts_of(request, KIND).items():
+            (folder / name).write_text(text, encoding="utf-8")
         mark = {"asked": "", **program_of_results()}
         (folder / "assess.json").write_text(json.dumps(mark), encoding="utf-8")
         names = ("margin_factor", "rotation_ratio", "slip_m", "overturned", "factor_at_first_overturning")
@@ -110,6 +112,19 @@ def test_changed_contents_of_records_or_of_the_hazard_are_another_hall(asked):
         change()
         assert hall(force=True).asked != first.asked
         first = hall()
+
+
+def test_another_spectrum_of_the_floor_under_the_same_name_is_another_hall(asked):
+    hall, _ = asked
+    artificial = SITE.replace('files = [["1.csv"], ["2.csv"], ["3.csv"]]\n', "").replace(
+        "records", "artificial"
+    )
+    Path("site.toml").write_text(artificial + '[floor_spectrum]\nfile = "floor.csv"\n', encoding="utf-8")
+    Path("floor.csv").write_text("period_s,acceleration_m_s2\n0.03,3\n4,0.5\n", encoding="utf-8")
+    first = hall()
+    assert hall().asked == first.asked
+    Path("floor.csv").write_text("period_s,acceleration_m_s2\n0.03,9\n4,1.5\n", encoding="utf-8")
+    assert hall(force=True).asked != first.asked
 
 
 def test_with_force_and_after_a_change_of_program_every_container_is_verified_again(asked, tmp_path):

@@ -62,7 +62,10 @@ def test_a_file_holds_its_columns(tmp_path):
     place = tmp_path / "floor.csv"
     place.write_text("period_s,acceleration_m_s2\n0.03,3\n4,0.5\n")
     assert read_spectrum(place) == {"period_s": (0.03, 4.0), "acceleration_m_s2": (3.0, 0.5)}
+    place.write_text("\ufeffperiod_s, acceleration_m_s2\r\n0.03, 3\r\n\r\n4,0.5\r\n", encoding="utf-8")
+    assert read_spectrum(place) == {"period_s": (0.03, 4.0), "acceleration_m_s2": (3.0, 0.5)}
     for text, words in (
+        ("", "the file is empty"),
         ("period,sa\n0.1,2\n", "the first line"),
         ("period_s,acceleration_m_s2\n0.1\n", "2 numbers"),
         ("period_s,acceleration_m_s2\n0.1,x\n", "2 numbers"),

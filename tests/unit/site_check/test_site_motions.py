@@ -13,6 +13,7 @@ from fem.seismic.motion_set import check_set
 from fem.site_check.file import load_site
 from fem.site_check.motions import floor_motions, ground_motions, motion_target
 from fem.site_check.preview import preview_lines, preview_of
+from fem.site_check.run import site_hash
 
 SITE = """
 container = "seed_stack"
@@ -101,7 +102,7 @@ def test_a_baseline_that_changes_a_matched_record_is_said_with_both_values(tmp_p
 def test_a_baseline_that_takes_a_fifth_of_a_matched_record_must_be_allowed(tmp_path):
     motions = with_a_fling(tmp_path, 5.0)
     with pytest.raises(
-        CaseError, match=r"0\.866 m/s .* \(-59 %\).*take another record, or set allow_baseline"
+        CaseError, match=r"0\.866 m/s .* \(-59 %\).*take another record, or set allow_baseline = true$"
     ):
         ground_motions(request(tmp_path, motions), 4.0)
     site = str(tmp_path / "hall.toml")
@@ -113,6 +114,9 @@ def test_a_baseline_that_takes_a_fifth_of_a_matched_record_must_be_allowed(tmp_p
     )
     with pytest.raises(CaseError, match='allow_baseline has no effect with source = "artificial"'):
         request(tmp_path, "[motions]\nallow_baseline = true")
+    request(tmp_path)
+    with pytest.raises(CaseError, match='allow_baseline has no effect with source = "artificial"'):
+        load_site(site, allow_baseline=True)
 
 
 def test_pairs_of_records_have_no_second_component(tmp_path):
@@ -212,6 +216,39 @@ def test_records_of_a_floor_are_taken_as_they_are_and_further_motions_fit_their_
 def test_a_floor_that_is_given_twice_or_not_at_all_is_refused(tmp_path, tables, words):
     with pytest.raises(CaseError, match=words):
         request(tmp_path, *tables)
+
+
+FLOOR_RECORDS = '[motions]\nsource = "floor"\nfiles = [["a"], ["b"], ["c"]]\nvertical = false'
+
+
+@pytest.mark.parametrize("tables", [SPECTRUM, FLOOR_RECORDS])
+@pytest.mark.parametrize("factor", ["importance_factor", "element_importance_factor"])
+def test_a_given_floor_takes_no_factor(tmp_path, monkeypatch, tables, factor):
+    monkeypatch.setitem(globals(), "SITE", SITE.replace("= 1.6", f"= 1.6\n{factor} = 1.4"))
+    assert getattr(request(tmp_path).site, factor) == 1.4
+    with pytest.raises(CaseError, match="the motion of the floor is taken as it is"):
+        request(tmp_path, tables)
+
+
+def test_what_is_kept_of_a_verification_goes_with_the_points_of_the_floor(tmp_path):
+    """Also where they change none of the motions: of scaled records their vertical has a target of its own."""
+    points = "period_s,acceleration_m_s2,vertical_acceleration_m_s2\n0.03,3,2\n4,0.5,0.3\n"
+    (tmp_path / "floor.csv").write_text(points)
+    asked = request(tmp_path, '[floor_spectrum]\nfile = "floor.csv"')
+    first = site_hash(asked, [])
+    for old, new in (("0.03", "0.04"), ("3,2", "3.1,2"), ("3,2", "3,2.1")):
+        (tmp_path / "floor.csv").write_text(points.replace(old, new))
+        assert site_hash(load_site(tmp_path / "hall.toml"), []) != first
+
+
+def test_the_preview_says_that_the_floor_is_given(tmp_path):
+    found, own = (preview_of(request(tmp_path, "[motions]\ncount = 3", *more)) for more in ((SPECTRUM,), ()))
+    asked = request(tmp_path)
+    assert (
+        "  floor      given by its spectrum, which the motions fit; taken as it is, without any factor"
+        in (preview_lines(found, asked))
+    )
+    assert own.floor is None and not any(line.startswith("  floor") for line in preview_lines(own, asked))
 
 
 def test_rates_over_the_velocity_of_the_ground_are_refused_on_a_given_floor(tmp_path):

@@ -16,7 +16,14 @@ from fem.html.page import Page, html_of
 from fem.results.errors import FolderError
 from fem.results.files import to_json
 from fem.site_check.result import RESULT_FILE, FloorResult, SiteResult
-from fem.site_check.site_page import answer_section, bolts_in_words, confirmation, site_report, site_rows
+from fem.site_check.site_page import (
+    answer_section,
+    bolts_in_words,
+    confirmation,
+    site_report,
+    site_rows,
+    spectra_section,
+)
 from fem.site_check.site_sections import SiteView, runs_section
 
 ANSWERS = {
@@ -149,6 +156,26 @@ def test_a_floor_that_moves_less_than_its_ground_is_explained():
             )
         )
     )
+    shown = {
+        source: html_of(
+            Page(
+                kind="",
+                title="",
+                name="",
+                hash="",
+                signature=None,
+                sections=[
+                    spectra_section(replace(result, floor=given, set=replace(result.set, source=source)))
+                ],
+            )
+        )
+        for source in ("artificial", "floor")
+    }
+    assert all(
+        "Response spectra of the floor" in one and "at the ground" not in one for one in shown.values()
+    )
+    assert "90 % of the target" in shown["artificial"] and "90 %" not in shown["floor"]
+    assert "nothing is demanded of their mean" in shown["floor"]
     high = dict(site_rows(replace(result, floor=replace(floor, peak_m_s2=9.0))))
     assert "below that of the ground" not in high["level"]
 

@@ -44,6 +44,13 @@ def test_the_request_takes_the_value():
     assert (deep.width_m, deep.depth_m) == (0.8, 1.3)
 
 
+def test_the_action_of_the_ground_is_not_sized_where_the_floor_is_given():
+    spectrum = {"period_s": [0.03, 4.0], "acceleration_m_s2": [3.0, 0.5]}
+    given = replace(SITE, data={**SITE.data, "floor_spectrum": spectrum}).with_value("motions.seed", 1)
+    with pytest.raises(CaseError, match="the horizontal motion of the floor is given, which"):
+        size_axis(given, "site.reference_acceleration_m_s2")
+
+
 def test_of_a_building_of_storeys_every_floor_is_tried_and_none_between():
     tall = in_building(storeys=5)
     axis = size_axis(tall, "building.z_over_h")

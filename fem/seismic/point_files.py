@@ -1,0 +1,31 @@
+"""Files of points: a line that names the columns, and lines of numbers between commas."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from fem.records.source import as_numbers, decoded
+
+
+def read_points(path: Path, choices: Sequence[Sequence[str]]) -> dict[str, tuple[float, ...]]:
+    """The columns by name; blanks, empty lines and a byte order mark are passed over.
+
+    Args:
+        path: of the file.
+        choices: the columns that it may have, in their order.
+
+    Raises:
+        OSError: it cannot be read.
+        ValueError: other columns, or a line that has not a number for each.
+    """
+    first, *lines = [line for line in (decoded(path.read_bytes()) or "").splitlines() if line.strip()] or [""]
+    names = [name.strip() for name in first.split(",")]
+    if names not in [[*one] for one in choices]:
+        found = f"got {first[:80]!r}" if first else "and the file is empty"
+        raise ValueError(
+            f"{path.name}: the first line must be {' or '.join(map(','.join, choices))}, {found}"
+        )
+    rows = [as_numbers([field.strip() for field in line.split(",")]) for line in lines]
+    known = [row.tolist() for row in rows if row is not None and row.size == len(names)]
+    if not known or len(known) < len(rows):
+        raise ValueError(f"{path.name}: every further line must hold {len(names)} numbers")
+    return dict(zip(names, zip(*known, strict=True), strict=True))
