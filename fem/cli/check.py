@@ -8,7 +8,7 @@ from textwrap import fill
 from typing import Any
 
 from fem.assessment.floor_words import floor_rows
-from fem.assessment.link_words import link_rows
+from fem.assessment.link_rows import link_rows
 from fem.assessment.motion_words import covered_in_words, is_cut, missing_peak, motion_in_words
 from fem.case.case import Case, case_hash, load_case
 from fem.case.files import is_site

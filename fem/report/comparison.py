@@ -6,7 +6,7 @@ from typing import NamedTuple, assert_never
 
 from markupsafe import Markup
 
-from fem.assessment.link_words import link_rows
+from fem.assessment.link_rows import link_rows
 from fem.assessment.summary import own_motion_name, rule_says, run_lifted, run_slid, run_tilted
 from fem.case.boxes import Box
 from fem.case.case import Case

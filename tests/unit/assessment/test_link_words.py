@@ -1,7 +1,8 @@
 """Words of stops, ties and neighbours."""
 
 import fem
-from fem.assessment.link_words import link_rows, links_in_words
+from fem.assessment.link_rows import link_rows
+from fem.assessment.link_words import links_in_words
 from fem.results.run_result import NeighbourResult, RunResult, Verdict
 
 NEIGHBOUR = {"side": "right", "gap_m": 0.05, "stiffness_N_m": 1e8, "mu": 0.3, "boxes": 2}
