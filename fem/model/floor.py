@@ -24,9 +24,10 @@ DEEPEST = 0.01  #: indentation up to which the law of a corner holds [m]
 WHOLE_DEPTH = 0.99  #: share of the depth of the container from which a patch is its whole edge
 #: of the weight: a corner that lifts the other one carries all of it, and more at a landing
 LEAST_BEARING = 1.2
-#: weights that the floor under a corner carries: from the second on its pivot is taken at the edge, below the first
-#: where the weight is carried, and between the two in proportion
+#: weights that the floor under a corner carries: below the first its pivot is where the weight is carried, from the
+#: second on at the edge, and between the two in proportion, unless the range of the effective width does not cover that
 WEAK, FIRM = 4.0, 5.0
+COVERED = 0.015  #: of the width on either side, what that range covers (0.97 to 1)
 #: least damping ratio of a slab for which the case gives none. Waves into the floor alone (0.004 for the edge of a wall
 #: on concrete) let a corner ring after each hit: ten times the steps of a rigid container and the same motion, because
 #: crushing takes the energy, not the dashpot (`rocking`: restitution 0.867 and 0.866, rotation ratio 0.385 and 0.391)
@@ -65,19 +66,6 @@ class Slab:
         """Indentation beyond which the corner is destroyed: a side of the patch, and `DEEPEST` at most [m]."""
         along = self.patch[0] / (1.0 - self.widening) if self.widening < 1.0 else math.inf
         return min(DEEPEST, along, self.patch[1])
-
-    def pivot_inset(self, weight: float) -> float:
-        """How far inside its edge a corner turns that carries the weight [N] alone [m].
-
-        The floor is plastic under so much of the patch as carries the weight at its strength, from the edge inward:
-        c W/F of the patch c along x that bears F. The resultant is in the middle of it. Where the patch grows with the
-        indentation, its strength a length stays. Gajan and Kutter, J. Geotech. Geoenviron. Eng. 134 (2008) 1129, of
-        footings that rock: the moment is W B/2 (1 - A_c/A), A_c the area that carries the weight. A firm floor turns
-        the container about the edge itself: for what that neglects, a tenth of the patch at most, the range of the
-        effective width stands.
-        """
-        share = weight / self.bearing_capacity
-        return 0.5 * self.patch[0] * share * min(max((FIRM - 1.0 / share) / (FIRM - WEAK), 0.0), 1.0)
 
     @property
     def yields_first(self) -> bool:
@@ -184,15 +172,47 @@ def _widening(case: Case, out_of_plane: float) -> float:
     return sum(box.height for box in case.stack) / case.stack[0].width
 
 
+def pivot_inset(case: Case, mesh: ContainerMesh) -> float:
+    """How far inside the edge of what touches a corner turns that carries the weight alone [m]; 0 on a rigid floor.
+
+    The floor is plastic under so much of the patch as carries the weight at its strength, from the edge inward: c W/F
+    of the patch c along x that bears F, and all of it where F is less than the weight W (refused elsewhere). The
+    resultant is in the middle of it. Where the patch grows with the indentation, its strength a length stays. Gajan and
+    Kutter, J. Geotech. Geoenviron. Eng. 134 (2008) 1129, of footings that rock: the moment is W B/2 (1 - A_c/A), A_c
+    the area that carries the weight. A firm floor turns the container about the edge itself: what that neglects, at
+    most a tenth of the length of the patch and `COVERED` of the width, is within the range of the effective width.
+    """
+    if not case.floor.is_slab:
+        return 0.0
+    slab = slab_of(case, mesh.mass)
+    times = slab.bearing_capacity / (mesh.mass * case.gravity_m_s2)
+    inset = 0.5 * slab.patch[0] / max(times, 1.0)
+    share = max((FIRM - times) / (FIRM - WEAK), 2.0 * inset / (COVERED * mesh.width) - 1.0)
+    return inset * min(max(share, 0.0), 1.0)
+
+
 def pivot_share(case: Case, mesh: ContainerMesh) -> float:
     """Width between the points about which a container turns, over that of its base [-].
 
     Castings and worn edges stand inside its sides, and a weak floor carries it inside the edge of what touches.
+
+    Raises:
+        CaseError: the mass centre is not between these points.
     """
-    if not case.floor.is_slab:
-        return case.effective_width
-    inset = slab_of(case, mesh.mass).pivot_inset(mesh.mass * case.gravity_m_s2)
-    return case.effective_width - 2.0 * inset / mesh.width
+    inset, beside = pivot_inset(case, mesh), abs(mesh.centroid[0])
+    share = case.effective_width - 2.0 * inset / mesh.width
+    half = 0.5 * share * mesh.width
+    if beside < half:
+        return share
+    cause, inside = f"[support] effective_width = {case.support.effective_width:g}", "inside its sides"
+    if inset > 0.0:
+        cause = f"[floor] bearing_strength_Pa = {case.floor.bearing_strength_Pa:g} Pa"
+        inside = f"{1e3 * inset:.3g} mm inside the edge of what touches"
+    raise CaseError(
+        f"{cause}: the container turns {inside}, {half:.3g} m from the middle of its base, and its mass centre "
+        f"is {beside:.3g} m beside the middle: it would fall over at once; make offset_m smaller, or "
+        "what bears wider or stronger"
+    )
 
 
 def slab_penalty(case: Case, mesh: ContainerMesh) -> float:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from contact.interface.penalty import contact_frequency, relaxation_time
 from fem.case.case import Case
-from fem.model.floor import Slab, slab_of
+from fem.model.floor import Slab, pivot_inset, slab_of
 from fem.model.static_checks import StaticChecks
 from fem.results.run_result import FloorNumbers
 from mesh.container import ContainerMesh
@@ -65,7 +65,7 @@ def floor_result(case: Case, mesh: ContainerMesh, static: StaticChecks) -> Floor
         corner_cap_N=slab.cap,
         bearing_capacity_N=slab.bearing_capacity,
         steel_capacity_N=slab.steel_capacity,
-        pivot_inset_m=slab.pivot_inset(static.weight) or None,
+        pivot_inset_m=pivot_inset(case, mesh) or None,
         governs="container" if slab.yields_first else "floor",
         cap_over_weight=slab.cap / static.weight,
         hit_rotation_ratio=HIT_RATIO,

@@ -7,7 +7,7 @@ import math
 import os
 
 from fem.case.case import Case, CaseError
-from fem.model.floor import LEAST_BEARING, post_strength, slab_of
+from fem.model.floor import LEAST_BEARING, pivot_inset, post_strength, slab_of
 from fem.model.support import normal_penalty
 from mesh.container import ContainerMesh
 
@@ -63,7 +63,7 @@ def require_bearing(case: Case, mesh: ContainerMesh, use: float = 0.0) -> None:
     if not case.floor.is_slab:
         return
     slab = slab_of(case, mesh.mass)
-    inset = slab.pivot_inset(mesh.mass * case.gravity_m_s2)
+    inset = pivot_inset(case, mesh)
     if inset > 0.0 and case.support.kind == "corners" and case.solver.model == "full":
         raise CaseError(
             f'[solver] model = "full": on so weak a floor a corner turns {1e3 * inset:.3g} mm inside its edge, and the '

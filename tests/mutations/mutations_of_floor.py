@@ -141,8 +141,8 @@ FLOOR_FAULTS = (
     ),
     Mutation(
         name="a weak floor that turns the container about the edge",
-        old="return case.effective_width - 2.0 * inset / mesh.width",
-        new="return case.effective_width - 0.0 * inset / mesh.width",
+        old="share = case.effective_width - 2.0 * inset / mesh.width",
+        new="share = case.effective_width - 0.0 * inset / mesh.width",
         tests=(WEAK, "-k", "in_the_middle"),
     ),
     Mutation(

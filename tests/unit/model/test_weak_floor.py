@@ -13,7 +13,7 @@ from contact.reference.floor_acceleration import half_sine_pulse, one_sine_pulse
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
 from fem.assessment.rigid_check import block_of
-from fem.case.case import CaseError
+from fem.case.case import CaseError, load_case
 from fem.cli.check import preview_of
 from fem.model.model import build_model
 from fem.model.tied_capacity import tied_capacities
@@ -31,12 +31,42 @@ ASPHALT = {
     "floor.preset": "asphalt",
     "output.fields_s": 0.0,
 }
+BESIDE = """
+[container]
+width_m = 1.1
+height_m = 1.0
+depth_m = 1.0
+section = "solid"
+[[container.box]]
+mass_kg = 100
+[[container.box]]
+mass_kg = 1000
+offset_m = {offset}
+[contact]
+mu_static = 0.6
+[motion]
+kind = "harmonic"
+frequency_Hz = 1.0
+peak_acceleration_m_s2 = 0.5
+[solver]
+model = "rigid"
+[floor]
+kind = "slab"
+preset = "asphalt"
+corner_patch_m = {patch}
+bearing_strength_Pa = {strength}
+"""
 
 
 def on_asphalt(times, **values):
     """The stack where the floor under a corner carries so many times its weight."""
-    patch = [LENGTH, times * WEIGHT / (STRENGTH * LENGTH)]
-    return named_case("seed_stack_plateau", ASPHALT | {"floor.corner_patch_m": patch} | values)
+    strength = max(STRENGTH, times * WEIGHT / LENGTH)  # the patch is at most 1 m deep
+    floor = {
+        "bearing_strength_Pa": strength,
+        "corner_patch_m": [LENGTH, times * WEIGHT / (strength * LENGTH)],
+    }
+    given = {f"floor.{key}": value for key, value in floor.items()}
+    return named_case("seed_stack_plateau", ASPHALT | given | values)
 
 
 def turns_at(times):
@@ -53,11 +83,12 @@ def test_it_turns_in_the_middle_of_what_carries_it(times):
 
 
 def test_it_turns_about_the_edge_of_a_firm_floor_and_nothing_jumps_between():
-    assert turns_at(5.0) == turns_at(5.5) == EDGE
-    near = [turns_at(times) for times in (4.0 - 1e-6, 4.0 + 1e-6, 4.5, 5.0 - 1e-6)]
+    assert turns_at(6.1) == turns_at(6.5) == EDGE
+    near = [turns_at(times) for times in (4.0 - 1e-6, 4.0 + 1e-6, 4.5, 5.0)]
     assert near[0] == pytest.approx(near[1], abs=1e-7)
     assert near[2] == pytest.approx(EDGE - 0.5 * 0.5 * LENGTH / 4.5, rel=1e-9)
-    assert near[3] == pytest.approx(EDGE, abs=1e-7)
+    # 10 mm: up to 8.25 mm, 0.75 % of the width, nothing of it is taken, and from twice that on all
+    assert near[3] == pytest.approx(EDGE - 0.01 * (0.01 / 0.00825 - 1.0), rel=1e-9)
 
 
 def test_all_that_follows_from_the_width_follows_it():
@@ -79,8 +110,8 @@ def test_all_that_follows_from_the_width_follows_it():
 
 
 def test_a_weak_wall_on_a_firm_floor_turns_about_its_edge():
-    # the steel yields at 1.3 times the weight, the floor bears 5.5 times it
-    yields = on_asphalt(5.5, **{"container.corner_post_N": 0.65 * WEIGHT})
+    # the steel yields at 1.3 times the weight, the floor bears 6.5 times it
+    yields = on_asphalt(6.5, **{"container.corner_post_N": 0.65 * WEIGHT})
     assert build_model(yields).static.width == 2.0 * EDGE
 
 
@@ -90,16 +121,35 @@ def test_the_full_model_is_refused_where_it_would_turn_between_its_nodes():
         build_model(case)
 
 
-@pytest.mark.parametrize(("share", "falls"), [(0.94, False), (1.03, True)])
-def test_the_points_of_a_flat_base_find_by_themselves_where_it_turns(share, falls):
-    # half the base, 0.55 x 1.1 m, bears 363 kN: it turns 74 mm inside the edge, by half of 0.55 x 98.1/363
+@pytest.mark.parametrize("offset", [0.0, 0.48])
+def test_a_floor_that_cannot_bear_the_weight_is_refused_in_words(tmp_path, offset):
+    # a twelfth of the weight on a patch of 0.3 m; 1.33 times it on one of 0.4 m, on which it turns at 0.40 m
+    patch, strength = ("[0.4, 0.3]", 1.2e5) if offset else ("[0.3, 0.3]", 1e4)
+    path = tmp_path / "case.toml"
+    path.write_text(BESIDE.format(offset=offset, patch=patch, strength=strength))
+    case = load_case(path)
+    refused = (
+        r"turns 150 mm inside .* 0.436 m beside the middle" if offset else "a corner must carry 12.95 kN"
+    )
+    for asked in (lambda: preview_of(case).numerics, lambda: build_model(case)):
+        with pytest.raises(CaseError, match=refused):
+            asked()
+
+
+@pytest.mark.parametrize(
+    ("bears", "share", "falls"),
+    [(363.0, 0.94, False), (363.0, 1.03, True), (785.0, 0.9, False), (785.0, 1.0, True)],
+)
+def test_the_points_of_a_flat_base_find_by_themselves_where_it_turns(bears, share, falls):
+    # half the base, 0.55 x 1.1 m, bears 363 kN: it turns 74 mm inside the edge, by half of 0.55 x 98.1/363; on a firm
+    # floor of 8 times the weight 34 mm, 3 % of the width
     flat = {"support.kind": "flat", "support.casting_m": None, "container.corner_post_N": None}
     soft = {
         "floor.preset": "compacted gravel",
-        "floor.bearing_strength_Pa": 0.6e6,
+        "floor.bearing_strength_Pa": 1e3 * bears / (0.55 * 1.1),
         "floor.corner_patch_m": None,
     }
-    uplift = 9.81 * (EDGE - 0.25 * 1.1 * 98.1 / 363.0) / 2.0
+    uplift = 9.81 * (EDGE - 0.25 * 1.1 * 98.1 / bears) / 2.0
     push = {"kind": "pulse", "shape": "half-sine", "pulse_s": 6.0, "peak_acceleration_m_s2": share * uplift}
     motion = {f"motion.{key}": value for key, value in push.items()}
     case = named_case("seed_stack_plateau", ASPHALT | flat | soft | motion | {"solver.duration_s": 6.0})
