@@ -122,6 +122,17 @@ def test_runs_below_uplift_and_slip_are_not_computed_and_rest_where_they_are(com
     assert row["rotation_ratio"] > 1e-4 or row["max_slip_m"] > 1e-6
 
 
+@pytest.mark.parametrize(("preset", "spared"), [("concrete C25/30", True), ("compacted gravel", False)])
+def test_on_a_floor_that_gives_way_every_run_is_computed(tmp_path, preset, spared):
+    place = site_file(tmp_path)
+    floor = f'[floor]\nkind = "slab"\npreset = "{preset}"\n[support]\nkind = "flat"\n'
+    (tmp_path / "k1.toml").write_text(CONTAINER + floor)
+    request = load_site(place)
+    stages = Stages.of(request, {None: ground_motions(request, 4.0)}, longest=4.0, folder=tmp_path)
+    weak = stages.plan.scanned(0.1)
+    assert [stages.screening.at_rest(key) for key in weak] == [spared] * len(weak)
+
+
 def test_the_file_has_the_keys_that_scripts_rely_on(computed):
     found = json.loads((computed[1] / "out" / "assess.json").read_text())
     assert {"ag_m_s2", "soil_factor", "ag_S_m_s2", "avg_m_s2", "corner_periods_s", "displacement_m"} <= set(
