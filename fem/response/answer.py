@@ -50,7 +50,8 @@ def response_answer(result: ResponseResult) -> str | None:
     points = [point for point in result.points if point.status != "failed"]
     if result.state != "finished" or not points:
         return None
-    fates, limit = fates_of(result), slip_in_words(result.limit_slip or 0.0)
+    fates = fates_of(result)
+    limit = f"{slip_in_words(result.limit_slip or 0.0)} within {result.request.get('observe')} periods"
     frequencies = [point.frequency_Hz for point in points]
     failed = len(result.points) - len(points)
     every = f"every frequency {'with an outcome' if failed else 'tried'}, {_range(min(frequencies), max(frequencies))}"

@@ -152,7 +152,7 @@ def settled(
         status = step_until(before, until) if until > 0.0 else "completed"
         if status != "completed":
             reason = "failed before the first section" if status == "failed" else None
-            none = np.zeros((0, 4)), np.zeros((0, 6)), np.zeros((0, 2))
+            none = np.zeros((0, 4)), np.zeros((0, 7)), np.zeros((0, 2))
             return before, Orbit(
                 status=status, sections=none[0], extremes=none[1], portrait=none[2], reason=reason
             )

@@ -34,6 +34,7 @@ EXTREME_COLUMNS = (
     "rocking_rad",
     "slip_stroke_m",
     "impacts",
+    "slip_excursion_m",  # from where it was at the start of the first period
 )
 
 
@@ -43,7 +44,7 @@ class Orbit:
 
     status: str  #: completed | overturned | failed
     sections: FloatArray  #: (n, 4), see `SECTION_COLUMNS`
-    extremes: FloatArray  #: (n, 6), see `EXTREME_COLUMNS`
+    extremes: FloatArray  #: (n, 7), see `EXTREME_COLUMNS`
     portrait: FloatArray  #: (n_samples, 2) rotation [rad] and angular velocity [rad/s] over the last periods
     reason: str | None = None  #: why it failed
 
@@ -74,6 +75,7 @@ def follow_periods(
     run, track, clock = driven.run, driven.run.track[0], driven.run.clock[0]
     sections, extremes, portraits = [], [], []
     code, slipped, reason = REACHED, float(driven.run.joints[0].slip), None
+    before = slipped
     _open_ledger(driven)
     for k, end in enumerate(section_times(driven.period, count)):
         impacts = int(track.impacts)
@@ -96,6 +98,7 @@ def follow_periods(
                 float(track.max_rocking),
                 np.ptp(sliding),
                 int(track.impacts) - impacts,
+                float(np.abs(sliding - before).max()),
             ]
         )
         slipped = slip

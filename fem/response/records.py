@@ -47,6 +47,7 @@ class PointRow(JsonBlock):
     most_rotation_rad: float | None = None
     slip_stroke_m: Annotated[float | None, Shown("slip stroke", units.MILLIMETRES)] = None
     slip_walk_m: float | None = None
+    slip_excursion_m: float | None = None  #: within the periods observed, from where it was at their start
     impacts_per_period: Annotated[float | None, Shown("impacts a period", units.COUNT)] = None
     growth: float | None = None
     bounded: bool | None = None
@@ -81,7 +82,7 @@ class PointRecord:
 
     row: PointRow
     sections: FloatArray  #: (n, 4)
-    extremes: FloatArray  #: (n, 6)
+    extremes: FloatArray  #: (n, 7)
     portrait: FloatArray  #: (n_samples, 2), of whole periods
 
     @property
@@ -114,6 +115,7 @@ def record_of(point: CurvePoint) -> PointRecord:
             "most_rotation_rad": float(extremes[:, 2].max()),
             "slip_stroke_m": float(extremes[:, 4].max()),
             "slip_walk_m": float(orbit.sections[:, 3].mean()),
+            "slip_excursion_m": float(extremes[:, 6].max()),
             "impacts_per_period": float(extremes[:, 5].mean()),
             "growth": point.growth,
         }

@@ -30,6 +30,5 @@ class ResponseResult(StudyResult):
         return self.request.get("limit_slip_m")
 
     def slid(self, point: PointRow) -> float:
-        """How far a container slid within the periods observed: to and fro, or on and on [m]."""
-        walked = abs(point.slip_walk_m or 0.0) * float(self.request.get("observe", 1))
-        return max(point.slip_stroke_m or 0.0, walked)
+        """How far a container slid within the periods observed: from their start, or to and fro in one [m]."""
+        return max(point.slip_stroke_m or 0.0, point.slip_excursion_m or 0.0)

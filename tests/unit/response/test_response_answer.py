@@ -9,7 +9,7 @@ from fem.response.result import ResponseResult
 
 
 def point(
-    frequency, direction, ratio, long_time="periodic", status="completed", slip=0.0, motion="rock", walk=0.0
+    frequency, direction, ratio, long_time="periodic", status="completed", slip=0.0, motion="rock", reach=0.0
 ):
     stands = ratio is not None
     return PointRow(
@@ -22,7 +22,7 @@ def point(
         direction=direction,
         rotation_ratio=ratio,
         slip_stroke_m=slip if stands else None,
-        slip_walk_m=walk if stands else None,
+        slip_excursion_m=reach if stands else None,
         motion=motion if stands else None,
         long_time=long_time if stands else None,
         status=status if stands or status == "failed" else "overturned",
@@ -34,8 +34,8 @@ def curve(*points, status="completed", **found):
 
 
 STANDS = (point(0.5, "up", 0.1), point(1.0, "up", 0.62), point(1.0, "down", 0.3), point(0.5, "down", 0.1))
-#: 2 mm a period to the left is 96 mm in 48 periods
-WALKS = (point(1.0, "down", 0.3, walk=-0.002), point(0.5, "down", 0.1, slip=0.064))
+#: 1 mm a period to the left and 48 mm to and fro are 96 mm in 48 periods
+WALKS = (point(1.0, "down", 0.3, slip=0.048, reach=0.096), point(0.5, "down", 0.1, slip=0.064))
 FALL = DropOut(direction="down", from_Hz=0.9, to_Hz=0.5, frequencies=2, carried=True)
 TWO = Coexistence(from_Hz=1.0, to_Hz=1.0, frequencies=1, up=("rock",), down=("rest",))
 
@@ -73,15 +73,19 @@ TWO = Coexistence(from_Hz=1.0, to_Hz=1.0, frequencies=1, up=("rock",), down=("re
             "other 3 points; largest rotation 0.62 of the slenderness angle, at 1 Hz going up",
         ),
         (
-            curve(*STANDS[:3], point(0.5, "down", 0.1, slip=0.064), request={"limit_slip_m": 0.07}),
-            "frequency: stood at every frequency tried, 0.5 to 1 Hz, up and down; none slid beyond 70 mm; largest "
-            "rotation 0.62 of the slenderness angle, at 1 Hz going up; slid by up to 64 mm a period, at 0.5 Hz going "
-            "down",
+            curve(
+                *STANDS[:3],
+                point(0.5, "down", 0.1, slip=0.064),
+                request={"limit_slip_m": 0.07, "observe": 48},
+            ),
+            "frequency: stood at every frequency tried, 0.5 to 1 Hz, up and down; none slid beyond 70 mm within "
+            "48 periods; largest rotation 0.62 of the slenderness angle, at 1 Hz going up; slid by up to 64 mm a "
+            "period, at 0.5 Hz going down",
         ),
         (
             curve(*STANDS[:2], *WALKS, request={"limit_slip_m": 0.05, "observe": 48}),
-            "frequency: slid beyond 50 mm at 2 points, the first at 1 Hz going down (slip there 96 mm); stood at the "
-            "other 2 points; largest rotation 0.62 of the slenderness angle, at 1 Hz going up",
+            "frequency: slid beyond 50 mm within 48 periods at 2 points, the first at 1 Hz going down (slip there "
+            "96 mm); stood at the other 2 points; largest rotation 0.62 of the slenderness angle, at 1 Hz going up",
         ),
         (curve(*STANDS, status="interrupted"), None),
         (curve(point(0.5, "up", None, status="failed"), status="failed"), None),
