@@ -102,6 +102,8 @@ def asked_rows(case: Case) -> list[tuple[str, str]]:
     box, contact = case.container, case.contact
     walls = ", ".join(dict.fromkeys(short(one.wall, 1e3) for one in case.stack))
     section = f"shell, walls {walls} mm" if box.section == "shell" else "solid block"
+    if (post := box.post_section) is not None:
+        section += f", posts {' × '.join(short(one, 1e3) for one in post)} mm"
     supports = {
         "corners": "two bottom corners",
         "feet": f"two feet, {short(case.support.foot_m, 1e3)} mm long",
