@@ -62,8 +62,11 @@ def case_of(case: Any, neighbour: NeighbourTable | None) -> dict[str, Any]:
     if neighbour is None:
         return alone
     given = {name: getattr(neighbour, name) for name in OWN}
-    still = {f"initial.{name}": 0.0 for name in type(case.initial).model_fields}
-    return alone | still | {f"container.{name}": value for name, value in given.items() if value is not None}
+    alone |= {f"initial.{name}": 0.0 for name in type(case.initial).model_fields}
+    if neighbour.width_m is not None:  # the mass lies as unevenly in it
+        share = neighbour.width_m / case.container.width_m
+        alone["container.eccentricity_m"] = case.container.eccentricity_m * share
+    return alone | {f"container.{name}": value for name, value in given.items() if value is not None}
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -355,7 +355,7 @@ def _equal_boxes(case: Any) -> bool:
 def _has_columns(case: Any) -> bool:
     """Whether every box has two columns of elements, which a mass centre beside the axis needs."""
     widest = case.solver.element_size_m
-    return all(box.wall is not None or widest < box.width for box in case.stack)
+    return all(box.wall is not None or widest < box.width for one in case.row or (case,) for box in one.stack)
 
 
 def other_patch(case: Any, kind: str) -> list[float] | None:

@@ -20,6 +20,7 @@ from fem.solid.assembly import FiniteElements, QuadMesh, assemble
 from fem.solid.modes import ElasticModes, elastic_modes, signs_of
 from fem.solid.reduction import ReducedBasis, StaticResponse, reduced_basis, static_response
 from mesh.container import ContainerMesh
+from mesh.errors import MeshError
 from mesh.region import Region
 from mesh.stack import box_mesh
 
@@ -263,7 +264,7 @@ def _in_a_row(case: Case, mesh: ContainerMesh | None) -> Container:
     for number, alone in enumerate(case.row):
         key = repr((alone.container, alone.support))
         if key not in known:
-            known[key] = discretise(alone, None if number else mesh)
+            known[key] = _neighbour(number, alone) if number else discretise(alone, mesh)
         row.append(known[key])
     meshes = [one.mesh for one in row]
     elements = _assembled(case, mesh_of_row(meshes, places_of(case, [one.width for one in meshes])))
@@ -300,6 +301,13 @@ def _in_a_row(case: Case, mesh: ContainerMesh | None) -> Container:
         row=tuple(row),
         box_nodes=tuple(nodes),
     )
+
+
+def _neighbour(number: int, alone: Case) -> Container:
+    try:
+        return discretise(alone)
+    except MeshError as error:
+        raise MeshError(f"[[neighbour]] {number}, as a container: {error}") from error
 
 
 def _box(case: Case, mesh: ContainerMesh) -> BoxModel:

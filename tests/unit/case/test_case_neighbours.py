@@ -8,6 +8,8 @@ from fem.case.columns import history_columns
 from fem.case.neighbours import places_of
 from fem.case.template import case_template
 from fem.case.unknown_inputs import ranges_of
+from fem.model.container import discretise
+from mesh.errors import MeshError
 
 BESIDE = {"side": "right", "gap_m": 0.05, "stiffness_N_m": 1e8}
 RIGID = load_case("rocking", ["solver.model=rigid"])
@@ -31,6 +33,12 @@ def test_a_neighbour_is_the_container_but_for_what_is_given():
     assert case_hash(own) == case_hash(pushed)
     assert equal.container == own.container
     assert (other.container.width_m, other.mass) == (2.0, 6000.0)
+    assert (own.container.eccentricity_m, other.container.eccentricity_m) == (0.0, 0.0)
+    aside = pushed.with_values(
+        {"container.eccentricity_m": 0.011, "neighbour": [{**BESIDE, "width_m": 2.2}, BESIDE]}
+    )
+    shares = [one.container.eccentricity_m / one.container.width_m for one in aside.row]
+    assert shares == pytest.approx([0.011 / pushed.container.width_m] * 3)
     assert other.container.height_m == own.container.height_m
     assert not equal.initial.is_pushed
     assert own.initial.is_pushed
@@ -95,6 +103,17 @@ def test_a_neighbour_that_cannot_be_is_refused(keys, reason):
 def test_what_does_not_go_with_a_row_is_refused_with_its_reason(changes, reason):
     with pytest.raises(CaseError, match=reason):
         RIGID.with_values({"neighbour": [BESIDE], **changes})
+
+
+def test_a_mass_beside_the_axis_needs_two_columns_in_every_container_of_a_row():
+    wide = RIGID.with_values(
+        {"container.width_m": 4.0, "container.wall_m": None, "solver.element_size_m": 1.0}
+    )
+    narrow = wide.with_values({"neighbour": [{**BESIDE, "width_m": 0.5}]})
+    assert "container.eccentricity_m" in {one.key for one in ranges_of(wide, 1e9)}
+    assert "container.eccentricity_m" not in {one.key for one in ranges_of(narrow, 1e9)}
+    with pytest.raises(MeshError, match=r"\[\[neighbour\]\] 1, as a container: a box of one column"):
+        discretise(narrow.with_values({"container.eccentricity_m": 0.01}))
 
 
 def test_a_neighbour_of_impossible_size_is_refused_by_its_number():
