@@ -70,12 +70,17 @@ def follow_gaps(run: RunState, step: float, loose: bool | None, apart: float) ->
 
 @compiled
 def follow_gap(run: RunState, step: float, g: int, apart: float) -> None:
-    """`follow_gaps` of one gap; its force is that of its four points together."""
+    """`follow_gaps` of one gap; its force is that of its four points together.
+
+    A point of no weight is a corner beside the other body's side: its distance says nothing of the gap.
+    """
     old, new, record = run.old, run.attempt.new, run.links[g]
     first = run.joints[run.joints.shape[0] - 1].end + POINTS_OF_GAP * g
     before, after, force, speed = NEVER, NEVER, 0.0, 0.0
     for i in range(first, first + POINTS_OF_GAP):
-        before, after = min(before, old.point[i, 1]), min(after, new.point[i, 1])
+        before = min(before, old.point[i, 1])
+        if run.problem.contact.normal_stiffness[i] > 0.0:
+            after = min(after, new.point[i, 1])
         force += new.force[i, 1]
         if new.point[i, 1] < 0.0 <= old.point[i, 1]:
             speed = max(speed, old.descent[i, 0])

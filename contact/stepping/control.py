@@ -21,7 +21,6 @@ GROWTH, GROWTH_OF_STACK = 3, 6
 #: levels where steps are eager, and the share of the allowed imbalance up to which they then grow
 EAGER_GROWTH, EAGER_SHARE = 6, 0.5
 AT_LIMIT = 1e-6  #: share of static friction that is left, below which the support has reached its limit
-NEIGHBOUR = 0.25  #: base points nearer than this, over the width, close together
 #: the whole ledger aims at these shares of the final limits of gain and loss; above `AIM_SHARE` of the aim, a step uses
 GAIN_AIM, LOSS_AIM, AIM_SHARE = 0.3, 0.9, 0.4
 #: at most this share of the remainder, and always this share of the allowance of any step
@@ -31,11 +30,11 @@ ATTEMPTS_OF_ROCKING, ATTEMPTS_OF_STEP, ATTEMPTS_SPARE = 1e6, 100.0, 1e6
 
 
 @inlined
-def _rests_beside(state: State, other: int, point: int, width: float) -> bool:
-    """Whether the other base point exists, is closed and near."""
+def _rests_beside(state: State, other: int, point: int, distance: float) -> bool:
+    """Whether the other base point exists, is closed and nearer than a distance [m]."""
     if other < 0 or other >= state.point.shape[0]:
         return False
-    near = abs(state.point[other, 0] - state.point[point, 0]) < NEIGHBOUR * width
+    near = abs(state.point[other, 0] - state.point[point, 0]) < distance
     return near and state.point[other, 1] < 0.0
 
 
@@ -49,7 +48,7 @@ def closing_time(control: Control, state: State, horizon: float) -> float:
     first = horizon
     n = state.point.shape[0]
     for i in range(n):
-        if _rests_beside(state, i - 1, i, control.width) or _rests_beside(state, i + 1, i, control.width):
+        if _rests_beside(state, i - 1, i, control.near) or _rests_beside(state, i + 1, i, control.near):
             continue
         gap, speed, rate = state.point[i, 1], state.descent[i, 0], state.descent[i, 1]
         if gap > 0.0 and speed * first + 0.5 * max(rate, 0.0) * first * first > gap:
@@ -125,9 +124,7 @@ def allowed_imbalance(run: RunState, step: float, dissipated: float) -> float:
     closing, closing_beside = False, False
     for i in range(new.point.shape[0]):
         if old.point[i, 1] >= 0.0 and new.point[i, 1] < 0.0:
-            beside = _rests_beside(old, i - 1, i, control.width) or _rests_beside(
-                old, i + 1, i, control.width
-            )
+            beside = _rests_beside(old, i - 1, i, control.near) or _rests_beside(old, i + 1, i, control.near)
             closing = closing or not beside
             closing_beside = closing_beside or beside
     if closing or closing_beside:  # a base that closes point by point shares the allowance

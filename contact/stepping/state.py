@@ -61,7 +61,7 @@ class Control(NamedTuple):
     event_step: float  #: largest step in which the support may start to slide [s]
     closing_step: float  #: largest step from the first touch of a point on [s]
     closing_speed: float  #: slower closings are left to the energy balance [m/s]
-    reference_energy: float  #: energy to overturn the container [J]
+    reference_energy: float  #: energy to overturn the container, or the body of a row that takes least [J]
     energy_rate: float  #: imbalance allowed per second, over the reference energy [1/s]
     energy_floor: float  #: imbalance allowed in any step, over the reference energy [-]
     energy_share: float  #: imbalance allowed over the dissipation of the step but for crushing [-]
@@ -76,6 +76,7 @@ class Control(NamedTuple):
     resting_energy: float  #: gravity potential of the container at rest where it was placed [J]
     slenderness_angle: float  #: [rad]
     width: float  #: [m]
+    near: float  #: base points nearer than this close together [m]
     stop_when_overturned: bool
     contents_cutoff: float  #: of the filter of the acceleration of the contents [rad/s]
     top_monitors: int  #: number of monitored points at the top; they come first
@@ -181,7 +182,7 @@ JOINT_RECORD = np.dtype(
 )
 
 
-#: a stop or a tie, or the gap between two bodies in a row, see `contact.stepping.links` and `contact.stepping.row`;
+#: a stop or a tie, or the gap between two bodies in a row, see `contact.stepping.links` and `contact.stepping.boxes`;
 #: `RunState.links` has one of these for each
 LINK_RECORD = np.dtype(
     [

@@ -133,7 +133,7 @@ def verdict_from(
         slip_peak_to_peak_m=_peak_to_peak(model, end, time, slip),
         max_indentation_m=_indentation(model),
         tilt_rad=None if outcome == Outcome.OVERTURNED else _tilt(run.old, track),
-        restored=rocked and _largest_rotation(run.old) < ROCKING * angle,
+        restored=rocked and _largest_rotation(model) < ROCKING * angle,
         at_rest_s=_finite(float(run.clock[0].rest_since)),
         restitution_first=None if model.container.row else _restitution(track),
         max_top_displacement_m=track.max_top_displacement if sampled else None,
@@ -206,9 +206,10 @@ def first_fallen_box(model: Model) -> int | None:
     return 1 + int(np.argmin(fell_at))
 
 
-def _largest_rotation(state: State) -> float:
-    """|rotation| of a container, or of the box of a loose stack that is turned most [rad]."""
-    return float(np.abs(state.boxes[:, ROTATION] if len(state.boxes) else state.pose[ROTATION]).max())
+def _largest_rotation(model: Model) -> float:
+    """|rotation| of a container, neighbours aside, or of the box of a loose stack that is turned most [rad]."""
+    state = model.run.old
+    return float(np.abs(state.boxes[:, ROTATION] if _is_loose(model) else state.pose[ROTATION]).max())
 
 
 def _tilt(state: State, track: SimpleNamespace) -> float | None:

@@ -4,6 +4,7 @@ The models `full`, `reduced` and `rigid` differ in the body alone.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -136,11 +137,13 @@ def build_model(
     static = static_checks_of(case, mesh, *peaks_in_run(case, motion, vertical, duration))
     require_loss(case, static)
     largest, breaks = largest_step_of(case, static, duration, motion, vertical)
-    control = control_of(case, container, static, largest, contact)
+    row = [static_checks_of(one, each.mesh, 0.0) for one, each in zip(case.row, container.row, strict=True)]
+    control = control_of(case, container, static, largest, contact, row)
     scheme = scheme_of(case, container, equilibrium.penalty, control, contact)
     full = case.solver.model == "full"
     x, velocity_x, _ = floor_motion(compiled_motion, 0.0)
     velocity = (velocity_x, velocity_z) if case.starts_moving else (0.0, 0.0)
+    tilted = None
     if container.row:
         assert isinstance(body, LooseStack)
         contact = own_stiffness(contact)
@@ -148,6 +151,7 @@ def build_model(
             _begun(*one, (x, z, velocity_z), velocity)
             for one in zip(case.row, container.row, equilibrium.row, strict=True)
         ]
+        tilted = equilibrium.row[0].contact, alone[0]
         old = begin_row(case, body, contact, alone, place=(x, z), lift_velocity=velocity_z)
     elif isinstance(body, LooseStack | FullStack):
         contact = own_stiffness(contact)
@@ -159,11 +163,12 @@ def build_model(
         begin_links(case, body, old)
         old.point[:, 1] += contact.camber
     coordinates = old.position.size
+    stiffness, first = tilted or (contact, old)
     require_stiff_corner(
         case,
         width=mesh.width,
-        depth=float(-old.point[:, 1].min()),
-        stored=float(spring_energy(contact, old.point, old.stick)) / control.reference_energy,
+        depth=float(-first.point[:, 1].min()),
+        stored=float(spring_energy(stiffness, first.point, first.stick)) / static.overturning_energy,
     )
     interval = case.output.history_s
     fields = frame_interval(case, len(container.elements.nodes), duration)
@@ -192,7 +197,7 @@ def build_model(
             position=coordinates if fields > 0.0 else 0,
             velocity=coordinates if fields > 0.0 else 0,
         ),
-        joints=_joints(case, container, static),
+        joints=_joints(container, static, row),
         links=len(case.links) + len(case.neighbour),
         strained=_strained_steps(case, duration),
         stress=_watched_stresses(case, container),
@@ -224,12 +229,10 @@ def _areas(case: Case, container: Container, equilibrium: Equilibrium) -> FloatA
     return areas
 
 
-def _joints(case: Case, container: Container, static: StaticChecks) -> Any:
+def _joints(container: Container, static: StaticChecks, row: Sequence[StaticChecks]) -> Any:
     """Records of the joints of a loose stack or a row; None of a container that moves as one."""
     if container.row:
-        meshes = [one.mesh for one in container.row]
-        alone = [static_checks_of(*one, 0.0) for one in zip(case.row, meshes, strict=True)]
-        return joints_of_row(meshes, [one.slenderness_angle for one in alone])
+        return joints_of_row([one.mesh for one in container.row], [one.slenderness_angle for one in row])
     return joints_of_stack(container, static.slenderness_angle) if container.boxes else None
 
 

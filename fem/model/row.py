@@ -58,6 +58,34 @@ def _arrays(places: Places) -> tuple[IntArray, FloatArray]:
     return np.array(places.pairs, dtype=np.int64).reshape(-1, 2), np.array(places.distance)
 
 
+def require_no_jam(case: Case, meshes: Sequence[ContainerMesh]) -> None:
+    """Refuse friction regularised in velocity that can jam a corner as it lands.
+
+    Friction mu on a corner at the distances x and z from the mass centre presses it into the floor faster than its
+    normal force lifts it where mu > (I/m + x^2) / (x z): the paradox of Painleve. The springs of the other law take it
+    up; this law has forces that jump, and the steps shrink without end: of one container alone with small tolerances,
+    of a row almost always.
+
+    Raises:
+        CaseError: with the limit of the container that jams first.
+    """
+    if case.contact.friction == "elastic-stick":
+        return
+    limits = []
+    for mesh in meshes:
+        x, z = 0.5 * case.effective_width * mesh.width + abs(mesh.centroid[0]), mesh.centroid[1]
+        other = x - 2.0 * abs(mesh.centroid[0])
+        limits.append(min((mesh.inertia / mesh.mass + arm * arm) / (arm * z) for arm in (x, other)))
+    number = int(np.argmin(limits))
+    if case.contact.mu_static > limits[number]:
+        which = f"neighbour {number}" if number else "the container"
+        raise CaseError(
+            f'[contact] friction = "regularised": with mu_static = {case.contact.mu_static:g} a corner of {which} can '
+            f"jam on the floor as it lands, above {limits[number]:.3g}, and the run would not get on; "
+            'take "elastic-stick", or less friction'
+        )
+
+
 def contact_of_row(case: Case, contacts: Sequence[Contact], masses: Sequence[float]) -> Contact:
     """The contact of containers of these masses [kg] with the floor, each its own, and of their sides."""
     sides = []

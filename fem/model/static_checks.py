@@ -160,6 +160,11 @@ class StaticChecks:
     slope: float = 0.0  #: size of the angle of the floor with the horizontal [rad]
 
     @property
+    def overturning_energy(self) -> float:
+        """What it takes to turn it onto its corner without haste, G R (1 - cos al) [J]."""
+        return self.weight * self.radius * (1.0 - math.cos(self.slenderness_angle))
+
+    @property
     def code(self) -> ActionCheck:
         """Under the code's base shear; raises ValueError where the case has no [static]."""
         if self.by_code is None:

@@ -1,6 +1,7 @@
 """Limits of the time stepping of a case: largest step, tolerances of a step, scheme."""
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -23,6 +24,8 @@ SHORT_SHARE, MOST_PIECES = 0.5, 2000
 COARSE_STEP = 0.1
 #: intervals of the history that a step may span: its samples are held in memory
 MOST_SAMPLES_A_STEP = 64
+#: over the width, of a row that of its narrowest container: base points nearer than this close together
+NEAR = 0.25
 #: over the largest step: the step in which friction may change between stick and slip
 EVENT_SHARE = 0.01
 SMALLEST_SHARE = 1e-7
@@ -115,14 +118,25 @@ def _struck_mass(case: Case, container: Container) -> float:
 
 
 def control_of(
-    case: Case, container: Container, static: StaticChecks, largest: float, contact: Contact
+    case: Case,
+    container: Container,
+    static: StaticChecks,
+    largest: float,
+    contact: Contact,
+    row: Sequence[StaticChecks] = (),
 ) -> Control:
-    """Limits of the stepping, from the time scales and energies of container and contact; `largest` step [s]."""
+    """Limits of the stepping, from the time scales and energies of container and contact.
+
+    Args:
+        largest: step [s].
+        row: of each container of a row alone. The one that takes least to overturn sets the limits of energy.
+    """
     mesh, base = container.mesh, container.support.index.size
-    # Energy to overturn the container quasi-statically.
     bodies = [one.mesh for one in container.row] or [mesh]
     mass = sum(one.mass for one in bodies)
-    reference = static.weight * static.radius * (1.0 - math.cos(static.slenderness_angle))
+    energies = [one.overturning_energy for one in row or [static]]
+    reference = min(energies)
+    softest = min(SOFT_CLOSING * energy / one.mass for energy, one in zip(energies, bodies, strict=True))
     rate = static.frequency_parameter
     loose = case.solver.energy_tolerance
     share, trail, eager = MOST_SHARE, MOST_TRAIL, False
@@ -140,7 +154,7 @@ def control_of(
         smallest_step=SMALLEST_SHARE * largest,
         event_step=EVENT_SHARE * largest,
         closing_step=float(min(closing, largest)),  # a number of numpy would make each call of a kernel slow
-        closing_speed=math.sqrt(SOFT_CLOSING * reference / mesh.mass),
+        closing_speed=math.sqrt(softest),
         reference_energy=reference,
         energy_rate=loose * ENERGY_RATE * rate,
         energy_floor=loose * ENERGY_FLOOR,
@@ -156,6 +170,7 @@ def control_of(
         resting_energy=sum(one.mass * case.gravity_toward_floor * one.centroid[1] for one in bodies),
         slenderness_angle=static.slenderness_angle,
         width=static.width,
+        near=NEAR * min([static.width, *(one.width for one in row)]),
         stop_when_overturned=case.output.stop_when_overturned,
         contents_cutoff=2.0 * math.pi * case.output.contents_filter_Hz,
         top_monitors=2,

@@ -281,7 +281,8 @@ class JointDemand(JsonBlock):
 class Energy(JsonBlock):
     """The energy balance."""
 
-    reference_J: float | None = None  #: what it takes to overturn, M g R (1 - cos slenderness angle)
+    #: what it takes to overturn, M g R (1 - cos slenderness angle); of a row the container that takes least
+    reference_J: float | None = None
     closure_error: float | None = None  #: largest |imbalance| over the reference
     friction_J: float | None = None
     contact_damping_J: float | None = None

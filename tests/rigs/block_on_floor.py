@@ -275,6 +275,7 @@ def limits_of(block: Block, largest_step: float, fixed_step: bool, energy_scale:
         resting_energy=block.mass * block.gravity * math.cos(block.slope) * 0.5 * block.height,
         slenderness_angle=rigid.slenderness_angle,
         width=block.width,
+        near=0.25 * block.width,
         stop_when_overturned=True,
         contents_cutoff=200.0,
         top_monitors=0,

@@ -10,8 +10,10 @@ import pytest
 from moreau import slide_in_a_row
 
 from contact.stepping.ledger import CONTACT_DAMPING, FRICTION
+from fem.assessment.verdict import verdict_of
 from fem.case.case import Case, CaseError
 from fem.evidence.verification.runs import STACK, Finished, harmonic, pulse, run
+from fem.model.model import build_model
 
 MASS, WIDTH, SPEED = 1e4, 1.1, 0.5
 BESIDE = {"side": "right", "gap_m": 0.1, "stiffness_N_m": 1e8}
@@ -65,6 +67,47 @@ def test_a_gap_that_is_not_used_up_changes_no_bit_however_wide_it_is():
     )
     assert wide.history["neighbour_1_rotation_rad"] == pytest.approx(wide.history["rotation_rad"], abs=1e-12)
     assert wide.history["neighbour_1_x_m"][0] == pytest.approx(WIDTH + 0.3, abs=1e-12)
+
+
+@pytest.mark.parametrize("height", [4.0, 2.0])
+def test_the_gap_that_is_left_is_the_one_between_the_sides_however_high_they_are(height):
+    still = HELD.with_values({"motion.kind": "none", "solver.duration_s": 0.1})
+    found = run(in_a_row(still, {**BESIDE, "gap_m": 3.0, "height_m": height, "centroid_m": 0.5 * height}))
+    assert found.model.run.links[0].least_gap == pytest.approx(3.0, abs=1e-6)
+
+
+def test_a_light_neighbour_of_a_large_container_moves_as_precisely_as_alone():
+    light = HELD.with_values({"solver.duration_s": 4.0, **pulse(4.14, 0.55)})
+    large = light.with_values({"container.width_m": 15.0})
+    beside = {**BESIDE, "gap_m": 9.0, "width_m": WIDTH, "mass_kg": MASS}
+    found, alone = run(in_a_row(large, beside)), run(light)
+    assert found.model.run.joints[1].max_rotation == pytest.approx(alone.track.max_rotation, rel=2e-3)
+    # an energy error, and what counts as rest, is compared with the one that is overturned most easily
+    reference = found.model.run.problem.control.reference_energy
+    assert reference == pytest.approx(alone.model.run.problem.control.reference_energy, rel=1e-12)
+
+
+def test_a_container_is_restored_whatever_its_neighbour_still_does():
+    low = HELD.with_values({"container.height_m": 2.0, "solver.duration_s": 1.6, **pulse(8.0, 0.2)})
+    beside = {**BESIDE, "gap_m": 1.5, "height_m": 6.0, "centroid_m": 3.0, "width_m": 1.6}
+    found = run(in_a_row(low, beside))
+    verdict = verdict_of(found.model, found.history, None)
+    assert abs(found.history["neighbour_1_rotation_rad"][-1]) > 0.02
+    assert (verdict.outcome, verdict.restored) == ("rock", True)
+
+
+def test_the_corners_of_a_narrow_neighbour_are_no_wide_base_beside_a_wide_container():
+    # each closes by itself: the step that begins at a closing is that of an impact
+    wide = HELD.with_values({"container.width_m": 6.0, "neighbour": [{**BESIDE, "width_m": WIDTH}]})
+    assert build_model(wide).run.problem.control.near < WIDTH
+
+
+def test_friction_regularised_in_velocity_that_jams_a_corner_is_refused_in_a_row():
+    smooth = HELD.with_values({"contact.friction": "regularised", "solver.duration_s": 1.0})
+    beside = {**BESIDE, "gap_m": 3.0, "height_m": 3.0, "centroid_m": 1.5, "mass_kg": 3e4}
+    with pytest.raises(CaseError, match=r'neighbour 1 can jam .* above 1\.4.*take "elastic-stick"'):
+        run(in_a_row(smooth, beside))
+    assert run(in_a_row(smooth, beside), {"contact.mu_static": 1.2}).status == "completed"
 
 
 @pytest.mark.parametrize("restitution", [1.0, 0.5, 0.1])
