@@ -70,7 +70,7 @@ def _pivot(floor: FloorNumbers) -> str:
     if not inset:
         return ""
     where = _in_units(inset, ("mm", 1e3))
-    return f"points {where} inside the edges of what touches: on so weak a floor the edge itself gives way"
+    return f"points {where} inside the edges of what touches: under the edge itself the floor gives way"
 
 
 def _hit(floor: FloorNumbers) -> str:

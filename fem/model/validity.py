@@ -66,7 +66,7 @@ def require_bearing(case: Case, mesh: ContainerMesh, use: float = 0.0) -> None:
     inset = pivot_inset(case, mesh)
     if inset > 0.0 and case.support.kind == "corners" and case.solver.model == "full":
         raise CaseError(
-            f'[solver] model = "full": on so weak a floor a corner turns {1e3 * inset:.3g} mm inside its edge, and the '
+            f'[solver] model = "full": on this floor a corner turns {1e3 * inset:.3g} mm inside its edge, and the '
             'full model bears where its nodes are; take "reduced" or "rigid", or feet of the length of the patch'
         )
     use = max(use, LEAST_BEARING * mesh.mass * case.gravity_m_s2 / slab.cap)
