@@ -102,7 +102,7 @@ def test_models_of_one_container_do_not_share_what_changes(model):
     assert other.equilibrium.contact.normal_stiffness.min() > 0.0
 
 
-def random_stack(rng: np.random.Generator) -> tuple[Case, bool]:
+def random_stack(rng: np.random.Generator) -> tuple[dict, bool]:
     """A symmetric or an offset stack of boxes from rubber to ten times steel, and whether its joints can carry it."""
     count, width, height = int(rng.integers(2, 6)), float(rng.uniform(0.6, 2.5)), float(rng.uniform(0.5, 4.0))
     masses, widths, offsets = np.full(count, 2500.0), np.full(count, width), np.zeros(count)
@@ -128,7 +128,7 @@ def random_stack(rng: np.random.Generator) -> tuple[Case, bool]:
             left = max(left, axis[j - 1] - 0.5 * widths[j - 1])
             right = min(right, axis[j - 1] + 0.5 * widths[j - 1])
         stands &= bool(left < np.average(axis[j:], weights=masses[j:]) < right)
-    return case_from(case), stands
+    return case, stands
 
 
 @pytest.mark.parametrize("count", [20, pytest.param(300, marks=pytest.mark.slow)])
@@ -136,10 +136,11 @@ def test_a_stack_starts_where_what_each_joint_carries_acts_within_its_faces(coun
     # Stiff boxes were refused: the equations held forces and heights in SI units, and their condition, 1e13, decided.
     rng = np.random.default_rng(count)
     for _ in range(count):
-        case, stands = random_stack(rng)
+        given, stands = random_stack(rng)
         if stands:
+            case = case_from(given)
             on_floor = build_model(case).run.old.force[:2, 1].sum()
             assert on_floor == pytest.approx(9.81 * sum(box.mass for box in case.stack), rel=1e-9)
         else:
-            with pytest.raises(CaseError, match="acts outside the face below"):
-                build_model(case)
+            with pytest.raises(CaseError, match=r"outside the face (that carries it|below)"):
+                build_model(case_from(given))

@@ -74,5 +74,5 @@ def test_sure_cells_agree_with_the_block(tmp_path, count, duration):
                 differing.append((sweep.point(int(cell)), table.outcome[cell], table["rotation_ratio"][cell]))
     assert differing == []
     assert info["outcomes"].get("failed", 0) == 0
-    assert compared > 0.6 * table.outcome.size
+    assert compared > 0.4 * table.outcome.size  # half of the cells are sure over what is not known
     assert overturned[sure].any() and not overturned[sure].all()
