@@ -403,7 +403,10 @@ def slide(run: RunState, j: int, step: float, holding: float) -> None:
 
 @inlined
 def slide_point(run: RunState, i: int, step: float, start: float) -> None:
-    """Slip of a point in a step [s] and elongation of its tangential spring, which a finite `start` [m] sets anew."""
+    """Write the slip of point i over a step [s] and the elongation of its tangential spring.
+
+    `start` [m]: elongation from which the spring of a point that stops sliding starts, else SLIDES_ON; see `slide`.
+    """
     contact, old, new, work, slip = run.problem.contact, run.old, run.attempt.new, run.work, run.attempt.slip
     normal, tangential = new.force[i, 1], new.force[i, 0]
     moved = new.point[i, 0] - old.point[i, 0]

@@ -106,7 +106,7 @@ def _parts(result: run_result.RunResult, folder: Path) -> Iterator[RenderableTyp
 
 
 def lacks_margin(result: run_result.RunResult) -> bool:
-    """Whether a run that rocked under a motion has no margin. Its rotation ratio must not be read as one."""
+    """Whether a run rocked under a motion and has no margin: a reader may then take its rotation ratio for one."""
     verdict, motion = result.verdict or run_result.Verdict(), result.motion or run_result.MotionResult()
     moves = motion.kind != "none" or motion.vertical is not None
     return moves and verdict.outcome in ROCKING and verdict.margin is None

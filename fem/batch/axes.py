@@ -139,7 +139,7 @@ def check_varied(key: str) -> FieldInfo:
     return field
 
 
-#: what the first part of a dotted key names; of [[stop]] and [[tie]] a key is that of all
+#: what the first part of a dotted key names; a key of [[stop]], [[tie]] or [[neighbour]] is that of all of them
 NAMED = TABLES | ROWS
 
 

@@ -108,8 +108,9 @@ def read_case_tables(data: Mapping[str, Any]) -> tuple[dict[str, Any], list[Prob
 
 
 class _ReadInPart(SimpleNamespace):
-    """The keys of a table that could be read; with a hash, as a whole table has one."""
+    """The keys of a table that could be read."""
 
+    # SimpleNamespace has no hash; rules hand the tables to functions that are cached
     __hash__ = object.__hash__  # type: ignore[assignment]
 
 

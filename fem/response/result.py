@@ -30,5 +30,5 @@ class ResponseResult(StudyResult):
         return self.request.get("limit_slip_m")
 
     def slid(self, point: PointRow) -> float:
-        """How far a container slid within the periods observed: from their start, or to and fro in one [m]."""
+        """Largest slip within the observed periods [m]: from the position at their start, or peak to peak in a period."""
         return max(point.slip_stroke_m or 0.0, point.slip_excursion_m or 0.0)

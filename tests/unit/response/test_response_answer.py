@@ -34,7 +34,7 @@ def curve(*points, status="completed", **found):
 
 
 STANDS = (point(0.5, "up", 0.1), point(1.0, "up", 0.62), point(1.0, "down", 0.3), point(0.5, "down", 0.1))
-#: 1 mm a period to the left and 48 mm to and fro are 96 mm in 48 periods
+#: 48 mm peak to peak, drifting to the left by 1 mm a period: 96 mm from the start after 48 periods
 WALKS = (point(1.0, "down", 0.3, slip=0.048, reach=0.096), point(0.5, "down", 0.1, slip=0.064))
 FALL = DropOut(direction="down", from_Hz=0.9, to_Hz=0.5, frequencies=2, carried=True)
 TWO = Coexistence(from_Hz=1.0, to_Hz=1.0, frequencies=1, up=("rock",), down=("rest",))
