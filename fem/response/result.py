@@ -30,5 +30,5 @@ class ResponseResult(StudyResult):
         return self.request.get("limit_slip_m")
 
     def slid(self, point: PointRow) -> float:
-        """Largest slip within the observed periods [m]: from the position at their start, or peak to peak in a period."""
+        """Largest slip in the observed periods [m]: from the position at their start, or peak to peak in one."""
         return max(point.slip_stroke_m or 0.0, point.slip_excursion_m or 0.0)
