@@ -25,10 +25,9 @@ def margin_in_words(verdict: Verdict | None) -> str:
         up_to = "" if stands else f"stands up to {FACTOR.text(margin.stands_up_to)} times this motion, "
         times = " times this motion" if stands else ""
         words = f"{lead}; {up_to}overturns first at {FACTOR.text(margin.factor)}{times}"
-    words += f"{_range(margin)}{_islands(margin)}{_destroyed(margin)}{_failed(margin)}"
-    return (
-        f"{words}{_without_links(margin, 'alone' if verdict.neighbours else 'without its stops and ties')}."
-    )
+    without = "alone" if verdict.neighbours else "without its stops and ties"
+    words += f"{_range(margin)}{_islands(margin)}{_destroyed(margin)}{_without_links(margin, without)}."
+    return f"{words}{_draws(margin)}"
 
 
 def _without_links(margin: Margin, without: str) -> str:
@@ -42,16 +41,13 @@ def _without_links(margin: Margin, without: str) -> str:
 
 
 def _range(margin: Margin) -> str:
-    """What the draws say of the first overturning."""
-    if not margin.draws:
+    """Between which factors all draws overturn first, or that none does."""
+    if margin.draws and margin.low is None:
+        return f", nor does the strongest overturn any of {margin.draws} draws of what is not known"
+    if margin.low is None or margin.high is None:
         return ""
-    if margin.low is None:
-        return f", nor do they in any of {margin.draws} draws of what is not known"
-    low = FACTOR.in_figures(margin.low, 2)
-    if margin.high is not None:
-        return f" ({low} to {FACTOR.in_figures(margin.high, 2)} over what is not known)"
-    standing = f"{margin.draws_standing} of {margin.draws} draws stand up to {margin.draws_tried_to:.3g}"
-    return f" (from {low} on over what is not known; {standing})"
+    low, high = FACTOR.in_figures(margin.low, 2), FACTOR.in_figures(margin.high, 2)
+    return f" ({low} to {high} over what is not known)"
 
 
 def _islands(margin: Margin) -> str:
@@ -69,6 +65,17 @@ def _destroyed(margin: Margin) -> str:
     return "" if least is None else f"; at {FACTOR.text(least)} times it a corner is destroyed"
 
 
-def _failed(margin: Margin) -> str:
-    count = margin.draws_failed
-    return f"; {count} draw{'s' * (count != 1)} destroyed a corner or failed" if count else ""
+def _draws(margin: Margin) -> str:
+    """A sentence on the draws where not all of them overturn, or some say nothing."""
+    standing, failed, parts = margin.draws_standing, margin.draws_failed, []
+    low = margin.low if margin.draws and margin.high is None else None
+    if low is not None:
+        parts.append(f"{standing} stand{'s' * (standing == 1)} at {margin.draws_tried_to:.3g} times")
+    if failed:
+        parts.append(f"{failed} destroy{'s' * (failed == 1)} a corner or fail{'s' * (failed == 1)}")
+    if not parts:
+        return ""
+    counts = f"f {margin.draws + failed} draws {' and '.join(parts)}."
+    if low is None:
+        return f" O{counts}"
+    return f" Over what is not known it overturns from {FACTOR.in_figures(low, 2)} times on; o{counts}"

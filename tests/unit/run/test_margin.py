@@ -170,8 +170,8 @@ MARGIN = Margin(
         (
             {"low": 1.29, "draws": 16, "draws_standing": 3},
             "rock",
-            "Stands; overturns first at 1.50 times this motion (from 1.3 on over what is not known; 3 of 16 draws "
-            "stand up to 4).",
+            "Stands; overturns first at 1.50 times this motion. Over what is not known it overturns from 1.3 times on; "
+            "of 16 draws 3 stand at 4 times.",
         ),
         (
             {"islands": ((1.62, 1.68), (2.0, 2.0))},
@@ -186,14 +186,14 @@ MARGIN = Margin(
         (
             {"factor": None, "stands_up_to": None, "low": 1.9, "draws": 16, "draws_standing": 15},
             "slide",
-            "Stands; none of 20 other motions up to 4 times as strong overturns it (from 1.9 on over what is not "
-            "known; 15 of 16 draws stand up to 4).",
+            "Stands; none of 20 other motions up to 4 times as strong overturns it. Over what is not known it "
+            "overturns from 1.9 times on; of 16 draws 15 stand at 4 times.",
         ),
         (
             {"factor": None, "stands_up_to": None, "draws": 16, "draws_standing": 16},
             "slide",
-            "Stands; none of 20 other motions up to 4 times as strong overturns it, nor do they in any of 16 draws "
-            "of what is not known.",
+            "Stands; none of 20 other motions up to 4 times as strong overturns it, nor does the strongest overturn "
+            "any of 16 draws of what is not known.",
         ),
         (
             {"factor": 0.81, "stands_up_to": 0.799, "largest_tried": 1.0},
@@ -210,8 +210,8 @@ MARGIN = Margin(
                 "draws_failed": 2,
             },
             "overturned",
-            "Overturns; stands up to 0.799 times this motion, overturns first at 0.810 (from 0.72 on over what is not "
-            "known; 3 of 16 draws stand up to 4); 2 draws destroyed a corner or failed.",
+            "Overturns; stands up to 0.799 times this motion, overturns first at 0.810. Over what is not known it "
+            "overturns from 0.72 times on; of 18 draws 3 stand at 4 times and 2 destroy a corner or fail.",
         ),
         (
             {"destroyed_from": 2.9},
