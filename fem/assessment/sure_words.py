@@ -43,8 +43,8 @@ def sureness_in_words(result: RunResult) -> str:
     if band is None:
         used = static_use(result) or 0.0
         return (
-            f"Sure: the static rule is used to {used:.2f} and nothing else acts, so this motion was not repeated with "
-            "other inputs."
+            f"Sure: the utilisation of the static rule is {used:.2f} and nothing else acts, so this motion was not "
+            "repeated with other inputs."
         )
     tried = [one for one in band.members[1:] if one.outcome is not None]
     if not tried:

@@ -50,7 +50,6 @@ class Shown:
     head: str = ""  #: over a narrow column; empty: the words
     map_words: str = ""  #: on a map; empty: the words
     below: str = ""  #: the figure that it follows in a summary; empty: the one declared before
-    signed: bool = False  #: its sign means something
     lowest: bool = False  #: of a loose stack, that of its lowest box
     impact: bool = False  #: an impact decides
     window: str = ""  #: key of `Numerics`: the time over which it is a mean
@@ -64,7 +63,7 @@ class Shown:
 
     def text(self, value: float | None, reach: units.Reach | None = None, *, bare: bool = False) -> str:
         """The figure with its range and unit; empty where there is none."""
-        return self.unit.text(value, reach, signed=self.signed, bare=bare)
+        return self.unit.text(value, reach, bare=bare)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -78,9 +77,7 @@ class BoxFigures(JsonBlock, Generic[ValueT]):
     #: largest |slip|
     max_slip_m: Annotated[ValueT, Shown("slip", JOINT_MM, BAND, "joint.max_slip", column="box_slips_m")]
     #: signed, at the end
-    residual_slip_m: Annotated[
-        ValueT | None, Shown("slip left", JOINT_MM, BAND, "joint.slip", signed=True)
-    ] = None
+    residual_slip_m: Annotated[ValueT | None, Shown("slip left", JOINT_MM, BAND, "joint.slip")] = None
     max_opening_m: Annotated[
         ValueT, Shown("opening", SHORT_MM, BAND, "joint.max_opening", column="box_openings_m")
     ]
@@ -115,7 +112,6 @@ class Figures(JsonBlock, Generic[ValueT]):
             *("slip at the end", MM, TABLES | READ | BRIEF, "joint.slip"),
             head="residual",
             map_words="slip left at the end",
-            signed=True,
             lowest=True,
         ),
     ] = None
@@ -145,7 +141,7 @@ class Figures(JsonBlock, Generic[ValueT]):
     #: rotation at the end; None of what overturned, or still turns about one side
     tilt_rad: Annotated[
         ValueT | None,
-        Shown("tilt at the end", units.DEGREES, COLUMN | BAND | SUMMARY, signed=True, lowest=True),
+        Shown("tilt at the end", units.DEGREES, COLUMN | BAND | SUMMARY, lowest=True),
     ] = None
     impacts: Annotated[
         int | None, Shown("impacts", units.COUNT, COLUMN | READ, "track.impacts", below="first_uplift_s")

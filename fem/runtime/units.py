@@ -29,7 +29,6 @@ class DisplayUnit:
         reach: Reach | None = None,
         *,
         figures: int | None = None,
-        signed: bool = False,
         bare: bool = False,
     ) -> str:
         """A number with its range and unit, such as "0.22 (0.0013 to 0.40) kN"; empty where there is none.
@@ -38,19 +37,14 @@ class DisplayUnit:
             value: in SI.
             reach: the [low, high] that it has; None: the number alone.
             figures: of a number whose range is narrow; None: those of the unit.
-            signed: its sign means something: where it changes within the range, only its largest size is known.
             bare: without the unit.
         """
         if value is None:
             return ""
-        most = max(map(abs, reach)) if reach else 0.0
-        if signed and reach is not None and reach[0] < 0.0 < reach[1] and most > self.least:
-            words = f"about zero, up to {self.in_figures(most, FEW)}"
-        else:
-            kept = figures_of(reach, figures or self.figures)
-            low, high = (self.in_figures(end, kept) for end in reach or (value, value))
-            shown = self.in_figures(value, kept)
-            words = shown if low == high else f"{shown} ({low} to {high})"
+        kept = figures_of(reach, figures or self.figures)
+        low, high = (self.in_figures(end, kept) for end in reach or (value, value))
+        shown = self.in_figures(value, kept)
+        words = shown if low == high else f"{shown} ({low} to {high})"
         return words if bare else f"{words} {self.name}".rstrip()
 
     def range_text(self, reach: Reach | None) -> str:

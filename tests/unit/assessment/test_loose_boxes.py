@@ -81,7 +81,7 @@ def test_the_figures_of_a_box_have_their_ranges_over_the_band():
         boxes=(reach, reach, reach, replace(reach, fell=2)), members=(run_result.ChangedRun(status=""),) * 9
     )
     run = result((2, {"max_slip_m": 0.2194, "residual_slip_m": -0.1}), band=band)
-    assert box_rows(run)[1] == ("2", "0 (0 to 5.7)", "220 (100 to 250)", "about zero, up to 300", "0", "")
+    assert box_rows(run)[1] == ("2", "0 (0 to 5.7)", "220 (100 to 250)", "-100 (-300 to 100)", "0", "")
     assert box_rows(run)[3][-1] == "in 2 of 9 runs"
     assert largest_joint_slip(run.verdict) == ("220 (100 to 250) mm", "box 2 on box 1")
     text = plain_summary(run, folder=Path("outputs"))

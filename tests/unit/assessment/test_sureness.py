@@ -243,9 +243,9 @@ def test_a_step_that_decides_is_no_input():
     assert not verdict((FINE, {}), (HALF, FELL)).numerically_unsure
 
 
-def test_a_slip_whose_sign_changes_is_about_zero():
+def test_a_slip_whose_sign_changes_is_told_with_its_range():
     known = Verdict(residual_slip_m=-0.184, band=Band(residual_slip_m=(-0.339, 0.008)))
-    assert of_band(known, "residual_slip_m") == "about zero, up to 340 mm"
+    assert of_band(known, "residual_slip_m") == "-180 (-340 to 8.0) mm"
     one_way = replace(known, band=Band(residual_slip_m=(-0.339, -0.008)))
     assert of_band(one_way, "residual_slip_m") == "-180 (-340 to -8.0) mm"
 
