@@ -204,10 +204,6 @@ def _own(case: Any, key: str, penalty: float | None) -> Any:
     return case.joint_friction[name] if table == "joints" else getattr(getattr(case, table), name)
 
 
-def _is_loose(case: Any) -> bool:
-    return case.container.is_loose
-
-
 def _falls(case: Any) -> bool:
     """Whether friction on the floor falls, by a law that says how."""
     return case.contact.sticks and case.contact.mu_kinetic < case.contact.mu_static
@@ -226,10 +222,6 @@ def _joints_fall(case: Any) -> bool:
 def _joints_may_fall(case: Any) -> bool:
     varied = case.uncertainty.joints_mu_kinetic not in HELD
     return case.contact.sticks and case.container.is_loose and (_joints_fall(case) or varied)
-
-
-def _middle(low: float, high: float) -> tuple[float]:
-    return (short(0.5 * (low + high)),)
 
 
 def _other_start(case: Any) -> Value | None:
@@ -257,16 +249,14 @@ def _joints_mu_static(case: Any, own: float) -> Ends:
     return JOINTS[0] * own, min(q.FRICTION.most or math.inf, JOINTS[1] * own)
 
 
-def _joints_dashpot(case: Any, own: float) -> Ends:
-    return min(JOINTS_DASHPOTS[0], own), max(JOINTS_DASHPOTS[1], own)
+def _reaching(low: float, high: float) -> Callable[[Any, float], Ends]:
+    """Both ends, or the case's own value where it lies beyond."""
+    return lambda case, own: (min(low, own), max(high, own))
 
 
-def _rolls(case: Any) -> bool:
-    return bool(case.support.rolls)
-
-
-def _rocking_damping(case: Any, own: float) -> Ends:
-    return min(ROCKING_DAMPING[0], own), max(ROCKING_DAMPING[1], own)
+def _shares(*shares: float) -> Callable[[float, float], tuple[float, ...]]:
+    """Values at these shares of the way from the lower to the upper end."""
+    return lambda low, high: tuple(short(low + share * (high - low)) for share in shares)
 
 
 def _is_cambered(case: Any) -> bool:
@@ -290,10 +280,6 @@ def _cambers(case: Any, own: float) -> Ends:
     return low, max(own, min(high, short((case.support.effective_width * box.width) ** 2 / (16.0 * height))))
 
 
-def _first_cambers(low: float, high: float) -> tuple[float, ...]:
-    return () if low > 0.0 else (short(BETWEEN_CAMBERS * high),)
-
-
 def _has_impacts(case: Any) -> bool:
     """Whether an impact exchanges the pivot as Housner's does, or leaves a restitution that is given."""
     given = case.contact.restitution_over_housner is not None
@@ -313,13 +299,7 @@ def _restitutions(case: Any, ratio: float) -> Ends:
     return short(max(q.RESTITUTION.least or 0.0, less)), short(more)
 
 
-def _kinetic(case: Any, own: float) -> Ends:
-    static = case.contact.mu_static
-    return short(min(own, LEAST_KINETIC * static)), static
-
-
-def _joints_kinetic(case: Any, own: float) -> Ends:
-    static = case.joint_friction["mu_static"]
+def _kinetic(own: float, static: float) -> Ends:
     return short(min(own, LEAST_KINETIC * static)), static
 
 
@@ -330,26 +310,6 @@ def _beside(case: Any, own: float) -> Ends:
 
 def _slopes(case: Any, own: float) -> Ends:
     return max(q.SLOPE.least or 0.0, own - SLOPE_PERCENT), min(q.SLOPE.most or 0.0, own + SLOPE_PERCENT)
-
-
-def _turn(case: Any, own: float) -> Ends:
-    return short(own - math.pi), short(own + math.pi)
-
-
-def _quarters(low: float, high: float) -> tuple[float, ...]:
-    return tuple(short(low + share * (high - low)) for share in (0.25, 0.75))
-
-
-def _same_angle(value: float) -> float:
-    return short(math.pi - (math.pi - value) % (2.0 * math.pi))
-
-
-def _two_harmonics(case: Any) -> bool:
-    return case.motion.kind == case.vertical.kind == "harmonic"
-
-
-def _equal_boxes(case: Any) -> bool:
-    return case.container.box is None and case.container.mesh_file is None
 
 
 def _has_columns(case: Any) -> bool:
@@ -382,22 +342,6 @@ def _other_support(case: Any) -> Value | None:
     return kind
 
 
-def _slower(case: Any, own: float) -> Ends:
-    return 0.0, max(WEAKENING_M, own)
-
-
-def _faster(case: Any, own: float) -> Ends:
-    return 0.0, max(STRIBECK_M_S, own)
-
-
-def _weakenings(low: float, high: float) -> tuple[float, ...]:
-    return WEAKENINGS_BETWEEN_M
-
-
-def _is_elastic(case: Any) -> bool:
-    return case.solver.model != "rigid"
-
-
 def _any_falls(case: Any) -> bool:
     return _falls(case) or _joints_fall(case)
 
@@ -406,42 +350,44 @@ def _any_may_fall(case: Any) -> bool:
     return _may_fall(case) or _joints_may_fall(case)
 
 
-def _not_full(case: Any) -> bool:
-    return case.solver.model != "full"
-
-
 Number, Choice = UnknownNumber, UnknownChoice
 #: every input that may vary, those first that decide most often
 # fmt: off
 UNKNOWN: tuple[UnknownNumber | UnknownChoice, ...] = (
-    Number(MU_KINETIC, "mu_kinetic", "kinetic friction", q.FRICTION, _kinetic, power=1.0, between=_middle),
+    Number(MU_KINETIC, "mu_kinetic", "kinetic friction", q.FRICTION,
+           lambda case, own: _kinetic(own, case.contact.mu_static), power=1.0, between=_shares(0.5)),
     Number(MU_STATIC, "mu_static", "static friction", q.FRICTION, STATIC, power=1.0),
-    Number(WEAKENING, "weakening_m", "fall of friction with slip", q.WEAKENING, _slower,
-           matters=_may_fall, power=3.0, between=_weakenings, alone=_falls),
-    Number(STRIBECK, "stribeck_velocity_m_s", "fall of friction with velocity", q.STRIBECK_VELOCITY, _faster,
-           matters=_any_may_fall, power=2.0, alone=_any_falls),
+    Number(WEAKENING, "weakening_m", "fall of friction with slip", q.WEAKENING,
+           _reaching(0.0, WEAKENING_M), matters=_may_fall, power=3.0, between=lambda low, high: WEAKENINGS_BETWEEN_M,
+           alone=_falls),
+    Number(STRIBECK, "stribeck_velocity_m_s", "fall of friction with velocity", q.STRIBECK_VELOCITY,
+           _reaching(0.0, STRIBECK_M_S), matters=_any_may_fall, power=2.0, alone=_any_falls),
     Number(JOINTS_MU_STATIC, "joints_mu_static", "static friction of the joints", q.FRICTION, _joints_mu_static,
-           matters=_is_loose),
-    Number(JOINTS_MU_KINETIC, "joints_mu_kinetic", "kinetic friction of the joints", q.FRICTION, _joints_kinetic,
-           matters=_is_loose, power=1.0, between=_middle),
-    Number(JOINTS_WEAKENING, "joints_weakening_m", "fall of friction of the joints with slip", q.WEAKENING, _slower,
-           matters=_joints_may_fall, power=3.0, between=_weakenings, alone=_joints_fall),
-    Number(JOINTS_DASHPOT, "joints_damping_ratio", "damping of the joints", q.CONTACT_DAMPING, _joints_dashpot,
-           matters=_is_loose),
+           matters=lambda case: case.container.is_loose),
+    Number(JOINTS_MU_KINETIC, "joints_mu_kinetic", "kinetic friction of the joints", q.FRICTION,
+           lambda case, own: _kinetic(own, case.joint_friction["mu_static"]),
+           matters=lambda case: case.container.is_loose, power=1.0, between=_shares(0.5)),
+    Number(JOINTS_WEAKENING, "joints_weakening_m", "fall of friction of the joints with slip", q.WEAKENING,
+           _reaching(0.0, WEAKENING_M), matters=_joints_may_fall, power=3.0,
+           between=lambda low, high: WEAKENINGS_BETWEEN_M, alone=_joints_fall),
+    Number(JOINTS_DASHPOT, "joints_damping_ratio", "damping of the joints", q.CONTACT_DAMPING,
+           _reaching(*JOINTS_DASHPOTS), matters=lambda case: case.container.is_loose),
     Number(CAMBER, "camber_m", "camber of the base", q.CAMBER, _cambers, matters=_may_be_cambered,
-           between=_first_cambers, varies=_is_cambered),
-    Number(ROCKING, "rocking_damping_ratio", "damping of rocking", q.ROCKING_DAMPING, _rocking_damping,
-           matters=_rolls),
+           between=lambda low, high: () if low > 0.0 else (short(BETWEEN_CAMBERS * high),), varies=_is_cambered),
+    Number(ROCKING, "rocking_damping_ratio", "damping of rocking", q.ROCKING_DAMPING,
+           _reaching(*ROCKING_DAMPING), matters=lambda case: case.support.rolls),
     Choice(SUPPORT, "support", "contact of the base", _other_support, drawn=False),
     Number(CENTROID_KEY, "centroid_m", "height of the mass centre", q.LENGTH, CENTROID,
-           matters=_equal_boxes, power=1.0),
+           matters=lambda case: case.container.box is None and case.container.mesh_file is None, power=1.0),
     Number(ECCENTRICITY, "eccentricity_m", "eccentricity of the mass centre", q.OFFSET, _beside,
            matters=_has_columns, power=1.0),
     Number(EFFECTIVE, "effective_width", "effective width of the base", q.EFFECTIVE_WIDTH, (EFFECTIVE_WIDTH, 1.0),
-           matters=_not_full, power=1.0),
+           matters=lambda case: case.solver.model != "full", power=1.0),
     Number(SLOPE, "slope_percent", "slope of the floor", q.SLOPE, _slopes, power=1.0),
-    Number(VERTICAL_PHASE, "vertical_phase_rad", "phase of the vertical motion", q.PHASE, _turn,
-           matters=_two_harmonics, power=1.0, between=_quarters, same=_same_angle),
+    Number(VERTICAL_PHASE, "vertical_phase_rad", "phase of the vertical motion", q.PHASE,
+           lambda case, own: (short(own - math.pi), short(own + math.pi)),
+           matters=lambda case: case.motion.kind == case.vertical.kind == "harmonic", power=1.0,
+           between=_shares(0.25, 0.75), same=lambda value: short(math.pi - (math.pi - value) % (2.0 * math.pi))),
     Choice(START, "start", "start", _other_start, unless_stated=False),
     Choice(RAMP, "ramp", "cycles of the ramp", _other_ramp),
     Number(STOP_GAP, "stop_gap_m", "gap of the stops", q.GAP, GAPS, power=1.0),
@@ -459,7 +405,7 @@ UNKNOWN: tuple[UnknownNumber | UnknownChoice, ...] = (
     Number(RESTITUTION, "restitution_over_housner", "restitution over Housner's", q.RESTITUTION, _restitutions,
            matters=_has_impacts, power=1.0),
     Number(MATERIAL, "material_damping_ratio", "damping of the container", q.MATERIAL_DAMPING, DAMPING,
-           matters=_is_elastic),
+           matters=lambda case: case.solver.model != "rigid"),
 )
 # fmt: on
 INPUTS = (*(one.key for one in UNKNOWN), TOLERANCE)
