@@ -9,7 +9,7 @@ from functools import lru_cache
 from typing import Any
 
 from fem.case import quantities as q
-from fem.case.problem import Rule
+from fem.case.problem import Rule, refused
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -110,7 +110,7 @@ def _each(says: Callable[[Any, Box], str]) -> Rule:
         boxes = enumerate(boxes_of(case.container, case.gravity_m_s2), 1)
         return "; box ".join(f"{number}: {said}" for number, box in boxes if (said := says(case, box)))
 
-    return Rule("container.box", lambda case: not reason(case), reason)
+    return refused("container.box", reason)
 
 
 def _proportions(case: Any, box: Box) -> str:
@@ -178,7 +178,7 @@ def _offset(case: Any, box: Box) -> str:
 
 BOX_RULES = (
     *map(_each, (_proportions, _centroid, _wall, _density, _offset)),
-    Rule("container.box", lambda case: not _unsupported(case), _unsupported),
+    refused("container.box", _unsupported),
 )
 
 

@@ -15,7 +15,7 @@ from pydantic_core import CoreSchema
 
 from fem.case import quantities as q
 from fem.case.boxes import boxes_of
-from fem.case.problem import Rule
+from fem.case.problem import Rule, refused
 from fem.case.table import CaseTable, case_key
 
 Reach = tuple[float, float]
@@ -240,7 +240,7 @@ FLOOR_CASE_RULES = (
         ),
         "is missing: a solid block has no wall that would say how much of a corner bears; give [along x, out of plane]",
     ),
-    Rule("floor.corner_patch_m", lambda case: not _patch_does_not_fit(case), _patch_does_not_fit),
+    refused("floor.corner_patch_m", _patch_does_not_fit),
     Rule(
         "contact.normal_penalty_Pa_m",
         lambda case: case.floor.kind != "slab" or case.contact.normal_penalty_Pa_m == "auto",

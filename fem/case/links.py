@@ -11,7 +11,7 @@ from pydantic import Field
 from fem.case import quantities as q
 from fem.case.boxes import boxes_of
 from fem.case.neighbours import NeighbourTable
-from fem.case.problem import Rule
+from fem.case.problem import Rule, either
 from fem.case.table import CaseTable, case_key
 
 USUAL_STOP_DAMPING = 2.0  #: damping ratio of a stop that says nothing: it does not bounce
@@ -37,13 +37,7 @@ class StopTable(CaseTable):
     )
     mu: Annotated[float, q.FRICTION] = case_key("of friction along its face", 0.0)
 
-    rules = (
-        Rule(
-            "stop.restitution",
-            lambda table: table.restitution is None or table.damping_ratio is None,
-            "and damping_ratio say the same; keep one of them",
-        ),
-    )
+    rules = (either("stop.restitution", "damping_ratio"),)
 
     @property
     def slack(self) -> float:

@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import Any
 
 from fem.case import quantities as q
-from fem.case.problem import Rule, is_a_file_name, outside_the_folder
+from fem.case.problem import Rule, file_beside, refused
 
 #: peak acceleration of a harmonic floor given by amplitude and frequency [m/s2]: a hundred times gravity, which a
 #: vibration test at 100 Hz may reach; ten times that is a slip, and steps of nanoseconds
@@ -70,14 +70,11 @@ def _given(motion: Any) -> tuple[list[str], list[str]]:
     return sizes, frequencies
 
 
-def _two_of_three(motion: Any) -> bool:
-    sizes, frequencies = _given(motion)
-    return motion.kind != "harmonic" or (len(frequencies) <= 1 and len(sizes + frequencies) == 2)
-
-
 def _not_two_of_three(motion: Any) -> str:
     sizes, frequencies = _given(motion)
     given = sizes + frequencies
+    if motion.kind != "harmonic" or (len(frequencies) <= 1 and len(given) == 2):
+        return ""
     return (
         ", peak_acceleration_m_s2, frequency (angular_frequency_rad_s or frequency_Hz): exactly "
         f"two of the three must be given, got {', '.join(given) or 'none'}; "
@@ -85,16 +82,12 @@ def _not_two_of_three(motion: Any) -> str:
     )
 
 
-def _frequency_follows(motion: Any) -> bool:
-    sizes, frequencies = _given(motion)
-    if motion.kind != "harmonic" or frequencies or len(sizes) < 2:
-        return True
-    frequency = harmonic_angular_frequency(motion)
-    return frequency is not None and q.ANGULAR_FREQUENCY.allows(frequency)
-
-
 def _frequency_refused(motion: Any) -> str:
+    sizes, frequencies = _given(motion)
     frequency = harmonic_angular_frequency(motion)
+    follow = motion.kind == "harmonic" and not frequencies and len(sizes) == 2
+    if not follow or (frequency is not None and q.ANGULAR_FREQUENCY.allows(frequency)):
+        return ""
     follows = "does not follow from" if frequency is None else f"would be {frequency:g} rad/s for"
     return (
         f"{follows} amplitude_m = {motion.amplitude_m:g} m and peak_acceleration_m_s2 = "
@@ -128,8 +121,8 @@ def _complete(kind: str, *keys: str) -> Rule:
 UNITS = {"acceleration": ("g", "m/s2", "cm/s2", "gal", "mm/s2"), "displacement": ("m",)}
 
 SHARED_RULES = (
-    Rule("motion.amplitude_m", _two_of_three, _not_two_of_three),
-    Rule("motion.angular_frequency_rad_s", _frequency_follows, _frequency_refused),
+    refused("motion.amplitude_m", _not_two_of_three),
+    refused("motion.angular_frequency_rad_s", _frequency_refused),
     Rule(
         "motion.peak_acceleration_m_s2",
         lambda motion: motion.kind != "harmonic" or (motion.peak_acceleration_m_s2 or 0.0) >= 0.0,
@@ -189,11 +182,7 @@ SHARED_RULES = (
         lambda motion: motion.kind != "table" or motion.scale != 0.0,
         'must not be 0; for a floor at rest take kind = "none"',
     ),
-    Rule(
-        "motion.file",
-        lambda motion: is_a_file_name(motion.file),
-        lambda motion: outside_the_folder(motion.file),
-    ),
+    file_beside("motion.file", below=False),
     Rule(
         "motion.scale_to_m_s2",
         lambda motion: motion.kind != "table" or motion.scale_to_m_s2 is None or motion.scale == 1.0,

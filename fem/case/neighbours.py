@@ -12,7 +12,7 @@ from pydantic import Strict
 
 from fem.case import quantities as q
 from fem.case.boxes import boxes_of
-from fem.case.problem import Rule
+from fem.case.problem import Rule, either
 from fem.case.table import CaseTable, case_key
 
 MOST_NEIGHBOURS = 5
@@ -47,13 +47,7 @@ class NeighbourTable(CaseTable):
     )
     wall_m: Annotated[float, q.WALL] | None = case_key("of the shell", None, example=0.008)
 
-    rules = (
-        Rule(
-            "neighbour.restitution",
-            lambda table: table.restitution is None or table.damping_ratio is None,
-            "and damping_ratio say the same; keep one of them",
-        ),
-    )
+    rules = (either("neighbour.restitution", "damping_ratio"),)
 
 
 def case_of(case: Any, neighbour: NeighbourTable | None) -> dict[str, Any]:

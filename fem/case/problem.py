@@ -38,6 +38,46 @@ class Rule:
     reason: str | Callable[[Any], str]  #: keys of the table stand in it in braces
 
 
+def refused(place: str, reason: Callable[[Any], str]) -> Rule:
+    """A rule that holds where there is no reason against it."""
+    return Rule(place, lambda subject: not reason(subject), reason)
+
+
+def file_beside(place: str, *, below: bool = True) -> Rule:
+    """The file that a key of a table names, if it names one, is in the folder of the case file, or `below` it.
+
+    Where it need not be below, whoever reads it says what else is wrong.
+    """
+    _, _, key = place.rpartition(".")
+    allowed = stays_in_the_folder if below else is_a_file_name
+    return Rule(
+        place,
+        lambda table: allowed(getattr(table, key)),
+        lambda table: outside_the_folder(getattr(table, key)),
+    )
+
+
+def either(place: str, other: str) -> Rule:
+    """Of two keys of a table at most one is given."""
+    _, _, key = place.rpartition(".")
+    return Rule(
+        place,
+        lambda table: getattr(table, key) is None or getattr(table, other) is None,
+        f"and {other} say the same; keep one of them",
+    )
+
+
+def one_of(place: str, *others: str) -> Rule:
+    """Of some keys of a table exactly one is given."""
+    _, _, key = place.rpartition(".")
+    count = {1: "two", 2: "three"}[len(others)]
+    return Rule(
+        place,
+        lambda table: sum(getattr(table, name) is not None for name in (key, *others)) == 1,
+        f"{'or ' if len(others) == 1 else ', '}{', '.join(others)}: exactly one of the {count} must be given",
+    )
+
+
 def broken(rules: Iterable[Rule], subject: Any) -> list[Problem]:
     """Problems of a table or a case, as far as its keys could be read."""
     problems = []

@@ -10,7 +10,7 @@ from fem.case.floors import FLOOR_CASE_RULES
 from fem.case.links import LINK_RULES
 from fem.case.motion_rules import harmonic_angular_frequency
 from fem.case.neighbours import NEIGHBOUR_RULES
-from fem.case.problem import Rule, is_a_file_name, outside_the_folder
+from fem.case.problem import Rule, file_beside, refused
 
 MOST_SAMPLES = 2e7
 MOST_HISTORY = 3.4e9  # bytes in memory: so many samples of a single box
@@ -89,11 +89,7 @@ CONTAINER_RULES = (
             )
         ),
     ),
-    Rule(
-        "container.mesh_file",
-        lambda box: is_a_file_name(box.mesh_file),
-        lambda box: outside_the_folder(box.mesh_file),
-    ),
+    file_beside("container.mesh_file", below=False),
 )
 
 CONTACT_RULES = (
@@ -243,6 +239,8 @@ def _frames(case: Any) -> float:
 
 def _casting_does_not_fit(case: Any) -> str:
     """Why castings do not fit below the base, empty where they do."""
+    if case.support.casting_m is None:
+        return ""
     width, depth, inset = case.support.casting_m
     if case.support.kind != "corners":
         return f'belongs to support.kind = "corners", got "{case.support.kind}"; leave it out'
@@ -287,12 +285,8 @@ CASE_RULES = (
         "does not apply to support.camber_m > 0: a cambered base rolls, and its feet do not strike at their corners; "
         "leave it out",
     ),
-    Rule(
-        "support.casting_m",
-        lambda case: case.support.casting_m is None or not _casting_does_not_fit(case),
-        lambda case: _casting_does_not_fit(case),
-    ),
-    Rule("container.post_m", lambda case: not _posts_do_not_fit(case), lambda case: _posts_do_not_fit(case)),
+    refused("support.casting_m", _casting_does_not_fit),
+    refused("container.post_m", _posts_do_not_fit),
     Rule(
         "container.corner_post_N",
         lambda case: case.container.corner_post_N is None or case.support.kind == "corners",

@@ -21,7 +21,7 @@ from contact.reference.rigid_block import RigidBlock
 from fem.case import quantities as q
 from fem.case.links import ROWS
 from fem.case.motion_rules import LEAST_RAMP
-from fem.case.problem import Rule
+from fem.case.problem import refused
 from fem.case.rules import longest_time
 
 SOFTEST, STIFFEST = 1.0 / 9.0, 3.0  #: contact stiffness over that of the case
@@ -413,11 +413,9 @@ WORDS = {one.key: one.words for one in UNKNOWN} | {TOLERANCE: "energy tolerance 
 QUANTITIES = {one.key: one.quantity for one in UNKNOWN if isinstance(one, UnknownNumber)}
 
 
-def _ends_hold(one: UnknownNumber) -> Rule:
-    return Rule(f"uncertainty.{one.name}", lambda table: not one.refusal(table), one.refusal)
-
-
-UNCERTAINTY_RULES = tuple(_ends_hold(one) for one in UNKNOWN if isinstance(one, UnknownNumber))
+UNCERTAINTY_RULES = tuple(
+    refused(f"uncertainty.{one.name}", one.refusal) for one in UNKNOWN if isinstance(one, UnknownNumber)
+)
 
 
 def in_words(values: Mapping[str, Value]) -> str:

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, Strict
 
 from fem.case import quantities as q
-from fem.case.problem import Rule, outside_the_folder, stays_in_the_folder
+from fem.case.problem import Rule, file_beside, one_of
 from fem.case.quantities import Quantity
 from fem.case.table import CaseTable, case_key
 from fem.seismic.artificial import LEAST_STATIONARY_S, MOST_STATIONARY_S
@@ -256,11 +256,7 @@ class FloorSpectrumTable(CaseTable):
     )
 
     rules = (
-        Rule(
-            "floor_spectrum.period_s",
-            lambda floor: (floor.file is None) == (floor.period_s is not None),
-            "or file: exactly one of the two must be given",
-        ),
+        one_of("floor_spectrum.period_s", "file"),
         Rule(
             "floor_spectrum.acceleration_m_s2",
             lambda floor: (
@@ -269,11 +265,7 @@ class FloorSpectrumTable(CaseTable):
             ),
             "and period_s belong together",
         ),
-        Rule(
-            "floor_spectrum.file",
-            lambda floor: stays_in_the_folder(floor.file),
-            lambda floor: outside_the_folder(floor.file),
-        ),
+        file_beside("floor_spectrum.file"),
     )
 
 
@@ -404,18 +396,7 @@ class HazardTable(CaseTable):
         "artificial motions at each of seven levels", 40
     )
 
-    rules = (
-        Rule(
-            "hazard.points",
-            lambda hazard: (hazard.points is None) != (hazard.file is None),
-            "or file: exactly one of the two must be given",
-        ),
-        Rule(
-            "hazard.file",
-            lambda hazard: stays_in_the_folder(hazard.file),
-            lambda hazard: outside_the_folder(hazard.file),
-        ),
-    )
+    rules = (one_of("hazard.points", "file"), file_beside("hazard.file"))
 
 
 class WindTable(CaseTable):
@@ -439,17 +420,7 @@ class WindTable(CaseTable):
     gamma_mu: Annotated[float, GAMMA_MU] = case_key("partial factor on friction under wind", 1.0)
 
     rules = (
-        Rule(
-            "wind.peak_velocity_pressure_Pa",
-            lambda wind: (
-                sum(
-                    value is not None
-                    for value in (wind.peak_velocity_pressure_Pa, wind.german_zone, wind.terrain)
-                )
-                == 1
-            ),
-            ", german_zone, terrain: exactly one of the three must be given",
-        ),
+        one_of("wind.peak_velocity_pressure_Pa", "german_zone", "terrain"),
         Rule(
             "wind.basic_velocity_m_s",
             lambda wind: (wind.basic_velocity_m_s is None) == (wind.terrain is None),
