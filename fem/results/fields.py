@@ -32,6 +32,31 @@ class FieldError(ValueError):
     """A frame cannot be read; the message names its file."""
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FrameFields:
+    """Fields at one time, of n nodes."""
+
+    time: float  #: [s]
+    displacement: (
+        FloatArray  #: position minus reference position, the floor's motion included, shape (n, 2) [m]
+    )
+    velocity: FloatArray  #: absolute, shape (n, 2) [m/s]
+    von_mises: FloatArray | None  #: shape (n,) [Pa]; None for a rigid container
+    contact_pressure: FloatArray  #: compression positive, zero off the base, shape (n,) [Pa]
+    floor_displacement: float  #: of the floor along x [m]
+    floor_lift: float = 0.0  #: of the floor upward [m]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Frame(FrameFields):
+    """A frame with its mesh, in single precision."""
+
+    points: FloatArray  #: reference positions (x, z), shape (n, 2) [m]
+    cells: IntArray  #: nodes of each cell in the order of VTK, shape (m, 4 or 9)
+    region: IntArray  #: shape (m,)
+    box: IntArray  #: of the stack, from 1 at the floor, shape (m,)
+
+
 class FieldWriter:
     """Writes the frames of a run into a folder.
 
@@ -87,45 +112,24 @@ class FieldWriter:
                 os.fsync(file.fileno())
             self._synced += 1
 
-    def write(
-        self,
-        time: float,
-        *,
-        displacement: FloatArray,
-        velocity: FloatArray,
-        von_mises: FloatArray | None,
-        contact_pressure: FloatArray,
-        floor_displacement: float,
-        floor_lift: float = 0.0,
-    ) -> Path:
-        """Write a frame and list it.
-
-        Args:
-            time: [s].
-            displacement: position minus `points`, the floor's motion included, shape (n, 2) [m].
-            velocity: absolute, shape (n, 2) [m/s].
-            von_mises: at the nodes, shape (n,) [Pa]; None leaves the array out.
-            contact_pressure: compression positive, zero off the base, shape (n,) [Pa].
-            floor_displacement, floor_lift: of the floor, along x and upward [m].
-
-        Returns:
-            The file of the frame.
-        """
-        stress = {} if von_mises is None else {"von_mises_Pa": _single(von_mises)}
+    def write(self, frame: FrameFields) -> Path:
+        """Write a frame and list it; returns its file."""
+        floor = np.full((self._nodes, 2), (frame.floor_displacement, frame.floor_lift))
+        stress = {} if frame.von_mises is None else {"von_mises_Pa": _single(frame.von_mises)}
         content = self._format.frame(
             {
-                "displacement_m": _padded(displacement),
-                "velocity_m_s": _padded(velocity),
+                "displacement_m": _padded(frame.displacement),
+                "velocity_m_s": _padded(frame.velocity),
                 **stress,
-                "contact_pressure_Pa": _single(contact_pressure),
-                "floor_displacement_m": _padded(np.full((self._nodes, 2), (floor_displacement, floor_lift))),
+                "contact_pressure_Pa": _single(frame.contact_pressure),
+                "floor_displacement_m": _padded(floor),
             }
         )
         path = self.folder / frame_name(len(self._times))
         with replacing(path) as part:
             part.write_bytes(content)
-        self._entries.append(_entry(len(self._times), float(time)))
-        self._times.append(float(time))
+        self._entries.append(_entry(len(self._times), frame.time))
+        self._times.append(frame.time)
         if len(self._times) - self._listed > len(self._times) // PROMPT_FRAMES:
             self._list_frames()
         return path
@@ -143,23 +147,6 @@ class FieldWriter:
         with replacing(self.folder / SERIES) as part:
             part.write_text(text, encoding="utf-8")
         self._listed = len(self._times)
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Frame:
-    """Fields at one time, as `FieldWriter.write` takes them, in single precision."""
-
-    time: float  #: [s]
-    points: FloatArray  #: reference positions (x, z), shape (n, 2) [m]
-    cells: IntArray  #: nodes of each cell in the order of VTK, shape (m, 4 or 9)
-    region: IntArray  #: shape (m,)
-    box: IntArray  #: of the stack, from 1 at the floor, shape (m,)
-    displacement: FloatArray  #: shape (n, 2) [m]
-    velocity: FloatArray  #: shape (n, 2) [m/s]
-    von_mises: FloatArray | None  #: shape (n,) [Pa]; None for a rigid container
-    contact_pressure: FloatArray  #: shape (n,) [Pa]
-    floor_displacement: float  #: along x [m]
-    floor_lift: float = 0.0  #: upward [m]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -240,7 +227,7 @@ class FrameKeeper:
     """Keeps the frames of a run in memory, in single precision as files do."""
 
     def __init__(self, *, points: FloatArray, cells: IntArray, region: IntArray, box: IntArray) -> None:
-        self._points, self._cells, self._region, self._box = _single(points), cells, region, box
+        self._mesh = {"points": _single(points), "cells": cells, "region": region, "box": box}
         self._kept: list[Frame] = []
 
     @property
@@ -248,32 +235,14 @@ class FrameKeeper:
         """The frames so far."""
         return Fields(times=np.array([frame.time for frame in self._kept]), kept=tuple(self._kept))
 
-    def keep(
-        self,
-        time: float,
-        *,
-        displacement: FloatArray,
-        velocity: FloatArray,
-        von_mises: FloatArray | None,
-        contact_pressure: FloatArray,
-        floor_displacement: float,
-        floor_lift: float = 0.0,
-    ) -> None:
-        """Keep a frame; arguments as of `FieldWriter.write`."""
-        frame = Frame(
-            time=time,
-            points=self._points,
-            cells=self._cells,
-            region=self._region,
-            box=self._box,
-            displacement=_single(displacement),
-            velocity=_single(velocity),
-            von_mises=None if von_mises is None else _single(von_mises),
-            contact_pressure=_single(contact_pressure),
-            floor_displacement=float(np.float32(floor_displacement)),
-            floor_lift=float(np.float32(floor_lift)),
-        )
-        self._kept.append(frame)
+    def keep(self, frame: FrameFields) -> None:
+        """Keep a frame."""
+        single: dict[str, Any] = {
+            name: _single(value) if isinstance(value, np.ndarray) else value
+            for name, value in vars(frame).items()
+        }
+        single |= {name: float(np.float32(single[name])) for name in ("floor_displacement", "floor_lift")}
+        self._kept.append(Frame(**self._mesh, **single))
 
 
 def open_fields(folder: Path) -> Fields:

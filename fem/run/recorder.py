@@ -17,6 +17,7 @@ from fem.case.neighbours import places_of
 from fem.model.joints import Joints, joints_of
 from fem.model.model import Model
 from fem.model.recovery import Recovery
+from fem.results.fields import FrameFields
 from fem.results.history import History, numbers_of
 from fem.results.outcome import MODES
 from fem.runtime.arrays import FloatArray
@@ -30,7 +31,7 @@ DECIMALS, ROUNDING = 12, 4.0 * float(np.finfo(float).eps)
 BASE = ("base_displacement_m", "base_velocity_m_s", "base_acceleration_m_s2")
 
 HistorySink = Callable[[FloatArray, Sequence[str]], None]
-FrameSink = Callable[..., object]  #: with the arguments of `fem.results.fields.FieldWriter.write`
+FrameSink = Callable[[FrameFields], object]
 
 
 class Recorder:
@@ -206,15 +207,9 @@ class Recorder:
                     pressure[nodes] = samples.force[k, :floor_points, 1] / self._area[:floor_points]
                     floor, _, _ = floor_motion(run.problem.motion, time)
                     lift, _, _ = floor_motion(run.problem.vertical, time)
-                    self._frame_sink(
-                        float(as_written(np.array(time))),
-                        displacement=frame.displacement,
-                        velocity=frame.velocity,
-                        von_mises=frame.von_mises,
-                        contact_pressure=pressure,
-                        floor_displacement=floor,
-                        floor_lift=lift,
-                    )
+                    at = float(as_written(np.array(time)))
+                    place = {"time": at, "floor_displacement": float(floor), "floor_lift": float(lift)}
+                    self._frame_sink(FrameFields(**vars(frame), contact_pressure=pressure, **place))
         clock.frames_drained = clock.frames
 
 

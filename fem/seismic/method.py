@@ -1,7 +1,7 @@
 """A row of a simplified method: demand, capacity, conclusion and source."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from enum import StrEnum
 
 
@@ -55,12 +55,11 @@ def utilisation(demand: float, capacity: float) -> float:
     return demand / capacity if capacity > 0.0 else math.inf
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class MethodRow:
     """One simplified method, applied."""
 
     name: str
-    quantity: MethodQuantity
     formula: str  #: symbols; an index after an underscore
     numbers: str  #: the formula with numbers
     demand: float  #: infinite where the method finds no position of rest below overturning
@@ -69,6 +68,8 @@ class MethodRow:
     says: str
     source: MethodSource
     validity: str
+    _: KW_ONLY
+    quantity: MethodQuantity
     median: bool = False  #: what half of such motions or bodies exceed: no statement on one of them
     beyond: str = ""  #: why it does not hold here; empty: it does
 

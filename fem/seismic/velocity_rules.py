@@ -5,6 +5,7 @@ the support and the same height of the mass centre. Units inside the empirical r
 """
 
 import math
+from functools import partial
 
 from scipy.special import ndtr
 
@@ -16,6 +17,8 @@ CONTENTS_SHARE = 0.790  #: of Kaneko and Hayashi's velocity, in FEMA P-58
 #: of the width: displacement at which a body overturns, at two thirds of its height
 ULTIMATE_SHARE = 2.0 / 3.0
 ALLOWED_SHARE = 0.5  #: of that displacement
+
+_row = partial(MethodRow, quantity=MethodQuantity.OVERTURNING)
 
 
 def velocity_rows(body: LooseBody, action: FloorAction) -> list[MethodRow]:
@@ -175,33 +178,3 @@ def displacement_row(body: LooseBody, action: FloorAction) -> MethodRow:
 def _rectangle_cm(body: LooseBody) -> tuple[float, float]:
     """Width and height [cm] of the rectangle on this support with this mass centre."""
     return 200.0 * body.block.half_width, 200.0 * body.block.centroid_height
-
-
-def _row(
-    name: str,
-    formula: str,
-    numbers: str,
-    demand: float,
-    capacity: float,
-    unit: str,
-    says: str,
-    source: MethodSource,
-    validity: str,
-    *,
-    median: bool = False,
-    beyond: str = "",
-) -> MethodRow:
-    return MethodRow(
-        name=name,
-        quantity=MethodQuantity.OVERTURNING,
-        formula=formula,
-        numbers=numbers,
-        demand=demand,
-        capacity=capacity,
-        unit=unit,
-        says=says,
-        source=source,
-        validity=validity,
-        median=median,
-        beyond=beyond,
-    )

@@ -9,6 +9,7 @@ runs differ by more than that.
 import sys
 import tempfile
 import time
+from dataclasses import replace
 from pathlib import Path
 
 from measuring import Figure, at_most, cpu_seconds, median_of, report
@@ -64,14 +65,7 @@ def write_again(frames: list[Frame], recovery: Recovery, folder: Path) -> None:
     writer = FieldWriter(folder, points=first.points, cells=first.cells, region=first.region, box=first.box)
     for frame in frames:
         made = recovery.frame((frame.points + frame.displacement).ravel(), frame.velocity.ravel())
-        writer.write(
-            frame.time,
-            displacement=made.displacement,
-            velocity=made.velocity,
-            von_mises=made.von_mises,
-            contact_pressure=frame.contact_pressure,
-            floor_displacement=frame.floor_displacement,
-        )
+        writer.write(replace(frame, **vars(made)))
     writer.close()
 
 

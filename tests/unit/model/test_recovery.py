@@ -46,7 +46,7 @@ def test_the_stress_of_a_run_is_that_of_its_steps_whatever_is_sampled(changes):
         recorder = Recorder(
             model,
             recovery,
-            frame_sink=lambda _, von_mises, of=recovery, **__: frames.append(of.largest_in(von_mises)),
+            frame_sink=lambda frame, of=recovery: frames.append(of.largest_in(frame.von_mises)),
         )
         simulate(model, recorder)
         found.append(recorder.largest_von_mises)

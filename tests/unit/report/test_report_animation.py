@@ -8,7 +8,7 @@ import pytest
 
 from fem.evidence.verification.meshes import PlainMesh
 from fem.report.animation import animation_of, bodies_of, hull
-from fem.results.fields import Fields, FrameKeeper
+from fem.results.fields import Fields, FrameFields, FrameKeeper
 from fem.solid.assembly import assemble
 
 STEEL = {"youngs_modulus": 2.1e11, "poisson_ratio": 0.3, "order": 1}
@@ -62,12 +62,14 @@ def frames_of(elements, *, floor: float = 0.2, stretch: float = 0.0) -> Fields:
         points=elements.nodes, cells=elements.cells, region=elements.region, box=1 + elements.box
     )
     keeper.keep(
-        1.0,
-        displacement=moved - elements.nodes,
-        velocity=np.zeros_like(moved),
-        von_mises=None,
-        contact_pressure=np.zeros(len(moved)),
-        floor_displacement=floor,
+        FrameFields(
+            time=1.0,
+            displacement=moved - elements.nodes,
+            velocity=np.zeros_like(moved),
+            von_mises=None,
+            contact_pressure=np.zeros(len(moved)),
+            floor_displacement=floor,
+        )
     )
     return keeper.fields
 

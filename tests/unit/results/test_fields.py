@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 import pyvista
 
-from fem.results.fields import PROMPT_FRAMES, FieldWriter, open_fields
+from fem.results.fields import PROMPT_FRAMES, FieldWriter, FrameFields, open_fields
 
 POINTS = np.array([[x, z] for z in (0.0, 0.5, 1.0) for x in (0.0, 0.5, 1.0, 1.5, 2.0)])
 QUADS = np.array([[0, 2, 12, 10], [2, 4, 14, 12]])
@@ -31,6 +31,10 @@ def fields(floor=0.03):
     }
 
 
+def at(time, **values):
+    return FrameFields(time=time, **values)
+
+
 def writer(folder, cells=QUADS9, **options):
     return FieldWriter(
         folder, points=POINTS, cells=cells, region=np.array([1, 2]), box=np.array([1, 2]), **options
@@ -40,7 +44,7 @@ def writer(folder, cells=QUADS9, **options):
 @pytest.mark.parametrize(("cells", "kind"), [(QUADS, "quad"), (QUADS9, "quad9")])
 def test_meshio_and_open_fields_read_what_was_written(tmp_path, cells, kind):
     written = fields(floor=-0.0125)
-    mesh = meshio.read(writer(tmp_path, cells).write(0.25, **written))
+    mesh = meshio.read(writer(tmp_path, cells).write(at(0.25, **written)))
     assert mesh.cells[0].type == kind
     assert mesh.cells[0].data.tolist() == cells.tolist()
     assert mesh.points == pytest.approx(np.column_stack([POINTS, np.zeros(15)]), abs=1e-7)
@@ -54,7 +58,7 @@ def test_meshio_and_open_fields_read_what_was_written(tmp_path, cells, kind):
     assert frame.box.tolist() == [1, 2]
     for name, wanted in written.items():
         assert getattr(frame, name) == pytest.approx(wanted, rel=1e-6)
-    path = writer(tmp_path, cells).write(0.1, **{**written, "von_mises": None})
+    path = writer(tmp_path, cells).write(at(0.1, **written | {"von_mises": None}))
     assert "von_mises_Pa" not in meshio.read(path).point_data
     assert open_fields(tmp_path).frame(0).von_mises is None
 
@@ -65,8 +69,8 @@ def test_meshio_and_open_fields_read_what_was_written(tmp_path, cells, kind):
 def test_pyvista_reads_the_time_series(tmp_path, cells, kind):
     out = writer(tmp_path, cells)
     written = [fields(), fields()]
-    out.write(0.0, **written[0])
-    out.write(0.05, **written[1])
+    out.write(at(0.0, **written[0]))
+    out.write(at(0.05, **written[1]))
     reader = pyvista.get_reader(tmp_path / "run.pvd")
     assert reader.time_values == [0.0, 0.05]
     reader.set_active_time_value(0.05)
@@ -86,7 +90,7 @@ def test_meshio_reads_frames_whose_arrays_have_any_length(tmp_path):
     for quiet in range(300):
         moved = RNG.normal(size=(15, 2)) * (RNG.random((15, 1)) > quiet / 300)
         written.append(fields() | {"displacement": moved, "velocity": moved[::-1]})
-        out.write(0.01 * quiet, **written[-1])
+        out.write(at(0.01 * quiet, **written[-1]))
     out.close()
     read = open_fields(tmp_path)
     for number, frame in enumerate(written):
@@ -98,7 +102,7 @@ def test_series_is_valid_after_every_frame(tmp_path):
     out = writer(tmp_path)
     assert len(open_fields(tmp_path)) == 0
     for i in range(4):
-        out.write(0.1 * i, **fields())
+        out.write(at(0.1 * i, **fields()))
         series = open_fields(tmp_path)
         assert series.times.tolist() == [0.1 * j for j in range(i + 1)]
         assert all(file.is_file() for file in series.files)
@@ -111,9 +115,9 @@ def test_series_is_valid_after_every_frame(tmp_path):
 def test_a_resumed_run_keeps_the_frames_up_to_there_and_no_others(tmp_path):
     out = writer(tmp_path)
     for i in range(4):
-        out.write(i + 0.1 + 0.2, **fields())
+        out.write(at(i + 0.1 + 0.2, **fields()))
     again = writer(tmp_path, kept_times=out.times[:2])
-    assert again.write(2.5, **fields()).name == "frame_00002.vtu"
+    assert again.write(at(2.5, **fields())).name == "frame_00002.vtu"
     assert open_fields(tmp_path).times.tolist() == [0.1 + 0.2, 1.1 + 0.2, 2.5]  # to the last bit
     assert not (tmp_path / "frame_00003.vtu").exists()
     writer(tmp_path)  # a new run removes them all
@@ -124,7 +128,7 @@ def test_long_series_are_listed_in_time_and_completely_at_the_end(tmp_path):
     kept = [0.01 * i for i in range(3 * PROMPT_FRAMES)]
     out = writer(tmp_path, kept_times=kept)
     for i in range(5):
-        out.write(100.0 + i, **fields())
+        out.write(at(100.0 + i, **fields()))
         listed = len(ElementTree.parse(tmp_path / "run.pvd").findall("./Collection/DataSet"))
         assert 0 <= 3 * PROMPT_FRAMES + i + 1 - listed <= 3
     out.close()
@@ -133,7 +137,7 @@ def test_long_series_are_listed_in_time_and_completely_at_the_end(tmp_path):
 
 def test_a_frame_that_cannot_be_written_is_neither_left_nor_listed(tmp_path, monkeypatch):
     out = writer(tmp_path)
-    out.write(0.0, **fields())
+    out.write(at(0.0, **fields()))
 
     def full(path, content):
         path.write_text("<VTKFile")
@@ -141,7 +145,7 @@ def test_a_frame_that_cannot_be_written_is_neither_left_nor_listed(tmp_path, mon
 
     monkeypatch.setattr(Path, "write_bytes", full)
     with pytest.raises(OSError, match="No space left"):
-        out.write(1.0, **fields())
+        out.write(at(1.0, **fields()))
     assert sorted(p.name for p in tmp_path.iterdir()) == ["frame_00000.vtu", "run.pvd"]
     assert len(open_fields(tmp_path)) == 1
 
@@ -175,8 +179,8 @@ print([data.GetPointData().GetArray("von_mises_Pa").GetValue(i) for i in range(d
 def test_paraview_opens_the_series_and_warps_it(tmp_path):
     out = writer(tmp_path)
     written = [fields(), fields()]
-    out.write(0.0, **written[0])
-    out.write(0.05, **written[1])
+    out.write(at(0.0, **written[0]))
+    out.write(at(0.05, **written[1]))
     environment = {key: value for key, value in os.environ.items() if not key.startswith("PYTHON")}
     result = subprocess.run(
         ["pvpython", "-c", PARAVIEW.format(series=str(tmp_path / "run.pvd"))],
