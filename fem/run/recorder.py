@@ -207,9 +207,15 @@ class Recorder:
                     pressure[nodes] = samples.force[k, :floor_points, 1] / self._area[:floor_points]
                     floor, _, _ = floor_motion(run.problem.motion, time)
                     lift, _, _ = floor_motion(run.problem.vertical, time)
-                    at = float(as_written(np.array(time)))
-                    place = {"time": at, "floor_displacement": float(floor), "floor_lift": float(lift)}
-                    self._frame_sink(FrameFields(**vars(frame), contact_pressure=pressure, **place))
+                    self._frame_sink(
+                        FrameFields(
+                            **vars(frame),
+                            time=float(as_written(np.array(time))),
+                            contact_pressure=pressure,
+                            floor_displacement=float(floor),
+                            floor_lift=float(lift),
+                        )
+                    )
         clock.frames_drained = clock.frames
 
 
