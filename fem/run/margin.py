@@ -1,14 +1,16 @@
 """How much stronger the motion may be: the least factor on it at which the container overturns.
 
 Both components of the floor's motion are multiplied by a factor. A scan tries factors up to `LARGEST`, of a container
-that overturned up to 1; then each change between standing and overturning is located, the first one first. The same is
-done near the first one with all unknown inputs drawn at once. An island narrower than a step of the scan may be missed.
+that overturned up to 1; then each change between standing and overturning is located, the first one first. Runs that
+are left halve the widest steps before the first one. The same is done near the first one with all unknown inputs drawn
+at once. An island narrower than the steps may be missed.
 """
 
 import math
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
 from functools import cache
+from itertools import pairwise
 
 from fem.assessment.verdict import outcome_of
 from fem.case.case import Case, CaseError
@@ -32,6 +34,7 @@ from fem.run.simulation import simulate
 LARGEST = 4.0
 #: of the scan: least ratio of neighbouring factors, most factors; largest number of runs with those that locate changes
 STEP, MOST_SCANNED, MOST_RUNS = 1.15, 15, 25
+LOCATING = 2  #: runs that locate a change in half a step of the scan
 #: width of a located change over its upper end; of the same change with drawn inputs, and the ratio of factors tried
 RESOLUTION, DRAWN_RESOLUTION, DRAWN_STEP = 0.02, 0.04, 1.1
 #: share of the uplift acceleration below which nothing rocks, however soft and whatever is not known
@@ -81,13 +84,8 @@ def margin_of(model: Model, result: RunResult, *, drawn: bool, stop: Callable[[]
     trial = _trial(model, {}, stop)
     try:
         with ThreadPoolExecutor(max_workers=workers_for(model, MOST_SCANNED)) as pool:
-            largest = 1.0 if own == Ending.OVERTURNED else most
-            scanned = _scanned(least, largest)
-            known = {1.0: own} | dict(zip(scanned, pool.map(trial, scanned), strict=True))
-            while own == Ending.OVERTURNED and known[least] == Ending.OVERTURNED and least > LEAST:
-                least = max(LEAST, least / STEP**2)
-                known[least] = trial(least)
-            _locate(known, trial)
+            known = _searched(own, least, most, trial, pool)
+            least = min(known)
             first, ended = _first(known), [one for one in known if known[one] in SAID]
             bare = _bare(model, least, most, pool, stop)
             ends: list[float | None] = []
@@ -137,10 +135,7 @@ def _bare(
     except (ValueError, ArithmeticError, RuntimeError):  # it does not stand without them
         return None
     trial = _trial(bare, {}, stop)
-    own = trial(1.0)
-    scanned = _scanned(least, 1.0 if own == Ending.OVERTURNED else most)
-    known = {1.0: own} | dict(zip(scanned, pool.map(trial, scanned), strict=True))
-    _locate(known, trial)
+    known = _searched(trial(1.0), least, most, trial, pool)
     first, ended = _first(known), [one for one in known if known[one] in SAID]
     return (None if first is None else first.high, max(ended)) if ended else None
 
@@ -182,6 +177,18 @@ def _scanned(least: float, largest: float) -> list[float]:
     return [factor for factor in factors if abs(factor - 1.0) > 1e-9]
 
 
+def _searched(own: Ending, least: float, most: float, trial: Trial, pool: Executor) -> dict[float, Ending]:
+    """The endings under the factors of a search; `own`: that of the run itself, `most`: largest factor allowed."""
+    scanned = _scanned(least, 1.0 if own == Ending.OVERTURNED else most)
+    known = {1.0: own} | dict(zip(scanned, pool.map(trial, scanned), strict=True))
+    while own == Ending.OVERTURNED and known[least] == Ending.OVERTURNED and least > LEAST:
+        least = max(LEAST, least / STEP**2)
+        known[least] = trial(least)
+    _locate(known, trial)
+    _narrow(known, trial)
+    return known
+
+
 def _locate(known: dict[float, Ending], trial: Trial) -> None:
     """Halve the changes that are too wide, the lowest first, until all are narrow or no run is left."""
     while len(known) <= MOST_RUNS:
@@ -194,6 +201,29 @@ def _locate(known: dict[float, Ending], trial: Trial) -> None:
         if not left:
             return
         known[left[0]] = trial(left[0])
+
+
+def _narrow(known: dict[float, Ending], trial: Trial) -> None:
+    """Halve the widest step before the first factor that overturns as long as runs are left; locate what it finds.
+
+    Of a container that stands, steps from its own motion on, the weakest of equal ones first: the question is how much
+    stronger that may be.
+    """
+    while len(known) <= MOST_RUNS - LOCATING:
+        first = _first(known)
+        end = max(known) if first is None else first.high
+        begin = 1.0 if end > 1.0 else 0.0
+        factors = sorted(factor for factor in known if begin <= factor <= end)
+        steps = list(pairwise(factors))
+        if not steps:
+            return
+        low, high = max(steps, key=lambda step: (round(step[1] / step[0], 6), -step[0]))
+        if high - low <= RESOLUTION * high:
+            return
+        middle = math.sqrt(low * high)
+        known[middle] = trial(middle)
+        if known[middle] == Ending.OVERTURNED:
+            _locate(known, trial)
 
 
 def _changes(known: dict[float, Ending]) -> list[Change]:

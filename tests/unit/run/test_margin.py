@@ -1,6 +1,7 @@
 """The margin of a run: the factor on its motion at which it overturns, with islands, draws and words."""
 
 import math
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import pytest
@@ -119,6 +120,18 @@ def test_failed_trials_say_nothing_and_the_search_ends():
     assert len(known) == 3
     found = search._near(lambda factor: Ending.FAILED if factor > 1.1 else Ending.STANDING, 1.0, 0.5, 4.0)
     assert math.isnan(found)
+
+
+def test_runs_that_are_left_find_an_island_between_two_factors_of_the_scan():
+    def trial(factor: float) -> Ending:
+        return Ending.OVERTURNED if 1.96 < factor < 2.14 else Ending.STANDING
+
+    with ThreadPoolExecutor() as pool:
+        assert all(trial(factor) == Ending.STANDING for factor in search._scanned(0.4, 4.0))
+        known = search._searched(Ending.STANDING, 0.4, 4.0, trial, pool)
+    first = search._first(known)
+    assert first.low < 1.97 <= first.high < 2.0
+    assert len(known) <= search.MOST_RUNS + 1
 
 
 def test_a_container_with_stops_has_the_margin_without_them_beside_its_own():
