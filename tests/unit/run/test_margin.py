@@ -130,7 +130,7 @@ def test_runs_that_are_left_find_an_island_between_two_factors_of_the_scan():
         assert all(trial(factor) == Ending.STANDING for factor in search._scanned(0.4, 4.0))
         known = search._searched(Ending.STANDING, 0.4, 4.0, trial, pool)
     first = search._first(known)
-    assert first.low < 1.97 <= first.high < 2.0
+    assert first.low <= 1.96 < first.high <= first.low / (1.0 - search.RESOLUTION)
     assert len(known) <= search.MOST_RUNS + 1
 
 
