@@ -379,6 +379,11 @@ class OutputTable(CaseTable):
     )
     figures: bool = case_key("draw the figures of a run, as SVG", True)
     stop_when_overturned: bool = case_key("end the run when the container lies on its side", True)
+    stop_when_still: bool = case_key(
+        "rigid, under records: end the run when the container is at rest and what is left of them is below 0.9 of what "
+        "moves it",
+        False,
+    )
 
 
 class UncertaintyTable(CaseTable):

@@ -33,6 +33,7 @@ from fem.model.links import begin_links
 from fem.model.loose_stack import joints_of_stack, make_stack_state, own_stiffness, settle
 from fem.model.motion import build_motions, longest_run, peaks_in_run, rest_sought_from
 from fem.model.peaks import stressed_nodes
+from fem.model.resting import still_from
 from fem.model.restitution import require_loss
 from fem.model.row import begin_row, joints_of_row
 from fem.model.static_checks import StaticChecks, static_checks_of
@@ -170,6 +171,9 @@ def build_model(
         depth=float(-first.point[:, 1].min()),
         stored=float(spring_energy(stiffness, first.point, first.stick)) / static.overturning_energy,
     )
+    rest_from = rest_sought_from(case, motion, vertical)
+    if case.output.stop_when_still and rest_from < math.inf:
+        rest_from = min(rest_from, still_from(case, mesh, static, motion, vertical))
     interval = case.output.history_s
     fields = frame_interval(case, len(container.elements.nodes), duration)
     stacked = case.container.bolted_joints > 0  # the forces in its joints follow from the motion
@@ -214,7 +218,7 @@ def build_model(
         static=static,
         run=run,
         duration=duration,
-        rest_from=rest_sought_from(case, motion, vertical),
+        rest_from=rest_from,
     )
 
 

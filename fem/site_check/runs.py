@@ -216,7 +216,12 @@ def still(case: Case, model: str) -> Case:
     alone = read_case(toml_document(data), name=case.name, folder=case.folder)
     origin = replace(alone.origin_with({}), trusted=frozenset(FILE_KEYS), allow_outside=True)
     return alone.from_origin(origin).with_values(
-        {"solver.model": model, "solver.duration_s": "auto", "output.fields_s": 0.0}
+        {
+            "solver.model": model,
+            "solver.duration_s": "auto",
+            "output.fields_s": 0.0,
+            "output.stop_when_still": True,
+        }
     )
 
 

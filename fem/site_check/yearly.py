@@ -12,6 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from fem.ensemble.fragility import fit_lognormal
+from fem.model.resting import KEPT, BodyAtRest
 from fem.results.outcome import ENDINGS
 from fem.runtime.intervals import binomial_interval
 from fem.seismic.ground_motion import GroundMotion
@@ -22,7 +23,7 @@ from fem.site_check.reasons import CONFIDENCE
 from fem.site_check.result import AnnualRates, HazardLevel, SiteBody, SiteRun, TwoDirections
 from fem.site_check.rule import RunGroup
 from fem.site_check.runs import HAZARD, SET, RunKey, key_of
-from fem.site_check.screening import KEPT, BodyAtRest
+from fem.site_check.screening import moves_at
 
 LEVELS = 7
 #: of the levels, weakest and strongest, over the factor at which a rigid body first rocks
@@ -35,7 +36,7 @@ def rocks_from(body: SiteBody, motions: Sequence[GroundMotion]) -> float:
     """The factor on some motions below which none of them lifts a side of a rigid body."""
     slenderness = math.tan(body.slenderness_angle_rad)
     resting = BodyAtRest(gravity=body.gravity_m_s2, slenderness=slenderness, slope=0.0)
-    return KEPT * min(resting.moves_at(one, sign, math.inf) for one in motions for sign in (1, -1))
+    return KEPT * min(moves_at(resting, one, sign, math.inf) for one in motions for sign in (1, -1))
 
 
 def slides_from(body: SiteBody, mu_static: float, motions: Sequence[GroundMotion]) -> float:

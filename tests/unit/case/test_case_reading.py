@@ -54,6 +54,7 @@ def test_least_case_has_the_documented_defaults():
             "contents_filter_Hz": 33.0,
             "figures": True,
             "stop_when_overturned": True,
+            "stop_when_still": False,
         },
         "uncertainty": {"draws": 32},
     }

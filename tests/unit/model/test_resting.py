@@ -1,0 +1,49 @@
+"""A run that may stop once it is still: what is left of its record cannot move a container at rest."""
+
+import numpy as np
+import pytest
+
+from fem.case.case import Case, case_from
+from fem.run.compute import compute
+
+STEP = 0.01
+BOX = {
+    "schema": 1,
+    "container": {"width_m": 1.0, "height_m": 2.0, "mass_kg": 1000.0},
+    "contact": {"mu_static": 0.7},
+    "motion": {"kind": "none"},
+    "solver": {"model": "rigid"},
+    "output": {"fields_s": 0.0},
+}
+
+
+def shaken(coda: float, **keys: object) -> Case:
+    """A box under a strong half-cycle and 6 s of shaking at `coda` of what lifts its side."""
+    time = np.arange(0.0, 8.0, STEP)
+    lifts = 9.81 * 0.5
+    acceleration = 1.5 * lifts * np.sin(np.pi * time / 0.5) * (time < 0.5)
+    acceleration += coda * lifts * np.sin(2.0 * np.pi * time) * (time > 1.0) * (time < 7.0)
+    return (
+        case_from(BOX)
+        .with_motion(time, acceleration)
+        .with_values({f"output.{k}": v for k, v in keys.items()})
+    )
+
+
+def ended(case: Case) -> tuple[float, float, float]:
+    run = compute(case, band=False, margin=False)
+    return float(run.history["time_s"][-1]), run.verdict.rotation_ratio, run.verdict.max_slip_m
+
+
+def test_a_run_that_stops_when_still_finds_what_a_run_to_the_end_finds():
+    whole = ended(shaken(0.3))
+    brief = ended(shaken(0.3, stop_when_still=True))
+    assert brief[1:] == whole[1:] and whole[1] > 0.05
+    assert brief[0] < 6.0 < 7.9 < whole[0]
+
+
+@pytest.mark.parametrize(("coda", "keys"), [(0.95, {}), (0.8, {"solver.model": "reduced"})])
+def test_it_goes_on_where_the_rest_of_the_record_might_move_it(coda, keys):
+    """Above 0.9 of what lifts a side, and with an elastic container, which answers more than the floor moves."""
+    last, *_ = ended(shaken(coda, stop_when_still=True).with_values(keys))
+    assert last > 6.5
