@@ -46,6 +46,10 @@ class Faces(NamedTuple):
     corner: IntArray  #: (n, 3) TOUCHING, LEFT and RIGHT corner of a point; a point over the floor is between the latter
     bodies: IntArray  #: (n, 2) lower and upper box of a point; -1, and its box, of a point over the floor
     parts: IntArray  #: (n,) how many of its corners move a point
+    owner: IntArray  #: (n, 3) which box of a point each of its corners belongs to, LOWER or UPPER
+    shared: (
+        IntArray  #: (n, n, 2) which box of the second point the LOWER or UPPER one of the first is; -1: none
+    )
     reach: IntArray  #: (n,) behind the last point that shares a box with it
     place: FloatArray  #: (n,) of a point over the floor, between its LEFT and RIGHT corner: 0 to 1
     apart: FloatArray  #: (n,) how much further along x the frame of the corner is than that of the face [m]
@@ -164,10 +168,12 @@ def _faces(
     parts = [*floor, *joints]
     arrays: Any = {name: np.array([one for part in parts for one in part[name]]) for name in parts[0]}
     bodies, n = arrays["bodies"], len(arrays["side"])
-    shared = (bodies[:, None, :, None] == bodies[None, :, None, :]) & (bodies >= 0)[:, None, :, None]
+    same = (bodies[:, None, :, None] == bodies[None, :, None, :]) & (bodies >= 0)[:, None, :, None]
     return Faces(
         **arrays,
-        reach=n - np.argmax(shared.any(axis=(2, 3))[:, ::-1], axis=1),
+        owner=np.where(arrays["corner"] // CORNERS == bodies[:, [UPPER]], UPPER, LOWER),
+        shared=np.where(same[..., UPPER], UPPER, np.where(same[..., LOWER], LOWER, -1)),
+        reach=n - np.argmax(same.any(axis=(2, 3))[:, ::-1], axis=1),
         normal_stiffness=np.array(normal_stiffness, dtype=float),
         tangential_stiffness=np.array(tangential_stiffness, dtype=float),
         weight=np.ones(n),
@@ -181,14 +187,6 @@ def _faces(
 def is_over_floor(faces: Faces, i: int) -> bool:
     """Whether a contact point is one over the floor, and not a corner on the face of a box."""
     return bool(faces.bodies[i, LOWER] < 0)
-
-
-@inlined
-def side_of_point(faces: Faces, i: int, box: int) -> int:
-    """Which of the two boxes of a contact point a box is: LOWER or UPPER, -1: none of them."""
-    if faces.bodies[i, UPPER] == box:
-        return UPPER
-    return LOWER if faces.bodies[i, LOWER] == box else -1
 
 
 @compiled(inline=True)
@@ -339,9 +337,8 @@ def condense_points(faces: Faces, corners: Workspace, work: Workspace) -> None:
             for b in range(2 * CORNERS):
                 faces.moved[2 * i + a, 0, b], faces.moved[2 * i + a, 1, b] = 0.0, 0.0
             for k in range(faces.parts[i]):
-                c = faces.corner[i, k]
-                which = side_of_point(faces, i, c // CORNERS)
-                first = 2 * CORNERS * (c // CORNERS)
+                c, which = faces.corner[i, k], faces.owner[i, k]
+                first = 2 * CORNERS * faces.bodies[i, which]
                 for d in range(2):
                     by, column = faces.gradient[i, a, k, d], 2 * c + d
                     if by != 0.0:
@@ -353,17 +350,20 @@ def condense_points(faces: Faces, corners: Workspace, work: Workspace) -> None:
         for j in range(i, faces.reach[i]):
             if faces.weight[j] == 0.0:
                 continue
-            for a in range(2):
-                for b in range(2):
-                    total = 0.0
-                    for k in range(faces.parts[i]):
-                        c = faces.corner[i, k]
-                        which = side_of_point(faces, j, c // CORNERS)
-                        if which >= 0:
-                            for d in range(2):
-                                total += (
-                                    faces.gradient[i, a, k, d]
-                                    * faces.moved[2 * j + b, which, 2 * (c % CORNERS) + d]
-                                )
-                    work.compliance[2 * i + a, 2 * j + b] = total
-                    work.compliance[2 * j + b, 2 * i + a] = total
+            along, shear, lift, across = 0.0, 0.0, 0.0, 0.0
+            for k in range(faces.parts[i]):
+                which = faces.shared[i, j, faces.owner[i, k]]
+                if which >= 0:
+                    for d in range(2):
+                        column = 2 * (faces.corner[i, k] % CORNERS) + d
+                        tangential, normal = faces.gradient[i, 0, k, d], faces.gradient[i, 1, k, d]
+                        by_tangential = faces.moved[2 * j, which, column]
+                        by_normal = faces.moved[2 * j + 1, which, column]
+                        along += tangential * by_tangential
+                        shear += tangential * by_normal
+                        lift += normal * by_tangential
+                        across += normal * by_normal
+            work.compliance[2 * i, 2 * j], work.compliance[2 * j, 2 * i] = along, along
+            work.compliance[2 * i, 2 * j + 1], work.compliance[2 * j + 1, 2 * i] = shear, shear
+            work.compliance[2 * i + 1, 2 * j], work.compliance[2 * j, 2 * i + 1] = lift, lift
+            work.compliance[2 * i + 1, 2 * j + 1], work.compliance[2 * j + 1, 2 * i + 1] = across, across
