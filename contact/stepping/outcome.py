@@ -173,7 +173,7 @@ def is_over(run: RunState, part: int) -> bool:
         clock.rest_since = NEVER
         return False
     clock.rest_since = min(clock.rest_since, clock.time)
-    if clock.time - clock.rest_since < RESTING_TIME / control.frequency_parameter:
+    if clock.time - clock.rest_since < RESTING_TIME / control.slowest_rocking:
         return False
     if part == UNDECIDED:
         lose_footing(run)

@@ -116,8 +116,9 @@ def keep_most_strained_step(run: RunState, step: float) -> None:
     if kept.shape[1] > 0:
         window = min(int((run.clock[0].time + step) / STRAIN_WINDOW), kept.shape[1] - 1)
         keep_if_more(kept[0, window], new.energy[STRAIN], new.position)
-        if run.problem.stress.first.size > 0:
-            keep_if_more(kept[1, window], largest_square(run.problem.stress, new.position), new.position)
+        for group in range(kept.shape[0] - 1):
+            largest = largest_square(run.problem.stress, group, new.position)
+            keep_if_more(kept[1 + group, window], largest, new.position)
 
 
 @inlined
@@ -130,10 +131,10 @@ def keep_if_more(row: FloatArray, measure: float, position: FloatArray) -> None:
 
 
 @compiled(inline=True)
-def largest_square(stress: Stresses, position: FloatArray) -> float:
-    """Largest square of the von Mises stress at these points [Pa2]."""
+def largest_square(stress: Stresses, group: int, position: FloatArray) -> float:
+    """Largest square of the von Mises stress at the points of a group [Pa2]."""
     largest = 0.0
-    for i in range(stress.first.size):
+    for i in range(stress.group[group], stress.group[group + 1]):
         first, along, upward, shear = stress.first[i], 0.0, 0.0, 0.0
         for j in range(stress.of_modes.shape[2]):
             amplitude = position[first + j]

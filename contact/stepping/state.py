@@ -74,6 +74,7 @@ class Control(NamedTuple):
     downhill: float  #: along a floor that falls toward +x [m/s2]
     frequency_parameter: float  #: of rocking [1/s]
     resting_energy: float  #: gravity potential of the container at rest where it was placed [J]
+    slowest_rocking: float  #: frequency parameter, of a row the least of all [1/s]
     slenderness_angle: float  #: [rad]
     width: float  #: [m]
     near: float  #: base points nearer than this close together [m]
@@ -264,13 +265,17 @@ def make_samples(
 
 @struct
 class Stresses(NamedTuple):
-    """The stress of k points of an elastic body, where it may be largest, from its modal amplitudes."""
+    """The stress of k points of an elastic body, where it may be largest, from its modal amplitudes.
+
+    The largest is followed for each of g groups of points: of a row one for each body.
+    """
 
     first: IntArray  #: (k,) of the coordinates, the first amplitude of the body of each point
     of_modes: FloatArray  #: (k, 3, m) xx, zz, xz for amplitudes of 1 [Pa]
+    group: IntArray  #: (g + 1,) first point of each group, and the one behind the last
 
 
-NO_STRESSES = Stresses(np.zeros(0, dtype=np.int64), np.zeros((0, 3, 0)))
+NO_STRESSES = Stresses(np.zeros(0, dtype=np.int64), np.zeros((0, 3, 0)), np.zeros(1, dtype=np.int64))
 
 
 @struct
@@ -324,9 +329,9 @@ class RunState(NamedTuple):
     links: Any  #: (k,) of LINK_RECORD; their points are the last ones
     track: Any  #: (1,) of `observables.OBSERVABLES`
     contents: FloatArray  #: (8, 2 n_m) filter of the contents, see `contact.stepping.contents`
-    #: (2, n_w, 1 + n_d) the most strained step of each `STRAIN_WINDOW` (of the last one in all time from there on) by
-    #: strain energy [J], and by the square of the von Mises stress at the points of `problem.stress` [Pa2]: that, -1
-    #: for none, and its coordinates
+    #: (1 + g, n_w, 1 + n_d) the most strained step of each `STRAIN_WINDOW` (of the last one in all time from there on)
+    #: by strain energy [J], and by the square of the von Mises stress at the points of each group of `problem.stress`
+    #: [Pa2]: that, -1 for none, and its coordinates
     strained: FloatArray
 
     def with_problem(self, **parts: Any) -> "RunState":
@@ -410,5 +415,5 @@ def make_run(
         links=make_links(links),
         track=make_observables(),
         contents=np.zeros((8, 2 * (monitors - control.top_monitors))),
-        strained=np.full((2, strained, 1 + old.position.size), -1.0),
+        strained=np.full((stress.group.size, strained, 1 + old.position.size), -1.0),
     )

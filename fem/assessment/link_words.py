@@ -6,7 +6,7 @@ from fem.model.links import heights_of_links
 from fem.model.model import Model
 from fem.results.outcome import SLIDING, Outcome
 from fem.results.run_result import LinkResult, NeighbourResult, RunResult, Verdict
-from fem.runtime.units import KILONEWTONS, visible_number
+from fem.runtime.units import KILONEWTONS, MEGAPASCALS, visible_number
 
 
 def link_results(model: Model) -> tuple[tuple[LinkResult, ...] | None, tuple[LinkResult, ...] | None]:
@@ -65,7 +65,10 @@ def _neighbour(number: int, one: NeighbourResult) -> str:
 def _of_neighbour(number: int, one: NeighbourResult) -> str:
     ratio = f", rotation ratio {one.rotation_ratio:.3f}" if one.overturned_at_s is None else ""
     slip = f", slip {1e3 * one.max_slip_m:.3g} mm" if Outcome(one.outcome) in SLIDING else ""
-    moved = f"{_neighbour(number, one)} {_did(one)}{ratio}{slip}"
+    stress = ""
+    if one.max_von_mises_Pa is not None:
+        stress = f", von Mises stress {MEGAPASCALS.text(one.max_von_mises_Pa, figures=3)} (reduced model)"
+    moved = f"{_neighbour(number, one)} {_did(one)}{ratio}{slip}{stress}"
     if one.hits == 0:
         return f"{moved}, not touched, {1e3 * one.gap_left_m:.3g} mm of the gap were left"
     hits = "once" if one.hits == 1 else f"{one.hits} times"

@@ -309,7 +309,7 @@ def numerics_rows(result: run_result.RunResult) -> list[tuple[str, str]]:
     """Name and value of the accuracy and the cost of the computation."""
     numerics = result.numerics or run_result.Numerics()
     rows = [
-        ("energy balance error", _balance(result.energy or run_result.Energy())),
+        ("energy balance error", _balance(result)),
         ("steps", _steps(numerics)),
         ("filters", _filters(numerics)),
         ("computing time", _times(result, numerics)),
@@ -360,14 +360,16 @@ def _rigid_rows(check: run_result.RigidCheckResult | None, angle: float | None) 
     return [*rows, ("rigid check", verdict + "; ".join(check.reasons))]
 
 
-def _balance(energy: run_result.Energy) -> str:
+def _balance(result: run_result.RunResult) -> str:
+    energy = result.energy or run_result.Energy()
+    whose = run_result.to_overturn(bool((result.verdict or run_result.Verdict()).neighbours))
     error, reference, final = energy.closure_error, energy.reference_J, energy.numerical_J
     if error is None or reference is None:
         return ""
     side = ""
     if final and abs(final) >= INVISIBLE * reference:
         side = f"; numerical {'loss' if final > 0.0 else 'gain'} {abs(final):.3g} J"
-    return f"{visible_number(error, 1.0, '.2g')} of the {reference:.4g} J that it takes to overturn{side}"
+    return f"{visible_number(error, 1.0, '.2g')} of the {reference:.4g} J that it takes {whose}{side}"
 
 
 def _steps(numerics: run_result.Numerics) -> str:

@@ -1,7 +1,7 @@
 """The verdict of a run: outcome, extremes, events, energy balance, numerics."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from types import SimpleNamespace
 from typing import Any, TypeVar
 
@@ -30,7 +30,7 @@ from fem.model.peaks import casting_length
 from fem.results.figures import BOX_FIGURES, FIGURES, BoxResult, Shown
 from fem.results.history import History
 from fem.results.outcome import Outcome, least_slide
-from fem.results.run_result import Energy, NeighbourResult, Numerics, Verdict
+from fem.results.run_result import Energy, NeighbourResult, Numerics, Verdict, to_overturn
 from fem.runtime.arrays import FloatArray
 from fem.runtime.units import SECONDS
 
@@ -96,7 +96,7 @@ def relative_rotation(rotation: RotationT, slenderness_angle: float) -> Rotation
     return abs(rotation) / slenderness_angle
 
 
-def verdict_of(model: Model, history: History, largest_von_mises: float | None) -> Verdict:
+def verdict_of(model: Model, history: History, largest_von_mises: Sequence[float] | None) -> Verdict:
     """The `verdict` of a result; what was not reached is None."""
     time, slip = history["time_s"], history["slip_m"]
     end = float(time[-1]) if time.size else None
@@ -104,7 +104,11 @@ def verdict_of(model: Model, history: History, largest_von_mises: float | None) 
 
 
 def verdict_from(
-    model: Model, end: float | None, time: np.ndarray, slip: np.ndarray, largest_von_mises: float | None
+    model: Model,
+    end: float | None,
+    time: np.ndarray,
+    slip: np.ndarray,
+    largest_von_mises: Sequence[float] | None,
 ) -> Verdict:
     """The `verdict` of a model that was stepped to its end.
 
@@ -112,7 +116,7 @@ def verdict_from(
         model: only the record of its run is used.
         end: time of the last sample [s]; None if there is none.
         time, slip: of the samples, as far back as a cycle of the drive at least [s], [m].
-        largest_von_mises: [Pa].
+        largest_von_mises: of the container, and of each neighbour [Pa].
     """
     run, angle, outcome = model.run, model.static.slenderness_angle, _motion_of(model)
     destroyed = destroyed_corner(model)
@@ -138,7 +142,7 @@ def verdict_from(
         restitution_first=None if model.container.row else _restitution(track),
         max_top_displacement_m=track.max_top_displacement if sampled else None,
         max_acceleration_m_s2=track.max_acceleration if sampled else None,
-        max_von_mises_Pa=largest_von_mises,
+        max_von_mises_Pa=None if largest_von_mises is None else largest_von_mises[0],
         yield_strength_Pa=YIELD_STRENGTH if is_steel_shell(model.case) else None,
         stress_from_corner_m=None if largest_von_mises is None else casting_length(model.case),
         corner_capacity_N=capacity,
@@ -147,7 +151,7 @@ def verdict_from(
         else plastic_work(track.max_corner_force, capacity, 0.5 * model.base_stiffness),
         boxes=boxes or None,
         fell_box=first_fallen_box(model),
-        neighbours=neighbour_results(model) or None,
+        neighbours=neighbour_results(model, (largest_von_mises or ())[1:]) or None,
     )
 
 
@@ -171,8 +175,11 @@ def _is_loose(model: Model) -> bool:
     return bool(model.container.boxes) and not model.container.row
 
 
-def neighbour_results(model: Model) -> tuple[NeighbourResult, ...]:
-    """What each neighbour in a row did, and what happened across the gap before it, in the order of the case."""
+def neighbour_results(model: Model, stresses: Sequence[float]) -> tuple[NeighbourResult, ...]:
+    """What each neighbour in a row did, and what happened across the gap before it, in the order of the case.
+
+    `stresses`: the largest of each, of a reduced model [Pa].
+    """
     found = []
     for number, one in enumerate(model.case.neighbour, 1):
         joint, gap = _numbers(model.run.joints[number:]), _numbers(model.run.links[number - 1 :])
@@ -193,6 +200,7 @@ def neighbour_results(model: Model) -> tuple[NeighbourResult, ...]:
                 max_force_N=gap.max_force,
                 largest_closing_velocity_m_s=gap.largest_closing_velocity,
                 gap_left_m=gap.least_gap,
+                max_von_mises_Pa=stresses[number - 1] if stresses else None,
             )
         )
     return tuple(found)
@@ -267,8 +275,8 @@ def audit(model: Model) -> str | None:
         )
     if gained > GAIN_LIMIT * reference:
         return (
-            f"numerical energy gain {gained:.3g} J, {gained / reference:.1e} of the energy to overturn "
-            f"(limit {GAIN_LIMIT:.0e}); {remedy}"
+            f"numerical energy gain {gained:.3g} J, {gained / reference:.1e} of the energy "
+            f"{to_overturn(bool(model.case.neighbour))} (limit {GAIN_LIMIT:.0e}); {remedy}"
         )
     limit = max(LOSS_SHARE_LIMIT * float(clock.dissipated), LOSS_LIMIT * reference)
     if lost > limit:

@@ -8,6 +8,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
+import numpy as np
+import numpy.typing as npt
 from pydantic import Strict
 
 from fem.case import quantities as q
@@ -71,6 +73,28 @@ class Places:
     pairs: tuple[tuple[int, int], ...]  #: (N - 1,) left and right one
     distance: tuple[float, ...]  #: (N - 1,) of their axes [m]
 
+    @property
+    def facing(self) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.float64]]:
+        """`pairs` (N - 1, 2) and `distance` (N - 1,) [m]."""
+        return np.array(self.pairs, dtype=np.int64).reshape(-1, 2), np.array(self.distance)
+
+    def struck(self, size: Sequence[tuple[float, float]]) -> npt.NDArray[np.float64]:
+        """Points at which the sides of each container are struck, left and right, where it stands on x = 0 [m].
+
+        The upper edge of the lower of two meets the side of the higher one.
+
+        Args:
+            size: width and height of each container [m].
+
+        Returns:
+            Shape (N, 2, 2).
+        """
+        found = np.array([[(-0.5 * width, height), (0.5 * width, height)] for width, height in size])
+        for left, right in self.pairs:
+            lower = min(size[left][1], size[right][1])
+            found[left, 1, 1] = found[right, 0, 1] = lower
+        return found
+
 
 def places_of(case: Any, widths: Sequence[float]) -> Places:
     """The row of a case, of whose containers these are the widths [m]."""
@@ -107,9 +131,9 @@ NEIGHBOUR_RULES = (
     ),
     _alone(
         "solver.model",
-        lambda case: case.solver.model != "rigid",
-        'must be "rigid" with [[neighbour]]: the shells of a reduced or full model have no contact points on their '
-        "sides yet; a blow against a side would need them",
+        lambda case: case.solver.model == "full",
+        'must be "rigid" or "reduced" with [[neighbour]]: the full model steps one container, or boxes on one another, '
+        "and has no contact points on the sides of its meshes",
     ),
     _alone(
         "container.joints",

@@ -9,7 +9,7 @@ from fem.figures import style
 from fem.html.units import rounded
 from fem.results.history import History
 from fem.results.reader import RunData
-from fem.results.run_result import Energy, StaticResult
+from fem.results.run_result import Energy, StaticResult, to_overturn
 
 #: columns of a floor that crushes, and of a restitution that was asked for: words, colour, line
 SOMETIMES = {
@@ -38,7 +38,8 @@ def energy_figure(run: RunData) -> Figure:
     style.legend_above(axes[1], columns=3)
     style.legend_above(axes[2])
     closure = energy.closure_error
-    share = "" if closure is None else f": largest imbalance {rounded(closure, 2)} of the energy to overturn"
+    whose = to_overturn(bool(run.case.neighbour))
+    share = "" if closure is None else f": largest imbalance {rounded(closure, 2)} of the energy {whose}"
     style.head(figure, f"Energy{share}", status=run.status)
     return figure
 

@@ -1,27 +1,29 @@
 """The container of a case, discretised: mesh, elements, contact nodes, elastic modes."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from contact.interface.faces import TOUCHING, make_faces
+from contact.interface.faces import TOUCHING, make_faces, make_row
 from contact.interface.support import Support
 from fem.case.case import Case
 from fem.case.neighbours import places_of
 from fem.model.geometry import build_container, node_count
 from fem.model.links import nodes_of_links
-from fem.model.row import mesh_of_row, points_of_row
 from fem.model.support import build_support
 from fem.model.validity import require_memory
-from fem.runtime.arrays import IntArray
+from fem.runtime.arrays import FloatArray, IntArray
 from fem.runtime.threads import use_one_blas_thread
 from fem.solid.assembly import FiniteElements, QuadMesh, assemble
 from fem.solid.modes import ElasticModes, elastic_modes, signs_of
 from fem.solid.reduction import ReducedBasis, StaticResponse, reduced_basis, static_response
+from fem.solid.sides import nodes_at
 from mesh.container import ContainerMesh
 from mesh.errors import MeshError
 from mesh.region import Region
+from mesh.row import mesh_of_row
 from mesh.stack import box_mesh
 
 ROUNDED = 9  #: decimals of the numbers by which boxes are equal
@@ -33,7 +35,9 @@ class BoxModel:
 
     mesh: ContainerMesh
     elements: FiniteElements
-    corners: IntArray  #: (4,) nodes: lower left and right, upper left and right
+    #: (4,) nodes: lower left and right, upper left and right; of a container in a row in place of the upper ones those
+    #: nearest to where its sides are struck
+    corners: IntArray
     monitors: IntArray  #: nodes whose motion is observed
     response: StaticResponse  #: to forces at the corners; none of a rigid box
     basis: ReducedBasis  #: elastic modes of a reduced box; none of the others
@@ -104,10 +108,13 @@ def modes_of_a_body(case: Case) -> int:
     return math.ceil(case.solver.elastic_modes / case.container.bodies)
 
 
-def discretise(case: Case, mesh: ContainerMesh | None = None) -> Container:
+def discretise(case: Case, mesh: ContainerMesh | None = None, struck: FloatArray | None = None) -> Container:
     """Build elements, contact nodes and elastic modes of a case's container.
 
-    `mesh` is given where it is built already.
+    Args:
+        case: its container.
+        mesh: where it is built already.
+        struck: (k, 2) further points on its sides for whose forces a reduced model has attachment modes [m].
 
     Raises:
         CaseError, MeshError: bad input.
@@ -125,7 +132,10 @@ def discretise(case: Case, mesh: ContainerMesh | None = None) -> Container:
     if not case.output.stop_when_overturned:  # lying on its side it touches with the upper corners, too
         nodes = np.concatenate([nodes, _upper_corners(elements)])
     nodes = np.concatenate([nodes, nodes_of_links(case, elements.nodes)])
-    response = static_response(elements, nodes)
+    attached = nodes
+    if struck is not None and case.solver.model == "reduced":
+        attached = np.concatenate([nodes, nodes_at(struck, elements.nodes)])
+    response = static_response(elements, attached)
     basis, first = _elastic(case, elements, response, modes_of_a_body(case))
     return Container(
         mesh=mesh,
@@ -133,7 +143,7 @@ def discretise(case: Case, mesh: ContainerMesh | None = None) -> Container:
         support=support,
         nodes=nodes,
         monitors=_monitors(elements),
-        response=response,
+        response=response.of_first(nodes.size),
         basis=basis,
         free_modes=case.solver.elastic_modes if case.solver.model == "reduced" else 0,
         first=first,
@@ -155,9 +165,10 @@ def changed_container(case: Case, container: Container, own: Case) -> Container:
     """
     given, there = case.container, own.container
     if case.neighbour:
-        parts = ("container", "support", "neighbour", "gravity_m_s2")
-        same = all(getattr(case, one) == getattr(own, one) for one in parts)
-        return container if same else discretise(case)
+        if all(getattr(case, one) == getattr(own, one) for one in ("container", "support", "neighbour")):
+            return container
+        row = zip(case.row, container.row, own.row, strict=True)
+        return _beside_one_another(case, [changed_container(*one) for one in row])
     if (given.centroid_m, given.eccentricity_m) != (there.centroid_m, there.eccentricity_m):
         mesh = build_container(case)
         boxes = tuple(replace(box, mesh=box_mesh(mesh, number)) for number, box in enumerate(container.boxes))
@@ -175,15 +186,7 @@ def without_links(case: Case, container: Container) -> Container:
     if container.row:
         return container.row[0]
     points = len(container.nodes) - len(case.links)
-    response = container.response
-    return replace(
-        container,
-        nodes=container.nodes[:points],
-        response=StaticResponse(
-            displacement=response.displacement[: 2 * points],
-            compliance=response.compliance[: 2 * points, : 2 * points],
-        ),
-    )
+    return replace(container, nodes=container.nodes[:points], response=container.response.of_first(points))
 
 
 def _assembled(case: Case, mesh: QuadMesh) -> FiniteElements:
@@ -258,16 +261,23 @@ def _loose(case: Case, mesh: ContainerMesh, elements: FiniteElements, support: S
 
 
 def _in_a_row(case: Case, mesh: ContainerMesh | None) -> Container:
-    """The containers of a row, of which equal ones are built once; the elements and boxes are those of all."""
+    """The containers of a row, of which equal ones are built once."""
     known: dict[str, Container] = {}
-    row = []
-    for number, alone in enumerate(case.row):
-        key = repr((alone.container, alone.support))
+    row, cases = [], case.row
+    for number, (alone, struck) in enumerate(zip(cases, _struck(case, cases), strict=True)):
+        key = repr((alone.container, alone.support, struck[:, 1]))
         if key not in known:
-            known[key] = _neighbour(number, alone) if number else discretise(alone, mesh)
+            known[key] = _neighbour(number, alone, struck) if number else discretise(alone, mesh, struck)
         row.append(known[key])
+    return _beside_one_another(case, row)
+
+
+def _beside_one_another(case: Case, row: Sequence[Container]) -> Container:
+    """Containers as a row; the elements and boxes are those of all."""
     meshes = [one.mesh for one in row]
-    elements = _assembled(case, mesh_of_row(meshes, places_of(case, [one.width for one in meshes])))
+    places = places_of(case, [one.width for one in meshes])
+    struck = places.struck([(one.width, one.height) for one in meshes])
+    elements = _assembled(case, mesh_of_row(meshes, places.x))
     first, nodes = 0, []
     for one in row:
         behind = first + len(one.elements.cells)
@@ -278,34 +288,41 @@ def _in_a_row(case: Case, mesh: ContainerMesh | None) -> Container:
         BoxModel(
             mesh=one.mesh,
             elements=one.elements,
-            corners=np.concatenate([one.elements.base_nodes[[0, -1]], _upper_corners(one.elements)]),
+            corners=np.concatenate([one.elements.base_nodes[[0, -1]], nodes_at(at, one.elements.nodes)]),
             monitors=one.monitors,
             response=one.response,
             basis=one.basis,
             first=one.first,
         )
-        for one in row
+        for one, at in zip(row, struck, strict=True)
     )
     corners = np.concatenate([own[box.corners] for box, own in zip(boxes, nodes, strict=True)])
+    touching = make_row(np.ones((corners.size, 2)), *places.facing, np.zeros(len(row)), *np.zeros((2, 0)))
     return Container(
         mesh=meshes[0],
         elements=elements,
         support=row[0].support,
-        nodes=points_of_row(case, corners),
+        nodes=corners[touching.corner[:, TOUCHING]],
         monitors=nodes[0][row[0].monitors],
         response=_no_response(elements),
         basis=_no_modes(elements),
         free_modes=0,
-        first=math.inf,
+        first=min(one.first for one in row),
         boxes=boxes,
         row=tuple(row),
         box_nodes=tuple(nodes),
     )
 
 
-def _neighbour(number: int, alone: Case) -> Container:
+def _struck(case: Case, row: Sequence[Case]) -> FloatArray:
+    """Where the sides of each container of a row are struck, left and right, (N, 2, 2) [m]; `row`: `Case.row`."""
+    size = [(one.stack[0].width, one.stack[-1].top) for one in row]
+    return places_of(case, [width for width, _ in size]).struck(size)
+
+
+def _neighbour(number: int, alone: Case, struck: FloatArray) -> Container:
     try:
-        return discretise(alone)
+        return discretise(alone, struck=struck)
     except MeshError as error:
         raise MeshError(f"[[neighbour]] {number}, as a container: {error}") from error
 

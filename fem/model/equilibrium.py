@@ -107,7 +107,7 @@ def _of_row(case: Case, container: Container, gravity: float) -> Equilibrium:
     require_no_jam(case, meshes)
     contact = contact_of_row(case, [one.contact for one in row], [mesh.mass for mesh in meshes])
     bodies = [one.body for one in row if isinstance(one.body, ModalBody)]
-    body = body_of_row(case, bodies, meshes, contact)
+    body = body_of_row(case, bodies, container.row, contact)
     return replace(row[0], contact=contact, body=body, stance=None, row=tuple(row))
 
 

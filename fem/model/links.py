@@ -13,6 +13,7 @@ from fem.case.case import Case, CaseError
 from fem.case.links import USUAL_STOP_DAMPING, StopTable, TieTable
 from fem.model.tied_capacity import side_of
 from fem.runtime.arrays import FloatArray, IntArray
+from fem.solid.sides import nodes_at, shapes_at
 
 OVERLAP = 1e-9  #: overlap at the start that is rounding [m]
 
@@ -24,31 +25,12 @@ def places_of_links(case: Case) -> FloatArray:
 
 def nodes_of_links(case: Case, nodes: FloatArray) -> IntArray:
     """The nodes of a structured mesh, of all (n, 2), that are nearest to the points of the links, (k,)."""
-    found = [
-        side[np.argmin(np.abs(nodes[side, 1] - z))]
-        for side, z in zip(_sides(case, nodes), places_of_links(case)[:, 1], strict=True)
-    ]
-    return np.array(found, dtype=np.int64)
+    return nodes_at(places_of_links(case), nodes)
 
 
 def shapes_at_links(case: Case, nodes: FloatArray, shapes: FloatArray) -> FloatArray:
     """Shapes of modes (m, n, 2) at the points of the links, (m, k, 2): linear between the nodes of the side, (n, 2)."""
-    found = np.empty((len(shapes), len(case.links), 2))
-    for k, (side, z) in enumerate(zip(_sides(case, nodes), places_of_links(case)[:, 1], strict=True)):
-        above = min(max(int(np.searchsorted(nodes[side, 1], z)), 1), side.size - 1)
-        low, high = side[above - 1], side[above]
-        share = (z - nodes[low, 1]) / (nodes[high, 1] - nodes[low, 1])
-        found[:, k] = (1.0 - share) * shapes[:, low] + share * shapes[:, high]
-    return found
-
-
-def _sides(case: Case, nodes: FloatArray) -> list[IntArray]:
-    """For each link the nodes, of all (n, 2), on the side where it is, from below."""
-    found = []
-    for x in places_of_links(case)[:, 0]:
-        on_side = np.flatnonzero(np.abs(nodes[:, 0] - x) <= 1e-9 * np.ptp(nodes[:, 0]))
-        found.append(on_side[np.argsort(nodes[on_side, 1])])
-    return found
+    return shapes_at(places_of_links(case), nodes, shapes)
 
 
 def heights_of_links(case: Case, nodes: FloatArray) -> list[float]:

@@ -137,8 +137,9 @@ def build_model(
     duration = longest_run(case, motion, vertical)
     static = static_checks_of(case, mesh, *peaks_in_run(case, motion, vertical, duration))
     require_loss(case, static)
-    largest, breaks = largest_step_of(case, static, duration, motion, vertical)
     row = [static_checks_of(one, each.mesh, 0.0) for one, each in zip(case.row, container.row, strict=True)]
+    fastest = max(one.frequency_parameter for one in (static, *row))
+    largest, breaks = largest_step_of(case, fastest, duration, motion, vertical)
     control = control_of(case, container, static, largest, contact, row)
     scheme = scheme_of(case, container, equilibrium.penalty, control, contact)
     full = case.solver.model == "full"
@@ -260,7 +261,8 @@ def _watched_stresses(case: Case, container: Container) -> Stresses:
         of_modes[begin:end, :, : basis.angular_frequencies.size] = np.moveaxis(
             basis.stress[:, :, nodes], -1, 0
         )
-    return Stresses(first=first, of_modes=of_modes)
+    ends = np.cumsum([0, *(nodes.size for _, nodes in bases)])
+    return Stresses(first=first, of_modes=of_modes, group=ends if container.row else ends[[0, -1]])
 
 
 def _strained_steps(case: Case, duration: float) -> int:

@@ -112,6 +112,7 @@ class Recovery:
     elements: FiniteElements  #: of the container
     full: bool
     bodies: tuple[PlacedBody, ...]
+    in_a_row: bool = False  #: the stress of each body is its own
 
     def frame(self, position: FloatArray, velocity: FloatArray) -> NodalFields:
         """Fields for one row of coordinates and their rates."""
@@ -133,14 +134,16 @@ class Recovery:
         """Largest counted one of the nodal stresses (n,) of a frame [Pa]."""
         return max(float(stress[one.nodes][one.body.counted].max()) for one in self.bodies)
 
-    def largest_von_mises(self, position: FloatArray) -> float:
-        """Largest counted nodal von Mises stress over rows of coordinates (n_s, n_d) [Pa]; 0 without modes."""
-        return max(one.body.largest_von_mises(position[:, one.coordinates]) for one in self.bodies)
+    def largest_of_steps(self, strained: FloatArray) -> tuple[float, ...] | None:
+        """Largest counted nodal von Mises stress of a reduced run over the steps of `RunState.strained` [Pa].
 
-    def largest_of_steps(self, strained: FloatArray) -> float | None:
-        """Largest nodal von Mises stress of a reduced run over the steps of `RunState.strained` [Pa]; None without."""
+        Of a row that of each container, the case's own first; else of all bodies together. None without steps.
+        """
         rows = strained[strained[:, :, 0] >= 0.0, 1:] if strained.size else strained
-        return self.largest_von_mises(rows) if rows.size else None
+        if not rows.size:
+            return None
+        found = tuple(one.body.largest_von_mises(rows[:, one.coordinates]) for one in self.bodies)
+        return found if self.in_a_row else (max(found),)
 
 
 def recovery_of(model: Model) -> Recovery:
@@ -174,7 +177,9 @@ def recovery_of(model: Model) -> Recovery:
             )
         )
         start += own if full else size
-    return Recovery(elements=container.elements, full=full, bodies=tuple(bodies))
+    return Recovery(
+        elements=container.elements, full=full, bodies=tuple(bodies), in_a_row=bool(container.row)
+    )
 
 
 def _of_body(case: Case, elements: FiniteElements, basis: ReducedBasis, centroid: FloatArray) -> BodyRecovery:

@@ -2,60 +2,36 @@
 
 Each is built and settled alone, by its own case. The first is that of the case itself; behind it stand the neighbours
 in the order of the case. Its coordinates are in a frame of its own, so that a gap that nothing uses up changes no bit.
+
+The sides of a container are straight between the corners of its elevation. Of a reduced one each is the line through
+the two points where forces act: of the base over the floor, and where the next container strikes the side. Its corners
+move on that line, so that floor and blow find exactly the motion of the shell at these points.
 """
 
 import math
 from collections.abc import Sequence
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 
-from contact.interface.faces import CORNERS, TOUCHING, make_row, weigh_points
+from contact.interface.faces import weigh_points
 from contact.interface.laws import ELASTIC_STICK
 from contact.interface.penalty import damping_ratio_of
 from contact.interface.workspace import Contact
-from contact.stepping.body import State, make_state
+from contact.stepping.body import State
 from contact.stepping.boxes import POINTS_OF_GAP
 from contact.stepping.loose_stack import LooseStack
-from contact.stepping.modal_body import ModalBody, make_modal_body
+from contact.stepping.modal_body import ModalBody
 from contact.stepping.stack_body import make_stack, start_stack
 from contact.stepping.state import make_joints
 from fem.case.case import Case, CaseError
-from fem.case.neighbours import USUAL_DAMPING, Places, places_of
+from fem.case.neighbours import USUAL_DAMPING, places_of
+from fem.model.container import Container
 from fem.model.links import OVERLAP
-from fem.runtime.arrays import FloatArray, IntArray
+from fem.model.loose_stack import make_stack_state
+from fem.runtime.arrays import FloatArray
+from fem.solid.sides import shapes_at
 from mesh.container import ContainerMesh
-
-
-def mesh_of_row(meshes: Sequence[ContainerMesh], places: Places) -> Any:
-    """What the assembly needs of all meshes as one, one behind the other, each at its place."""
-    starts = np.cumsum([0, *(len(one.points) for one in meshes)])
-    boxes = np.cumsum([0, *(1 + one.box.max() for one in meshes)])
-    return SimpleNamespace(
-        points=np.concatenate(
-            [one.points + np.array([x, 0.0]) for one, x in zip(meshes, places.x, strict=True)]
-        ),
-        quads=np.concatenate([one.quads + start for one, start in zip(meshes, starts, strict=False)]),
-        box=np.concatenate([one.box + start for one, start in zip(meshes, boxes, strict=False)]),
-        **{
-            name: np.concatenate([getattr(one, name) for one in meshes])
-            for name in ("region", "thickness", "areal_density")
-        },
-    )
-
-
-def points_of_row(case: Case, corners: IntArray) -> IntArray:
-    """The corner, of all (4 N,), that touches at each contact point of a row."""
-    n, nothing = len(corners) // CORNERS, np.zeros(0)
-    places = places_of(case, [1.0] * n)
-    faces = make_row(np.ones((CORNERS * n, 2)), *_arrays(places), np.zeros(n), nothing, nothing)
-    return corners[faces.corner[:, TOUCHING]]
-
-
-def _arrays(places: Places) -> tuple[IntArray, FloatArray]:
-    """Pairs (g, 2) that face each other, and the distance of their axes (g,) [m]."""
-    return np.array(places.pairs, dtype=np.int64).reshape(-1, 2), np.array(places.distance)
 
 
 def require_no_jam(case: Case, meshes: Sequence[ContainerMesh]) -> None:
@@ -117,43 +93,47 @@ def contact_of_row(case: Case, contacts: Sequence[Contact], masses: Sequence[flo
 
 
 def body_of_row(
-    case: Case, bodies: Sequence[ModalBody], meshes: Sequence[ContainerMesh], contact: Contact
+    case: Case, bodies: Sequence[ModalBody], containers: Sequence[Container], contact: Contact
 ) -> LooseStack:
     """The containers of a row as one body.
 
     Args:
         case: of the row.
-        bodies: of the containers alone, rigid, with their points over the floor; meshes: of them.
+        bodies: of the containers alone, with their points over the floor; containers: they.
         contact: of all points at full weight.
     """
+    meshes = [one.mesh for one in containers]
     places = places_of(case, [one.width for one in meshes])
-    corners = [_with_corners(body, mesh) for body, mesh in zip(bodies, meshes, strict=True)]
-    nobody = np.zeros((0, 2))
+    struck = places.struck([(one.width, one.height) for one in meshes])
+    inset = [
+        max(round(0.5 * (1.0 - float(np.ptp(body.point[:, 0])) / mesh.width), 12), 0.0)
+        for body, mesh in zip(bodies, meshes, strict=True)
+    ]
+    corners = [_with_corners(*one) for one in zip(bodies, containers, struck, inset, strict=True)]
+    # of the neighbours no point is watched
     watched = [
         corners[0],
-        *(one._replace(monitor=nobody, monitor_shape=np.zeros((0, 2, 0))) for one in corners[1:]),
-    ]
-    inset = [
-        0.5 * (1.0 - float(np.ptp(one.point[:, 0])) / mesh.width)
-        for one, mesh in zip(bodies, meshes, strict=True)
+        *(one._replace(monitor=one.monitor[:0], monitor_shape=one.monitor_shape[:0]) for one in corners[1:]),
     ]
     springs = contact.normal_stiffness.copy(), contact.tangential_stiffness.copy()
-    return make_stack(watched, *springs, (*_arrays(places), np.maximum(np.round(inset, 12), 0.0)))
+    return make_stack(watched, *springs, (*places.facing, np.array(inset)))
 
 
-def _with_corners(body: ModalBody, mesh: ContainerMesh) -> ModalBody:
-    """The body with the corners of its elevation in place of its points over the floor."""
+def _with_corners(body: ModalBody, container: Container, struck: FloatArray, inset: float) -> ModalBody:
+    """The body with the corners of its elevation in place of its points over the floor.
+
+    Args:
+        body: alone.
+        container: it.
+        struck: (2, 2) points of its left and right side that are struck, where it stands on x = 0 [m].
+        inset: of its points over the floor from its sides, over the width.
+    """
+    mesh, foot = container.mesh, body.shape
     corner = [(x, z) for z in (0.0, mesh.height) for x in (-0.5 * mesh.width, 0.5 * mesh.width)]
-    return make_modal_body(
-        mass=body.mass,
-        inertia=body.inertia,
-        gravity=body.gravity,
-        downhill=body.downhill,
-        point=np.array(corner) - body.rest,
-        rest=(float(body.rest[0]), float(body.rest[1])),
-        monitor=body.monitor,
-        tolerance=body.tolerance,
-    )
+    head = np.moveaxis(shapes_at(struck, container.elements.nodes, container.basis.shapes), 0, -1)
+    low = foot + inset / (1.0 - 2.0 * inset) * (foot - foot[::-1])
+    high = low + (head - low) * (mesh.height / struck[:, 1])[:, None, None]
+    return body._replace(point=np.array(corner) - body.rest, shape=np.concatenate([low, high]))
 
 
 def begin_row(
@@ -175,11 +155,10 @@ def begin_row(
     Raises:
         CaseError: two of them overlap.
     """
-    boxes, points = body.body.boxes, contact.cap.size
-    state = make_state(3 * len(alone), points, len(boxes.monitor), len(alone))
+    boxes, state, floor = body.body.boxes, make_stack_state(body), 2 * len(alone)
     for name in ("position", "velocity"):
-        getattr(state, name)[:] = np.concatenate([getattr(one, name) for one in alone])
-    floor = 2 * len(alone)
+        for own, single in zip(getattr(state, name).reshape(len(alone), -1), alone, strict=True):
+            own[: single.position.size] = getattr(single, name)
     state.force[:floor] = np.concatenate([one.force for one in alone])
     if contact.friction == ELASTIC_STICK:
         state.stick[:floor] = np.concatenate([one.stick for one in alone])

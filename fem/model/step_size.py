@@ -50,18 +50,23 @@ STIFF_CONTACT, LARGE_CONTACT_STEP = 3.0, 0.7
 
 
 def largest_step_of(
-    case: Case, static: StaticChecks, duration: float, *motions: BaseMotion
+    case: Case, rocking: float, duration: float, *motions: BaseMotion
 ) -> tuple[float, FloatArray]:
     """Largest step of the run [s], and the instants that a step must end on, rising [s].
 
-    `duration` is its `longest_run` [s]. A pulse or record much shorter than the run sets small steps only while it
-    lasts, by closely spaced instants.
+    A pulse or record much shorter than the run sets small steps only while it lasts, by closely spaced instants.
+
+    Args:
+        case: its solver and output.
+        rocking: frequency parameter, of a row the largest of all [1/s].
+        duration: its `longest_run` [s].
+        motions: of the floor.
 
     Raises:
         CaseError: a given step that is too long for a motion.
     """
     solver, output = case.solver, case.output
-    largest, ends = STEP_OF_ROCKING / static.frequency_parameter, set[float]()
+    largest, ends = STEP_OF_ROCKING / rocking, set[float]()
     if solver.step_s != "auto":
         largest = solver.step_s
     most = largest
@@ -129,7 +134,8 @@ def control_of(
 
     Args:
         largest: step [s].
-        row: of each container of a row alone. The one that takes least to overturn sets the limits of energy.
+        row: of each container of a row alone. The one that takes least to overturn sets the limits of energy, the one
+            that rocks most slowly how long nothing may move at rest.
     """
     mesh, base = container.mesh, container.support.index.size
     bodies = [one.mesh for one in container.row] or [mesh]
@@ -145,7 +151,7 @@ def control_of(
         if container.row or not container.boxes:
             share, trail, eager = MOST_RIGID_SHARE, MOST_RIGID_TRAIL, loose > EAGER_TOLERANCE
     spring, dashpots = float(contact.normal_stiffness[0]), contact.normal_stiffness * contact.relaxation_time
-    dashpot = float(dashpots.max() if container.boxes and not container.row else dashpots[0])
+    dashpot = float(dashpots.max() if container.boxes else dashpots[0])
     struck = _struck_mass(case, container)
     # Time constants of a mass on the dashpot and on the spring of a corner.
     closing = CLOSING_SHARE_OF_TIME / (dashpot / struck + 0.2 * math.sqrt(2.0 * spring / mesh.mass))
@@ -168,6 +174,7 @@ def control_of(
         downhill=case.gravity_downhill,
         frequency_parameter=rate,
         resting_energy=sum(one.mass * case.gravity_toward_floor * one.centroid[1] for one in bodies),
+        slowest_rocking=min(one.frequency_parameter for one in (static, *row)),
         slenderness_angle=static.slenderness_angle,
         width=static.width,
         near=NEAR * min([static.width, *(one.width for one in row)]),

@@ -43,7 +43,7 @@ from fem.results.history import History
 from fem.results.kinds import RUN
 from fem.results.outcome import Outcome
 from fem.results.reader import OpenedRun
-from fem.results.run_result import Energy, Numerics, Verdict
+from fem.results.run_result import Energy, Numerics, Verdict, to_overturn
 
 READ_AS = (
     " utilisation is demand over capacity; above 1 the rule says that it slides or overturns. Rotation ratio is the "
@@ -293,13 +293,14 @@ def _stepping(case: Case, numerics: Numerics) -> list[tuple[str, str]]:
 def _energies(view: RunView) -> list[tuple[str, str]]:
     """The energy balance at the end: name and value."""
     energy = view.result.energy or Energy()
-    error = f"{number(energy.closure_error, figures=3)} of the energy to overturn"
+    row = bool(view.case.neighbour)
+    error = f"{number(energy.closure_error, figures=3)} of the energy {to_overturn(row)}"
     absent = {
         "crushing_J": not view.case.floor.is_slab,
         "impact_J": view.case.contact.restitution_over_housner is None,
     }
     rows = [
-        (words, quantity(getattr(energy, key), "J"))
+        (to_overturn(row) if key == "reference_J" else words, quantity(getattr(energy, key), "J"))
         for key, words in ENERGIES.items()
         if not absent.get(key, False)
     ]

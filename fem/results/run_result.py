@@ -201,6 +201,11 @@ class Margin(JsonBlock):
     written_where_given = frozenset({"destroyed_from", "factor_without_links", "without_links_tried_to"})
 
 
+def to_overturn(row: bool) -> str:
+    """Whose overturning the reference of the energy balance is, in words; `row`: of a row of containers."""
+    return "to overturn the container of the row that takes least" if row else "to overturn"
+
+
 @dataclass(frozen=True, kw_only=True)
 class NeighbourResult(JsonBlock):
     """What a neighbour did, and what happened across the gap before it."""
@@ -217,6 +222,7 @@ class NeighbourResult(JsonBlock):
     max_force_N: float  #: across the gap
     largest_closing_velocity_m_s: float
     gap_left_m: float  #: least gap that was left
+    max_von_mises_Pa: float | None = None  #: of the reduced model; None of the rigid one
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -35,7 +35,7 @@ def run_without_history(model: Model, recovery: Recovery | None) -> tuple[Verdic
         run,
         duration,
         rest_from=model.rest_from,
-        aftermath=AFTERMATH / run.problem.control.frequency_parameter,
+        aftermath=AFTERMATH / run.problem.control.slowest_rocking,
         slip_until=until,
         cycle=min(model.case.motion.period, duration),
     )

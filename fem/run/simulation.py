@@ -188,7 +188,7 @@ def _part_of(model: Model) -> tuple[int, float]:
         return DRIVEN, min(duration, model.rest_from)
     if time < duration:
         return FREE, duration
-    return UNDECIDED, duration + AFTERMATH / model.run.problem.control.frequency_parameter
+    return UNDECIDED, duration + AFTERMATH / model.run.problem.control.slowest_rocking
 
 
 def _leave_alone(model: Model, run: RunState, recorder: Recorder) -> tuple[float, float, float]:

@@ -17,9 +17,9 @@ from fem.case.case import Case
 from fem.case.rules import ends_at_rest, longest_time
 from fem.model.floor_numbers import floor_result
 from fem.model.frames import frame_interval
-from fem.model.geometry import node_count
+from fem.model.geometry import build_container, node_count
 from fem.model.model import Model
-from fem.model.motion import longest_run, motion_result, peaks_in_run
+from fem.model.motion import longest_run, motion_result
 from fem.model.static_checks import static_checks_of
 from fem.model.step_size import largest_step_of
 from fem.model.support import normal_penalty
@@ -57,8 +57,11 @@ def chosen_values(case: Case, mesh: ContainerMesh, motions: tuple[BaseMotion, Ba
     if case.solver.duration_s == "auto" and not ends_at_rest(case):
         chosen["solver.duration_s"] = longest_time(case)
     if case.solver.step_s == "auto":
-        static = static_checks_of(case, mesh, *peaks_in_run(case, *motions, longest))
-        chosen["solver.step_s"], _ = largest_step_of(case, static, longest, *motions)
+        row = case.row or (case,)
+        meshes = [mesh, *(build_container(one) for one in row[1:])]
+        each = (static_checks_of(one, own, 0.0) for one, own in zip(row, meshes, strict=True))
+        fastest = max(static.frequency_parameter for static in each)
+        chosen["solver.step_s"], _ = largest_step_of(case, fastest, longest, *motions)
     if case.output.fields_s == "auto":
         nodes = node_count(mesh, case.solver.order)
         chosen["output.fields_s"] = frame_interval(case, nodes, longest)

@@ -33,6 +33,11 @@ class StaticResponse:
     displacement: FloatArray  #: (2 n_c, n, 2), for a force along x, z of each point in turn [m/N]
     compliance: FloatArray  #: (2 n_c, 2 n_c) seen at those points [m/N]
 
+    def of_first(self, points: int) -> "StaticResponse":
+        """That to forces at the first so many points."""
+        first = slice(2 * points)
+        return StaticResponse(displacement=self.displacement[first], compliance=self.compliance[first, first])
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ReducedBasis:

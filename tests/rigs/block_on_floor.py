@@ -273,6 +273,7 @@ def limits_of(block: Block, largest_step: float, fixed_step: bool, energy_scale:
         downhill=GRAVITY * math.sin(block.slope),
         frequency_parameter=rigid.frequency_parameter,
         resting_energy=block.mass * block.gravity * math.cos(block.slope) * 0.5 * block.height,
+        slowest_rocking=rigid.frequency_parameter,
         slenderness_angle=rigid.slenderness_angle,
         width=block.width,
         near=0.25 * block.width,

@@ -45,9 +45,15 @@ ROW = (
     "centroid_m = 0.4}, {side = 'left', gap_m = 0.0, stiffness_N_m = 1e8}]",
 )
 
+REDUCED_ROW = (
+    *(*REDUCED, "motion.peak_acceleration_m_s2=9", "solver.elastic_modes=4", "solver.element_size_m=0.25"),
+    "neighbour=[{side = 'left', gap_m = 0.001, stiffness_N_m = 1e8, boxes = 3}]",
+)
+
 CASES = {
     "stop and tie": ("rocking", HELD),
     "row": ("rocking", ROW),
+    "row, reduced": ("seed_stack_plateau", REDUCED_ROW),
     "loose": ("seed_stack_plateau", (*RIGID, *LOOSE)),
     "loose, reduced": (
         "seed_stack_plateau",

@@ -12,8 +12,12 @@ from moreau import slide_in_a_row
 from contact.stepping.ledger import CONTACT_DAMPING, FRICTION
 from fem.assessment.verdict import verdict_of
 from fem.case.case import Case, CaseError
+from fem.case.neighbours import case_of
 from fem.evidence.verification.runs import STACK, Finished, harmonic, pulse, run
+from fem.model.geometry import build_container
 from fem.model.model import build_model
+from fem.model.motion import build_motions
+from fem.run.solve import chosen_values
 
 MASS, WIDTH, SPEED = 1e4, 1.1, 0.5
 BESIDE = {"side": "right", "gap_m": 0.1, "stiffness_N_m": 1e8}
@@ -94,6 +98,26 @@ def test_a_container_is_restored_whatever_its_neighbour_still_does():
     verdict = verdict_of(found.model, found.history, None)
     assert abs(found.history["neighbour_1_rotation_rad"][-1]) > 0.02
     assert (verdict.outcome, verdict.restored) == ("rock", True)
+
+
+def test_the_steps_are_short_enough_for_every_container_and_rest_is_long_enough():
+    slow = HELD.with_values({"motion.kind": "none", "container.height_m": 8.0})
+    row = in_a_row(slow, {**BESIDE, "height_m": 1.0, "centroid_m": 0.5})
+    mine, small = (
+        build_model(one).static.frequency_parameter for one in (slow, slow.with_values(row_of_one(row)))
+    )
+    control = build_model(row).run.problem.control
+    assert small > 1.5 * mine
+    assert control.largest_step == pytest.approx(0.01 / small, rel=1e-12)
+    assert control.slowest_rocking == mine
+    assert build_model(in_a_row(slow, BESIDE)).run.problem.control.largest_step > 1.2 * control.largest_step
+    mesh, motions = build_container(row), build_motions(row)
+    assert chosen_values(row, mesh, motions)["solver.step_s"] == control.largest_step
+
+
+def row_of_one(row: Case) -> dict:
+    """What makes the case that of its neighbour alone."""
+    return case_of(row, row.neighbour[0])
 
 
 def test_the_corners_of_a_narrow_neighbour_are_no_wide_base_beside_a_wide_container():
