@@ -7,7 +7,7 @@ Rocking is not in it: a body that rocks or turns about its vertical axis slides 
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -77,7 +77,7 @@ def slip_in_two_directions(
     if any(motion.second is None for motion in motions):
         return None
     slips = {
-        pair: np.array([_largest(motion, pair, gravity, both=True) for motion in motions])
+        pair: np.array([largest_slip(motion, pair, gravity=gravity) for motion in motions])
         for pair in frictions
     }
     longest = max(slips, key=lambda pair: float(slips[pair].mean()))
@@ -88,13 +88,21 @@ def slip_in_two_directions(
         mu_static=worst[0],
         mu_kinetic=worst[1],
         motion=1 + int(np.argmax(slips[worst])),
-        mean_in_plane=float(np.mean([_largest(one, longest, gravity, both=False) for one in motions])),
+        mean_in_plane=float(
+            np.mean([largest_slip(replace(one, second=None), longest, gravity=gravity) for one in motions])
+        ),
     )
 
 
-def _largest(motion: GroundMotion, friction: tuple[float, float], gravity: float, *, both: bool) -> float:
-    """Largest distance from where the body stood, with the worse sign of the vertical [m]."""
-    second = motion.second if both and motion.second is not None else np.zeros_like(motion.horizontal)
+def largest_slip(motion: GroundMotion, friction: tuple[float, float], *, gravity: float = GRAVITY) -> float:
+    """Largest distance from where the body stood, with the worse sign of the vertical [m].
+
+    Args:
+        motion: of the floor; without a second horizontal component the body slides along the first.
+        friction: static and kinetic.
+        gravity: [m/s2].
+    """
+    second = np.zeros_like(motion.horizontal) if motion.second is None else motion.second
     ups = [None] if motion.vertical is None else [motion.vertical, -motion.vertical]
     largest = 0.0
     for up in ups:

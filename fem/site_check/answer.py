@@ -1,7 +1,7 @@
 """The answer to a verification, from its runs: what counts by the rule, what speaks against it, and the margin."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from fem.results.figures import SLIPPED, TURNED
 from fem.results.outcome import ENDINGS, Outcome
@@ -9,13 +9,24 @@ from fem.runtime.intervals import binomial_interval
 from fem.runtime.units import RATIO, SHORT_MILLIMETRES
 from fem.site_check import result
 from fem.site_check.file import SiteRequest
-from fem.site_check.reasons import CONFIDENCE, NOT_FULFILLED, NOT_SURE, Evidence, Reason
+from fem.site_check.reasons import (
+    ALIKE,
+    CONFIDENCE,
+    NOT_FULFILLED,
+    NOT_SURE,
+    Evidence,
+    Reason,
+    places_of,
+    span,
+)
 from fem.site_check.rule import FIGURE_OF, RuleFound, RunGroup, groups_of, rule_in_words
 from fem.site_check.runs import FURTHER, REFINED, REPEATED, SCAN, SET, RunKey
 
 FULFILLED = "fulfilled"
 EARTHQUAKE, WIND = "earthquake", "wind"
 NO_FURTHER = "No further motions were asked for: how often such motions overturn it is not known."
+#: largest slip [m] under both horizontal components, by motion, period of the building and friction
+MotionSlips = Mapping[tuple[int, float | None, float, float], float]
 FIGURES = ("rotation_ratio", "rotation_ratio_largest", "slip_m")  #: of the rule, of which the range is given
 
 
@@ -26,6 +37,7 @@ class Beside:
     confirmed: Sequence[result.ConfirmedRun] = ()  #: the deciding runs, repeated
     wind: float | None = None  #: utilisation under wind; None: it was not asked for
     two_directions: result.TwoDirections | None = None  #: None: not asked for, or not known
+    slips_of_further: MotionSlips = field(default_factory=dict)  #: empty: not asked for, or not known
     in_plane_only: str = ""  #: why the slip in two directions, which was asked for, is not known, in words
     hazard: result.AnnualRates | None = None  #: None: no hazard was given
     still: int = 0  #: runs that the rigid bound made superfluous
@@ -61,7 +73,7 @@ def answer_of(
         rule=found,
         range=span,
         repetitions_failed=failed,
-        further=further_motions(request, runs),
+        further=further_motions(request, runs, beside.slips_of_further),
         confirmed=beside.confirmed,
     )
     against = list(evidence.reasons())
@@ -122,15 +134,24 @@ def answer_of(
 
 
 def two_directions_reasons(slip: result.TwoDirections, limit: float) -> Iterator[Reason]:
-    """Whether a body that slides in both directions keeps within the clearance."""
-    if slip.slip_largest_m > limit:
-        period = "" if slip.building_period_s is None else f", building {slip.building_period_s:g} s"
-        yield Reason(
-            NOT_FULFILLED,
-            f"Under both horizontal components at once the largest slip is {_slip_in_words(slip.slip_largest_m)}, "
-            f"beyond the clearance of {SHORT_MILLIMETRES.text(limit)} (motion {slip.motion}{period}, friction "
-            f"{slip.mu_static:.3g}/{slip.mu_kinetic:.3g}; a body that does not rock).",
-        )
+    """Whether a body that slides in both directions keeps within the clearance, in the set and its repetitions."""
+    low, high = slip.slip_range_m or (slip.slip_largest_m, slip.slip_largest_m)
+    if high <= limit:
+        return
+    period = "" if slip.building_period_s is None else f", building {slip.building_period_s:g} s"
+    where = (
+        f"(motion {slip.motion}{period}, friction {slip.mu_static:.3g}/{slip.mu_kinetic:.3g}; a body that does not "
+        "rock)."
+    )
+    clearance = f"the clearance of {SHORT_MILLIMETRES.text(limit)}"
+    words = "Under both horizontal components at once the largest slip is"
+    if low > limit:
+        slid = _slip_in_words(slip.slip_largest_m)
+        yield Reason(NOT_FULFILLED, f"{words} {slid}, beyond {clearance} {where}")
+    else:
+        places = places_of("slip_m", limit, (low, high))
+        shown = span("slip_m", low, high, places)
+        yield Reason(NOT_SURE, f"{words} {shown} mm in repetitions {ALIKE}: {clearance} lies between {where}")
 
 
 def _least(*factors: float | None) -> float | None:
@@ -224,16 +245,28 @@ def rule_range(
 
 
 def further_motions(
-    request: SiteRequest, runs: Mapping[RunKey, result.SiteRun]
+    request: SiteRequest, runs: Mapping[RunKey, result.SiteRun], slips: MotionSlips
 ) -> tuple[result.FurtherMotions, ...]:
-    """Of the further motions, how many overturn each container, or go beyond a limit, with the worse sign."""
+    """Of the further motions, how many overturn each container, or go beyond a limit, with the worse sign.
+
+    Args:
+        slips: under both horizontal components.
+    """
     limits = request.limits
     counted = []
     for group in groups_of(run for key, run in runs.items() if key.stage == FURTHER):
         failed = {run.motion for run in group.runs if run.outcome is None}
         known = RunGroup(runs=tuple(run for run in group.runs if run.motion not in failed))
-        fell = known.beyond_any({})
+        fell = len(known.beyond_any({}))
         first = group.first
+        pair = first.building_period_s, first.mu_static, first.mu_kinetic
+        slid = {
+            motion: slips[motion, *pair]
+            for motion in {run.motion for run in known.runs}
+            if (motion, *pair) in slips
+        }
+        beyond = known.beyond_any({TURNED: limits.single_rotation_ratio, SLIPPED: limits.slip_m})
+        too_far = {motion for motion, slip in slid.items() if slip > limits.slip_m}
         counted.append(
             result.FurtherMotions(
                 mass=first.mass,
@@ -244,9 +277,9 @@ def further_motions(
                 motions=known.motions,
                 overturned=len({run.motion for run in known.runs if run.outcome == Outcome.OVERTURNED}),
                 invalid=len({run.motion for run in known.runs if run.outcome == Outcome.INVALID}),
-                beyond_limits=known.beyond_any(
-                    {TURNED: limits.single_rotation_ratio, SLIPPED: limits.slip_m}
-                ),
+                beyond_limits=len(beyond | too_far),
+                slip_largest_m=max(slid.values(), default=None),
+                slid_too_far=len(too_far),
                 interval=binomial_interval(fell, known.motions, CONFIDENCE) if known.motions else (),
                 failed=len(failed),
             )

@@ -50,10 +50,10 @@ class Evidence:
                 "count as standing.",
             )
         if self.rule.overturned:
-            most = max(self.groups, key=lambda group: group.beyond_any({}))
+            most = max(self.groups, key=lambda group: len(group.beyond_any({})))
             yield Reason(
                 NOT_FULFILLED,
-                f"{self.rule.overturned} of {runs} runs overturned: up to {most.beyond_any({})} of "
+                f"{self.rule.overturned} of {runs} runs overturned: up to {len(most.beyond_any({}))} of "
                 f"{self.motions} motions overturn it ({where(most.first)}).",
             )
         if not self.rule.overturned + self.rule.invalid:
@@ -151,7 +151,7 @@ def against(one: FurtherMotions) -> Iterator[Reason]:
     if not one.motions:
         return
     per_cent = f"{100.0 * MOST_OVERTURNING:g} %"
-    beyond = f"{one.beyond_limits} went beyond a limit of a single motion"
+    beyond = f"{one.beyond_limits} went beyond a limit of a single motion{both_ways(one)}"
     least_beyond, _ = binomial_interval(one.beyond_limits, one.motions, CONFIDENCE)
     if one.overturned + one.invalid and one.interval[1] > MOST_OVERTURNING:
         low, high = (plain_number(100.0 * end, FIGURES) for end in one.interval)
@@ -172,6 +172,11 @@ def against(one: FurtherMotions) -> Iterator[Reason]:
             f"{one.motions} further motions cannot show that at most {per_cent} overturn it: at least "
             f"{least_draws(MOST_OVERTURNING, CONFIDENCE)} can.",
         )
+
+
+def both_ways(one: FurtherMotions) -> str:
+    """How many of those beyond a limit slid too far under both horizontal components."""
+    return f", {one.slid_too_far} by slip under both horizontal components" if one.slid_too_far else ""
 
 
 def destroyed(count: int) -> str:

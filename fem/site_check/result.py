@@ -203,7 +203,10 @@ class FurtherMotions(JsonBlock):
     mu_kinetic: float
     motions: int
     overturned: int
-    beyond_limits: int  #: overturned, or beyond a limit of a single motion
+    beyond_limits: int  #: overturned, or beyond a limit of a single motion, by its run or in both directions
+    #: slip under both horizontal components of a body that does not rock, the largest [m]; None: not known
+    slip_largest_m: float | None = None
+    slid_too_far: int = 0  #: motions under which that is beyond the clearance
     interval: tuple[float, ...]  #: of the probability that it does not stand, 95 %, two-sided
     invalid: int = 0  #: motions that destroyed a corner, under which it does not count as standing
     failed: int = 0  #: motions without an outcome, which are none of `motions`
@@ -249,6 +252,8 @@ class TwoDirections(JsonBlock):
     building_period_s: float | None = None
     #: least factor on the motions, of those tried, at which it slides too far
     margin_factor: float | None = None
+    #: of the largest, over the set and its repetitions: [low, high]; empty: there are none
+    slip_range_m: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -86,18 +86,15 @@ class RunGroup:
 
     def beyond(self, figure: str, limit: float) -> int:
         """Motions of which a figure is beyond a limit with the worse sign, or under which it does not stand."""
-        return self.beyond_any({figure: limit})
+        return len(self.beyond_any({figure: limit}))
 
-    def beyond_any(self, limits: Mapping[str, float]) -> int:
+    def beyond_any(self, limits: Mapping[str, float]) -> set[int]:
         """Motions under which it does not stand, or with one of some figures beyond its limit, of the worse sign."""
-        return len(
-            {
-                run.motion
-                for run in self.runs
-                if run.outcome in ENDINGS
-                or any((run[figure] or 0.0) > limit for figure, limit in limits.items())
-            }
-        )
+        return {
+            run.motion
+            for run in self.runs
+            if run.outcome in ENDINGS or any((run[figure] or 0.0) > limit for figure, limit in limits.items())
+        }
 
     def _worst(self, figure: str) -> list[float] | None:
         """Of each motion the worse sign; None where a run has no such figure."""

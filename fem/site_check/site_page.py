@@ -21,7 +21,7 @@ from fem.seismic.hazard import ACCELERATION
 from fem.site_check import site_sections
 from fem.site_check.answer import FULFILLED
 from fem.site_check.figures import draw_motion, draw_spectra
-from fem.site_check.reasons import NOT_FULFILLED, destroyed, unit_of
+from fem.site_check.reasons import NOT_FULFILLED, both_ways, destroyed, unit_of
 from fem.site_check.reasons import span as span_in_words
 from fem.site_check.result import (
     RESULT_FILE,
@@ -175,6 +175,9 @@ def beside_the_set(result: SiteResult) -> list[str]:
         words.append(two_directions_in_words(answer.two_directions))
     if known := [one for one in answer.further if one.motions]:
         worst = max(known, key=lambda one: (one.overturned + one.invalid, one.beyond_limits))
+        furthest = max(known, key=lambda one: one.beyond_limits)
+        slips = [one.slip_largest_m for one in known if one.slip_largest_m is not None]
+        slid = f" (the largest in both directions is {millimetres(max(slips))} mm)" if slips else ""
         low, high = (short(end, 100, 2) for end in worst.interval)
         place = "floor" if result.floor and result.floor.z_over_h is None else "site"
         of_both = " of both" if worst.invalid else ""
@@ -185,8 +188,9 @@ def beside_the_set(result: SiteResult) -> list[str]:
         )
         words.append(
             f"Of {worst.motions} further motions{pairs} {worst.overturned} overturned it{destroyed(worst.invalid)} "
-            f"(95 % interval{of_both} {low} to {high} %) and {max(one.beyond_limits for one in known)} went beyond a "
-            f"limit of a single motion. All these motions have the spectrum of the {place}; recorded ones scatter more."
+            f"(95 % interval{of_both} {low} to {high} %) and {furthest.beyond_limits} went beyond a limit of a single "
+            f"motion{both_ways(furthest)}{slid}. All these motions have the spectrum of the {place}; recorded ones "
+            "scatter more."
         )
     if repeated := confirmation(result):
         words.append(repeated)
@@ -246,10 +250,14 @@ def rates_in_words(rates: AnnualRates, slip_limit: float) -> list[str]:
 def two_directions_in_words(slip: TwoDirections) -> str:
     """How far it slides under both horizontal components, and how much further than in the plane of the runs."""
     largest, mean = millimetres(slip.slip_largest_m), millimetres(slip.slip_mean_m)
+    again = ""
+    if slip.slip_range_m:
+        again = f"; in the repetitions {' to '.join(dict.fromkeys(map(millimetres, slip.slip_range_m)))} mm"
     return (
         f"Under both horizontal components at once, sliding without rocking: largest slip {largest} mm, mean {mean} "
-        f"mm, in the plane {millimetres(slip.slip_mean_in_plane_m)} mm. It is held against the clearance, too. "
-        "Rocking, and the slip of repetitions and further motions, are computed in the plane only."
+        f"mm, in the plane {millimetres(slip.slip_mean_in_plane_m)} mm{again}. It is held against the clearance, too, "
+        "also under the further motions. Rocking, and the slip of a container that rocks or bends, are computed in the "
+        "plane only."
     )
 
 

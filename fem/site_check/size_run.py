@@ -259,6 +259,7 @@ def written_motions(
         asked.seed,
         asked.stationary_s,
         asked.vertical,
+        asked.second_component,
     )
     digest = sha256(repr(further).encode())
     for motion in (one for floor in floors.values() for one in floor):

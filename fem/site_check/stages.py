@@ -10,14 +10,14 @@ from fem.batch.workers import hand_out
 from fem.seismic.action import MotionTarget
 from fem.seismic.artificial import artificial_motions
 from fem.seismic.ground_motion import GroundMotion
-from fem.seismic.two_directions import slip_in_two_directions
-from fem.site_check.answer import Beside
+from fem.seismic.two_directions import largest_slip, slip_in_two_directions
+from fem.site_check.answer import Beside, MotionSlips
 from fem.site_check.file import SiteRequest
 from fem.site_check.motion_results import write_csv_files
 from fem.site_check.motions import motion_target, on_floor
 from fem.site_check.result import ConfirmedRun, SiteBody, TwoDirections
 from fem.site_check.rule import RuleFound, governing_groups, groups_of
-from fem.site_check.runs import HAZARD, REPETITIONS, SCAN, SET, RunKey, RunPlan, RunRows, motion_stem
+from fem.site_check.runs import FURTHER, HAZARD, REPETITIONS, SCAN, SET, RunKey, RunPlan, RunRows, motion_stem
 from fem.site_check.screening import Screening
 from fem.site_check.yearly import annual_rates, hazard_motions, hazard_runs, rocking_most
 
@@ -181,6 +181,7 @@ class Stages:
             confirmed=confirmed,
             wind=wind,
             two_directions=slid,
+            slips_of_further=self._slips_of_further(),
             in_plane_only=self._in_plane_only,
             hazard=annual_rates(
                 self.request, self.rows.in_order(), self.screening.motions, bodies, slid, peak_velocity
@@ -219,12 +220,16 @@ class Stages:
         longest, first = max(known.values(), key=lambda one: one.mean), known[worst]
         pair = first.mu_static, first.mu_kinetic
 
+        def largest(factor: float) -> float:
+            return max(
+                largest_slip(motion.scaled(factor), pair, gravity=gravity) for motion in self.floors[worst]
+            )
+
         def too_far(factor: float) -> bool:
-            motions = [motion.scaled(factor) for motion in self.floors[worst]]
-            slid = slip_in_two_directions(motions, [pair], gravity=gravity)
-            return slid is not None and slid.largest > self.request.limits.slip_m
+            return largest(factor) > self.request.limits.slip_m
 
         tried = sorted({1.0, *(key.factor for key in self.rows.runs if key.stage in (SET, SCAN))})
+        alike = [first.largest, *map(largest, REPETITIONS)]
         return TwoDirections(
             slip_mean_m=longest.mean,
             slip_largest_m=first.largest,
@@ -234,7 +239,21 @@ class Stages:
             motion=first.motion,
             building_period_s=worst,
             margin_factor=next(filter(too_far, tried), None),
+            slip_range_m=(min(alike), max(alike)),
         )
+
+    def _slips_of_further(self) -> MotionSlips:
+        """How far the container slides in both directions under each further motion; empty where that is not known."""
+        box = self.request.container
+        if box.floor.slope_percent or not self.request.motions.second_component:
+            return {}
+        slips: dict[tuple[int, float | None, float, float], float] = {}
+        for key in self.rows.runs:
+            what = key.motion, key.building_period_s, key.mu_static, key.mu_kinetic
+            if key.stage == FURTHER and what not in slips:
+                motion = self.screening.motions[key.stem]
+                slips[what] = largest_slip(motion, what[2:], gravity=box.gravity_m_s2)
+        return slips
 
     def _left(self, keys: Sequence[RunKey]) -> list[RunKey]:
         """Those that must be computed, by their motions; those at rest by the rigid bound are noted."""
@@ -250,9 +269,7 @@ class Stages:
         """Make the further motions of these runs, and write their files."""
         for period in dict.fromkeys(key.building_period_s for key in keys):
             numbers = sorted({key.motion for key in keys if key.building_period_s == period})
-            stage, first, second = keys[0].stage, FIRST_FURTHER, 0.0
-            if stage == HAZARD:
-                first, second = FIRST_OF_HAZARD, self.request.motions.second_component
+            stage = keys[0].stage
             make = partial(
                 further_motions,
                 self.request,
@@ -260,8 +277,7 @@ class Stages:
                 self.plan.vertical,
                 self.longest,
                 period,
-                first,
-                second,
+                FIRST_OF_HAZARD if stage == HAZARD else FIRST_FURTHER,
             )
             pools = runner.workers_of(self.request.heading.model, len(keys))
             for chunk, made in hand_out(numbers, make, pools, at_a_time=4, stop=runner.stop):
@@ -278,7 +294,6 @@ def further_motions(
     longest: float,
     period: float | None,
     first: int,
-    second: float,
     numbers: Sequence[int],
 ) -> list[GroundMotion]:
     """Artificial motions beyond the set, on the floor of a building of this period or on the ground (None)."""
@@ -291,7 +306,7 @@ def further_motions(
             stationary=asked.stationary_s,
             longest=longest,
             vertical=vertical,
-            second=second,
+            second=asked.second_component,
             first=first + number,
         )
         made.append(on_floor(request.building, motion, period))

@@ -17,7 +17,7 @@ from fem.results.outcome import ENDINGS
 from fem.runtime.intervals import binomial_interval
 from fem.seismic.ground_motion import GroundMotion
 from fem.seismic.hazard import ACCELERATION, YEARS, CountedRate, HazardCurve, counted_rate, probability_in
-from fem.seismic.two_directions import slip_in_two_directions
+from fem.seismic.two_directions import largest_slip
 from fem.site_check.file import SiteRequest
 from fem.site_check.reasons import CONFIDENCE
 from fem.site_check.result import AnnualRates, HazardLevel, SiteBody, SiteRun, TwoDirections
@@ -130,11 +130,7 @@ def annual_rates(
     def too_far(key: RunKey, run: SiteRun) -> bool:
         if sloping or run.slipped > limit:  # a body without a preferred direction would also creep downhill
             return run.slipped > limit
-        motion = made[key.stem].scaled(key.factor)
-        if motion.second is None:
-            motion = replace(motion, second=np.zeros_like(motion.horizontal))
-        found = slip_in_two_directions([motion], [pair], gravity=gravity)
-        return found is not None and found.largest > limit
+        return largest_slip(made[key.stem].scaled(key.factor), pair, gravity=gravity) > limit
 
     # the strength of the site's own motions, in the unit of the hazard
     action = request.action

@@ -222,3 +222,29 @@ def test_within_the_clearance_the_slip_in_two_directions_is_the_one_in_the_sente
     assert (found.answer, found.margin_factor) == ("fulfilled", 1.5)
     assert "largest slip 80.0 mm (limit 100 mm)" in found.sentence
     assert found.actions[0].utilisation == pytest.approx(0.8)
+
+
+def test_a_clearance_within_the_slips_of_the_repetitions_in_two_directions_is_not_sure():
+    slid = replace(two_directions(0.0999, None), slip_range_m=(0.0998, 0.1001))
+    found = answer(runs_of(), repeated(), further(), two_directions=slid)
+    assert found.answer == "not sure"
+    assert "99.8 to 100.1 mm in repetitions" in found.reasons[0] and "lies between" in found.reasons[0]
+
+
+def test_further_motions_that_slide_too_far_in_two_directions_speak_against_it():
+    """With the slips of its runs, which are plane, well within the clearance."""
+    pair = (None, 0.4, 0.2)
+    slips = {(motion, *pair): 0.2 if motion <= 18 else 0.05 for motion in range(1, 101)}
+    found = answer(runs_of(), repeated(), further(), slips_of_further=slips)
+    assert found.answer == "not sure"
+    assert found.reasons == (
+        "Of 100 further motions 18 went beyond a limit of a single motion, 18 by slip under both horizontal components "
+        "(full, friction 0.4/0.2): of such motions more than 5 % do.",
+    )
+    assert (found.further[0].slip_largest_m, found.further[0].slid_too_far) == (0.2, 18)
+
+
+def test_a_further_motion_beyond_the_clearance_in_the_plane_and_in_two_directions_counts_once():
+    slips = {(motion, None, 0.4, 0.2): 0.2 for motion in (1, 2, 3)}
+    found = answer(runs_of(), repeated(), further(beyond=2), slips_of_further=slips)
+    assert (found.further[0].beyond_limits, found.further[0].slid_too_far) == (3, 3)

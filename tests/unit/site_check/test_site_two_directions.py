@@ -5,10 +5,13 @@ from dataclasses import replace
 import pytest
 from site_example import RUN, example
 
-from fem.seismic.two_directions import slip_in_two_directions
+from fem.batch.study import runner_of
+from fem.seismic.two_directions import largest_slip, slip_in_two_directions
 from fem.site_check.answer import answer_of
 from fem.site_check.file import load_site
 from fem.site_check.motions import floor_motions, ground_motions
+from fem.site_check.rule import groups_of
+from fem.site_check.runs import REPETITIONS
 from fem.site_check.stages import Stages
 
 SITE = """
@@ -51,6 +54,33 @@ def test_the_largest_slip_of_the_set_is_found_with_its_friction_and_motion(tmp_p
     assert (found.mu_static, found.mu_kinetic) == (0.2, 0.1)
     assert found.slip_mean_in_plane_m < 0.8 * found.slip_mean_m
     assert found.margin_factor == 1.0  # beyond 10 mm
+
+
+def test_the_slips_of_the_repetitions_are_those_of_the_set_times_their_factors(tmp_path):
+    found, floors = slid(tmp_path)
+    motion, pair = floors[None][found.motion - 1], (found.mu_static, found.mu_kinetic)
+    low, high = found.slip_range_m
+    assert low < found.slip_largest_m < high < 1.01 * low
+    assert high == max(largest_slip(motion.scaled(factor), pair) for factor in REPETITIONS)
+
+
+def test_further_motions_have_a_second_component_and_their_own_slips(tmp_path):
+    stages = stages_of(tmp_path, motions="further = 2")
+    run = replace(RUN, mass="full", rotation_ratio=0.0, max_slip_m=0.0, outcome="rest")
+    own = [replace(run, **key._asdict()) for key in stages.plan.of_set()]
+    keys = stages.plan.of_further(groups_of(own)[:1], 2)
+    with runner_of(jobs=1) as runner:
+        stages._make(runner, keys)
+    stages.rows.runs.update({key: replace(run, **key._asdict()) for key in keys})
+    slips = stages.beside([], None).slips_of_further
+    first = keys[0]
+    pair = first.mu_static, first.mu_kinetic
+    motions = [stages.screening.motions[stem] for stem in sorted({key.stem for key in keys})]
+    assert slips == {
+        (number, None, *pair): largest_slip(motion, pair) for number, motion in enumerate(motions, start=1)
+    }
+    alone = [largest_slip(replace(motion, second=None), pair) for motion in motions]
+    assert all(both > 1.1 * plane for both, plane in zip(slips.values(), alone, strict=True))
 
 
 def test_within_the_clearance_no_factor_tried_is_a_margin(tmp_path):
