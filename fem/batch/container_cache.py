@@ -6,6 +6,7 @@ from concurrent.futures import Future
 from weakref import WeakKeyDictionary
 
 from fem.case.case import Case
+from fem.case.neighbours import OWN
 from fem.model.container import Container, changed_container, discretise
 from fem.model.geometry import build_container
 from fem.model.model import Model
@@ -16,10 +17,10 @@ from fem.model.support import normal_penalty
 STANDING = {"effective_width": 1.0, "casting_m": None, "rocking_damping_ratio": 0.0}
 
 
-def container_key(case: Case, *, mass: bool = True) -> Hashable:
+def container_key(case: Case, *, mass: bool = True, gaps: bool = True) -> Hashable:
     """Equal for cases whose containers are the same, whatever floor they stand on and however they are damped.
 
-    `mass`: also the places of their mass.
+    `mass`: also the places of their mass; `gaps`: also those of a row.
     """
     solver = case.solver
     places = {} if mass else {"centroid_m": 0.0, "eccentricity_m": 0.0}
@@ -34,7 +35,10 @@ def container_key(case: Case, *, mass: bool = True) -> Hashable:
         solver.order,
         case.output.stop_when_overturned,
         tuple((one.side, one.height_m) for one in case.links),
-        case.neighbour,
+        tuple(
+            (one.side, one.gap_m if gaps else None, *(getattr(one, name) for name in OWN))
+            for one in case.neighbour
+        ),
     )
 
 
@@ -45,18 +49,19 @@ class ContainerCache:
         self._most = most
         self._lock = threading.Lock()
         self._held: dict[Hashable, Future[Container]] = {}
-        #: containers that serve others as well, with their cases: rigid ones share all but their mass
+        #: containers that serve others as well, with their cases: rigid ones share all but their mass, those of a row
+        #: all but their gaps
         self._alike: dict[Hashable, tuple[Case, Future[Container]]] = {}
         self._recoveries = WeakKeyDictionary[Container, Recovery]()
 
     def container_of(self, case: Case) -> Container:
-        """The container of a case, built if it is missing; from one that differs in its mass alone, where that does.
+        """The container of a case, built if it is missing; from one that differs little, where that serves.
 
         Raises:
             CaseError, MeshError: bad input.
         """
         key = container_key(case)
-        alike = container_key(case, mass=False) if case.solver.model == "rigid" else key
+        alike = container_key(case, mass=case.solver.model != "rigid", gaps=False)
         with self._lock:
             earlier = self._held.pop(key, None)
             promise = earlier or Future[Container]()
