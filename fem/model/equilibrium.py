@@ -19,7 +19,7 @@ from fem.model.edge_springs import edge_factors
 from fem.model.floor import slab_of
 from fem.model.links import lines_at, places_of_links, shapes_at_links, with_links
 from fem.model.loose_stack import make_stack_state, own_stiffness, settle, stack_of, with_joints
-from fem.model.row import body_of_row, contact_of_row, require_no_jam
+from fem.model.row import body_of_row, contact_of_row, measure_gaps, require_no_jam
 from fem.model.support import Rolling, base_points, normal_penalty, steel_penalty
 from fem.model.validity import require_bearing, require_stiff_contact, require_stiff_container
 from fem.runtime.arrays import FloatArray
@@ -108,6 +108,11 @@ def _of_row(case: Case, container: Container, gravity: float) -> Equilibrium:
     contact = contact_of_row(case, [one.contact for one in row], [mesh.mass for mesh in meshes])
     bodies = [one.body for one in row if isinstance(one.body, ModalBody)]
     body = body_of_row(case, bodies, container.row, contact)
+    upright = [
+        None if alone.initial.rotation_rad != 0.0 else one.stance
+        for alone, one in zip(case.row, row, strict=True)
+    ]
+    measure_gaps(body, bodies, upright, own_stiffness(contact))
     return replace(row[0], contact=contact, body=body, stance=None, row=tuple(row))
 
 

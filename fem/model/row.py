@@ -14,7 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from contact.interface.faces import weigh_points
+from contact.interface.equilibrium import Stance
+from contact.interface.faces import place_points, weigh_points
 from contact.interface.laws import ELASTIC_STICK
 from contact.interface.penalty import damping_ratio_of
 from contact.interface.workspace import Contact
@@ -30,6 +31,7 @@ from fem.model.container import Container
 from fem.model.links import OVERLAP
 from fem.model.loose_stack import make_stack_state
 from fem.runtime.arrays import FloatArray
+from fem.solid.nodal_body import rotation_matrix
 from fem.solid.sides import shapes_at
 from mesh.container import ContainerMesh
 
@@ -134,6 +136,40 @@ def _with_corners(body: ModalBody, container: Container, struck: FloatArray, ins
     low = foot + inset / (1.0 - 2.0 * inset) * (foot - foot[::-1])
     high = low + (head - low) * (mesh.height / struck[:, 1])[:, None, None]
     return body._replace(point=np.array(corner) - body.rest, shape=np.concatenate([low, high]))
+
+
+def measure_gaps(
+    body: LooseStack, bodies: Sequence[ModalBody], stances: Sequence[Stance | None], contact: Contact
+) -> None:
+    """Place the containers of a row so that its gaps are those at rest: shells bulge, and all lean on uneven springs.
+
+    Args:
+        body: of the row with undeformed containers at its gaps, which is changed.
+        bodies: of the containers alone, with their points over the floor.
+        stances: of the containers at rest; None of one that starts tilted, which counts as undeformed.
+        contact: of its own stiffness, which is written.
+    """
+    boxes, faces = body.body.boxes, body.faces
+    undeformed = boxes.rest[:, None] + boxes.point
+    standing = undeformed.copy()
+    for b, (one, stance) in enumerate(zip(bodies, stances, strict=True)):
+        if stance is not None:
+            turn = rotation_matrix(stance.rotation)
+            amplitude = np.einsum("ij,ijk->k", stance.force @ turn, one.shape) / one.stiffness
+            strained = boxes.point[b] + boxes.shape[b, :, :, : amplitude.size] @ amplitude
+            standing[b] = np.asarray(stance.centre) + strained @ turn.T
+    before, at_rest = (_least_gaps(body, corners, contact) for corners in (undeformed, standing))
+    sides = faces.apart[2 * len(bodies) :]
+    sides += faces.side[2 * len(bodies) :] * np.repeat(before - at_rest, POINTS_OF_GAP)
+
+
+def _least_gaps(body: LooseStack, corners: FloatArray, contact: Contact) -> FloatArray:
+    """The gaps of a row, (g,) [m], with its corners (N, 4, 2) there."""
+    floor, point = 2 * len(corners), np.zeros((contact.cap.size, 2))
+    weigh_points(body.faces, corners.reshape(-1, 2), point, contact)
+    place_points(body.faces, corners.reshape(-1, 2), point)
+    gaps = np.where(body.faces.weight > 0.0, point[:, 1], math.inf)[floor:]
+    return np.asarray(gaps.reshape(-1, POINTS_OF_GAP).min(axis=1))
 
 
 def begin_row(

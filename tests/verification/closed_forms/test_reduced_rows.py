@@ -11,6 +11,7 @@ import pytest
 from contact.stepping.body import VELOCITY_X
 from contact.stepping.ledger import IMBALANCE, MATERIAL_DAMPING
 from fem.assessment.verdict import audit
+from fem.batch.container_cache import ContainerCache
 from fem.case.case import Case
 from fem.evidence.verification.runs import STACK, Finished, harmonic, pulse, run
 from fem.model.container import discretise
@@ -180,3 +181,22 @@ def test_a_row_shares_what_is_equal_and_no_more():
     assert row[0] is not row[1]  # struck at another height on its left
     same = discretise(in_a_row(SHELL, BESIDE)).row
     assert same[0] is same[1]
+
+
+def test_containers_with_other_gaps_are_not_reduced_again():
+    cache = ContainerCache()
+    near, far = (cache.container_of(in_a_row(SHELL, {**LOW, "gap_m": gap})) for gap in (0.0, 0.3))
+    assert all(one is other for one, other in zip(near.row, far.row, strict=True))
+    assert np.ptp(far.elements.nodes[:, 0]) == pytest.approx(2 * WIDTH + 0.3, abs=1e-9)
+
+
+@pytest.mark.parametrize("eccentricity", [0.0, 0.05])
+def test_gaps_are_those_at_rest_of_shells_that_bulge_and_lean(eccentricity):
+    still = SHELL.with_values(
+        {"motion.kind": "none", "container.eccentricity_m": eccentricity, "solver.duration_s": 0.02}
+    )
+    for gap in (0.0, 1e-3):
+        found = run(in_a_row(still, {**LOW, "gap_m": gap}))
+        record = found.model.run.links[0]
+        assert record.least_gap == pytest.approx(gap, abs=1e-9)
+        assert record.max_force < 1.0
