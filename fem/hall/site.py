@@ -180,6 +180,7 @@ class _AtSite:
                 resume=True,
                 force=self.force or _is_of_another_program(folder),
                 reporter=SilentReporter(),
+                copy_records=False,  # of every container the same: the site file names them where they are
             )
         except (CaseError, MeshError) as error:
             row: dict[str, Any] = {"container": number, "status": FAILED} | dict.fromkeys(

@@ -1,13 +1,24 @@
 """What was asked, for the page and the simplified methods, and as files in the folder of results."""
 
-from pathlib import PurePath
+import hashlib
+import shutil
+import tomllib
+from contextlib import suppress
+from itertools import chain
+from pathlib import Path, PurePath
 
-from fem.case.data_files import place_of
+from fem.case.case import CaseError
+from fem.case.data_files import place_of, split_channel
+from fem.case.toml import toml_document, toml_value
 from fem.records.source import decoded
 from fem.results.kinds import ResultKind
-from fem.results.run_files import require_free_name
+from fem.results.run_files import copy_data_files, require_free_name
 from fem.site_check.file import SiteRequest
 from fem.site_check.result import USUAL_BEHAVIOUR_FACTOR, SiteInputs
+
+CONTAINER = "container.toml"
+RECORDS = "records"  #: folder in the results of the records that the site file names
+MOST_COPIED = 20_000_000  #: of a record [bytes]; a larger one stays where it is
 
 
 def inputs_of(request: SiteRequest) -> SiteInputs:
@@ -29,15 +40,74 @@ def inputs_of(request: SiteRequest) -> SiteInputs:
     )
 
 
-def texts_of(request: SiteRequest, kind: ResultKind) -> dict[str, str]:
+def texts_of(request: SiteRequest, kind: ResultKind, *, records: bool = True) -> dict[str, str]:
     """The site file, its container, and the files of points that it names, by their names in a folder of results.
+
+    The site file names what lies beside it there, so that it can be repeated from there alone; `records`: also its
+    records, see `copy_files`.
 
     Raises:
         CaseError: a file of points is named like a result, which would replace it.
         OSError: it cannot be read.
     """
-    own = {"site.toml": request.origin.text, "container.toml": request.container.text}
+    own = {"site.toml": _beside_its_files(request, records), CONTAINER: request.container.text}
     for table, name in request.point_files.items():
         require_free_name(place_of(f"{table}.file"), PurePath(name), kind, own)
     files = {name: (request.origin.folder / name).read_bytes() for name in request.point_files.values()}
     return own | {name: decoded(content) or "" for name, content in files.items()}
+
+
+def copy_files(request: SiteRequest, folder: Path) -> None:
+    """Copy the records of the site file, and the mesh of its container, to where the copy of that file names them."""
+    for path, place in _records(request).values():
+        if not Path(place).is_absolute():
+            (folder / place).parent.mkdir(parents=True, exist_ok=True)
+            if (folder / place).resolve() != path.resolve():
+                shutil.copyfile(path, folder / place)
+    with suppress(CaseError):  # the motion of the container, which is not used here, may be none
+        copy_data_files(request.container, folder)
+
+
+def left_elsewhere(request: SiteRequest) -> list[str]:
+    """The records that are too large to be copied, in a sentence each with what tells their content."""
+    return [
+        f"{place} is larger than {MOST_COPIED / 1e6:g} MB and is not copied into the results; SHA-256 "
+        f"{hashlib.sha256(path.read_bytes()).hexdigest()}; to repeat it from there needs --allow-outside"
+        for path, place in dict.fromkeys(_records(request).values())
+        if Path(place).is_absolute()
+    ]
+
+
+def _records(request: SiteRequest) -> dict[str, tuple[Path, str]]:
+    """The records by their names in the site file: where each is, and its place in the results; if large, on disk."""
+    places: dict[str, tuple[Path, str]] = {}
+    taken: dict[str, Path] = {}
+    for name in chain(*(request.motions.files or [])):
+        path, _ = split_channel(request.origin.folder, name)
+        if path.stat().st_size > MOST_COPIED:
+            places[name] = path, str(path.resolve())
+            continue
+        own = path.name
+        while taken.setdefault(own, path) != path:  # of another folder
+            own = f"other-{own}"
+        places[name] = path, f"{RECORDS}/{own}"
+    return places
+
+
+def _beside_its_files(request: SiteRequest, records: bool) -> str:
+    """The site file with the names of the copies beside it; with its comments, where these names alone change."""
+    names = {request.heading.container: CONTAINER}
+    wanted = {**request.data, "container": CONTAINER}
+    if records and request.motions.files:
+        for name, (_, place) in _records(request).items():
+            channel = split_channel(request.origin.folder, name)[1]
+            names[name] = f"{place}#{channel}" if channel else place
+        files = [[names[name] for name in motion] for motion in request.motions.files]
+        wanted["motions"] = {**request.data["motions"], "files": files}
+    text = request.origin.text
+    for name, own in names.items():
+        text = text.replace(toml_value(name), toml_value(own)).replace(f"'{name}'", toml_value(own))
+    with suppress(tomllib.TOMLDecodeError):
+        if tomllib.loads(text) == wanted:
+            return text
+    return toml_document(wanted)

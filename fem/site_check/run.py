@@ -27,7 +27,7 @@ from fem.site_check.answer import answer_of, governing_run, no_answer_yet
 from fem.site_check.bodies import body_of
 from fem.site_check.confirm import confirmed, deciding
 from fem.site_check.file import SiteRequest
-from fem.site_check.inputs import inputs_of, texts_of
+from fem.site_check.inputs import copy_files, inputs_of, left_elsewhere, texts_of
 from fem.site_check.methods import site_methods, wind_utilisation
 from fem.site_check.motion_results import (
     action_result,
@@ -67,6 +67,7 @@ def run_site(
     *,
     allow_outside: bool = False,
     quick: bool = False,
+    copy_records: bool = True,
     **options: Unpack[StudyOptions],
 ) -> SiteResult:
     """Verify a container at a site, into a folder; raises as `run_study`, and CaseError for bad input.
@@ -74,6 +75,7 @@ def run_site(
     Args:
         allow_outside: take records from outside the folder of the site file.
         quick: the set and its repetitions alone; "fulfilled" then only of a container that rests.
+        copy_records: copy the records that the site file names, so that the folder can be repeated by itself.
     """
     began = time.perf_counter()
     bodies = tuple(map(body_of, request.variants))
@@ -92,6 +94,7 @@ def run_site(
         wind=wind_utilisation(bodies, inputs_of(request)),
         asked=asked,
         quick=quick,
+        copy_records=copy_records,
         began=began,
     )
     study = Study(
@@ -99,7 +102,7 @@ def run_site(
         request=asked,
         result=SiteResult,
         compute=work.compute,
-        texts=texts_of(request, SITE),
+        texts=texts_of(request, SITE, records=copy_records),
         size=table_bytes(files, OF_A_MOTION)
         + table_bytes(TIMES_THE_SET * len(stages.plan.of_set()), len(COLUMNS))
         + BYTES_BESIDE,
@@ -138,6 +141,7 @@ class _Verification:
     wind: float | None  #: the largest utilisation under it
     asked: str  #: its hash
     quick: bool
+    copy_records: bool
     began: float  #: when it was asked for [s]
 
     def compute(self, place: ResultFolder, runner: Runner) -> SiteResult:
@@ -150,6 +154,9 @@ class _Verification:
         )
         written = write_ground(place.path, self.ground)
         motions = set_result(self.request, checked, self.ground, written)
+        if self.copy_records:
+            copy_files(self.request, place.path)
+            motions = replace(motions, notes=(*motions.notes, *left_elsewhere(self.request)))
         for period, moved in self.floors.items():
             for number, motion in enumerate(moved, start=1):
                 if period is not None:

@@ -29,7 +29,7 @@ from fem.site_check.bracket import SizeAxis, SizeResult, next_values, size_asked
 from fem.site_check.confirm import confirmed, deciding
 from fem.site_check.figures import draw_size
 from fem.site_check.file import SiteRequest
-from fem.site_check.inputs import inputs_of, texts_of
+from fem.site_check.inputs import copy_files, inputs_of, texts_of
 from fem.site_check.methods import wind_utilisation
 from fem.site_check.motion_results import set_result, write_csv_files
 from fem.site_check.motions import floor_motions, ground_motions, longest_period
@@ -149,6 +149,7 @@ class _Sizing:
     def compute(self, place: ResultFolder, runner: Runner) -> SizeResult:
         """Run what is missing; the values are those that fulfil the rule."""
         began = time.perf_counter()
+        copy_files(self.request, place.path)
         try:
             LoggedRuns(
                 what="runs",

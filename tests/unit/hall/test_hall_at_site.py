@@ -67,12 +67,12 @@ def asked(tmp_path, monkeypatch):
         record(tmp_path / f"{number}.csv", 5.0 + number)
     made = []
 
-    def verified(request, folder, *, force, **options):
+    def verified(request, folder, *, force, copy_records, **options):
         made.append(force)
         if request.container.container.width_m == 2.0:
             raise CaseError("the deciding run cannot be computed")
         folder.mkdir(parents=True, exist_ok=True)
-        for name, text in texts_of(request, KIND).items():
+        for name, text in texts_of(request, KIND, records=copy_records).items():
             (folder / name).write_text(text, encoding="utf-8")
         mark = {"asked": "", **program_of_results()}
         (folder / "assess.json").write_text(json.dumps(mark), encoding="utf-8")

@@ -339,6 +339,34 @@ def test_the_folder_holds_the_files_of_points_so_that_it_can_be_repeated(tmp_pat
     assert again.hazard_curve.rates.tolist() == [1e-2, 1e-3]
 
 
+@pytest.mark.parametrize("most", [20_000_000, 1000])
+def test_a_folder_of_results_is_repeated_by_itself(tmp_path, monkeypatch, brief, most):
+    """From where it was moved, with the records of two folders; a record that is too large stays where it is."""
+    monkeypatch.setattr("fem.site_check.inputs.MOST_COPIED", most)
+    target = load_site(site_file(tmp_path)).action
+    names = ["in/one.csv", "in/two.csv", "other/one.csv"]
+    for name, motion in zip(names, artificial_motions(target, count=3, seed=5, vertical=False), strict=True):
+        place = tmp_path / name
+        place.parent.mkdir(exist_ok=True)
+        write_csv(place, motion.step, 0.2 * motion.horizontal)
+    keys = 'source = "floor"\nvertical = false\nsecond_component = 0.0\n'
+    files = f"{keys}files = {[[name] for name in names]}  # as they came"
+    place = site_file(tmp_path, further=72, motions=files)
+    place.write_text(place.read_text().replace("count = 3\nstationary_s = 10.0\n", ""))
+    first = run_site(load_site(place), tmp_path / "out", quick=True, jobs=1)
+    copied = most > 1000
+    (tmp_path / "out").rename(tmp_path / "moved")
+    for name in ("site.toml", "k1.toml", *(names if copied else ())):
+        (tmp_path / name).unlink()
+    own = tmp_path / "moved" / "site.toml"
+    assert 'container = "container.toml"' in own.read_text() and "# as they came" in own.read_text()
+    again = run_site(load_site(own), tmp_path / "again", quick=True, jobs=1, allow_outside=not copied)
+    assert (again.result, again.runs) == (first.result, first.runs) and first.result.answer == "fulfilled"
+    assert [one.pga_m_s2 for one in again.set.motions] == [one.pga_m_s2 for one in first.set.motions]
+    left = [note for note in first.set.notes if "not copied" in note]
+    assert len(left) == (0 if copied else 3) and all("SHA-256" in note for note in left)
+
+
 def test_a_file_of_points_named_like_a_result_is_refused(tmp_path):
     (tmp_path / "runs.csv").write_text("acceleration_m_s2,rate_per_year\n1,1e-2\n3,1e-3\n")
     asked = load_site(site_file(tmp_path, more='[hazard]\nfile = "runs.csv"'))
