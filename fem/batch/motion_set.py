@@ -17,20 +17,24 @@ from contact.motion.table import TableMotion
 from fem.batch.axes import MOTION_FILE, Axis, set_axis
 from fem.batch.case_maker import CaseMaker
 from fem.batch.runner import Runner, motion_left_out
-from fem.batch.table import table_text
+from fem.batch.table import Columns, table_of_rows, table_text
 from fem.batch.workers import FoundT, ItemT
 from fem.case.case import Case, CaseError, case_hash
 from fem.case.recorded import MotionKey
 from fem.figures.motions import draw_spectra
 from fem.figures.style import svg_of
 from fem.model.motion import build_motion, build_vertical
-from fem.records.intensity import intensity
+from fem.records.intensity import Intensity, intensity
 from fem.records.spectrum import evenly_sampled, log_spaced_periods, response_spectrum
+from fem.results.figures import types_of
 from fem.results.folder import ResultFolder
 from fem.runtime.arrays import FloatArray
 
 LONGEST_PERIOD_S = 4.0
 SPECTRA = "figures/spectra.svg"
+#: columns of a component of a motion
+MEASURED: Columns = {"file": str, "duration_s": float, "step_s": float, "samples": int}
+MEASURED |= types_of(Intensity) | {"sha256": str}
 LARGE_SET = 32  #: motions from which several workers read them
 
 
@@ -152,10 +156,15 @@ def write_motions(
     place: ResultFolder,
     motions: Sequence[FloorMotionPair],
     measures: Sequence[Mapping[str, Any]],
+    outcomes: Columns,
     runner: Runner | None = None,
 ) -> list[str]:
-    """Write `motions.csv`, `spectra.csv` and the figure of the spectra; returns the names of figures."""
-    place.write_text("motions.csv", _motions_table(measures))
+    """Write `motions.csv`, `spectra.csv` and the figure of the spectra; returns the names of figures.
+
+    Args:
+        measures: of each motion, with its outcomes by these columns.
+    """
+    place.write_text("motions.csv", _motions_table(measures, outcomes))
     periods, spectra = spectra_of(motions, runner)
     rows = np.column_stack([periods, *spectra.values()]).tolist()
     place.write_text("spectra.csv", table_text(["period_s", *spectra], rows))
@@ -179,17 +188,16 @@ def spectra_of(
     }
 
 
-def _motions_table(measures: Sequence[Mapping[str, Any]]) -> str:
+def _motions_table(measures: Sequence[Mapping[str, Any]], outcomes: Columns) -> str:
     """`motions.csv`: a row a motion, the numbers of its vertical component with `vertical_` before them."""
-    columns = [name for name in measures[0] if name != "vertical"]
-    verticals: Mapping[str, Any] = next((one["vertical"] for one in measures if one["vertical"]), {})
-    return table_text(
-        [*columns, *(f"vertical_{name}" for name in verticals)],
-        (
-            [*(one[name] for name in columns), *((one["vertical"] or {}).get(name) for name in verticals)]
-            for one in measures
-        ),
-    )
+
+    def upward(numbers: Mapping[str, Any]) -> dict[str, Any]:
+        return {f"vertical_{name}": value for name, value in numbers.items()}
+
+    columns = MEASURED | outcomes
+    if any(one["vertical"] for one in measures):
+        columns |= upward(MEASURED)
+    return table_of_rows(columns, ({**one, **upward(one["vertical"] or {})} for one in measures))
 
 
 def _keys_of(axes: Iterable[Axis]) -> list[dict[str, Any]]:

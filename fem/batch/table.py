@@ -6,7 +6,7 @@ as a file name that begins with "=", has an apostrophe before it.
 
 import csv
 import io
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -52,9 +52,25 @@ def table_text(columns: Iterable[str], rows: Iterable[Iterable[Any]]) -> str:
     return table_of_lines(columns, map(line_of, rows))
 
 
+def table_of_rows(columns: Columns, rows: Iterable[Mapping[str, Any]]) -> str:
+    """A table as text, from rows by column; nothing where a row has no such value."""
+    return table_text(columns, ([row.get(name) for name in columns] for row in rows))
+
+
 def table_of_lines(columns: Iterable[str], lines: Iterable[str]) -> str:
     """A table as text, from lines."""
     return "".join(f"{line}\n" for line in (line_of(columns), *lines))
+
+
+def read_rows(path: Path, columns: Columns) -> list[dict[str, Any]]:
+    """The rows of a whole table by column, None where it has no such column or value; none if the file is missing."""
+    header, *lines = path.read_text(encoding="utf-8").splitlines() if path.is_file() else [""]
+    names = fields_of(header)
+    rows = (dict(zip(names, fields_of(line), strict=True)) for line in lines)
+    return [
+        {name: READERS[kind](row[name]) if row.get(name) else None for name, kind in columns.items()}
+        for row in rows
+    ]
 
 
 def read_lines(path: Path, columns: Iterable[str]) -> list[str]:

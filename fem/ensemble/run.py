@@ -23,7 +23,7 @@ from fem.batch.motion_set import (
 )
 from fem.batch.runner import Row, Runner
 from fem.batch.study import COMPLETED, FAILED, INTERRUPTED, Study, StudyOptions, hash_of, run_study, runner_of
-from fem.batch.table import Columns, row_of, table_of_lines, table_text
+from fem.batch.table import Columns, row_of, table_of_lines, table_of_rows
 from fem.case.case import case_hash, to_toml
 from fem.case.rules import ends_at_rest, longest_time
 from fem.ensemble.answers import ensemble_answer
@@ -171,7 +171,7 @@ def _compute(
     result = replace(result, status=FAILED if failed else COMPLETED, fragility=fragility)
     if motions:
         measures = [one.numbers() | counts for one, counts in zip(motions, draws.by_replicate(), strict=True)]
-        figures = write_motions(place, motions, measures, runner)
+        figures = write_motions(place, motions, measures, dict.fromkeys(COUNTED, int), runner)
         result = replace(result, motions=tuple(measures), motion_figures=tuple(figures))
     answer = ensemble_answer(result)
     return replace(result, answer=answer.sentence if answer else None)
@@ -252,5 +252,5 @@ def asked_of(
 
 def csv_of_points(ensemble: Ensemble, points: Sequence[PointRow]) -> str:
     """`points.csv`: a row a point of the axes."""
-    names = [*(axis.key for axis in ensemble.axes), *POINT_COLUMNS]
-    return table_text(names, ([point[name] for name in names] for point in points))
+    columns = dict.fromkeys((axis.key for axis in ensemble.axes), float) | POINT_COLUMNS
+    return table_of_rows(columns, points)

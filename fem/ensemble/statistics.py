@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from fem.batch.table import Columns
 from fem.ensemble.fragility import BOOTSTRAPS, bootstrap_fits, falls, fit_lognormal, misses, misses_by_chance
 from fem.ensemble.plan import Ensemble
 from fem.ensemble.result import FittedLognormal, Fragility, Resampled
@@ -15,7 +16,8 @@ from fem.runtime.arrays import FloatArray
 from fem.runtime.intervals import estimate
 
 #: columns of `points.csv` behind those of the axes
-POINT_COLUMNS = ("draws", *COUNTED, "probability", "low", "high", "region", SLIPPED)
+POINT_COLUMNS: Columns = dict.fromkeys(("draws", *COUNTED), int)
+POINT_COLUMNS |= dict.fromkeys(("probability", "low", "high"), float) | {"region": str, SLIPPED: float}
 PointRow = dict[str, Any]  #: of a point, by the keys of the axes and these columns
 FEWEST_FITTED = 4  #: levels from which a curve is fitted
 NO_CURVE = "the counts are a step, fall, or hold nothing that overturned or nothing that stood"

@@ -4,7 +4,6 @@ Cells are numbered as in `table.csv`, the last axis the fastest. The map shows a
 numbers go in single precision; the values of axes and derived keys, from which the command of a cell is made, in full.
 """
 
-import re
 import shlex
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
@@ -19,7 +18,7 @@ from numpy.typing import NDArray
 from fem.assessment.sureness import REGIME_UNSURE, SURE, UNSURE
 from fem.batch.answers import ends_in_words, ranges_in_words
 from fem.batch.labels import axis_label, unit_in_words
-from fem.batch.table import fields_of
+from fem.batch.table import read_rows
 from fem.case.case import load_case
 from fem.figures.style import STATE_COLOURS, VERMILLION
 from fem.html import sections as html
@@ -35,7 +34,7 @@ from fem.runtime import units
 from fem.sweep.answers import AnswerRow, SweepAnswer, sweep_answer
 from fem.sweep.maps import SHARE_COLOURS, shares_of
 from fem.sweep.perturbation import input_in_words
-from fem.sweep.result import SweepResult
+from fem.sweep.refine import CHANGES, change_columns
 from fem.sweep.table import RATIOS, SweepTable, open_sweep
 
 #: what can be shown, by column
@@ -54,7 +53,6 @@ OUTCOMES = (
     ("", "not computed", "#FFFFFF", False),
 )
 SWATCH = Markup('<span class="swatch" style="background:{}"></span>{}')
-NUMBER = re.compile(r"[-+]?\d+(\.\d*)?(e[-+]?\d+)?")
 
 
 def sweep_report(folder: Path, *, signature: Signature | None = None) -> str:
@@ -91,7 +89,7 @@ def sweep_report(folder: Path, *, signature: Signature | None = None) -> str:
             ),
             motions_of_sweep(folder, table),
             html.section(
-                "Counts", "counts", counts_table(table), *_failures(table), *_thresholds(folder, info)
+                "Counts", "counts", counts_table(table), *_failures(table), *_thresholds(folder, table)
             ),
             html.section(
                 "The sweep", "asked", html.columns(studies.axes_table(table.axes, info.derived), given)
@@ -230,24 +228,35 @@ def _failures(table: SweepTable) -> list[html.Block]:
     return [html.Heading("Without an outcome"), html.Bullets(lines, "")] if lines else []
 
 
-def _thresholds(folder: Path, info: SweepResult) -> list[html.Block]:
+def _thresholds(folder: Path, table: SweepTable) -> list[html.Block]:
     """The refined changes of outcome, where they were asked for."""
-    path = folder / "thresholds.csv"
+    info = table.info
+    path, along = folder / "thresholds.csv", (info.threshold or {}).get("axis", "")
     if not path.is_file():
         return []
+    columns = change_columns(table.axes, along)
     try:
-        header, *rows = map(fields_of, path.read_text(encoding="utf-8").splitlines())
+        rows = read_rows(path, columns)
     except (OSError, ValueError) as error:
         raise FolderError(f"{path}: cannot be read ({error}); repeat the sweep with --force") from None
-    shown = ([short(float(one), figures=5) if NUMBER.fullmatch(one) else one for one in row] for row in rows)
-    along = (info.threshold or {}).get("axis")
     unit = next((axis.unit for axis in info.axes if axis.key == along), "")
-    header = [f"{name} [{unit}]" if unit and name in ("low", "high", "value") else name for name in header]
+
+    def cell(name: str, row: Mapping[str, Any]) -> str:
+        return short(row[name], figures=5) if columns[name] is float else row[name] or ""
+
+    def head(name: str) -> str:
+        return f"{name} [{unit}]" if unit and CHANGES.get(name) is float else name
+
     held = f"They hold {info.held}; a range of an unknown input moves them." if info.held else ""
     return [
         html.Heading("Changes of outcome, refined"),
         *([html.Note(held)] if held else []),
-        html.table_of("changes of outcome", html.in_order(*header), shown, file=path.name),
+        html.table_of(
+            "changes of outcome",
+            [html.Column(head(name), partial(cell, name)) for name in columns],
+            rows,
+            file=path.name,
+        ),
     ]
 
 

@@ -14,18 +14,26 @@ import numpy as np
 from fem.batch.answers import Answer, Trial, answer_axis, answer_of, is_rising, sentence_of
 from fem.batch.axes import Axis, point_of, set_axis
 from fem.batch.labels import axis_name, place_in_words
-from fem.batch.table import fields_of, table_text
-from fem.results.figures import SLIPPED
+from fem.batch.table import Columns, read_rows, table_of_rows
+from fem.results.figures import SLIPPED, TURNED
 from fem.results.outcome import ending_of
+from fem.sweep.cells import FIGURES
 from fem.sweep.motion_outcomes import sign_axes
 from fem.sweep.table import SweepTable
 
+#: what a threshold tries between cells, by the first cell of the line
 TRIED = "tried.csv"
+TRIED_COLUMNS = {
+    "cell": int,
+    "value": float,
+    "status": str,
+    "outcome": str,
+    TURNED: float,
+    "reason": str,
+} | FIGURES
 #: columns of `answers.csv` behind those of the other axes
-COLUMNS = (
-    *("stood_to", f"stood_{SLIPPED}", "overturned_from", SLIPPED),
-    *("stood_again", "no_outcome", "unsure", "answer"),
-)
+COLUMNS: Columns = dict.fromkeys(("stood_to", f"stood_{SLIPPED}", "overturned_from", SLIPPED), float)
+COLUMNS |= dict.fromkeys(("stood_again", "no_outcome", "unsure", "answer"), str)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,7 +58,8 @@ class SweepAnswer:
 
     def table(self) -> str:
         """`answers.csv`: one row for each combination of values of the other axes."""
-        return table_text((*(axis.key for axis in self.others), *COLUMNS), map(self._row, self.rows))
+        columns = dict.fromkeys((axis.key for axis in self.others), str) | COLUMNS
+        return table_of_rows(columns, map(_cells, self.rows))
 
     def lines(self) -> Iterator[tuple[str, str]]:
         """Where, and the answer; of a set of motions the rows of all of them; nothing where there are no other axes."""
@@ -62,13 +71,20 @@ class SweepAnswer:
         """The values of the other axes in words."""
         return place_in_words((axis for axis in self.others if axis.key in row.point), row.point)
 
-    def _row(self, row: AnswerRow) -> Iterator[Any]:
-        answer = row.answer
-        yield from (row.point.get(axis.key) for axis in self.others)
-        yield from (answer.stood_to, answer.stood_slip, answer.overturned_from, answer.slip)
-        for ranges in (answer.stood_again, answer.failed, answer.unsure):
-            yield "; ".join(f"{low!r} to {high!r}" for low, high in ranges)
-        yield row.sentence
+
+def _cells(row: AnswerRow) -> dict[str, Any]:
+    """A row of `answers.csv`, by column."""
+    answer = row.answer
+    ranges = {"stood_again": answer.stood_again, "no_outcome": answer.failed, "unsure": answer.unsure}
+    return {
+        **row.point,
+        "stood_to": answer.stood_to,
+        f"stood_{SLIPPED}": answer.stood_slip,
+        "overturned_from": answer.overturned_from,
+        SLIPPED: answer.slip,
+        **{name: "; ".join(f"{low!r} to {high!r}" for low, high in some) for name, some in ranges.items()},
+        "answer": row.sentence,
+    }
 
 
 def sweep_answer(table: SweepTable, folder: Path) -> SweepAnswer | None:
@@ -135,25 +151,7 @@ def _lines_of(table: SweepTable, axis: Axis, tried: Path) -> dict[int, list[Tria
                     unsure=None if unsure is None or np.isnan(unsure[cell]) else bool(unsure[cell]),
                 )
             )
-    for first, value, status, outcome, slip_between in _between(tried):
-        kind = ending_of(status, outcome)
-        lines[first].append(Trial(value=value, line=first, kind=kind, slip=slip_between))
+    for row in read_rows(tried, TRIED_COLUMNS):
+        first, kind = row["cell"], ending_of(row["status"], row["outcome"])
+        lines[first].append(Trial(value=row["value"], line=first, kind=kind, slip=row[SLIPPED]))
     return lines
-
-
-def _between(path: Path) -> Iterator[tuple[int, float, str, str, float | None]]:
-    """First cell of the line, value, status, outcome and slip of what was tried between cells."""
-    if not path.is_file():
-        return
-    header, *lines = path.read_text(encoding="utf-8").splitlines()
-    names = fields_of(header)
-    for line in lines:
-        row = dict(zip(names, fields_of(line), strict=False))
-        slip = row.get(SLIPPED)
-        yield (
-            int(row["cell"]),
-            float(row["value"]),
-            row["status"],
-            row["outcome"],
-            float(slip) if slip else None,
-        )

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from fem.batch.axes import MOTION_FILE, Axis, point_of, shape_of
+from fem.batch.table import Columns
 from fem.results.figures import SLIPPED, TURNED
 from fem.results.outcome import COUNTED, NOT_STANDING, Ending, counts_of
 from fem.runtime.arrays import IntArray
@@ -25,11 +26,12 @@ CONFIDENCE = 0.95
 SIGNS = ("motion.scale", "vertical.scale")
 WORST_TURNED, MEAN_TURNED = f"worst_{TURNED}", f"mean_{TURNED}"
 #: columns of `motion_set.csv` behind those of the other axes
-SET_COLUMNS = (
-    *("motions", *COUNTED, "overturned_share", "low", "high"),
-    *("worst_motion", "worst_outcome", WORST_TURNED, "worst_slip_motion", "worst_slip_m"),
-    *(MEAN_TURNED, "mean_slip_m"),
-)
+SET_COLUMNS: Columns = dict.fromkeys(("motions", *COUNTED), int)
+SET_COLUMNS |= dict.fromkeys(("overturned_share", "low", "high"), float)
+SET_COLUMNS |= {"worst_motion": str, "worst_outcome": str, WORST_TURNED: float}
+SET_COLUMNS |= {"worst_slip_motion": str, "worst_slip_m": float, MEAN_TURNED: float, "mean_slip_m": float}
+#: columns of `motions.csv` behind the measures of a motion
+OF_A_MOTION: Columns = dict.fromkeys(COUNTED, int) | dict.fromkeys((f"max_{TURNED}", SLIPPED), float)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,22 +1,23 @@
 """Locates the changes of outcome of a sweep along one axis, on all lines of cells at once: see `fem.run.bracket`."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
+from fem.batch.axes import Axis
 from fem.batch.log import LoggedRuns
 from fem.batch.runner import Runner
-from fem.batch.table import row_of, table_text
-from fem.results.figures import TURNED
+from fem.batch.table import Columns, row_of, table_of_rows
+from fem.results.figures import types_of
 from fem.results.outcome import Ending, ending_of
 from fem.run.bracket import Change, changes_of, least_width, values_to_try
-from fem.sweep.cells import FIGURES, CellRows
+from fem.sweep.answers import TRIED_COLUMNS
+from fem.sweep.cells import CellRows
 from fem.sweep.plan import Sweep
 
-COLUMNS = {"cell": int, "value": float, "status": str, "outcome": str, TURNED: float, "reason": str} | FIGURES
-
+#: columns of `thresholds.csv` behind those of the other axes
+CHANGES: Columns = {name: types_of(Change)[name] for name in ("low", "high", "value", "below", "above")}
 #: outcomes by value along the axis, by the first cell of each line of cells
 Lines = dict[int, dict[float, str]]
 
@@ -34,7 +35,7 @@ def refine(runner: Runner, sweep: Sweep, cells: CellRows, log: Path) -> list[tup
     least = least_width(sweep.threshold_axis.values, wanted.resolution)
 
     def note(line: str) -> None:
-        row = row_of(COLUMNS, line)
+        row = row_of(TRIED_COLUMNS, line)
         lines[row["cell"]][row["value"]] = ending_of(row["status"], row["outcome"]).word
 
     def between_cells() -> list[tuple[int, float]]:
@@ -49,7 +50,7 @@ def refine(runner: Runner, sweep: Sweep, cells: CellRows, log: Path) -> list[tup
     LoggedRuns(
         what="cases between cells",
         path=log,
-        columns=COLUMNS,
+        columns=TRIED_COLUMNS,
         make=sweep.tried_case,
         model_of=lambda item: sweep.model_of(item[0]),
         key=lambda item: item,
@@ -60,15 +61,15 @@ def refine(runner: Runner, sweep: Sweep, cells: CellRows, log: Path) -> list[tup
 
 def table_of_changes(sweep: Sweep, changes: Sequence[tuple[int, Change]]) -> str:
     """`thresholds.csv`: one row a change of outcome."""
-    others = [axis.key for axis in sweep.axes if axis is not sweep.threshold_axis]
+    found = ({name: getattr(change, name) for name in CHANGES} for _, change in changes)
+    rows = (sweep.point(first) | one for (first, _), one in zip(changes, found, strict=True))
+    return table_of_rows(change_columns(sweep.axes, sweep.threshold_axis.key), rows)
 
-    def row(first: int, change: Change) -> Iterator[Any]:
-        point = sweep.point(first)
-        yield from (point[key] for key in others)
-        yield from (change.low, change.high, change.value, change.below, change.above)
 
-    columns = (*others, "low", "high", "value", "below", "above")
-    return table_text(columns, (row(first, change) for first, change in changes))
+def change_columns(axes: Sequence[Axis], along: str) -> Columns:
+    """The columns of `thresholds.csv`: where on the other axes, and the bracket of a change."""
+    words = {axis.key: any(isinstance(one, str | bool) for one in axis.values) for axis in axes}
+    return {key: str if words[key] else float for key in words if key != along} | CHANGES
 
 
 def _lines_of(sweep: Sweep, cells: CellRows) -> Lines:

@@ -9,13 +9,13 @@ from fem.batch.answers import STRENGTHS
 from fem.batch.axes import Axis
 from fem.batch.labels import axis_label, place_in_words
 from fem.batch.motion_set import FloorMotionPair, write_motions
-from fem.batch.table import table_text
+from fem.batch.table import table_of_rows
 from fem.figures.motions import ShareCurve, draw_shares
 from fem.figures.style import svg_of
 from fem.html.units import rounded
 from fem.results.folder import ResultFolder
 from fem.sweep.cells import CellRows
-from fem.sweep.motion_outcomes import SET_COLUMNS, by_motion, motions_at, set_in_words, set_row
+from fem.sweep.motion_outcomes import OF_A_MOTION, SET_COLUMNS, by_motion, motions_at, set_in_words, set_row
 from fem.sweep.plan import Sweep
 
 MOST_CURVES = 8  #: of a figure
@@ -31,9 +31,9 @@ def write_set(
     measures = [one.numbers() | outcomes[one.name] for one in motions]
     rows = [values | set_row(at_point) for values, at_point in points]
     others = [axis for axis in sweep.axes if axis.key in rows[0]]
-    columns = (*(axis.key for axis in others), *SET_COLUMNS)
-    place.write_text("motion_set.csv", table_text(columns, (row.values() for row in rows)))
-    figures = write_motions(place, motions, measures)
+    columns = dict.fromkeys((axis.key for axis in others), str) | SET_COLUMNS
+    place.write_text("motion_set.csv", table_of_rows(columns, rows))
+    figures = write_motions(place, motions, measures, OF_A_MOTION)
     if curves := _shares(sweep.axes, rows):
         axis, shares = curves
         title = sweep.title or sweep.name
