@@ -5,7 +5,7 @@ the code's spectrum that matters to it: 0.05 s to 4 s, and on to the longest per
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -16,6 +16,7 @@ from fem.runtime.arrays import FloatArray
 from fem.seismic.action import LAST_PERIOD_S, MotionTarget
 from fem.seismic.ground_motion import GroundMotion, sampled_at
 
+CLAUSE = "EN 1998-1:2004, 3.2.3.1.2"
 LEAST_MOTIONS = 3  #: (4)a
 #: (4)c
 LEAST_SHARE = 0.9
@@ -49,6 +50,20 @@ class ComponentSpectra:
         return float(ratios[place]), place
 
 
+@dataclass(frozen=True, kw_only=True)
+class Requirement:
+    """One requirement on a set of motions."""
+
+    name: str
+    found: float
+    demanded: str  #: in words
+    unit: str = ""
+    fulfilled: bool
+    clause: str = ""  #: empty where it is this program's own
+    reason: str = ""  #: why a set that does not fulfil it may not be used; empty: it may all the same
+    fits: bool = True  #: it is about the fit to a target
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class MotionSetCheck:
     """What the checks of a set found."""
@@ -65,39 +80,15 @@ class MotionSetCheck:
     vertical_least_ratio: float | None
     vertical_least_ratio_period: float | None
     second_least_ratio: float | None  #: as the vertical's, of the second horizontal components
-    second_least_ratio_period: float | None
     largest_correlation: float
     stationary: float | None  #: least stationary part of artificial motions [s]; None: recorded
+    requirements: tuple[Requirement, ...]
     reasons: tuple[str, ...]  #: why the set may not be used; empty: it may
-
-    @property
-    def peak_fulfilled(self) -> bool:
-        """(4)b."""
-        return self.mean_peak >= self.wanted_peak * (1.0 - ROUNDING)
-
-    @property
-    def spectrum_fulfilled(self) -> bool:
-        """(4)c."""
-        return self.least_ratio >= LEAST_SHARE * (1.0 - ROUNDING)
-
-    @property
-    def vertical_fulfilled(self) -> bool:
-        """As (4)c, for the vertical spectrum; true without one."""
-        return _suffices(self.vertical_least_ratio)
-
-    @property
-    def second_fulfilled(self) -> bool:
-        """As (4)c, for the second horizontal components; true without any."""
-        return _suffices(self.second_least_ratio)
 
     @property
     def valid(self) -> bool:
         """Whether the set may be used."""
         return not self.reasons
-
-
-def _suffices(ratio: float | None) -> bool:
-    return ratio is None or ratio >= LEAST_SHARE * (1.0 - ROUNDING)
 
 
 def check_set(
@@ -118,64 +109,98 @@ def check_set(
     """
     periods = periods_of_check(longest)
     inside = (periods >= FIRST_PERIOD_S) & (periods <= longest * (1.0 + 1e-9))
+
+    def spectra(
+        target: Callable[[FloatArray], FloatArray], components: Sequence[FloatArray | None]
+    ) -> ComponentSpectra | None:
+        """None where a motion lacks this component."""
+        known = [one for one in components if one is not None]
+        if len(known) < len(motions):
+            return None
+        return ComponentSpectra(target=target(periods), motions=_spectra(motions, known, periods))
+
     horizontal = ComponentSpectra(
         target=action.horizontal(periods), motions=_spectra(motions, [m.horizontal for m in motions], periods)
     )
+    vertical = spectra(action.vertical, [motion.vertical for motion in motions])
+    across = spectra(lambda periods: second * horizontal.target, [motion.second for motion in motions])
     ratio, place = horizontal.least(inside)
-    vertical, upward = None, [m.vertical for m in motions if m.vertical is not None]
-    upright: tuple[float, int] | None = None
-    if len(upward) == len(motions):
-        vertical = ComponentSpectra(
-            target=action.vertical(periods), motions=_spectra(motions, upward, periods)
-        )
-        upright = vertical.least(inside)
-    across: tuple[float, int] | None = None
-    others = [motion.second for motion in motions if motion.second is not None]
-    if len(others) == len(motions):
-        across = ComponentSpectra(
-            target=second * horizontal.target, motions=_spectra(motions, others, periods)
-        ).least(inside)
-    peak = float(np.mean([motion.peak for motion in motions]))
+    upright, sideways = (None if one is None else one.least(inside) for one in (vertical, across))
+    peak, wanted = float(np.mean([motion.peak for motion in motions])), action.surface_acceleration
     correlation = largest_correlation(motions)
     stationary = [motion.stationary for motion in motions if motion.stationary is not None]
     artificial = len(stationary) == len(motions)
-    reasons = [
-        (
-            len(motions) < LEAST_MOTIONS,
-            f"{len(motions)} motions, at least {LEAST_MOTIONS} are needed (3.2.3.1.2(4)a)",
+    requirements = [
+        Requirement(
+            name="number of motions",
+            found=float(len(motions)),
+            demanded=f"at least {LEAST_MOTIONS}",
+            fulfilled=len(motions) >= LEAST_MOTIONS,
+            clause=f"{CLAUSE} (4) a)",
+            reason=f"{len(motions)} motions, at least {LEAST_MOTIONS} are needed (3.2.3.1.2(4)a)",
+            fits=False,
         ),
-        (
-            peak < action.surface_acceleration * (1.0 - ROUNDING),
-            f"the mean peak, {peak:.3g} m/s², is below that of the target, {action.surface_acceleration:.3g} m/s² "
-            "(3.2.3.1.2(4)b)",
+        Requirement(
+            name="mean of the zero-period values",
+            found=peak,
+            demanded=f"at least {wanted:.4g} m/s2",
+            unit="m/s2",
+            fulfilled=peak >= wanted * (1.0 - ROUNDING),
+            clause=f"{CLAUSE} (4) b)",
+            reason=f"the mean peak, {peak:.3g} m/s², is below that of the target, {wanted:.3g} m/s² (3.2.3.1.2(4)b)",
         ),
-        (
-            ratio < LEAST_SHARE * (1.0 - ROUNDING),
-            f"the mean spectrum is {ratio:.2f} of the target at {periods[place]:.3g} s, at least "
+        Requirement(
+            name=f"least mean over target, {FIRST_PERIOD_S:g} to {longest:.3g} s, at {periods[place]:.3g} s",
+            found=ratio,
+            demanded=f"at least {LEAST_SHARE:g}",
+            fulfilled=_suffices(ratio),
+            clause=f"{CLAUSE} (4) c)",
+            reason=f"the mean spectrum is {ratio:.2f} of the target at {periods[place]:.3g} s, at least "
             f"{LEAST_SHARE:g} is needed (3.2.3.1.2(4)c)",
         ),
-        (
-            artificial and upright is not None and upright[0] < LEAST_SHARE * (1.0 - ROUNDING),
-            f"the mean vertical spectrum is {upright[0] if upright else 0.0:.2f} of its target at "
-            f"{periods[upright[1]] if upright else 0.0:.3g} s, at least {LEAST_SHARE:g} is needed",
-        ),
-        (
-            artificial and across is not None and not _suffices(across[0]),
-            f"the mean spectrum of the second components is {across[0] if across else 0.0:.2f} of its target at "
-            f"{periods[across[1]] if across else 0.0:.3g} s, at least {LEAST_SHARE:g} is needed",
-        ),
-        (
-            0 < len(upward) < len(motions),
-            "some motions have a vertical component and some have none",
-        ),
-        (
-            correlation > MOST_CORRELATION,
-            f"two accelerations of the set have a correlation of {correlation:.2f}, at most "
+        Requirement(
+            name="largest correlation of two accelerations",
+            found=correlation,
+            demanded=f"at most {MOST_CORRELATION:g}",
+            fulfilled=correlation <= MOST_CORRELATION,
+            reason=f"two accelerations of the set have a correlation of {correlation:.2f}, at most "
             f"{MOST_CORRELATION:g} is taken as independent",
+            fits=False,
         ),
     ]
-    same = [
-        (f"{one.name} and {other.name} are one motion", copied)
+    beside = (
+        ("vertical", "vertical spectrum", upright, f"{CLAUSE} (1)P; 0.9 as in (4) c)"),
+        ("second horizontal", "spectrum of the second components", sideways, ""),
+    )
+    requirements += [
+        Requirement(
+            name=f"{name}: least mean over target, at {periods[found[1]]:.3g} s",
+            found=found[0],
+            demanded=f"at least {LEAST_SHARE:g}" if artificial else "shown only: recorded components",
+            fulfilled=_suffices(found[0]) or not artificial,
+            clause=clause if artificial else "",
+            reason=f"the mean {spectrum} is {found[0]:.2f} of its target at {periods[found[1]]:.3g} s, at least "
+            f"{LEAST_SHARE:g} is needed",
+        )
+        for name, spectrum, found, clause in beside
+        if found is not None
+    ]
+    if artificial:
+        requirements.append(
+            Requirement(
+                name="stationary part",
+                found=min(stationary),
+                demanded="at least 10 s",
+                unit="s",
+                fulfilled=min(stationary) >= 10.0,
+                clause=f"{CLAUSE} (3)",
+            )
+        )
+    reasons = [one.reason for one in requirements if one.reason and not one.fulfilled]
+    if 0 < sum(motion.vertical is not None for motion in motions) < len(motions):
+        reasons.append("some motions have a vertical component and some have none")
+    reasons += [
+        f"{one.name} and {other.name} are one motion, shifted, reversed or scaled (correlation {copied:.2f})"
         for one, other in combinations(motions, 2)
         if (copied := copy_correlation(one, other)) >= COPY_CORRELATION
     ]
@@ -186,20 +211,21 @@ def check_set(
         vertical=vertical,
         count=len(motions),
         mean_peak=peak,
-        wanted_peak=action.surface_acceleration,
+        wanted_peak=wanted,
         least_ratio=ratio,
         least_ratio_period=float(periods[place]),
         vertical_least_ratio=upright[0] if upright else None,
         vertical_least_ratio_period=float(periods[upright[1]]) if upright else None,
-        second_least_ratio=across[0] if across else None,
-        second_least_ratio_period=float(periods[across[1]]) if across else None,
+        second_least_ratio=sideways[0] if sideways else None,
         largest_correlation=correlation,
         stationary=min(stationary) if artificial else None,
-        reasons=(
-            *(reason for applies, reason in reasons if applies),
-            *(f"{words}, shifted, reversed or scaled (correlation {copied:.2f})" for words, copied in same),
-        ),
+        requirements=tuple(requirements),
+        reasons=tuple(reasons),
     )
+
+
+def _suffices(ratio: float) -> bool:
+    return ratio >= LEAST_SHARE * (1.0 - ROUNDING)
 
 
 def periods_of_check(longest: float) -> FloatArray:

@@ -8,12 +8,13 @@ from pathlib import Path
 import numpy as np
 
 from fem.records.spectrum import response_spectrum
+from fem.results.figures import types_of
 from fem.runtime.arrays import FloatArray
 from fem.seismic.action import SiteAction
 from fem.seismic.floor import HIGHEST_HZ, ONE_MODE_TO_S
 from fem.seismic.ground_motion import GroundMotion
 from fem.seismic.motion_files import write_at2, write_csv
-from fem.seismic.motion_set import LEAST_MOTIONS, LEAST_SHARE, MOST_CORRELATION, MotionSetCheck
+from fem.seismic.motion_set import MotionSetCheck
 from fem.site_check.file import SiteRequest
 from fem.site_check.result import MOTIONS, FloorResult, MotionSet, SetCheck, SiteActionResult, SiteMotion
 from fem.site_check.tables import BuildingTable
@@ -23,7 +24,6 @@ GIVEN_FLOORS = {
     True: "its motions as they were recorded or computed",
     False: "its spectrum, which the motions fit",
 }
-CLAUSE = "EN 1998-1:2004, 3.2.3.1.2 (4) "
 
 
 def action_result(action: SiteAction, checked: MotionSetCheck) -> SiteActionResult:
@@ -74,7 +74,11 @@ def set_result(
         valid=checked.valid,
         reasons=checked.reasons,
         notes=tuple(dict.fromkeys(note for motion in ground for note in motion.notes)),
-        checks=_checks(checked, fitted=asked.source != "floor"),
+        checks=tuple(
+            SetCheck(**{key: getattr(one, key) for key in types_of(SetCheck)})
+            for one in checked.requirements
+            if asked.source != "floor" or not one.fits  # motions of a floor fit no target
+        ),
         motions=tuple(
             replace(
                 one,
@@ -84,80 +88,6 @@ def set_result(
             for k, one in enumerate(described)
         ),
     )
-
-
-def _checks(checked: MotionSetCheck, *, fitted: bool) -> tuple[SetCheck, ...]:
-    """What is required of the set; of motions that fit no target, their number and independence alone."""
-    band = f"{checked.band[0]:g} to {checked.band[1]:.3g} s"
-    checks = [
-        SetCheck(
-            name="number of motions",
-            found=float(checked.count),
-            demanded=f"at least {LEAST_MOTIONS}",
-            fulfilled=checked.count >= LEAST_MOTIONS,
-            clause=CLAUSE + "a)",
-        ),
-        SetCheck(
-            name="mean of the zero-period values",
-            found=checked.mean_peak,
-            demanded=f"at least {checked.wanted_peak:.4g} m/s2",
-            unit="m/s2",
-            fulfilled=checked.peak_fulfilled,
-            clause=CLAUSE + "b)",
-        ),
-        SetCheck(
-            name=f"least mean over target, {band}, at {checked.least_ratio_period:.3g} s",
-            found=checked.least_ratio,
-            demanded=f"at least {LEAST_SHARE:g}",
-            fulfilled=checked.spectrum_fulfilled,
-            clause=CLAUSE + "c)",
-        ),
-    ]
-    if not fitted:
-        checks = checks[:1]
-    checks.append(
-        SetCheck(
-            name="largest correlation of two accelerations",
-            found=checked.largest_correlation,
-            demanded=f"at most {MOST_CORRELATION:g}",
-            fulfilled=checked.largest_correlation <= MOST_CORRELATION,
-        )
-    )
-    if not fitted:
-        return tuple(checks)
-    if checked.vertical_least_ratio is not None and checked.vertical_least_ratio_period is not None:
-        needed = checked.stationary is not None
-        checks.append(
-            SetCheck(
-                name=f"vertical: least mean over target, at {checked.vertical_least_ratio_period:.3g} s",
-                found=checked.vertical_least_ratio,
-                demanded=f"at least {LEAST_SHARE:g}" if needed else "shown only: recorded components",
-                fulfilled=checked.vertical_fulfilled or not needed,
-                clause="EN 1998-1:2004, 3.2.3.1.2 (1)P; 0.9 as in (4) c)" if needed else "",
-            )
-        )
-    if checked.second_least_ratio is not None and checked.second_least_ratio_period is not None:
-        needed = checked.stationary is not None
-        checks.append(
-            SetCheck(
-                name=f"second horizontal: least mean over target, at {checked.second_least_ratio_period:.3g} s",
-                found=checked.second_least_ratio,
-                demanded=f"at least {LEAST_SHARE:g}" if needed else "shown only: recorded components",
-                fulfilled=checked.second_fulfilled or not needed,
-            )
-        )
-    if checked.stationary is not None:
-        checks.append(
-            SetCheck(
-                name="stationary part",
-                found=checked.stationary,
-                demanded="at least 10 s",
-                unit="s",
-                fulfilled=checked.stationary >= 10.0,
-                clause="EN 1998-1:2004, 3.2.3.1.2 (3)",
-            )
-        )
-    return tuple(checks)
 
 
 def write_ground(folder: Path, ground: Sequence[GroundMotion]) -> list[SiteMotion]:
