@@ -19,7 +19,7 @@ from fem.site_check.reasons import (
     places_of,
     span,
 )
-from fem.site_check.rule import FIGURE_OF, RuleFound, RunGroup, groups_of, rule_in_words
+from fem.site_check.rule import RuleFound, RunGroup, groups_of, rule_in_words
 from fem.site_check.runs import FURTHER, REFINED, REPEATED, SCAN, SET, RunKey
 
 FULFILLED = "fulfilled"
@@ -114,7 +114,7 @@ def answer_of(
         **vars(found.by_rule),
         exceeded=tuple(
             key
-            for key in FIGURE_OF
+            for key in result.FIGURE_OF
             if key in found.exceeded(limits)
             or (key == "slip_m" and slip is not None and slip.slip_largest_m > limits.slip_m)
         ),

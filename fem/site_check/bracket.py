@@ -10,15 +10,9 @@ import numpy as np
 
 from fem.batch.study import COMPLETED, StudyResult
 from fem.run.bracket import least_width, values_to_try
-from fem.site_check.result import ByRule, SiteAnswer
+from fem.site_check.result import FIGURE_OF, LIMITS, ByRule, SiteAnswer
 
 RESOLUTION = 0.01  #: largest width of a bracket over the value
-#: the keys of the limits
-LIMITS_IN_WORDS = {
-    "rotation_ratio": "rotation",
-    "single_rotation_ratio": "the rotation of one motion",
-    "slip_m": "slip",
-}
 INNER = 3  #: values tried within a bracket at a time
 #: which values a user looks for: the least, the largest, or all
 Wanted = Literal["least", "largest", "window"]
@@ -227,7 +221,7 @@ def _reason(answer: SiteAnswer) -> str:
         return "it overturns"
     if answer.invalid:
         return "a corner is destroyed"
-    names = [LIMITS_IN_WORDS[key] for key in answer.exceeded]
+    names = [LIMITS[FIGURE_OF[key]].words for key in answer.exceeded]
     if not names:
         return "the wind moves it"
     return f"{' and '.join(names)} {'are' if len(names) > 1 else 'is'} beyond the limit"

@@ -222,22 +222,12 @@ def _compared(*, refused: bool, failed: bool) -> str:
 
 def _result(row: MethodRow, body: SiteBody, found: Found, factor: float | None) -> SiteMethod:
     return SiteMethod(
-        name=row.name,
-        quantity=row.quantity.value,
+        **vars(row)
+        | {"quantity": row.quantity.value, "demand": _finite(row.demand), "source": str(row.source)},
         mass=body.mass,
         elevation=body.elevation,
-        formula=row.formula,
-        numbers=row.numbers,
-        demand=_finite(row.demand),
-        capacity=row.capacity,
-        unit=row.unit,
         utilisation=_finite(row.utilisation),
-        says=row.says,
-        source=str(row.source),
-        validity=row.validity,
         checked=row.source.standing is not SourceStanding.UNCHECKED,
-        median=row.median,
-        beyond=row.beyond,
         found=found.words,
         compared=found.compared,
         factor=factor,

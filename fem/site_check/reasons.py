@@ -8,8 +8,8 @@ from fem.results.figures import SLIPPED, TURNED
 from fem.results.outcome import Outcome
 from fem.runtime.intervals import binomial_interval, least_draws
 from fem.runtime.units import SHORT_MILLIMETRES, DisplayUnit, plain_number
-from fem.site_check.result import BY_RULE, ConfirmedRun, FurtherMotions, RuleRange, SiteRun
-from fem.site_check.rule import FIGURE_OF, MEAN_FROM, RuleFound, RunGroup
+from fem.site_check.result import BY_RULE, FIGURE_OF, ConfirmedRun, FurtherMotions, RuleRange, SiteRun
+from fem.site_check.rule import MEAN_FROM, RuleFound, RunGroup
 from fem.site_check.tables import LimitsTable
 
 NOT_FULFILLED, NOT_SURE = "not fulfilled", "not sure"

@@ -151,22 +151,46 @@ class SiteRun(figures.RunFigures):
     written_where_given = figures.keys_beside(figures.Place.RUNS) | {"boxes"}
 
 
+@dataclass(frozen=True)
+class Limited:
+    """That a figure has a limit."""
+
+    key: str  #: of the limit in [limits]
+    words: str  #: what is beyond it
+    of: str = ""  #: the figure of a run by which the governing run is found; empty: it does not govern
+
+
 @dataclass(frozen=True, kw_only=True)
 class ByRule(JsonBlock):
     """What counts by the rule; None where a run overturned or failed."""
 
     #: of seven and more motions the mean, of fewer the largest
-    rotation_ratio: Annotated[float | None, figures.Shown("rotation ratio, by the rule", RATIO)] = None
+    rotation_ratio: Annotated[
+        float | None,
+        figures.Shown("rotation ratio, by the rule", RATIO),
+        Limited("rotation_ratio", "rotation", figures.TURNED),
+    ] = None
     #: of a single motion
-    rotation_ratio_largest: Annotated[float | None, figures.Shown("largest of one motion", RATIO)] = None
+    rotation_ratio_largest: Annotated[
+        float | None,
+        figures.Shown("largest of one motion", RATIO),
+        Limited("single_rotation_ratio", "the rotation of one motion"),
+    ] = None
     #: of a single motion, the largest: a clearance is used up once
-    slip_m: Annotated[float | None, figures.Shown("slip, largest", units.SHORT_MILLIMETRES)] = None
+    slip_m: Annotated[
+        float | None,
+        figures.Shown("slip, largest", units.SHORT_MILLIMETRES),
+        Limited("slip_m", "slip", figures.SLIPPED),
+    ] = None
     slip_mean_m: Annotated[float | None, figures.Shown("mean", units.SHORT_MILLIMETRES)] = None
 
 
 BY_RULE = figures.declared_in(ByRule)
-#: the figure of a run that each of these is on
-LIMITED = {"rotation_ratio": figures.TURNED, "slip_m": figures.SLIPPED}
+LIMITS = figures.noted_in(ByRule, Limited)
+#: the figure that each limit is on
+FIGURE_OF = {one.key: name for name, one in LIMITS.items()}
+#: the figure of a run that each of those that govern is on
+LIMITED = {name: one.of for name, one in LIMITS.items() if one.of}
 
 
 @dataclass(frozen=True, kw_only=True)

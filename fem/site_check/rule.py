@@ -15,17 +15,11 @@ from typing import Self
 
 from fem.results.figures import SLIPPED, TURNED
 from fem.results.outcome import ENDINGS, Outcome
-from fem.site_check.result import ByRule, SiteRun
+from fem.site_check.result import FIGURE_OF, ByRule, SiteRun
 from fem.site_check.tables import LimitsTable
 
 MEAN_FROM = 7  #: motions from which the mean counts
 SHARE = 0.3  #: of the other horizontal component
-#: the figure that each limit is on
-FIGURE_OF = {
-    "rotation_ratio": "rotation_ratio",
-    "single_rotation_ratio": "rotation_ratio_largest",
-    "slip_m": "slip_m",
-}
 Key = tuple[str, str, float | None, float, float]
 
 
