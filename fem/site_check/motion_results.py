@@ -2,13 +2,12 @@
 
 import hashlib
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 
 import numpy as np
 
 from fem.records.spectrum import response_spectrum
-from fem.results.figures import types_of
 from fem.runtime.arrays import FloatArray
 from fem.seismic.action import SiteAction
 from fem.seismic.floor import HIGHEST_HZ, ONE_MODE_TO_S
@@ -75,7 +74,7 @@ def set_result(
         reasons=checked.reasons,
         notes=tuple(dict.fromkeys(note for motion in ground for note in motion.notes)),
         checks=tuple(
-            SetCheck(**{key: getattr(one, key) for key in types_of(SetCheck)})
+            SetCheck(**{key.name: getattr(one, key.name) for key in fields(SetCheck)})
             for one in checked.requirements
             if asked.source != "floor" or not one.fits  # motions of a floor fit no target
         ),

@@ -35,7 +35,7 @@ def address():
         yield local.scheduler_address
 
 
-def test_a_cluster_gives_the_same_table(tmp_path, monkeypatch, capsys, address):
+def test_a_cluster_gives_the_same_table(tmp_path, monkeypatch, capsys, address, undrawn):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "small.toml").write_text(SMALL, encoding="utf-8")
     assert main(["sweep", "small.toml", "-q", "--scheduler", address]) == 0

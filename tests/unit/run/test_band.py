@@ -82,7 +82,7 @@ def test_members_side_by_side_are_the_runs_one_by_one(tmp_path, model):
     changes = [
         *FEW,
         f"solver.model={model}",
-        "solver.duration_s=2",
+        "solver.duration_s=1",
         "output.fields_s=0",
         "output.figures=false",
     ]

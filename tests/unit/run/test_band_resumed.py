@@ -19,14 +19,11 @@ from fem.run import changed_runs
 from fem.run.changed_runs_file import ChangedRunsFile
 
 SHORT = ("solver.duration_s=0.5", "output.fields_s=0", "output.figures=false", "uncertainty.draws=2")
+#: fewer members
 HELD = (
-    "centroid_m",
-    "eccentricity_m",
-    "effective_width",
-    "slope_percent",
-    "mu_static",
-    "ramp",
-)  # fewer members
+    *("centroid_m", "eccentricity_m", "effective_width", "slope_percent", "mu_static"),
+    *("ramp", "weakening_m", "stribeck_velocity_m_s", "support", "normal_penalty_Pa_m"),
+)
 MODELS = {
     "reduced": ("solver.duration_s=0.3", *(f"uncertainty.{name}=held" for name in HELD)),
     "full": (*COARSE, "solver.duration_s=0.06"),

@@ -75,19 +75,26 @@ def test_islands_are_named():
     assert "stands again at" in run.verdict.first_line
 
 
-def test_draws_give_the_range_and_the_margin_repeats_itself(monkeypatch):
-    both = []
-    for count in (1, 2):
-        monkeypatch.setattr(changed_runs, "cores", lambda count=count: count)
-        both.append(computed(band=None).verdict.margin)
-    first, again = both
+@pytest.fixture(scope="module")
+def with_draws():
+    """A run with draws, on one core and on two."""
+    with pytest.MonkeyPatch.context() as patch:
+        runs = []
+        for count in (1, 2):
+            patch.setattr(changed_runs, "cores", lambda count=count: count)
+            runs.append(computed(band=None))
+        return runs
+
+
+def test_draws_give_the_range_and_the_margin_repeats_itself(with_draws):
+    first, again = (run.verdict.margin for run in with_draws)
     assert first == again
     assert first.draws > 0
     assert first.draws_failed == 0
 
 
-def test_the_low_end_is_that_of_a_draw():
-    run = computed(band=None)
+def test_the_low_end_is_that_of_a_draw(with_draws):
+    run, _ = with_draws
     margin, own = run.verdict.margin, run.case
     case = fem.load_case("rocking", RIGID)
     coarse = {"solver.energy_tolerance": search.DRAWN_TOLERANCE}
