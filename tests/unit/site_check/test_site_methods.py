@@ -22,6 +22,14 @@ OVERTURNING, SLIDING = peak_rows(k1(mu_static=0.2), ACTION, horizontal=1.0, vert
 STRONGER = peak_rows(k1(mu_static=0.2), ACTION.scaled(1.5), horizontal=1.0, vertical=0.0)[0]
 
 
+def rows_of(bodies, inputs, floor=None):
+    """The methods for some bodies, under one motion."""
+    motion, periods = site_motion(1)[0], PERIODS.tolist()
+    return site_methods(
+        bodies=bodies, inputs=inputs, site=SITE, motions=[motion], periods_s=periods, floor=floor, runs=[]
+    )
+
+
 @pytest.mark.parametrize(
     ("row", "runs", "words", "compared"),
     [
@@ -116,15 +124,7 @@ def test_in_a_building_the_methods_take_the_motion_of_the_floor():
     found = action.spectrum(np.array([0.0, 0.01, 1.0]), 0.05)
     np.testing.assert_allclose(found, [5.0, 6.0, 7.0])
     np.testing.assert_allclose(action.spectrum(np.array([1.0]), 0.1), [7.0 * 0.8165], rtol=1e-4)
-    rows = site_methods(
-        bodies=[site_body("full")],
-        inputs=replace(INPUTS, wind_pressure_Pa=None),
-        site=SITE,
-        motions=motions,
-        periods_s=PERIODS.tolist(),
-        floor=floor,
-        runs=[],
-    )
+    rows = rows_of([site_body("full")], replace(INPUTS, wind_pressure_Pa=None), floor)
     elements = [row for row in rows if row.name.startswith("element") and row.quantity == "overturning"]
     assert [row.demand for row in elements] == pytest.approx([6.0, 13.2])
     assert {row.found for row in rows} == {"no runs"}
@@ -143,28 +143,12 @@ def test_on_a_given_floor_no_formula_raises_its_motion_again_and_the_vertical_is
     assert (action.peak, action.vertical_peak) == (5.0, 2.0)
     found = action.vertical_spectrum(np.array([0.0, 0.01, 1.0]), 0.05)
     np.testing.assert_allclose(found, [2.0, 3.0, 4.0])
-    rows = site_methods(
-        bodies=[site_body("full")],
-        inputs=replace(INPUTS, wind_pressure_Pa=None),
-        site=SITE,
-        motions=motions,
-        periods_s=PERIODS.tolist(),
-        floor=floor,
-        runs=[],
-    )
+    rows = rows_of([site_body("full")], replace(INPUTS, wind_pressure_Pa=None), floor)
     assert rows and not [row for row in rows if row.name.startswith(("element", "plateau"))]
 
 
 def test_the_wind_is_on_the_lightest_body():
-    rows = site_methods(
-        bodies=[site_body("full"), site_body("empty")],
-        inputs=INPUTS,
-        site=SITE,
-        motions=[site_motion(1)[0]],
-        periods_s=PERIODS.tolist(),
-        floor=None,
-        runs=[],
-    )
+    rows = rows_of([site_body("full"), site_body("empty")], INPUTS)
     wind = [row for row in rows if row.name == "wind"]
     assert [row.mass for row in wind] == ["empty", "empty"]
     assert wind[0].utilisation == pytest.approx(0.2540 / 0.16, rel=1e-3)

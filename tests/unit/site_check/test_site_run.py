@@ -56,7 +56,7 @@ slip_m = 0.1
 """
 
 
-def site_file(folder, *, reference=2.4 / 1.35, further=80, heading="", motions="", more=""):
+def site_file(folder, *, reference=2.4 / 1.35, further=72, heading="", motions="", more=""):
     (folder / "k1.toml").write_text(CONTAINER)
     text = SITE.format(reference=reference, further=further, heading=heading, motions=motions, more=more)
     (folder / "site.toml").write_text(text)
@@ -86,7 +86,7 @@ def test_every_motion_runs_with_both_signs_at_every_factor(computed):
     factors = [point.factor for point in result.result.scan]
     assert factors == sorted([1.0, *SCANNED])[: len(factors)]
     assert all(point.runs == 6 for point in result.result.scan)
-    assert result.result.runs == 6 and [one.motions for one in result.result.further] == [80]
+    assert result.result.runs == 6 and [one.motions for one in result.result.further] == [72]
 
 
 def test_the_container_of_the_example_fulfils_the_rule_and_overturns_at_a_higher_factor(computed):

@@ -4,27 +4,14 @@ import json
 
 import numpy as np
 import pytest
+from small_site import SITE
 
 from fem.__main__ import main
 from fem.seismic.ground_motion import GroundMotion
 from fem.site_check.file import load_site
 from fem.site_check.size_run import written_motions
 
-SITE = """
-container = "seed_stack"
-[site]
-ground = "D"
-reference_acceleration_m_s2 = 3.5
-[motions]
-count = 3
-further = 72
-vertical = false
-[friction]
-mu_static = [0.4]
-mu_kinetic_over_static = [1.0]
-[limits]
-slip_m = 0.1
-"""
+SURE = SITE.replace("further = 2", "further = 72\nvertical = false")
 
 
 @pytest.fixture(scope="module")
@@ -38,7 +25,7 @@ def place(tmp_path_factory):
         asked.extend(key.mu_static for key in keys)
         return []
 
-    (place / "hall.toml").write_text(SITE, encoding="utf-8")
+    (place / "hall.toml").write_text(SURE, encoding="utf-8")
     command = ["size", str(place / "hall.toml"), "--over", "container.boxes", "--to", "4", *out(place)]
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("fem.site_check.size_run.confirmed", confirmed)
