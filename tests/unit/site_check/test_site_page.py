@@ -51,14 +51,14 @@ def page_of(folders, name: str) -> str:
     return (folders / name / "report.html").read_text(encoding="utf-8")
 
 
-def page_of(section: PageSection) -> str:
+def page_with(section: PageSection) -> str:
     """A page of one section."""
     return html_of(Page(kind="", title="", name="", hash="", signature=None, sections=[section]))
 
 
 def box_of(result: SiteResult) -> str:
     """The page of the answer alone."""
-    return page_of(answer_section(result))
+    return page_with(answer_section(result))
 
 
 def words_of(page: str) -> str:
@@ -149,7 +149,7 @@ def test_a_floor_that_moves_less_than_its_ground_is_explained():
     assert "given by its spectrum: mean peak 1.900 m/s², 1.000 m/s² vertically" in words
     assert "no building, storey, importance or element factor" in words
     assert "The floor in the building" not in words_of(
-        page_of(runs_section(SiteView(result=replace(result, floor=given))))
+        page_with(runs_section(SiteView(result=replace(result, floor=given))))
     )
     shown = {
         source: page_of(spectra_section(replace(result, floor=given, set=replace(result.set, source=source))))
@@ -230,7 +230,7 @@ def test_destroyed_corners_are_named_beside_the_runs_that_overturned():
     assert "further    0 of 100 motions overturn it, 7 destroyed a corner" in "\n".join(
         lines_of(crushed, Path("out"))
     )
-    rows = page_of(runs_section(SiteView(result=crushed)))
+    rows = page_with(runs_section(SiteView(result=crushed)))
     assert "of 14, 1 destroyed a corner" in rows
 
 
