@@ -152,7 +152,9 @@ def test_a_floor_that_moves_less_than_its_ground_is_explained():
         page_with(runs_section(SiteView(result=replace(result, floor=given))))
     )
     shown = {
-        source: page_of(spectra_section(replace(result, floor=given, set=replace(result.set, source=source))))
+        source: page_with(
+            spectra_section(replace(result, floor=given, set=replace(result.set, source=source)))
+        )
         for source in ("artificial", "floor")
     }
     assert all(
