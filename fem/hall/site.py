@@ -28,7 +28,7 @@ from fem.results.figures import SLIPPED, TURNED
 from fem.results.folder import ResultFolder, program_of_results
 from fem.results.kinds import SITE, read_result
 from fem.results.run_files import copy_data_files
-from fem.runtime.progress import SilentReporter
+from fem.runtime.progress import SilentReporter, clock_time
 from fem.seismic.action import LAST_PERIOD_S
 from fem.seismic.ground_motion import GroundMotion
 from fem.site_check.bodies import body_of
@@ -36,6 +36,7 @@ from fem.site_check.file import SiteRequest
 from fem.site_check.inputs import inputs_of
 from fem.site_check.methods import wind_utilisation
 from fem.site_check.motions import ground_motions
+from fem.site_check.preview import forecast_of
 from fem.site_check.run import run_site, site_hash
 from mesh.errors import MeshError
 
@@ -134,7 +135,10 @@ class _AtSite:
         with closing(RowLog(path, COLUMNS)) as log:
             for line in log.lines:
                 self.lines[int(fields_of(line)[0])] = line
-            for number in (one for one in mine if one not in self.lines):
+            missing = [one for one in mine if one not in self.lines]
+            if len(missing) > 1:
+                self._say_expected(missing, runner)
+            for number in missing:
                 runner.reporter.message(f"container {number + 1} of {count} at the site")
                 line = "" if runner.stop() else self._verify(number, place.path, runner)
                 if not line:
@@ -144,8 +148,8 @@ class _AtSite:
         if len(self.lines) < count:
             if runner.share and not {*mine} - self.lines.keys():
                 runner.share.waits = True
-            missing = f"{len(self.lines)} of {count} containers are verified"
-            return replace(self.begun, status=INTERRUPTED, missing=missing)
+            words = f"{len(self.lines)} of {count} containers are verified"
+            return replace(self.begun, status=INTERRUPTED, missing=words)
         place.check()
         place.write_text(SITES, table_of_lines(COLUMNS, (line for _, line in sorted(self.lines.items()))))
         rows = {k: row_of(COLUMNS, line) for k, line in self.lines.items()}
@@ -163,12 +167,27 @@ class _AtSite:
         status = FAILED if {one["status"] for one in rows.values()} == {FAILED} else COMPLETED
         return written(place, table, replace(self.begun, status=status, runs=count))
 
+    def _say_expected(self, missing: Sequence[int], runner: Runner) -> None:
+        """How long these containers take at most, by the first of them."""
+        with suppress(CaseError, MeshError):  # its row says why it cannot be verified
+            each = forecast_of(
+                self._request(missing[0]), runner.jobs, allow_outside=bool(self.site.motions.files)
+            )
+            time = clock_time(float(f"{each.seconds * len(missing):.1g}"))
+            runner.reporter.message(
+                f"{len(missing)} containers with up to {each.most} runs each: at most about {time} on {runner.jobs} "
+                f"core{'s' * (runner.jobs > 1)}, and the deciding runs with their bands"
+            )
+
+    def _request(self, number: int) -> SiteRequest:
+        """The verification of a container."""
+        own = self.inventory.of_row.index(number)
+        name = self.file.rows[own].name
+        return request_of(self.site, self.start, self.inventory.containers[number], name)
+
     def _verify(self, number: int, folder: Path, runner: Runner) -> str:
         """The line of a container; empty where it was interrupted."""
-        own = self.inventory.of_row.index(number)
-        request = request_of(
-            self.site, self.start, self.inventory.containers[number], self.file.rows[own].name
-        )
+        request = self._request(number)
         folder /= self._folder(number)
         try:
             result = run_site(

@@ -1,6 +1,6 @@
 """What can be said of a site before any run: action, motions, what they move, and what a verification would take."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -8,6 +8,7 @@ from fem.results.json_block import JsonBlock
 from fem.run.expected import OF_A_RUN, USUAL_RECORD_S, of_a_second
 from fem.runtime.progress import clock_time
 from fem.runtime.threads import cores
+from fem.seismic.ground_motion import GroundMotion
 from fem.seismic.motion_set import check_set
 from fem.site_check.bodies import body_of
 from fem.site_check.file import SiteRequest
@@ -63,6 +64,25 @@ def forecast(stages: Stages, jobs: int, *, quick: bool = False) -> Forecast:
     )
 
 
+def forecast_of(request: SiteRequest, jobs: int, *, allow_outside: bool = False) -> Forecast:
+    """As `forecast`, of a request of which nothing is made yet.
+
+    Raises:
+        CaseError, MeshError: it cannot be computed.
+    """
+    bodies = tuple(map(body_of, request.variants))
+    return forecast(_stages_of(request, bodies, allow_outside=allow_outside)[1], jobs)
+
+
+def _stages_of(
+    request: SiteRequest, bodies: Sequence[SiteBody], *, allow_outside: bool
+) -> tuple[Sequence[GroundMotion], Stages]:
+    """The motions of the ground, and the stages, without a folder."""
+    longest = longest_period([body.frequency_parameter_1_s for body in bodies])
+    ground = ground_motions(request, longest, allow_outside=allow_outside)
+    return ground, Stages.of(request, floor_motions(request, ground), longest=longest, folder=Path())
+
+
 @dataclass(frozen=True, kw_only=True)
 class SitePreview(JsonBlock):
     """What is known of a verification before it is computed."""
@@ -90,11 +110,9 @@ def preview_of(request: SiteRequest, *, allow_outside: bool = False) -> SitePrev
         CaseError, MeshError: it cannot be computed.
     """
     bodies = tuple(map(body_of, request.variants))
-    longest = longest_period([body.frequency_parameter_1_s for body in bodies])
-    ground = ground_motions(request, longest, allow_outside=allow_outside)
-    stages = Stages.of(request, floor_motions(request, ground), longest=longest, folder=Path())
+    ground, stages = _stages_of(request, bodies, allow_outside=allow_outside)
     checked = check_set(
-        ground, stages.target, longest=longest, second=request.motions.second_component or 1.0
+        ground, stages.target, longest=stages.longest, second=request.motions.second_component or 1.0
     )
     return SitePreview(
         site=request.name,

@@ -15,6 +15,7 @@ from fem.hall.file import read_hall
 from fem.hall.site import run_hall_at_site
 from fem.results.folder import program_of_results
 from fem.results.kinds import SITE as KIND
+from fem.runtime.progress import SilentReporter
 from fem.site_check.file import load_site
 from fem.site_check.inputs import texts_of
 from fem.site_check.motions import ground_motions
@@ -91,6 +92,18 @@ def asked(tmp_path, monkeypatch):
         return run_hall_at_site(read_hall(Path("hall.csv")), site, None, tmp_path / "out", **options)
 
     return hall, made
+
+
+def test_the_time_of_a_list_is_told_before_its_first_container(asked):
+    told = []
+
+    class Told(SilentReporter):
+        def message(self, text):
+            told.append(text)
+
+    asked[0](reporter=Told(), jobs=1)
+    assert "2 containers with up to" in told[0] and "on 1 core" in told[0]
+    assert told[1].startswith("container 1 of 2")
 
 
 def test_one_row_that_cannot_be_verified_is_a_row_with_its_reason(asked):
