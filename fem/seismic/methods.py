@@ -44,7 +44,7 @@ def methods_of(
         if height_ratio is not None
     ]
     plateaus = [
-        partial(plateau_rows, body, behaviour_factor=q)
+        partial(plateau_rows, body, behaviour_factor=q, height_ratio=height_ratio)
         for q in sorted({behaviour_factor, 1.0})[::-1]
         if height_ratio is not None
     ]

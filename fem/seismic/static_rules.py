@@ -88,9 +88,14 @@ def both_directions_rows(body: LooseBody, action: FloorAction) -> list[MethodRow
     ]
 
 
-def plateau_rows(body: LooseBody, action: FloorAction, *, behaviour_factor: float) -> list[MethodRow]:
-    """The plateau of the design spectrum of the ground, 2.5 a_g S/q, without the vertical component."""
-    return _rows(
+def plateau_rows(
+    body: LooseBody, action: FloorAction, *, behaviour_factor: float, height_ratio: float = 0.0
+) -> list[MethodRow]:
+    """The plateau of the design spectrum of the ground, 2.5 a_g S/q, without the vertical component.
+
+    On the floor of a building, `height_ratio` above 0, it is out of its range: it is no action of that floor.
+    """
+    rows = _rows(
         f"plateau of the design spectrum, q = {behaviour_factor:g}",
         body,
         "2.5 a_g S/q",
@@ -99,6 +104,12 @@ def plateau_rows(body: LooseBody, action: FloorAction, *, behaviour_factor: floa
         source=PLATEAU,
         validity="elastic buildings on the ground; an unanchored body has no period and no behaviour factor",
     )
+    if height_ratio > 0.0:
+        rows = [
+            replace(row, beyond="that of the ground; the container stands on a floor above it")
+            for row in rows
+        ]
+    return rows
 
 
 def floor_factor(height_ratio: float, period_ratio: float) -> float:

@@ -274,14 +274,19 @@ def methods_section(view: SiteView) -> html.PageSection:
     capacities = (
         draw_methods(drawn, result.result, shown) if any(row.factor is not None for row in drawn) else ""
     )
+    action = "the same action as the runs"
+    if result.floor and result.floor.z_over_h:
+        action = (
+            "the motions of the floor, as the runs do, but for those that name a_g S, which is of the ground: "
+            "Eq. (4.25) raises it to the floor, the plateau does not"
+        )
     return html.section(
         "Rules of thumb side by side",
         "methods",
         html.joined(
-            "All use the least friction of the range and the same action as the runs. The last columns give what the "
-            "rule counts, and whether the method is conservative against that. A median is what half of such "
-            "motions or bodies exceed, so it gets no verdict; nor does a rule out of its range, in grey. "
-            "Formulas and numbers are in the ",
+            f"All use the least friction of the range and {action}. The last columns give what the rule counts, and "
+            "whether the method is conservative against that. A median is what half of such motions or bodies exceed, "
+            "so it gets no verdict; nor does a rule out of its range, in grey. Formulas and numbers are in the ",
             html.link("static calculation", "sheet"),
             ".",
         ),

@@ -333,6 +333,14 @@ def test_a_behaviour_factor_of_one_is_one_row():
     assert sum(row.name.startswith("plateau") for row in rows) == 2  # overturning and sliding
 
 
+@pytest.mark.parametrize(("height_ratio", "grey"), [(0.0, False), (0.8, True)])
+def test_on_a_floor_the_plateau_of_the_ground_is_out_of_its_range(height_ratio, grey):
+    rows = method_rows(methods_of(K1, LIMITS, behaviour_factor=1.5, height_ratio=height_ratio), ACTION)
+    plateau = [row for row in rows if row.name.startswith("plateau")]
+    assert len(plateau) == 4 and all(bool(row.beyond) is grey for row in plateau)
+    assert not any(row.beyond for row in rows if row.name.startswith("element"))
+
+
 def test_capacity_over_strength_is_where_a_method_is_used_up():
     methods = methods_of(K1, LIMITS, behaviour_factor=1.5)
     found = method_capacities(methods, ACTION)
