@@ -131,6 +131,7 @@ class SiteBody(JsonBlock):
     frequency_parameter_1_s: float
     uplift_acceleration_m_s2: float
     housner_restitution: float
+    gives_way: bool = False  #: whether it tilts on its floor before a side lifts off, see `fem.model.resting`
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -168,6 +168,15 @@ def test_below_its_static_limits_a_body_does_not_move():
     assert lifted == pytest.approx(0.9 * 0.3 * 9.81 / (3.0 + 0.3 * 2.0), rel=1e-3)
 
 
+def test_on_a_floor_that_gives_way_the_levels_begin_below_the_first_uplift():
+    limit = math.tan(BODY.slenderness_angle_rad)
+    soft = replace(BODY, gives_way=True)
+    assert rocks_from(soft, [push(1.0)]) == pytest.approx(0.4 * limit * 9.81, rel=1e-3)
+    runs = [replace(RUN, rotation_ratio=0.1)]
+    first, weakest = (hazard_runs(groups_of(runs), [one], [push(1.0)], 40)[0].factor for one in (BODY, soft))
+    assert weakest < 0.6 * limit * 9.81 < limit * 9.81 < first
+
+
 def test_every_level_has_motions_of_its_own(tmp_path):
     runs = [replace(RUN, motion=k, rotation_ratio=0.1 * k, mu_static=0.3 + 0.05 * k) for k in (1, 2)]
     keys = hazard_runs(groups_of(runs), [BODY], [push(1.0)], 40)
