@@ -45,6 +45,15 @@ def mass_of_box(container: Any, gravity: float, volume: float) -> float | None:
 
 
 @lru_cache(maxsize=64)  # every rule of every case of a study asks for the same few
+def centroid_at(container: Any, height: float) -> float:
+    """Height of the mass centre in a box of another height for which none is given [m].
+
+    Half the height is the default of [container]; there it is half of the other height, too.
+    """
+    half = container.centroid_m == 0.5 * container.height_m
+    return 0.5 * height if half else float(container.centroid_m)
+
+
 def boxes_of(container: Any, gravity: float) -> tuple[Box, ...]:
     """All boxes of a table [container], from the floor up; raises AttributeError where a box has no mass."""
     tables = container.box or (None,) * container.boxes
@@ -60,15 +69,13 @@ def boxes_of(container: Any, gravity: float) -> tuple[Box, ...]:
         mass = given.get("mass_kg") or mass_of_box(container, gravity, width * height * container.depth_m)
         if mass is None:
             raise AttributeError("mass_kg")
-        # Half the height is the default of [container]; of a box of another height it is half of that.
-        half = container.centroid_m == 0.5 * container.height_m
         axis += given.get("offset_m", 0.0)
         boxes.append(
             Box(
                 width=width,
                 height=height,
                 mass=mass,
-                centroid=given.get("centroid_m", 0.5 * height if half else container.centroid_m),
+                centroid=given.get("centroid_m", centroid_at(container, height)),
                 wall=given.get("wall_m", container.wall_m) if container.section == "shell" else None,
                 axis=axis,
                 bottom=number * height if equal else bottom,

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from pydantic import Strict
 
 from fem.case import quantities as q
-from fem.case.boxes import boxes_of
+from fem.case.boxes import boxes_of, centroid_at
 from fem.case.problem import Rule, either
 from fem.case.table import CaseTable, case_key
 
@@ -62,6 +62,8 @@ def case_of(case: Any, neighbour: NeighbourTable | None) -> dict[str, Any]:
     if neighbour.width_m is not None:  # the mass lies as unevenly in it
         share = neighbour.width_m / case.container.width_m
         alone["container.eccentricity_m"] = case.container.eccentricity_m * share
+    if neighbour.height_m is not None:
+        alone["container.centroid_m"] = centroid_at(case.container, neighbour.height_m)
     return alone | {f"container.{name}": value for name, value in given.items() if value is not None}
 
 
