@@ -249,6 +249,16 @@ def weigh_points(faces: Faces, corner: FloatArray, point: FloatArray, contact: C
 
 
 @compiled(inline=True)
+def place_weighed(faces: Faces, corner: FloatArray, point: FloatArray) -> None:
+    """Points (n, 2) that had no weight and have one now, where they are: their springs take over from others."""
+    for i in range(faces.weight.size):
+        if not is_over_floor(faces, i) and faces.weight[i] > 0.0 and point[i, 1] == faces.length[i]:
+            share, gap, _, _, _ = place_on_face(faces, i, corner)
+            point[i, 0] = faces.origin[i] + faces.side[i] * share * faces.length[i]
+            point[i, 1] = gap
+
+
+@compiled(inline=True)
 def linearise_points(faces: Faces, corner: FloatArray, point: FloatArray) -> None:
     """Contact points (n, 2) of the corners (4 N, 2), and their derivatives in `faces.gradient`."""
     place_points(faces, corner, point)

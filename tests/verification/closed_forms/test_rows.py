@@ -11,7 +11,7 @@ from moreau import slide_in_a_row
 
 from contact.stepping.ledger import CONTACT_DAMPING, FRICTION
 from fem.assessment.verdict import verdict_of
-from fem.case.case import Case, CaseError
+from fem.case.case import Case, CaseError, load_case
 from fem.case.neighbours import case_of
 from fem.evidence.verification.runs import STACK, Finished, harmonic, pulse, run
 from fem.model.geometry import build_container
@@ -217,6 +217,17 @@ def test_the_ledger_of_a_row_closes_with_friction_between_the_sides():
     ledger, reference = found.model.run.ledger, found.model.run.problem.control.reference_energy
     assert found.model.run.links.hits.min() > 0
     assert abs(ledger[-1]) < 0.01 * (ledger[FRICTION] + ledger[CONTACT_DAMPING]) + 1e-3 * reference
+
+
+def test_a_corner_that_slides_onto_a_side_takes_the_load_over_without_a_gain_of_energy():
+    low = {**BESIDE, "gap_m": 0.01, "height_m": 0.8, "damping_ratio": 0.5}
+    shell = load_case("seed_stack_plateau", ["solver.model=rigid", "floor.kind=rigid", "contact.mu_static=3"])
+    found = run(
+        in_a_row(shell, low), {**pulse(4.5, 0.4), "contact.mu_kinetic": 3.0, "solver.duration_s": 2.0}
+    )
+    reference = found.model.run.problem.control.reference_energy
+    assert found.model.run.links[0].hits > 0
+    assert -float(found.model.run.clock[0].least_imbalance) < 1e-4 * reference
 
 
 def test_friction_between_the_sides_drags_a_container_that_rocks_beside_another():
