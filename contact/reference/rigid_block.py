@@ -69,6 +69,18 @@ class RigidBlock:
         """
         return 1.0 - (1.0 - math.cos(2.0 * self.slenderness_angle)) / self.inertia_ratio
 
+    def restitution_on_plates(self, length: float) -> float:
+        """Ratio of angular velocities at an impact on flat plates, of this length inward from each corner [m].
+
+        From its left corner the block lands on the inner edge of the right plate, at x = B - length, and rolls from
+        there to the right corner. Angular momentum about the inner edge is conserved in the first, energy in the
+        second: e = (J - B x)/(J + x^2) sqrt((J + x^2)/(J + B^2)), J the inertia about the middle of the base per mass.
+        Without length it is Housner's.
+        """
+        about_corner = self.inertia_ratio * self.radius**2
+        about_middle, inner = about_corner - self.half_width**2, self.half_width - length
+        return (about_middle - self.half_width * inner) / math.sqrt((about_middle + inner**2) * about_corner)
+
     @property
     def uplift_acceleration(self) -> float:
         """Floor acceleration above which the block cannot rest on its whole base: g tan al [m/s2]."""

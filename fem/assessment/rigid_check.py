@@ -221,10 +221,9 @@ def reasons_against(model: Model, history: History, verdict: Verdict, reference:
         reasons.append(
             f"squat container: Housner's restitution is {static.housner_restitution:.3f}, below 0.5"
         )
-    if kind != "corners":
-        reasons.append(
-            f"support {kind!r}: the container turns about a moving region, the block about its corners"
-        )
+    if kind != "corners" or model.case.foot is not None:
+        what = f"support {kind!r}" if kind != "corners" else "castings"
+        reasons.append(f"{what}: the container turns about a moving region, the block about its corners")
     if (moved := joints_in_words(verdict, static.to_result())) not in ("", AS_ONE):
         reasons.append(f"its boxes are loose: {moved}")
     if block_slides or _slides_at_impact(model, history, verdict):

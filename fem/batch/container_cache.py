@@ -27,6 +27,7 @@ def container_key(case: Case, *, mass: bool = True, gaps: bool = True) -> Hashab
     return (
         case.container.model_copy(update={"damping_ratio": 0.0, "corner_post_N": None, **places}),
         case.support.model_copy(update=STANDING),
+        case.foot,
         case.gravity_m_s2,
         case.folder,
         solver.model,

@@ -22,7 +22,7 @@ from fem.case.links import StopTable, TieTable, links_of_case
 from fem.case.neighbours import NeighbourTable, case_of
 from fem.case.overrides import kinds_of, naming_overrides, parse_override, with_overrides
 from fem.case.resolved import resolved_tables
-from fem.case.rules import CASE_RULES
+from fem.case.rules import CASE_RULES, may_bear_as_plates
 from fem.case.tables import (
     OPTIONAL,
     TABLES,
@@ -139,6 +139,35 @@ class Case(CaseHeading):
     def effective_width(self) -> float:
         """Width between the points about which it rocks, over that of the base: castings may stand inside its sides."""
         return self.support.effective_width * (1.0 - 2.0 * self.support.inset / self.stack[0].width)
+
+    @property
+    def foot(self) -> float | None:
+        """Length along x of what bears at each end of the base: a foot, or a casting [m]; None: no such part.
+
+        Unless the case says otherwise, castings bear as plates on a slab. A rigid floor is that of sharp corners, and
+        each box of a loose stack and each container of a row stands on two points.
+        """
+        if self.support.kind == "feet":
+            return self.support.foot_m
+        plates = self.support.casting_bears != "edge" and may_bear_as_plates(self)
+        return self.casting_length if plates else None
+
+    @property
+    def casting_length(self) -> float | None:
+        """Length along x with which a casting presses the floor [m]; None of a base without castings.
+
+        Where a post stands on it, the length of the post: beyond it a plate bends (EN 1993-1-8, 6.2.5, adds one to two
+        thicknesses of the plate, and nobody knows that).
+        """
+        support, post = self.support, self.container.post_section
+        if support.kind != "corners" or support.casting_m is None:
+            return None
+        return support.casting_m[0] if post is None else min(support.casting_m[0], post[0])
+
+    @property
+    def rolls(self) -> bool:
+        """Whether the base is cambered from edge to edge: it touches wherever it has rolled to."""
+        return self.support.camber_m > 0.0 and self.foot is None
 
     @property
     def joint_friction(self) -> dict[str, float]:

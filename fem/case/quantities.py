@@ -121,6 +121,7 @@ POST = Quantity(unit="m", least=1e-4, most=10.0, typical=0.05, slips=MILLI_AND_C
 CORNER_FORCE = Quantity(
     unit="N", least=1.0, most=1e12, typical=5e5, slips={"kilonewtons": 1e3, "tonnes": 9.81e3}
 )
+TILT = Quantity(unit="m", least=-0.1, most=0.1, typical=5e-4, slips=MILLI_AND_CENTI)
 CAMBER = Quantity(unit="m", least=0.0, most=1.0, typical=5e-3, slips=MILLI_AND_CENTI)
 FOOT = Quantity(unit="m", least=1e-6, most=100.0, typical=0.1, slips=MILLI_AND_CENTI)
 ELEMENT_SIZE = Quantity(unit="m", least=1e-5, most=100.0, typical=0.1, slips=MILLI_AND_CENTI)

@@ -237,6 +237,12 @@ def _frames(case: Any) -> float:
     return longest_time(case) / float(interval) + 1.0 if interval not in (0.0, "auto") else 0.0
 
 
+def may_bear_as_plates(case: Any) -> bool:
+    """Whether the castings of a case could bear over all their length."""
+    alone = case.container.joints != "loose" and not getattr(case, "neighbour", ())
+    return bool(alone and case.floor.kind == "slab" and case.support.camber_m == 0.0)
+
+
 def _casting_does_not_fit(case: Any) -> str:
     """Why castings do not fit below the base, empty where they do."""
     if case.support.casting_m is None:
@@ -286,6 +292,12 @@ CASE_RULES = (
         "leave it out",
     ),
     refused("support.casting_m", _casting_does_not_fit),
+    Rule(
+        "support.casting_bears",
+        lambda case: case.support.casting_bears != "plate" or may_bear_as_plates(case),
+        '= "plate" needs floor.kind = "slab", one body and no camber_m: on a rigid floor, in a loose stack and in a '
+        "row castings touch with their outer edges; leave it out",
+    ),
     refused("container.post_m", _posts_do_not_fit),
     Rule(
         "container.corner_post_N",

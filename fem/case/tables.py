@@ -194,6 +194,17 @@ class SupportTable(CaseTable):
             only=("kind", "corners"),
         )
     )
+    casting_bears: Literal["plate", "edge"] | None = case_key(
+        '"plate" | "edge": over all its length, or at its outer edge; default: plate on a slab, of one body',
+        None,
+        example="plate",
+        only=("kind", "corners"),
+    )
+    casting_tilt_m: Annotated[float, q.TILT] = case_key(
+        "how far the outer edge of a casting stands higher than its inner one; < 0: lower",
+        0.0,
+        only=("kind", "corners"),
+    )
     camber_m: Annotated[float, q.CAMBER] = case_key(
         "how far the edges of the base stand higher than its middle, along a parabola; 0: sharp corners", 0.0
     )
@@ -205,16 +216,6 @@ class SupportTable(CaseTable):
     def inset(self) -> float:
         """Distance of the outer edge of the castings from the side of the box [m]."""
         return self.casting_m[2] if self.casting_m is not None and self.kind == "corners" else 0.0
-
-    @property
-    def rolls(self) -> bool:
-        """Whether the base is cambered from edge to edge: it touches wherever it has rolled to."""
-        return self.camber_m > 0.0 and self.kind != "feet"
-
-    @property
-    def foot(self) -> float | None:
-        """Length of each foot [m]; None where the base does not stand on feet."""
-        return self.foot_m if self.kind == "feet" else None
 
 
 class ContactTable(CaseTable):
@@ -406,6 +407,9 @@ class UncertaintyTable(CaseTable):
     joints_weakening_m: Unknown = case_key("loose joints: default: 0 to 5 mm", None, example=[0.0, 0.005])
     joints_damping_ratio: Unknown = case_key(
         "loose joints: default: 0.1 to 2, and as given", None, example=[0.1, 2.0]
+    )
+    casting_tilt_m: Unknown = case_key(
+        "of castings that bear as plates; default: 0.5 mm less to 0.5 mm more", None, example=[-0.001, 0.001]
     )
     camber_m: Unknown = case_key(
         "of the support; default: half to twice, of a level base flat or on feet 0 to 2 mm",

@@ -38,6 +38,8 @@ SLOPE_PERCENT = 0.5  #: more or less than that of the case
 CAMBERS = (0.5, 2.0)  #: camber of a base over that of the case
 #: camber of a base that is given as level: no base and no floor is [m]; a share of it is tried, too
 LEVEL_CAMBER_M, BETWEEN_CAMBERS = 0.002, 0.25
+#: to either side of that of the case: what steel and a trowelled floor keep over the length of a casting
+CASTING_TILT_M = 5e-4
 ROCKING_DAMPING = (0.02, 0.1)  #: damping of small rocking on it, as far as the case has none beyond
 LOSS = (0.8, 1.5)  #: loss at an impact, 1 - e, over that of the case where its restitution is given
 RESTITUTIONS = (0.95, 1.06)  #: over Housner's, of sharp corners whose restitution is not given
@@ -67,6 +69,7 @@ PENALTY, DASHPOT, RESTITUTION, MATERIAL = (
     "container.damping_ratio",
 )
 CAMBER, ROCKING = "support.camber_m", "support.rocking_damping_ratio"
+CASTING_TILT = "support.casting_tilt_m"
 STOP_GAP, STOP_STIFFNESS, STOP_FRICTION = "stop.gap_m", "stop.stiffness_N_m", "stop.mu"
 TIE_SLACK, TIE_STIFFNESS = "tie.slack_m", "tie.stiffness_N_m"
 SIDE_GAP, SIDE_STIFFNESS, SIDE_FRICTION = "neighbour.gap_m", "neighbour.stiffness_N_m", "neighbour.mu"
@@ -283,7 +286,7 @@ def _cambers(case: Any, own: float) -> Ends:
 def _has_impacts(case: Any) -> bool:
     """Whether an impact exchanges the pivot as Housner's does, or leaves a restitution that is given."""
     given = case.contact.restitution_over_housner is not None
-    sharp = case.support.kind == "corners" and not case.support.rolls
+    sharp = case.support.kind == "corners" and not case.rolls
     return given or (sharp and not getattr(case, "neighbour", ()))
 
 
@@ -292,9 +295,11 @@ def _restitutions(case: Any, ratio: float) -> Ends:
     box = case.container
     height = 0.5 * (box.total_height - box.height_m) + box.centroid_m
     block = RigidBlock(half_width=0.5 * box.width_m, centroid_height=height, gravity=case.gravity_m_s2)
-    housner = block.housner_restitution
+    housner, most = block.housner_restitution, RESTITUTIONS[1]
     if case.contact.restitution_over_housner is None:
-        return RESTITUTIONS[0], min(RESTITUTIONS[1], short(0.999 / housner))
+        if case.casting_length is not None and case.foot is None:  # it may land on their inner edges
+            most = max(most, short(block.restitution_on_plates(case.casting_length) / housner))
+        return RESTITUTIONS[0], min(most, short(0.999 / housner))
     less, more = ((1.0 - share * (1.0 - ratio * housner)) / housner for share in (LOSS[1], LOSS[0]))
     return short(max(q.RESTITUTION.least or 0.0, less)), short(more)
 
@@ -329,7 +334,7 @@ def other_patch(case: Any, kind: str) -> list[float] | None:
 def _other_support(case: Any) -> Value | None:
     """Corners and flat stand for one another; feet, castings and the boxes of a loose stack stay."""
     kind = {"corners": "flat", "flat": "corners"}.get(case.support.kind)
-    if kind is None or case.support.rolls or case.container.is_loose or case.container.box is not None:
+    if kind is None or case.rolls or case.container.is_loose or case.container.box is not None:
         return None
     if case.neighbour:
         return None
@@ -340,6 +345,10 @@ def _other_support(case: Any) -> Value | None:
         if castings or other_patch(case, kind) is None:
             return None
     return kind
+
+
+def _on_plates(case: Any) -> bool:
+    return case.support.kind == "corners" and case.foot is not None
 
 
 def _any_falls(case: Any) -> bool:
@@ -372,10 +381,12 @@ UNKNOWN: tuple[UnknownNumber | UnknownChoice, ...] = (
            between=lambda low, high: WEAKENINGS_BETWEEN_M, alone=_joints_fall),
     Number(JOINTS_DASHPOT, "joints_damping_ratio", "damping of the joints", q.CONTACT_DAMPING,
            _reaching(*JOINTS_DASHPOTS), matters=lambda case: case.container.is_loose),
+    Number(CASTING_TILT, "casting_tilt_m", "tilt of the castings", q.TILT,
+           lambda case, own: (short(own - CASTING_TILT_M), short(own + CASTING_TILT_M)), matters=_on_plates, power=1.0),
     Number(CAMBER, "camber_m", "camber of the base", q.CAMBER, _cambers, matters=_may_be_cambered,
            between=lambda low, high: () if low > 0.0 else (short(BETWEEN_CAMBERS * high),), varies=_is_cambered),
     Number(ROCKING, "rocking_damping_ratio", "damping of rocking", q.ROCKING_DAMPING,
-           _reaching(*ROCKING_DAMPING), matters=lambda case: case.support.rolls),
+           _reaching(*ROCKING_DAMPING), matters=lambda case: case.rolls),
     Choice(SUPPORT, "support", "contact of the base", _other_support, drawn=False),
     Number(CENTROID_KEY, "centroid_m", "height of the mass centre", q.LENGTH, CENTROID,
            matters=lambda case: case.container.box is None and case.container.mesh_file is None, power=1.0),

@@ -159,7 +159,7 @@ def _restitution_of_contact(case: Case, document: Mapping[str, Any]) -> str:
     """From the calibration of the contact damping, and the factor on it."""
     value, factor = document["contact_restitution"], case.contact.restitution_over_housner
     of_it = "" if factor is None else f", of which {factor:g} is asked for"
-    if case.support.rolls:
+    if case.rolls:
         return "none: a cambered base rolls"
     if case.floor.is_slab:
         return f"of the slab: where it crushes about Housner's{of_it}"

@@ -173,12 +173,18 @@ def changed_container(case: Case, container: Container, own: Case) -> Container:
         mesh = build_container(case)
         boxes = tuple(replace(box, mesh=box_mesh(mesh, number)) for number, box in enumerate(container.boxes))
         container = replace(container, mesh=mesh, boxes=boxes)
-    if (case.support.kind, case.support.camber_m) != (own.support.kind, own.support.camber_m):
+    if _touching(case) != _touching(own):
         support = build_support(case, container.mesh)
         if not np.array_equal(support.index, container.support.index):
             return discretise(case)
         container = replace(container, support=support)
     return container
+
+
+def _touching(case: Case) -> tuple[object, ...]:
+    """What says which points of a base touch, and how high they stand."""
+    support = case.support
+    return support.kind, case.foot, support.casting_tilt_m, support.camber_m
 
 
 def without_links(case: Case, container: Container) -> Container:

@@ -111,7 +111,7 @@ def corner_patch(case: Case) -> tuple[float, float]:
     if case.support.casting_m is not None:
         return case.support.casting_m[0], 2.0 * case.support.casting_m[1]
     lowest = case.stack[0]
-    touching = {"corners": lowest.wall, "feet": case.support.foot, "flat": 0.5 * lowest.width}
+    touching = {"corners": lowest.wall, "feet": case.support.foot_m, "flat": 0.5 * lowest.width}
     along = touching[case.support.kind]
     if along is None:  # a solid block on corners: excluded by a rule where the floor is a slab
         raise CaseError("[floor] corner_patch_m is missing: a solid block has no wall")
@@ -162,10 +162,10 @@ def _widening(case: Case, out_of_plane: float) -> float:
 
     An edge over the whole depth is a wedge between wall and base. The rocking container stands on it, turned by at most
     its slenderness angle, and where the edge has sunk in by d, the base bears over d/tan of that angle: height over
-    width for a mass centre in the middle. Beside a casting the frame clears the floor; what it heaps up before it has
-    about the slope 1. Feet and a flat base have no edge that grows.
+    width for a mass centre in the middle. Beside a narrower patch the frame clears the floor; what it heaps up before
+    it has about the slope 1. Feet, castings that bear as plates and a flat base have no edge that grows.
     """
-    if case.support.kind != "corners":
+    if case.support.kind != "corners" or case.foot is not None:
         return 0.0
     if out_of_plane < WHOLE_DEPTH * case.container.depth_m:
         return 1.0
@@ -217,5 +217,5 @@ def pivot_share(case: Case, mesh: ContainerMesh) -> float:
 
 def slab_penalty(case: Case, mesh: ContainerMesh) -> float:
     """Normal stiffness of the slab over the area of the base that the support divides among its points [Pa/m]."""
-    length = mesh.width if case.support.foot is None else sum(mesh.foot_widths(case.support.foot))
+    length = mesh.width if case.foot is None else sum(mesh.foot_widths(case.foot))
     return 2.0 * slab_of(case, mesh.mass).normal_stiffness / (length * case.container.depth_m)

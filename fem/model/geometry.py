@@ -27,10 +27,10 @@ def build_container(case: Case) -> ContainerMesh:
 
 
 def _centred(case: Case) -> ContainerMesh:
-    container, size, foot = case.container, case.solver.element_size_m, case.support.foot
+    container, size, foot = case.container, case.solver.element_size_m, case.foot
     file = case.data_files["container.mesh_file"] if container.mesh_file is not None else None
     boxes = [_stacked(case, box) for box in case.stack]
-    bears = case.solver.model != "rigid" and (case.support.kind != "corners" or case.support.rolls)
+    bears = case.solver.model != "rigid" and (case.support.kind != "corners" or case.rolls)
     if container.box is None and not container.is_loose:
         lowest = boxes[0]
         geometry = replace(lowest.geometry, boxes=container.boxes)

@@ -55,7 +55,7 @@ def contact_restitution(case: Case, static: StaticChecks) -> float | None:
         return None
     own = apparent_restitution(
         support=case.support.kind,
-        foot_over_width=None if case.support.foot is None else case.support.foot / static.width,
+        foot_over_width=None if case.foot is None else case.foot / static.width,
         slenderness=static.centroid / (0.5 * static.width),
         damping_ratio=case.contact.damping_ratio,
         housner=static.housner_restitution,

@@ -183,7 +183,7 @@ def control_of(
         top_monitors=2,
         base_points=base,
         impact_share=case.contact.restitution_over_housner or 1.0,
-        rolls=case.support.rolls,
+        rolls=case.rolls,
         eager=eager,
     )
 

@@ -53,7 +53,7 @@ def require_stiff_contact(case: Case, mesh: ContainerMesh, stiffness: float) -> 
 def require_bearing(case: Case, mesh: ContainerMesh, use: float = 0.0) -> None:
     """Refuse a slab into which the container would sink at once, at rest or as soon as one side lifts off.
 
-    `use` is the largest force of a point at the start over its cap.
+    `use` is the largest force of a point at rest over its cap.
 
     Also a full model whose corners turn inside the edges, where it has no nodes.
 
@@ -64,7 +64,7 @@ def require_bearing(case: Case, mesh: ContainerMesh, use: float = 0.0) -> None:
         return
     slab = slab_of(case, mesh.mass)
     inset = pivot_inset(case, mesh)
-    if inset > 0.0 and case.support.kind == "corners" and case.solver.model == "full":
+    if inset > 0.0 and case.support.kind == "corners" and case.foot is None and case.solver.model == "full":
         raise CaseError(
             f'[solver] model = "full": on this floor a corner turns {1e3 * inset:.3g} mm inside its edge, and the '
             'full model bears where its nodes are; take "reduced" or "rigid", or feet of the length of the patch'

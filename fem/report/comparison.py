@@ -97,6 +97,15 @@ def compared_table(rows: Sequence[Compared], *, loose: bool) -> html.Table:
     return html.table_of("static rule and run", columns, rows, look="compared")
 
 
+def _corners(case: Case) -> str:
+    """What a base on corners touches with, in words."""
+    casting = case.support.casting_m
+    if casting is None:
+        return "two bottom corners"
+    where = "at their outer edges" if case.foot is None else "over all their length"
+    return f"castings of {short(casting[0], 1e3)} × {short(casting[1], 1e3)} mm, {where}"
+
+
 def asked_rows(case: Case) -> list[tuple[str, str]]:
     """The case in words: name and value."""
     box, contact = case.container, case.contact
@@ -105,7 +114,7 @@ def asked_rows(case: Case) -> list[tuple[str, str]]:
     if (post := box.post_section) is not None:
         section += f", posts {' × '.join(short(one, 1e3) for one in post)} mm"
     supports = {
-        "corners": "two bottom corners",
+        "corners": _corners(case),
         "feet": f"two feet, {short(case.support.foot_m, 1e3)} mm long",
         "flat": "flat base",
     }

@@ -100,12 +100,16 @@ def _draw_floor(axes: Axes, case: Case, unit: float) -> None:
         words = f"falls {short(abs(slope))} % →" if slope > 0.0 else f"← falls {short(abs(slope))} %"
         place = side * reach, -2.5 * unit
         axes.text(*place, words, color=BLUE, ha="right" if slope > 0.0 else "left", va="top")
-    support = case.support
-    foot = {"corners": unit, "feet": support.foot_m or 0.0}.get(support.kind, 0.5 * width)
+    foot = case.foot or (unit if case.support.kind == "corners" else 0.5 * width)
+    outer = 0.5 * width - case.support.inset
     for side in (-1.0, 1.0):
-        inner = side * (0.5 * width - foot)
         axes.plot(
-            (side * 0.5 * width, inner), (0.0, 0.0), color=BLUE, linewidth=4, solid_capstyle="butt", zorder=5
+            (side * outer, side * (outer - foot)),
+            (0.0, 0.0),
+            color=BLUE,
+            linewidth=4,
+            solid_capstyle="butt",
+            zorder=5,
         )
 
 

@@ -71,7 +71,8 @@ def plan_of(model: Model, result: RunResult) -> Plan:
     case, penalty = model.case, model.penalty
     own = (result.static or StaticResult()).ruling
     low, high = BELOW_UPLIFT
-    soft = case.support.kind != "corners" and low <= (own.utilisation_overturning or 0.0) <= high
+    bears = case.support.kind != "corners" or case.foot is not None
+    soft = bears and low <= (own.utilisation_overturning or 0.0) <= high
     floor = (stiff_floor(case, penalty),) if soft else ()
     one, pairs, draws = changes_of(case, penalty), pairs_of(case), draws_of(case, penalty)
     ordered = (*floor, *largest_first(one), *pairs, *draws)

@@ -336,8 +336,8 @@ MUTATIONS = (
     ),
     Mutation(
         name="a flat base below uplift without its stiff floor",
-        old="soft = case.support.kind != ",
-        new="soft = case.support.foot is not None and case.support.kind != ",
+        old='bears = case.support.kind != "corners" or ',
+        new="bears = ",
         tests=("verification/sureness/test_sure_verdicts.py", "-k", "flat"),
     ),
     Mutation(

@@ -6,6 +6,7 @@ LANDING = ("verification/test_verification_checks.py", "-k", "landing")
 FLOOR = "verification/closed_forms/test_floor.py"
 SOLVER = "unit/contact/test_contact_solver.py"
 SLAB = "unit/model/test_floor.py"
+PLATES = "unit/model/test_plates.py"
 WEAK = "unit/model/test_weak_floor.py"
 
 DROP = ("verification/closed_forms/test_contact_drop.py", "-k", "crushes")
@@ -147,9 +148,39 @@ FLOOR_FAULTS = (
     ),
     Mutation(
         name="corners that stay where the container does not turn",
-        old='share = pivot_share(case, mesh) if case.support.kind == "corners" else case.effective_width',
-        new="share = case.effective_width",
+        old="share = pivot_share(case, mesh) if sharp else case.support.effective_width",
+        new="share = case.support.effective_width",
         tests=(WEAK, "-k", "in_the_middle"),
+    ),
+    Mutation(
+        name="castings that bear at their outer edges on a slab, too",
+        old='plates = self.support.casting_bears != "edge"',
+        new='plates = self.support.casting_bears == "plate"',
+        tests=(PLATES, "-k", "closed_form"),
+    ),
+    Mutation(
+        name="castings that tilt the other way",
+        old="height = tilt * (np.abs(x[points]) - x[-1]) / length",
+        new="height = tilt * (x[-1] - np.abs(x[points])) / length",
+        tests=(PLATES, "-k", "many_elastoplastic_points"),
+    ),
+    Mutation(
+        name="castings scaled with the width between their edges",
+        old="placed[:count, 0] -= np.copysign(inset, place[:count, 0])",
+        new="placed[:count, 0] *= 1.0 - inset / np.abs(place[:count, 0]).max()",
+        tests=(PLATES, "-k", "keep_their_length"),
+    ),
+    Mutation(
+        name="a landing on plates whose block gains as it rolls out",
+        old="math.sqrt((about_middle + inner**2) * about_corner)",
+        new="(about_middle + inner**2)",
+        tests=(PLATES, "-k", "rolled_over"),
+    ),
+    Mutation(
+        name="members of a band that are level although they tilt",
+        old="return support.kind, case.foot, support.casting_tilt_m, support.camber_m",
+        new="return support.kind, case.foot, support.camber_m",
+        tests=(PLATES, "-k", "member_of_the_band"),
     ),
     Mutation(
         name="half the weight on the corner that carries all of it",

@@ -137,7 +137,7 @@ def test_keys_of_an_option_that_is_not_chosen_play_no_part():
     idle = {"motion.amplitude_m": 0.05, "motion.shape": "sine", "support.foot_m": 0.7}
     case = named_case("least", idle)
     assert case.amplitude == 0.0
-    assert case.support.foot is None
+    assert case.foot is None
 
 
 @pytest.mark.parametrize(

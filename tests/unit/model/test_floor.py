@@ -199,9 +199,8 @@ def test_on_a_slope_friction_holds_the_part_of_the_weight_along_it(model, percen
     assert along == pytest.approx(-weight * math.sin(slope), rel=1e-9)
     assert normal == pytest.approx(weight * math.cos(slope), rel=1e-9)
     # The resultant passes through the mass centre, up to the tilt of the springs.
-    width, height = begun.container.mesh.width, begun.static.centroid
-    left, right = begun.run.old.force[0, 1], begun.run.old.force[1, 1]
-    assert (right - left) * 0.5 * width == pytest.approx(weight * math.sin(slope) * height, rel=1e-3)
+    moment = begun.run.old.force[:, 1] @ begun.run.old.point[:, 0]
+    assert moment == pytest.approx(weight * math.sin(slope) * begun.static.centroid, rel=1e-3)
 
 
 def test_a_container_slides_down_a_slope_steeper_than_its_friction():
