@@ -22,7 +22,7 @@ from fem.case.links import StopTable, TieTable, links_of_case
 from fem.case.neighbours import NeighbourTable, case_of
 from fem.case.overrides import kinds_of, naming_overrides, parse_override, with_overrides
 from fem.case.resolved import resolved_tables
-from fem.case.rules import CASE_RULES, may_bear_as_plates
+from fem.case.rules import CASE_RULES, bear_as_plates
 from fem.case.tables import (
     OPTIONAL,
     TABLES,
@@ -142,15 +142,10 @@ class Case(CaseHeading):
 
     @property
     def foot(self) -> float | None:
-        """Length along x of what bears at each end of the base: a foot, or a casting [m]; None: no such part.
-
-        Unless the case says otherwise, castings bear as plates on a slab. A rigid floor is that of sharp corners, and
-        each box of a loose stack and each container of a row stands on two points.
-        """
+        """Length along x of what bears at each end of the base: a foot, or a casting that bears as a plate [m]."""
         if self.support.kind == "feet":
             return self.support.foot_m
-        plates = self.support.casting_bears != "edge" and may_bear_as_plates(self)
-        return self.casting_length if plates else None
+        return self.casting_length if bear_as_plates(self.support) else None
 
     @property
     def casting_length(self) -> float | None:

@@ -55,8 +55,6 @@ class NeighbourTable(CaseTable):
 def case_of(case: Any, neighbour: NeighbourTable | None) -> dict[str, Any]:
     """What to set in a case so that it is that of one stack of its row alone; None: of the container itself."""
     alone: dict[str, Any] = {"neighbour": []}
-    if case.casting_length is not None:  # each container of a row stands on two points
-        alone["support.casting_bears"] = "edge"
     if neighbour is None:
         return alone
     given = {name: getattr(neighbour, name) for name in OWN}

@@ -237,6 +237,13 @@ def _frames(case: Any) -> float:
     return longest_time(case) / float(interval) + 1.0 if interval not in (0.0, "auto") else 0.0
 
 
+def bear_as_plates(support: Any) -> bool:
+    """Whether castings bear over all their length; those that are tilted do unless the case says otherwise."""
+    return support.casting_bears == "plate" or (
+        support.casting_bears is None and support.casting_tilt_m != 0.0
+    )
+
+
 def may_bear_as_plates(case: Any) -> bool:
     """Whether the castings of a case could bear over all their length."""
     alone = case.container.joints != "loose" and not getattr(case, "neighbour", ())
@@ -294,9 +301,9 @@ CASE_RULES = (
     refused("support.casting_m", _casting_does_not_fit),
     Rule(
         "support.casting_bears",
-        lambda case: case.support.casting_bears != "plate" or may_bear_as_plates(case),
-        '= "plate" needs floor.kind = "slab", one body and no camber_m: on a rigid floor, in a loose stack and in a '
-        "row castings touch with their outer edges; leave it out",
+        lambda case: not bear_as_plates(case.support) or may_bear_as_plates(case),
+        '= "plate" and casting_tilt_m need floor.kind = "slab", one body and no camber_m: on a rigid floor, in a '
+        "loose stack and in a row castings touch with their outer edges; leave it out",
     ),
     refused("container.post_m", _posts_do_not_fit),
     Rule(

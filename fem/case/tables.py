@@ -195,7 +195,7 @@ class SupportTable(CaseTable):
         )
     )
     casting_bears: Literal["plate", "edge"] | None = case_key(
-        '"plate" | "edge": over all its length, or at its outer edge; default: plate on a slab, of one body',
+        '"plate" | "edge": over all its length, or at its outer edge; default: edge, plate where it is tilted',
         None,
         example="plate",
         only=("kind", "corners"),

@@ -22,7 +22,7 @@ from fem.case import quantities as q
 from fem.case.links import ROWS
 from fem.case.motion_rules import LEAST_RAMP
 from fem.case.problem import refused
-from fem.case.rules import longest_time
+from fem.case.rules import longest_time, may_bear_as_plates
 
 SOFTEST, STIFFEST = 1.0 / 9.0, 3.0  #: contact stiffness over that of the case
 DAMPING = (0.5, 2.0)  #: contact and material damping over those of the case
@@ -351,6 +351,13 @@ def _on_plates(case: Any) -> bool:
     return case.support.kind == "corners" and case.foot is not None
 
 
+def _may_stand_on_plates(case: Any) -> bool:
+    """Whether castings bear over all their length, or would, where nobody says that they do not."""
+    return _on_plates(case) or (
+        case.casting_length is not None and case.support.casting_bears is None and may_bear_as_plates(case)
+    )
+
+
 def _any_falls(case: Any) -> bool:
     return _falls(case) or _joints_fall(case)
 
@@ -382,7 +389,8 @@ UNKNOWN: tuple[UnknownNumber | UnknownChoice, ...] = (
     Number(JOINTS_DASHPOT, "joints_damping_ratio", "damping of the joints", q.CONTACT_DAMPING,
            _reaching(*JOINTS_DASHPOTS), matters=lambda case: case.container.is_loose),
     Number(CASTING_TILT, "casting_tilt_m", "tilt of the castings", q.TILT,
-           lambda case, own: (short(own - CASTING_TILT_M), short(own + CASTING_TILT_M)), matters=_on_plates, power=1.0),
+           lambda case, own: (short(own - CASTING_TILT_M), short(own + CASTING_TILT_M)), matters=_may_stand_on_plates,
+           varies=_on_plates, power=1.0),
     Number(CAMBER, "camber_m", "camber of the base", q.CAMBER, _cambers, matters=_may_be_cambered,
            between=lambda low, high: () if low > 0.0 else (short(BETWEEN_CAMBERS * high),), varies=_is_cambered),
     Number(ROCKING, "rocking_damping_ratio", "damping of rocking", q.ROCKING_DAMPING,

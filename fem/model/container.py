@@ -174,6 +174,8 @@ def changed_container(case: Case, container: Container, own: Case) -> Container:
         boxes = tuple(replace(box, mesh=box_mesh(mesh, number)) for number, box in enumerate(container.boxes))
         container = replace(container, mesh=mesh, boxes=boxes)
     if _touching(case) != _touching(own):
+        if case.foot != own.foot:  # the mesh has a line at its inner end
+            return discretise(case)
         support = build_support(case, container.mesh)
         if not np.array_equal(support.index, container.support.index):
             return discretise(case)

@@ -337,7 +337,7 @@ class TestCheck:
         assert command_line.main(["check", "seed_box", "--json", "--set", "contact.mu_static=0.5"]) == 0
         document = json.loads(capsys.readouterr().out)
         assert document["static"]["sliding_limit_static_N"] == pytest.approx(0.5 * 24525.0)
-        assert document["numerics"]["contact_nodes"] == 8
+        assert document["numerics"]["contact_nodes"] == 2
         assert document["numerics"]["history_samples"] == 4001
         assert document["derived"]["peak_floor_acceleration_m_s2"] == pytest.approx(0.05 * 6.928**2)
         assert any("not credible" in note for note in document["notes"])
@@ -362,7 +362,7 @@ class TestRun:
         assert command_line.main(["run", "seed_stack", "--dry-run", "--out", "here"]) == 0
         printed = capsys.readouterr().out
         assert "here" in printed
-        assert "720 elements, 3007 nodes (6014 unknowns), 8 contact nodes" in printed
+        assert "720 elements, 3007 nodes (6014 unknowns), 2 contact nodes" in printed
         assert list(tmp_path.iterdir()) == []
 
     def test_a_dry_run_in_json(self, capsys):

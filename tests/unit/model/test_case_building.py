@@ -39,13 +39,7 @@ def test_nodes_of_a_mesh_are_counted_by_order():
     # 1 m x 1 m in elements of 0.5 m: 3 x 3 points, and 5 x 5 nodes of quadratic elements.
     mesh = build_container(
         load_case(
-            "seed_box",
-            [
-                "container.section=solid",
-                "solver.element_size_m=0.5",
-                "container.width_m=1.0",
-                "support.casting_bears=edge",
-            ],
+            "seed_box", ["container.section=solid", "solver.element_size_m=0.5", "container.width_m=1.0"]
         )
     )
     assert (node_count(mesh, 1), node_count(mesh, 2)) == (9, 25)

@@ -24,6 +24,7 @@ STACK = {
     "container.section": "solid",
     "container.post_m": None,
     "container.corner_post_N": 1e8,
+    "support.casting_bears": "plate",
     "contact.mu_static": 2.0,
     "contact.mu_kinetic": 2.0,
     "output.fields_s": 0.0,
@@ -132,7 +133,7 @@ def test_plates_keep_their_length_where_they_stand_inside_the_sides():
 
 
 def test_a_casting_under_a_post_presses_the_floor_where_the_post_stands():
-    case = named_case("seed_stack_plateau", {"solver.model": "rigid"})
+    case = named_case("seed_stack_plateau", {"solver.model": "rigid", "support.casting_bears": "plate"})
     x = build_model(case).run.old.point[:, 0]
     assert x[x > 0.0][0] == pytest.approx(0.55 - 0.12, rel=1e-5) and slab_of(case, case.mass).patch == (
         0.2,
@@ -175,19 +176,25 @@ def test_loose_boxes_and_rigid_floors_have_the_outer_edge_alone(name):
     rigid = {} if "loose" in name else {"floor.kind": "rigid"}
     case = named_case(name, rigid)
     assert case.foot is None
-    with pytest.raises(CaseError, match=r'casting_bears = "plate" needs floor.kind = "slab"'):
+    with pytest.raises(CaseError, match=r'= "plate" and casting_tilt_m need floor.kind = "slab"'):
         case.replace({"support.casting_bears": "plate"})
 
 
 def test_containers_of_a_row_stand_on_their_outer_edges():
-    case = stack(neighbour=[{"side": "right", "gap_m": 0.1, "stiffness_N_m": 1e8}])
-    assert case.foot is None and [one.foot for one in case.row] == [None, None]
+    row = {"neighbour": [{"side": "right", "gap_m": 0.1, "stiffness_N_m": 1e8}]}
+    with pytest.raises(CaseError, match=r'= "plate" and casting_tilt_m need'):
+        stack(**row)
+    assert stack(**row, **{"support.casting_bears": None}).foot is None
 
 
 def test_the_band_tilts_plates_and_changes_the_landing_where_there_are_none():
     tilt, restitution = "support.casting_tilt_m", "contact.restitution_over_housner"
     ends = {one.key: one.ends for one in ranges_of(stack(**PULSE), None)}
     assert ends[tilt] == (-5e-4, 5e-4) and ends[restitution] == (0.95, 1.06)
+    for bears, tilts in ((None, True), ("edge", False)):
+        ranges = {one.key: one for one in ranges_of(stack(**PULSE, **{"support.casting_bears": bears}), None)}
+        assert (tilt in ranges) == tilts
+        assert not tilts or ranges[tilt].drawn is None
     squat = named_case(
         "seed_box", {"floor.kind": "rigid", "container.wall_m": None, "container.section": "solid"}
     )
@@ -197,8 +204,9 @@ def test_the_band_tilts_plates_and_changes_the_landing_where_there_are_none():
     assert ends[restitution][1] == pytest.approx(block.restitution_on_plates(0.2) / block.housner_restitution)
 
 
-def test_a_member_of_the_band_has_the_tilt_that_it_says():
-    own = stack(**PULSE)
+@pytest.mark.parametrize("bears", ["plate", None])
+def test_a_member_of_the_band_has_the_tilt_that_it_says(bears):
+    own = stack(**PULSE, **{"support.casting_bears": bears})
     container = discretise(own)
     tilted = own.with_values({"support.casting_tilt_m": 5e-4})
     support = changed_container(tilted, container, own).support
@@ -207,4 +215,5 @@ def test_a_member_of_the_band_has_the_tilt_that_it_says():
         and support.camber[0] == support.camber[-1] == support.camber.max()
     )
     assert container.support.camber.max() == 0.0
+    assert support.index.size > 2
     assert fem.case_from(tilted.resolved()).support.casting_tilt_m == 5e-4

@@ -71,10 +71,7 @@ def test_what_compresses_is_the_weight_over_the_walls():
 
 
 def test_a_run_that_inverts_an_element_fails_and_says_where():
-    case = load_case(
-        "seed_stack_plateau",
-        ["solver.model=full", "container.section=solid", "support.casting_bears=edge", *SOFT],
-    )
+    case = load_case("seed_stack_plateau", ["solver.model=full", "container.section=solid", *SOFT])
     model = build_model(case)
     ending = simulate(model, Recorder(model))
     assert ending.status == "failed"
