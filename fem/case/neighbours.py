@@ -8,8 +8,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
-import numpy as np
-import numpy.typing as npt
 from pydantic import Strict
 
 from fem.case import quantities as q
@@ -75,12 +73,7 @@ class Places:
     pairs: tuple[tuple[int, int], ...]  #: (N - 1,) left and right one
     distance: tuple[float, ...]  #: (N - 1,) of their axes [m]
 
-    @property
-    def facing(self) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.float64]]:
-        """`pairs` (N - 1, 2) and `distance` (N - 1,) [m]."""
-        return np.array(self.pairs, dtype=np.int64).reshape(-1, 2), np.array(self.distance)
-
-    def struck(self, size: Sequence[tuple[float, float]]) -> npt.NDArray[np.float64]:
+    def struck(self, size: Sequence[tuple[float, float]]) -> list[list[tuple[float, float]]]:
         """Points at which the sides of each container are struck, left and right, where it stands on x = 0 [m].
 
         The upper edge of the lower of two meets the side of the higher one.
@@ -91,11 +84,11 @@ class Places:
         Returns:
             Shape (N, 2, 2).
         """
-        found = np.array([[(-0.5 * width, height), (0.5 * width, height)] for width, height in size])
+        points = [[(-0.5 * width, height), (0.5 * width, height)] for width, height in size]
         for left, right in self.pairs:
             lower = min(size[left][1], size[right][1])
-            found[left, 1, 1] = found[right, 0, 1] = lower
-        return found
+            points[left][1], points[right][0] = (0.5 * size[left][0], lower), (-0.5 * size[right][0], lower)
+        return points
 
 
 def places_of(case: Any, widths: Sequence[float]) -> Places:

@@ -9,7 +9,7 @@ import numpy as np
 from contact.interface.faces import TOUCHING, make_faces, make_row
 from contact.interface.support import Support
 from fem.case.case import Case
-from fem.case.neighbours import places_of
+from fem.case.neighbours import Places, places_of
 from fem.model.geometry import build_container, node_count
 from fem.model.links import nodes_of_links
 from fem.model.support import build_support
@@ -284,7 +284,7 @@ def _beside_one_another(case: Case, row: Sequence[Container]) -> Container:
     """Containers as a row; the elements and boxes are those of all."""
     meshes = [one.mesh for one in row]
     places = places_of(case, [one.width for one in meshes])
-    struck = places.struck([(one.width, one.height) for one in meshes])
+    struck = np.array(places.struck([(one.width, one.height) for one in meshes]))
     elements = _assembled(case, mesh_of_row(meshes, places.x))
     first, nodes = 0, []
     for one in row:
@@ -305,7 +305,7 @@ def _beside_one_another(case: Case, row: Sequence[Container]) -> Container:
         for one, at in zip(row, struck, strict=True)
     )
     corners = np.concatenate([own[box.corners] for box, own in zip(boxes, nodes, strict=True)])
-    touching = make_row(np.ones((corners.size, 2)), *places.facing, np.zeros(len(row)), *np.zeros((2, 0)))
+    touching = make_row(np.ones((corners.size, 2)), *facing(places), np.zeros(len(row)), *np.zeros((2, 0)))
     return Container(
         mesh=meshes[0],
         elements=elements,
@@ -322,10 +322,15 @@ def _beside_one_another(case: Case, row: Sequence[Container]) -> Container:
     )
 
 
+def facing(places: Places) -> tuple[IntArray, FloatArray]:
+    """Containers that face each other at each gap of a row (N - 1, 2), and the distances of their axes (N - 1,) [m]."""
+    return np.array(places.pairs, dtype=np.int64), np.array(places.distance)
+
+
 def _struck(case: Case, row: Sequence[Case]) -> FloatArray:
     """Where the sides of each container of a row are struck, left and right, (N, 2, 2) [m]; `row`: `Case.row`."""
     size = [(one.stack[0].width, one.stack[-1].top) for one in row]
-    return places_of(case, [width for width, _ in size]).struck(size)
+    return np.array(places_of(case, [width for width, _ in size]).struck(size))
 
 
 def _neighbour(number: int, alone: Case, struck: FloatArray) -> Container:

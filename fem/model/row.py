@@ -27,7 +27,7 @@ from contact.stepping.stack_body import make_stack, start_stack
 from contact.stepping.state import make_joints
 from fem.case.case import Case, CaseError
 from fem.case.neighbours import USUAL_DAMPING, places_of
-from fem.model.container import Container
+from fem.model.container import Container, facing
 from fem.model.links import OVERLAP
 from fem.model.loose_stack import make_stack_state
 from fem.runtime.arrays import FloatArray
@@ -106,7 +106,7 @@ def body_of_row(
     """
     meshes = [one.mesh for one in containers]
     places = places_of(case, [one.width for one in meshes])
-    struck = places.struck([(one.width, one.height) for one in meshes])
+    struck = np.array(places.struck([(one.width, one.height) for one in meshes]))
     inset = [
         max(round(0.5 * (1.0 - float(np.ptp(body.point[:, 0])) / mesh.width), 12), 0.0)
         for body, mesh in zip(bodies, meshes, strict=True)
@@ -118,7 +118,7 @@ def body_of_row(
         *(one._replace(monitor=one.monitor[:0], monitor_shape=one.monitor_shape[:0]) for one in corners[1:]),
     ]
     springs = contact.normal_stiffness.copy(), contact.tangential_stiffness.copy()
-    return make_stack(watched, *springs, (*places.facing, np.array(inset)))
+    return make_stack(watched, *springs, (*facing(places), np.array(inset)))
 
 
 def _with_corners(body: ModalBody, container: Container, struck: FloatArray, inset: float) -> ModalBody:

@@ -300,8 +300,8 @@ MUTATIONS = (
     ),
     Mutation(
         name="a band that does not try mu_kinetic up to mu_static",
-        old="static = case.contact.mu_static\n    return short(min(own, LEAST_KINETIC * static)), static",
-        new="static = case.contact.mu_static\n    return short(min(own, LEAST_KINETIC * static)), own",
+        old="return short(min(own, LEAST_KINETIC * static)), static",
+        new="return short(min(own, LEAST_KINETIC * static)), own",
         tests=("verification/sureness/test_sure_verdicts.py", "unit/case/test_case_uncertainty.py"),
     ),
     Mutation(
@@ -312,8 +312,8 @@ MUTATIONS = (
     ),
     Mutation(
         name="a member of an effective width that rocks about the corners of the mesh",
-        old="factor[:count, 0] = share",
-        new="factor[:count, 0] = 1.0",
+        old="placed[:count, 0] = share * place[:count, 0]",
+        new="placed[:count, 0] = place[:count, 0]",
         tests=("unit/model/test_effective_width.py",),
     ),
     Mutation(

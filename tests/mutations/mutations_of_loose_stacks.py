@@ -26,8 +26,8 @@ LOOSE_STACKS = (
     ),
     Mutation(
         name="slips of a corner of the lower box counted the other way",
-        old="faces.origin[i] + faces.side[i] * share",
-        new="faces.origin[i] + share",
+        old="corner)\n        point[i, 0] = faces.origin[i] + faces.side[i] * share",
+        new="corner)\n        point[i, 0] = faces.origin[i] + share",
         tests=FACES,
     ),
     Mutation(

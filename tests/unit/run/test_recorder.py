@@ -29,7 +29,7 @@ def test_no_sample_and_no_frame_of_a_run_has_a_tail_or_a_minus_zero():
     model = build_model(case)
     told, rows = [], []
     recorder = Recorder(
-        model, recovery_of(model), lambda new, _: rows.extend(new), lambda time, **_: told.append(time)
+        model, recovery_of(model), lambda new, _: rows.extend(new), lambda frame: told.append(frame.time)
     )
     simulate(model, recorder)
     values = np.array(rows)
