@@ -175,8 +175,8 @@ def _in_words(error: CycloptsError) -> str:
 
 def _refuse(message: str, exit_code: int = BAD_INPUT) -> int:
     sys.stdout.flush()
-    with suppress(BrokenPipeError):
-        print(message.strip(), file=sys.stderr)
+    with suppress(OSError):  # nobody can be told: the exit code remains
+        print(message.strip(), file=sys.stderr, flush=True)
     return exit_code
 
 

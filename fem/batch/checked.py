@@ -8,6 +8,7 @@ from fem.batch.table import Columns
 from fem.case.case import Case
 from fem.run.checks import WantedChecks
 from fem.run.compute import compute_on
+from fem.runtime.signals import stop_requested
 
 #: the factor; where there is none, the largest one tried
 MARGIN: Columns = {"margin": float, "margin_tried_to": float}
@@ -26,7 +27,7 @@ _CONTAINERS = ContainerCache()
 def check_chunk(
     make: Callable[[ItemT], Case], items: Sequence[ItemT], checks: WantedChecks | None = None
 ) -> list[Row]:
-    """Repeat some runs; a row by `CHECKED`, empty of a run without an outcome.
+    """Repeat some runs; a row by `CHECKED`, empty of a run without an outcome; none of a run that was stopped.
 
     Args:
         make: the case of an item.
@@ -39,6 +40,8 @@ def check_chunk(
         try:
             case = make(item).without_fields()
             run = compute_on(_CONTAINERS.container_of(case), case, checks or WantedChecks())
+            if stop_requested():
+                break
             verdict, margin = run.verdict, run.verdict.margin
             row |= {"status": run.status, "sure": verdict.sure, "decided_by": " ".join(verdict.decided_by)}
             if margin is not None:

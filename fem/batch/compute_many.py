@@ -12,6 +12,7 @@ from fem.model.geometry import build_container
 from fem.model.motion import build_motions
 from fem.run.checks import WantedChecks
 from fem.run.compute import Run, compute_on, require_case
+from fem.runtime.signals import stop_requested
 from fem.runtime.threads import cores
 
 #: number of cases from which processes pay off: runs with history and band hold the interpreter longer than rows do
@@ -101,11 +102,16 @@ def compute_many(
     with LocalWorkers(jobs, WORTH_PROCESSES if script is None else IN_THREADS) as workers_of:
         for model in WORTH_PROCESSES:
             items = [(n, asked[n]) for n in order if asked[n].solver.model == model and n not in runs]
-            for chunk, found in hand_out(items, work, workers_of(model, len(items)), at_a_time=1):
+            chunks = hand_out(
+                items, work, workers_of(model, len(items)), at_a_time=1, stop=stop_requested, finish=False
+            )
+            for chunk, found in chunks:
                 runs |= dict(zip((number for number, _ in chunk), found, strict=True))
                 if errors == "raise":
                     for error in (one for one in found if isinstance(one, ValueError)):
                         raise error
+    if stop_requested():
+        raise KeyboardInterrupt
     return [runs[number] for number in range(len(asked))]
 
 

@@ -24,7 +24,7 @@ from fem.model.motion import build_motions, motion_result
 from fem.model.recovery import recovery_of
 from fem.results.figures import BOXES, SCALARS
 from fem.results.run_result import Verdict
-from fem.run.expected import expected_s, say_expected
+from fem.run.expected import expected_s, say_expected, with_band_s
 from fem.run.outcome import run_without_history
 from fem.run.recorder import Recorder
 from fem.run.simulation import simulate
@@ -76,15 +76,14 @@ class Runner:
             items: in an order in which those of one container are neighbours.
             make: the case of an item; for processes it must be picklable.
             model_of: the model of its case.
-            work: what is done with some items at a time, picklable; default: their runs. Other work takes seconds, so
-                that it is handed out one by one, and no time is expected.
+            work: what is done with some items at a time, picklable; default: their runs. Other work repeats a run with
+                its band and margin: it is handed out one by one, and gives no row where it was stopped.
         """
         by_model: dict[str, list[ItemT]] = {}
         for item in items:
             by_model.setdefault(model_of(item), []).append(item)
         total, done, failed = sum(map(len, by_model.values())), 0, 0
-        if work is None:
-            self._say_expected(f"{total} {what}", by_model, make)
+        self._say_expected(f"{total} {what}", by_model, make, expected_s if work is None else with_band_s)
         self.reporter.start(0.0)
         began = time.perf_counter()
 
@@ -99,25 +98,30 @@ class Runner:
                 pools,
                 at_a_time=1 if work else _chunk_size(model, len(some), pools),
                 stop=self.stop,
-                finish=model != "full",  # one of these may take an hour
+                finish=model != "full" and work is None,  # one of these may take an hour
             )
             for chunk, rows in chunks:
-                yield chunk, rows
-                done += len(chunk)
+                yield chunk[: len(rows)], rows
+                done += len(rows)
                 failed += sum(row["status"] == "failed" for row in rows)
-                self.reporter.tell(progress)
+                if done < total:
+                    self.reporter.tell(progress)
         self.reporter.finish()
         if total and done == total and time.perf_counter() - began > TOLD_S:
             self.reporter.message(progress())  # the last line does not stand at a time left
 
     def _say_expected(
-        self, what: str, by_model: Mapping[str, Sequence[ItemT]], make: Callable[[ItemT], Case]
+        self,
+        what: str,
+        by_model: Mapping[str, Sequence[ItemT]],
+        make: Callable[[ItemT], Case],
+        cost: Callable[[Case], float],
     ) -> None:
         """How long the cases take, by the first of each model."""
         seconds = 0.0
         for some in by_model.values():
             with suppress(ValueError):  # a case that cannot be computed is told in its row
-                seconds += len(some) * expected_s(make(some[0]))
+                seconds += len(some) * cost(make(some[0]))
         if any(by_model.values()):
             self.approve(what, seconds)
         say_expected(self.reporter, what, seconds / self.jobs, self.jobs)
@@ -154,7 +158,10 @@ class Runner:
                     results.append(one)
                 place = len(results)
             done += len(chunk)
-            self.reporter.tell(partial(_progress, what, done, len(numbered), 0, time.perf_counter() - began))
+            if done < len(numbered):
+                self.reporter.tell(
+                    partial(_progress, what, done, len(numbered), 0, time.perf_counter() - began)
+                )
         self.reporter.finish()
         if len(results) < len(numbered):
             raise KeyboardInterrupt

@@ -22,6 +22,7 @@ from fem.results.folder import ResultFolder, open_result_folder, program_of_resu
 from fem.results.json_block import JsonBlock
 from fem.results.kinds import ResultKind, read_result, typed_result
 from fem.results.run_files import copy_data_files, require_free_names
+from fem.runtime.compilation import compilation_announced
 from fem.runtime.progress import Reporter, SilentReporter
 from fem.runtime.signals import interruptible
 from fem.runtime.threads import cores
@@ -118,6 +119,7 @@ def run_study(study: Study[ResultT], folder: Path, **options: Unpack[StudyOption
         runner_of(**options) as runner,
         open_result_folder(folder, kind, study.request, force=force, resume=resume) as place,
         interruptible(runner.reporter) as stop,
+        compilation_announced(runner.reporter.message),
     ):
         shard, merge = options.get("shard"), options.get("merge") or ()
         before = (

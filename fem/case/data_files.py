@@ -4,6 +4,7 @@ A case file may come from anywhere, so that a file it names must lie in its fold
 the command line may lie anywhere. A motion may name a channel of its file behind "#", by number or name.
 """
 
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
@@ -48,6 +49,11 @@ def _path(folder: Path, name: str) -> Path:
     path = folder / name
     # A path of Windows, where it is no name of a file here.
     return path if "\\" not in name or path.exists() else folder / name.replace("\\", "/")
+
+
+def _real(path: Path) -> Path:
+    """The path without links; `Path.resolve` fails where they form a circle."""
+    return Path(os.path.realpath(path))
 
 
 def find_data_files(
@@ -96,7 +102,7 @@ def _copy(folder: Path, name: str, channel: str, path: Path, others: Mapping[str
     plain = copied_name(folder, name)
     copy = PurePosixPath(plain[: -len(channel) - 1] if channel else plain)
     for key, other in others.items():
-        if other.copy == copy and other.path.resolve() != path.resolve():
+        if other.copy == copy and _real(other.path) != _real(path):
             raise CaseError(
                 place_of("vertical.file")
                 + f"has the name of the file of {key}, {copy.name!r}, and another folder; rename one of them"
@@ -105,10 +111,10 @@ def _copy(folder: Path, name: str, channel: str, path: Path, others: Mapping[str
 
 
 def _require_file(folder: Path, key: str, name: str, path: Path, *, trusted: bool) -> None:
-    if not trusted and not path.resolve().is_relative_to(folder.resolve()):
+    if not trusted and not _real(path).is_relative_to(_real(folder)):
         raise CaseError(
             place_of(key) + f"must lie in the folder of the case file, got {name!r}, which leads to "
-            f"{path.resolve()}; copy the file there{WAYS_OUT}"
+            f"{_real(path)}; copy the file there{WAYS_OUT}"
         )
     if not path.is_file():
         raise CaseError(
@@ -119,7 +125,7 @@ def _require_file(folder: Path, key: str, name: str, path: Path, *, trusted: boo
                 if path.is_dir()
                 else ""
                 if Path(name).is_absolute()
-                else f", looked for in {folder.resolve()}; its path is relative to the case file"
+                else f", looked for in {_real(folder)}; its path is relative to the case file"
             )
         )
 
@@ -133,6 +139,6 @@ def place_of(dotted: str) -> str:
 def as_named_from(folder: Path, name: str) -> str:
     """A file named on the command line, relative to the current folder, as a case in a folder names it."""
     path = Path(name).absolute()
-    if path.resolve().is_relative_to(folder.resolve()) and ".." not in Path(name).parts:
-        return path.resolve().relative_to(folder.resolve()).as_posix()
+    if _real(path).is_relative_to(_real(folder)) and ".." not in Path(name).parts:
+        return _real(path).relative_to(_real(folder)).as_posix()
     return str(path)

@@ -42,7 +42,7 @@ def assess(
     Parameters
     ----------
     site:
-        A site file or the name of a shipped one: site.
+        A site file or the name of a shipped one: site, cologne.
     """
     request = importlib.import_module("fem.site_check.file").load_site(
         site, motion, allow_baseline=allow_baseline

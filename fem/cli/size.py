@@ -35,7 +35,7 @@ def size(
     Parameters
     ----------
     site:
-        A site file or the name of a shipped one: site.
+        A site file or the name of a shipped one: site, cologne.
     """
     request = importlib.import_module("fem.site_check.file").load_site(site)
     axis = importlib.import_module("fem.site_check.size_axis").size_axis(

@@ -122,7 +122,8 @@ def _compute(hall: Hall, begun: HallResult, place: ResultFolder, runner: Runner)
     ).run(runner, iter(runs.missing, []))
     if missing := len(runs.missing()):
         total = len(hall.items())
-        return replace(begun, status=INTERRUPTED, missing=f"{total - missing} of {total} runs are computed")
+        words = f"{total - missing} of {total} runs are computed"
+        return replace(begun, status=INTERRUPTED, runs=total - missing, missing=words)
     static = {
         number: dict(zip(STATIC, static_use(hall, hall.item(number, runs.governing(number))), strict=True))
         for number in runs.by_container
@@ -139,7 +140,10 @@ def _compute(hall: Hall, begun: HallResult, place: ResultFolder, runner: Runner)
         work=check_chunk,
     ).run(runner, iter(wanted, []))
     if left := len(wanted()):
-        return replace(begun, status=INTERRUPTED, missing=f"{left} of the weakest are still to be repeated")
+        words = f"{left} of the weakest are still to be repeated"
+        return replace(
+            begun, status=INTERRUPTED, runs=len(hall.items()), checked=len(runs.checked), missing=words
+        )
     place.check()
     place.write_text(RUNS, table_of_lines(RUN_COLUMNS, runs.lines()))
     checked = sorted(runs.checked.items())

@@ -10,6 +10,7 @@ from itertools import islice
 
 import numpy as np
 
+from fem.records.fixed_width import require_interval
 from fem.records.record import Component, Direction, Record
 from fem.records.source import (
     BLOCK,
@@ -65,6 +66,8 @@ def read_columns(source: MotionText, *, unit: str | None, sample_interval: float
         table[:, 0] if has_time else np.arange(len(table), dtype=np.float64) * (sample_interval or 1.0)
     )
     _require_increasing(source, times, first)
+    if len(times) > 1:
+        require_interval(float(np.median(np.diff(times))), "the samples have")
     components = []
     for column, direction in enumerate(DIRECTIONS[count], start=int(has_time)):
         found, by_file = settled_unit(stated[column], unit, source.name)

@@ -9,7 +9,7 @@ from fem.records.source import LARGEST_NUMBER, MOST_SAMPLES, MotionText, as_numb
 from fem.runtime.arrays import FloatArray
 
 #: such as (8f10.6), (5E15.7), (10I8), (1P8E10.3)
-INTERVALS = (1e-6, 10.0)  #: shortest and longest that a header may give [s]
+INTERVALS = (1e-6, 10.0)  #: shortest and longest of samples [s]
 FORMAT = re.compile(r"\(\s*(?:1P\s*,?\s*)?(\d+)\s*[FEGDI]\s*(\d+)(?:\.\d+)?(?:E\d+)?\s*\)", re.IGNORECASE)
 
 
@@ -115,8 +115,17 @@ def regular_times(readings: FloatArray, step: float) -> FloatArray:
     Raises:
         RecordError: no sensor has such an interval.
     """
+    require_interval(step, "the header gives")
+    return np.arange(readings.size, dtype=np.float64) * step
+
+
+def require_interval(step: float, given: str) -> None:
+    """Refuse an interval [s] that no sensor has.
+
+    Raises:
+        RecordError: beginning with `given`, such as "the header gives".
+    """
     if not INTERVALS[0] <= step <= INTERVALS[1]:
         raise RecordError(
-            f"the header gives an interval of {step:g} s; it must be between {INTERVALS[0]:g} and {INTERVALS[1]:g} s"
+            f"{given} an interval of {step:g} s; it must be between {INTERVALS[0]:g} and {INTERVALS[1]:g} s"
         )
-    return np.arange(readings.size, dtype=np.float64) * step

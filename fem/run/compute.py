@@ -24,8 +24,8 @@ from fem.run.recorder import Recorder
 from fem.run.solve import begun, in_words, resolve, stepped
 from fem.runtime.compilation import compilation_announced
 from fem.runtime.progress import SilentReporter
+from fem.runtime.signals import stop_requested
 from fem.runtime.threads import use_one_blas_thread
-from fem.solid.nodal_body import advance_body
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -138,7 +138,7 @@ def require_case(given: object) -> None:
 
 
 def compute_on(container: Container | None, case: Case, wanted: WantedChecks) -> Run:
-    """Compute a case in memory, on its container where that is built already.
+    """Compute a case in memory, on its container where that is built already; where a signal stops it, a part of that.
 
     Raises:
         CaseError, MeshError: as `compute`.
@@ -149,20 +149,19 @@ def compute_on(container: Container | None, case: Case, wanted: WantedChecks) ->
     case = resolve(case, mesh, motions)  # what is changed later on is this case, too
     with compilation_announced(lambda text: print(text, file=sys.stderr)):
         model = build_model(case, container or discretise(case, mesh), motions=motions)
-        advance_body(model.body, model.run, 0.0)  # no step: compiles
-    elements = model.container.elements
-    keeper = FrameKeeper(
-        points=elements.nodes,
-        cells=elements.cells,
-        region=elements.region.astype(np.int64),
-        box=1 + elements.box.astype(np.int64),
-    )
-    recorder = Recorder(model, recovery_of(model), frame_sink=keeper.keep)
-    result = begun(model, case_hash(case))
-    result, history = stepped(model, result, recorder, reporter=silent, stop=lambda: False)
-    result, block = add_checks(
-        result, model, lambda: history, wanted, None, reporter=silent, stop=lambda: False
-    )
+        elements = model.container.elements
+        keeper = FrameKeeper(
+            points=elements.nodes,
+            cells=elements.cells,
+            region=elements.region.astype(np.int64),
+            box=1 + elements.box.astype(np.int64),
+        )
+        recorder = Recorder(model, recovery_of(model), frame_sink=keeper.keep)
+        result = begun(model, case_hash(case))
+        result, history = stepped(model, result, recorder, reporter=silent, stop=stop_requested)
+        result, block = add_checks(
+            result, model, lambda: history, wanted, None, reporter=silent, stop=stop_requested
+        )
     if block is not None:
         history = history.with_analytic(block.analytic_rotation)
     result = in_words(replace(result, **watch.spent()), case)

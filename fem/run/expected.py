@@ -12,7 +12,7 @@ OF_A_SECOND = {"rigid": 0.0004, "reduced": 0.003, "full": 3.0}
 OF_A_BASE = {"corners": 1.0, "feet": 3.0, "flat": 8.0}
 OF_LOOSE_BOXES = 15.0
 USUAL_RECORD_S = 25.0  #: simulated, of a record until the container is at rest
-BAND_RUNS, MOST_OF_BAND_S = 60, 45.0  #: of band and margin
+BAND_RUNS, MOST_OF_BAND_S = 130, 45.0  #: of band and margin; processor time
 
 
 def of_a_second(case: Case) -> float:
@@ -30,10 +30,20 @@ def expected_s(case: Case) -> float:
     return OF_A_RUN[case.solver.model] + of_a_second(case) * simulated
 
 
-def with_band_s(case: Case, cores: int) -> float:
-    """Wall time of a run with its band and margin [s]."""
+def of_a_record_s(case: Case) -> float:
+    """Processor time of one run of a case under a record of usual length [s]."""
+    return OF_A_RUN[case.solver.model] + of_a_second(case) * USUAL_RECORD_S
+
+
+def of_its_band_s(one: float) -> float:
+    """Processor time of band and margin of a run that takes `one` [s]."""
+    return min(BAND_RUNS * one, MOST_OF_BAND_S)
+
+
+def with_band_s(case: Case, cores: int = 1) -> float:
+    """Wall time of a run with its band and margin, which are shared by the cores [s]."""
     one = expected_s(case)
-    return one + min(BAND_RUNS * one, MOST_OF_BAND_S) / cores
+    return one + of_its_band_s(one) / cores
 
 
 def say_expected(reporter: Reporter, what: str, seconds: float, cores: int = 1) -> None:

@@ -79,9 +79,12 @@ def run_case(
     if known is not None and not lacks_checks(known, case, options) and not _lacks_figures(files, case):
         return open_run(folder)
 
-    with open_result_folder(
-        folder, RUN, request, force=options.force, resume=options.resume, way_on=WAY_ON
-    ) as place:
+    with (
+        open_result_folder(
+            folder, RUN, request, force=options.force, resume=options.resume, way_on=WAY_ON
+        ) as place,
+        compilation_announced(reporter.message),
+    ):
         if known is None:
             nodes = node_count(mesh, case.solver.order)
             way_out = "set a larger output.fields_s (0: no frames) or output.history_s"
@@ -91,7 +94,7 @@ def run_case(
             alone = options.band is False or (case.solver.model == "full" and not options.band)
             seconds = expected_s(case) if alone else with_band_s(case, cores())
             say_expected(reporter, "the run", seconds)
-        model = set_up(case, mesh, motions, reporter)
+        model = set_up(case, mesh, motions)
         with interruptible(reporter) as stop:
             result = known
             if result is None:
@@ -219,15 +222,13 @@ def draw(model: Model, folder: Path, reporter: Reporter) -> None:
         )
 
 
-def set_up(
-    case: Case, mesh: ContainerMesh, motions: tuple[BaseMotion, BaseMotion], reporter: Reporter
-) -> Model:
+def set_up(case: Case, mesh: ContainerMesh, motions: tuple[BaseMotion, BaseMotion]) -> Model:
     """Build the model of a case and compile the kernels that step it.
 
     Raises:
         CaseError, MeshError: it cannot be built.
     """
-    with ending_at_once(), compilation_announced(reporter.message):
+    with ending_at_once():
         model = build_model(case, discretise(case, mesh), motions=motions)
         advance_body(model.body, model.run, 0.0)  # no step: compiles
     return model

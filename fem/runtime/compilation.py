@@ -4,6 +4,7 @@ numba compiles a function when it is first called and no cached machine code fit
 ends. Loading cached code is not compilation. All times are wall-clock times [s].
 """
 
+import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -70,11 +71,20 @@ def kernel_name(compilation: event.Event) -> str:
     return str(compilation.data["dispatcher"].py_func.__name__)
 
 
+_ANNOUNCING = threading.Lock()
+
+
 @contextmanager
 def compilation_announced(message: Callable[[str], None]) -> Iterator[None]:
-    """Announce the first long compilation in the block before it begins."""
-    with event.install_listener(COMPILING, Announcer(message)):
+    """Announce the first long compilation in the block before it begins; inside another such block, that one does."""
+    if not _ANNOUNCING.acquire(blocking=False):
         yield
+        return
+    try:
+        with event.install_listener(COMPILING, Announcer(message)):
+            yield
+    finally:
+        _ANNOUNCING.release()
 
 
 _CLOCK = CompilationClock()

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 INTERRUPTED = 4  #: the exit code
 _raised: list[int] = []
+_requests: list[list[int]] = []  #: signals received by each `interruptible` under way
 DEFAULTS: dict[signal.Signals, Any] = {
     signal.SIGINT: signal.default_int_handler,
     signal.SIGTERM: signal.SIG_DFL,
@@ -46,8 +47,17 @@ def interruptible(reporter: "Reporter") -> Iterator[Callable[[], bool]]:
         received.append(number)
         reporter.message("stopping after the current step; press Ctrl-C again to quit now")
 
-    with _handled_by(note):
-        yield lambda: bool(received)
+    _requests.append(received)
+    try:
+        with _handled_by(note):
+            yield lambda: bool(received)
+    finally:
+        _requests.remove(received)
+
+
+def stop_requested() -> bool:
+    """Whether a signal has asked this process to stop; for work that is handed to other processes as well."""
+    return any(_requests)
 
 
 @contextmanager

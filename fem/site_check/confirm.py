@@ -10,6 +10,7 @@ from fem.site_check.result import LIMITED, ConfirmedRun, SiteRun
 from fem.site_check.runs import SET, RunCases, RunKey
 
 MODEL = "reduced"
+MOST_DECIDING = 2  #: runs
 
 
 def deciding(runs: Mapping[RunKey, SiteRun], governing: SiteRun | None) -> list[RunKey]:
@@ -29,11 +30,16 @@ def confirmed(
 ) -> list[ConfirmedRun]:
     """These runs with the reduced model, each with its band unless it rests far below the static limits.
 
+    None where a signal stops them; the caller asks that.
+
     Raises:
         CaseError, MeshError: one of them cannot be computed.
     """
-    again = compute_many([cases(key._replace(model=MODEL)) for key in keys], jobs, margin=False)
-    results = []
+    results: list[ConfirmedRun] = []
+    try:
+        again = compute_many([cases(key._replace(model=MODEL)) for key in keys], jobs, margin=False)
+    except KeyboardInterrupt:
+        return results
     for key, run in zip(keys, again, strict=True):
         verdict, joints = run.verdict, run.typed_result.joints or ()
         tension, shear = largest_bolt_forces(joints) if joints else (None, None)

@@ -5,12 +5,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from fem.results.json_block import JsonBlock
-from fem.run.expected import OF_A_RUN, USUAL_RECORD_S, of_a_second
+from fem.run.expected import of_a_record_s, of_its_band_s
 from fem.runtime.progress import clock_time
 from fem.runtime.threads import cores
 from fem.seismic.ground_motion import GroundMotion
 from fem.seismic.motion_set import check_set
 from fem.site_check.bodies import body_of
+from fem.site_check.confirm import MODEL, MOST_DECIDING
 from fem.site_check.file import SiteRequest
 from fem.site_check.inputs import inputs_of
 from fem.site_check.methods import wind_utilisation
@@ -29,6 +30,7 @@ class Forecast(JsonBlock):
     of_set_still: int  #: of these, below uplift and slip of a rigid body: not computed
     most: int  #: of all stages, without the deciding runs
     seconds: float  #: of them, on these cores, roughly
+    deciding_seconds: float  #: of the deciding runs, likewise; 0 where there are none
     cores: int
     quick: bool = False
 
@@ -40,11 +42,17 @@ class Forecast(JsonBlock):
         if self.of_set_still:
             rest = f"{self.of_set_still} of {self.of_set} runs of the set rest below uplift and slip; "
         more = "" if self.quick else ", further motions and other factors"
-        after = "" if self.quick or not moving else ", then the deciding runs with their bands"
+        after = ""
+        if self.deciding_seconds:
+            after = f"; then the deciding runs with their bands, about {_rounded(self.deciding_seconds)}"
         return (
             f"{rest}{moving} to compute, up to {self.most} with repetitions{more}: at most about "
-            f"{clock_time(float(f'{self.seconds:.1g}'))} on {on}{after}"
+            f"{_rounded(self.seconds)} on {on}{after}"
         )
+
+
+def _rounded(seconds: float) -> str:
+    return clock_time(float(f"{seconds:.1g}"))
 
 
 def forecast(stages: Stages, jobs: int, *, quick: bool = False) -> Forecast:
@@ -52,13 +60,16 @@ def forecast(stages: Stages, jobs: int, *, quick: bool = False) -> Forecast:
     own, most = stages.most_runs(quick=quick)
     request = stages.request
     case = still(request.variants[0].case, request.heading.model)
-    one = OF_A_RUN[case.solver.model] + of_a_second(case) * USUAL_RECORD_S
     total = len(stages.plan.of_set())
+    moves = own > 0 and not quick
     return Forecast(
         of_set=total,
         of_set_still=total - own,
         most=most,
-        seconds=most * one / jobs,
+        seconds=most * of_a_record_s(case) / jobs,
+        deciding_seconds=MOST_DECIDING * of_its_band_s(of_a_record_s(still(case, MODEL))) / jobs
+        if moves
+        else 0.0,
         cores=jobs,
         quick=quick,
     )

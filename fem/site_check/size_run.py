@@ -163,14 +163,20 @@ class _Sizing:
         finally:
             shutil.rmtree(place.path / WORKING, ignore_errors=True)
         if runner.stop():
-            done = sum(not tried.rows.missing(tried.stages.plan.of_set()) for tried in self.tried.values())
-            words = f"{done} values are computed, of {len(self.axis.values)} and those between them"
-            return replace(self.begun, status=INTERRUPTED, missing=words)
+            return replace(self.begun, status=INTERRUPTED, missing=self.missing())
         place.check()
         result = size_result(self.axis, self.answers(), self.begun)
         place.write_text(RUNS, self.table())
         place.write_text(FIGURE, draw_size(result, inputs_of(self.request)))
         return replace(result, wall_s=time.perf_counter() - began)
+
+    def missing(self) -> str:
+        """What an interrupted computation has not come to, in words."""
+        scanned = [self.tried[value] for value in self.axis.values if value in self.tried]
+        done = sum(not tried.rows.missing(tried.stages.plan.of_set()) for tried in scanned)
+        if done < len(self.axis.values):
+            return f"{done} of {len(self.axis.values)} values of the scan have the runs of the set"
+        return "repetitions, deciding runs or values between those of the scan are missing"
 
     def batches(self, runner: Runner, working: Path) -> Iterator[Sequence[SizeKey]]:
         """The missing runs of the values to be tried next, stage by stage, as long as there are any."""

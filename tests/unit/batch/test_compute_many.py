@@ -1,6 +1,7 @@
 """Many runs in memory: each is the run alone, whoever computed it, and no script starts itself again."""
 
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -10,6 +11,8 @@ import pytest
 import fem
 import fem.batch.compute_many as many
 from fem.case.case import CaseError
+from fem.runtime.progress import SilentReporter
+from fem.runtime.signals import interruptible
 
 ROOT = Path(__file__).parents[3]
 BOX = fem.load_case("seed_box", ["solver.model=rigid", "solver.duration_s=0.5", "output.fields_s=0"])
@@ -51,6 +54,13 @@ def test_processes_give_the_same_runs_as_threads(monkeypatch):
     monkeypatch.setattr(many, "WORTH_PROCESSES", dict.fromkeys(many.WORTH_PROCESSES, 1))
     processes = fem.compute_many(iter(cases), 2, band=False)
     assert [figures(run) for run in processes] == [figures(run) for run in threads]
+
+
+def test_a_stop_that_was_asked_for_ends_the_runs():
+    with interruptible(SilentReporter()):
+        os.kill(os.getpid(), signal.SIGTERM)
+        with pytest.raises(KeyboardInterrupt):
+            fem.compute_many([BOX, BOX], band=False)
 
 
 def test_a_case_that_cannot_be_computed_is_named():

@@ -42,6 +42,13 @@ def test_a_link_that_leads_out_of_the_folder_is_refused(tmp_path):
     assert case_in(folder, "floor.csv", allow_outside=True).data_files
 
 
+def test_links_in_a_circle_are_refused_as_no_file(tmp_path):
+    (tmp_path / "floor.csv").symlink_to(tmp_path / "other.csv")
+    (tmp_path / "other.csv").symlink_to(tmp_path / "floor.csv")
+    with pytest.raises(CaseError, match=r"names no file: 'floor\.csv'"):
+        assert case_in(tmp_path, "floor.csv").data_files
+
+
 @pytest.mark.parametrize("name", ["../floor.csv", "/etc/passwd", "C:/a.csv"])
 def test_a_case_file_may_not_lead_out_of_its_folder(tmp_path, name):
     with pytest.raises(CaseError, match=r"\[motion\] file must name a file in the folder.*--allow-outside"):

@@ -124,6 +124,15 @@ def test_bad_tables_are_refused_by_line(tmp_path, text, words):
         table(tmp_path, text)
 
 
+@pytest.mark.parametrize("step", ["1e-9", "100"])
+def test_an_interval_that_no_sensor_has_is_refused(tmp_path, step):
+    times = [f"{number * float(step):.12g},{number % 2}" for number in range(20)]
+    with pytest.raises(
+        ValueError, match=r"the samples have an interval of .* s; it must be between 1e-06 and 10 s"
+    ):
+        table(tmp_path, "\n".join(times))
+
+
 def test_a_unit_that_nobody_states_is_not_guessed(tmp_path):
     with pytest.raises(ValueError, match='does not state the unit of its values; state it as unit = "g"'):
         table(tmp_path, "t,a\n0,1\n1,2\n", unit=None)

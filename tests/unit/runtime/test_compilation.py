@@ -50,6 +50,13 @@ def test_a_compilation_that_fails_is_counted_and_ended():
     assert compilation_time() - before > failed
 
 
+def test_inside_another_announcement_only_that_one_is_made():
+    outer, inner = [], []
+    with compilation_announced(outer.append), compilation_announced(inner.append):
+        kernel("advance")(1.0)
+    assert (len(outer), inner) == (1, [])
+
+
 def test_the_stepping_is_told_once_before_it_is_compiled_and_small_kernels_are_not():
     said = []
     with compilation_announced(said.append):

@@ -8,7 +8,7 @@ import sys
 import pytest
 
 from fem.runtime.progress import SilentReporter
-from fem.runtime.signals import interruptible
+from fem.runtime.signals import interruptible, stop_requested
 
 
 def outcome(argument: str, script: str) -> tuple[int, str]:
@@ -53,9 +53,12 @@ def test_the_first_signal_requests_a_stop_and_a_second_ctrl_c_insists():
     for number in (signal.SIGTERM, signal.SIGINT):
         with interruptible(reporter) as stop:
             assert not stop()
+            assert not stop_requested()
             os.kill(os.getpid(), number)
             assert stop()
+            assert stop_requested()
             with pytest.raises(KeyboardInterrupt):
                 os.kill(os.getpid(), signal.SIGINT)
                 signal.sigtimedwait([], 1.0)
+    assert not stop_requested()
     assert signal.getsignal(signal.SIGINT) is before
