@@ -14,11 +14,15 @@ force (tangential, normal) acts on the upper box. That on the face goes to its t
 normal forces there balances the moment of friction across the gap. Forces are those of virtual work on x and gap: they
 are in equilibrium exactly, and their power is that of the point.
 
+Behind these may stand points of sides, which stops and ties hold (`contact.stepping.links`): like a point over the
+floor each belongs to one box, and is between two of its corners.
+
 The weight of a point, a factor of its stiffness, falls from 1 to 0 where its corner leaves the face: linearly from
 `EDGE` of the face inside the end to as much outside. Two corners that face each other have a half each, and where the
 one has left, the other carries all. A point of no weight is open, by the length of its face.
 """
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -43,15 +47,15 @@ ASIDE = (
 class Faces(NamedTuple):
     """The contact points of N boxes, n, and scratch."""
 
-    corner: IntArray  #: (n, 3) TOUCHING, LEFT and RIGHT corner of a point; a point over the floor is between the latter
-    bodies: IntArray  #: (n, 2) lower and upper box of a point; -1, and its box, of a point over the floor
+    corner: IntArray  #: (n, 3) TOUCHING, LEFT and RIGHT corner of a point; a point of one box is between the latter
+    bodies: IntArray  #: (n, 2) lower and upper box of a point; -1, and its box, of a point of one box
     parts: IntArray  #: (n,) how many of its corners move a point
     owner: IntArray  #: (n, 3) which box of a point each of its corners belongs to, LOWER or UPPER
     shared: (
         IntArray  #: (n, n, 2) which box of the second point the LOWER or UPPER one of the first is; -1: none
     )
     reach: IntArray  #: (n,) behind the last point that shares a box with it
-    place: FloatArray  #: (n,) of a point over the floor, between its LEFT and RIGHT corner: 0 to 1
+    place: FloatArray  #: (n,) of a point of one box, between its LEFT and RIGHT corner: 0 to 1
     apart: FloatArray  #: (n,) how much further along x the frame of the corner is than that of the face [m]
     side: FloatArray  #: (n,) 1: a corner of the upper box on the face below; -1: of the lower box on the face above
     length: FloatArray  #: (n,) of the face, undeformed [m]
@@ -70,17 +74,31 @@ class Faces(NamedTuple):
     )
 
 
+class SidePoint(NamedTuple):
+    """A point on a side of a box."""
+
+    box: int
+    right: bool  #: it is on the right side
+    place: float  #: from the foot of the side to its top: 0 to 1
+
+
 def points_of_joint(joint: int) -> slice:
     """The contact points of a joint."""
     return slice(0, 2) if joint == 0 else slice(4 * joint - 2, 4 * joint + 2)
 
 
-def make_faces(corner: FloatArray, normal_stiffness: FloatArray, tangential_stiffness: FloatArray) -> Faces:
+def make_faces(
+    corner: FloatArray,
+    normal_stiffness: FloatArray,
+    tangential_stiffness: FloatArray,
+    held: Sequence[SidePoint] = (),
+) -> Faces:
     """The contact points of boxes that stand on one another.
 
     Args:
         corner: (4 N, 2) corners of the undeformed stack [m].
-        normal_stiffness, tangential_stiffness: (4 N - 2,) springs of the points at full weight [N/m].
+        normal_stiffness, tangential_stiffness: (4 N - 2 + k,) springs of the points at full weight [N/m].
+        held: the k points of sides that come last.
     """
     boxes = len(corner) // CORNERS
     joints = [
@@ -91,7 +109,8 @@ def make_faces(corner: FloatArray, normal_stiffness: FloatArray, tangential_stif
         )
         for upper in range(1, boxes)
     ]
-    return _faces([_on_floor(0, 0.0), _on_floor(0, 1.0)], joints, normal_stiffness, tangential_stiffness)
+    floor = [_on_floor(0, 0.0), _on_floor(0, 1.0)]
+    return _faces([*floor, *joints, *map(_on_side, held)], normal_stiffness, tangential_stiffness)
 
 
 def make_row(
@@ -101,6 +120,7 @@ def make_row(
     inset: FloatArray,
     normal_stiffness: FloatArray,
     tangential_stiffness: FloatArray,
+    held: Sequence[SidePoint] = (),
 ) -> Faces:
     """The contact points of bodies beside one another: two of each on the floor, then four of each pair.
 
@@ -109,7 +129,8 @@ def make_row(
         pairs: (g, 2) left and right body of those that face each other.
         distance: (g,) how much further to the right the frame of the right one is [m].
         inset: (N,) of the points over the floor from the sides, over the width of the base.
-        normal_stiffness, tangential_stiffness: (2 N + 4 g,) springs of the points at full weight [N/m].
+        normal_stiffness, tangential_stiffness: (2 N + 4 g + k,) springs of the points at full weight [N/m].
+        held: the k points of sides that come last.
     """
     floor = [
         _on_floor(b, end + (1.0 - 2.0 * end) * inset[b]) for b in range(len(inset)) for end in (0.0, 1.0)
@@ -122,13 +143,23 @@ def make_row(
         # points across their faces are told from those on the floor and of other pairs by it
         own["origin"] = [one + number * ASIDE * float(np.abs(corner).max()) for one in own["origin"]]
         joints.append(own)
-    return _faces(floor, joints, normal_stiffness, tangential_stiffness)
+    return _faces([*floor, *joints, *map(_on_side, held)], normal_stiffness, tangential_stiffness)
 
 
 def _on_floor(box: int, place: float) -> dict[str, Any]:
     """A point over the floor, at a place between the lower corners of a box."""
+    return _between(box, BOTTOM_LEFT, BOTTOM_RIGHT, place)
+
+
+def _on_side(point: SidePoint) -> dict[str, Any]:
+    foot, top = (BOTTOM_RIGHT, TOP_RIGHT) if point.right else (BOTTOM_LEFT, TOP_LEFT)
+    return _between(point.box, foot, top, point.place)
+
+
+def _between(box: int, first: int, last: int, place: float) -> dict[str, Any]:
+    """A point of one box, at a place from the first to the last of two of its corners."""
     at_corner = place in (0.0, 1.0)
-    left, right = CORNERS * box + BOTTOM_LEFT, CORNERS * box + BOTTOM_RIGHT
+    left, right = CORNERS * box + first, CORNERS * box + last
     nearest = left if place < 0.5 else right
     return {
         "corner": [[nearest] * 3 if at_corner else [nearest, left, right]],
@@ -160,12 +191,8 @@ def _joint(corner: FloatArray, face: list[int], other: list[int], apart: float =
 
 
 def _faces(
-    floor: list[dict[str, Any]],
-    joints: list[dict[str, Any]],
-    normal_stiffness: FloatArray,
-    tangential_stiffness: FloatArray,
+    parts: list[dict[str, Any]], normal_stiffness: FloatArray, tangential_stiffness: FloatArray
 ) -> Faces:
-    parts = [*floor, *joints]
     arrays: Any = {name: np.array([one for part in parts for one in part[name]]) for name in parts[0]}
     bodies, n = arrays["bodies"], len(arrays["side"])
     same = (bodies[:, None, :, None] == bodies[None, :, None, :]) & (bodies >= 0)[:, None, :, None]
@@ -184,8 +211,8 @@ def _faces(
 
 
 @inlined
-def is_over_floor(faces: Faces, i: int) -> bool:
-    """Whether a contact point is one over the floor, and not a corner on the face of a box."""
+def is_of_one_box(faces: Faces, i: int) -> bool:
+    """Whether a contact point is one over the floor or held by a link, and not a corner on the face of a box."""
     return bool(faces.bodies[i, LOWER] < 0)
 
 
@@ -209,7 +236,7 @@ def place_on_face(faces: Faces, i: int, corner: FloatArray) -> tuple[float, floa
 def place_points(faces: Faces, corner: FloatArray, point: FloatArray) -> None:
     """Contact points (n, 2) from the corners (4 N, 2), both relative to the floor [m]."""
     for i in range(faces.weight.size):
-        if is_over_floor(faces, i):
+        if is_of_one_box(faces, i):
             left, right = faces.corner[i, LEFT], faces.corner[i, RIGHT]
             for k in range(2):
                 point[i, k] = corner[left, k]
@@ -236,7 +263,7 @@ def weigh_points(faces: Faces, corner: FloatArray, point: FloatArray, contact: C
     A corner that comes from beside the face deeper below it than the edge is wide is not on it.
     """
     for i in range(faces.weight.size):
-        if is_over_floor(faces, i):
+        if is_of_one_box(faces, i):
             continue
         share, gap, _, _, _ = place_on_face(faces, i, corner)
         inside = min(share, 1.0 - share) * faces.length[i] / faces.edge[i]
@@ -252,7 +279,7 @@ def weigh_points(faces: Faces, corner: FloatArray, point: FloatArray, contact: C
 def place_weighed(faces: Faces, corner: FloatArray, point: FloatArray) -> None:
     """Points (n, 2) that had no weight and have one now, where they are: their springs take over from others."""
     for i in range(faces.weight.size):
-        if not is_over_floor(faces, i) and faces.weight[i] > 0.0 and point[i, 1] == faces.length[i]:
+        if not is_of_one_box(faces, i) and faces.weight[i] > 0.0 and point[i, 1] == faces.length[i]:
             share, gap, _, _, _ = place_on_face(faces, i, corner)
             point[i, 0] = faces.origin[i] + faces.side[i] * share * faces.length[i]
             point[i, 1] = gap
@@ -263,7 +290,7 @@ def linearise_points(faces: Faces, corner: FloatArray, point: FloatArray) -> Non
     """Contact points (n, 2) of the corners (4 N, 2), and their derivatives in `faces.gradient`."""
     place_points(faces, corner, point)
     for i in range(faces.weight.size):
-        if is_over_floor(faces, i):
+        if is_of_one_box(faces, i):
             for k in range(2):
                 if faces.parts[i] == 1:
                     faces.gradient[i, k, TOUCHING, k] = 1.0

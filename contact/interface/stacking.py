@@ -14,7 +14,7 @@ ROUNDING_OF_PLACES = 1e-14  #: of a corner, over its distance from the origin
 
 @dataclass(frozen=True, kw_only=True)
 class StackedStances:
-    """Poses and contact forces of N boxes at rest; n = 4 N - 2 contact points."""
+    """Poses and contact forces of N boxes at rest; n contact points."""
 
     centre: FloatArray  #: (N, 2) mass centres above the floor [m]
     rotation: FloatArray  #: (N,) [rad]
@@ -35,7 +35,7 @@ def stacked(
     The friction of a joint is shared in proportion to the normal forces. Centres stay where they are along x.
 
     Args:
-        faces: the contact points; those of no weight carry nothing.
+        faces: the contact points; those of no weight and those of sides carry nothing.
         centre: (N, 2) mass centres of the boxes in the undeformed stack on the floor [m].
         point: (N, 4, 2) corners relative to the mass centre of their box [m].
         compliance: (N, 8, 8) elastic compliance of the boxes at their corners, inertia relief [m/N].
@@ -45,15 +45,19 @@ def stacked(
         SettlingError: what is above a joint acts outside the face below.
     """
     boxes, n = len(centre), faces.weight.size
-    joint = np.repeat(np.arange(boxes), [len(range(*points_of_joint(j).indices(n))) for j in range(boxes)])
+    joint = np.zeros(n, dtype=np.int64)
+    for j in range(boxes):
+        joint[points_of_joint(j)] = j
+    standing = points_of_joint(boxes - 1).stop
     springs = faces.weight * faces.normal_stiffness
+    springs[standing:] = 0.0
     carrying = springs > 0.0
     height: FloatArray = centre[:, 1].copy()
     rotation: FloatArray = np.zeros(boxes)
     ratio: FloatArray = np.zeros(boxes)
     force, corner_force = np.zeros((n, 2)), np.zeros((CORNERS * boxes, 2))
     weight, stiffest, place = float(np.abs(load).sum()), float(springs.max()), np.zeros((n, 2))
-    force[:, 1] = weight / n
+    force[:standing, 1] = weight / standing
     for _ in range(MOST_ROUNDS):
         cosine, sine = np.cos(rotation), np.sin(rotation)
         turn = np.moveaxis(np.array([[cosine, sine], [-sine, cosine]]), -1, 0)  # of each box

@@ -151,9 +151,12 @@ def prepared(body: Any, step: float) -> bool:
 
 def stands_loose(body: Any) -> bool | None:
     """True for a loose stack; None for a body that moves as one: what is not for None is not compiled for it."""
-    return True if hasattr(body, "faces") else None
+    return True if hasattr(body, "faces") or hasattr(getattr(body, "body", None), "faces") else None
 
 
 @overload(stands_loose, strict=False, jit_options=options_of_piece(True))
-def _stands_loose(body: Any) -> Callable[[Any], bool | None]:
-    return (lambda body: True) if "faces" in getattr(body, "fields", ()) else (lambda body: None)
+def _stands_loose(body: Any) -> Callable[[Any], bool | None] | None:
+    fields = getattr(body, "fields", ())
+    if "line" in fields:  # of a body with links, see there
+        return None
+    return (lambda body: True) if "faces" in fields else (lambda body: None)

@@ -110,15 +110,22 @@ def has_fallen(run: RunState) -> bool:
 
 
 @inlined
-def has_footing(run: RunState, j: int) -> bool:
-    """Whether the mass centre of a box of a loose stack is between the ends of the face below.
+def rotation_of(run: RunState, j: int) -> float:
+    """Rotation of a box of a loose stack or a body of a row, or of a body that moves as one [rad]."""
+    if run.joints.shape[0] == 1:
+        return float(run.old.pose[ROTATION])
+    return float(run.old.boxes[j, ROTATION])
 
-    A body in a row has none beyond its own slenderness angle: there it leans on the next one.
+
+@inlined
+def has_footing(run: RunState, j: int) -> bool:
+    """Whether what is on a joint can rest there by itself.
+
+    On the floor it cannot beyond its slenderness angle: there it leans on a stop or on the next body, or hangs on a
+    tie. On a box its mass centre must be between the ends of the face below.
     """
-    if in_a_row(run):
-        return bool(abs(run.old.boxes[j, ROTATION]) <= run.joints[j].angle)
-    if j == 0:
-        return True
+    if run.joints[j].below < 0:
+        return bool(abs(rotation_of(run, j)) <= run.joints[j].angle)
     left, right = run.old.corner[4 * j - 2], run.old.corner[4 * j - 1]
     x = run.old.boxes[j, CENTRE_X] - run.floor[0, 0] - left[0]
     z = run.old.boxes[j, CENTRE_Z] - run.lift[0, 0] - left[1]
@@ -131,14 +138,14 @@ def is_unsettled(run: RunState) -> bool:
     """Whether a box has lost its footing, or is beyond the slenderness angle of its stack."""
     unsettled = False
     for j in range(run.joints.shape[0]):
-        turned = abs(run.old.boxes[j, ROTATION]) > run.joints[j].angle
+        turned = abs(rotation_of(run, j)) > run.joints[j].angle
         unsettled = unsettled or turned or not has_footing(run, j)
     return unsettled
 
 
 @inlined
 def lose_footing(run: RunState) -> None:
-    """Count the boxes without footing as fallen now."""
+    """Count what is at rest without footing as fallen now."""
     for j in range(run.joints.shape[0]):
         if not has_footing(run, j):
             run.joints[j].fell_at = run.clock[0].time

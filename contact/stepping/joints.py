@@ -141,14 +141,16 @@ def holding_force(run: RunState, j: int, loose: bool | None, links: LinkedBody |
     track, pushed = run.track[0], (0.0, 0.0, 0.0)
     if loose is not None:
         if not in_a_row(run):
-            return holding_in_stack(run, j)
+            if links is not None:
+                pushed = load_of_links(run, links, j, run.attempt.new.boxes[j])
+            return holding_in_stack(run, j, pushed)
         first, last = run.joints[j].begin, run.joints[j].end - 1
         stands = (run.attempt.new.force[first, 1] > 0.0) == (run.attempt.new.force[last, 1] > 0.0)
         return holding_on_floor(
             run, j, run.attempt.new.boxes[j], stands, first, last, load_from_beside(run, j)
         )
     if links is not None:
-        pushed = load_of_links(run, links)
+        pushed = load_of_links(run, links, j, run.attempt.new.pose)
     stands = track.left_open == track.right_open
     last = run.problem.control.base_points - 1
     return holding_on_floor(run, j, run.attempt.new.pose, stands, 0, last, pushed)
@@ -253,8 +255,10 @@ def load_from_above(run: RunState, j: int) -> tuple[float, float, float]:
 
 
 @compiled
-def holding_in_stack(run: RunState, j: int) -> tuple[float, float]:
+def holding_in_stack(run: RunState, j: int, pushed: tuple[float, float, float]) -> tuple[float, float]:
     """`holding_force` of a joint of a loose stack: of the box on it, under the present forces from above.
+
+    What links push it, along x and upward [N] and about its mass centre [Nm], is added to the forces from above.
 
     The box stands on the face below, which moves it and turns it; or it rocks on that face as a container on its floor.
     With t along the face and n across it, F and M from above, a the acceleration of the place about which it turns,
@@ -278,6 +282,7 @@ def holding_in_stack(run: RunState, j: int) -> tuple[float, float]:
             right += new.force[i, 1]
     normal, stands = left + right, (left > 0.0) == (right > 0.0)
     above_x, above_z, moment = load_from_above(run, j)
+    above_x, above_z, moment = above_x + pushed[0], above_z + pushed[1], moment + pushed[2]
     cosine, sine, swing, swung = 1.0, 0.0, 0.0, 0.0
     if j > 0:
         lean = new.boxes[j - 1, ROTATION]

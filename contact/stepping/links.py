@@ -4,7 +4,8 @@ A link acts along a fixed line. Seen from it, its point has the coordinates of a
 and a place across it. A stop is a wall that moves with the floor; its line is horizontal and leads away from the wall.
 A tie pulls down, so its line leads down: its gap is the slack that is left, and it holds the point from above as a wall
 would. All laws, the solver and the ledger are then those of the floor: spring and dashpot that never pull, and Coulomb
-friction across the line. The points of the links are the last of a body.
+friction across the line. The points of the links are the last of a body; of a loose stack or a row each is on a side
+of one box (`contact.interface.faces.SidePoint`).
 
 The cap of a link is its strength. A link that reaches it breaks at the end of the step: its point gets the indentation
 `BROKEN`, and never touches again. What its springs held is part of the contact damping.
@@ -17,19 +18,20 @@ from typing import Any, NamedTuple
 import numpy as np
 from numba.extending import overload
 
-from contact.arrays import FloatArray
+from contact.arrays import FloatArray, IntArray
 from contact.interface.workspace import Contact, Workspace
 from contact.jit import compiled, inlined, options_of_piece
 from contact.stepping import body as interface
-from contact.stepping.body import CENTRE_X, CENTRE_Z, State, implements
+from contact.stepping.body import CENTRE_X, CENTRE_Z, State, implements, stands_loose
 from contact.stepping.ledger import CONTACT_DAMPING, CRUSHING
 from contact.stepping.observables import NEVER
 from contact.stepping.scheme import Scheme
 from contact.stepping.state import RunState
 from contact.structs import struct
 
-#: columns of `LinkedBody.line`: direction along x and z in which the point may go, and what is added to its places
-ALONG_X, ALONG_Z, ACROSS, GAP = 0, 1, 2, 3
+#: columns of `LinkedBody.line`: direction along x and z in which the point may go, what is added to its places, and the
+#: box of a loose stack or the body of a row that has it
+ALONG_X, ALONG_Z, ACROSS, GAP, BOX = 0, 1, 2, 3, 4
 BROKEN = 1e6  #: indentation of the point of a broken link [m]
 APART = 64.0  #: distance of the points of links from those of the base and from each other, in widths of the container
 
@@ -39,22 +41,28 @@ class LinkedBody(NamedTuple):
     """A body whose last k contact points are those of links."""
 
     body: Any
-    line: FloatArray  #: (k, 4), see `ALONG_X`
+    line: FloatArray  #: (k, 5), see `ALONG_X`
 
 
-def make_lines(direction: FloatArray, place: FloatArray, gap: FloatArray, width: float) -> FloatArray:
-    """The lines of k links, (k, 4).
+def make_lines(
+    direction: FloatArray, place: FloatArray, gap: FloatArray, width: float, box: IntArray | None = None
+) -> FloatArray:
+    """The lines of k links, (k, 5).
 
     Args:
         direction: (k, 2) unit vectors that lead away from what holds the point.
         place: (k, 2) of the points where the gaps are these [m].
         gap: (k,) [m].
         width: of the container [m]; points across their lines are told from those of the base by it.
+        box: (k,) that has the point, of a loose stack or a row.
     """
     across = direction[:, 1] * place[:, 0] - direction[:, 0] * place[:, 1]
     # a mirror image turns the sign
     apart = APART * width * np.arange(1.0, 1.0 + len(place)) * np.where(direction[:, 0] > 0.0, -1.0, 1.0)
-    return np.column_stack([direction, apart - across, gap - np.einsum("kc,kc->k", direction, place)])
+    along = np.einsum("kc,kc->k", direction, place)
+    return np.column_stack(
+        [direction, apart - across, gap - along, np.zeros(len(place)) if box is None else box]
+    )
 
 
 def links_of(body: Any) -> Any:
@@ -65,6 +73,12 @@ def links_of(body: Any) -> Any:
 @overload(links_of, strict=False, jit_options=options_of_piece(True))
 def _links_of(body: Any) -> Any:
     return (lambda body: body) if "line" in getattr(body, "fields", ()) else (lambda body: None)
+
+
+@implements(stands_loose, LinkedBody, inline=True)
+def stands_loose_below(links: LinkedBody) -> bool | None:
+    """Whether the body with the links is a loose stack or a row."""
+    return stands_loose(links.body)
 
 
 @inlined
@@ -202,10 +216,12 @@ def push_of_links(run: RunState, links: LinkedBody | None) -> float:
 
 
 @inlined
-def load_of_links(run: RunState, links: LinkedBody | None) -> tuple[float, float, float]:
-    """Force of all links at the end of the attempted step, x and z [N], and its moment about the mass centre [Nm].
+def load_of_links(
+    run: RunState, links: LinkedBody | None, box: int, pose: FloatArray
+) -> tuple[float, float, float]:
+    """Force of the links of a box at the end of the attempted step, x and z [N], and its moment about its centre [Nm].
 
-    The moment is positive as the rotation.
+    The moment is positive as the rotation; `pose` is that of the box.
     """
     x, z, moment = 0.0, 0.0, 0.0
     if links is not None:
@@ -214,13 +230,13 @@ def load_of_links(run: RunState, links: LinkedBody | None) -> tuple[float, float
         first = new.point.shape[0] - line.shape[0]
         for k in range(line.shape[0]):
             i, own = first + k, line[k]
-            if new.force[i, 1] != 0.0:
+            if own[BOX] == box and new.force[i, 1] != 0.0:
                 across, along = new.force[i, 0], new.force[i, 1]
                 place, gap = new.point[i, 0] - own[ACROSS], new.point[i, 1] - new.crushed[i] - own[GAP]
                 force_x = own[ALONG_Z] * across + own[ALONG_X] * along
                 force_z = own[ALONG_Z] * along - own[ALONG_X] * across
-                arm_x = own[ALONG_Z] * place + own[ALONG_X] * gap + run.floor[1, 0] - new.pose[CENTRE_X]
-                arm_z = own[ALONG_Z] * gap - own[ALONG_X] * place + run.lift[1, 0] - new.pose[CENTRE_Z]
+                arm_x = own[ALONG_Z] * place + own[ALONG_X] * gap + run.floor[1, 0] - pose[CENTRE_X]
+                arm_z = own[ALONG_Z] * gap - own[ALONG_X] * place + run.lift[1, 0] - pose[CENTRE_Z]
                 x += force_x
                 z += force_z
                 moment += arm_z * force_x - arm_x * force_z
@@ -271,9 +287,9 @@ def follow_links(run: RunState, step: float, links: LinkedBody | None, apart: fl
     if links is not None:
         line = links.line
         old, new = run.old, run.attempt.new
-        first = new.point.shape[0] - line.shape[0]
+        first, before = new.point.shape[0] - line.shape[0], run.links.shape[0] - line.shape[0]
         for k in range(line.shape[0]):
-            i, record = first + k, run.links[k]
+            i, record = first + k, run.links[before + k]
             gap = new.point[i, 1]
             record.max_force = max(record.max_force, new.force[i, 1])
             if record.broken_at == NEVER:

@@ -11,7 +11,7 @@ from contact.arrays import FloatArray
 from contact.interface.faces import (
     Faces,
     condense_points,
-    is_over_floor,
+    is_of_one_box,
     linearise_points,
     move_corners,
     open_unweighted,
@@ -105,7 +105,7 @@ def respond(stack: LooseStack, scheme: Scheme, step: float, old: State, new: Sta
     move_corners(corners)
     place_points(stack.faces, corners.point, work.trial)
     for i in range(work.trial.shape[0]):
-        if is_over_floor(stack.faces, i) or stack.faces.weight[i] == 0.0:
+        if is_of_one_box(stack.faces, i) or stack.faces.weight[i] == 0.0:
             continue
         apart = stack.in_a_row and work.trial[i, 1] > 0.0 and work.point[i, 1] > 0.0
         if not apart:  # the sides of a row are seldom where it matters how far they are from each other

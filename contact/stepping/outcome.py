@@ -3,9 +3,9 @@
 A run has three parts. It is driven until `rest_from`, the end of a pulse or a record, or else to its duration. From
 `rest_from` on it ends when the container is at rest or has fallen, at the latest at its duration. A container that is
 beyond its slenderness angle then has neither fallen nor come back: it is followed on a resting floor until it has done
-one or the other; so is a loose stack of which a box is beyond it, or has its mass centre beyond the face below. A
-box that comes to rest there has lost its footing, and counts as fallen. No history is kept here, and no Python runs
-within a slice.
+one or the other; so is a loose stack of which a box is beyond it, or has its mass centre beyond the face below. What
+comes to rest there, held by stops, ties or a neighbour alone, has lost its footing, and counts as fallen. No history is
+kept here, and no Python runs within a slice.
 
 Of the samples that a history would have, the stepper follows the largest acceleration and the sway of the contents.
 The slip of the last cycle is kept.
@@ -21,7 +21,7 @@ from contact.arrays import FloatArray
 from contact.jit import compiled, inlined
 from contact.motion.kernel import UNIFORM, as_floor_motion, floor_motion
 from contact.stepping.block_on_corners import FloatingBody, advance_on
-from contact.stepping.body import KINETIC, ROTATION, VELOCITY_X
+from contact.stepping.body import KINETIC, VELOCITY_X
 from contact.stepping.boxes import is_unsettled, lose_footing
 from contact.stepping.control import most_attempts
 from contact.stepping.integrator import (
@@ -154,10 +154,10 @@ def is_over(run: RunState, part: int) -> bool:
         return False
     if track.overturned_at < NEVER:
         return True
-    if part == UNDECIDED and run.joints.shape[0] == 1:
-        return abs(run.old.pose[ROTATION]) <= control.slenderness_angle
     if part == UNDECIDED and not is_unsettled(run):
         return True
+    if part == UNDECIDED and run.joints.shape[0] == 1 and run.links.shape[0] == 0:
+        return False  # nothing holds it there
     if clock.time < clock.next_look:
         return False
     clock.next_look = clock.time + AFTERMATH_SLICE
@@ -175,8 +175,7 @@ def is_over(run: RunState, part: int) -> bool:
     clock.rest_since = min(clock.rest_since, clock.time)
     if clock.time - clock.rest_since < RESTING_TIME / control.slowest_rocking:
         return False
-    if part == UNDECIDED:
-        lose_footing(run)
+    lose_footing(run)
     return True
 
 

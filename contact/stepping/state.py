@@ -183,8 +183,8 @@ JOINT_RECORD = np.dtype(
 )
 
 
-#: a stop or a tie, or the gap between two bodies in a row, see `contact.stepping.links` and `contact.stepping.boxes`;
-#: `RunState.links` has one of these for each
+#: the gap between two bodies in a row, a stop or a tie, see `contact.stepping.boxes` and `contact.stepping.links`;
+#: `RunState.links` has one of these for each, in this order
 LINK_RECORD = np.dtype(
     [
         ("max_force", "f8"),  # along its line

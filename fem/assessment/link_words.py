@@ -2,6 +2,7 @@
 
 import math
 
+from fem.assessment.loose_boxes import leaning_in_words
 from fem.model.links import heights_of_links
 from fem.model.model import Model
 from fem.results.outcome import SLIDING, Outcome
@@ -12,7 +13,7 @@ from fem.runtime.units import KILONEWTONS, MEGAPASCALS, visible_number
 def link_results(model: Model) -> tuple[tuple[LinkResult, ...] | None, tuple[LinkResult, ...] | None]:
     """What stops and ties did in a model that was stepped, in the order of the case; None where there are none."""
     case, container = model.case, model.container
-    records = model.run.links if case.links else ()  # those of a row are of its gaps
+    records = model.run.links[len(case.neighbour) :]
     heights = heights_of_links(case, container.elements.nodes[container.nodes])
     results = [
         LinkResult(
@@ -55,6 +56,8 @@ def fall_in_row(verdict: Verdict) -> str:
     if not fallen:
         return ""
     at, number, one = min(fallen)
+    if verdict.leans:
+        return leaning_in_words(_neighbour(number, one), verdict)
     return f"{_neighbour(number, one)} overturned at t = {at:.3f} s, where the run ends"
 
 

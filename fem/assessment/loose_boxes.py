@@ -22,11 +22,20 @@ BOXES_NOTE = (
 )
 
 
+def leaning_in_words(what: str, verdict: Verdict) -> str:
+    """That what is at rest where it cannot stand by itself counts as overturned; `what`: empty for the container."""
+    at = "" if verdict.overturned_at_s is None else f" from t = {verdict.overturned_at_s:.3f} s on"
+    rests = "came to rest where only what it leans on or hangs on holds it, and counts as overturned"
+    return f"{what} {rests}{at}".strip()
+
+
 def fall_in_words(verdict: Verdict) -> str:
     """Which box of a loose stack fell, and when; empty if none did."""
     if verdict.fell_box is None:
         return ""
     at, above = verdict.overturned_at_s, verdict.fell_box < len(verdict.boxes or ())
+    if verdict.leans:
+        return leaning_in_words(f"box {verdict.fell_box}", verdict)
     when = f" at t = {at:.3f} s" if at is not None else ""
     return f"box {verdict.fell_box} fell{when}{', with what stood on it' if above else ''}"
 

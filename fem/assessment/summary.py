@@ -19,7 +19,13 @@ from fem.assessment.code_note import code_note
 from fem.assessment.floor_words import floor_rows
 from fem.assessment.joint_tables import joint_tables, titled_table
 from fem.assessment.link_words import fall_in_row, links_in_words
-from fem.assessment.loose_boxes import box_table, fall_in_words, joints_in_words, largest_joint_slip
+from fem.assessment.loose_boxes import (
+    box_table,
+    fall_in_words,
+    joints_in_words,
+    largest_joint_slip,
+    leaning_in_words,
+)
 from fem.assessment.margin_words import margin_in_words
 from fem.assessment.motion_words import covered_in_words, missing_peak, motion_in_words
 from fem.assessment.ranges import bolt_forces, crushes, in_words, largest_ratio, largest_slip, of_band
@@ -136,6 +142,7 @@ def _found(result: run_result.RunResult) -> str:
         fell = (
             fall_in_words(verdict)
             or fall_in_row(verdict)
+            or (leaning_in_words("", verdict) if verdict.leans else "")
             or "overturned" + (f" at t = {at:.3f} s" if at is not None else "")
         )
         return "; ".join(filter(None, (fell, links_in_words(result))))

@@ -131,6 +131,7 @@ def verdict_from(
         outcome=outcome if destroyed is None else Outcome.INVALID,
         valid=destroyed is None,
         invalid_reason=destroyed,
+        leans=(outcome == Outcome.OVERTURNED and math.isfinite(run.clock[0].rest_since)) or None,
         modes=_modes_seen(track.modes | _hops(model) << Outcome.HOP.code, outcome, slides=_slides(model)),
         max_rotation_rad=rotation,
         rotation_ratio=relative_rotation(rotation, angle),
@@ -294,7 +295,9 @@ def numerics_of(model: Model, stepping_cpu: float) -> Numerics:
     spectra = model.spectra
     return Numerics(
         unknowns=int(run.old.position.size),
-        contact_nodes=int(container.nodes.size if container.boxes else container.support.index.size),
+        contact_nodes=int(
+            container.nodes.size - len(model.case.links) if container.boxes else container.support.index.size
+        ),
         steps=int(clock.steps),
         rejected=int(clock.rejected),
         newton_iterations=int(clock.contact_iterations),

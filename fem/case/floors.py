@@ -151,7 +151,7 @@ class FloorTable(CaseTable):
         example="concrete C25/30",
         only=("kind", "slab"),
     )
-    youngs_modulus_Pa: Annotated[float, q.FLOOR_STIFFNESS] | None = case_key(  # noqa: N815
+    youngs_modulus_Pa: Annotated[float, q.FLOOR_STIFFNESS] | None = case_key(
         "of a slab; default: that of the preset",
         follows=_of_preset("youngs_modulus"),
         example=31e9,
@@ -163,7 +163,7 @@ class FloorTable(CaseTable):
         example=0.2,
         only=("kind", "slab"),
     )
-    bearing_strength_Pa: Annotated[float, q.BEARING_STRENGTH] | None = case_key(  # noqa: N815
+    bearing_strength_Pa: Annotated[float, q.BEARING_STRENGTH] | None = case_key(
         "of a slab: pressure at which it crushes; default: that of the preset",
         follows=_of_preset("bearing_strength"),
         example=50e6,

@@ -33,7 +33,7 @@ class HarmonicKeys(CaseTable):
     angular_frequency_rad_s: Annotated[float, q.ANGULAR_FREQUENCY] | None = case_key(
         "harmonic: Omega", None, example=6.928, only=("kind", "harmonic")
     )
-    frequency_Hz: Annotated[float, q.FREQUENCY] | None = case_key(  # noqa: N815
+    frequency_Hz: Annotated[float, q.FREQUENCY] | None = case_key(
         "harmonic: Omega/2 pi, in place of angular_frequency_rad_s",
         None,
         example=1.1026,

@@ -6,36 +6,27 @@ once the gap is used up. The tables of a side go outward: the first stands next 
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 from pydantic import Strict
 
 from fem.case import quantities as q
 from fem.case.boxes import boxes_of, centroid_at
 from fem.case.problem import Rule, either
-from fem.case.table import CaseTable, case_key
+from fem.case.struck import StruckTable
+from fem.case.table import case_key
 
 MOST_NEIGHBOURS = 5
-USUAL_DAMPING = 2.0  #: damping ratio of two sides of which nothing is said: they do not bounce
 #: keys that a neighbour may have other than the container; mass_kg replaces what gives the mass there
 OWN = ("boxes", "width_m", "height_m", "mass_kg", "centroid_m", "wall_m")
 
 
-class NeighbourTable(CaseTable):
-    """Another container beside it, on the same floor; equal but for what is given here."""
+class NeighbourTable(StruckTable):
+    """Another container beside it, on the same floor; equal but for what is given here.
 
-    side: Literal["left", "right"] = case_key("of the container at which it stands", example="right")
-    gap_m: Annotated[float, q.GAP] = case_key("between it and what stands before it, at rest", example=0.1)
-    stiffness_N_m: Annotated[float, q.LINK_STIFFNESS] = case_key(  # noqa: N815
-        "of the two sides, over all their height; half of it at their top, half at their foot", example=1e8
-    )
-    damping_ratio: Annotated[float, q.CONTACT_DAMPING] | None = case_key(
-        "of the two masses on this stiffness; default: 2", None, example=0.5
-    )
-    restitution: Annotated[float, q.STOP_RESTITUTION] | None = case_key(
-        "in place of damping_ratio: of two that run against each other without turning", None, example=0.5
-    )
-    mu: Annotated[float, q.FRICTION] = case_key("of friction between the sides", 0.0)
+    The stiffness is that of the two sides, over all their height: half of it at their top, half at their foot.
+    """
+
     boxes: Annotated[int, Strict(), q.BOXES] | None = case_key(
         "as all below by default as [container]", None, example=4
     )
@@ -52,7 +43,7 @@ class NeighbourTable(CaseTable):
 
 def case_of(case: Any, neighbour: NeighbourTable | None) -> dict[str, Any]:
     """What to set in a case so that it is that of one stack of its row alone; None: of the container itself."""
-    alone: dict[str, Any] = {"neighbour": []}
+    alone: dict[str, Any] = {"neighbour": [], "stop": [], "tie": []}
     if neighbour is None:
         return alone
     given = {name: getattr(neighbour, name) for name in OWN}
@@ -105,6 +96,25 @@ def places_of(case: Any, widths: Sequence[float]) -> Places:
     return Places(x=tuple(x), pairs=tuple(pairs), distance=tuple(distance))
 
 
+def outermost(case: Any, side: str) -> int:
+    """Number of the last neighbour on a side of a case; 0, the container itself, where it has none there."""
+    return max((number for number, one in enumerate(_neighbours(case), 1) if one.side == side), default=0)
+
+
+def top_of(case: Any, number: int) -> float:
+    """Height of a container of the row of a case above the floor, of 0 that of its own [m]."""
+    own, one = case.container, case.neighbour[number - 1] if number else None
+    if one is None or (one.boxes is None and one.height_m is None):
+        return boxes_of(own, case.gravity_m_s2)[-1].top
+    return float((one.boxes or own.boxes) * (one.height_m or own.height_m))
+
+
+def _neighbours(case: Any) -> Sequence[NeighbourTable]:
+    """Those that could be read."""
+    found: Sequence[NeighbourTable] = getattr(case, "neighbour", ())
+    return found
+
+
 def _uneven(case: Any) -> bool:
     """Whether the sides of the stack are not straight from the floor to its top."""
     boxes = boxes_of(case.container, case.gravity_m_s2)
@@ -113,13 +123,13 @@ def _uneven(case: Any) -> bool:
 
 def _alone(place: str, applies: Any, reason: str) -> Rule:
     """What cannot stand beside neighbours."""
-    return Rule(place, lambda case: not getattr(case, "neighbour", ()) or not applies(case), reason)
+    return Rule(place, lambda case: not _neighbours(case) or not applies(case), reason)
 
 
 NEIGHBOUR_RULES = (
     Rule(
         "neighbour.",
-        lambda case: len(getattr(case, "neighbour", ())) <= MOST_NEIGHBOURS,
+        lambda case: len(_neighbours(case)) <= MOST_NEIGHBOURS,
         lambda case: (
             f"stands {len(case.neighbour)} times; a row has six containers at most, so five neighbours"
         ),
@@ -162,10 +172,4 @@ NEIGHBOUR_RULES = (
         lambda case: not case.output.stop_when_overturned,
         "must be true with [[neighbour]]: what a fallen container strikes is not modelled; leave it out",
     ),
-    _alone(
-        "stop.",
-        lambda case: bool(getattr(case, "stop", ())),
-        "cannot stand beside [[neighbour]] yet; a very heavy neighbour is a wall",
-    ),
-    _alone("tie.", lambda case: bool(getattr(case, "tie", ())), "cannot stand beside [[neighbour]] yet"),
 )

@@ -78,7 +78,7 @@ class ContainerTable(CaseTable):
     joints: Literal["bolted", "loose"] = case_key(
         '"bolted" | "loose": boxes that stand on one another without bolts', "bolted"
     )
-    weight_N: Annotated[float, q.WEIGHT] | None = case_key(  # noqa: N815
+    weight_N: Annotated[float, q.WEIGHT] | None = case_key(
         "of one box with its fill; or mass_kg, or density_kg_m3", None, example=24525.0
     )
     mass_kg: Annotated[float, q.MASS] | None = case_key(
@@ -104,7 +104,7 @@ class ContainerTable(CaseTable):
         '"shell" | "solid"; default: shell where wall_m is given',
         follows=lambda values: "shell" if _has_walls(values) else "solid",
     )
-    youngs_modulus_Pa: Annotated[float, q.STIFFNESS] = case_key("Young's modulus", 2.1e11)  # noqa: N815
+    youngs_modulus_Pa: Annotated[float, q.STIFFNESS] = case_key("Young's modulus", 2.1e11)
     poisson_ratio: Annotated[float, q.POISSON] = case_key("Poisson's ratio", 0.3)
     damping_ratio: Annotated[float, q.MATERIAL_DAMPING] = case_key(
         "of the first elastic mode; it grows with frequency, zeta_n = zeta f_n/f_1", 0.02
@@ -117,7 +117,7 @@ class ContainerTable(CaseTable):
         example=[0.12, 0.008],
         only=("section", "shell"),
     )
-    corner_post_N: Annotated[float, q.CORNER_FORCE] | None = case_key(  # noqa: N815
+    corner_post_N: Annotated[float, q.CORNER_FORCE] | None = case_key(
         "strength of the post above each bottom corner, of which two stand behind each other; default: on "
         "castings that of post_m, S355; else the wall yields",
         None,
@@ -234,7 +234,7 @@ class ContactTable(CaseTable):
     regularisation_velocity_m_s: Annotated[float, q.SLIP_VELOCITY] = case_key(
         "of regularised friction", 1e-3, only=("friction", "regularised")
     )
-    normal_penalty_Pa_m: Annotated[float, q.PENALTY] | Literal["auto"] = case_key(  # noqa: N815
+    normal_penalty_Pa_m: Annotated[float, q.PENALTY] | Literal["auto"] = case_key(
         'normal stiffness of the whole base over width x depth, or "auto"', "auto"
     )
     tangential_ratio: Annotated[float, q.RATIO] = case_key("tangential over normal penalty", 1.0)
@@ -292,7 +292,7 @@ class JointsTable(CaseTable):
         example=0.5,
     )
 
-    bolt_capacity_N: Annotated[float, q.CORNER_FORCE] | None = case_key(  # noqa: N815
+    bolt_capacity_N: Annotated[float, q.CORNER_FORCE] | None = case_key(
         "bolted joints: tension that all bolts along one edge carry, as two twistlocks", None, example=500e3
     )
 
@@ -375,7 +375,7 @@ class OutputTable(CaseTable):
         'interval of the fields for ParaView and films; 0: none; "auto": 0.05 or longer, so that they take 16 MB',
         "auto",
     )
-    contents_filter_Hz: Annotated[float, q.CONTENTS_FILTER] = case_key(  # noqa: N815
+    contents_filter_Hz: Annotated[float, q.CONTENTS_FILTER] = case_key(
         "acceleration of the contents: cut-off of its low-pass filter, Butterworth of two poles", 33.0
     )
     figures: bool = case_key("draw the figures of a run, as SVG", True)
@@ -423,13 +423,13 @@ class UncertaintyTable(CaseTable):
     stribeck_velocity_m_s: Unknown = case_key(
         "of the contact; default: 0 to 0.3 m/s", None, example=[0.0, 0.3]
     )
-    normal_penalty_Pa_m: Unknown = case_key(  # noqa: N815
+    normal_penalty_Pa_m: Unknown = case_key(
         "of the contact; default: a ninth to three times", None, example=[1e9, 3e10]
     )
-    bearing_strength_Pa: Unknown = case_key(  # noqa: N815
+    bearing_strength_Pa: Unknown = case_key(
         "of the floor, slab only; default: half to twice", None, example=[25e6, 1e8]
     )
-    floor_youngs_modulus_Pa: Unknown = case_key(  # noqa: N815
+    floor_youngs_modulus_Pa: Unknown = case_key(
         "of the floor, slab only; default: half to twice", None, example=[1.5e10, 6e10]
     )
     damping_ratio: Unknown = case_key("of the contact; default: half to twice", None, example=[1.0, 4.0])
@@ -444,7 +444,7 @@ class UncertaintyTable(CaseTable):
     stop_gap_m: Unknown = case_key(
         "of all stops, where they have one; default: 0.8 to 1.2 times", None, example=[0.04, 0.06]
     )
-    stop_stiffness_N_m: Unknown = case_key(  # noqa: N815
+    stop_stiffness_N_m: Unknown = case_key(
         "of all stops, likewise; default: half to twice", None, example=[5e7, 2e8]
     )
     stop_mu: Unknown = case_key(
@@ -453,13 +453,13 @@ class UncertaintyTable(CaseTable):
     tie_slack_m: Unknown = case_key(
         "of all ties, where they have one; default: 0.8 to 1.2 times", None, example=[0.0, 0.01]
     )
-    tie_stiffness_N_m: Unknown = case_key(  # noqa: N815
+    tie_stiffness_N_m: Unknown = case_key(
         "of all ties, likewise; default: half to twice", None, example=[5e5, 2e6]
     )
     neighbour_gap_m: Unknown = case_key(
         "between all neighbours, where they have one; default: 0.8 to 1.2 times", None, example=[0.08, 0.12]
     )
-    neighbour_stiffness_N_m: Unknown = case_key(  # noqa: N815
+    neighbour_stiffness_N_m: Unknown = case_key(
         "of the sides, likewise; default: half to twice", None, example=[5e7, 2e8]
     )
     neighbour_mu: Unknown = case_key(

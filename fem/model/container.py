@@ -11,7 +11,7 @@ from contact.interface.support import Support
 from fem.case.case import Case
 from fem.case.neighbours import Places, places_of
 from fem.model.geometry import build_container, node_count
-from fem.model.links import nodes_of_links
+from fem.model.links import nodes_of_links, nodes_on_sides, side_points
 from fem.model.support import build_support
 from fem.model.validity import require_memory
 from fem.runtime.arrays import FloatArray, IntArray
@@ -51,8 +51,8 @@ class Container:
     mesh: ContainerMesh
     elements: FiniteElements
     support: Support
-    #: (n_c,) contact nodes, those of the base first, by rising x, those nearest to links last; of a loose stack see
-    #: `BoxModel`
+    #: (n_c,) contact nodes, those of the base first, by rising x, those nearest to links last; of a loose stack or a
+    #: row the corners that touch, in the order of `contact.interface.faces`, before these
     nodes: IntArray
     monitors: IntArray  #: (n_m,) nodes whose motion is observed
     response: StaticResponse  #: none of a loose stack
@@ -265,7 +265,7 @@ def _loose(case: Case, mesh: ContainerMesh, elements: FiniteElements, support: S
         box_nodes=tuple(nodes),
     )
     touching = make_faces(elements.nodes[container.corners], np.ones(0), np.ones(0)).corner[:, TOUCHING]
-    return replace(container, nodes=container.corners[touching])
+    return replace(container, nodes=np.append(container.corners[touching], _nodes_held(case, container)))
 
 
 def _in_a_row(case: Case, mesh: ContainerMesh | None) -> Container:
@@ -304,13 +304,11 @@ def _beside_one_another(case: Case, row: Sequence[Container]) -> Container:
         )
         for one, at in zip(row, struck, strict=True)
     )
-    corners = np.concatenate([own[box.corners] for box, own in zip(boxes, nodes, strict=True)])
-    touching = make_row(np.ones((corners.size, 2)), *facing(places), np.zeros(len(row)), *np.zeros((2, 0)))
-    return Container(
+    container = Container(
         mesh=meshes[0],
         elements=elements,
         support=row[0].support,
-        nodes=corners[touching.corner[:, TOUCHING]],
+        nodes=np.zeros(0, dtype=np.int64),
         monitors=nodes[0][row[0].monitors],
         response=_no_response(elements),
         basis=_no_modes(elements),
@@ -320,6 +318,18 @@ def _beside_one_another(case: Case, row: Sequence[Container]) -> Container:
         row=tuple(row),
         box_nodes=tuple(nodes),
     )
+    corners = container.corners
+    touching = make_row(np.ones((corners.size, 2)), *facing(places), np.zeros(len(row)), *np.zeros((2, 0)))
+    touched = corners[touching.corner[:, TOUCHING]]
+    return replace(container, nodes=np.append(touched, _nodes_held(case, container)))
+
+
+def _nodes_held(case: Case, container: Container) -> IntArray:
+    """Nodes of the container nearest to the points of links on its boxes, (k,)."""
+    points = side_points(case)
+    own = nodes_on_sides(points, [box.elements.nodes for box in container.boxes])
+    chosen = [container.box_nodes[point.box][node] for point, node in zip(points, own, strict=True)]
+    return np.array(chosen, dtype=np.int64)
 
 
 def facing(places: Places) -> tuple[IntArray, FloatArray]:

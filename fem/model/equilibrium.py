@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from contact.interface.equilibrium import SettlingError, Stance, standing, tilted
+from contact.interface.faces import place_points
 from contact.interface.laws import FRICTION_LAWS
 from contact.interface.penalty import relaxation_time
 from contact.interface.workspace import Contact
@@ -19,7 +20,7 @@ from fem.model.edge_springs import edge_factors
 from fem.model.floor import slab_of
 from fem.model.links import lines_at, places_of_links, shapes_at_links, with_links
 from fem.model.loose_stack import make_stack_state, own_stiffness, settle, stack_of, with_joints
-from fem.model.row import body_of_row, contact_of_row, measure_gaps, require_no_jam
+from fem.model.row import body_of_row, contact_of_row, corners_at_rest, measure_gaps, require_no_jam
 from fem.model.support import Rolling, base_points, normal_penalty, steel_penalty
 from fem.model.validity import require_bearing, require_stiff_contact, require_stiff_container
 from fem.runtime.arrays import FloatArray
@@ -75,11 +76,12 @@ def find_equilibrium(case: Case, container: Container, gravity: float) -> Equili
     try:
         if container.boxes:
             contact = with_joints(case, contact, container.mesh.mass, steel_penalty(case, container.mesh))
+            contact = with_links(case, contact, [container.mesh.mass])
             body, force, compression = _settled_stack(case, container, contact, gravity)
         else:
             stance = _stance(case, container, contact, gravity)
             body, force = _body(case, container, contact, stance), stance.force[: contact.cap.size]
-            contact = with_links(case, contact, container.mesh.mass)
+            contact = with_links(case, contact, [container.mesh.mass])
             compression = _compression(container, stance) if case.solver.model != "rigid" else 0.0
     except SettlingError as error:
         raise CaseError(f"[initial] no equilibrium at the start: {error}") from error
@@ -108,20 +110,26 @@ def _of_row(case: Case, container: Container, gravity: float) -> Equilibrium:
     row = [find_equilibrium(*one, gravity) for one in zip(case.row, container.row, strict=True)]
     meshes = [one.mesh for one in container.row]
     require_no_jam(case, meshes)
-    contact = contact_of_row(case, [one.contact for one in row], [mesh.mass for mesh in meshes])
+    masses = [mesh.mass for mesh in meshes]
+    contact = with_links(case, contact_of_row(case, [one.contact for one in row], masses), masses)
     bodies = [one.body for one in row if isinstance(one.body, ModalBody)]
     body = body_of_row(case, bodies, container.row, contact)
     upright = [
         None if alone.initial.rotation_rad != 0.0 else one.stance
         for alone, one in zip(case.row, row, strict=True)
     ]
-    measure_gaps(body, bodies, upright, own_stiffness(contact))
-    return replace(row[0], contact=contact, body=body, stance=None, row=tuple(row))
+    standing = corners_at_rest(body, bodies, upright)
+    measure_gaps(body, standing, own_stiffness(contact))
+    place = np.zeros((contact.cap.size, 2))
+    place_points(body.faces, standing.reshape(-1, 2), place)
+    size = sum(mesh.width + mesh.height for mesh in meshes)
+    line = lines_at(case, place[len(place) - len(case.links) :], size)
+    return replace(row[0], contact=contact, body=_linked(body, line), stance=None, row=tuple(row))
 
 
 def _settled_stack(
     case: Case, container: Container, contact: Contact, gravity: float
-) -> tuple[LooseStack | FullStack, FloatArray, float]:
+) -> tuple[LooseStack | LinkedBody | FullStack, FloatArray, float]:
     """A loose stack, its contact forces at rest (n, 2) [N] and the largest compressive strain of its boxes."""
     penetration = container.mesh.mass * case.gravity_toward_floor / float(contact.normal_stiffness[:2].sum())
     stack = stack_of(case, container, contact, POINT_TOLERANCE * penetration)
@@ -131,7 +139,16 @@ def _settled_stack(
         _strain(box.elements, box.response, force, float(state.boxes[b, ROTATION]))
         for b, (box, force) in enumerate(zip(container.boxes, forces, strict=True))
     ]
-    return stack, state.force, max(strains) if case.solver.model != "rigid" else 0.0
+    line = lines_at(case, state.point[len(state.point) - len(case.links) :], container.mesh.width)
+    return _linked(stack, line), state.force, max(strains) if case.solver.model != "rigid" else 0.0
+
+
+def _linked(stack: LooseStack | FullStack, line: FloatArray | None) -> LooseStack | LinkedBody | FullStack:
+    """A loose stack or a row with its links."""
+    if isinstance(stack, FullStack):
+        stack.line = line
+        return stack
+    return stack if line is None else LinkedBody(body=stack, line=line)
 
 
 def same_equilibrium(case: Case, other: Case) -> bool:

@@ -1,17 +1,21 @@
-"""Stops and ties of a case as contact points of its container, behind those of the base."""
+"""Stops and ties of a case as contact points of its container, of its loose boxes or of its row, behind all others."""
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
+from contact.interface.faces import SidePoint
 from contact.interface.penalty import damping_ratio_of
 from contact.interface.workspace import Contact
 from contact.stepping.body import State
 from contact.stepping.links import APART, make_lines, place_links
 from fem.case.case import Case, CaseError
-from fem.case.links import USUAL_STOP_DAMPING, StopTable, TieTable
-from fem.model.tied_capacity import side_of
+from fem.case.links import StopTable, TieTable, holder_of
+from fem.case.neighbours import top_of
+from fem.case.struck import USUAL_DAMPING, StruckTable
+from fem.model.tied_capacity import box_at, side_of
 from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid.sides import nodes_at, shapes_at
 
@@ -19,13 +23,42 @@ OVERLAP = 1e-9  #: overlap at the start that is rounding [m]
 
 
 def places_of_links(case: Case) -> FloatArray:
-    """Points of the container to which the links belong, (k, 2), where it stands on x = 0 [m]."""
+    """Points of the container to which the links belong, (k, 2), where it stands on x = 0 [m].
+
+    Of a row from the axis of the container that each holds.
+    """
     return np.array([(side_of(case, one), one.height_m) for one in case.links]).reshape(-1, 2)
+
+
+def side_points(case: Case) -> tuple[SidePoint, ...]:
+    """The points of links on the sides of loose boxes, or of the containers of a row, one for each link."""
+    found = []
+    for one in case.links:
+        if case.container.is_loose:
+            box = box_at(case, one.height_m)
+            number, bottom, height = case.stack.index(box), box.bottom, box.height
+        else:
+            number = holder_of(case, one)
+            bottom, height = 0.0, top_of(case, number)
+        place = min((one.height_m - bottom) / height, 1.0)
+        found.append(SidePoint(box=number, right=one.side == "right", place=place))
+    return tuple(found)
 
 
 def nodes_of_links(case: Case, nodes: FloatArray) -> IntArray:
     """The nodes of a structured mesh, of all (n, 2), that are nearest to the points of the links, (k,)."""
     return nodes_at(places_of_links(case), nodes)
+
+
+def nodes_on_sides(points: Sequence[SidePoint], boxes: Sequence[FloatArray]) -> list[int]:
+    """For each point the nearest node of its box; `boxes`: the nodes (n, 2) of each."""
+    found = []
+    for point in points:
+        x, z = boxes[point.box].T
+        on_side = np.abs(x - (x.max() if point.right else x.min())) <= 1e-9 * np.ptp(x)
+        away = np.where(on_side, np.abs(z - z.min() - point.place * np.ptp(z)), math.inf)
+        found.append(int(np.argmin(away)))
+    return found
 
 
 def shapes_at_links(case: Case, nodes: FloatArray, shapes: FloatArray) -> FloatArray:
@@ -34,11 +67,11 @@ def shapes_at_links(case: Case, nodes: FloatArray, shapes: FloatArray) -> FloatA
 
 
 def heights_of_links(case: Case, nodes: FloatArray) -> list[float]:
-    """Heights of the points of the links [m]: as asked for, or of a full model those of its last contact nodes.
+    """Heights of the points of the links [m]: as asked for, or of a full container those of its last contact nodes.
 
     `nodes`: (n, 2) contact nodes of the container.
     """
-    if case.solver.model != "full":
+    if case.solver.model != "full" or case.container.is_loose:
         return [one.height_m for one in case.links]
     return [float(z) for z in nodes[len(nodes) - len(case.links) :, 1]]
 
@@ -50,18 +83,19 @@ def direction_of(link: StopTable | TieTable) -> tuple[float, float]:
     return (1.0, 0.0) if link.side == "left" else (-1.0, 0.0)
 
 
-def relaxation_of(link: StopTable | TieTable, mass: float) -> float:
-    """Dashpot over spring of a link [s]; a tie has no dashpot."""
-    if isinstance(link, TieTable):
-        return 0.0
-    ratio = USUAL_STOP_DAMPING if link.damping_ratio is None else link.damping_ratio
-    if link.restitution is not None:
-        ratio = damping_ratio_of(link.restitution)
-    return 2.0 * ratio * math.sqrt(mass / link.stiffness_N_m)
+def dashpot_of(struck: StruckTable, mass: float) -> float:
+    """Dashpot over spring of what is struck by a mass [kg]: [s]."""
+    ratio = USUAL_DAMPING if struck.damping_ratio is None else struck.damping_ratio
+    if struck.restitution is not None:
+        ratio = damping_ratio_of(struck.restitution)
+    return 2.0 * ratio * math.sqrt(mass / struck.stiffness_N_m)
 
 
-def with_links(case: Case, contact: Contact, mass: float) -> Contact:
-    """The contact of a container of this mass [kg] with the points of its links behind those of the floor."""
+def with_links(case: Case, contact: Contact, masses: Sequence[float]) -> Contact:
+    """The contact of a container, or a row, of these masses [kg] with the points of its links behind all others.
+
+    A tie has no dashpot.
+    """
     links = case.links
     if not links:
         return contact
@@ -73,7 +107,10 @@ def with_links(case: Case, contact: Contact, mass: float) -> Contact:
         "tangential_stiffness": stiffness,
         "cap": [math.inf if one.strength_N is None else one.strength_N for one in links],
         "cap_growth": nothing,
-        "relaxation_time": [relaxation_of(one, mass) for one in links],
+        "relaxation_time": [
+            dashpot_of(one, masses[holder_of(case, one)]) if isinstance(one, StopTable) else 0.0
+            for one in links
+        ],
         "mu_static": mu,
         "mu_kinetic": mu,
         "weakening": nothing,
@@ -86,17 +123,20 @@ def with_links(case: Case, contact: Contact, mass: float) -> Contact:
 
 
 def lines_at(case: Case, place: FloatArray, width: float) -> FloatArray | None:
-    """The lines of the links of a case, (k, 4); None where it has none.
+    """The lines of the links of a case, (k, 5); None where it has none.
 
     Args:
         case: its links.
         place: (k, 2) of their points where the container stands on x = 0 [m].
-        width: of the container [m].
+        width: of the container, of a row of all together [m].
     """
     if not case.links:
         return None
     direction = np.array([direction_of(one) for one in case.links])
-    return make_lines(direction, place, np.array([one.slack for one in case.links]), width)
+    box = None
+    if case.bodies > 1:
+        box = np.array([point.box for point in side_points(case)])
+    return make_lines(direction, place, np.array([one.slack for one in case.links]), width, box)
 
 
 def begin_links(case: Case, body: Any, state: State) -> None:

@@ -21,6 +21,7 @@ from contact.stepping.state import make_joints
 from fem.case.boxes import shared_face
 from fem.case.case import Case
 from fem.model.container import BoxModel, Container
+from fem.model.links import side_points
 from fem.model.support import base_points
 from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid.nodal_body import FullBody
@@ -76,8 +77,10 @@ def stack_of(case: Case, container: Container, contact: Contact, tolerance: floa
     springs = contact.normal_stiffness.copy(), contact.tangential_stiffness.copy()
     if case.solver.model == "full":
         bodies = [_nodal_body(case, container, number) for number in numbers]
-        return FullStack(bodies, [box.response for box in container.boxes], *springs, tolerance)
-    return make_stack([_modal_body(case, container, number, tolerance) for number in numbers], *springs)
+        responses = [box.response for box in container.boxes]
+        return FullStack(bodies, responses, *springs, tolerance, side_points(case))
+    boxes = [_modal_body(case, container, number, tolerance) for number in numbers]
+    return make_stack(boxes, *springs, held=side_points(case))
 
 
 def _nodal_body(case: Case, container: Container, number: int) -> FullBody:

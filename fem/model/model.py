@@ -134,6 +134,7 @@ def build_model(
         equilibrium = find_equilibrium(case, container, gravity)
     mesh, nodes = container.mesh, container.nodes
     contact, body = equilibrium.contact, equilibrium.body
+    own = body.body if isinstance(body, LinkedBody) else body
     duration = longest_run(case, motion, vertical)
     static = static_checks_of(case, mesh, *peaks_in_run(case, motion, vertical, duration))
     require_loss(case, static)
@@ -147,23 +148,23 @@ def build_model(
     velocity = (velocity_x, velocity_z) if case.starts_moving else (0.0, 0.0)
     tilted = None
     if container.row:
-        assert isinstance(body, LooseStack)
+        assert isinstance(own, LooseStack)
         contact = own_stiffness(contact)
         alone = [
             _begun(*one, (x, z, velocity_z), velocity)
             for one in zip(case.row, container.row, equilibrium.row, strict=True)
         ]
         tilted = equilibrium.row[0].contact, alone[0]
-        old = begin_row(case, body, contact, alone, place=(x, z), lift_velocity=velocity_z)
-    elif isinstance(body, LooseStack | FullStack):
+        old = begin_row(case, own, contact, alone, place=(x, z), lift_velocity=velocity_z)
+    elif isinstance(own, LooseStack | FullStack):
         contact = own_stiffness(contact)
-        old = make_stack_state(body)
+        old = make_stack_state(own)
         velocity = velocity[0] + case.initial.velocity_m_s, velocity[1]
-        settle(body, contact, old, gravity=gravity, place=(x, z), velocity=velocity, lift_velocity=velocity_z)
+        settle(own, contact, old, gravity=gravity, place=(x, z), velocity=velocity, lift_velocity=velocity_z)
     else:
         old = _begun(case, container, equilibrium, (x, z, velocity_z), velocity)
-        begin_links(case, body, old)
         old.point[:, 1] += contact.camber
+    begin_links(case, body, old)
     coordinates = old.position.size
     stiffness, first = tilted or (contact, old)
     require_stiff_corner(
@@ -224,12 +225,13 @@ def build_model(
 
 
 def _areas(case: Case, container: Container, equilibrium: Equilibrium) -> FloatArray:
-    """`Model.contact_areas` of one container."""
+    """`Model.contact_areas` of one container; links have none."""
     contact, base = equilibrium.contact, container.support.index.size
+    points = contact.cap.size - len(case.links)
     if not case.floor.is_slab:
-        return contact.normal_stiffness / equilibrium.penalty
+        return contact.normal_stiffness[:points] / equilibrium.penalty
     slab = slab_of(case, container.mesh.mass)
-    areas = np.full(contact.cap.size, slab.area)  # of loose boxes on one another as on the floor
+    areas = np.full(points, slab.area)  # of loose boxes on one another as on the floor
     areas[:base] *= contact.cap[:base] / slab.cap
     return areas
 

@@ -17,7 +17,6 @@ import numpy as np
 from contact.interface.equilibrium import Stance
 from contact.interface.faces import place_points, weigh_points
 from contact.interface.laws import ELASTIC_STICK
-from contact.interface.penalty import damping_ratio_of
 from contact.interface.workspace import Contact
 from contact.stepping.body import State
 from contact.stepping.boxes import POINTS_OF_GAP
@@ -26,9 +25,9 @@ from contact.stepping.modal_body import ModalBody
 from contact.stepping.stack_body import make_stack, start_stack
 from contact.stepping.state import make_joints
 from fem.case.case import Case, CaseError
-from fem.case.neighbours import USUAL_DAMPING, places_of
+from fem.case.neighbours import places_of
 from fem.model.container import Container, facing
-from fem.model.links import OVERLAP
+from fem.model.links import OVERLAP, dashpot_of, side_points
 from fem.model.loose_stack import make_stack_state
 from fem.runtime.arrays import FloatArray
 from fem.solid.nodal_body import rotation_matrix
@@ -69,11 +68,8 @@ def contact_of_row(case: Case, contacts: Sequence[Contact], masses: Sequence[flo
     sides = []
     places = places_of(case, [1.0] * len(masses))
     for one, (left, right) in zip(case.neighbour, places.pairs, strict=True):
-        ratio = USUAL_DAMPING if one.damping_ratio is None else one.damping_ratio
-        if one.restitution is not None:
-            ratio = damping_ratio_of(one.restitution)
         mass = masses[left] * masses[right] / (masses[left] + masses[right])
-        sides.append((0.5 * one.stiffness_N_m, 2.0 * ratio * math.sqrt(mass / one.stiffness_N_m), one.mu))
+        sides.append((0.5 * one.stiffness_N_m, dashpot_of(one, mass), one.mu))
     stiffness, relaxation, mu = (np.repeat(one, POINTS_OF_GAP) for one in zip(*sides, strict=True))
     nothing = np.zeros_like(mu)
     added = {
@@ -118,7 +114,7 @@ def body_of_row(
         *(one._replace(monitor=one.monitor[:0], monitor_shape=one.monitor_shape[:0]) for one in corners[1:]),
     ]
     springs = contact.normal_stiffness.copy(), contact.tangential_stiffness.copy()
-    return make_stack(watched, *springs, (*facing(places), np.array(inset)))
+    return make_stack(watched, *springs, (*facing(places), np.array(inset)), held=side_points(case))
 
 
 def _with_corners(body: ModalBody, container: Container, struck: FloatArray, inset: float) -> ModalBody:
@@ -138,37 +134,49 @@ def _with_corners(body: ModalBody, container: Container, struck: FloatArray, ins
     return body._replace(point=np.array(corner) - body.rest, shape=np.concatenate([low, high]))
 
 
-def measure_gaps(
-    body: LooseStack, bodies: Sequence[ModalBody], stances: Sequence[Stance | None], contact: Contact
-) -> None:
-    """Place the containers of a row so that its gaps are those at rest: shells bulge, and all lean on uneven springs.
+def corners_at_rest(
+    body: LooseStack, bodies: Sequence[ModalBody], stances: Sequence[Stance | None]
+) -> FloatArray:
+    """Corners of the containers of a row at rest, each in its own frame, (N, 4, 2) [m].
 
     Args:
-        body: of the row with undeformed containers at its gaps, which is changed.
+        body: of the row.
         bodies: of the containers alone, with their points over the floor.
         stances: of the containers at rest; None of one that starts tilted, which counts as undeformed.
-        contact: of its own stiffness, which is written.
     """
-    boxes, faces = body.body.boxes, body.faces
-    undeformed = boxes.rest[:, None] + boxes.point
-    standing = undeformed.copy()
+    boxes = body.body.boxes
+    standing: FloatArray = boxes.rest[:, None] + boxes.point
     for b, (one, stance) in enumerate(zip(bodies, stances, strict=True)):
         if stance is not None:
             turn = rotation_matrix(stance.rotation)
             amplitude = np.einsum("ij,ijk->k", stance.force @ turn, one.shape) / one.stiffness
             strained = boxes.point[b] + boxes.shape[b, :, :, : amplitude.size] @ amplitude
             standing[b] = np.asarray(stance.centre) + strained @ turn.T
+    return standing
+
+
+def measure_gaps(body: LooseStack, standing: FloatArray, contact: Contact) -> None:
+    """Place the containers of a row so that its gaps are those at rest: shells bulge, and all lean on uneven springs.
+
+    Args:
+        body: of the row with undeformed containers at its gaps, which is changed.
+        standing: corners of the containers at rest, (N, 4, 2) [m].
+        contact: of its own stiffness, which is written.
+    """
+    boxes, faces, floor = body.body.boxes, body.faces, 2 * len(standing)
+    undeformed = boxes.rest[:, None] + boxes.point
     before, at_rest = (_least_gaps(body, corners, contact) for corners in (undeformed, standing))
-    sides = faces.apart[2 * len(bodies) :]
-    sides += faces.side[2 * len(bodies) :] * np.repeat(before - at_rest, POINTS_OF_GAP)
+    sides = slice(floor, floor + POINTS_OF_GAP * before.size)
+    faces.apart[sides] += faces.side[sides] * np.repeat(before - at_rest, POINTS_OF_GAP)
 
 
 def _least_gaps(body: LooseStack, corners: FloatArray, contact: Contact) -> FloatArray:
     """The gaps of a row, (g,) [m], with its corners (N, 4, 2) there."""
-    floor, point = 2 * len(corners), np.zeros((contact.cap.size, 2))
+    point = np.zeros((contact.cap.size, 2))
+    sides = slice(2 * len(corners), 2 * len(corners) + POINTS_OF_GAP * (len(corners) - 1))
     weigh_points(body.faces, corners.reshape(-1, 2), point, contact)
     place_points(body.faces, corners.reshape(-1, 2), point)
-    gaps = np.where(body.faces.weight > 0.0, point[:, 1], math.inf)[floor:]
+    gaps = np.where(body.faces.weight > 0.0, point[:, 1], math.inf)[sides]
     return np.asarray(gaps.reshape(-1, POINTS_OF_GAP).min(axis=1))
 
 
@@ -195,12 +203,13 @@ def begin_row(
     for name in ("position", "velocity"):
         for own, single in zip(getattr(state, name).reshape(len(alone), -1), alone, strict=True):
             own[: single.position.size] = getattr(single, name)
+    sides = slice(floor, floor + POINTS_OF_GAP * len(case.neighbour))
     state.force[:floor] = np.concatenate([one.force for one in alone])
     if contact.friction == ELASTIC_STICK:
         state.stick[:floor] = np.concatenate([one.stick for one in alone])
     weigh_points(body.faces, (boxes.rest[:, None] + boxes.point).reshape(-1, 2), state.point, contact)
     start_stack(body, state, place=place, lift_velocity=lift_velocity)
-    gaps = state.point[floor:, 1].reshape(-1, POINTS_OF_GAP).min(axis=1)
+    gaps = state.point[sides, 1].reshape(-1, POINTS_OF_GAP).min(axis=1)
     for number, (one, gap) in enumerate(zip(case.neighbour, gaps, strict=True), 1):
         if gap < -OVERLAP:
             raise CaseError(

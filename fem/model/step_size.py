@@ -151,7 +151,8 @@ def control_of(
         if container.row or not container.boxes:
             share, trail, eager = MOST_RIGID_SHARE, MOST_RIGID_TRAIL, loose > EAGER_TOLERANCE
     spring, dashpots = float(contact.normal_stiffness[0]), contact.normal_stiffness * contact.relaxation_time
-    dashpot = float(dashpots.max() if container.boxes else dashpots[0])
+    joints = dashpots[: dashpots.size - len(case.links)]
+    dashpot = float(joints.max() if container.boxes else dashpots[0])
     struck = _struck_mass(case, container)
     # Time constants of a mass on the dashpot and on the spring of a corner.
     closing = CLOSING_SHARE_OF_TIME / (dashpot / struck + 0.2 * math.sqrt(2.0 * spring / mesh.mass))

@@ -8,7 +8,7 @@ import numpy as np
 
 from fem.case.boxes import Box
 from fem.case.case import Case
-from fem.case.links import StopTable, TieTable
+from fem.case.links import StopTable, TieTable, holder_of
 from fem.model.floor import pivot_share
 from mesh.container import ContainerMesh
 
@@ -21,8 +21,9 @@ def box_at(case: Case, height: float) -> Box:
 
 
 def side_of(case: Case, link: StopTable | TieTable) -> float:
-    """x of the side of the container where a link is [m]."""
-    left, right = box_at(case, link.height_m).sides
+    """x of the side where a link is, of a row from the axis of the container that it holds [m]."""
+    held = holder_of(case, link)
+    left, right = box_at(case.row[held] if held else case, link.height_m).sides
     return left if link.side == "left" else right
 
 
@@ -48,13 +49,13 @@ class TiedCapacity:
 
 
 def tied_capacities(case: Case, mesh: ContainerMesh) -> list[TiedCapacity]:
-    """The capacity toward each side; none where the case has no ties.
+    """The capacity toward each side; none where the case has no ties, or where they need not hold all loose boxes.
 
     A tie whose point rises by u carries k (u - slack), up to its strength, and then no more.
     """
     found = []
     rotation = np.linspace(0.0, MOST_TURNED, TURNS)
-    for side, sign in (("left", -1.0), ("right", 1.0)) if case.tie else ():
+    for side, sign in (("left", -1.0), ("right", 1.0)) if case.tie and not case.container.is_loose else ():
         corner = 0.5 * pivot_share(case, mesh) * mesh.width
         arm = corner - sign * mesh.centroid[0]
         weight = mesh.mass * case.gravity_toward_floor

@@ -20,8 +20,8 @@ JUMP_SHARE = 4.0  #: a jump is also so many times the changes before and after i
 class Coexistence(JsonBlock):
     """Neighbouring frequencies at which the two sweeps found different motions."""
 
-    from_Hz: float  # noqa: N815 - the unit, as in a case file
-    to_Hz: float  # noqa: N815
+    from_Hz: float
+    to_Hz: float
     frequencies: int
     up: tuple[str, ...]  #: motions found on the way up, in words
     down: tuple[str, ...]
@@ -33,8 +33,8 @@ class Jump(JsonBlock):
     """A change between neighbouring frequencies that the sweep went through."""
 
     direction: str
-    from_Hz: float  # noqa: N815
-    to_Hz: float  # noqa: N815
+    from_Hz: float
+    to_Hz: float
     what: str
     rotation_ratio: tuple[float, float]  #: before and after
 
@@ -44,8 +44,8 @@ class DropOut(JsonBlock):
     """Neighbouring frequencies at which the container overturned."""
 
     direction: str
-    from_Hz: float  # noqa: N815 - in the order of the sweep
-    to_Hz: float  # noqa: N815
+    from_Hz: float
+    to_Hz: float
     frequencies: int
     carried: bool  #: the first of them overturned a motion that had been carried there
 

@@ -27,7 +27,7 @@ class PointRow(JsonBlock):
 
     direction: str  #: up | down
     number: int  #: of the frequency, from 0 for the lowest
-    frequency_Hz: float  # noqa: N815 - the unit, as in a case file
+    frequency_Hz: float
     amplitude_m: float
     peak_acceleration_m_s2: float
     began: str  #: carried | case

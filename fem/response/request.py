@@ -31,8 +31,8 @@ class ResponseRequest:
     """
 
     case: Case
-    first_Hz: float  # noqa: N815 - lowest frequency; the unit, as in a case file
-    last_Hz: float  # noqa: N815 - highest frequency
+    first_Hz: float
+    last_Hz: float
     count: int  #: frequencies, both ends included
     scale: Scale = "linear"
     hold: Hold | None = None  #: what of the drive stays the same; None: what the case states

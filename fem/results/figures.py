@@ -6,7 +6,6 @@ quantity is recorded by the stepper (`contact.stepping`) and declared here; one 
 put together in `fem.assessment.verdict`. SI units, named in the keys; rotation > 0 toward +x, slip > 0 moves the
 container to +x.
 """
-# ruff: noqa: N815 - a field is named as its key in the file, unit and all
 
 from dataclasses import KW_ONLY, dataclass
 from enum import Flag, auto

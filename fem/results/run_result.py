@@ -3,7 +3,6 @@
 Every field has the name of its key in the file, with its SI unit. A quantity that a run did not reach, or that an
 older version did not write, is None. Rotation > 0 toward +x, slip > 0 moves the container to +x.
 """
-# ruff: noqa: N815 - a field is named as its key in the file, unit and all
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -231,6 +230,8 @@ class Verdict(RunFigures):
 
     neighbours: tuple[NeighbourResult, ...] | None = None  #: in the order of the case; None where it has none
     invalid_reason: str | None = None  #: what is destroyed, in words
+    #: true: it overturned in that it is at rest where stops, ties or a neighbour alone hold it
+    leans: bool | None = None
     modes: tuple[str, ...] = ()  #: states passed through
     at_rest_s: float | None = None  #: since when it is at rest, of a run that ended for it
     yield_strength_Pa: float | None = None  #: that of S235 of a steel shell; None of another container
@@ -253,7 +254,7 @@ class Verdict(RunFigures):
     written_where_given = frozenset(
         {
             *("boxes", "fell_box", "corner_capacity_N", "plastic_work_J", "bolt_tension_N", "bolt_shear_N"),
-            *("invalid_reason", "neighbours", "stress_from_corner_m"),
+            *("invalid_reason", "leans", "neighbours", "stress_from_corner_m"),
         }
     )
 

@@ -203,11 +203,9 @@ class Recorder:
                     self._note_stress(self._recovery.largest_in(frame.von_mises))
                 if self._frame_sink is not None:
                     pressure = np.zeros(len(frame.displacement))
-                    floor_points = len(self._area) - len(
-                        self._model.case.links
-                    )  # of a row those of its sides are no area
-                    nodes = self._model.container.nodes[:floor_points]
-                    pressure[nodes] = samples.force[k, :floor_points, 1] / self._area[:floor_points]
+                    points = len(self._area)
+                    nodes = self._model.container.nodes[:points]
+                    pressure[nodes] = samples.force[k, :points, 1] / self._area
                     floor, _, _ = floor_motion(run.problem.motion, time)
                     lift, _, _ = floor_motion(run.problem.vertical, time)
                     self._frame_sink(

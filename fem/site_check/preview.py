@@ -101,7 +101,7 @@ class SitePreview(JsonBlock):
     site: str
     title: str
     spectrum: str
-    ag_S_m_s2: float  # noqa: N815 - a key of the file
+    ag_S_m_s2: float
     avg_m_s2: float
     bodies: tuple[SiteBody, ...]
     floor: str | None  #: what it is given by; None: the site moves it, perhaps through a building

@@ -2,7 +2,6 @@
 
 Every field has the name of its key in the file, with its SI unit. Accelerations are magnitudes.
 """
-# ruff: noqa: N815 - a field is named as its key in the file, unit and all
 
 from dataclasses import dataclass
 from typing import Annotated

@@ -402,7 +402,7 @@ class HazardTable(CaseTable):
 class WindTable(CaseTable):
     """The wind, on the lightest container; not combined with the earthquake."""
 
-    peak_velocity_pressure_Pa: Annotated[float, WIND] | None = case_key(  # noqa: N815
+    peak_velocity_pressure_Pa: Annotated[float, WIND] | None = case_key(
         "q_p at the top of the container", None, example=650.0
     )
     german_zone: Annotated[int, Strict(), Quantity(unit="", least=1, most=4)] | None = case_key(

@@ -26,7 +26,7 @@ _DENSE_UNKNOWNS = 400  # up to here a dense solution is as fast, and gives all m
 class ElasticModes:
     """The lowest elastic modes of a free container, by rising frequency."""
 
-    frequencies_Hz: FloatArray  #: shape (k,) [Hz]  # noqa: N815 - the symbol of the unit
+    frequencies_Hz: FloatArray  #: shape (k,) [Hz]
     shapes: FloatArray  #: shape^T M shape = 1 for each, shape (k, n, 2) [kg^-1/2]
 
     @property

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 import scipy.sparse.linalg
 
-from contact.interface.faces import CORNERS, linearise_points, make_faces, weigh_points
+from contact.interface.faces import CORNERS, SidePoint, linearise_points, make_faces, weigh_points
 from contact.interface.laws import ELASTIC_STICK
 from contact.interface.stacking import stacked
 from contact.interface.workspace import Contact, Workspace, make_workspace
@@ -18,6 +18,7 @@ from contact.jit import compiled
 from contact.stepping import body as interface
 from contact.stepping.body import State, implements
 from contact.stepping.integrator import advance, enter_floor_frame
+from contact.stepping.links import LinkedBody
 from contact.stepping.loose_stack import LooseStack
 from contact.stepping.scheme import Scheme
 from contact.stepping.stack_body import state_of_box, work_of
@@ -181,8 +182,9 @@ class FullStack:
         boxes: from the floor up, their nodes where the undeformed box stands; their base points are their corners,
             their monitors those of the uppermost box first.
         responses: of each box to forces at its corners; boxes with the same one are equal.
-        normal_stiffness, tangential_stiffness: (4 N - 2,) of the contact points at full weight [N/m].
+        normal_stiffness, tangential_stiffness: (4 N - 2 + k,) of the contact points at full weight [N/m].
         tolerance: error of a contact point at which the iterations of a step stop [m].
+        held: the k points of sides that come last; `line` has their links.
     """
 
     def __init__(
@@ -192,10 +194,12 @@ class FullStack:
         normal_stiffness: FloatArray,
         tangential_stiffness: FloatArray,
         tolerance: float,
+        held: Sequence[SidePoint] = (),
     ) -> None:
         self.boxes, self._responses = tuple(boxes), tuple(responses)
         corner = np.concatenate([box.elements.nodes[box.base] for box in boxes])
-        self._faces = make_faces(corner, normal_stiffness, tangential_stiffness)
+        self._faces = make_faces(corner, normal_stiffness, tangential_stiffness, held)
+        self.line: FloatArray | None = None  #: (k, 5), known once it stands
         self._corners = make_workspace(len(corner))
         self._tolerance = tolerance
         self._leader = [responses.index(one) for one in responses]
@@ -219,11 +223,16 @@ class FullStack:
 
     def advance(self, run: RunState, until: float) -> int:
         """`contact.stepping.integrator.advance` with the factors there are."""
-        return int(advance_nodal_stack(self.stack, run, until))
+        return int(advance_nodal_stack(self._linked, run, until))
 
     def leave_alone(self, run: RunState, floor_velocity: float, lift_velocity: float) -> None:
         """`contact.stepping.integrator.enter_floor_frame`."""
-        enter_floor_frame_nodal_stack(self.stack, run, floor_velocity, lift_velocity)
+        enter_floor_frame_nodal_stack(self._linked, run, floor_velocity, lift_velocity)
+
+    @property
+    def _linked(self) -> LooseStack | LinkedBody:
+        """What is stepped."""
+        return self.stack if self.line is None else LinkedBody(body=self.stack, line=self.line)
 
     def settle(
         self,

@@ -3,6 +3,7 @@
 from mutation import Mutation
 
 LINKS = "verification/closed_forms/test_links.py"
+ON_BOXES = "verification/closed_forms/test_links_on_boxes.py"
 
 LINK_FAULTS = (
     Mutation(
@@ -37,8 +38,8 @@ LINK_FAULTS = (
     ),
     Mutation(
         name="a strap that holds before its slack is used up",
-        old='gap - np.einsum("kc,kc->k", direction, place)',
-        new='-np.einsum("kc,kc->k", direction, place)',
+        old="[direction, apart - across, gap - along,",
+        new="[direction, apart - across, -along,",
         tests=(LINKS, "-k", "strap_takes"),
     ),
     Mutation(
@@ -46,5 +47,29 @@ LINK_FAULTS = (
         old="math.exp(-math.tan(angle) * (math.pi - 2.0 * angle))",
         new="math.exp(-math.tan(angle) * math.pi)",
         tests=(LINKS, "-k", "belong"),
+    ),
+    Mutation(
+        name="points of links at the foot of every box",
+        old="foot, top = (BOTTOM_RIGHT, TOP_RIGHT) if point.right",
+        new="foot, top = (BOTTOM_RIGHT, BOTTOM_RIGHT) if point.right",
+        tests=(ON_BOXES, "-k", "momentum or as_one_container"),
+    ),
+    Mutation(
+        name="links of the upper box on the lower one",
+        old="number, bottom, height = case.stack.index(box), box.bottom, box.height",
+        new="number, bottom, height = 0, 0.0, case.stack[-1].top",
+        tests=(ON_BOXES, "-k", "holds_the_upper"),
+    ),
+    Mutation(
+        name="records of links in place of those of gaps",
+        old="before = new.point.shape[0] - line.shape[0], run.links.shape[0] - line.shape[0]",
+        new="before = new.point.shape[0] - line.shape[0], 0",
+        tests=(ON_BOXES, "-k", "momentum"),
+    ),
+    Mutation(
+        name="what leans on a stop stands",
+        old="run.joints.shape[0] == 1 and run.links.shape[0] == 0:",
+        new="run.joints.shape[0] == 1:",
+        tests=(ON_BOXES, "-k", "lean"),
     ),
 )

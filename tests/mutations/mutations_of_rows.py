@@ -32,8 +32,8 @@ ROW_FAULTS = (
     ),
     Mutation(
         name="sides without friction",
-        old="/ one.stiffness_N_m), one.mu))",
-        new="/ one.stiffness_N_m), 0.0))",
+        old="dashpot_of(one, mass), one.mu))",
+        new="dashpot_of(one, mass), 0.0))",
         tests=(ROWS, "-k", "drags"),
     ),
     Mutation(
@@ -44,7 +44,7 @@ ROW_FAULTS = (
     ),
     Mutation(
         name="leaning is standing",
-        old="return bool(abs(run.old.boxes[j, ROTATION]) <= run.joints[j].angle)",
+        old="return bool(abs(rotation_of(run, j)) <= run.joints[j].angle)",
         new="return True",
         tests=(ROWS, "-k", "leaning"),
     ),

@@ -67,11 +67,6 @@ def test_what_is_no_row_of_tables_is_refused():
             RIGID.with_values({"stop": wrong})
 
 
-def test_loose_boxes_have_no_points_for_links():
-    with pytest.raises(CaseError, match="joints must be"):
-        RIGID.with_values({"container.boxes": 2, "container.joints": "loose", "stop": [STOP]})
-
-
 def test_gap_stiffness_and_friction_are_unknown_where_all_stops_have_one_value():
     found = {one.key: one.ends for one in ranges_of(held(mu=0.3), 1e9)}
     assert found["stop.gap_m"] == (0.04, 0.06)

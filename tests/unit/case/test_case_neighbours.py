@@ -93,8 +93,8 @@ def test_a_neighbour_that_cannot_be_is_refused(keys, reason):
         ({"contact.restitution_over_housner": 0.95}, "one event"),
         ({"output.stop_when_overturned": False}, "what a fallen container strikes is not modelled"),
         (
-            {"tie": [{"from": "left", "height_m": 0.5, "stiffness_N_m": 1e6}]},
-            r"cannot stand beside \[\[neighbour\]\]",
+            {"neighbour": [{**BESIDE, "boxes": 1}], "stop": [{**BESIDE, "height_m": 2.0}]},
+            r"\[stop\] height_m must be at most the height of neighbour 1, 1 m, got 2 m",
         ),
         ({"neighbour": [BESIDE] * 6}, "six containers at most"),
     ],

@@ -8,6 +8,7 @@ from fem.case.case import load_case
 from fem.case.columns import history_columns
 from fem.evidence.verification.runs import SOLID, STACK
 from fem.model.joints import joints_of
+from fem.model.links import side_points
 from fem.model.model import build_model
 
 STOPS = [
@@ -48,3 +49,24 @@ def test_joints_are_left_out_where_a_link_holds_an_upper_box(height, joints):
     assert sum(name.startswith("joint_") for name in names) == 3 * joints
     assert (joints_of(build_model(case)) is None) == (joints == 0)
     assert "stop_1_force_N" in names
+
+
+@pytest.mark.parametrize("model", ["rigid", "reduced", "full"])
+def test_the_point_of_a_link_is_on_the_box_that_is_there_at_a_joint_on_the_lower_one(model):
+    keys = {
+        "solver.model": model,
+        "container.boxes": 2,
+        "container.height_m": 2.0,
+        "container.joints": "loose",
+    }
+    stops = [{**STOPS[0], "height_m": height} for height in (0.5, 2.0, 2.1)]
+    built = build_model(HELD.with_values({**keys, "stop": stops}))
+    places = [(point.box, point.right, round(point.place, 9)) for point in side_points(built.case)]
+    assert places == [(0, True, 0.25), (0, True, 1.0), (1, True, 0.05), (0, False, 0.0)]
+    state = built.run.old
+    assert state.point[-4:, 1] == pytest.approx([0.02, 0.02, 0.02, 0.01], abs=1e-12)
+    assert not state.force[-4:].any()
+    nodes = built.container.elements.nodes[built.container.nodes[-4:]]
+    assert nodes[:, 0] == pytest.approx([0.55, 0.55, 0.55, -0.55])
+    assert nodes[:, 1] == pytest.approx([0.5, 2.0, 2.1, 0.0], abs=0.26)
+    assert built.run.joints["end"].max() == len(state.point) - 4

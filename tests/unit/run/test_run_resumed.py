@@ -29,20 +29,25 @@ UP = ("vertical.kind=harmonic", "vertical.peak_acceleration_m_s2=3", "vertical.f
 
 LOOSE = ("container.joints=loose", "motion.peak_acceleration_m_s2=9")
 
+STRAP = "tie=[{from = 'left', height_m = 0.5, slack_m = 0.001, stiffness_N_m = 1e6, strength_N = 1e3}]"
+
 #: it slides against a kerb, rocks, and tears a strap
 HELD = (
     *RIGID,
     *("contact.mu_static=0.2", "contact.mu_kinetic=0.15", "motion.peak_acceleration_m_s2=6"),
     "stop=[{side = 'right', height_m = 0.1, gap_m = 0.02, stiffness_N_m = 1e8, mu = 0.3}]",
-    "tie=[{from = 'left', height_m = 0.5, slack_m = 0.001, stiffness_N_m = 1e6, strength_N = 1e3}]",
+    STRAP,
 )
+#: the uppermost of four loose boxes strikes a wall
+HELD_BOXES = ("stop=[{side = 'right', height_m = 3.5, gap_m = 0.01, stiffness_N_m = 1e8, mu = 0.3}]", STRAP)
 
-#: it rocks between two others
+#: it rocks between two others, of which one stands before a wall
 ROW = (
     *RIGID,
     "motion.peak_acceleration_m_s2=6",
     "neighbour=[{side = 'right', gap_m = 0.01, stiffness_N_m = 1e8, mu = 0.3, height_m = 0.8, mass_kg = 2000.0, "
     "centroid_m = 0.4}, {side = 'left', gap_m = 0.0, stiffness_N_m = 1e8}]",
+    "stop=[{side = 'right', height_m = 0.5, gap_m = 0.01, stiffness_N_m = 1e8}]",
 )
 
 REDUCED_ROW = (
@@ -54,7 +59,7 @@ CASES = {
     "stop and tie": ("rocking", HELD),
     "row": ("rocking", ROW),
     "row, reduced": ("seed_stack_plateau", REDUCED_ROW),
-    "loose": ("seed_stack_plateau", (*RIGID, *LOOSE)),
+    "loose": ("seed_stack_plateau", (*RIGID, *LOOSE, *HELD_BOXES)),
     "loose, reduced": (
         "seed_stack_plateau",
         (*REDUCED, *LOOSE, "container.boxes=2", "solver.elastic_modes=4"),
