@@ -10,9 +10,8 @@ from typing import Annotated, Any, Literal
 from pydantic import Field
 
 from fem.case import quantities as q
-from fem.case.neighbours import NeighbourTable, outermost, top_of
+from fem.case.neighbours import NeighbourTable, StruckTable, outermost, top_of
 from fem.case.problem import Rule, either
-from fem.case.struck import StruckTable
 from fem.case.table import CaseTable, case_key
 
 

@@ -6,19 +6,36 @@ once the gap is used up. The tables of a side go outward: the first stands next 
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import Strict
 
 from fem.case import quantities as q
 from fem.case.boxes import boxes_of, centroid_at
 from fem.case.problem import Rule, either
-from fem.case.struck import StruckTable
-from fem.case.table import case_key
+from fem.case.table import CaseTable, case_key
 
 MOST_NEIGHBOURS = 5
+USUAL_DAMPING = 2.0  #: damping ratio of what is struck, where nothing is said: it does not bounce
 #: keys that a neighbour may have other than the container; mass_kg replaces what gives the mass there
 OWN = ("boxes", "width_m", "height_m", "mass_kg", "centroid_m", "wall_m")
+
+
+class StruckTable(CaseTable):
+    """What stands beside the container and may be struck: another container, or a stop (`fem.case.links`)."""
+
+    side: Literal["left", "right"] = case_key("of the container at which it stands", example="right")
+    gap_m: Annotated[float, q.GAP] = case_key("between it and what it stands beside, at rest", example=0.05)
+    stiffness_N_m: Annotated[float, q.LINK_STIFFNESS] = case_key("where it is struck", example=1e8)
+    damping_ratio: Annotated[float, q.CONTACT_DAMPING] | None = case_key(
+        "c/(2 sqrt(k m)), m the mass that strikes, of two containers the reduced one, on this stiffness k; default: 2",
+        None,
+        example=0.5,
+    )
+    restitution: Annotated[float, q.STOP_RESTITUTION] | None = case_key(
+        "in place of damping_ratio: of what strikes it without turning", None, example=0.5
+    )
+    mu: Annotated[float, q.FRICTION] = case_key("of friction along its face", 0.0)
 
 
 class NeighbourTable(StruckTable):

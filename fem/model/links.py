@@ -13,8 +13,7 @@ from contact.stepping.body import State
 from contact.stepping.links import APART, make_lines, place_links
 from fem.case.case import Case, CaseError
 from fem.case.links import StopTable, TieTable, holder_of
-from fem.case.neighbours import top_of
-from fem.case.struck import USUAL_DAMPING, StruckTable
+from fem.case.neighbours import USUAL_DAMPING, StruckTable, top_of
 from fem.model.tied_capacity import box_at, side_of
 from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid.sides import nodes_at, shapes_at
