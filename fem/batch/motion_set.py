@@ -29,6 +29,7 @@ from fem.records.spectrum import evenly_sampled, log_spaced_periods, response_sp
 from fem.results.figures import types_of
 from fem.results.folder import ResultFolder
 from fem.runtime.arrays import FloatArray
+from fem.runtime.user_files import real_path
 
 LONGEST_PERIOD_S = 4.0
 SPECTRA = "figures/spectra.svg"
@@ -120,7 +121,7 @@ def read_motion_set(
     owners: dict[Path, str] = {}
     for some, facts in zip(keys, _each(runner, "motions read", keys, partial(_read, make)), strict=True):
         pair = _pair_of(make(some), some, facts)
-        for path in {pair.case.data_files[f"{one.table}.file"].resolve() for one in pair.components}:
+        for path in {real_path(pair.case.data_files[f"{one.table}.file"]) for one in pair.components}:
             if path in owners:
                 raise CaseError(
                     f"{MOTION_FILE!r}: {owners[path]!r} and {pair.name!r} are motions of one file, {path.name}; those "

@@ -18,9 +18,11 @@ from pydantic import Field, Strict
 from fem.batch.cluster import cluster
 from fem.batch.study_file import read_as
 from fem.batch.workers import LocalWorkers, Pool, WorkersOf
+from fem.case.files import LARGEST_FILE
 from fem.case.table import CaseTable, case_key
 from fem.case.validation import CaseError
 from fem.runtime.threads import cores
+from fem.runtime.user_files import read_regular
 
 QUEUE_S = 24 * 3600.0  #: for which the first job may wait in the queue
 
@@ -91,8 +93,8 @@ def slurm(path: Path, *, yes: bool) -> Iterator[SlurmWorkers]:
         CaseError: the file cannot be used.
     """
     try:
-        content = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
+        content = tomllib.loads(read_regular(path, LARGEST_FILE).decode())
+    except (ValueError, RecursionError) as error:
         raise CaseError(f"--slurm {path}: cannot be read as TOML ({error})") from None
     try:
         asked = read_as("", SlurmTable, content)

@@ -13,6 +13,7 @@ from fem.case.overrides import keys_in_effect
 from fem.case.problem import outside_the_folder, stays_in_the_folder
 from fem.case.tables import CaseTable
 from fem.case.validation import CaseError, problem_lines, read_table
+from fem.runtime.user_files import leads_out, real_path
 
 TableT = TypeVar("TableT", bound=CaseTable)
 StudyT = TypeVar("StudyT")
@@ -113,11 +114,11 @@ def base_case(
         raise CaseError(f"case {outside_the_folder(name)}")
     path = origin.folder / name
     is_file = is_there(Path.is_file, path)
-    if is_file and not path.resolve().is_relative_to(origin.folder.resolve()):
-        raise CaseError(f"case {name!r} leads out of the folder of {origin.place}, to {path.resolve()}")
+    if is_file and leads_out(origin.folder, path):
+        raise CaseError(f"case {name!r} leads out of the folder of {origin.place}, to {real_path(path)}")
     if not is_file and name not in CASES.names:
         raise CaseError(
-            f"case {name!r} is no file in {origin.folder.resolve()} and no shipped case{CASES.hint(name)}"
+            f"case {name!r} is no file in {real_path(origin.folder)} and no shipped case{CASES.hint(name)}"
         )
     base = load_case(path if is_file else name)
     values = flat("set", changes)

@@ -4,7 +4,6 @@ A case file may come from anywhere, so that a file it names must lie in its fold
 the command line may lie anywhere. A motion may name a channel of its file behind "#", by number or name.
 """
 
-import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
@@ -12,6 +11,7 @@ from typing import Any
 
 from fem.case.problem import Problem, outside_the_folder, stays_in_the_folder
 from fem.case.validation import CaseError
+from fem.runtime.user_files import leads_out, real_path
 
 #: keys that name files
 FILE_KEYS = ("container.mesh_file", "motion.file", "vertical.file")
@@ -49,11 +49,6 @@ def _path(folder: Path, name: str) -> Path:
     path = folder / name
     # A path of Windows, where it is no name of a file here.
     return path if "\\" not in name or path.exists() else folder / name.replace("\\", "/")
-
-
-def _real(path: Path) -> Path:
-    """The path without links; `Path.resolve` fails where they form a circle."""
-    return Path(os.path.realpath(path))
 
 
 def find_data_files(
@@ -102,7 +97,7 @@ def _copy(folder: Path, name: str, channel: str, path: Path, others: Mapping[str
     plain = copied_name(folder, name)
     copy = PurePosixPath(plain[: -len(channel) - 1] if channel else plain)
     for key, other in others.items():
-        if other.copy == copy and _real(other.path) != _real(path):
+        if other.copy == copy and real_path(other.path) != real_path(path):
             raise CaseError(
                 place_of("vertical.file")
                 + f"has the name of the file of {key}, {copy.name!r}, and another folder; rename one of them"
@@ -111,10 +106,10 @@ def _copy(folder: Path, name: str, channel: str, path: Path, others: Mapping[str
 
 
 def _require_file(folder: Path, key: str, name: str, path: Path, *, trusted: bool) -> None:
-    if not trusted and not _real(path).is_relative_to(_real(folder)):
+    if not trusted and leads_out(folder, path):
         raise CaseError(
             place_of(key) + f"must lie in the folder of the case file, got {name!r}, which leads to "
-            f"{_real(path)}; copy the file there{WAYS_OUT}"
+            f"{real_path(path)}; copy the file there{WAYS_OUT}"
         )
     if not path.is_file():
         raise CaseError(
@@ -125,7 +120,7 @@ def _require_file(folder: Path, key: str, name: str, path: Path, *, trusted: boo
                 if path.is_dir()
                 else ""
                 if Path(name).is_absolute()
-                else f", looked for in {_real(folder)}; its path is relative to the case file"
+                else f", looked for in {real_path(folder)}; its path is relative to the case file"
             )
         )
 
@@ -139,6 +134,6 @@ def place_of(dotted: str) -> str:
 def as_named_from(folder: Path, name: str) -> str:
     """A file named on the command line, relative to the current folder, as a case in a folder names it."""
     path = Path(name).absolute()
-    if _real(path).is_relative_to(_real(folder)) and ".." not in Path(name).parts:
-        return _real(path).relative_to(_real(folder)).as_posix()
+    if not leads_out(folder, path) and ".." not in Path(name).parts:
+        return real_path(path).relative_to(real_path(folder)).as_posix()
     return str(path)

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fem.case.validation import CaseError, did_you_mean
+from fem.runtime.user_files import read_regular
 
 if TYPE_CHECKING:  # it loads numpy, which `list` and bad input need not wait for
     from fem.records.record import Record
@@ -99,14 +100,15 @@ class Collection:
             CaseError: if there is neither, or if the file cannot be read.
         """
         name = str(name_or_path)
-        if is_there(Path.is_file, name):
+        is_folder = is_there(Path.is_dir, name)
+        if is_there(Path.exists, name) and not is_folder:
             path = Path(name)
             return Origin(
                 kind=self.kind, name=path.stem, place=str(path), folder=path.parent, text=_read_text(path)
             )
         if name in self.names:
             return self.shipped(name)
-        if name and is_there(Path.is_dir, name):
+        if name and is_folder:
             example = f", for instance {Path(name) / 'resolved.toml'}" if self is CASES else ""
             raise CaseError(f"{name!r} is a folder; give the {self.kind} file{example}")
         for other in COLLECTIONS:
@@ -180,13 +182,9 @@ def _slip_in(text: str, error: ValueError) -> str:
 
 def _read_text(path: Path) -> str:
     try:
-        with path.open("rb") as stream:
-            # A file of the kernel may never end, and states no size.
-            content = stream.read(min(path.stat().st_size, LARGEST_FILE + 1))
-    except OSError as error:
-        raise CaseError(f"{path}: cannot be read: {error.strerror}") from error
-    if len(content) > LARGEST_FILE:
-        raise CaseError(f"{path}: larger than {LARGEST_FILE} bytes; that is no case file")
+        content = read_regular(path, LARGEST_FILE)
+    except ValueError as error:
+        raise CaseError(f"{path} {error}") from None
     try:
         return content.decode("utf-8-sig")  # editors on Windows put a mark in front
     except UnicodeDecodeError as error:

@@ -25,6 +25,7 @@ from fem.case.validation import CaseError, known_keys, quantity_of
 from fem.hall.result import RESULT_COLUMNS
 from fem.records.source import as_numbers, decoded
 from fem.results.figures import TURNED
+from fem.runtime.user_files import read_regular
 
 LARGEST_FILE = 512 * 2**20  #: [bytes]
 #: tables whose keys a column may name without the table
@@ -152,11 +153,9 @@ def read_hall(path: Path) -> HallFile:
 
 def _text_of(path: Path) -> str:
     try:
-        if path.stat().st_size > LARGEST_FILE:
-            raise CaseError(f"{path}: a list may have at most {LARGEST_FILE >> 20} MB; split it into several")
-        text = decoded(path.read_bytes())
-    except OSError as error:
-        raise CaseError(f"{path}: cannot be read: {error.strerror}; a list of containers is needed") from None
+        text = decoded(read_regular(path, LARGEST_FILE))
+    except ValueError as error:
+        raise CaseError(f"{path} {error}; a list of containers is needed") from None
     if text is None or "\0" in text:
         raise CaseError(f"{path}: not a text file; save the list as CSV")
     return text.replace("\r\n", "\n").replace("\r", "\n")

@@ -13,6 +13,7 @@ import numpy as np
 
 from fem.records.record import RecordError
 from fem.runtime.arrays import FloatArray
+from fem.runtime.user_files import read_regular
 
 LARGEST_FILE = 32 * 2**20  #: [bytes]
 LONGEST_LINE = 1000  #: [bytes]
@@ -46,18 +47,10 @@ def read_source(path: Path) -> MotionText:
     Raises:
         RecordError: no such file, empty, too large, or no text in lines.
     """
-    if not path.is_file():
-        raise RecordError(f"motion file {path} does not exist or is not a file")
     try:
-        size = path.stat().st_size
-        if size > LARGEST_FILE:
-            raise RecordError(
-                f"{path.name}: {size} bytes; a motion file may have at most {LARGEST_FILE >> 20} MB"
-            )
-        with path.open("rb") as stream:
-            content = stream.read(size)  # no more: a file of the kernel may never end, and states no size
-    except OSError as error:
-        raise RecordError(f"{path.name}: cannot be read ({error.strerror})") from None
+        content = read_regular(path, LARGEST_FILE)
+    except ValueError as error:
+        raise RecordError(f"motion file {path} {error}") from None
     if not content or content.isspace():
         raise RecordError(f"{path.name}: the file is empty")
     if max(content.count(b"\n"), content.count(b"\r")) > MOST_SAMPLES or _has_long_line(content):

@@ -9,6 +9,7 @@ from fem.case.data_files import place_of
 from fem.case.recorded import recorded_motion
 from fem.records.columns import written
 from fem.results.kinds import ResultKind
+from fem.runtime.user_files import real_path
 
 
 class RunFiles:
@@ -72,5 +73,5 @@ def copy_data_files(case: Case, folder: Path, *, read: bool = False) -> None:
             recorded_motion(case, "vertical")
         path, target = file.path, folder / file.copy
         target.parent.mkdir(parents=True, exist_ok=True)
-        if target.resolve() != path.resolve():
+        if real_path(target) != real_path(path):
             shutil.copyfile(path, target)

@@ -77,6 +77,6 @@ def read_spectrum(path: Path) -> dict[str, tuple[float, ...]]:
     """The columns of a CSV file, by name: period_s, acceleration_m_s2 and, if it has one, vertical_acceleration_m_s2.
 
     Raises:
-        OSError, ValueError: as `read_points`.
+        ValueError: as `read_points`.
     """
     return read_points(path, [(PERIOD, HORIZONTAL), (PERIOD, HORIZONTAL, VERTICAL)])

@@ -119,8 +119,7 @@ def read_hazard(path: Path) -> HazardCurve:
     """The curve of a CSV file: a line that names its columns, acceleration_m_s2 or velocity_m_s, and rate_per_year.
 
     Raises:
-        OSError: it cannot be read.
-        ValueError: other columns, or numbers that are no hazard curve.
+        ValueError: as `read_points`, or numbers that are no hazard curve.
     """
     columns = read_points(path, [(measure, RATE) for measure in (ACCELERATION, VELOCITY)])
     measure = next(iter(columns))

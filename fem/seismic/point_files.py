@@ -4,6 +4,21 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from fem.records.source import as_numbers, decoded
+from fem.runtime.user_files import read_regular
+
+LARGEST_FILE = 1_000_000  #: [bytes]; a curve has some tens of points
+
+
+def text_of(path: Path) -> str:
+    """The text of a file of points.
+
+    Raises:
+        ValueError: it cannot be read.
+    """
+    try:
+        return decoded(read_regular(path, LARGEST_FILE)) or ""
+    except ValueError as error:
+        raise ValueError(f"{path.name} {error}") from None
 
 
 def read_points(path: Path, choices: Sequence[Sequence[str]]) -> dict[str, tuple[float, ...]]:
@@ -14,10 +29,10 @@ def read_points(path: Path, choices: Sequence[Sequence[str]]) -> dict[str, tuple
         choices: the columns that it may have, in their order.
 
     Raises:
-        OSError: it cannot be read.
-        ValueError: other columns, or a line that has not a number for each.
+        ValueError: it cannot be read, has other columns, or a line that has not a number for each.
     """
-    first, *lines = [line for line in (decoded(path.read_bytes()) or "").splitlines() if line.strip()] or [""]
+    text = text_of(path)
+    first, *lines = [line for line in text.splitlines() if line.strip()] or [""]
     names = [name.strip() for name in first.split(",")]
     if names not in [[*one] for one in choices]:
         found = f"got {first[:80]!r}" if first else "and the file is empty"

@@ -18,6 +18,7 @@ from fem.case.table import CaseTable, case_key
 from fem.case.tables import DocumentTable
 from fem.case.toml import toml_document
 from fem.case.validation import CaseError
+from fem.runtime.user_files import leads_out, real_path
 from fem.seismic.action import (
     GERMAN_ZONES,
     SiteAction,
@@ -147,16 +148,14 @@ class SiteRequest:
         if (floor := self.floor_spectrum) is None:
             return None
         try:
-            points = (
-                floor.model_dump() if floor.file is None else read_spectrum(self.origin.folder / floor.file)
-            )
+            points = floor.model_dump() if floor.file is None else read_spectrum(self._beside(floor.file))
             return FloorSpectrum(
                 periods=tuple(points[PERIOD]),
                 accelerations=tuple(points[HORIZONTAL]),
                 vertical_accelerations=tuple(points.get(VERTICAL) or ()),
                 ground=self.action,
             )
-        except (OSError, ValueError) as error:
+        except ValueError as error:
             raise CaseError(f"[floor_spectrum] {error}") from None
 
     @property
@@ -205,8 +204,8 @@ class SiteRequest:
         try:
             if self.hazard.points is not None:
                 return HazardCurve.from_return_periods([(years, one) for years, one in self.hazard.points])
-            return read_hazard(self.origin.folder / (self.hazard.file or ""))
-        except (OSError, ValueError) as error:
+            return read_hazard(self._beside(self.hazard.file or ""))
+        except ValueError as error:
             raise CaseError(f"[hazard] {place}: {error}") from None
 
     @property
@@ -268,6 +267,15 @@ class SiteRequest:
         text = toml_document(container.given())
         given = container.from_origin(replace(container.origin_with({}), name=name, text=text))
         return _request(data, replace(self.origin, text=toml_document(data)), given)
+
+    def _beside(self, name: str) -> Path:
+        """A file of points; a link to elsewhere is refused with ValueError, for messages quote what they read."""
+        path = self.origin.folder / name
+        if leads_out(self.origin.folder, path):
+            raise ValueError(
+                f"{name} leads out of the folder of the site file, to {real_path(path)}; copy it there"
+            )
+        return path
 
     def _empty(self, mass: float) -> Case:
         box = self.container.container

@@ -10,9 +10,10 @@ from pathlib import Path, PurePath
 from fem.case.case import CaseError
 from fem.case.data_files import place_of, split_channel
 from fem.case.toml import toml_document, toml_value
-from fem.records.source import decoded
 from fem.results.kinds import ResultKind
 from fem.results.run_files import copy_data_files, require_free_name
+from fem.runtime.user_files import real_path
+from fem.seismic.point_files import text_of
 from fem.site_check.file import SiteRequest
 from fem.site_check.result import USUAL_BEHAVIOUR_FACTOR, SiteInputs
 
@@ -48,13 +49,12 @@ def texts_of(request: SiteRequest, kind: ResultKind, *, records: bool = True) ->
 
     Raises:
         CaseError: a file of points is named like a result, which would replace it.
-        OSError: it cannot be read.
+        ValueError: it cannot be read.
     """
     own = {"site.toml": _beside_its_files(request, records), CONTAINER: request.container.text}
     for table, name in request.point_files.items():
         require_free_name(place_of(f"{table}.file"), PurePath(name), kind, own)
-    files = {name: (request.origin.folder / name).read_bytes() for name in request.point_files.values()}
-    return own | {name: decoded(content) or "" for name, content in files.items()}
+    return own | {name: text_of(request.origin.folder / name) for name in request.point_files.values()}
 
 
 def copy_files(request: SiteRequest, folder: Path) -> None:
@@ -62,7 +62,7 @@ def copy_files(request: SiteRequest, folder: Path) -> None:
     for path, place in _records(request).values():
         if not Path(place).is_absolute():
             (folder / place).parent.mkdir(parents=True, exist_ok=True)
-            if (folder / place).resolve() != path.resolve():
+            if real_path(folder / place) != real_path(path):
                 shutil.copyfile(path, folder / place)
     with suppress(CaseError):  # the motion of the container, which is not used here, may be none
         copy_data_files(request.container, folder)
@@ -85,7 +85,7 @@ def _records(request: SiteRequest) -> dict[str, tuple[Path, str]]:
     for name in chain(*(request.motions.files or [])):
         path, _ = split_channel(request.origin.folder, name)
         if path.stat().st_size > MOST_COPIED:
-            places[name] = path, str(path.resolve())
+            places[name] = path, str(real_path(path))
             continue
         own = path.name
         while taken.setdefault(own, path) != path:  # of another folder

@@ -14,6 +14,7 @@ from fem.records.processing import Processing, stated_baseline
 from fem.records.record import Component, Direction, Record, RecordError, require_together
 from fem.records.spectrum import response_spectrum
 from fem.runtime.arrays import FloatArray
+from fem.runtime.user_files import leads_out, real_path
 from fem.seismic.action import LAST_PERIOD_ANNEX_A_S, LAST_PERIOD_S, MotionTarget
 from fem.seismic.artificial import artificial_set
 from fem.seismic.floor import PERIOD_FACTORS, floor_motion, one_mode, storey_modes
@@ -187,9 +188,10 @@ def _read(request: SiteRequest, name: str, allow_outside: bool) -> tuple[Record,
     if not allow_outside and not stays_in_the_folder(name):
         raise CaseError(f"[motions] files {outside_the_folder(name)}; or allow it with --allow-outside")
     path, channel = split_channel(request.origin.folder, name)
-    folder = request.origin.folder.resolve()
-    if not allow_outside and not path.resolve().is_relative_to(folder):
-        raise CaseError(f"[motions] files: {name!r} leads out of {folder}; allow it with --allow-outside")
+    if not allow_outside and leads_out(request.origin.folder, path):
+        raise CaseError(
+            f"[motions] files: {name!r} leads out of {real_path(request.origin.folder)}; allow it with --allow-outside"
+        )
     asked = request.motions
     return read_record(path, unit=asked.unit, sample_interval=asked.sample_interval_s), channel
 

@@ -1,6 +1,8 @@
 """Files of data that the fuzz feeds the program with: meshes, motion tables, records."""
 
+import os
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -8,6 +10,8 @@ from hypothesis import strategies as st
 from inputs import SINE, Input, damaged, values_of
 from mesh_writer import mesh_of
 from record_files import WRITTEN, synthetic_motion
+from small_site import SITE
+from small_sweep import SMALL
 
 from fem.case.toml import toml_value
 from fem.records.source import MOST_SAMPLES
@@ -163,6 +167,63 @@ def check_of(motion: str, /, **files: bytes) -> Input:
 def hostile(name: str, size: int) -> Input:
     """A file of `HOSTILE`."""
     return check_of("motion", motion=HOSTILE[name](size).encode())
+
+
+#: file that a user or a file names -> the command and the files beside it
+NAMED: dict[str, tuple[tuple[str, ...], dict[str, str]]] = {
+    "case.toml": (("check", "case.toml"), {}),
+    "sweep.toml": (("sweep", "sweep.toml"), {}),
+    "ensemble.toml": (("ensemble", "ensemble.toml"), {}),
+    "site.toml": (("assess", "site.toml"), {}),
+    "hall.csv": (("batch", "hall.csv", "--case", "seed_stack"), {}),
+    "jobs.toml": (("sweep", "sweep.toml", "--slurm", "jobs.toml"), {"sweep.toml": SMALL}),
+    "motion.at2": (("check", "seed_stack", "--motion", "motion.at2"), {}),
+    "drawn.at2": (("picture", "drawn.at2"), {}),
+    "outcomes.csv": (("validate", "--data", "."), {"body.toml": (
+        "mass_kg = 1.0\nheight_m = 1.0\ncentroid_m = 0.5\ninertia_m2 = 0.1\nslenderness_angle_rad = [0.1, 0.2]\n"
+    )}),
+    "body.toml": (("validate", "--data", "."), {"outcomes.csv": "motion,overturned\n"}),
+    "granite_rock_motions.csv.gz": (("validate", "--data", "."), {}),
+    "mesh.vtu": (("check", "case.toml"), {"case.toml": CASE.format(motion='kind = "none"\n').replace(
+        "[contact]", 'mesh_file = "mesh.vtu"\n[contact]'
+    )}),
+    "base.toml": (("sweep", "sweep.toml"), {"sweep.toml": SMALL.replace("seed_stack_plateau", "base.toml")}),
+    "container.toml": (("assess", "site.toml"), {"site.toml": SITE.replace("seed_stack", "container.toml")}),
+    "hazard.csv": (("assess", "site.toml"), {"site.toml": f'{SITE}[hazard]\nfile = "hazard.csv"\n'}),
+    "floor.csv": (("assess", "site.toml"), {"site.toml": f'{SITE}[floor_spectrum]\nfile = "floor.csv"\n'}),
+    "record.at2": (("assess", "site.toml"), {"site.toml": SITE.replace(
+        "count = 3", 'vertical = false\nsource = "records"\nfiles = [["record.at2"], ["b.at2"], ["c.at2"]]'
+    )}),
+}  # fmt: skip
+#: of these, those that are named by a file: a link may not lead out of its folder
+BY_A_FILE = ("mesh.vtu", "base.toml", "container.toml", "hazard.csv", "floor.csv", "record.at2")
+
+
+def large(path: Path) -> None:
+    """A file of 600 MB that takes no room."""
+    path.touch()
+    os.truncate(path, 600_000_000)
+
+
+SPECIAL: dict[str, Callable[[Path], None]] = {
+    "device": lambda path: path.symlink_to("/dev/zero"),
+    "file of the kernel": lambda path: path.symlink_to("/proc/kmsg"),
+    "pipe": os.mkfifo,
+    "folder": Path.mkdir,
+    "circle": lambda path: path.symlink_to(path.name),
+    "large": large,
+}
+
+
+def special(name: str, kind: str) -> Input:
+    """A command that reads a file which is none."""
+    command, files = NAMED[name]
+    return Input(
+        arguments=command,
+        files={key: text.encode() for key, text in files.items()},
+        made={name: SPECIAL[kind]},
+        bounded=True,
+    )
 
 
 @st.composite

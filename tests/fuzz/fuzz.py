@@ -126,6 +126,8 @@ def write_input(given_input: Input, folder: Path) -> None:
     for name, content in given_input.files.items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_bytes(content)
+    for name, make in given_input.made.items():
+        make(folder / name)
 
 
 def warm_up() -> None:

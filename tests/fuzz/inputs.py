@@ -5,8 +5,9 @@ a change here. Only what makes a run long is bounded, in `CHEAP`.
 """
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from types import NoneType
 from typing import Any, Literal, get_args, get_origin
 
@@ -34,6 +35,7 @@ class Input:
 
     arguments: tuple[str, ...]
     files: Mapping[str, bytes] = field(default_factory=dict)
+    made: Mapping[str, Callable[[Path], None]] = field(default_factory=dict)  #: files that are no bytes
     bounded: bool = False  #: to be refused in little time and memory
 
 

@@ -1,7 +1,9 @@
 """A small set of the fuzz and of the soak, the same every time, for the suite; the large ones are scripts."""
 
+from dataclasses import replace
+
 import pytest
-from data_inputs import HOSTILE, SIZES, hostile
+from data_inputs import BY_A_FILE, HOSTILE, NAMED, SIZES, SPECIAL, hostile, special
 from fuzz import KINDS, warm_up
 from fuzz import end_of as answer_to
 from hypothesis import HealthCheck, given, settings
@@ -50,6 +52,24 @@ def test_any_input_is_refused_with_words_or_computed(kind, count):
 def test_a_large_file_is_refused_as_soon_as_a_small_one(name):
     end = answer_to(hostile(name, SIZES[-2]))
     assert end.code == 2 and not end.broken, (end.cpu_s, end.words)
+
+
+@pytest.mark.parametrize("name", NAMED)
+def test_what_is_no_regular_file_is_refused_where_a_file_is_read(name):
+    if name == "jobs.toml":
+        pytest.importorskip("dask_jobqueue", reason="the extra 'slurm' is not installed")
+    for kind in SPECIAL:
+        end = answer_to(special(name, kind))
+        assert end.code == 2 and not end.broken, (kind, end.cpu_s, end.words)
+        assert name in end.words, kind
+
+
+@pytest.mark.parametrize("name", BY_A_FILE)
+def test_a_file_names_none_in_another_folder_by_a_link(name, tmp_path):
+    (tmp_path / "secret").write_text("a word that no message may quote", encoding="utf-8")
+    to_elsewhere = {name: lambda path: path.symlink_to(tmp_path / "secret")}
+    end = answer_to(replace(special(name, "pipe"), made=to_elsewhere))
+    assert end.code == 2 and name in end.words and "quote" not in end.words, end.words
 
 
 def test_every_key_of_the_schema_is_fuzzed():

@@ -6,8 +6,10 @@ user's own: `outcomes.csv`, `body.toml` and the motions that they name (README.m
 
 import csv
 import gzip
+import io
 import math
 import tomllib
+import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,12 +17,15 @@ from typing import Any
 
 import numpy as np
 
+from fem.case.files import LARGEST_FILE
 from fem.evidence.validation.tables import measured_table
+from fem.records import source as records
 from fem.records.files import read_record
 from fem.records.intensity import intensity
 from fem.records.record import RecordError
 from fem.records.units import STANDARD_GRAVITY
 from fem.runtime.arrays import FloatArray
+from fem.runtime.user_files import read_regular, real_path
 
 ROCK_MOTIONS = "granite_rock_motions.csv.gz"  #: the file of a folder of the rocks' motions
 OUTCOMES, BODY = "outcomes.csv", "body.toml"  #: the files of a folder of one's own
@@ -98,24 +103,27 @@ def read_series(folder: Path) -> Series:
     Raises:
         ShakeTestError: it holds neither the rocks' motions nor a table of outcomes, or they cannot be used.
     """
-    if (folder / ROCK_MOTIONS).is_file():
+    if (folder / ROCK_MOTIONS).exists():
         return _rocks(folder / ROCK_MOTIONS)
-    if (folder / OUTCOMES).is_file():
+    if (folder / OUTCOMES).exists():
         return _own(folder)
     raise ShakeTestError(f"{folder}: neither {ROCK_MOTIONS} nor {OUTCOMES} is in this folder")
 
 
 def _rocks(path: Path) -> Series:
     try:
-        with gzip.open(path, "rt", encoding="utf-8") as file:
-            motions = {int(row["test"]): row for row in csv.DictReader(file)}
+        with gzip.open(io.BytesIO(read_regular(path, records.LARGEST_FILE))) as file:
+            text = file.read(records.LARGEST_FILE + 1).decode()
+            if len(text) > records.LARGEST_FILE:  # zeros take a thousandth of their size
+                raise ValueError(f"unpacked, it is larger than {records.LARGEST_FILE} bytes")
+        motions = {int(row["test"]): row for row in csv.DictReader(text.splitlines())}
         accelerations = {
             number: 1e-3 * np.array(row["acceleration_mm_per_s2_space_separated"].split(), dtype=float)
             for number, row in motions.items()
         }
         steps = {number: float(row["sample_interval_s"]) for number, row in motions.items()}
-    except (OSError, EOFError, KeyError, TypeError, ValueError):
-        raise ShakeTestError(f"{path}: not a table of rock motions") from None
+    except (OSError, EOFError, KeyError, TypeError, ValueError, csv.Error, zlib.error) as error:
+        raise ShakeTestError(f"{path}: not a table of rock motions ({error})") from None
     rows = [row for row in measured_table("rocks.csv") if int(row["test"]) in motions]
     tests = []
     for row in rows:
@@ -149,9 +157,9 @@ def _own(folder: Path) -> Series:
     body, unit = _body(folder / BODY)
     path = folder / OUTCOMES
     try:
-        with path.open(encoding="utf-8-sig", newline="") as file:
-            rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        text = io.StringIO(read_regular(path, LARGEST_FILE).decode("utf-8-sig"), newline="")
+        rows = list(csv.DictReader(line for line in text if not line.startswith("#")))
+    except (ValueError, csv.Error) as error:
         raise ShakeTestError(f"{path}: cannot be read ({error})") from None
     columns = tuple(rows[0]) if rows else ()
     specimens = tuple(name for name in columns if name.startswith("overturned"))
@@ -162,7 +170,7 @@ def _own(folder: Path) -> Series:
     return _checked(
         path,
         Series(
-            title=f"Shake-table tests of {folder.resolve().name}",
+            title=f"Shake-table tests of {real_path(folder).name}",
             source=str(path),
             licence="the user's own",
             body=body,
@@ -210,8 +218,8 @@ def _own_test(
 def _body(path: Path) -> tuple[Body, str | None]:
     """The body of a user's tests, and the unit of their motions."""
     try:
-        values: dict[str, Any] = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        values: dict[str, Any] = tomllib.loads(read_regular(path, LARGEST_FILE).decode())
+    except (ValueError, RecursionError) as error:
         raise ShakeTestError(f"{path}: cannot be read ({error})") from None
 
     def positive(value: object, name: str) -> float:

@@ -153,7 +153,7 @@ def test_keys_of_an_option_that_is_not_chosen_play_no_part():
         (b"a = " + b"9" * 5000, "not a TOML file"),
         (b"\xff\xfe[\x00c\x00", "not text in UTF-8"),
         (b"title = '\xe4'", "not text in UTF-8 (line 1)"),
-        (b"# " + b"x" * 1_000_001, "larger than 1000000 bytes"),
+        (b"# " + b"x" * 1_000_001, "larger than 1 MB"),
         (b"", "[container] width_m is missing"),
         (b"container = 3", "[container] must be one table, got 3"),
         (b"[[container]]\nwidth_m = 1.1", "[container] must be one table, got a list"),

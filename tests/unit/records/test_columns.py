@@ -154,13 +154,19 @@ def test_no_message_quotes_what_is_in_the_file(tmp_path):
 
 def test_missing_files_folders_and_oversized_files_are_refused_before_reading(tmp_path):
     os.mkfifo(tmp_path / "endless")
-    for path in (tmp_path / "none.csv", tmp_path, tmp_path / "endless", Path("/dev/zero")):
-        with pytest.raises(ValueError, match="does not exist or is not a file"):
+    pipe = "is a device or a pipe, not a regular file"
+    for path, reason in (
+        (tmp_path / "none.csv", "does not exist or is not a file"),
+        (tmp_path, "is a folder, not a file"),
+        (tmp_path / "endless", pipe),
+        (Path("/dev/zero"), pipe),
+    ):
+        with pytest.raises(ValueError, match=reason):
             read_record(path)
     large = tmp_path / "large.csv"
     with large.open("wb") as file:
         file.truncate(LARGEST_FILE + 1)  # sparse: takes no room
-    with pytest.raises(ValueError, match="may have at most 32 MB"):
+    with pytest.raises(ValueError, match="larger than 33"):
         read_record(large)
 
 
