@@ -32,6 +32,7 @@ SAMPLES_PER_PERIOD, SAMPLES_OF_FASTEST = 20.0, 10.0
 #: share to which the building swings out before the motion ends
 SWUNG_OUT = 0.01
 SHORTEST_PERIOD_S = 0.02
+LEAST_DAMPING, MOST_DAMPING = 0.005, 0.3  #: ratios of a building
 #: of a storey: how far z/H may lie from a floor
 BETWEEN_FLOORS = 0.05
 BuildingKind = Literal["shear", "cantilever"]
@@ -119,9 +120,10 @@ def floor_motion(
         raise ValueError(
             f"the period of the building must lie between {SHORTEST_PERIOD_S:g} and 20 s, got {slowest:g} s"
         )
-    if not 0.005 <= damping_ratio <= 0.3:
+    if not LEAST_DAMPING <= damping_ratio <= MOST_DAMPING:
         raise ValueError(
-            f"the damping ratio of the building must lie between 0.005 and 0.3, got {damping_ratio:g}"
+            f"the damping ratio of the building must lie between {LEAST_DAMPING} and {MOST_DAMPING}, "
+            f"got {damping_ratio:g}"
         )
     wanted = min(slowest / SAMPLES_PER_PERIOD, fastest / SAMPLES_OF_FASTEST)
     step = ground.step / math.ceil(ground.step / wanted)  # so that no sample of the ground is left out

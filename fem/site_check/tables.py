@@ -11,7 +11,14 @@ from fem.case.problem import Rule, file_beside, one_of
 from fem.case.quantities import Quantity
 from fem.case.table import CaseTable, case_key
 from fem.seismic.artificial import LEAST_STATIONARY_S, MOST_STATIONARY_S
-from fem.seismic.floor import ONE_MODE_REFUSED_S, ONE_MODE_TO_S, is_a_floor, nearest_floor
+from fem.seismic.floor import (
+    LEAST_DAMPING,
+    MOST_DAMPING,
+    ONE_MODE_REFUSED_S,
+    ONE_MODE_TO_S,
+    is_a_floor,
+    nearest_floor,
+)
 from fem.seismic.motion_set import LEAST_MOTIONS
 
 IMPORTANCE = Quantity(
@@ -36,7 +43,7 @@ LEVEL = Quantity(unit="", least=0.0, most=1.0, advice="0 is the foundation, 1 th
 BUILDING_PERIOD = Quantity(
     unit="s", least=0.02, most=10.0, advice="T_1 of the building in this direction; about 0.1 s a storey"
 )
-DAMPING = Quantity(unit="", above=0.0, below=0.5, typical=0.05, slips={"per cent": 0.01})
+DAMPING = Quantity(unit="", least=LEAST_DAMPING, most=MOST_DAMPING, typical=0.05, slips={"per cent": 0.01})
 STATIONARY = Quantity(
     unit="s",
     least=LEAST_STATIONARY_S,
