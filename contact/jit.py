@@ -110,9 +110,10 @@ class Kernel(CPUDispatcher):
         """Call the compiled entry, reusing the argument types of the first call with these classes.
 
         numba determines the types of all fields of structs at each call, which takes 12 of 14 us for the data of a run.
-        The caller guarantees that instances of a class have fields of one type: other fields would be misread.
+        The caller guarantees that instances of a class have fields of one type, but for a field `body`, whose class may
+        differ: other fields would be misread.
         """
-        classes = tuple(map(type, arguments))
+        classes = (*map(type, arguments), *(type(getattr(one, "body", None)) for one in arguments))
         code = self._code_by_class.get(classes)
         if code is not None:
             return code(*arguments)

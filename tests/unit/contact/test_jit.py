@@ -83,6 +83,21 @@ def sum_of(weights, factor):
     return factor * weights.values.sum()
 
 
+@struct
+class Holder(NamedTuple):
+    body: Any
+
+
+@compiled
+def sum_of_held(holder, factor):
+    return factor * holder.body.values.sum()
+
+
+def test_a_call_by_class_tells_bodies_that_hold_others():
+    assert sum_of_held.call_by_class(Holder(Weights(np.ones(4))), 2.0) == 8.0
+    assert sum_of_held.call_by_class(Holder(Others(np.ones((2, 2), np.int64))), 2.0) == 8.0
+
+
 def test_a_call_by_class_takes_the_types_of_the_first_of_its_classes():
     assert sum_of.call_by_class(Weights(np.ones(2)), 2.0) == 4.0
     assert sum_of.call_by_class(Weights(np.ones(3)), 2.0) == 6.0

@@ -53,6 +53,8 @@ ROW = (
 REDUCED_ROW = (
     *(*REDUCED, "motion.peak_acceleration_m_s2=9", "solver.elastic_modes=4", "solver.element_size_m=0.25"),
     "neighbour=[{side = 'left', gap_m = 0.001, stiffness_N_m = 1e8, boxes = 3}]",
+    "stop=[{side = 'left', height_m = 2.5, gap_m = 0.001, stiffness_N_m = 1e8, mu = 0.3}]",
+    STRAP,
 )
 
 CASES = {

@@ -4,6 +4,7 @@ The meshes are coarse: what is compared has the same mesh, or none.
 """
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 import pytest
@@ -44,8 +45,8 @@ SHELL = STACK.with_values(
 )
 
 
-def in_a_row(case: Case, *neighbours: dict) -> Case:
-    return case.with_values({"neighbour": list(neighbours)})
+def in_a_row(case: Case, *neighbours: dict, **links: list[dict]) -> Case:
+    return case.with_values({"neighbour": list(neighbours), **links})
 
 
 def stresses(found: Finished) -> tuple[float, ...]:
@@ -131,6 +132,32 @@ def test_a_hit_keeps_the_momentum_and_its_energy_is_accounted_for():
     assert audit(found.model) is None
 
 
+def test_what_a_wall_takes_from_a_row_is_its_impulse():
+    wall = {"side": "right", "height_m": 0.5, "gap_m": 0.005, "stiffness_N_m": 1e8, "restitution": 1.0}
+    found = run(in_a_row(SLIDER, STRUCK, stop=[wall]), {"output.history_s": 2e-5, "solver.duration_s": 0.06})
+    mass, moving = SLIDER.mass, found.model.run.old.boxes[:, VELOCITY_X]
+    between, before = found.model.run.links
+    assert between.hits > 0 and before.hits > 0
+    impulse = float(np.trapezoid(found.history["stop_1_force_N"], found.history["time_s"]))
+    assert impulse > 0.5 * mass * SPEED
+    left = mass * moving[0] + STRUCK["mass_kg"] * moving[1]
+    assert mass * SPEED - left == pytest.approx(impulse, rel=2e-3)
+    assert abs(found.model.run.ledger[IMBALANCE]) < 2e-3 * 0.5 * mass * SPEED**2
+
+
+def test_walls_and_ties_that_a_row_does_not_reach_change_no_bit_wherever_they_are():
+    def held(gap: float, height: float, stiffness: float) -> Finished:
+        link = {"height_m": height, "stiffness_N_m": stiffness}
+        walls = [{**link, "side": side, "gap_m": gap} for side in ("left", "right")]
+        ties = [{**link, "from": "left", "slack_m": gap}]
+        return run(in_a_row(SHELL, LOW, stop=walls, tie=ties))
+
+    near, far = held(3.0, 1.0, 1e8), held(7.0, 1.0, 1e6)
+    assert near.model.run.links[0].hits > 0
+    for column in ("rotation_rad", "slip_m", "strain_J", "neighbour_1_rotation_rad", "imbalance_J"):
+        assert near.history[column].tobytes() == far.history[column].tobytes()
+
+
 def test_the_stress_of_a_blow_is_recorded_for_each_and_converges_with_the_modes():
     still, softer, harder, finer = (
         run(in_a_row(SLIDER, {**STRUCK, "stiffness_N_m": stiffness}), changes)
@@ -165,11 +192,23 @@ def test_the_ledger_of_a_reduced_row_closes():
 def test_the_mirrored_row_moves_as_the_mirror_image_and_the_order_does_not_matter():
     shaken = SHELL.with_values({**harmonic(0.12, 6.0), "contact.mu_static": 0.4, "solver.duration_s": 0.6})
     pair = ({**LOW, "mu": 0.3}, {**BESIDE, "side": "left", "gap_m": 0.02})
-    mirrored = tuple({**one, "side": {"left": "right", "right": "left"}[one["side"]]} for one in pair)
-    one, other = run(in_a_row(shaken, *pair)), run(in_a_row(shaken, *pair[::-1]))
-    image = run(in_a_row(shaken, *mirrored), {"motion.phase_rad": math.pi})
-    assert one.model.run.links.hits.max() > 0
+    # a wall at one end, and a tie on the container
+    wall = {**BESIDE, "height_m": 2.5, "mu": 0.3}
+    tie = {"from": "left", "height_m": 2.0, "stiffness_N_m": 1e6}
+
+    def mirrored(rows: Sequence[dict]) -> list[dict]:
+        other = {"left": "right", "right": "left"}
+        return [{key: other.get(value, value) for key, value in one.items()} for one in rows]
+
+    one = run(in_a_row(shaken, *pair, stop=[wall], tie=[tie]))
+    other = run(in_a_row(shaken, *pair[::-1], stop=[wall], tie=[tie]))
+    image = run(
+        in_a_row(shaken, *mirrored(pair), stop=mirrored([wall]), tie=mirrored([tie])),
+        {"motion.phase_rad": math.pi},
+    )
+    assert one.model.run.links.hits.max() > 0 and one.model.run.links.max_force.min() > 0.0
     early = one.history["time_s"] < 0.5
+    assert one.history["stop_1_force_N"][early].max() > 1e4 < image.history["stop_1_force_N"][early].max()
     for column in ("rotation_rad", "slip_m", "neighbour_1_rotation_rad", "neighbour_2_x_m"):
         assert image.history[column][early] == pytest.approx(-one.history[column][early], abs=1e-7)
     assert other.history["neighbour_2_rotation_rad"][early] == pytest.approx(
