@@ -41,8 +41,8 @@ def _without_links(margin: Margin, without: str) -> str:
 
 
 def _range(margin: Margin) -> str:
-    """Between which factors all draws overturn first, or that none does."""
-    if margin.draws and margin.low is None:
+    """Between which factors all draws overturn first, or that none does; empty where a draw failed or stands."""
+    if margin.low is None and margin.draws > 1 and not margin.draws_failed:
         return f", nor does the strongest overturn any of {margin.draws} draws of what is not known"
     if margin.low is None or margin.high is None:
         return ""
@@ -68,14 +68,17 @@ def _destroyed(margin: Margin) -> str:
 def _draws(margin: Margin) -> str:
     """A sentence on the draws where not all of them overturn, or some say nothing."""
     standing, failed, parts = margin.draws_standing, margin.draws_failed, []
-    low = margin.low if margin.draws and margin.high is None else None
-    if low is not None:
+    if margin.low is not None and margin.high is not None:
+        standing = 0
+    if standing and (margin.low is not None or failed or margin.draws == 1):
         parts.append(f"{standing} stand{'s' * (standing == 1)} at {margin.draws_tried_to:.3g} times")
     if failed:
         parts.append(f"{failed} destroy{'s' * (failed == 1)} a corner or fail{'s' * (failed == 1)}")
     if not parts:
         return ""
-    counts = f"f {margin.draws + failed} draws {' and '.join(parts)}."
-    if low is None:
+    counts = f"f {margin.draws + failed} draw{'s' * (margin.draws + failed > 1)} {' and '.join(parts)}."
+    if margin.low is None:
+        return f" Over what is not known, o{counts}"
+    if margin.high is not None:
         return f" O{counts}"
-    return f" Over what is not known it overturns from {FACTOR.in_figures(low, 2)} times on; o{counts}"
+    return f" Over what is not known it overturns from {FACTOR.in_figures(margin.low, 2)} times on; o{counts}"

@@ -5,6 +5,7 @@ for what decides between standing and falling the value at which the draws chang
 """
 
 from collections.abc import Iterator, Sequence, Set
+from math import comb
 
 from fem.assessment.sureness import (
     SURE,
@@ -16,19 +17,19 @@ from fem.assessment.sureness import (
     stands,
     static_use,
 )
-from fem.case.unknown_inputs import WORDS, in_words
+from fem.case.unknown_inputs import WORDS, in_words, value_in_words
 from fem.results.figures import FIGURES, SLIPPED, TURNED
 from fem.results.outcome import ROCKING, SLIDING, Ending, Outcome
 from fem.results.run_result import Band, ChangedRun, RunResult, Verdict
 from fem.runtime.intervals import binomial_interval
+from fem.runtime.units import JOINT_MILLIMETRES
 
 CONFIDENCE = 0.95
-LEAST_SHARE, LEAST_DRAWS = 0.25, 4  #: of the draws, on one side of a value from which that value is named
 MOST_NAMED = 2  #: inputs in a sentence
 DOES = {
     Ending.STANDING: "stands",
     Ending.OVERTURNED: "overturns",
-    Ending.INVALID: "destroys a corner, which is not valid,",
+    Ending.INVALID: "destroys a corner",
 }
 
 
@@ -56,10 +57,10 @@ def sureness_in_words(result: RunResult) -> str:
     if verdict.sure == UNSURE:
         return f"Unsure: {'; '.join(_doubts(verdict, band, tried))}."
     does = DOES[ending(band.members[0])]
+    in_all = f"in all {len(tried)} variations" if len(tried) > 1 else "in the one variation"
     if verdict.sure == SURE:
-        all_of_them = f"all {len(tried)} variations" if len(tried) > 1 else "the one variation"
-        return f"Sure: {does} in {all_of_them}."
-    return f"{does.capitalize()} in all {len(tried)} variations. {_other_regime(verdict, band)}{_depending(verdict)}."
+        return f"Sure: {does} {in_all}."
+    return f"{does.capitalize()} {in_all}. {_other_regime(verdict, band)}."
 
 
 def _doubts(verdict: Verdict, band: Band, tried: Sequence[ChangedRun]) -> Iterator[str]:
@@ -72,9 +73,7 @@ def _doubts(verdict: Verdict, band: Band, tried: Sequence[ChangedRun]) -> Iterat
         alone = [one for one in crossing if one.kind != "draw"]
         for kind, does in DOES.items():
             if alike := [one for one in alone if ending(one) == kind]:
-                named = [in_words(one.values or {}) for one in alike[:MOST_NAMED]]
-                more = f" and {len(alike) - len(named)} other changes" if len(alike) > len(named) else ""
-                yield f"{does} with {' and with '.join(named)}{more}"
+                yield f"{does} with {changes_in_words(alike)}"
         if drawn:
             yield _counted(draws) + _value_that_decides(draws)
         elif draws:
@@ -82,63 +81,82 @@ def _doubts(verdict: Verdict, band: Band, tried: Sequence[ChangedRun]) -> Iterat
             yield f"not in {len(draws)} draws of {'the other' if undrawn else 'all'} inputs at once"
     if verdict.numerically_unsure:
         verb = next(DOES[ending(one)] for one in tried if numerical(one) and ending(one) != ending(own))
-        yield f"numerically, for it {verb} with steps ten times as accurate"
+        yield f"numerically: it {verb} with steps ten times as accurate"
     if below_uplift(band.members):
-        found = "rests" if rests_on_stiff_floor(band.members) else "still rocks"
-        yield f"it is below uplift of a rigid block, and on a floor thirty times as stiff it {found}"
-    if failed := sum(one.outcome is None for one in band.members):
-        yield f"{failed} of {len(band.members) - 1} variations failed"
+        does = "rests" if rests_on_stiff_floor(band.members) else "still rocks"
+        yield f"it is below uplift of a rigid block, and on a floor thirty times as stiff it {does}"
+    if failed := [one for one in band.members if one.outcome is None]:
+        alone = [one for one in failed if one.kind != "draw"]
+        of_them = f", among them with {changes_in_words(alone)}" if alone else ""
+        yield f"{len(failed)} of {len(band.members) - 1} variations have no outcome{of_them}"
     if band.left_out:
         yield f"{len(band.left_out)} changes were left out for time"
+
+
+def changes_in_words(runs: Sequence[ChangedRun]) -> str:
+    """What was changed in the first of these runs, and how many more there are."""
+    words = " and with ".join(in_words(one.values or {}) for one in runs[:MOST_NAMED])
+    more = len(runs) - MOST_NAMED
+    return words if more <= 0 else f"{words} and {more} other change{'s' * (more > 1)}"
 
 
 def _counted(draws: Sequence[ChangedRun]) -> str:
     """How many draws overturned, and how many destroyed a corner, with the intervals of their shares."""
     parts = []
-    for found, word in ((Ending.OVERTURNED, "overturned"), (Ending.INVALID, "not valid")):
-        count = sum(ending(one) == found for one in draws)
-        if count or (found == Ending.OVERTURNED and all(map(stands, draws))):
+    for kind, words in ((Ending.OVERTURNED, "overturned"), (Ending.INVALID, "a corner destroyed")):
+        count = sum(ending(one) == kind for one in draws)
+        if count or (kind == Ending.OVERTURNED and all(map(stands, draws))):
             low, high = binomial_interval(count, len(draws), CONFIDENCE)
             parts.append(
-                f"{word} in {count} of {len(draws)} draws (95 %: {100.0 * low:.0f} to {100.0 * high:.0f} %)"
+                f"{words} in {count} of {len(draws)} draws (95 %: {100.0 * low:.0f} to {100.0 * high:.0f} %)"
             )
     return ", ".join(parts)
 
 
 def _value_that_decides(draws: Sequence[ChangedRun]) -> str:
-    """The input and its value beyond which most draws end in one way; empty if no value tells enough of them apart."""
-    found: list[tuple[int, str]] = []
-    all_valid = all(ending(one) != Ending.INVALID for one in draws)
-    for key in draws[0].values or {}:
-        values = [(one.values or {}).get(key) for one in draws]
+    """The input and its value beyond which all draws end in one way; empty if chance alone may give such a value.
+
+    Draws that have nothing to do with an input leave the k largest (or smallest) of n values to s draws of one kind
+    with the probability C(s, k)/C(n, k); that of all inputs and sides together is below 1 - CONFIDENCE.
+    """
+    keys, valid = draws[0].values or {}, all(ending(one) != Ending.INVALID for one in draws)
+    least: tuple[float, str] = (1.0 - CONFIDENCE, "")
+    for key in keys:
         known = [
-            (value, stands(one)) for value, one in zip(values, draws, strict=True) if isinstance(value, float)
+            (value, stands(one)) for one in draws if isinstance(value := (one.values or {}).get(key), float)
         ]
-        for standing, word in ((True, "stands"), (False, "overturns" if all_valid else "does not stand")):
-            same = [value for value, one in known if one is standing]
-            others = [value for value, one in known if one is not standing]
+        for standing, words in ((True, "stand"), (False, "overturn" if valid else "do not stand")):
+            same = [value for value, stood in known if stood is standing]
+            others = [value for value, stood in known if stood is not standing]
             if not same or not others:
                 continue
             for beyond, limit, side in (
-                ([value for value in same if value > max(others)], max(others), "above"),
-                ([value for value in same if value < min(others)], min(others), "below"),
+                (sum(value > max(others) for value in same), max(others), "above"),
+                (sum(value < min(others) for value in same), min(others), "below"),
             ):
-                if len(beyond) >= max(LEAST_DRAWS, LEAST_SHARE * len(draws)):
-                    words = f"; {word} in all {len(beyond)} of them with {WORDS[key]} {side} {limit:.3g}"
-                    found.append((len(beyond), words))
-    return max(found)[1] if found else ""
+                chance = 4 * len(keys) * comb(len(same), beyond) / comb(len(known), beyond)
+                if chance < least[0]:
+                    value = value_in_words(key, limit)
+                    least = chance, f"; all {beyond} with {WORDS[key]} {side} {value} {words}"
+    return least[1]
 
 
 def _other_regime(verdict: Verdict, band: Band) -> str:
-    """What variations do otherwise, with the ranges of slip and rotation."""
-    own = band.members[0].outcome
+    """What variations do otherwise and what decides, with the ranges of slip and rotation."""
+    own, own_fell, on = band.members[0].outcome, band.members[0].fell_in_row, _depending(verdict)
     others = {one.outcome for one in band.members if one.outcome is not None} - {own}
     if own == Outcome.OVERTURNED:
-        return "Another box may fall first"
+        another = "container" if own_fell else "box"
+        return f"Another {another} may fall first{on and f', depending on {on}'}"
     may = _may(Outcome(own), {Outcome(one) for one in others}) if own else ""
-    lead = f"It may {may}" if may else "How far it moves is not known"
+    if may:
+        lead = f"It may {may}{on and f', depending on {on}'}"
+    else:
+        lead = f"How far it moves depends on {on}" if on else "How far it moves is not known"
     slip, ratio = (FIGURES[key].unit.range_text(band[key]) for key in (SLIPPED, TURNED))
-    return f"{lead}: slip {slip}, rotation ratio {ratio}"
+    between = max((box.max_slip_m for box in (band.boxes or ())[1:]), key=max, default=None)
+    joints = f" on the floor and {JOINT_MILLIMETRES.range_text(between)} between boxes" if between else ""
+    return f"{lead}. Slip is {slip}{joints}, the rotation ratio {ratio}"
 
 
 def _may(own: Outcome, others: Set[Outcome]) -> str:
@@ -162,9 +180,8 @@ def _may(own: Outcome, others: Set[Outcome]) -> str:
 
 
 def _depending(verdict: Verdict) -> str:
-    if not verdict.decided_by:
-        return ""
+    """The inputs that decide, as far as a sentence holds them."""
     named = [WORDS.get(key, key) for key in verdict.decided_by[:MOST_NAMED]]
     if len(verdict.decided_by) > MOST_NAMED:
-        return f", depending on {', '.join(named)} and others"
-    return f", depending on {' and '.join(named)}"
+        return f"{', '.join(named)} and others"
+    return " and ".join(named)

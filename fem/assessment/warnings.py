@@ -42,10 +42,12 @@ def verdict_is_unsure(result: run_result.RunResult, case: Case) -> str | None:
     words = sureness_in_words(result)
     if verdict.band is None or verdict.sure not in (UNSURE, None) or not words:
         return None
-    failed = "; ".join(
-        in_words(member.values or {}) for member in verdict.band.members if member.outcome is None
+    failed = [member for member in verdict.band.members if member.outcome is None]
+    failures = (
+        f" The first that failed, with {in_words(failed[0].values or {})}: {failed[0].error}"
+        if failed
+        else ""
     )
-    failures = f" No outcome, because the solution failed, with {failed}." if failed else ""
     return f"{words[0].lower()}{words[1:]}{failures}"
 
 

@@ -78,6 +78,7 @@ STRENGTH, MODULUS = "floor.bearing_strength_Pa", "floor.youngs_modulus_Pa"
 Value = float | str
 Ends = tuple[float, float]
 HELD = ("held", "known")  #: in place of a range
+SHORT_LENGTH_M = 0.1  #: told in mm
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -279,29 +280,40 @@ def _may_be_cambered(case: Any) -> bool:
 def _cambers(case: Any, own: float) -> Ends:
     """At most a base of a radius twice as high as the mass centre."""
     box, low, high = case.stack[0], CAMBERS[0] * own, CAMBERS[1] * own if own > 0.0 else LEVEL_CAMBER_M
+    high = min(high, q.CAMBER.most or math.inf)
     height = sum(one.mass * (one.bottom + one.centroid) for one in case.stack) / case.mass
     return low, max(own, min(high, short((case.support.effective_width * box.width) ** 2 / (16.0 * height))))
 
 
+def _block(case: Any) -> RigidBlock:
+    """The homogeneous block whose impacts stand for the container's."""
+    box = case.container
+    height = 0.5 * (box.total_height - box.height_m) + box.centroid_m
+    return RigidBlock(half_width=0.5 * box.width_m, centroid_height=height, gravity=case.gravity_m_s2)
+
+
 def _has_impacts(case: Any) -> bool:
-    """Whether an impact exchanges the pivot as Housner's does, or leaves a restitution that is given."""
+    """Whether an impact exchanges the pivot as Housner's does, or leaves a restitution that is given.
+
+    A block so squat that Housner's restitution is not positive stays on its base after an impact.
+    """
     given = case.contact.restitution_over_housner is not None
-    sharp = case.support.kind == "corners" and not case.rolls
-    return given or (sharp and not getattr(case, "neighbour", ()))
+    sharp = case.support.kind == "corners" and not case.rolls and not getattr(case, "neighbour", ())
+    return (given or sharp) and _block(case).housner_restitution > 0.0
 
 
 def _restitutions(case: Any, ratio: float) -> Ends:
     """By the loss at an impact of a homogeneous block where it is given; never more than was there before."""
-    box = case.container
-    height = 0.5 * (box.total_height - box.height_m) + box.centroid_m
-    block = RigidBlock(half_width=0.5 * box.width_m, centroid_height=height, gravity=case.gravity_m_s2)
-    housner, most = block.housner_restitution, RESTITUTIONS[1]
-    if case.contact.restitution_over_housner is None:
+    block, limits = _block(case), q.RESTITUTION
+    housner, (low, high) = block.housner_restitution, RESTITUTIONS
+    if case.contact.restitution_over_housner is not None:
+        low, high = ((1.0 - share * (1.0 - ratio * housner)) / housner for share in (LOSS[1], LOSS[0]))
+    else:
         if case.casting_length is not None and case.foot is None:  # it may land on their inner edges
-            most = max(most, short(block.restitution_on_plates(case.casting_length) / housner))
-        return RESTITUTIONS[0], min(most, short(0.999 / housner))
-    less, more = ((1.0 - share * (1.0 - ratio * housner)) / housner for share in (LOSS[1], LOSS[0]))
-    return short(max(q.RESTITUTION.least or 0.0, less)), short(more)
+            high = max(high, block.restitution_on_plates(case.casting_length) / housner)
+        high = min(high, 0.999 / housner)
+    least, most = limits.least or 0.0, limits.most or math.inf
+    return short(min(max(low, least), most)), short(min(max(high, least), most))
 
 
 def _kinetic(own: float, static: float) -> Ends:
@@ -438,13 +450,19 @@ UNCERTAINTY_RULES = tuple(
 
 
 def in_words(values: Mapping[str, Value]) -> str:
-    """Values of inputs by dotted key, for people: "kinetic friction 0.3, slope of the floor 0.5 per cent"."""
-    units = {key: one.unit for key, one in QUANTITIES.items()}
-    shown = (
-        f"{WORDS.get(key, key)} {q.with_unit(one if isinstance(one, str) else float(f'{one:.4g}'), units.get(key, ''))}"
-        for key, one in values.items()
-    )
-    return ", ".join(shown)
+    """Values of inputs by dotted key, for people: "kinetic friction 0.3, tilt of the castings 0.5 mm"."""
+    return ", ".join(f"{WORDS.get(key, key)} {value_in_words(key, value)}" for key, value in values.items())
+
+
+def value_in_words(key: str, value: Value) -> str:
+    """A value of an input with its unit, short lengths in mm and pressures in MPa."""
+    unit = QUANTITIES[key].unit if key in QUANTITIES else ""
+    if isinstance(value, str):
+        return q.with_unit(value, unit)
+    name, factor = {"m": ("mm", 1e3), "Pa": ("MPa", 1e-6)}.get(unit, (unit, 1.0))
+    if name == "mm" and abs(value) >= SHORT_LENGTH_M:
+        name, factor = unit, 1.0
+    return q.with_unit(float(f"{factor * value:.4g}"), name)
 
 
 def excluded_values(case: Any) -> list[str]:

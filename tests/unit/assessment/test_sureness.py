@@ -179,11 +179,15 @@ def test_draws_that_overturn_are_counted_with_their_interval_and_the_value_that_
     draws = [(draw(place, 0.5), FELL if place in (0.1, 0.3) else {}) for place in places]
     found = verdict(*draws, (HALF, FELL), (STIFF, {}))
     assert (found.band.draws, found.band.draws_overturned) == (8, 2)
-    # Clopper and Pearson's interval of 2 of 8
+    # Clopper and Pearson's interval of 2 of 8; chance puts 5 of 6 above the others once in 9 times
     assert words(*draws, (HALF, FELL), (STIFF, {})) == (
-        "Unsure: overturns with kinetic friction 0.3; overturned in 2 of 8 draws (95 %: 3 to 65 %); stands in all 5 "
-        "of them with kinetic friction above 0.3."
+        "Unsure: overturns with kinetic friction 0.3; overturned in 2 of 8 draws (95 %: 3 to 65 %)."
     )
+    telling = [(draw(place / 16, 0.5), FELL if place < 5 else {}) for place in range(16)]
+    assert words(*telling).endswith("; all 11 with kinetic friction above 0.25 stand.")
+    assert words(*telling[:5], *telling[:5:-1]).endswith("; all 10 with kinetic friction above 0.25 stand.")
+    mixed = [(draw(place / 16, 0.5), FELL if place % 2 else {}) for place in range(16)]
+    assert words(*mixed).endswith("overturned in 8 of 16 draws (95 %: 25 to 75 %).")
     alone = words(*((draw(place, 0.5), {}) for place in places), (HALF, FELL))
     assert alone == "Unsure: overturns with kinetic friction 0.3; not in 8 draws of all inputs at once."
 
@@ -196,19 +200,19 @@ def test_draws_that_overturn_are_counted_with_their_interval_and_the_value_that_
         (
             [(HALF, {"outcome": "slide", "max_slip_m": 0.5, "rotation_ratio": 1e-4}), (STIFF, {})],
             {"outcome": "rock", "max_slip_m": 6e-4},
-            "Stands in all 2 variations. It may slide instead of rock: slip 0.60 to 500 mm, rotation ratio up to 0.20, "
-            "depending on kinetic friction.",
+            "Stands in all 2 variations. It may slide instead of rock, depending on kinetic friction. Slip is 0.60 to "
+            "500 mm, the rotation ratio up to 0.20.",
         ),
         (
             [(HALF, {"max_slip_m": 0.032}), (STIFF, {})],
             {"max_slip_m": 6e-4},
-            "Stands in all 2 variations. How far it moves is not known: slip 0.60 to 32 mm, rotation ratio 0.200, "
-            "depending on kinetic friction.",
+            "Stands in all 2 variations. How far it moves depends on kinetic friction. Slip is 0.60 to 32 mm, the "
+            "rotation ratio 0.200.",
         ),
         (
             [(FINE, FELL), (HALF, {})],
             {},
-            "Unsure: numerically, for it overturns with steps ten times as accurate.",
+            "Unsure: numerically: it overturns with steps ten times as accurate.",
         ),
     ],
 )
@@ -234,7 +238,7 @@ def test_the_words_say_what_the_variations_showed(found, own, said):
 def test_what_it_may_do_is_what_the_variations_did(own, others, may):
     changes = [HALF, EQUAL][: len(others)]
     found = [(one, {"outcome": word}) for one, word in zip(changes, others, strict=True)]
-    assert f" It may {may}: slip " in words(*found, outcome=own)
+    assert f" It may {may}, depending on kinetic friction. Slip is " in words(*found, outcome=own)
 
 
 def test_a_step_that_decides_is_no_input():

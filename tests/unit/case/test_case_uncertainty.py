@@ -391,3 +391,15 @@ def test_bad_ranges_are_refused_with_a_way_out(key, value, said):
     with pytest.raises(CaseError) as refused:
         named_case("harmonic", {f"uncertainty.{key}": value})
     assert said in str(refused.value) and "[uncertainty] " in str(refused.value)
+
+
+@pytest.mark.parametrize("width", [0.4, 1.1, 1.35, 1.41, 1.45, 1.6, 2.5])
+@pytest.mark.parametrize("ratio", [None, 0.95])
+def test_the_impacts_of_a_squat_box_make_cases_that_can_be_read(width, ratio):
+    """Housner's restitution falls through zero at a width of 1.41 times the height."""
+    values = {"container.boxes": 1, "container.width_m": width, "contact.restitution_over_housner": ratio}
+    case = named_case("rocking", values)
+    tried = [one.values for one in (*changes_of(case, None), *draws_of(case, None))]
+    for one in tried:
+        case.with_values(one)
+    assert any("contact.restitution_over_housner" in one for one in tried) == (width < 2**0.5)
