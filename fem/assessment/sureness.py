@@ -15,7 +15,7 @@ import numpy as np
 
 from fem.case.uncertainty import InputChange
 from fem.case.unknown_inputs import INPUTS, TOLERANCE
-from fem.results.figures import BOX_FIGURES, Place, RunFigures, keys_of
+from fem.results.figures import BOX_FIGURES, FELL_FIRST, Place, RunFigures, keys_of
 from fem.results.outcome import ENDINGS, ROCKING, Ending, Outcome
 from fem.results.run_result import Band, BoxReach, ChangedRun, RunResult, StaticResult, Verdict
 
@@ -129,7 +129,7 @@ def difference(own: RunFigures, other: RunFigures, width: float) -> int:
     if ending(own) != ending(other):
         return OTHER_END
     if not stands(own):
-        return SAME if own.fell_box == other.fell_box else OTHER_REGIME
+        return SAME if all(own[key] == other[key] for key in FELL_FIRST) else OTHER_REGIME
     pairs = zip(_sizes(own, width), _sizes(other, width), strict=True)
     another = any(high > 1.0 and high > ANOTHER_SIZE * low for low, high in map(sorted, pairs))
     return OTHER_REGIME if own.outcome != other.outcome or another else SAME

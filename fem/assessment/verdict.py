@@ -124,6 +124,7 @@ def verdict_from(
     capacity = steel_capacity(model.case)
     boxes = box_results(model)
     rotation = max((box.max_rotation_rad for box in boxes), default=track.max_rotation)
+    neighbours = neighbour_results(model, (largest_von_mises or ())[1:])
     sampled = end is not None and end > 0.0
     rocked = outcome in (Outcome.ROCK, Outcome.SLIDE_ROCK)
     return Verdict(
@@ -152,7 +153,9 @@ def verdict_from(
         else plastic_work(track.max_corner_force, capacity, 0.5 * model.base_stiffness),
         boxes=boxes or None,
         fell_box=first_fallen_box(model),
-        neighbours=neighbour_results(model, (largest_von_mises or ())[1:]) or None,
+        neighbours=neighbours or None,
+        **_of_links(model, neighbours),
+        **_of_row(model, outcome, neighbours),
     )
 
 
@@ -184,13 +187,10 @@ def neighbour_results(model: Model, stresses: Sequence[float]) -> tuple[Neighbou
     found = []
     for number, one in enumerate(model.case.neighbour, 1):
         joint, gap = _numbers(model.run.joints[number:]), _numbers(model.run.links[number - 1 :])
-        rocks = min(joint.max_rotation, joint.max_opening / joint.width) > ROCKING * joint.angle
-        slides = joint.max_slip > least_slide(joint.width)
-        fell = math.isfinite(joint.fell_at)
         found.append(
             NeighbourResult(
                 side=one.side,
-                outcome=Outcome.OVERTURNED if fell else Outcome.of(slides=slides, rocks=rocks, hops=False),
+                outcome=_outcome_in_row(joint),
                 max_rotation_rad=joint.max_rotation,
                 rotation_ratio=relative_rotation(joint.max_rotation, joint.angle),
                 max_slip_m=joint.max_slip,
@@ -205,6 +205,48 @@ def neighbour_results(model: Model, stresses: Sequence[float]) -> tuple[Neighbou
             )
         )
     return tuple(found)
+
+
+def _outcome_in_row(joint: SimpleNamespace) -> Outcome:
+    """What one container of a row did, by the record of where it stands on the floor."""
+    if math.isfinite(joint.fell_at):
+        return Outcome.OVERTURNED
+    rocks = min(joint.max_rotation, joint.max_opening / joint.width) > ROCKING * joint.angle
+    return Outcome.of(slides=joint.max_slip > least_slide(joint.width), rocks=rocks)
+
+
+def _of_row(model: Model, outcome: Outcome, neighbours: Sequence[NeighbourResult]) -> dict[str, Any]:
+    """Who overturned first in a row, and what each container of it did; nothing of one alone."""
+    if not neighbours:
+        return {}
+    fell_at = model.run.joints["fell_at"]
+    first = int(np.argmin(fell_at))
+    own = outcome if outcome != Outcome.OVERTURNED else _outcome_in_row(_numbers(model.run.joints))
+    return {
+        "fell_in_row": (f"neighbour {first}" if first else "container")
+        if np.isfinite(fell_at[first])
+        else None,
+        "row_outcomes": ", ".join([own, *(one.outcome for one in neighbours)]),
+    }
+
+
+def _of_links(model: Model, neighbours: Sequence[NeighbourResult]) -> dict[str, Any]:
+    """What stops, ties and neighbours did together, by key (`LinkFigures`); nothing where there are none."""
+    case, links = model.case, model.run.links
+    if not links.size:
+        return {}
+    whole = links[~np.isfinite(links["broken_at"]) & np.isfinite(links["least_gap"])]
+    kinds = np.repeat(["neighbour", "stop", "tie"], [len(case.neighbour), len(case.stop), len(case.tie)])
+    return {
+        **{
+            f"{kind}_force_N": float(links["max_force"][kinds == kind].max()) for kind in dict.fromkeys(kinds)
+        },
+        "link_hits": int(links["hits"].sum()),
+        "link_velocity_m_s": float(links["largest_closing_velocity"].max()),
+        "link_broken_at_s": _finite(float(links["broken_at"].min())),
+        "link_slack_m": float(whole["least_gap"].min()) if whole.size else None,
+        "neighbour_rotation_ratio": max((one.rotation_ratio for one in neighbours), default=None),
+    }
 
 
 def first_fallen_box(model: Model) -> int | None:

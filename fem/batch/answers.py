@@ -22,7 +22,7 @@ STRENGTHS = (
     "motion.scale",
     "motion.amplitude_m",
 )
-GAPS = ("stop.gap_m", "tie.slack_m")  #: axes of an answer where none is a strength
+GAPS = ("stop.gap_m", "tie.slack_m", "neighbour.gap_m")  #: axes of an answer where none is a strength
 #: axes along which the larger value is the safer one
 LARGER_IS_SAFER = frozenset({"container.width_m"})
 MOST_RANGES = 4  #: of values that a sentence names
@@ -41,6 +41,7 @@ class Trial(NamedTuple):
     slip: float | None = None  #: largest |slip| [m]
     #: whether unknown inputs or small changes turn the outcome; None where not tried
     unsure: bool | None = None
+    fell: str = ""  #: who overturned first, of a row of containers
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,6 +57,7 @@ class Answer:
     stood_slip: float | None = None  #: largest of the runs up to the first of these values [m]
     slip: float | None = None  #: of the run that overturned [m]
     line: int | None = None  #: of that run
+    fell: str = ""  #: who overturned first in it, of a row of containers
     slid: bool = False  #: no run overturned at the second of these values: one slid beyond the limit
     invalid: bool = False  #: .. or one destroyed a corner
     limit_slip: float | None = None  #: [m]
@@ -135,6 +137,7 @@ def answer_of(trials: Sequence[Trial], *, rising: bool, limit_slip: float | None
         stood_slip=max(slips, default=None),
         slip=worst.slip if worst else None,
         line=worst.line if worst else None,
+        fell=worst.fell if worst else "",
         slid=bool(fell) and not overturned and not invalid,
         invalid=bool(invalid) and not overturned,
         limit_slip=limit_slip,
@@ -161,7 +164,8 @@ def sentence_of(answer: Answer, axis: Axis, *, rising: bool, where: str = "") ->
             if answer.slip >= MILLIMETRES.least
             else "no slip there"
         )
-    noted = ", ".join(filter(None, (slip, f"with {where}" if fell and where else "")))
+    fell_first = f"first to overturn: {answer.fell}" if answer.fell else ""
+    noted = ", ".join(filter(None, (fell_first, slip, f"with {where}" if fell and where else "")))
     noted = f" ({noted})" if noted else ""
     at_once = fell and not stood and not answer.failed
     if rising:

@@ -34,7 +34,7 @@ from fem.ensemble.result import EnsembleResult
 from fem.ensemble.statistics import POINT_COLUMNS, PointRow, count_point, fragility_of
 from fem.ensemble.unknown import UnknownInputs
 from fem.results.disk import BYTES_BESIDE, table_bytes
-from fem.results.figures import SLIPPED, TURNED, Place, columns_of
+from fem.results.figures import FELL_FIRST, RUN_COLUMNS, SLIPPED, TURNED, Place, columns_of
 from fem.results.folder import ResultFolder
 from fem.results.kinds import ENSEMBLE
 from fem.results.outcome import COUNTED, Ending, counts_of, ending_of
@@ -45,7 +45,7 @@ OF_A_DRAW, OF_A_POINT, OF_A_MOTION = 3, 50, 200
 MOST_COPIED = 100  #: motions of a set that is copied into the results unless the file says otherwise
 WORDS = {ending: word for word, ending in COUNTED.items()}
 #: columns of a draw behind what is drawn
-SHOWN: Columns = {"outcome": str} | columns_of(Place.KEY)
+SHOWN: Columns = {"outcome": str} | columns_of(Place.KEY) | {key: RUN_COLUMNS[key] for key in FELL_FIRST}
 
 
 class DrawRows:
@@ -99,7 +99,11 @@ def shown(row: Row) -> Row:
     """The result of a draw, by the names of `SHOWN`."""
     figures = {key: row[key] for key in (TURNED, SLIPPED)}
     known = {key: one if one is not None and np.isfinite(one) else None for key, one in figures.items()}
-    return {"outcome": WORDS[ending_of(row["status"], row["outcome"])]} | known
+    return (
+        {"outcome": WORDS[ending_of(row["status"], row["outcome"])]}
+        | known
+        | {key: row[key] for key in FELL_FIRST}
+    )
 
 
 def run_ensemble(ensemble: Ensemble, *, folder: Path, **options: Unpack[StudyOptions]) -> EnsembleResult:

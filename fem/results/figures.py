@@ -203,6 +203,39 @@ class Figures(JsonBlock, Generic[ValueT]):
     bolt_shear_N: Annotated[ValueT | None, Shown("shear of the bolts", units.KILONEWTONS, BAND)] = None
 
 
+@dataclass(frozen=True, kw_only=True)
+class LinkFigures(JsonBlock, Generic[ValueT]):
+    """What stops, ties and neighbours do, all of a kind together; None of a container without them."""
+
+    stop_force_N: Annotated[
+        ValueT | None, Shown("largest force on a stop", units.KILONEWTONS, COLUMN | BAND | READ)
+    ] = None
+    tie_force_N: Annotated[
+        ValueT | None, Shown("largest force in a tie", units.KILONEWTONS, COLUMN | BAND | READ)
+    ] = None
+    neighbour_force_N: Annotated[
+        ValueT | None, Shown("largest force between containers", units.KILONEWTONS, COLUMN | BAND | READ)
+    ] = None
+    #: how often a gap or slack was used up
+    link_hits: Annotated[
+        ValueT | None, Shown("hits on stops, ties and neighbours", units.COUNT, COLUMN | BAND | READ)
+    ] = None
+    #: with which one was used up
+    link_velocity_m_s: Annotated[
+        ValueT | None, Shown("largest closing velocity", units.VELOCITY, COLUMN | BAND | READ)
+    ] = None
+    #: the first that broke
+    link_broken_at_s: Annotated[
+        ValueT | None, Shown("first stop or tie broken at", units.SECONDS, COLUMN | BAND | READ)
+    ] = None
+    #: of those that are whole; the least
+    link_slack_m: Annotated[ValueT | None, Shown("least gap or slack left", MM, COLUMN | BAND | READ)] = None
+    #: over its own slenderness angle
+    neighbour_rotation_ratio: Annotated[
+        ValueT | None, Shown("rotation ratio of the neighbours", units.RATIO, COLUMN | BAND | READ)
+    ] = None
+
+
 JOINT_SLIP = Shown(
     *("largest slip between boxes", JOINT_MM, COLUMN | MAP),
     head="between boxes",
@@ -221,12 +254,18 @@ class RunOutcome(JsonBlock):
 
 
 @dataclass(frozen=True, kw_only=True)
-class RunFigures(Figures[float], RunOutcome):  # of several bases the last comes first in a file
+class RunFigures(
+    LinkFigures[float], Figures[float], RunOutcome
+):  # of several bases the last comes first in a file
     """The outcome of one run with its figures."""
 
     boxes: tuple[BoxResult, ...] | None = None  #: of a loose stack, from the floor up
     #: the first box of a loose stack that fell, from 1 at the floor
     fell_box: Annotated[int | None, Shown("first box that fell", units.COUNT, COLUMN | MAP)] = None
+    #: the container of a row that overturned first: "container" or "neighbour 2"
+    fell_in_row: Annotated[str | None, Shown("first of the row to overturn", units.COUNT, COLUMN)] = None
+    #: of the containers of a row: of that of the case, then of its neighbours
+    row_outcomes: Annotated[str | None, Shown("outcomes along the row", units.COUNT, COLUMN)] = None
 
     @property
     def turned(self) -> float:
@@ -299,6 +338,10 @@ def _plain(hint: Any) -> type:
 FIGURES = declared_in(RunFigures)
 #: of each box of a loose stack
 BOX_FIGURES = declared_in(BoxFigures)
+#: what falls first of several that stand on or beside one another
+FELL_FIRST = ("fell_box", "fell_in_row")
+#: of what not every run has
+WHERE_GIVEN = frozenset(declared_in(LinkFigures)) | {*FELL_FIRST, "row_outcomes", "boxes"}
 #: keys of the two figures that studies limit and rank by: how far a container turns, and how far it slips
 TURNED, SLIPPED = "rotation_ratio", "max_slip_m"
 

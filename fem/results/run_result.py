@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from fem.results.figures import BoxFigures, Figures, Place, RunFigures, keys_beside
+from fem.results.figures import WHERE_GIVEN, BoxFigures, Figures, LinkFigures, Place, RunFigures, keys_beside
 from fem.results.json_block import JsonBlock
 from fem.runtime.units import Reach
 
@@ -149,11 +149,11 @@ class ChangedRun(RunFigures):
     status: str  #: completed | overturned | failed | interrupted
     error: str | None = None
 
-    written_where_given = keys_beside(Place.BAND) | {"boxes", "fell_box"}
+    written_where_given = keys_beside(Place.BAND) | WHERE_GIVEN
 
 
 @dataclass(frozen=True, kw_only=True)
-class Band(Figures[Reach]):
+class Band(LinkFigures[Reach], Figures[Reach]):
     """What the run does when its unknown inputs change.
 
     Its figures are the [low, high] of the members that stand where the run stands, or overturn where it overturns.
@@ -169,7 +169,7 @@ class Band(Figures[Reach]):
     boxes: tuple[BoxReach, ...] | None = None  #: of a loose stack, from the floor up
     members: tuple[ChangedRun, ...] = ()  #: the run itself first
 
-    written_where_given = keys_beside(Place.BAND) | {"boxes"}
+    written_where_given = keys_beside(Place.BAND) | WHERE_GIVEN
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -251,9 +251,9 @@ class Verdict(RunFigures):
     margin: Margin | None = None
 
     #: the forces in bolts of a run are those of its joints
-    written_where_given = frozenset(
+    written_where_given = WHERE_GIVEN.union(
         {
-            *("boxes", "fell_box", "corner_capacity_N", "plastic_work_J", "bolt_tension_N", "bolt_shear_N"),
+            *("corner_capacity_N", "plastic_work_J", "bolt_tension_N", "bolt_shear_N"),
             *("invalid_reason", "leans", "neighbours", "stress_from_corner_m"),
         }
     )

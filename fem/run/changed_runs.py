@@ -23,7 +23,7 @@ from fem.model.model import Model, build_model
 from fem.model.motion import build_motions
 from fem.model.recovery import Recovery, recovery_of
 from fem.model.validity import runs_in_memory
-from fem.results.figures import Place
+from fem.results.figures import FELL_FIRST, Place
 from fem.results.run_result import ChangedRun, JointDemand, Numerics, Verdict
 from fem.run.changed_runs_file import ChangedRunsFile, key_of
 from fem.run.outcome import run_without_history
@@ -182,7 +182,7 @@ def changed_run(
         outcome=verdict.outcome,
         **verdict.figures(Place.BAND) | {"bolt_tension_N": tension, "bolt_shear_N": shear},
         boxes=verdict.boxes,
-        fell_box=verdict.fell_box,
+        **{key: getattr(verdict, key) for key in FELL_FIRST},
     )
 
 

@@ -148,7 +148,7 @@ class SiteRun(figures.RunFigures):
     building_period_s: float | None = None
     factor: float = 1.0
 
-    written_where_given = figures.keys_beside(figures.Place.RUNS) | {"boxes"}
+    written_where_given = figures.keys_beside(figures.Place.RUNS) | figures.WHERE_GIVEN
 
 
 @dataclass(frozen=True)
@@ -246,7 +246,7 @@ class ConfirmedRun(figures.RunFigures):
     outcomes: tuple[str, ...] = ()  #: over the band
     bolt_utilisation: float | None = None  #: largest tension over joints.bolt_capacity_N; None: not given
 
-    written_where_given = figures.keys_beside(figures.Place.KEY) | {"boxes", "bolt_utilisation"}
+    written_where_given = figures.keys_beside(figures.Place.KEY) | figures.WHERE_GIVEN | {"bolt_utilisation"}
 
 
 @dataclass(frozen=True, kw_only=True)

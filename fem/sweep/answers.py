@@ -15,7 +15,7 @@ from fem.batch.answers import Answer, Trial, answer_axis, answer_of, is_rising, 
 from fem.batch.axes import Axis, point_of, set_axis
 from fem.batch.labels import axis_name, place_in_words
 from fem.batch.table import Columns, read_rows, table_of_rows
-from fem.results.figures import SLIPPED, TURNED
+from fem.results.figures import FELL_FIRST, RUN_COLUMNS, SLIPPED, TURNED
 from fem.results.outcome import ending_of
 from fem.sweep.cells import FIGURES
 from fem.sweep.motion_outcomes import sign_axes
@@ -31,6 +31,7 @@ TRIED_COLUMNS = {
     TURNED: float,
     "reason": str,
 } | FIGURES
+TRIED_COLUMNS |= {key: RUN_COLUMNS[key] for key in FELL_FIRST}
 #: columns of `answers.csv` behind those of the other axes
 COLUMNS: Columns = dict.fromkeys(("stood_to", f"stood_{SLIPPED}", "overturned_from", SLIPPED), float)
 COLUMNS |= dict.fromkeys(("stood_again", "no_outcome", "unsure", "answer"), str)
@@ -139,6 +140,7 @@ def _lines_of(table: SweepTable, axis: Axis, tried: Path) -> dict[int, list[Tria
     place = table.axes.index(axis)
     cells = np.moveaxis(np.arange(len(table["cell"])).reshape(table.shape), place, -1)
     slip, unsure = table.columns.get(SLIPPED), table.columns.get("unsure")
+    fell = table.columns.get("fell_in_row")
     lines: dict[int, list[Trial]] = defaultdict(list)
     for line in cells.reshape(-1, len(axis.values)).tolist():
         for cell, value in zip(line, axis.values, strict=True):
@@ -149,9 +151,13 @@ def _lines_of(table: SweepTable, axis: Axis, tried: Path) -> dict[int, list[Tria
                     kind=ending_of(table["status"][cell], table["outcome"][cell]),
                     slip=None if slip is None or np.isnan(slip[cell]) else float(slip[cell]),
                     unsure=None if unsure is None or np.isnan(unsure[cell]) else bool(unsure[cell]),
+                    fell="" if fell is None else str(fell[cell]),
                 )
             )
     for row in read_rows(tried, TRIED_COLUMNS):
         first, kind = row["cell"], ending_of(row["status"], row["outcome"])
-        lines[first].append(Trial(value=row["value"], line=first, kind=kind, slip=row[SLIPPED]))
+        fell_first = row["fell_in_row"] or ""
+        lines[first].append(
+            Trial(value=row["value"], line=first, kind=kind, slip=row[SLIPPED], fell=fell_first)
+        )
     return lines

@@ -9,7 +9,16 @@ from typing import Any
 import numpy as np
 
 from fem.batch.table import row_of
-from fem.results.figures import BOXES, RUN_COLUMNS, TURNED, BoxResult, Place, RunFigures, columns_of
+from fem.results.figures import (
+    BOXES,
+    FELL_FIRST,
+    RUN_COLUMNS,
+    TURNED,
+    BoxResult,
+    Place,
+    RunFigures,
+    columns_of,
+)
 from fem.results.outcome import Ending, ending_of
 from fem.runtime.arrays import BoolArray, FloatArray, IntArray
 from fem.sweep.plan import Sweep
@@ -17,7 +26,7 @@ from fem.sweep.table import SweepTable, row_columns
 
 FIGURES = columns_of(Place.KEY)
 #: columns of what a row shows
-SHOWN = {"status": str} | {key: RUN_COLUMNS[key] for key in ("outcome", *FIGURES, "fell_box", *BOXES)}
+SHOWN = {"status": str} | {key: RUN_COLUMNS[key] for key in ("outcome", *FIGURES, *FELL_FIRST, *BOXES)}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,7 +44,7 @@ def shown_in(row: Mapping[str, Any]) -> RunShown:
         kind=kind,
         outcome=None if kind is Ending.FAILED else row["outcome"],
         boxes=tuple(BoxResult(**dict(zip(BOXES.values(), box, strict=True))) for box in boxes),
-        **{key: row[key] for key in ("fell_box", *FIGURES)},
+        **{key: row[key] for key in (*FELL_FIRST, *FIGURES)},
     )
 
 

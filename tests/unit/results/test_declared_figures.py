@@ -10,7 +10,16 @@ from fem.assessment.summary import result_rows
 from fem.batch.runner import run_chunk
 from fem.case.case import load_case
 from fem.report.sweep_page import QUANTITIES
-from fem.results.figures import BOX_FIGURES, FIGURES, SCALARS, BoxResult, Place, keys_of, summary_order
+from fem.results.figures import (
+    BOX_FIGURES,
+    FIGURES,
+    SCALARS,
+    WHERE_GIVEN,
+    BoxResult,
+    Place,
+    keys_of,
+    summary_order,
+)
 from fem.results.run_result import Band, ChangedRun, RunResult, Verdict
 from fem.site_check.result import SiteRun
 from fem.site_check.runs import COLUMNS
@@ -18,12 +27,14 @@ from fem.sweep.table import FOUND
 
 BOX = BoxResult(max_rotation_rad=0.5, max_slip_m=0.5, max_opening_m=0.5)
 OF_FIELDS = [key for key in FIGURES if key in {one.name for one in fields(Verdict)}]
-NUMBERS = [key for key in OF_FIELDS if key not in ("impacts", "restored", "valid", "fell_box")]
+WORDED = ("fell_in_row", "row_outcomes")
+NUMBERS = [key for key in OF_FIELDS if key not in ("impacts", "restored", "valid", "fell_box", *WORDED)]
 FULL = Verdict(
     outcome="rock",
     boxes=(BOX, BOX),
     fell_box=2,
     **dict.fromkeys(NUMBERS, 0.5),
+    **dict.fromkeys(WORDED, "neighbour 1"),
     impacts=3,
     restored=True,
     valid=True,
@@ -35,7 +46,7 @@ BOLTS = {"bolt_tension_N", "bolt_shear_N"}
 def test_a_figure_is_a_key_of_run_json_and_comes_back():
     assert set(OF_FIELDS) - BOLTS <= FULL.to_json().keys()
     empty = Verdict().to_json()
-    assert set(OF_FIELDS) - BOLTS - {"fell_box"} <= empty.keys()
+    assert set(OF_FIELDS) - BOLTS - WHERE_GIVEN <= empty.keys() and not WHERE_GIVEN & empty.keys()
     again = Verdict.from_json(json.loads(json.dumps(FULL.to_json())))
     assert all(again[key] == FULL[key] for key in OF_FIELDS if key not in BOLTS)
 
@@ -87,8 +98,16 @@ def test_every_figure_is_filled_by_some_run():
         "sliding": ["solver.model=rigid"],
         "overturning": ["solver.model=rigid", "container.joints=loose"],
     }
+    struck = {"side": "right", "gap_m": 0.01, "stiffness_N_m": 1e8}
+    links = {
+        "neighbour": [struck],
+        "stop": [struck | {"height_m": 1.0, "strength_N": 1e3}],
+        "tie": [{"from": "left", "height_m": 1.0, "slack_m": 0.01, "stiffness_N_m": 1e6}],
+    }
+    runs = [load_case(name, keys) for name, keys in cases.items()]
+    runs.append(load_case("overturning", ["solver.model=rigid", "contact.mu_static=0.6"]).with_values(links))
     filled = set()
-    for row in run_chunk(lambda name: load_case(name, cases[name]), list(cases)):
+    for row in run_chunk(lambda case: case, runs):
         assert row["status"] != "failed", row["reason"]
         filled |= {key for key in SCALARS if row[key] is not None}
     assert filled == set(SCALARS)
