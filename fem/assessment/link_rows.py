@@ -28,7 +28,8 @@ def _beside(table: NeighbourTable, alone: Case) -> str:
     """A neighbour, by its table and its case alone."""
     boxes = f"{alone.container.boxes} box{'es' * (alone.container.boxes > 1)}"
     size = f"{alone.stack[0].width:g} x {alone.stack[-1].top:g} m, {alone.mass:.6g} kg, {boxes}"
-    return f"on the {table.side}, gap {1e3 * table.gap_m:g} mm, {size}{_stiffness(table)}{_friction(table)}"
+    which = "" if table.case is None else f"{table.case}, "
+    return f"{which}on the {table.side}, gap {1e3 * table.gap_m:g} mm, {size}{_stiffness(table)}{_friction(table)}"
 
 
 def _stiffness(link: StopTable | TieTable | NeighbourTable) -> str:

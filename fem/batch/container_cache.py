@@ -37,7 +37,7 @@ def container_key(case: Case, *, mass: bool = True, gaps: bool = True) -> Hashab
         case.output.stop_when_overturned,
         tuple((one.side, one.height_m) for one in case.links),
         tuple(
-            (one.side, one.gap_m if gaps else None, *(getattr(one, name) for name in OWN))
+            (one.side, one.gap_m if gaps else None, one.case, *(getattr(one, name) for name in OWN))
             for one in case.neighbour
         ),
     )

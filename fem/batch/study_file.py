@@ -10,10 +10,8 @@ from fem.batch.axes import VERTICAL_FILE, Axis, AxisError, hint, set_axis
 from fem.case.case import Case, load_case
 from fem.case.files import CASES, Origin, is_there, parse_case
 from fem.case.overrides import keys_in_effect
-from fem.case.problem import outside_the_folder, stays_in_the_folder
 from fem.case.tables import CaseTable
 from fem.case.validation import CaseError, problem_lines, read_table
-from fem.runtime.user_files import leads_out, real_path
 
 TableT = TypeVar("TableT", bound=CaseTable)
 StudyT = TypeVar("StudyT")
@@ -110,16 +108,9 @@ def base_case(
     Raises:
         CaseError: there is neither, it is outside that folder, or it cannot be used.
     """
-    if not stays_in_the_folder(name):
-        raise CaseError(f"case {outside_the_folder(name)}")
+    CASES.beside(name, origin)
     path = origin.folder / name
     is_file = is_there(Path.is_file, path)
-    if is_file and leads_out(origin.folder, path):
-        raise CaseError(f"case {name!r} leads out of the folder of {origin.place}, to {real_path(path)}")
-    if not is_file and name not in CASES.names:
-        raise CaseError(
-            f"case {name!r} is no file in {real_path(origin.folder)} and no shipped case{CASES.hint(name)}"
-        )
     base = load_case(path if is_file else name)
     values = flat("set", changes)
     if motion:

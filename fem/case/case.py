@@ -18,9 +18,10 @@ from pydantic import ConfigDict, Field, PrivateAttr
 from fem.case import data_files
 from fem.case.boxes import Box, boxes_of, joint_friction
 from fem.case.files import CASES, DEFAULT_CASE, Origin, parse_case
-from fem.case.links import StopTable, TieTable, links_of_case
-from fem.case.neighbours import NeighbourTable, case_of
+from fem.case.links import LINK_RULES, ROWS, StopTable, TieTable, links_of_case
+from fem.case.neighbours import CORNER_PATCH, NeighbourTable, beside, case_of
 from fem.case.overrides import kinds_of, naming_overrides, parse_override, with_overrides
+from fem.case.problem import broken
 from fem.case.resolved import resolved_tables
 from fem.case.rules import CASE_RULES, bear_as_plates
 from fem.case.tables import (
@@ -130,10 +131,42 @@ class Case(CaseHeading):
         found = []
         for number, one in enumerate((None, *self.neighbour) if self.neighbour else ()):
             try:
-                found.append(self.with_values(case_of(self, one)))
+                own = self if one is None or one.case is None else self._beside(one.case)
+                found.append(own.with_values(case_of(own, one)))
             except CaseError as error:
                 raise CaseError(f"[[neighbour]] {number}, as a container: {error}") from error
         return tuple(found)
+
+    def _beside(self, name: str) -> "Case":
+        """This case with the container of the case that a neighbour names."""
+        if name not in self._origin.beside:
+            raise AttributeError(
+                name
+            )  # it is read once the keys are: until then no rule asks for it (`broken`)
+        return _read(beside(self.given(), self._origin.beside[name].given()), self._origin, {})
+
+    @property
+    def _beside_alone(self) -> dict[str, "Case"]:
+        """What its neighbours name, each alone on this floor, by its name in a folder of results.
+
+        Raises:
+            CaseError: two have one name there.
+        """
+        found: dict[str, Case] = {}
+        names = {one.case for one in self.neighbour} - {None}
+        for name in sorted(map(str, names)):
+            own = self._beside(name)
+            found[data_files.copied_name(self.folder, name)] = own.with_values(case_of(own, None))
+        if len(found) < len(names):
+            raise CaseError(
+                "[neighbour] case names two files of one name from different folders; rename one of them"
+            )
+        return found
+
+    @property
+    def texts(self) -> dict[str, str]:
+        """The files of these cases, by their names in a folder of results; raises as `row`."""
+        return {name: to_toml(own) for name, own in self._beside_alone.items()}
 
     @property
     def effective_width(self) -> float:
@@ -417,7 +450,7 @@ def case_from(mapping: Mapping[str, Any]) -> Case:
     if not isinstance(mapping, Mapping):
         raise CaseError(f"case_from: a mapping of tables is needed, got {type(mapping).__name__}")
     case = _read(_plain(mapping), Origin(), {})
-    return case.from_origin(Origin(text=toml_document(case.given())))
+    return case.from_origin(replace(case.origin_with({}), text=toml_document(case.given())))
 
 
 def to_toml(case: Case) -> str:
@@ -445,6 +478,8 @@ def case_hash(case: Case) -> str:
         digest.update(f"{key} {content}\n".encode())
     if case.recorded is not None:
         digest.update(written(case.recorded).encode())
+    for name, own in case._beside_alone.items():
+        digest.update(f"{name} {case_hash(own)}\n".encode())
     return digest.hexdigest()
 
 
@@ -465,4 +500,51 @@ def _read(data: Mapping[str, Any], origin: Origin, overrides: Mapping[str, Any])
     if problems:
         lines = problem_lines(problems, f"{origin.place}: ")
         raise CaseError("\n".join(naming_overrides(lines, overrides)))
-    return Case.model_validate(values).from_origin(origin)
+    case = Case.model_validate(values)
+    named = sorted({one.case for one in case.neighbour if one.case is not None})
+    if not named:
+        return case.from_origin(origin)
+    read = {name: origin.beside.get(name) or _neighbour_case(name, case, origin, overrides) for name in named}
+    case = case.from_origin(replace(origin, beside=read))
+    _ = case.row  # one that cannot be is refused here
+    if problems := broken(LINK_RULES, case):
+        raise CaseError("\n".join(problem_lines(problems, f"{origin.place}: ")))
+    return case
+
+
+def _neighbour_case(name: str, case: Case, origin: Origin, overrides: Mapping[str, Any]) -> Case:
+    """The case that a neighbour of a case names.
+
+    Raises:
+        CaseError: there is none, it cannot be used, has links of its own, or stands on another floor.
+    """
+    place = f"{origin.place}: [neighbour] "
+    try:
+        anywhere = origin.allow_outside or "neighbour.case" in origin.trusted
+        source = CASES.beside(name, origin, anywhere=anywhere)
+        data = parse_case(source)
+        own = _read(
+            {key: value for key, value in data.items() if key not in ROWS},
+            replace(source, trusted=frozenset(data_files.FILE_KEYS)),
+            {},
+        )
+    except CaseError as error:
+        raise CaseError("\n".join(f"{place}{line}" for line in str(error).splitlines())) from error
+    if held := [f"[[{key}]]" for key in ROWS if data.get(key)]:
+        raise CaseError(
+            f"{place}case = {name!r} has {' and '.join(held)} of its own; a row takes its container alone: name a "
+            "file without them, and give what holds the row in this one"
+        )
+    floors = [
+        (one.gravity_m_s2, one.floor.model_copy(update={CORNER_PATCH: None, "preset": None}))
+        for one in (case, own)
+    ]
+    changed = any(
+        key == "gravity_m_s2" or key.startswith("floor.") for key in overrides
+    )  # for all of the row
+    if floors[0] != floors[1] and not changed:
+        raise CaseError(
+            f"{place}case = {name!r} stands on another floor: [floor] (without {CORNER_PATCH}) and gravity_m_s2 must "
+            "be those of this case, for all of a row stand on one; make them equal"
+        )
+    return own

@@ -14,7 +14,7 @@ from fem.case.validation import CaseError
 from fem.runtime.user_files import leads_out, real_path
 
 #: keys that name files
-FILE_KEYS = ("container.mesh_file", "motion.file", "vertical.file")
+FILE_KEYS = ("container.mesh_file", "motion.file", "vertical.file", "neighbour.case")
 COPIES = "data"  #: folder in the results of the files that lie outside the folder of the case
 WAYS_OUT = "; `run` and `check` take one from anywhere that the command line names, or with --allow-outside"
 

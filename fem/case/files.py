@@ -6,15 +6,16 @@ the line and a way out, and a file of another kind with the command that compute
 
 import re
 import tomllib
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from importlib import resources
 from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from fem.case.problem import outside_the_folder, stays_in_the_folder
 from fem.case.validation import CaseError, did_you_mean
-from fem.runtime.user_files import read_regular
+from fem.runtime.user_files import leads_out, read_regular, real_path
 
 if TYPE_CHECKING:  # it loads numpy, which `list` and bad input need not wait for
     from fem.records.record import Record
@@ -58,6 +59,8 @@ class Origin:
     allow_outside: bool = field(default=False, compare=False)  #: all of them may, whoever sets them
     #: a motion given by arrays, in place of a file
     recorded: "Record | None" = field(default=None, compare=False)
+    #: the cases that its neighbours name, each read once
+    beside: Mapping[str, Any] = field(default_factory=dict, compare=False)
 
 
 @dataclass(frozen=True)
@@ -118,6 +121,32 @@ class Collection:
         raise CaseError(
             f"no {self.kind} file {name!r} and no shipped {self.kind} of that name{self.hint(Path(name).stem)}"
         )
+
+    def beside(self, name: str, origin: Origin, *, anywhere: bool = False) -> Origin:
+        """One that another file names: a file beside that one wins over a shipped one of that name.
+
+        Args:
+            name: as given there.
+            origin: of the other file.
+            anywhere: it may lie outside that folder.
+
+        Raises:
+            CaseError: there is neither, it is outside, or it cannot be read; beginning with the kind.
+        """
+        path = origin.folder / name
+        is_file = is_there(Path.is_file, path)
+        if not anywhere and not stays_in_the_folder(name):
+            raise CaseError(f"{self.kind} {outside_the_folder(name)}")
+        if not anywhere and is_file and leads_out(origin.folder, path):
+            raise CaseError(
+                f"{self.kind} {name!r} leads out of the folder of {origin.place}, to {real_path(path)}"
+            )
+        if not is_file and name not in self.names:
+            raise CaseError(
+                f"{self.kind} {name!r} is no file in {real_path(origin.folder)} and no shipped {self.kind}"
+                f"{self.hint(name)}"
+            )
+        return self.find(path) if is_file else self.shipped(name)
 
     def shipped(self, name: str) -> Origin:
         """One that comes with the program, whatever files there are."""

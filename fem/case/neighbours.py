@@ -4,7 +4,7 @@ They stand under the same motion of the floor, each on the floor for itself; whe
 once the gap is used up. The tables of a side go outward: the first stands next to the container, the second behind it.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
@@ -17,6 +17,11 @@ from fem.case.table import CaseTable, case_key
 
 MOST_NEIGHBOURS = 5
 USUAL_DAMPING = 2.0  #: damping ratio of what is struck, where nothing is said: it does not bounce
+#: of the case that a neighbour names, what is taken of it; all else is that of the row
+ITS_TABLES = ("container", "support", "joints")
+CORNER_PATCH = "corner_patch_m"
+#: of [contact], the law of friction, which the row has in common
+LAW = ("friction", "regularisation_velocity_m_s", "stribeck_velocity_m_s")
 #: keys that a neighbour may have other than the container; mass_kg replaces what gives the mass there
 OWN = ("boxes", "width_m", "height_m", "mass_kg", "centroid_m", "wall_m")
 
@@ -39,13 +44,18 @@ class StruckTable(CaseTable):
 
 
 class NeighbourTable(StruckTable):
-    """Another container beside it, on the same floor; equal but for what is given here.
+    """Another container beside it, on the same floor; equal, or that of another case, but for what is given here.
 
     The stiffness is that of the two sides, over all their height: half of it at their top, half at their foot.
     """
 
+    case: str | None = case_key(
+        "file beside this one, or shipped case, whose container it is; default: as [container]",
+        None,
+        example="other.toml",
+    )
     boxes: Annotated[int, Strict(), q.BOXES] | None = case_key(
-        "as all below by default as [container]", None, example=4
+        "as all below by default as the container", None, example=4
     )
     width_m: Annotated[float, q.LENGTH] | None = case_key("of one box", None, example=1.1)
     height_m: Annotated[float, q.LENGTH] | None = case_key("of one box", None, example=1.0)
@@ -71,6 +81,23 @@ def case_of(case: Any, neighbour: NeighbourTable | None) -> dict[str, Any]:
     if neighbour.height_m is not None:
         alone["container.centroid_m"] = centroid_at(case.container, neighbour.height_m)
     return alone | {f"container.{name}": value for name, value in given.items() if value is not None}
+
+
+def beside(row: Mapping[str, Any], own: Mapping[str, Any]) -> dict[str, Any]:
+    """What a case of a row would hold if its container were that of another case on the same floor.
+
+    Args:
+        row: what the case of the row holds.
+        own: what the other one holds.
+    """
+    kept = {name: row[name] for name in row.keys() - {"uncertainty", "document", "stop", "tie", "title"}}
+    laws = {key: value for key, value in row["contact"].items() if key in LAW}
+    contact = {key: value for key, value in own["contact"].items() if key not in LAW}
+    floor = {key: value for key, value in row.get("floor", {}).items() if key != CORNER_PATCH}
+    patch = {key: value for key, value in own.get("floor", {}).items() if key == CORNER_PATCH}
+    others = [{key: value for key, value in one.items() if key != "case"} for one in row["neighbour"]]
+    its = {name: own.get(name, {}) for name in ITS_TABLES}
+    return kept | its | {"contact": contact | laws, "floor": floor | patch, "neighbour": others}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -121,6 +148,8 @@ def outermost(case: Any, side: str) -> int:
 def top_of(case: Any, number: int) -> float:
     """Height of a container of the row of a case above the floor, of 0 that of its own [m]."""
     own, one = case.container, case.neighbour[number - 1] if number else None
+    if one is not None and one.case is not None:
+        return float(case.row[number].stack[-1].top)
     if one is None or (one.boxes is None and one.height_m is None):
         return boxes_of(own, case.gravity_m_s2)[-1].top
     return float((one.boxes or own.boxes) * (one.height_m or own.height_m))

@@ -45,8 +45,10 @@ def resolved_tables(case: Any) -> dict[str, Any]:
         document |= {name: rows} if rows else {}
     for dotted in FILE_KEYS:
         name, _, key = dotted.partition(".")
-        if key in document.get(name, {}):
-            document[name][key] = copied_name(case.folder, document[name][key])
+        content = document.get(name, [])
+        for table in content if name in ROWS else [content]:
+            if key in table:
+                table[key] = copied_name(case.folder, table[key])
     return document
 
 

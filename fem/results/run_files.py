@@ -8,6 +8,7 @@ from fem.case.case import Case, CaseError
 from fem.case.data_files import place_of
 from fem.case.recorded import recorded_motion
 from fem.records.columns import written
+from fem.results.files import write_atomically
 from fem.results.kinds import ResultKind
 from fem.runtime.user_files import real_path
 
@@ -45,6 +46,8 @@ def require_free_names(case: Case, kind: ResultKind, texts: Iterable[str] = ()) 
     """
     for key, file in case.files.items():
         require_free_name(place_of(key), file.copy, kind, texts)
+    for name in case.texts:
+        require_free_name(place_of("neighbour.case"), PurePath(name), kind, texts)
 
 
 def require_free_name(place: str, name: PurePath, kind: ResultKind, texts: Iterable[str] = ()) -> None:
@@ -57,7 +60,7 @@ def require_free_name(place: str, name: PurePath, kind: ResultKind, texts: Itera
 
 
 def copy_data_files(case: Case, folder: Path, *, read: bool = False) -> None:
-    """Copy mesh and motion files into a folder, under the names that the resolved case gives them.
+    """Copy mesh and motion files and the cases of neighbours into a folder, named as the resolved case names them.
 
     `read`: its motions have been read, so they are motions.
 
@@ -75,3 +78,9 @@ def copy_data_files(case: Case, folder: Path, *, read: bool = False) -> None:
         target.parent.mkdir(parents=True, exist_ok=True)
         if real_path(target) != real_path(path):
             shutil.copyfile(path, target)
+    own = {real_path(case.folder / one.case) for one in case.neighbour if one.case is not None}
+    for name, text in case.texts.items():
+        target = folder / name
+        target.parent.mkdir(parents=True, exist_ok=True)
+        if real_path(target) not in own:
+            write_atomically(target, text)
