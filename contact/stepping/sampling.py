@@ -1,6 +1,7 @@
 """Samples of a run on an exact grid of times, interpolated within the accepted step."""
 
 from contact.arrays import FloatArray
+from contact.interface.compliance import add_modes
 from contact.jit import compiled, inlined
 from contact.motion.kernel import floor_motion
 from contact.stepping.body import (
@@ -117,6 +118,8 @@ def keep_most_strained_step(run: RunState, step: float) -> None:
         window = min(int((run.clock[0].time + step) / STRAIN_WINDOW), kept.shape[1] - 1)
         keep_if_more(kept[0, window], new.energy[STRAIN], new.position)
         for group in range(kept.shape[0] - 1):
+            if new.energy[STRAIN] * run.problem.stress.bound[group] <= kept[1 + group, window, 0]:
+                continue
             largest = largest_square(run.problem.stress, group, new.position)
             keep_if_more(kept[1 + group, window], largest, new.position)
 
@@ -133,15 +136,15 @@ def keep_if_more(row: FloatArray, measure: float, position: FloatArray) -> None:
 @compiled(inline=True)
 def largest_square(stress: Stresses, group: int, position: FloatArray) -> float:
     """Largest square of the von Mises stress at the points of a group [Pa2]."""
-    largest = 0.0
-    for i in range(stress.group[group], stress.group[group + 1]):
-        first, along, upward, shear = stress.first[i], 0.0, 0.0, 0.0
-        for j in range(stress.of_modes.shape[2]):
-            amplitude = position[first + j]
-            along += amplitude * stress.of_modes[i, 0, j]
-            upward += amplitude * stress.of_modes[i, 1, j]
-            shear += amplitude * stress.of_modes[i, 2, j]
-        largest = max(largest, along * along - along * upward + upward * upward + 3.0 * shear * shear)
+    largest, modes, sums = 0.0, stress.of_modes.shape[1], stress.sums
+    for body in range(stress.group[group], stress.group[group + 1]):
+        for a in range(sums.size):
+            sums[a] = 0.0
+        first = stress.first[body]
+        add_modes(stress.of_modes[body], position[first : first + modes], sums)
+        for i in range(sums.size // 3):
+            along, upward, shear = sums[3 * i], sums[3 * i + 1], sums[3 * i + 2]
+            largest = max(largest, along * along - along * upward + upward * upward + 3.0 * shear * shear)
     return largest
 
 

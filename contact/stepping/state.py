@@ -265,17 +265,26 @@ def make_samples(
 
 @struct
 class Stresses(NamedTuple):
-    """The stress of k points of an elastic body, where it may be largest, from its modal amplitudes.
+    """The stress of some points of b elastic bodies, where it may be largest, from their modal amplitudes.
 
-    The largest is followed for each of g groups of points: of a row one for each body.
+    The largest is followed for each of g groups of bodies: of a row one for each body. A body with fewer points than k
+    has points without stress behind them.
     """
 
-    first: IntArray  #: (k,) of the coordinates, the first amplitude of the body of each point
-    of_modes: FloatArray  #: (k, 3, m) xx, zz, xz for amplitudes of 1 [Pa]
-    group: IntArray  #: (g + 1,) first point of each group, and the one behind the last
+    first: IntArray  #: (b,) of the coordinates, the first amplitude of each body
+    of_modes: FloatArray  #: (b, m, 3 k) xx, zz, xz of each point for amplitudes of 1 [Pa]
+    group: IntArray  #: (g + 1,) first body of each group, and the one behind the last
+    bound: FloatArray  #: (g,) largest square of the von Mises stress in each, over the strain energy [Pa2/J]
+    sums: FloatArray  #: (3 k,) scratch of the stepping: the stress of a body
 
 
-NO_STRESSES = Stresses(np.zeros(0, dtype=np.int64), np.zeros((0, 3, 0)), np.zeros(1, dtype=np.int64))
+NO_STRESSES = Stresses(
+    first=np.zeros(0, dtype=np.int64),
+    of_modes=np.zeros((0, 0, 0)),
+    group=np.zeros(1, dtype=np.int64),
+    bound=np.zeros(0),
+    sums=np.zeros(0),
+)
 
 
 @struct

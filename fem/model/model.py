@@ -32,7 +32,7 @@ from fem.model.frames import frame_interval
 from fem.model.links import begin_links
 from fem.model.loose_stack import joints_of_stack, make_stack_state, own_stiffness, settle
 from fem.model.motion import build_motions, longest_run, peaks_in_run, rest_sought_from
-from fem.model.peaks import stressed_nodes
+from fem.model.peaks import ROUNDING, stress_bounds, stressed_nodes
 from fem.model.resting import still_from
 from fem.model.restitution import require_loss
 from fem.model.row import begin_row, joints_of_row
@@ -254,17 +254,20 @@ def _watched_stresses(case: Case, container: Container) -> Stresses:
     else:
         nodes = stressed_nodes(case, container.elements, container.basis, container.nodes)
         bases = [(container.basis, nodes)]
-    most = max(basis.angular_frequencies.size for basis, _ in bases)
-    first = np.concatenate([np.full(nodes.size, 3 + k * (3 + most)) for k, (_, nodes) in enumerate(bases)])
-    of_modes = np.zeros((first.size, 3, most))
-    end = 0
-    for basis, nodes in bases:
-        begin, end = end, end + nodes.size
-        of_modes[begin:end, :, : basis.angular_frequencies.size] = np.moveaxis(
-            basis.stress[:, :, nodes], -1, 0
-        )
-    ends = np.cumsum([0, *(nodes.size for _, nodes in bases)])
-    return Stresses(first=first, of_modes=of_modes, group=ends if container.row else ends[[0, -1]])
+    modes = max(basis.angular_frequencies.size for basis, _ in bases)
+    points = max(nodes.size for _, nodes in bases)
+    of_modes, bounds = np.zeros((len(bases), modes, points, 3)), np.zeros(len(bases))
+    for body, (basis, nodes) in enumerate(bases):
+        stress, frequencies = basis.stress[:, :, nodes], basis.angular_frequencies
+        of_modes[body, : frequencies.size, : nodes.size] = np.moveaxis(stress, 0, -1)
+        bounds[body] = 2.0 * (1.0 + ROUNDING) * np.max(stress_bounds(stress, frequencies)) ** 2
+    return Stresses(
+        first=3 + (3 + modes) * np.arange(len(bases)),
+        of_modes=of_modes.reshape(len(bases), modes, 3 * points),
+        group=np.arange(len(bases) + 1) if container.row else np.array([0, len(bases)]),
+        bound=bounds if container.row else np.array([bounds.max()]),
+        sums=np.zeros(3 * points),
+    )
 
 
 def _strained_steps(case: Case, duration: float) -> int:

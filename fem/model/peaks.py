@@ -5,14 +5,20 @@ mesh is refined; a casting spreads the force, and the mesh has none. A casting's
 depends on that (Saint-Venant's principle; `README.md` has figures). Without posts it counts everywhere.
 """
 
+import math
+
 import numpy as np
 
 from fem.case.case import Case
-from fem.runtime.arrays import IntArray
+from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid.assembly import FiniteElements
 from fem.solid.elasticity import von_mises
 from fem.solid.reduction import ReducedBasis
 
+#: |VON_MISES_ROOT s| is the equivalent stress of s = (sx, sz, t)
+VON_MISES_ROOT = np.array([[1.0, -0.5, 0.0], [0.0, math.sqrt(0.75), 0.0], [0.0, 0.0, math.sqrt(3.0)]])
+#: relative rounding error of a stress against its bound
+ROUNDING = 1e-9
 LOWEST = 4  #: modes by which nodes are chosen whose stress is looked at
 
 
@@ -44,3 +50,14 @@ def stressed_nodes(case: Case, elements: FiniteElements, basis: ReducedBasis, lo
     shapes = np.concatenate([amplitudes, np.eye(LOWEST, len(basis.shapes))])
     stresses = (von_mises(one @ basis.stress)[counted] for one in shapes)
     return counted[np.unique([np.argmax(stress) for stress in stresses])]
+
+
+def stress_bounds(stress: FloatArray, angular_frequencies: FloatArray) -> FloatArray:
+    """Largest von Mises stress of nodes, over the root of twice the strain energy, shape (n,) [Pa/sqrt(J)].
+
+    Args:
+        stress: of each mode at the nodes, shape (3, m, n) [Pa].
+        angular_frequencies: of the modes, shape (m,) [rad/s].
+    """
+    rooted = np.tensordot(VON_MISES_ROOT, stress / angular_frequencies[:, None], axes=1)
+    return np.asarray(np.linalg.norm(np.moveaxis(rooted, -1, 0), ord=2, axis=(1, 2)))

@@ -1,6 +1,5 @@
 """Recovery of fields on the whole mesh from the coordinates of a body: displacement, velocity, von Mises stress."""
 
-import math
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -8,17 +7,13 @@ import numpy as np
 
 from fem.case.case import Case
 from fem.model.model import Model
-from fem.model.peaks import counted_nodes
+from fem.model.peaks import ROUNDING, counted_nodes, stress_bounds
 from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid.assembly import FiniteElements
 from fem.solid.elasticity import von_mises
 from fem.solid.nodal_body import rotation_matrix
 from fem.solid.reduction import ReducedBasis
 
-#: |VON_MISES_ROOT s| is the equivalent stress of s = (sx, sz, t)
-VON_MISES_ROOT = np.array([[1.0, -0.5, 0.0], [0.0, math.sqrt(0.75), 0.0], [0.0, 0.0, math.sqrt(3.0)]])
-#: relative rounding error of a stress against its bound
-ROUNDING = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -89,10 +84,8 @@ class BodyRecovery:
 
     @cached_property
     def _bounds(self) -> FloatArray:
-        """Largest von Mises stress of each counted node, over the root of twice the strain energy [Pa/sqrt(J)]."""
-        scaled = self._counted_stress / self.angular_frequencies[:, None]
-        rooted = np.tensordot(VON_MISES_ROOT, scaled, axes=1)
-        return np.asarray(np.linalg.norm(np.moveaxis(rooted, -1, 0), ord=2, axis=(1, 2)))
+        """`stress_bounds` of the counted nodes."""
+        return stress_bounds(self._counted_stress, self.angular_frequencies)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
