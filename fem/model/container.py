@@ -151,6 +151,11 @@ def discretise(case: Case, mesh: ContainerMesh | None = None, struck: FloatArray
 
 
 def changed_container(case: Case, container: Container, own: Case) -> Container:
+    """`adapted_container`, or a new one where that touches at other points."""
+    return adapted_container(case, container, own) or discretise(case)
+
+
+def adapted_container(case: Case, container: Container, own: Case) -> Container | None:
     """The container of a case that differs from another case in the places of its mass, or in what touches the floor.
 
     Elements and elastic modes stay where the same points touch; a shift of the mass by some hundredths changes them by
@@ -159,6 +164,9 @@ def changed_container(case: Case, container: Container, own: Case) -> Container:
     Args:
         case: of which the container is wanted.
         container: of the other case, `own`.
+
+    Returns:
+        The container; None where other points touch.
 
     Raises:
         CaseError, MeshError: bad input.
@@ -175,10 +183,10 @@ def changed_container(case: Case, container: Container, own: Case) -> Container:
         container = replace(container, mesh=mesh, boxes=boxes)
     if _touching(case) != _touching(own):
         if case.foot != own.foot:  # the mesh has a line at its inner end
-            return discretise(case)
+            return None
         support = build_support(case, container.mesh)
         if not np.array_equal(support.index, container.support.index):
-            return discretise(case)
+            return None
         container = replace(container, support=support)
     return container
 

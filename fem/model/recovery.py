@@ -14,7 +14,6 @@ from fem.solid.elasticity import von_mises
 from fem.solid.nodal_body import rotation_matrix
 from fem.solid.reduction import ReducedBasis
 
-
 ROWS_AT_ONCE = 32  #: of coordinates whose stress is recovered
 
 

@@ -6,18 +6,19 @@ Long ones and those of the `full` model have one. How many fit a budget follows 
 not from the clock, so that a resumed or repeated study is the same.
 """
 
-import threading
 import time
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
+from threading import Event, Lock
 
 from fem.assessment.joint_demands import joint_demands
 from fem.assessment.ranges import largest_bolt_forces
 from fem.assessment.verdict import verdict_of
+from fem.case.case import Case
 from fem.case.uncertainty import InputChange, as_changed
 from fem.case.unknown_inputs import SUPPORT, TOLERANCE
-from fem.model.container import changed_container
+from fem.model.container import Container, adapted_container, discretise
 from fem.model.joints import Joints, joints_of
 from fem.model.model import Model, build_model
 from fem.model.motion import build_motions
@@ -48,6 +49,23 @@ class Shared:
     short: bool  #: they are stepped in one go
     recovery: Recovery | None  #: of stresses
     joints: Joints | None  #: of a stack
+    #: containers with their cases: that of the run first, then those built for bases that touch at other points
+    built: list[tuple[Case, Container]]
+    one_at_a_time: Lock  #: builds
+
+    def container_of(self, case: Case) -> Container:
+        """The container of a changed case, from one that is built, where it stands on the same points.
+
+        Raises:
+            CaseError, MeshError: bad input.
+        """
+        with self.one_at_a_time:
+            for own, container in self.built:
+                adapted = adapted_container(case, container, own)
+                if adapted is not None:
+                    return adapted
+            self.built.append((case, discretise(case)))
+            return self.built[-1][1]
 
 
 def cost_of(numerics: Numerics) -> float:
@@ -97,10 +115,12 @@ def run_changes(
         short=short,
         recovery=recovery_of(model) if case.solver.model == "reduced" else None,
         joints=joints_of(model) if short else None,
+        built=[(case, model.container)],
+        one_at_a_time=Lock(),
     )
     kept = {key_of(one.values): one for one in (kept_in.read() if kept_in else ())}
     by_key = {key_of(one.values): one for one in known} | kept
-    one_at_a_time, broken = threading.Lock(), threading.Event()
+    one_at_a_time, broken = Lock(), Event()
     stored, unstored = time.monotonic(), False
 
     def halted() -> bool:
@@ -141,7 +161,7 @@ def _run_changed(run: Model, change: InputChange, shared: Shared, stop: Callable
             values[TOLERANCE] = max(DRAWN_TOLERANCE, run.case.solver.energy_tolerance)
         case = run.case.with_values(as_changed(run.case, values))
         motions = build_motions(case, (run.case, run.motion, run.vertical))
-        model = build_model(case, changed_container(case, run.container, run.case), motions=motions)
+        model = build_model(case, shared.container_of(case), motions=motions)
         same_elements = model.container.elements is run.container.elements
         recovery = shared.recovery if same_elements or shared.recovery is None else recovery_of(model)
         if shared.short and (change.kind != "one" or case.container.bolted_joints == 0):
