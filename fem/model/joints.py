@@ -121,12 +121,12 @@ class Joints:
             out[k, :, JOINT] = place[self.ends].mean(axis=1)
 
     def _from_frame(self, position: FloatArray, velocity: FloatArray, out: FloatArray) -> None:
-        cosine, sine = np.cos(position[:, 2]), np.sin(position[:, 2])
-        turn = np.moveaxis(np.array([[cosine, sine], [-sine, cosine]]), 2, 0)  # (k, 2, 2)
+        cosine, sine = np.cos(position[:, 2:3]), np.sin(position[:, 2:3])
         spin = velocity[:, 2][:, None]
 
         def turned(vector: FloatArray) -> FloatArray:
-            return np.einsum("kab,kjb->kja", turn, vector)
+            x, z = vector[:, :, 0], vector[:, :, 1]
+            return np.stack([cosine * x + sine * z, cosine * z - sine * x], axis=2)
 
         arm = self.centre + np.tensordot(position[:, 3:], self.mean_shape, axes=1)
         rate = np.tensordot(velocity[:, 3:], self.mean_shape, axes=1)
