@@ -13,7 +13,6 @@ from typing import Any, Literal
 from fem.case import quantities as q
 from fem.case.case import Case
 from fem.case.quantities import with_unit
-from fem.case.sobol import sobol_points
 from fem.case.unknown_inputs import (
     CAMBER,
     JOINTS_MU_KINETIC,
@@ -34,6 +33,7 @@ from fem.case.unknown_inputs import (
     ranges_of,
     short,
 )
+from fem.runtime.sobol import sobol_points
 
 #: static and kinetic friction of the same surfaces
 FRICTIONS = ((MU_STATIC, MU_KINETIC), (JOINTS_MU_STATIC, JOINTS_MU_KINETIC))

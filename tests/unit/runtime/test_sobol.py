@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.stats import qmc
 
-from fem.case.sobol import MOST_DIMENSIONS, sobol_points
 from fem.case.unknown_inputs import UNKNOWN
+from fem.runtime.sobol import MOST_DIMENSIONS, sobol_points
 
 
 @pytest.mark.parametrize(("count", "bits"), [(1, 0), (2, 1), (5, 3), (32, 5), (1000, 10)])
