@@ -115,7 +115,8 @@ def page_of(result: "HallResult", folder: Path) -> Iterator[str]:
         if result.checked:
             yield f"  sure and margin of the weakest {result.checked}"
         yield from table_lines([(one["name"], _shown(one)) for one in ranked[:10]])
-    yield f"  files      {folder}: hall.csv, hall.json, report.html"
+    written = ": hall.csv, hall.json, report.html" if result.state == "finished" else ""
+    yield f"  files      {folder}{written}"
 
 
 def _shown(row: dict[str, object]) -> str:

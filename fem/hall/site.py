@@ -139,9 +139,10 @@ class _AtSite:
             if len(missing) > 1:
                 self._say_expected(missing, runner)
             for number in missing:
+                if runner.stop():
+                    break
                 runner.reporter.message(f"container {number + 1} of {count} at the site")
-                line = "" if runner.stop() else self._verify(number, place.path, runner)
-                if not line:
+                if not (line := self._verify(number, place.path, runner)):
                     break
                 log.append([line])
                 self.lines[number] = line

@@ -86,8 +86,8 @@ def found_section(info: EnsembleResult, answer: EnsembleAnswer | None) -> html.P
     return studies.answer_section(
         info,
         answer.sentence if answer else None,
-        f"{len(info.points)} points of {info.draws} draws{studies.unfinished(info)}; share that "
-        f"{falling_in_words(info.limit_slip_m, past=True)}: {regions}.",
+        f"{len(info.points)} points of {info.draws} draws{studies.unfinished(info)}"
+        + (f"; share that {falling_in_words(info.limit_slip_m, past=True)}: {regions}." if regions else "."),
         *(typeset(f"{head}: {line}.") for head, line in fragility_lines(info)),
         *([f"Held fixed: {info.held}."] if info.held else []),
         note=f"A share of draws over the uncertain quantities listed below, under {motions}. It is not the probability "

@@ -76,7 +76,7 @@ def run_report(
 
     Args:
         run: opened; finished or not.
-        signature: author, checker, revision.
+        signature: author, checker, revision; an unfinished run is not signed.
         every_variation: compute also those that take long.
         brief: three printed pages at most: answer, inputs, static rule and run, rotation and slip, limits.
         message: receives a sentence for the user where something takes time or is missing.
@@ -108,6 +108,7 @@ def _page(view: RunView, signature: Signature | None, varied: VariationTable | N
     further = [] if view.brief else [modes_section, block_section, joints_section, sheet_section]
     behind = [part(view) for part in (motion_section, boxes_section)]
     proof = [part(view) for part in (*further, numerics_section, provenance_section)]
+    finished = view.run.status in RUN.finished
     first = [verdict_section(view, varied), case_section(view), limits_section(view.case, view.result)]
     return Page(
         kind=f"{'Short report' if view.brief else 'Report'} of a run",
@@ -115,7 +116,7 @@ def _page(view: RunView, signature: Signature | None, varied: VariationTable | N
         name=view.run.name,
         introduction=_changes(view),
         hash=str(view.result.case_hash or ""),
-        signature=(signature or Signature()).completed(view.case.named),
+        signature=(signature or Signature()).completed(view.case.named) if finished else None,
         sections=[
             html.Group("first", first),
             static_section(view),

@@ -6,8 +6,11 @@ safe point. A signal that is ignored, as in a background job of a shell without 
 This module is imported first and loads no other of this program.
 """
 
+import _thread
 import os
 import signal
+import sys
+import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import FrameType
@@ -17,6 +20,7 @@ if TYPE_CHECKING:
     from fem.runtime.progress import Reporter
 
 INTERRUPTED = 4  #: the exit code
+AGAIN_S = 0.05  #: until a signal is delivered anew that could not be heeded
 _raised: list[int] = []
 _requests: list[list[int]] = []  #: signals received by each `interruptible` under way
 DEFAULTS: dict[signal.Signals, Any] = {
@@ -34,11 +38,16 @@ def exit_on_signal() -> None:
 def raise_on_signal() -> None:
     """From now on both signals raise KeyboardInterrupt."""
     _replace_defaults(_raise)
+    sys.unraisablehook = _raise_again
 
 
 @contextmanager
 def interruptible(reporter: "Reporter") -> Iterator[Callable[[], bool]]:
-    """Turn the first signal into a request to stop at the next safe point; a second Ctrl-C raises KeyboardInterrupt."""
+    """Turn the first signal into a request to stop at the next safe point; a second Ctrl-C raises KeyboardInterrupt.
+
+    Yields:
+        Whether a stop is requested: of this work, or of that which it is a part of.
+    """
     received: list[int] = []
 
     def note(number: int, frame: FrameType | None) -> None:
@@ -50,7 +59,7 @@ def interruptible(reporter: "Reporter") -> Iterator[Callable[[], bool]]:
     _requests.append(received)
     try:
         with _handled_by(note):
-            yield lambda: bool(received)
+            yield stop_requested
     finally:
         _requests.remove(received)
 
@@ -101,3 +110,13 @@ def interruptions() -> int:
 def _raise(number: int, frame: FrameType | None) -> None:
     _raised.append(number)
     raise KeyboardInterrupt
+
+
+def _raise_again(unraisable: "sys.UnraisableHookArgs") -> None:
+    """Deliver a signal anew that was lost where nothing can be raised: in a callback from C, as the compiler makes."""
+    if issubclass(unraisable.exc_type, KeyboardInterrupt):
+        again = threading.Timer(AGAIN_S, _thread.interrupt_main)
+        again.daemon = True
+        again.start()
+    else:
+        sys.__unraisablehook__(unraisable)

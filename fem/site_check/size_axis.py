@@ -1,13 +1,16 @@
 """The key that `size` varies: what is looked for, and the values of the scan."""
 
 import math
+from dataclasses import replace
 
 from fem.batch.axes import AxisError, field_of
 from fem.batch.derived import value_in
 from fem.case.quantities import Quantity
 from fem.case.validation import CaseError, did_you_mean, known_keys, quantity_of
+from fem.site_check.bodies import body_of
 from fem.site_check.bracket import SizeAxis, Wanted, spaced
 from fem.site_check.file import TABLES, SiteRequest
+from mesh.errors import MeshError
 
 COUNT = 13  #: values of the scan
 MOST_COUNT = 200
@@ -45,14 +48,16 @@ def size_axis(
     Args:
         request: what is asked, with the value that the range starts from.
         key: dotted, such as `container.width_m`.
-        low, high: ends of the scan; None: as suits the key.
+        low, high: ends of the scan; None: as suits the key, the upper one no further than a container can be built.
         count: values of the scan; None: 13. Every number of boxes, and every floor of a building of storeys, is tried.
 
     Raises:
-        CaseError: no such key, one without a number, a range that does not rise or that the key cannot have.
+        CaseError: no such key, one without a number, a range that does not rise or that the key cannot have, or at an
+            end of which the containers cannot be built.
     """
     quantity, value = _quantity(key), _value(request, key)
     steps = _steps(request, key)
+    last_is_usual = high is None
     if low is None or high is None:
         begin, end = RANGES.get(key) or _around(key, value, quantity)
         low, high = begin if low is None else low, end if high is None else high
@@ -79,9 +84,11 @@ def size_axis(
     axis = SizeAxis(
         key=key, words=words, unit=quantity.unit, wanted=wanted, values=values, whole=steps is not None
     )
+    while last_is_usual and len(values) > 2 and not _is_built(request, axis, values[-1]):
+        values = values[:-1]
     for bound in (values[0], values[-1]):
-        at(request, axis, bound)  # refused before anything is computed
-    return axis
+        _build(request, axis, bound)  # refused before anything is computed
+    return replace(axis, values=values)
 
 
 def at(request: SiteRequest, axis: SizeAxis, value: float) -> SiteRequest:
@@ -94,6 +101,27 @@ def at(request: SiteRequest, axis: SizeAxis, value: float) -> SiteRequest:
     for key in followers(request, axis.key):
         changed = changed.with_value(key, value)
     return changed
+
+
+def _build(request: SiteRequest, axis: SizeAxis, value: float) -> None:
+    """Build the containers at a value, to see that it can be done.
+
+    Raises:
+        CaseError: it cannot.
+    """
+    try:
+        for variant in at(request, axis, value).variants:
+            body_of(variant)
+    except (CaseError, MeshError) as error:
+        raise CaseError(f"--over {axis.key}: at {value:.4g} {axis.unit}".rstrip() + f" {error}") from None
+
+
+def _is_built(request: SiteRequest, axis: SizeAxis, value: float) -> bool:
+    try:
+        _build(request, axis, value)
+    except CaseError:
+        return False
+    return True
 
 
 def followers(request: SiteRequest, key: str) -> tuple[str, ...]:

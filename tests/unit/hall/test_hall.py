@@ -6,6 +6,7 @@ import json
 import re
 import shlex
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from small_site import SITE
@@ -15,9 +16,11 @@ from fem.batch.shard import Shard
 from fem.batch.table import line_of
 from fem.case.case import load_case
 from fem.case.validation import CaseError
+from fem.cli.batch import page_of
 from fem.hall.file import read_hall
 from fem.hall.places import INVALID, UNKNOWN, class_of, draw_places, plan_of
 from fem.hall.ranking import RUN_COLUMNS, HallRuns, weakest_first
+from fem.hall.result import HallResult
 from fem.hall.run import run_hall
 from fem.hall.site import run_hall_at_site
 from fem.results.figures import SCALARS
@@ -367,3 +370,8 @@ def test_places_are_drawn_in_plan_and_written_as_geojson(tmp_path, base):
     without = re.sub(r"8\.4\d,49\.0", ",", text)
     run_hall(read_hall(listed(tmp_path, without)), load_case(base), out, checks="none")
     assert not (out / "hall.geojson").exists() and not (out / "figures").exists()
+
+
+def test_of_an_unfinished_list_no_file_is_named_that_is_not_there():
+    begun = HallResult(hall="h", case="c", asked="", model="rigid", rows=1, containers=1, distinct=1)
+    assert [*page_of(begun, Path("out"))][-1] == "  files      out"

@@ -106,3 +106,8 @@ def test_an_interrupted_one_shows_what_there_is_without_an_answer(kind, tmp_path
     assert "(interrupted)" in page
     assert "half of 100 draws" not in page
     assert "largest rotation 0.62" not in page
+
+
+def test_an_ensemble_that_has_come_to_no_point_tells_no_share(tmp_path):
+    page = page_of("ensemble", tmp_path, status="interrupted", points=[], regions={})
+    assert "0 points of 100 draws (interrupted).<" in page

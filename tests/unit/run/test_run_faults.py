@@ -97,6 +97,14 @@ def test_an_interrupted_run_is_readable_names_the_way_on_and_reaches_the_same_bi
     require_resumed(folder, whole, *way.split()[:1] * (way != "again"))
 
 
+def test_the_page_of_an_interrupted_run_is_not_signed(tmp_path, monkeypatch):
+    folder = tmp_path / "r"
+    interrupted(folder, monkeypatch, signal.SIGINT)
+    assert main(["report", str(folder), "-q"]) == 0
+    page = (folder / "report.html").read_text(encoding="utf-8")
+    assert "Not finished (interrupted)" in page and 'id="signature"' not in page
+
+
 def test_a_history_that_cannot_grow_ends_the_run_with_3(tmp_path, capsys, monkeypatch, whole):
     limit = (whole / "history.csv").stat().st_size // 2
     monkeypatch.setattr(fem.run.checkpoint, "CHECKPOINT_S", 0.0)

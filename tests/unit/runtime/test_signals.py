@@ -35,6 +35,22 @@ command_line.program()
     assert outcome("-m", script) == (4, "interrupted\n")
 
 
+def test_a_signal_within_a_callback_from_c_is_not_lost():
+    # ctypes drops what a callback raises; the compiler of the kernels calls back whenever it has made one.
+    script = """
+import ctypes, time
+from fem import __main__ as command_line
+callback = ctypes.CFUNCTYPE(None)(lambda: os.kill(os.getpid(), signal.SIGINT))
+def compute(*_, **__):
+    callback()
+    for _ in range(500):
+        time.sleep(0.01)
+command_line.build_app = lambda: compute
+command_line.program()
+"""
+    assert outcome("-m", script) == (4, "interrupted\n")
+
+
 def test_a_library_leaves_signals_alone():
     script = (
         "assert signal.getsignal(signal.SIGINT) is signal.default_int_handler\n"
@@ -62,3 +78,11 @@ def test_the_first_signal_requests_a_stop_and_a_second_ctrl_c_insists():
                 signal.sigtimedwait([], 1.0)
     assert not stop_requested()
     assert signal.getsignal(signal.SIGINT) is before
+
+
+def test_work_that_begins_after_a_request_to_stop_hears_it():
+    # A list at a site verifies one container after another; each of these is a study of its own.
+    with interruptible(SilentReporter()):
+        os.kill(os.getpid(), signal.SIGTERM)
+        with interruptible(SilentReporter()) as stop:
+            assert stop()
