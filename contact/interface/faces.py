@@ -260,7 +260,8 @@ def open_unweighted(faces: Faces, point: FloatArray) -> None:
 def weigh_points(faces: Faces, corner: FloatArray, point: FloatArray, contact: Contact) -> None:
     """Weights of the points (n, 2) where the corners (4 N, 2) are at the beginning of a step, and their stiffness.
 
-    A corner that comes from beside the face deeper below it than the edge is wide is not on it.
+    A corner that comes from beside the face deeper below it than the edge is wide is not on it. Another one takes over
+    from other springs where it is: were it taken for open, the energy of its spring would come from nowhere.
     """
     for i in range(faces.weight.size):
         if is_of_one_box(faces, i):
@@ -268,21 +269,15 @@ def weigh_points(faces: Faces, corner: FloatArray, point: FloatArray, contact: C
         share, gap, _, _, _ = place_on_face(faces, i, corner)
         inside = min(share, 1.0 - share) * faces.length[i] / faces.edge[i]
         weight = min(max(0.5 + 0.5 * inside, 0.0), 1.0)
-        if gap < -faces.edge[i] and point[i, 1] == faces.length[i]:
-            weight = 0.0
+        if point[i, 1] == faces.length[i]:
+            if gap < -faces.edge[i]:
+                weight = 0.0
+            elif weight > 0.0:
+                point[i, 0] = faces.origin[i] + faces.side[i] * share * faces.length[i]
+                point[i, 1] = gap
         faces.weight[i] = weight
         contact.normal_stiffness[i] = weight * faces.normal_stiffness[i]
         contact.tangential_stiffness[i] = weight * faces.tangential_stiffness[i]
-
-
-@compiled(inline=True)
-def place_weighed(faces: Faces, corner: FloatArray, point: FloatArray) -> None:
-    """Points (n, 2) that had no weight and have one now, where they are: their springs take over from others."""
-    for i in range(faces.weight.size):
-        if not is_of_one_box(faces, i) and faces.weight[i] > 0.0 and point[i, 1] == faces.length[i]:
-            share, gap, _, _, _ = place_on_face(faces, i, corner)
-            point[i, 0] = faces.origin[i] + faces.side[i] * share * faces.length[i]
-            point[i, 1] = gap
 
 
 @compiled(inline=True)

@@ -16,7 +16,6 @@ from contact.interface.faces import (
     move_corners,
     open_unweighted,
     place_points,
-    place_weighed,
     share_forces,
     weigh_points,
 )
@@ -55,8 +54,6 @@ class LooseStack(NamedTuple):
 def weigh(stack: LooseStack, contact: Contact, old: State) -> None:
     """Stiffness of the contact points: less where a corner is about to leave its face."""
     weigh_points(stack.faces, old.corner, old.point, contact)
-    if stack.in_a_row:
-        place_weighed(stack.faces, old.corner, old.point)
 
 
 @implements(interface.predict, LooseStack, inline=True)

@@ -7,6 +7,12 @@ STACKS = ("verification/test_verification_checks.py", "-k", "stacks")
 
 LOOSE_STACKS = (
     Mutation(
+        name="a corner that slides onto a face as if it had been open",
+        old="            elif weight > 0.0:\n                point",
+        new="            elif weight > 1.0:\n                point",
+        tests=("unit/contact/test_faces.py", "-k", "slides_onto"),
+    ),
+    Mutation(
         name="a lever rule that loads the far end of a face",
         old="(share - 1.0 if k == LEFT else -share)",
         new="(-share if k == LEFT else share - 1.0)",

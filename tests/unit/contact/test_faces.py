@@ -202,6 +202,17 @@ def test_a_corner_that_comes_from_beside_a_face_is_not_on_it():
     assert faces.weight[2] == 1.0  # it was on the face before
 
 
+def test_a_corner_that_slides_onto_a_face_takes_over_where_it_is():
+    start = undeformed([(1.0, 1.0), (1.0, 1.0)])
+    faces = faces_of(start)
+    corners = start.copy()
+    corners[4:] += [0.3, -1e-5]
+    points = np.full((6, 2), 1.0)  # all were off their faces
+    weigh_points(faces, corners, points, contact_of(faces))
+    assert points[2] == pytest.approx([0.3 + faces.origin[2], -1e-5], abs=1e-12)
+    assert faces.weight[4] == 0.0 and points[4, 1] == 1.0  # the right one is beside it
+
+
 def test_corners_under_force_move_by_the_compliance_of_their_box():
     under = make_workspace(8)
     draw = np.random.default_rng(1)
