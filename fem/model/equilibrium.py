@@ -48,9 +48,12 @@ class Equilibrium:
     row: tuple["Equilibrium", ...] = ()  #: of the containers of a row alone
 
 
-def find_equilibrium(case: Case, container: Container, gravity: float) -> Equilibrium:
+def find_equilibrium(
+    case: Case, container: Container, gravity: float, penalty: float | None = None
+) -> Equilibrium:
     """Settle the container on the floor under this gravity: that of the case and the floor's acceleration at t = 0.
 
+    `penalty` is that of the rigid floor of its row [Pa/m]; None: as the case chooses.
     Models of one equilibrium share the scratch arrays of its body: step one at a time.
 
     Raises:
@@ -63,7 +66,7 @@ def find_equilibrium(case: Case, container: Container, gravity: float) -> Equili
         )
     if container.row:
         return _of_row(case, container, gravity)
-    penalty = normal_penalty(case, container.mesh)
+    penalty = penalty or normal_penalty(case, container.mesh)
     springs = container.support.normal_stiffness(penalty)
     base = springs.size
     require_stiff_contact(case, container.mesh, float(springs.sum()))
@@ -107,7 +110,8 @@ def _of_row(case: Case, container: Container, gravity: float) -> Equilibrium:
     Raises:
         CaseError: one that does not stand, or jams.
     """
-    row = [find_equilibrium(*one, gravity) for one in zip(case.row, container.row, strict=True)]
+    penalty = None if case.floor.is_slab else normal_penalty(case, container.mesh)
+    row = [find_equilibrium(*one, gravity, penalty) for one in zip(case.row, container.row, strict=True)]
     meshes = [one.mesh for one in container.row]
     require_no_jam(case, meshes)
     masses = [mesh.mass for mesh in meshes]

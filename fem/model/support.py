@@ -9,7 +9,7 @@ from contact.interface.penalty import STIFFEST, choose_normal_penalty
 from contact.interface.support import Support, cambered, choose_support
 from fem.case.case import Case, CaseError
 from fem.model.floor import pivot_share, slab_penalty
-from fem.model.geometry import base_positions
+from fem.model.geometry import base_positions, build_container
 from fem.model.static_checks import distance_beside, slenderness_angle
 from fem.runtime.arrays import FloatArray
 from mesh.container import ContainerMesh
@@ -124,10 +124,15 @@ def _rolling_penalty(case: Case, mesh: ContainerMesh) -> float:
 
 
 def normal_penalty(case: Case, mesh: ContainerMesh) -> float:
-    """Normal penalty of the case; a slab has its own, "auto" chooses it for the mesh [Pa/m]."""
+    """Normal penalty of the case; a slab has its own, "auto" chooses it for the mesh [Pa/m].
+
+    The rigid floor of a row is one: "auto" is the largest that any of its containers would have alone.
+    """
     if case.floor.is_slab:
         softest = slab_penalty(case, mesh)
         return min(softest, _rolling_penalty(case, mesh)) if case.support.camber_m > 0.0 else softest
+    if case.neighbour and case.contact.normal_penalty_Pa_m == "auto":
+        return max(steel_penalty(one, build_container(one)) for one in case.row)
     return steel_penalty(case, mesh)
 
 

@@ -5,7 +5,11 @@ import pytest
 import fem
 from fem.assessment.rule_or_run import governing
 from fem.assessment.summary import run_tilted
+from fem.model.geometry import build_container
+from fem.model.model import build_model
+from fem.model.motion import build_motions
 from fem.run.band import wants_band
+from fem.run.solve import resolve
 
 SQUAT = {
     "container": {"width_m": 4.0, "height_m": 1.5, "depth_m": 1.1, "mass_kg": 1e4},
@@ -51,3 +55,22 @@ def test_a_container_at_rest_beside_another_is_repeated(fallen):
     assert rest.verdict.outcome == "rest" and wants_band(None, weak, rest.typed_result)
     alone = weak.with_values({"neighbour": []})
     assert not wants_band(None, alone, rest.typed_result)
+
+
+def test_the_rigid_floor_of_a_row_is_one_whichever_of_its_containers_is_the_first():
+    def penalties(case):
+        equilibrium = build_model(case).equilibrium
+        return [one.penalty for one in equilibrium.row or (equilibrium,)]
+
+    first = fem.case_from(
+        SQUAT
+    )  # its neighbour is slender, and sinks too far into a floor that is soft enough for it
+    names = ("width_m", "height_m", "mass_kg", "centroid_m")
+    other = first.with_values({f"container.{name}": SQUAT["neighbour"][0][name] for name in names})
+    beside = dict(SQUAT["neighbour"][0], width_m=4.0, height_m=1.5, mass_kg=1e4, centroid_m=0.75)
+    row_of_other = other.with_values({"neighbour": [beside]})
+    alone = [penalties(case.with_values({"neighbour": []}))[0] for case in (first, other)]
+    assert alone[0] < 0.2 * alone[1]
+    for row in (first, row_of_other):
+        resolved = resolve(row, build_container(row), build_motions(row))
+        assert penalties(row) == penalties(resolved) == [max(alone)] * 2
