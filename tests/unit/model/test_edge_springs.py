@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fem.case.case import load_case
-from fem.model.edge_springs import edge_factors, missing_stiffness
+from fem.model.edge_springs import edge_factors
 from fem.model.half_space import HalfSpace
 from fem.model.model import build_model
 
@@ -39,14 +39,14 @@ def test_a_flat_base_has_both_stiffnesses_of_the_half_space(width, mesh):
     assert springs == pytest.approx(springs[::-1], rel=1e-9)
 
 
-def test_a_deep_base_has_as_much_as_springs_can_and_says_so():
-    deep = ("container.width_m=1.1", "container.depth_m=2.2", "container.mass_kg=5000")
-    x, springs = springs_under(*deep)
-    rocking = CONCRETE.rocking_stiffness(1.1, 2.2)
-    assert springs.min() > 0.0 and 0.90 < springs @ x**2 / rocking < 0.93
-    case = load_case("rocking", ["support.kind=flat", *deep])
-    assert "0.91 of the stiffness" in missing_stiffness(case)
-    assert missing_stiffness(load_case("rocking", ["support.kind=flat"])) is None
+@pytest.mark.parametrize(("width", "depth", "stiffer"), [(1.1, 2.2, 1.093), (2.44, 6.06, 1.170)])
+def test_a_deep_base_has_the_rocking_stiffness_and_more_than_the_vertical_one(width, depth, stiffer):
+    # (3.2 L/B + 0.8)/((3.1 (L/B)^0.75 + 1.6)/3) over 2.9 (Pais and Kausel)
+    size = {"width_m": width, "depth_m": depth, "mass_kg": 5000}
+    x, springs = springs_under(*(f"container.{name}={value}" for name, value in size.items()))
+    assert springs.min() > 0.0
+    assert springs @ x**2 == pytest.approx(CONCRETE.rocking_stiffness(width, depth), rel=1e-9)
+    assert springs.sum() == pytest.approx(stiffer * CONCRETE.vertical_stiffness(width, depth), rel=1e-3)
 
 
 def test_the_edges_of_a_weak_floor_carry_half_its_strength_at_rest():
