@@ -7,7 +7,7 @@ from fem.model.links import heights_of_links
 from fem.model.model import Model
 from fem.results.outcome import SLIDING, Outcome
 from fem.results.run_result import LinkResult, NeighbourResult, RunResult, Verdict
-from fem.runtime.units import KILONEWTONS, MEGAPASCALS, visible_number
+from fem.runtime.units import KILONEWTONS, MEGAPASCALS
 
 
 def link_results(model: Model) -> tuple[tuple[LinkResult, ...] | None, tuple[LinkResult, ...] | None]:
@@ -102,7 +102,7 @@ def _of_tie(one: LinkResult) -> str:
 
 
 def _force(one: LinkResult) -> str:
-    return f"{visible_number(one.max_force_N, 1e-3, '.3g')} kN"
+    return KILONEWTONS.text(one.max_force_N, figures=3)
 
 
 def _broken(one: LinkResult) -> str:

@@ -21,6 +21,7 @@ from fem.render.scene import (
     arrows,
     body_of,
     hatches_of,
+    links_of,
     mark_of,
     outline_of,
     slab_of,
@@ -56,7 +57,7 @@ class Scene:
         self._plotter = pyvista.Plotter(off_screen=True, window_size=list(self.view.size))
         self._plotter.set_background("white")  # type: ignore[arg-type]
         self._plotter.enable_anti_aliasing("msaa", multi_samples=SMOOTH)
-        self._body, self._outline = body_of(first), outline_of(first)
+        self._body, self._links, self._outline = body_of(first), links_of(first), outline_of(first)
         self._arrows = arrows(len(self._pressed))
         moving = hatches_of(self.view), mark_of(self.view)
         rising = slab_of(self.view), surface_of(self.view)  # they reach across the picture
@@ -70,6 +71,7 @@ class Scene:
         """The picture of a frame."""
         places = spatial(frame.points + frame.displacement)
         self._body.points = places
+        self._links.points = places - np.array([0.0, 0.0, 0.5])  # behind the body
         self._outline.points = places + np.array([0.0, 0.0, 0.5])  # before the body
         if self._stress_limit > 0.0 and frame.von_mises is not None:
             self._body.point_data["stress"] = 1e-6 * frame.von_mises
@@ -115,6 +117,8 @@ class Scene:
             ).mapper
         else:
             plotter.add_mesh(self._body, color=BODY, lighting=False)
+        if self._links.n_cells:
+            plotter.add_mesh(self._links, color=HATCH, lighting=False)
         plotter.add_mesh(self._outline, color=EDGE, line_width=3, lighting=False, render_lines_as_tubes=True)
         plotter.add_mesh(self._arrows, color=ARROW, lighting=False)
         return colours

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 import pyvista
 
-from fem.results.fields import Frame
+from fem.results.fields import STOP, Frame
 from fem.results.grid import spatial
 from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid.edges import chained, outline_edges
@@ -103,13 +103,22 @@ def summarise_frames(frames: Iterable[Frame]) -> FrameSummary:
 
 
 def body_of(frame: Frame) -> pyvista.PolyData:
-    """The cells of a frame as flat faces on its nodes."""
-    parts = frame.cells[:, PARTS[frame.cells.shape[1]]].reshape(-1, 4)
+    """The cells of the containers of a frame as flat faces on its nodes."""
+    return _faces(frame, frame.cells[frame.region < STOP])
+
+
+def links_of(frame: Frame) -> pyvista.PolyData:
+    """Stops and ties of a frame, likewise."""
+    return _faces(frame, frame.of_links)
+
+
+def _faces(frame: Frame, cells: IntArray) -> pyvista.PolyData:
+    parts = cells[:, PARTS[cells.shape[1]]].reshape(-1, 4)
     return pyvista.PolyData(spatial(frame.points), np.column_stack([np.full(len(parts), 4), parts]).ravel())
 
 
 def outline_of(frame: Frame) -> pyvista.PolyData:
-    """Outer edges of the container and the joints of its boxes, as lines on its nodes."""
+    """Outer edges of the container, its stops and ties, and the joints of its boxes, as lines on its nodes."""
     lines = chained(outline_edges(frame.cells, frame.box))
     return pyvista.PolyData(
         spatial(frame.points), lines=np.concatenate([[len(line), *line] for line in lines])

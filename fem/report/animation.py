@@ -10,7 +10,7 @@ leave the other. Numbers are sent as integers in units of the largest value of t
 import base64
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -19,6 +19,7 @@ from matplotlib.colors import to_hex
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
+from fem.assessment.drawn_links import DrawnLink, held_nodes
 from fem.model.model import Model
 from fem.results.fields import Fields, Frame
 from fem.results.history import History
@@ -59,6 +60,7 @@ BOX = {
     "z_{}": "{1}_{0}_z_m",
 }
 SINGLE_PRECISION = 2.0**-24
+LASTING = 1e9  #: of a link that does not break; JSON has no infinity [s]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -87,6 +89,11 @@ class Animation:
     edges: IntArray  #: (k, 2) outline and borders between regions
     contact: IntArray  #: (n_c,) contact nodes, into `points`
     frames: list[AnimationFrame]  #: those sent; of the drawn nodes only
+    in_a_row: bool = False  #: each body stands on the floor
+    links: tuple[DrawnLink, ...] = ()  #: stops and ties
+    held: IntArray = field(
+        default_factory=lambda: np.zeros(0, dtype=np.int64)
+    )  #: their points, into `points`
 
     @property
     def largest_stress(self) -> float:
@@ -111,8 +118,13 @@ class Animation:
         return max((float(np.hypot(*frame.elastic.T).max()) for frame in self.frames), default=0.0)
 
 
-def animation_of(model: Model, fields: Fields | None) -> Animation:
+def animation_of(model: Model, fields: Fields | None, links: tuple[DrawnLink, ...] = ()) -> Animation:
     """The frames of a run, thinned out to what a page can carry.
+
+    Args:
+        model: its containers.
+        fields: its frames; None: it has none.
+        links: its stops and ties, with when they broke.
 
     Raises:
         ValueError, OSError: a frame that cannot be read, or does not belong to the model's mesh.
@@ -150,6 +162,9 @@ def animation_of(model: Model, fields: Fields | None) -> Animation:
         frames=[_frame(model, bodies, fields.frame(k), drawn, contact) for k in range(0, count, stride)]
         if fields
         else [],
+        in_a_row=bool(model.container.row),
+        links=links,
+        held=held_nodes(links, elements.nodes[drawn]),
     )
 
 
@@ -252,6 +267,17 @@ def player_data(shown: Animation, history: History, *, model: Model) -> dict[str
         ],
         "body": packed(shown.body, "u1"),
         "rests": shown.rests.tolist(),
+        "links": [
+            {
+                "x": one.x,
+                "outer": one.outer,
+                "height": one.height,
+                "until": min(one.until, LASTING),
+                "node": int(node),
+            }
+            for one, node in zip(shown.links, shown.held, strict=True)
+        ],
+        "row": shown.in_a_row,
         "follow": journey > WIDE_JOURNEY * mesh.width,
         "points": packed_floats(shown.points.ravel()),
         "quads": packed(shown.quads.ravel(), index),
@@ -316,7 +342,7 @@ def packed(values: NDArray[Any], kind: str) -> str:
 def _frame(
     model: Model, bodies: Sequence[BodyFit], frame: Frame, drawn: IntArray, contact: IntArray
 ) -> AnimationFrame:
-    nodes = model.container.elements.nodes
+    nodes, frame = model.container.elements.nodes, frame.without_links()
     if len(frame.displacement) != len(nodes):
         raise ValueError(f"a frame of {len(frame.displacement)} nodes on a mesh of {len(nodes)}")
     area = model.contact_areas[: contact.size]

@@ -1,11 +1,13 @@
 """The report of a run: one page from its folder, verdict first, with everything needed to check it."""
 
 import datetime as dt
+import math
 from collections.abc import Callable, Iterator
 
 from markupsafe import Markup
 
 from fem.assessment.code_note import code_note
+from fem.assessment.drawn_links import drawn_links
 from fem.assessment.floor_words import floor_rows
 from fem.assessment.loose_boxes import largest_joint_slip
 from fem.assessment.ranges import (
@@ -43,7 +45,7 @@ from fem.results.history import History
 from fem.results.kinds import RUN
 from fem.results.outcome import Outcome
 from fem.results.reader import OpenedRun
-from fem.results.run_result import Energy, Numerics, Verdict, to_overturn
+from fem.results.run_result import Energy, Numerics, RunResult, Verdict, to_overturn
 
 READ_AS = (
     " utilisation is demand over capacity; above 1 the rule says that it slides or overturns. Rotation ratio is the "
@@ -96,11 +98,17 @@ def run_report(
         run=run,
         model=model,
         history=_history(run, message),
-        shown=animation_of(model, _fields(run, message)),
+        shown=animation_of(model, _fields(run, message), drawn_links(run.case, _broken(run.typed_result))),
         drawn=drawings_of(run, model.container),
         brief=brief,
     )
     return html_of(_page(view, signature, varied))
+
+
+def _broken(result: RunResult) -> list[float]:
+    """When stops and ties broke, in the order of the case; empty where none was computed [s]."""
+    links = (*(result.stops or ()), *(result.ties or ()))
+    return [math.inf if one.broken_at_s is None else one.broken_at_s for one in links]
 
 
 def _page(view: RunView, signature: Signature | None, varied: VariationTable | None) -> Page:

@@ -16,13 +16,13 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Arc, Rectangle
 from matplotlib.transforms import Affine2D
 
+from fem.assessment.drawn_links import drawn_links
 from fem.case.boxes import Box, centre_above, shared_face
 from fem.case.case import Case
 from fem.case.neighbours import places_of
 from fem.figures.style import BLACK, BLUE, GREY, house_style, svg_of
 from fem.html.page import svg_element
 from fem.html.units import degrees, quantity, short
-from fem.model.tied_capacity import side_of
 
 WIDTH = 4.3  #: of the drawing [inch]
 WIDEST, TALLEST = 1.8, 2.6  #: of the container in it [inch]
@@ -54,12 +54,15 @@ def sketch(
         unit = 0.04 * inch
         _draw_floor(axes, case, unit)
         _draw_container(axes, case, unit)
-        _draw_links(axes, case, unit)
-        _draw_neighbours(axes, case)
+        ends = _draw_beside(axes, case, unit)
         middle = centre_above(boxes, 0)
         _draw_mass_centre(axes, 0.5 * width, middle, centroid, unit, slope=case.floor.slope)
         _dimension(axes, (-0.5 * width, -7 * unit), (0.5 * width, -7 * unit), f"a = {short(width)} m")
-        left, right = low - 8 * unit, high + 22 * unit
+        most = 0.4 * WIDTH * inch
+        left, right = (
+            min(low - 8 * unit, max(-most, ends[0] - 4 * unit)),
+            max(high + 22 * unit, min(most, ends[1] + 4 * unit)),
+        )
         _dimension(axes, (left, 0.0), (left, height), _height(boxes))
         _dimension(axes, (right, 0.0), (right, centroid), f"$z_c$ = {short(centroid)} m", beyond=True)
         axes.plot((middle, right + unit), (centroid, centroid), color=GREY, linewidth=0.5)
@@ -151,32 +154,27 @@ def _draw_container(axes: Axes, case: Case, unit: float) -> None:
         _number_boxes(axes, boxes, unit)
 
 
-def _draw_links(axes: Axes, case: Case, unit: float) -> None:
-    """Stops as walls up to their point, at their gap but not further than the figure is wide; ties as lines."""
-    reach = 0.45 * (axes.get_xlim()[1] - axes.get_xlim()[0])
-    for stop in case.stop:
-        outward = -1.0 if stop.side == "left" else 1.0
-        face = side_of(case, stop) + outward * stop.gap_m
-        if abs(face) < reach - 2 * unit:
-            wall = Rectangle((min(face, face + outward * 2 * unit), 0.0), 2 * unit, max(stop.height_m, unit))
-            wall.set(fill=False, hatch="////", ec=GREY, lw=0)
-            axes.add_patch(wall)
-            axes.plot((face, face), (0.0, max(stop.height_m, unit)), color=BLACK, linewidth=1.5)
-    for tie in case.tie:
-        x = side_of(case, tie)
-        axes.plot((x, x), (0.0, tie.height_m), color=BLUE, linewidth=1.2, linestyle=":", zorder=6)
-        axes.plot((x,), (tie.height_m,), color=BLUE, marker="o", markersize=3, zorder=6)
-
-
-def _draw_neighbours(axes: Axes, case: Case) -> None:
-    """The neighbours, as far as the figure is wide."""
+def _draw_beside(axes: Axes, case: Case, unit: float) -> tuple[float, float]:
+    """Neighbours, stops and ties, as far as the figure is wide; left and right end of all that stands there [m]."""
+    ends = [box.sides for box in case.stack]
     row = case.row
     places = places_of(case, [one.stack[0].width for one in row])
     for one, x in zip(row[1:], places.x[1:], strict=True):
-        width, height = one.stack[0].width, one.stack[-1].top
-        axes.add_patch(
-            Rectangle((x - 0.5 * width, 0.0), width, height, fc=BODY, ec=GREY, lw=0.8, clip_on=True)
-        )
+        left, width, height = x - 0.5 * one.stack[0].width, one.stack[0].width, one.stack[-1].top
+        axes.add_patch(Rectangle((left, 0.0), width, height, fc=BODY, ec=GREY, lw=0.8, clip_on=True))
+        ends.append((left, left + width))
+    for link in drawn_links(case):
+        x, outer, height = link.x, link.x, max(link.height, unit)
+        if link.is_tie:
+            axes.plot((x, x), (0.0, height), color=BLUE, linewidth=1.2, linestyle=":", zorder=6)
+            axes.plot((x,), (height,), color=BLUE, marker="o", markersize=3, zorder=6)
+        else:
+            outer = x + math.copysign(2 * unit, link.outer - x)
+            wall = Rectangle((min(x, outer), 0.0), 2 * unit, height, hatch="////", fill=False, ec=GREY, lw=0)
+            axes.add_patch(wall)
+            axes.plot((x, x), (0.0, height), color=BLACK, linewidth=1.5)
+        ends.append((min(x, outer), max(x, outer)))
+    return min(end[0] for end in ends), max(end[1] for end in ends)
 
 
 def _draw_loose_joints(axes: Axes, case: Case, unit: float) -> None:

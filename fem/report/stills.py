@@ -21,7 +21,7 @@ from fem.runtime.units import MILLIMETRES, RATIO
 MOST = 6
 MOST_ELASTIC = 0.05  #: enlarged elastic part over the height of the container
 BINS = 14  #: colours of a still
-STEEL, INK, QUIET = "#dfe7ee", "#1c2330", "#55606f"
+STEEL, INK, QUIET, WALL = "#dfe7ee", "#1c2330", "#55606f", "#c9c4bc"
 
 
 class Still(NamedTuple):
@@ -48,13 +48,16 @@ def stills(
     frames = {k: shown.frames[k] for k in chosen}
     factors = {k: _bearable(frame, factor, height) for k, frame in frames.items()}
     placed = {k: _placed(shown, frame, factors[k]) for k, frame in frames.items()}
-    span = 1.05 * max([0.7 * width, *(float(np.abs(points[:, 0]).max()) for points in placed.values())])
+    walls = [abs(one.outer) for one in shown.links]
+    span = 1.05 * max(
+        [0.7 * width, *walls, *(float(np.abs(points[:, 0]).max()) for points in placed.values())]
+    )
     top = 103.0 / span * max((float(points[:, 1].max()) for points in placed.values()), default=0.0)
     return [
         Still(
             f"t = {frame.time:.3f} s, {chosen[k]}; {_rotation_in_words(frame.rotation[:judged], angle)}"
             + (f"; elastic part × {factors[k]:g}" if factors[k] != factor else ""),
-            _drawing(shown, frame, placed[k] * [100.0 / span, -100.0 / span], top),
+            _drawing(shown, frame, placed[k] * [100.0 / span, -100.0 / span], top, 100.0 / span),
         )
         for k, frame in frames.items()
     ]
@@ -118,6 +121,7 @@ def _placed(shown: Animation, frame: AnimationFrame, factor: float) -> FloatArra
     placed, ahead = np.empty_like(shown.points), np.zeros(2)
     for k, (centre, rotation) in enumerate(zip(frame.centre, frame.rotation, strict=True)):
         own, corners = shown.body == k, shown.corners[k]
+        ahead = ahead * (not shown.in_a_row)
         cosine, sine = math.cos(rotation), math.sin(rotation)
         turn = np.array([[cosine, -sine], [sine, cosine]])
         arm = shown.points[own]
@@ -133,10 +137,17 @@ def _placed(shown: Animation, frame: AnimationFrame, factor: float) -> FloatArra
     return placed
 
 
-def _drawing(shown: Animation, frame: AnimationFrame, points: FloatArray, top: float) -> Markup:
-    """Floor, cells by colour (one path a colour) and edges."""
+def _drawing(shown: Animation, frame: AnimationFrame, points: FloatArray, top: float, scale: float) -> Markup:
+    """Floor, stops and ties, cells by colour (one path a colour) and edges."""
     hatch = "".join(f"M{x} 0l-4 4" for x in range(-96, 108, 12))
     parts = [_path("M-104 0H104", stroke=INK, width=1.2), _path(hatch, stroke=QUIET, width=0.6)]
+    for one, held in zip(shown.links, points[shown.held], strict=True):
+        if frame.time < one.until:
+            foot = np.array([(one.x, 0.0), (one.outer, 0.0)]) * [scale, 1.0]
+            end = np.array([held]) if one.is_tie else (foot - [0.0, scale * one.height])[::-1]
+            parts.append(
+                _path("M" + _line(np.concatenate([foot, end])) + "Z", stroke=INK, width=1.0, fill=WALL)
+            )
     bins, paints = np.zeros(len(shown.quads), dtype=int), [STEEL]
     if shown.stress_scale > 0.0 and frame.von_mises is not None:
         level = frame.von_mises[shown.quads].mean(axis=1) / shown.stress_scale

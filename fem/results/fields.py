@@ -9,7 +9,7 @@ A frame is complete before the list, replaced in one step, names it: the series 
 import importlib
 import os
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -22,10 +22,15 @@ from fem.results.vtu import FrameFormat
 from fem.runtime.arrays import FloatArray, IntArray
 
 SERIES = "run.pvd"
+STOP, TIE = 10, 11  #: regions of the cells of stops and ties, which are behind all others
 
 # Up to so many frames, the list of frames is rewritten with each of them. A longer list is rewritten when it has grown
 # by one in so many: rewriting it with every frame would take longer than the frames.
 PROMPT_FRAMES = 20
+
+
+#: fields of a frame with a value at each node
+NODAL = ("points", "displacement", "velocity", "von_mises", "contact_pressure")
 
 
 class FieldError(ValueError):
@@ -54,7 +59,21 @@ class Frame(FrameFields):
     points: FloatArray  #: reference positions (x, z), shape (n, 2) [m]
     cells: IntArray  #: nodes of each cell in the order of VTK, shape (m, 4 or 9)
     region: IntArray  #: shape (m,)
-    box: IntArray  #: of the stack, from 1 at the floor, shape (m,)
+    box: IntArray  #: of the stack, from 1 at the floor; 0: a stop or a tie, shape (m,)
+
+    @property
+    def of_links(self) -> IntArray:
+        """The cells of stops and ties, shape (k, 4 or 9)."""
+        return self.cells[self.region >= STOP]
+
+    def without_links(self) -> "Frame":
+        """Its containers alone."""
+        own = self.region < STOP
+        nodes = len(self.points) - self.of_links.size
+        values = {name: value[:nodes] for name in NODAL if (value := getattr(self, name)) is not None}
+        return replace(
+            self, **values, **{name: getattr(self, name)[own] for name in ("cells", "region", "box")}
+        )
 
 
 class FieldWriter:

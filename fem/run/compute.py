@@ -4,8 +4,6 @@ import sys
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from fem.case.case import Case, case_hash
 from fem.case.validation import CaseError
 from fem.model.container import Container, discretise
@@ -18,6 +16,7 @@ from fem.results.history import History
 from fem.results.reader import pyvista_grid
 from fem.results.run_result import RunResult, Verdict
 from fem.run.checks import WantedChecks, add_checks
+from fem.run.link_cells import LinkCells
 from fem.run.opened import plotted
 from fem.run.output import Stopwatch
 from fem.run.recorder import Recorder
@@ -149,13 +148,7 @@ def compute_on(container: Container | None, case: Case, wanted: WantedChecks) ->
     case = resolve(case, mesh, motions)  # what is changed later on is this case, too
     with compilation_announced(lambda text: print(text, file=sys.stderr)):
         model = build_model(case, container or discretise(case, mesh), motions=motions)
-        elements = model.container.elements
-        keeper = FrameKeeper(
-            points=elements.nodes,
-            cells=elements.cells,
-            region=elements.region.astype(np.int64),
-            box=1 + elements.box.astype(np.int64),
-        )
+        keeper = FrameKeeper(**LinkCells(model).mesh)
         recorder = Recorder(model, recovery_of(model), frame_sink=keeper.keep)
         result = begun(model, case_hash(case))
         result, history = stepped(model, result, recorder, reporter=silent, stop=stop_requested)

@@ -21,6 +21,7 @@ from fem.results.fields import FieldWriter, frame_name
 from fem.results.history import HistoryWriter, read_history
 from fem.results.run_files import RunFiles
 from fem.run.checkpoint import SavedState, misfit, read_state
+from fem.run.link_cells import LinkCells
 from fem.run.recorder import Recorder
 from fem.runtime.arrays import FloatArray
 from fem.runtime.compilation import compilation_time
@@ -123,7 +124,7 @@ class RunOutput:
 @contextmanager
 def open_output(files: RunFiles, model: Model, start: Start) -> Iterator[RunOutput]:
     """Open the files of a run, and put its model where it starts."""
-    case, elements, fields = model.case, model.container.elements, None
+    case, fields = model.case, None
     with ExitStack() as stack:
         history = stack.enter_context(
             HistoryWriter(files.history, history_columns(case), position=start.history_bytes)
@@ -131,10 +132,7 @@ def open_output(files: RunFiles, model: Model, start: Start) -> Iterator[RunOutp
         if case.output.fields_s != 0.0:
             fields = FieldWriter(
                 files.fields,
-                points=elements.nodes,
-                cells=elements.cells,
-                region=elements.region.astype(np.int64),
-                box=1 + elements.box.astype(np.int64),
+                **LinkCells(model).mesh,
                 kept_times=start.frames_s,
             )
             stack.callback(fields.close)

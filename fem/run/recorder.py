@@ -20,6 +20,7 @@ from fem.model.recovery import Recovery
 from fem.results.fields import FrameFields
 from fem.results.history import History, numbers_of
 from fem.results.outcome import MODES
+from fem.run.link_cells import LinkCells
 from fem.runtime.arrays import FloatArray
 
 #: share of the largest strain energy from which the stress of a step is looked at
@@ -57,6 +58,7 @@ class Recorder:
         self._recovery = recovery
         self._history_sink = history_sink
         self._frame_sink = frame_sink
+        self._links = LinkCells(model)
         self._rows: list[FloatArray] = []
         self._modes: list[str] = []
         self._area = model.contact_areas
@@ -209,12 +211,15 @@ class Recorder:
                     floor, _, _ = floor_motion(run.problem.motion, time)
                     lift, _, _ = floor_motion(run.problem.vertical, time)
                     self._frame_sink(
-                        FrameFields(
-                            **vars(frame),
-                            time=float(as_written(np.array(time))),
-                            contact_pressure=pressure,
-                            floor_displacement=float(floor),
-                            floor_lift=float(lift),
+                        self._links.added_to(
+                            FrameFields(
+                                **vars(frame),
+                                time=float(as_written(np.array(time))),
+                                contact_pressure=pressure,
+                                floor_displacement=float(floor),
+                                floor_lift=float(lift),
+                            ),
+                            run,
                         )
                     )
         clock.frames_drained = clock.frames

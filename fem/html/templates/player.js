@@ -9,7 +9,7 @@
   const canvas = byId("stage"), pen = canvas.getContext("2d");
   const controls = { play: byId("play"), time: byId("time"), speed: byId("speed"), exaggeration: byId("exaggeration"),
     forces: byId("forces"), stress: byId("stress"), mesh: byId("mesh"), view: byId("view") };
-  const INK = "#1c2330", QUIET = "#55606f", STEEL = "#dfe7ee", NORMAL = "#a3211b", SHEAR = "#0b5a8a";
+  const INK = "#1c2330", QUIET = "#55606f", STEEL = "#dfe7ee", NORMAL = "#a3211b", SHEAR = "#0b5a8a", WALL = "#c9c4bc";
 
   // ---- data -------------------------------------------------------------------------------------------------
   const bytes = (text) => Uint8Array.from(atob(text), (sign) => sign.charCodeAt(0)).buffer;
@@ -50,6 +50,10 @@
   const extents = (onFloor) => {
     const box = { left: -0.75 * run.width, right: 0.75 * run.width, top: run.height, low: 0 };
     for (let i = 0; i <= last; i++) {
+      for (const { outer, height } of run.links) {
+        const x = outer + (onFloor ? 0 : columns.base[i]);
+        box.left = Math.min(box.left, x); box.right = Math.max(box.right, x); box.top = Math.max(box.top, height);
+      }
       const lift = onFloor || !columns.lift ? 0 : columns.lift[i];
       box.low = Math.min(box.low, lift);
       for (const { suffix, hull } of bodies) {
@@ -85,7 +89,9 @@
     pen.setTransform(ratio, 0, 0, ratio, 0, 0);
     pen.clearRect(0, 0, wide, high);
     drawFloor(X, Z, wide, onFloor ? 0 : base, scale, ground);
+    drawStops(X, Z, origin);
     drawContainer(X, Z, origin);
+    drawTies(X, Z, origin);
     if (controls.forces.checked) drawForces(X, Z, scale, origin);
     readOut();
     moveCursors();
@@ -115,11 +121,26 @@
     }
   };
 
+  const links = (pulls) => run.links.filter(({ x, outer, until }) => (x === outer) === pulls && now < until);
+  const drawStops = (X, Z, origin) => {  // until they break
+    pen.strokeStyle = INK; pen.fillStyle = WALL; pen.lineWidth = 1.4;
+    for (const { x, outer, height } of links(false)) {
+      pen.beginPath(); pen.rect(X(origin + x), Z(height), X(outer) - X(x), Z(0) - Z(height)); pen.fill(); pen.stroke();
+    }
+  };
+  const drawTies = (X, Z, origin) => {
+    pen.strokeStyle = INK; pen.lineWidth = 2.5;
+    for (const { x, node } of links(true)) {
+      pen.beginPath(); pen.moveTo(X(origin + x), Z(0)); pen.lineTo(placed[2 * node], placed[2 * node + 1]); pen.stroke();
+    }
+  };
+
   // Where the bodies are. An enlarged elastic part moves them: the loaded base points stay where they are, and a box on
-  // a box stands on its corners.
+  // a box stands on its corners; those of a row stand on the floor.
   const posesOf = (frame, factor, origin) => {
     let ahead = [0, 0];
     return bodies.map(({ suffix, corners }, k) => {
+      if (run.row) ahead = [0, 0];
       const rotation = value(`rotation${suffix}`, now), c = Math.cos(rotation), s = Math.sin(rotation);
       const mean = (nodes, weights) => {  // elastic displacement of some nodes, as it is seen
         let ex = 0, ez = 0, sum = 0;

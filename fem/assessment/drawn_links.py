@@ -1,0 +1,61 @@
+"""Stops and ties as they are drawn: a wall that stands on the floor, a line from a point of a side down to it."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from fem.case.case import Case
+from fem.case.links import StopTable, holder_of
+from fem.case.neighbours import places_of
+from fem.model.tied_capacity import side_of
+from fem.runtime.arrays import FloatArray, IntArray
+
+WALL = 0.03  #: thickness of a stop over the height of the container
+REACH = 1.0  #: gap over that height beyond which a stop is out of the picture
+INWARD = (
+    1e-6  #: so much nearer to the axis than its side the point of a tie is sought, where neighbours touch
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class DrawnLink:
+    """A stop or a tie on the floor at rest, x from the axis of the container of the case."""
+
+    x: float  #: of the face of a stop, or of a tie [m]
+    outer: float  #: of the other end of a stop; of a tie x [m]
+    height: float  #: of its point [m]
+    until: float = math.inf  #: when it broke [s]
+
+    @property
+    def is_tie(self) -> bool:
+        """Whether it pulls."""
+        return self.outer == self.x
+
+
+def drawn_links(case: Case, broken_s: Sequence[float] = ()) -> tuple[DrawnLink, ...]:
+    """The stops and ties of a case, but for stops that are far away.
+
+    Args:
+        case: its links.
+        broken_s: when each broke; empty: none did [s].
+    """
+    row, tallest = case.row, case.stack[-1].top
+    axes = places_of(case, [one.stack[0].width for one in row]).x if row else (0.0,)
+    found = []
+    for link, until in zip(case.links, broken_s or [math.inf] * len(case.links), strict=True):
+        side = axes[holder_of(case, link)] + side_of(case, link)
+        if not isinstance(link, StopTable):
+            found.append(DrawnLink(x=side, outer=side, height=link.height_m, until=until))
+        elif link.gap_m <= REACH * tallest:
+            outward = -1.0 if link.side == "left" else 1.0
+            x, thick = side + outward * link.gap_m, outward * WALL * tallest
+            found.append(DrawnLink(x=x, outer=x + thick, height=max(link.height_m, abs(thick)), until=until))
+    return tuple(found)
+
+
+def held_nodes(links: Sequence[DrawnLink], nodes: FloatArray) -> IntArray:
+    """The node nearest to the point of each link, (k,); `nodes`: of the undeformed containers, (n, 2) [m]."""
+    places = [((1.0 - INWARD) * one.x, one.height) for one in links]
+    return np.array([np.hypot(*(nodes - place).T).argmin() for place in places], dtype=np.int64)
