@@ -5,10 +5,14 @@ input and are always tried, ten times tighter. Friction between loose boxes keep
 floor changes (`as_changed`).
 """
 
+import importlib
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
 
 from fem.case import quantities as q
 from fem.case.case import Case
@@ -33,7 +37,6 @@ from fem.case.unknown_inputs import (
     ranges_of,
     short,
 )
-from fem.runtime.sobol import sobol_points
 
 #: static and kinetic friction of the same surfaces
 FRICTIONS = ((MU_STATIC, MU_KINETIC), (JOINTS_MU_STATIC, JOINTS_MU_KINETIC))
@@ -183,3 +186,11 @@ def stiff_floor(case: Case, penalty: float) -> InputChange:
     key, value = (PENALTY, penalty) if own is None else (MODULUS, own)
     most = QUANTITIES[key].most or math.inf
     return InputChange(kind="floor", values={key: min(most, short(STIFF_FLOOR * value))}, share=1.0)
+
+
+def sobol_points(count: int, dimensions: int) -> NDArray[np.float64]:
+    """The first points of Sobol's sequence, each in the middle of its cell, shape (count, dimensions)."""
+    sampling = importlib.import_module("scipy.stats.qmc")  # imported late: it takes longer than a short run
+    bits = math.ceil(math.log2(max(count, 1)))
+    points: NDArray[np.float64] = sampling.Sobol(dimensions, scramble=False).random_base2(bits)[:count]
+    return points + 0.5 / 2**bits

@@ -9,7 +9,7 @@ from cases import named_case
 from fem.case.case import CaseError, load_case, read_case, to_toml
 from fem.case.links import ROWS
 from fem.case.tables import TABLES
-from fem.case.uncertainty import as_changed, changes_of, draws_of, pairs_of, stiff_floor
+from fem.case.uncertainty import as_changed, changes_of, draws_of, pairs_of, sobol_points, stiff_floor
 from fem.case.unknown_inputs import INPUTS, UNKNOWN, UnknownNumber, ranges_of
 
 PENALTY = 1e9
@@ -252,6 +252,13 @@ def test_draws_fill_every_range_and_make_cases_that_can_be_read():
     assert {one.support.kind for one in drawn} == {"corners"}
     assert len(draws_of(case, PENALTY, 5)) == 5
     assert draws_of(named_case("harmonic", {"uncertainty.draws": 0}), PENALTY) == ()
+
+
+@pytest.mark.parametrize("count", [1, 2, 32])
+def test_points_lie_in_the_middle_of_their_cells_one_in_each(count):
+    points, middles = sobol_points(count, 12), (np.arange(count) + 0.5) / count
+    np.testing.assert_array_equal(np.sort(points, axis=0), np.repeat(middles[:, None], 12, axis=1))
+    np.testing.assert_array_equal(sobol_points(5, 12), sobol_points(8, 12)[:5])
 
 
 def test_every_key_of_the_table_is_an_unknown_input_and_every_input_a_key_of_the_case():
