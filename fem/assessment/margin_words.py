@@ -12,21 +12,23 @@ def margin_in_words(verdict: Verdict | None) -> str:
     if verdict is None or verdict.margin is None:
         return ""
     margin, stands = verdict.margin, verdict.outcome != Outcome.OVERTURNED
-    lead = "Stands" if stands else "Overturns"
+    lead, early = f"{'Stands' if stands else 'Overturns'}; ", _destroyed_first(margin)
+    it = f"{lead}{early} and it " if early else lead
     if margin.factor is None:
         most, others = f"{margin.largest_tried:.3g}", f"other motion{'s' * (margin.runs != 1)}"
         none = f"none of {margin.runs}" if margin.runs > 1 else "not one"
         whom = "one of the row" if verdict.neighbours else "it"
-        words = f"{lead}; {none} {others} up to {most} times as strong overturns {whom}"
+        words = f"{lead}{early}{' and ' * bool(early)}{none} {others} up to {most} times as strong overturns {whom}"
     elif margin.stands_up_to is None:
         still = "overturns" if stands else "still does"
-        words = f"{lead}; {still} at {margin.factor:.3g} times this motion, the weakest tried"
+        words = f"{it}{still} at {margin.factor:.3g} times this motion, the weakest tried"
     else:
         up_to = "" if stands else f"stands up to {FACTOR.text(margin.stands_up_to)} times this motion, "
         times = " times this motion" if stands else ""
-        words = f"{lead}; {up_to}overturns first at {FACTOR.text(margin.factor)}{times}"
+        words = f"{it}{up_to}overturns first at {FACTOR.text(margin.factor)}{times}"
     without = "alone" if verdict.neighbours else "without its stops and ties"
-    words += f"{_range(margin)}{_islands(margin)}{_destroyed(margin)}{_without_links(margin, without)}."
+    late = "" if early else _destroyed(margin)
+    words += f"{_range(margin)}{_islands(margin)}{late}{_without_links(margin, without)}."
     return f"{words}{_draws(margin)}"
 
 
@@ -59,8 +61,16 @@ def _islands(margin: Margin) -> str:
     return f", stands again at {' and at '.join(again)}" if again else ""
 
 
+def _destroyed_first(margin: Margin) -> str:
+    """At which factor a corner is destroyed, where that is below the first that overturns; empty elsewhere."""
+    least = margin.destroyed_from
+    if least is None or (margin.factor is not None and margin.factor <= least):
+        return ""
+    return f"at {FACTOR.text(least)} times this motion a corner is destroyed,"
+
+
 def _destroyed(margin: Margin) -> str:
-    """From which factor on a corner does not carry what the run says."""
+    """At which factor beyond the first that overturns a corner is destroyed; empty where it is at none."""
     least = margin.destroyed_from
     return "" if least is None else f"; at {FACTOR.text(least)} times it a corner is destroyed"
 
@@ -71,14 +81,19 @@ def _draws(margin: Margin) -> str:
     if margin.low is not None and margin.high is not None:
         standing = 0
     if standing and (margin.low is not None or failed or margin.draws == 1):
-        parts.append(f"{standing} stand{'s' * (standing == 1)} at {margin.draws_tried_to:.3g} times")
+        parts.append((standing, f"stand{'s' * (standing == 1)} at {margin.draws_tried_to:.3g} times"))
     if failed:
-        parts.append(f"{failed} destroy{'s' * (failed == 1)} a corner or fail{'s' * (failed == 1)}")
+        parts.append((failed, f"destroy{'s' * (failed == 1)} a corner or fail{'s' * (failed == 1)}"))
     if not parts:
         return ""
-    counts = f"f {margin.draws + failed} draw{'s' * (margin.draws + failed > 1)} {' and '.join(parts)}."
+    count = margin.draws + failed
+    if parts[0][0] == count > 1:
+        counts = f"all {count} draws {parts[0][1]}."
+    else:
+        does = " and ".join(f"{number} {doing}" for number, doing in parts)
+        counts = f"of {count} draw{'s' * (count > 1)} {does}."
     if margin.low is None:
-        return f" Over what is not known, o{counts}"
+        return f" Over what is not known, {counts}"
     if margin.high is not None:
-        return f" O{counts}"
-    return f" Over what is not known it overturns from {FACTOR.in_figures(margin.low, 2)} times on; o{counts}"
+        return f" {counts.capitalize()}"
+    return f" Over what is not known it overturns from {FACTOR.in_figures(margin.low, 2)} times on; {counts}"

@@ -57,6 +57,8 @@ def sureness_in_words(result: RunResult) -> str:
     if verdict.sure == UNSURE:
         return f"Unsure: {'; '.join(_doubts(verdict, band, tried))}."
     does = DOES[ending(band.members[0])]
+    if verdict.sure == SURE and all(map(numerical, tried)):
+        return f"No input was varied, all are held; {does} with steps ten times as accurate, too."
     in_all = f"in all {len(tried)} variations" if len(tried) > 1 else "in the one variation"
     if verdict.sure == SURE:
         return f"Sure: {does} {in_all}."

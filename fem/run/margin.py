@@ -12,6 +12,7 @@ from concurrent.futures import Executor, ThreadPoolExecutor
 from functools import cache
 from itertools import pairwise
 
+from fem.assessment.sureness import ending, numerical
 from fem.assessment.verdict import outcome_of
 from fem.case.case import Case, CaseError
 from fem.case.links import ROWS
@@ -97,6 +98,8 @@ def margin_of(model: Model, result: RunResult, *, drawn: bool, stop: Callable[[]
                 near = [pool.submit(_near, one, start, least, most) for one in trials]
                 ends = [one.result() for one in near]
                 lowest = _lowest(pool, trials, [*ends, first.high if first else None], least)
+                if own == Ending.STANDING and _overturns_in_band(verdict):
+                    lowest = min(lowest or 1.0, 1.0)
     except StoppedError:
         return None
     factor = None if first is None else first.high
@@ -118,6 +121,12 @@ def margin_of(model: Model, result: RunResult, *, drawn: bool, stop: Callable[[]
         factor_without_links=None if bare is None else bare[0],
         without_links_tried_to=None if bare is None else bare[1],
     )
+
+
+def _overturns_in_band(verdict: Verdict) -> bool:
+    """Whether a member of the band overturns under the motion of the run, by another input."""
+    members = verdict.band.members[1:] if verdict.band else ()
+    return any(ending(one) == Ending.OVERTURNED and not numerical(one) for one in members)
 
 
 def _bare(

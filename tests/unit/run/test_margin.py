@@ -14,7 +14,7 @@ from fem.assessment.margin_words import margin_in_words
 from fem.case.strength import scaled_motion
 from fem.case.uncertainty import as_changed, draws_of
 from fem.results.outcome import Ending
-from fem.results.run_result import Margin, Verdict
+from fem.results.run_result import Band, ChangedRun, Margin, Verdict
 from fem.run import changed_runs
 from fem.run import margin as search
 from fem.run.compute import Run
@@ -93,7 +93,7 @@ def test_draws_give_the_range_and_the_margin_repeats_itself(with_draws):
     assert first.draws_failed == 0
 
 
-def test_the_low_end_is_that_of_a_draw(with_draws):
+def test_the_low_end_is_that_of_a_draw_of_margin_or_band(with_draws):
     run, _ = with_draws
     margin, own = run.verdict.margin, run.case
     case = fem.load_case("rocking", RIGID)
@@ -110,8 +110,9 @@ def test_the_low_end_is_that_of_a_draw(with_draws):
         ]
         return any(one.verdict.outcome == "overturned" for one in runs)
 
-    assert falls(margin.low)
-    assert not falls(margin.low / search.DRAWN_STEP)
+    assert margin.low == 1.0
+    assert run.verdict.band.draws_overturned > 0  # of 32; none of the 16 of the margin does
+    assert not falls(1.0 / search.DRAWN_STEP)
 
 
 def test_a_motion_is_made_as_strong_as_its_keys_allow():
@@ -239,6 +240,18 @@ MARGIN = Margin(
             "Stands; overturns first at 1.50 times this motion; at 2.90 times it a corner is destroyed.",
         ),
         (
+            {"destroyed_from": 1.24, "low": 1.0, "draws": 0, "draws_failed": 16},
+            "rock",
+            "Stands; at 1.24 times this motion a corner is destroyed, and it overturns first at 1.50 times this "
+            "motion. Over what is not known it overturns from 1.0 times on; all 16 draws destroy a corner or fail.",
+        ),
+        (
+            {"factor": None, "stands_up_to": None, "destroyed_from": 2.42},
+            "rock",
+            "Stands; at 2.42 times this motion a corner is destroyed, and none of 20 other motions up to 4 times as "
+            "strong overturns it.",
+        ),
+        (
             {"factor_without_links": 2.0, "without_links_tried_to": 4.0},
             "rock",
             "Stands; overturns first at 1.50 times this motion; without its stops and ties it overturns first at 2.00.",
@@ -275,6 +288,25 @@ def test_a_corner_that_a_stronger_motion_destroys_is_named():
     changes = ("solver.model=rigid", "solver.duration_s=10", "floor.corner_patch_m=[0.008, 1.1]")
     verdict = fem.compute(fem.load_case("seed_stack_plateau", changes), band=False, margin=True).verdict
     assert 1.0 < verdict.margin.destroyed_from < 2.0
-    assert f"; at {verdict.margin.destroyed_from:.2f} times it a corner is destroyed" in margin_in_words(
-        verdict
+    assert f"; at {verdict.margin.destroyed_from:.2f} times this motion a corner is destroyed, and" in (
+        margin_in_words(verdict)
     )
+
+
+def test_what_overturns_in_the_band_bounds_the_margin():
+    case = fem.load_case("seed_stack_plateau", [*RIGID, "solver.duration_s=4", "uncertainty.draws=2"])
+    run = fem.compute(case, band=False)
+    model, result = search.build_model(run.case), run.typed_result
+
+    def low(*members):
+        band = Band(outcomes=(), unsure=True, members=members)
+        given = replace(result, verdict=replace(run.verdict, band=band))
+        return search.margin_of(model, given, drawn=True, stop=lambda: False).low
+
+    own, fell = (
+        ChangedRun(status="completed", outcome=run.verdict.outcome),
+        ChangedRun(status="overturned", outcome="overturned", kind="draw"),
+    )
+    assert low(own, replace(own, kind="draw")) > 1.0
+    assert low(own, fell) == 1.0
+    assert low(own, replace(fell, kind="one", values={"solver.energy_tolerance": 0.1})) > 1.0
