@@ -2,12 +2,15 @@
 
 import sys
 
+from fem.runtime.threads import cores
+
 if sys.platform != "win32":
     import resource
 
 #: address space of a command that computes, and of one that does not [MB]. Libraries take 550 and 130 of it before the
 #: first step; with less, a module fails to load, or OpenBLAS asks again and again for a buffer.
 COMPUTING, READING = 700, 250
+OF_A_CORE = 150  #: of each thread that computes: a report takes 946 on two cores, and asks for ever with 800
 
 
 def shortage(computing: bool) -> str:
@@ -15,7 +18,7 @@ def shortage(computing: bool) -> str:
     if sys.platform == "win32":
         return ""
     limit, _ = resource.getrlimit(resource.RLIMIT_AS)
-    needed = COMPUTING if computing else READING
+    needed = COMPUTING + OF_A_CORE * cores() if computing else READING
     if limit == resource.RLIM_INFINITY or limit >= needed << 20:
         return ""
     return f"memory is limited to {limit >> 20} MB, and this needs {needed} MB or more; raise the limit (ulimit -v)"
