@@ -92,7 +92,7 @@ class ClaimResult:
     def to_dict(self) -> dict[str, Any]:
         """Plain data for `study.json`, without the contents of the figures."""
         return {
-            "comparisons": [one.document(KEYS) for one in self.comparisons],
+            "comparisons": [finding.document(KEYS) for finding in self.comparisons],
             "reading": self.reading,
             "bounds": self.bounds,
             "setups": [{"what": case.what, "command": case.command} for case in self.cases],
@@ -112,9 +112,9 @@ def conclude(comparisons: Sequence[Finding], bounds: str, kind: ClaimKind = "sta
         return Conclusion.REMARK
     if not comparisons:
         return Conclusion.UNDECIDED
-    if all(one.holds for one in comparisons):
+    if all(finding.holds for finding in comparisons):
         return Conclusion.CONFIRMED
-    inside = [one.holds for one in comparisons if one.inside]
+    inside = [finding.holds for finding in comparisons if finding.inside]
     if bounds and inside and all(inside):
         return Conclusion.BOUNDED
     return Conclusion.MISPRINT if kind == "print" else Conclusion.REFUTED
@@ -125,7 +125,7 @@ def counts_in_words(comparisons: Sequence[Finding], bounds: str) -> str:
     failed = failures(comparisons)
     text = f"{len(comparisons) - failed} of {len(comparisons)} comparisons hold"
     if bounds and failed:
-        inside = [one for one in comparisons if one.inside]
+        inside = [finding for finding in comparisons if finding.inside]
         text += f"; {len(inside) - failures(inside)} of {len(inside)} inside the bounds"
     return text
 
@@ -157,10 +157,10 @@ def claim(
 
     def claimed_by(function: Callable[[Experiments], Evidence]) -> Claim:
         def check(experiments: Experiments) -> ClaimResult:
-            found = list(function(experiments))
+            evidence = list(function(experiments))
 
             def of(kind: type[Kind]) -> list[Kind]:
-                return [one for one in found if isinstance(one, kind)]
+                return [item for item in evidence if isinstance(item, kind)]
 
             return ClaimResult(
                 comparisons=of(Finding),

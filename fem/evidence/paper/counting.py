@@ -29,9 +29,12 @@ UNSAFE = "sure cells it calls standing and that overturn"
 def _maps(experiments: Experiments) -> list[maps.OutcomeMap]:
     """All maps: the rigid ones first, of these the stack's first."""
     return [
-        one
+        outcome_map
         for rigid in (True, False)
-        for one in (maps.stack_map(experiments, rigid=rigid), *maps.shape_maps(experiments, rigid=rigid))
+        for outcome_map in (
+            maps.stack_map(experiments, rigid=rigid),
+            *maps.shape_maps(experiments, rigid=rigid),
+        )
     ]
 
 
@@ -44,26 +47,30 @@ def static_rule_is_conservative(experiments: Experiments) -> Evidence:
     """Static rule under the run's own peak against runs, over frequency and peak of the stack, and over slenderness and
     friction at three frequencies; two floors below the static limits."""
     every_map = _maps(experiments)
-    for one in every_map:
-        unsafe = one.count(criteria.static_rule, sure=True).unconservative
-        wrong = f"{one.title}: share of its verdicts 'overturns' that are wrong"
-        share = one.standing_share(criteria.static_rule)
-        yield at_most(f"{one.title}: {UNSAFE}", unsafe, 0.0, inside=one.rigid)
-        yield at_least(wrong, share, 0.5, inside=one.fast and one.rigid)
+    for outcome_map in every_map:
+        unsafe = outcome_map.count(criteria.static_rule, sure=True).unconservative
+        wrong = f"{outcome_map.title}: share of its verdicts 'overturns' that are wrong"
+        share = outcome_map.standing_share(criteria.static_rule)
+        yield at_most(f"{outcome_map.title}: {UNSAFE}", unsafe, 0.0, inside=outcome_map.rigid)
+        yield at_least(wrong, share, 0.5, inside=outcome_map.fast and outcome_map.rigid)
     stack = every_map[0]
     slow, fast = (
         stack.standing_share(
-            criteria.static_rule, [one for one in maps.FREQUENCIES if (one > maps.FAST) is wanted]
+            criteria.static_rule,
+            [frequency for frequency in maps.FREQUENCIES if (frequency > maps.FAST) is wanted],
         )
         for wanted in (False, True)
     )
-    rigid = [one.count(criteria.static_rule, sure=True) for one in every_map if one.rigid]
+    rigid = [
+        outcome_map.count(criteria.static_rule, sure=True) for outcome_map in every_map if outcome_map.rigid
+    ]
     yield (
         "The static rule under the run's own peak is on the unsafe side in "
-        f"{sum(one.unconservative for one in rigid)} of {sum(one.cells for one in rigid)} sure cells of the "
-        f"rigid maps. How conservative it is depends on the frequency of the floor over p = {FREQUENCY_PARAMETER:.2f} "
-        f"1/s: of the motions for which it predicts overturning, the rigid stack stands in {100.0 * slow:.0f} % up to "
-        f"3 p and in {100.0 * fast:.0f} % above 3 p. See the figure. These are counts of overturning."
+        f"{sum(counts.unconservative for counts in rigid)} of {sum(counts.cells for counts in rigid)} sure cells of "
+        "the rigid maps. How conservative it is depends on the frequency of the floor over p = "
+        f"{FREQUENCY_PARAMETER:.2f} 1/s: of the motions for which it predicts overturning, the rigid stack stands in "
+        f"{100.0 * slow:.0f} % up to 3 p and in {100.0 * fast:.0f} % above 3 p. See the figure. These are counts of "
+        "overturning."
     )
     yield from _below_the_limits(experiments)
     yield from _witnesses(stack, criteria.static_rule)
@@ -75,7 +82,7 @@ def static_rule_is_conservative(experiments: Experiments) -> Evidence:
         [
             curve(
                 maps.FREQUENCIES,
-                [stack.standing_share(criteria.static_rule, [one]) for one in maps.FREQUENCIES],
+                [stack.standing_share(criteria.static_rule, [frequency]) for frequency in maps.FREQUENCIES],
                 style="o-",
             )
         ],
@@ -125,8 +132,8 @@ def _below_the_limits(experiments: Experiments) -> Evidence:
     yield outcomes("Below the static limits", experiments, cases)
 
 
-def _bound(one: Finding) -> str:
-    return "a bound" if one.holds else "no bound"
+def _bound(finding: Finding) -> str:
+    return "a bound" if finding.holds else "no bound"
 
 
 @claim(
@@ -138,10 +145,10 @@ def paper_criteria(experiments: Experiments) -> Evidence:
     """The paper's criteria against the same runs, with and without A <= a/2."""
     every_map = _maps(experiments)
     for name, rule in (("Eqs. 8 to 13", criteria.tilting_rule), ("with A <= a/2", criteria.paper_rule)):
-        for one in every_map:
-            unsafe = one.count(rule, sure=True).unconservative
-            gain = one.count(rule).share_right - one.count(criteria.static_rule).share_right
-            what = f"{name}, {one.title}"
+        for outcome_map in every_map:
+            unsafe = outcome_map.count(rule, sure=True).unconservative
+            gain = outcome_map.count(rule).share_right - outcome_map.count(criteria.static_rule).share_right
+            what = f"{name}, {outcome_map.title}"
             inside = rule is criteria.tilting_rule
             yield at_most(f"{what}: {UNSAFE}", unsafe, 0.0, inside=inside)
             yield at_least(f"{what}: share right less that of the static rule", gain, 0.0, inside=inside)
@@ -151,7 +158,7 @@ def paper_criteria(experiments: Experiments) -> Evidence:
         _in_words(stack.count(rule))
         for rule in (criteria.tilting_rule, criteria.paper_rule, criteria.static_rule)
     )
-    right = sum(count for (predicted, found), count in modes.items() if predicted == found)
+    right = sum(count for (predicted, observed), count in modes.items() if predicted == observed)
     yield (
         f"On the map of the rigid stack Eqs. 8 to 13 are {tilting}; with A <= a/2 {paper}; the static rule "
         f"{static}. Of the modes of section 5 the criteria predict {right} of {modes.total()} correctly. A criterion "
@@ -200,7 +207,7 @@ def less_conservative(experiments: Experiments) -> Evidence:
         f"In {rule.conservative} of {rule.cells} motions the static rule predicts overturning and the time history "
         "shows that the stack stands; this requires that the motion is known. The outcome of the deformable shell "
         f"differs from that of the rigid block in {len(differ)} of {len(both)} cells, "
-        f"{sum(one.sure for one, _ in differ)} of them sure for the rigid block."
+        f"{sum(cell.sure for cell, _ in differ)} of them sure for the rigid block."
     )
     yield from [cell.case for _, cell in differ[:3]]
 
@@ -214,42 +221,45 @@ def less_conservative(experiments: Experiments) -> Evidence:
 def region_of_safety(experiments: Experiments) -> Evidence:
     """Outcome over slenderness and friction under 4.0 m/s²."""
     every_map, shells = (maps.shape_maps(experiments, rigid=rigid) for rigid in (True, False))
-    for one in (*every_map, *shells):
-        changes = f"{one.title}: changes from falling back to standing along c/a"
+    for outcome_map in (*every_map, *shells):
+        changes = f"{outcome_map.title}: changes from falling back to standing along c/a"
         yield at_least(
-            f"{one.title}: share of cells that stand", one.standing_share(), 0.05, inside=one.rigid
+            f"{outcome_map.title}: share of cells that stand",
+            outcome_map.standing_share(),
+            0.05,
+            inside=outcome_map.rigid,
         )
-        yield at_most(changes, _re_entries(one), 0.0, inside=False)
-    both = [pair for one, other in zip(every_map, shells, strict=True) for pair in maps.pairs(one, other)]
+        yield at_most(changes, _re_entries(outcome_map), 0.0, inside=False)
+    both = [pair for rigid, shell in zip(every_map, shells, strict=True) for pair in maps.pairs(rigid, shell)]
     yield (
         "The safe region depends on the motion: it is "
-        f"{', '.join(f'{100.0 * one.standing_share():.0f} %' for one in every_map)} of the cells of the rigid "
-        f"container at {', '.join(f'{one:g}' for one in maps.SHAPE_FREQUENCIES)} rad/s. Along c/a it is left and "
-        f"re-entered {sum(_re_entries(one) for one in every_map)} times in {len(every_map) * len(maps.FRICTION)} rows "
-        f"of cells. The outcome of the shell differs from that of the rigid container in "
-        f"{sum(one.fell != other.fell for one, other in both)} of {len(both)} cells. These "
+        f"{', '.join(f'{100.0 * outcome_map.standing_share():.0f} %' for outcome_map in every_map)} of the cells of "
+        f"the rigid container at {', '.join(f'{w:g}' for w in maps.SHAPE_FREQUENCIES)} rad/s. Along c/a it "
+        f"is left and re-entered {sum(map(_re_entries, every_map))} times in {len(every_map) * len(maps.FRICTION)} "
+        "rows of cells. The outcome of the shell differs from that of the rigid container in "
+        f"{sum(rigid.fell != shell.fell for rigid, shell in both)} of {len(both)} cells. These "
         "are outcomes of single motions; for regions with a probability, see python -m fem ensemble boundary."
     )
-    yield from [one.every[-1].case for one in (*every_map, *shells[-1:])]
-    yield from [_shape_figure(one) for one in every_map[:2]]
+    yield from [outcome_map.every[-1].case for outcome_map in (*every_map, *shells[-1:])]
+    yield from [_shape_figure(outcome_map) for outcome_map in every_map[:2]]
 
 
-def _re_entries(one: maps.OutcomeMap) -> int:
+def _re_entries(outcome_map: maps.OutcomeMap) -> int:
     """How often the rows of a map go from falling back to standing."""
-    return sum(before.fell and after.stood for row in one.rows for before, after in pairwise(row))
+    return sum(before.fell and after.stood for row in outcome_map.rows for before, after in pairwise(row))
 
 
-def _in_words(one: criteria.Contingency) -> str:
+def _in_words(counts: criteria.Contingency) -> str:
     return (
-        f"right in {one.right} of {one.cells} cells, conservative in {one.conservative} and unconservative in "
-        f"{one.unconservative}"
+        f"right in {counts.right} of {counts.cells} cells, conservative in {counts.conservative} and unconservative in "
+        f"{counts.unconservative}"
     )
 
 
 def _criteria_table(every_map: Sequence[maps.OutcomeMap]) -> ClaimTable:
-    found = [
-        (one.title, name, one.count(criterion), one.count(criterion, sure=True))
-        for one in every_map
+    counts = [
+        (outcome_map.title, name, outcome_map.count(criterion), outcome_map.count(criterion, sure=True))
+        for outcome_map in every_map
         for name, criterion in criteria.CRITERIA.items()
     ]
     return table(
@@ -265,38 +275,39 @@ def _criteria_table(every_map: Sequence[maps.OutcomeMap]) -> ClaimTable:
                 every.unconservative,
                 sure.unconservative,
             )
-            for title, name, every, sure in found
+            for title, name, every, sure in counts
         ],
     )
 
 
 def _mode_table(modes: Counter[tuple[Outcome, str]]) -> ClaimTable:
     names = tuple(Outcome)
-    predicted = {one for one, _ in modes}
+    predicted = {mode for mode, _ in modes}
     return table(
         "Mode by Eqs. 8 to 13 and A (rows) and by the run (columns), rigid stack, mu 0.4/0.2",
         f"said | {' | '.join(names)}",
-        [(said, *(modes[said, found] for found in names)) for said in names if said in predicted],
+        [(mode, *(modes[mode, observed] for observed in names)) for mode in names if mode in predicted],
     )
 
 
-def _witnesses(one: maps.OutcomeMap, criterion: criteria.Criterion) -> list[PaperCase]:
+def _witnesses(outcome_map: maps.OutcomeMap, criterion: criteria.Criterion) -> list[PaperCase]:
     """One sure cell of either error, to be run again."""
-
-    sure = [cell for cell in one.cells if cell.sure]
+    sure = [cell for cell in outcome_map.cells if cell.sure]
     return [
         cell.case
-        for said in (True, False)
-        for cell in [one for one in sure if criterion(one.motion) is said and one.fell is not said][:1]
+        for overturns in (True, False)
+        for cell in [
+            cell for cell in sure if cell.fell is not overturns and criterion(cell.motion) is overturns
+        ][:1]
     ]
 
 
-def _shape_figure(one: maps.OutcomeMap) -> ClaimFigure:
-    frequency = f"{one.every[0].motion.angular_frequency:g}"
+def _shape_figure(outcome_map: maps.OutcomeMap) -> ClaimFigure:
+    frequency = f"{outcome_map.every[0].motion.angular_frequency:g}"
     shapes = np.array(maps.SLENDERNESS)
     return draw_map(
         f"slenderness-friction-{frequency}".replace(".", "-"),
-        f"Outcome over slenderness and friction (mu_k = mu_s/2): {one.title}; hatched: unsure cells.",
-        one,
+        f"Outcome over slenderness and friction (mu_k = mu_s/2): {outcome_map.title}; hatched: unsure cells.",
+        outcome_map,
         [MapCurve(x=shapes, y=1.0 / shapes, label="mu_s = a/c")],
     )

@@ -64,12 +64,12 @@ class VariantBand:
     @property
     def low(self) -> float:
         """Smallest computed value; nan without any."""
-        return min((one.value for one in self.members if one.value is not None), default=math.nan)
+        return min((member.value for member in self.members if member.value is not None), default=math.nan)
 
     @property
     def high(self) -> float:
         """Largest computed value; nan without any."""
-        return max((one.value for one in self.members if one.value is not None), default=math.nan)
+        return max((member.value for member in self.members if member.value is not None), default=math.nan)
 
     @property
     def holding(self) -> int:
@@ -124,7 +124,7 @@ class Experiments:
     Args:
         jobs: cores to use; None: all.
         progress: called with the number of finished runs of a batch and of all.
-        stop: asked now and then; true ends the work with `InterruptedStudyError`.
+        stop: called now and then; true ends the work with `InterruptedStudyError`.
     """
 
     def __init__(
@@ -139,23 +139,23 @@ class Experiments:
         self._makers: dict[str, CaseMaker] = {}
         self._rows: dict[Any, Row] = {}
         self._runs: dict[Any, Finished] = {}
-        self.failed: set[Any] = set()  #: keys of the failed cases that were asked for; to be cleared
+        self.failed: set[Any] = set()  #: keys of the cases whose runs failed; the caller clears it
 
-    def case(self, wanted: PaperCase) -> Case:
+    def case(self, paper_case: PaperCase) -> Case:
         """The case as a run reads it; its shipped case is read once.
 
         Raises:
             CaseError: as for a case file.
         """
-        if wanted.base not in self._makers:
-            self._makers[wanted.base] = CaseMaker(PaperCase(base=wanted.base).case)
-        return self._makers[wanted.base](wanted.values)
+        if paper_case.base not in self._makers:
+            self._makers[paper_case.base] = CaseMaker(PaperCase(base=paper_case.base).case)
+        return self._makers[paper_case.base](paper_case.values)
 
-    def rows(self, wanted: Sequence[PaperCase], *, also_failed: bool = False) -> list[Row]:
+    def rows(self, cases: Sequence[PaperCase], *, also_failed: bool = False) -> list[Row]:
         """Verdict scalars of each case, in order.
 
         Args:
-            wanted: the cases.
+            cases: in the order of the rows.
             also_failed: return the rows of failed runs as well, with outcome None.
 
         Raises:
@@ -163,74 +163,76 @@ class Experiments:
             CaseError: bad input.
             InterruptedStudyError: interrupted.
         """
-        missing = {one.key: self.case(one) for one in wanted if one.key not in self._rows}
+        missing = {case.key: self.case(case) for case in cases if case.key not in self._rows}
         if missing:
-            found = run_cases(
+            computed = run_cases(
                 list(missing.values()),
                 jobs=self._jobs,
                 done=lambda done: self._progress(done, len(missing)),
                 stop=self._stop,
             )
             self._require_going()
-            self._rows.update(zip(missing, found, strict=True))
-        rows = [self._rows[one.key] for one in wanted]
-        for one, row in zip(wanted, rows, strict=True):
+            self._rows.update(zip(missing, computed, strict=True))
+        rows = [self._rows[case.key] for case in cases]
+        for case, row in zip(cases, rows, strict=True):
             if row["status"] == "failed":
-                self.failed.add(one.key)
+                self.failed.add(case.key)
                 if not also_failed:
-                    raise FailedRunError(f"{one.what or one.command}: {row['reason']}")
+                    raise FailedRunError(f"{case.what or case.command}: {row['reason']}")
         return rows
 
-    def row(self, wanted: PaperCase) -> Row:
+    def row(self, paper_case: PaperCase) -> Row:
         """Verdict scalars of one case; raises as `rows`."""
-        return self.rows([wanted])[0]
+        return self.rows([paper_case])[0]
 
-    def run(self, wanted: PaperCase, *, also_failed: bool = False) -> Finished:
+    def run(self, paper_case: PaperCase, *, also_failed: bool = False) -> Finished:
         """The run of a case with its history; arguments and errors as for `rows`."""
-        if wanted.key not in self._runs:
-            model = self.model(wanted)
+        if paper_case.key not in self._runs:
+            model = self.model(paper_case)
             recorder = Recorder(model)
             ending = simulate(model, recorder, stop=self._stop)
             self._require_going()
-            self._runs[wanted.key] = Finished(model=model, history=recorder.history(), status=ending.status)
-        run = self._runs[wanted.key]
+            self._runs[paper_case.key] = Finished(
+                model=model, history=recorder.history(), status=ending.status
+            )
+        run = self._runs[paper_case.key]
         if run.status == "failed":
-            self.failed.add(wanted.key)
+            self.failed.add(paper_case.key)
             if not also_failed:
-                raise FailedRunError(f"{wanted.what or wanted.command}: the run failed")
+                raise FailedRunError(f"{paper_case.what or paper_case.command}: the run failed")
         return run
 
-    def model(self, wanted: PaperCase) -> Model:
+    def model(self, paper_case: PaperCase) -> Model:
         """The model of a case, at t = 0."""
-        case = self.case(wanted)
+        case = self.case(paper_case)
         return build_model(case, self._containers.container_of(case))
 
-    def block(self, wanted: PaperCase) -> RigidBlock:
+    def block(self, paper_case: PaperCase) -> RigidBlock:
         """The analytic block with the mass and geometry of a case."""
-        return block_of(self.model(wanted.but(RIGID)))
+        return block_of(self.model(paper_case.but(RIGID)))
 
-    def on_floor(self, wanted: PaperCase, factor: float) -> PaperCase:
+    def on_floor(self, paper_case: PaperCase, factor: float) -> PaperCase:
         """The case with a multiple of the contact penalty that "auto" chooses."""
-        case = self.case(wanted)
+        case = self.case(paper_case)
         auto = normal_penalty(case, self._containers.container_of(case).mesh)
-        return wanted.but({"contact.normal_penalty_Pa_m": float(f"{factor * auto:.6g}")})
+        return paper_case.but({"contact.normal_penalty_Pa_m": float(f"{factor * auto:.6g}")})
 
-    def variants(self, wanted: PaperCase) -> list[PaperCase]:
+    def variants(self, paper_case: PaperCase) -> list[PaperCase]:
         """The rigid container and the shell: on corners of three penalties and two dampings, on feet, flat."""
-        shell = wanted.but(SHELL)
+        shell = paper_case.but(SHELL)
         corners = [
-            one
+            variant
             for factor in PENALTY_FACTORS
-            for one in self.on_floor(shell, factor).scan(
+            for variant in self.on_floor(shell, factor).scan(
                 "damping", DAMPING_RATIOS, f"shell, corners, penalty x {factor:.2g}, contact damping {{:g}}"
             )
         ]
         others = [shell.but(support=kind, what=f"shell, {kind}") for kind in SUPPORTS]
-        return [wanted.but(RIGID, what="rigid, corners"), *corners, *others]
+        return [paper_case.but(RIGID, what="rigid, corners"), *corners, *others]
 
     def band(
         self,
-        wanted: PaperCase,
+        paper_case: PaperCase,
         quantity: str,
         criterion: str,
         holds: Callable[[Row], bool],
@@ -241,17 +243,17 @@ class Experiments:
         """One number of a case over deformation, contact stiffness, contact damping and support.
 
         Args:
-            wanted: the case of the claim.
+            paper_case: the case of the claim.
             quantity, unit, value: the number, taken from a row.
             criterion, holds: what the claim requires of a row.
         """
-        variants = self.variants(wanted)
+        variants = self.variants(paper_case)
         members = []
         for variant, row in zip(variants, self.rows(variants, also_failed=True), strict=True):
             failed = row["status"] == "failed"
-            found = (None, None, False) if failed else (row["outcome"], value(row), holds(row))
-            members.append(variant_result(variant, *found))
-        contact = self.case(wanted).contact
+            result = (None, None, False) if failed else (row["outcome"], value(row), holds(row))
+            members.append(variant_result(variant, *result))
+        contact = self.case(paper_case).contact
         drop = contact.mu_kinetic < contact.mu_static
         return VariantBand(quantity=quantity, unit=unit, criterion=criterion, members=members, drop=drop)
 

@@ -54,8 +54,8 @@ def draw_curves(
             axes.plot(line.x, line.y, line.style, color=colour, label=line.label, linewidth=1.4, markersize=4)
         for text, level in (levels or {}).items():
             axes.axhline(level, color=GREY, linewidth=0.8, linestyle=":")
-            place = ("axes fraction", "data")
-            axes.annotate(text, (1.0, level), xycoords=place, ha="right", va="bottom", color=GREY)
+            coordinates = ("axes fraction", "data")
+            axes.annotate(text, (1.0, level), xycoords=coordinates, ha="right", va="bottom", color=GREY)
         if log_x:
             axes.set_xscale("log")
         if y_limits is not None:
@@ -66,14 +66,16 @@ def draw_curves(
     return ClaimFigure(name=name, caption=caption, svg=svg_of(figure))
 
 
-def draw_map(name: str, caption: str, one: OutcomeMap, curves: Sequence[MapCurve]) -> ClaimFigure:
+def draw_map(name: str, caption: str, outcome_map: OutcomeMap, curves: Sequence[MapCurve]) -> ClaimFigure:
     """Outcome of every cell by colour, unsure cells hatched, curves on top."""
     words = list(OUTCOME_COLOURS)
     panel = Panel(
-        values=np.array([[words.index(cell.row["outcome"] or "failed") for cell in row] for row in one.rows]),
-        overturned=np.array([[cell.fell for cell in row] for row in one.rows]),
-        unsure=np.array([[not cell.sure for cell in row] for row in one.rows]),
+        values=np.array(
+            [[words.index(cell.row["outcome"] or "failed") for cell in row] for row in outcome_map.rows]
+        ),
+        overturned=np.array([[cell.fell for cell in row] for row in outcome_map.rows]),
+        unsure=np.array([[not cell.sure for cell in row] for row in outcome_map.rows]),
         curves=curves,
     )
-    figure = draw_heat_map(one.x, one.y, [panel], colours=OUTCOME_COLOURS)
+    figure = draw_heat_map(outcome_map.x, outcome_map.y, [panel], colours=OUTCOME_COLOURS)
     return ClaimFigure(name=name, caption=caption, svg=svg_of(figure))

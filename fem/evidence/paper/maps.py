@@ -36,8 +36,8 @@ from fem.sweep.perturbation import Perturbation
 
 FREQUENCIES = tuple(float(f"{w:.4g}") for w in np.linspace(1.5, 12.0, 20))  #: [rad/s]
 PEAKS = tuple(float(f"{a:.4g}") for a in np.geomspace(1.8, 12.0, 20))  #: [m/s2]
-SLENDERNESS = tuple(float(f"{one:.4g}") for one in np.linspace(1.5, 6.0, 19))  #: c/a
-FRICTION = tuple(float(f"{one:.4g}") for one in np.linspace(0.1, 0.8, 15))  #: mu_s; mu_k is half of it
+SLENDERNESS = tuple(float(f"{ratio:.4g}") for ratio in np.linspace(1.5, 6.0, 19))  #: c/a
+FRICTION = tuple(float(f"{mu:.4g}") for mu in np.linspace(0.1, 0.8, 15))  #: mu_s; mu_k is half of it
 FREQUENCY = MapAxis(label="angular frequency [rad/s]", values=FREQUENCIES, scale="linear")
 PEAK = MapAxis(label="peak floor acceleration [m/s²]", values=PEAKS, scale="log")
 SHAPE = MapAxis(label="slenderness c/a [-]", values=SLENDERNESS, scale="linear")
@@ -117,12 +117,12 @@ class OutcomeMap:
             criterion: says which cells overturn; default: all.
             frequencies: only cells at these, if there are any [rad/s].
         """
-        said = [
+        stood = [
             cell.stood
             for cell in self.cells
             if criterion(cell.motion) and (not frequencies or cell.motion.angular_frequency in frequencies)
         ]
-        return sum(said) / len(said) if said else np.nan
+        return sum(stood) / len(stood) if stood else np.nan
 
 
 def stack_map(
@@ -144,11 +144,11 @@ def stack_map(
     """
     base = STACK.but(FOR_MAPS, friction(*mu), duration=15.0)
 
-    def place(frequency: float, peak: float) -> PaperCase:
+    def case_at(frequency: float, peak: float) -> PaperCase:
         return base.but(peak=peak, frequency=frequency, what=f"stack, {peak:g} m/s² at {frequency:g} rad/s")
 
     y = replace(PEAK, values=peaks)
-    return _computed(experiments, place, "stack, frequency x peak", FREQUENCY, y, (0, 1), rigid, perturbed)
+    return _computed(experiments, case_at, "stack, frequency x peak", FREQUENCY, y, (0, 1), rigid, perturbed)
 
 
 def shape_maps(experiments: Experiments, *, rigid: bool = True) -> list[OutcomeMap]:
@@ -162,7 +162,7 @@ def shape_maps(experiments: Experiments, *, rigid: bool = True) -> list[OutcomeM
             FOR_MAPS, {"container.boxes": 1}, duration=15.0, peak=PLATEAU_PEAK, frequency=frequency
         )
 
-        def place(slenderness: float, mu: float) -> PaperCase:
+        def case_at(slenderness: float, mu: float) -> PaperCase:
             body = {
                 "container.height_m": round(slenderness * WIDTH, 4),
                 "container.centroid_m": round(0.5 * slenderness * WIDTH, 4),
@@ -172,18 +172,18 @@ def shape_maps(experiments: Experiments, *, rigid: bool = True) -> list[OutcomeM
             return base.but(body, friction(mu, 0.5 * mu), what=what)
 
         title = f"container, c/a x mu_s, {PLATEAU_PEAK:.1f} m/s² at {frequency:g} rad/s"
-        return _computed(experiments, place, title, SHAPE, STICTION, (1, 1), rigid)
+        return _computed(experiments, case_at, title, SHAPE, STICTION, (1, 1), rigid)
 
     return [of_frequency(frequency) for frequency in SHAPE_FREQUENCIES]
 
 
-def pairs(one: OutcomeMap, other: OutcomeMap) -> list[tuple[MapCell, MapCell]]:
+def pairs(base: OutcomeMap, other: OutcomeMap) -> list[tuple[MapCell, MapCell]]:
     """Cells at the same place of two maps, both computed; every place of the other must be one of the first."""
-    places = itertools.product(other.y.values, other.x.values)
-    x, y = list(one.x.values), list(one.y.values)
+    positions = itertools.product(other.y.values, other.x.values)
+    x, y = list(base.x.values), list(base.y.values)
     both = [
-        (one.rows[y.index(up)][x.index(across)], cell)
-        for (up, across), cell in zip(places, other.every, strict=True)
+        (base.rows[y.index(up)][x.index(across)], cell)
+        for (up, across), cell in zip(positions, other.every, strict=True)
     ]
     return [(first, second) for first, second in both if first.computed and second.computed]
 
@@ -199,7 +199,7 @@ def near_change(rows: Sequence[Row], x: Sequence[float], y: Sequence[float]) -> 
 
 def _computed(
     experiments: Experiments,
-    place: Callable[[float, float], PaperCase],
+    case_at: Callable[[float, float], PaperCase],
     title: str,
     x: MapAxis,
     y: MapAxis,
@@ -207,13 +207,15 @@ def _computed(
     rigid: bool,
     perturbed: bool = True,
 ) -> OutcomeMap:
-    """Compute a map; where asked, perturb the cells near a change of outcome.
+    """Compute a map; with `perturbed`, perturb the cells near a change of outcome.
 
     That of a shell has every second value of either axis, from the given first ones on, and runs of 10 s.
     """
     if not rigid:
-        x, y = (replace(one, values=one.values[start::2]) for one, start in zip((x, y), first, strict=True))
-    cases = [place(across, up) for up in y.values for across in x.values]
+        x, y = (
+            replace(axis, values=axis.values[start::2]) for axis, start in zip((x, y), first, strict=True)
+        )
+    cases = [case_at(across, up) for up in y.values for across in x.values]
     if not rigid:
         cases = [case.but(SHELL, duration=10.0, what=f"shell, {case.what}") for case in cases]
     rows = experiments.rows(cases, also_failed=True)
@@ -221,12 +223,13 @@ def _computed(
     if perturbed:
         near = np.flatnonzero(near_change(rows, x.values, y.values)).tolist()
         copies = {
-            k: [cases[k].but(one) for one in PERTURBATION.members(experiments.case(cases[k]))] for k in near
+            k: [cases[k].but(change) for change in PERTURBATION.members(experiments.case(cases[k]))]
+            for k in near
         }
-        experiments.rows([one for group in copies.values() for one in group], also_failed=True)  # one batch
+        experiments.rows([copy for group in copies.values() for copy in group], also_failed=True)  # one batch
         for k, group in copies.items():
-            found = experiments.rows([cases[k], *group], also_failed=True)
-            kinds = {ending_of(row["status"], row["outcome"]) for row in found}
+            group_rows = experiments.rows([cases[k], *group], also_failed=True)
+            kinds = {ending_of(row["status"], row["outcome"]) for row in group_rows}
             sure[k] = kinds in ({Ending.STANDING}, {Ending.OVERTURNED})
     cells = [
         MapCell(motion=motion_of(case), case=case, row=row, sure=certain)

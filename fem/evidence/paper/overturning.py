@@ -104,8 +104,13 @@ def short_before_reversal(experiments: Experiments) -> Evidence:
         "When the stack begins to tilt, in periods before the floor reverses, and its outcome.",
         "angular frequency [rad/s] | lead over the period [-]",
         [
-            curve([one.motion.angular_frequency for one in some], [_lead(one) for one in some], label, style)
-            for some, label, style in ((standing, "stands", "."), (fallen, "overturns", "x"))
+            curve(
+                [cell.motion.angular_frequency for cell in cells],
+                [_lead(cell) for cell in cells],
+                label,
+                style,
+            )
+            for cells, label, style in ((standing, "stands", "."), (fallen, "overturns", "x"))
         ],
     )
     yield experiments.band(

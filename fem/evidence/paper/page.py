@@ -55,7 +55,7 @@ def paper_report(folder: Path, *, signature: Signature | None = None) -> str:
     path = folder / PAPER.mark
     study = read_result(path, PAPER)
     try:
-        files = {one.stem: one.read_text(encoding="utf-8") for one in (folder / "figures").glob("*.svg")}
+        files = {svg.stem: svg.read_text(encoding="utf-8") for svg in (folder / "figures").glob("*.svg")}
         return html_of(
             Page(
                 kind="Study",
@@ -81,18 +81,18 @@ def paper_report(folder: Path, *, signature: Signature | None = None) -> str:
 
 def lines_of(study: Mapping[str, Any]) -> list[str]:
     """One line a claim, for a terminal, and the counts."""
-    groups = [(group["title"], [_line(one) for one in group["statements"]]) for group in study["groups"]]
+    groups = [(group["title"], [_line(entry) for entry in group["statements"]]) for group in study["groups"]]
     counts = ", ".join(f"{count} {plural(name, count)}" for name, count in study["counts"].items() if count)
     return table_lines(groups, f"{study['statements']} claims: {counts}")
 
 
-def _line(one: Entry) -> str:
-    return f"  {one['name']:<26} {one['verdict']:<31} {_rule(one)}"
+def _line(entry: Entry) -> str:
+    return f"  {entry['name']:<26} {entry['verdict']:<31} {_rule(entry)}"
 
 
-def _rule(one: Entry) -> str:
+def _rule(entry: Entry) -> str:
     """How many comparisons hold, or why there are none."""
-    return str(one.get("rule") or one.get("error", ""))
+    return str(entry.get("rule") or entry.get("error", ""))
 
 
 def _introduction(study: Mapping[str, Any]) -> list[sections.Block]:
@@ -128,58 +128,58 @@ def _overview(groups: Sequence[Mapping[str, Any]]) -> sections.Table:
 
 
 def _group(group: Mapping[str, Any], files: Mapping[str, str]) -> sections.PageSection:
-    claims = (sections.Group("claim", list(_claim(one, files))) for one in group["statements"])
+    claims = (sections.Group("claim", list(_claim(entry, files))) for entry in group["statements"])
     return sections.section(group["title"], group["title"].lower().replace(" ", "-"), *claims)
 
 
-def _conclusion(one: Entry) -> Markup:
-    bounds = f": {one['bounds']}" if one["verdict"] == Conclusion.BOUNDED.value else ""
-    return sections.joined(sections.marked(one["verdict"], LOOKS[one["verdict"]]), bounds)
+def _conclusion(entry: Entry) -> Markup:
+    bounds = f": {entry['bounds']}" if entry["verdict"] == Conclusion.BOUNDED.value else ""
+    return sections.joined(sections.marked(entry["verdict"], LOOKS[entry["verdict"]]), bounds)
 
 
-def _claim(one: Entry, files: Mapping[str, str]) -> Iterator[sections.Block]:
-    title, section = one["name"].replace("-", " ").capitalize(), f"(section {one['section']})"
-    yield sections.Heading(sections.joined(title, " ", sections.marked(section, "quiet")), one["name"])
-    yield sections.Quote(one["quote"])
-    yield sections.Paragraph(_conclusion(one), "conclusion")
-    if "error" in one:
-        yield sections.Paragraph(f"Not computed: {one['error']}", "fail")
+def _claim(entry: Entry, files: Mapping[str, str]) -> Iterator[sections.Block]:
+    title, section = entry["name"].replace("-", " ").capitalize(), f"(section {entry['section']})"
+    yield sections.Heading(sections.joined(title, " ", sections.marked(section, "quiet")), entry["name"])
+    yield sections.Quote(entry["quote"])
+    yield sections.Paragraph(_conclusion(entry), "conclusion")
+    if "error" in entry:
+        yield sections.Paragraph(f"Not computed: {entry['error']}", "fail")
         return
-    yield one["reading"]
-    rule = f" {one['rule']}." if one["rule"] else ""
-    failed = f" {one['failed_runs']} failed runs are not counted." if one["failed_runs"] else ""
-    yield sections.Note(f"Check: {one['tried']}{rule}{failed}")
-    if one["comparisons"]:
-        bounded = bool(one["bounds"])
+    yield entry["reading"]
+    rule = f" {entry['rule']}." if entry["rule"] else ""
+    failed = f" {entry['failed_runs']} failed runs are not counted." if entry["failed_runs"] else ""
+    yield sections.Note(f"Check: {entry['tried']}{rule}{failed}")
+    if entry["comparisons"]:
+        bounded = bool(entry["bounds"])
         yield sections.table_of(
-            f"comparisons of {one['name']}",
+            f"comparisons of {entry['name']}",
             [sections.Column("compared", lambda row: _compared(row, bounded)), *COMPARISONS],
-            one["comparisons"],
+            entry["comparisons"],
             row_look=lambda row: "outside" if bounded and not row["inside"] else "",
         )
-    for drawing in one["drawings"]:
+    for drawing in entry["drawings"]:
         if (name := drawing["name"]) in files:
             caption = drawing["caption"]
             yield sections.Figure(
                 svg_element(files[name], label=caption, prefix=name), caption, caption=caption
             )
-    if band := one["band"]:
+    if band := entry["band"]:
         unit = "" if band["unit"] == "-" else f" {band['unit']}"
         yield sections.table_of(
-            f"band of {one['name']}",
+            f"band of {entry['name']}",
             MEMBERS,
             band["members"],
             caption=f"Band: {band['quantity']}, {number(band['low'])} to {number(band['high'])}{unit}. "
             f"Criterion: {band['criterion']}; it {band['summary']}.",
         )
-    for table in one["tables"]:
-        few = len(table["rows"]) <= FEW_ROWS and len(one["tables"]) <= FEW_TABLES
+    for table in entry["tables"]:
+        few = len(table["rows"]) <= FEW_ROWS and len(entry["tables"]) <= FEW_TABLES
         rows = ([number(value) for value in row] for row in table["rows"])
         columns = sections.in_order(*table["columns"], look=NUMBER)
         yield sections.Folded(
             table["caption"], [sections.table_of(table["caption"], columns, rows)], open=few
         )
-    if setups := one["setups"]:
+    if setups := entry["setups"]:
         commands = [
             block
             for setup in setups
@@ -195,8 +195,8 @@ def _compared(row: Entry, bounded: bool) -> str:
     return sections.joined(row["what"], " ", sections.marked("(outside the bounds)", "note"))
 
 
-def _band_summary(one: Entry) -> str:
-    return str(one["band"]["summary"]) if one.get("band") else ABSENT
+def _band_summary(entry: Entry) -> str:
+    return str(entry["band"]["summary"]) if entry.get("band") else ABSENT
 
 
 def _limit(row: Entry) -> str:
@@ -205,7 +205,7 @@ def _limit(row: Entry) -> str:
 
 
 def _untried(untried: Sequence[Entry]) -> sections.Table:
-    rows = [(one["section"], one["quote"], one["reason"]) for one in untried]
+    rows = [(entry["section"], entry["quote"], entry["reason"]) for entry in untried]
     return sections.table_of(
         "sentences that are not checked", sections.in_order("section", "sentence", "reason"), rows
     )
@@ -229,10 +229,10 @@ def number(value: Any) -> str:
 
 
 OVERVIEW = [
-    sections.Column[Entry]("section", lambda one: one["section"]),
-    sections.Column("claim", lambda one: sections.link(one["quote"], one["name"])),
+    sections.Column[Entry]("section", lambda entry: entry["section"]),
+    sections.Column("claim", lambda entry: sections.link(entry["quote"], entry["name"])),
     sections.Column("conclusion", _conclusion),
-    sections.Column("comparisons that hold", lambda one: _rule(one) or ABSENT),
+    sections.Column("comparisons that hold", lambda entry: _rule(entry) or ABSENT),
     sections.Column("over deformation, contact and support", _band_summary),
 ]
 COMPARISONS = [
@@ -242,8 +242,8 @@ COMPARISONS = [
     sections.Column("holds", lambda row: result_of(row["holds"], "yes", "no")),
 ]
 MEMBERS = [
-    sections.Column[Entry]("container and floor", lambda one: one["what"]),
-    sections.Column("outcome", lambda one: number(one["outcome"])),
-    sections.Column("value", lambda one: number(one["value"]), NUMBER),
-    sections.Column("holds", lambda one: number(one["holds"])),
+    sections.Column[Entry]("container and floor", lambda member: member["what"]),
+    sections.Column("outcome", lambda member: number(member["outcome"])),
+    sections.Column("value", lambda member: number(member["value"]), NUMBER),
+    sections.Column("holds", lambda member: number(member["holds"])),
 ]

@@ -63,7 +63,7 @@ def kinetic_limit(experiments: Experiments) -> Evidence:
     while_sliding = float(np.quantile(np.abs(history["shear_force_N"][sliding]) / weight, 0.99))
     acceleration = history["base_acceleration_m_s2"]
     floor = np.abs(acceleration).max()
-    shown = time <= 2.0
+    early = time <= 2.0
     yield at_most("shear force over weight while sliding, 99 % of the samples", while_sliding, 0.2 * 1.005)
     reduced = while_sliding * GRAVITY / floor
     yield at_most("largest acceleration of the sliding box over the floor's", reduced, 1.0)
@@ -78,8 +78,8 @@ def kinetic_limit(experiments: Experiments) -> Evidence:
         "Shear force over weight of the box, and the force that sticking would require.",
         "time [s] | force / weight [-]",
         [
-            curve(time[shown], shear[shown], "shear force / weight"),
-            curve(time[shown], -acceleration[shown] / GRAVITY, "required for sticking", "--"),
+            curve(time[early], shear[early], "shear force / weight"),
+            curve(time[early], -acceleration[early] / GRAVITY, "required for sticking", "--"),
         ],
         levels={"mu_s": 0.4, "mu_k": 0.2},
     )
@@ -231,7 +231,7 @@ def _turn(experiments: Experiments, case: PaperCase) -> float:
 
 def _between(onsets: Sequence[Finding]) -> str:
     """The smallest and the largest of some onsets."""
-    values = [one.value for one in onsets]
+    values = [onset.value for onset in onsets]
     return f"{min(values):.4f} to {max(values):.4f}"
 
 

@@ -198,13 +198,13 @@ def semi_stable_orbit(experiments: Experiments) -> Evidence:
     lines = []
     for case in cases[:2]:
         history = experiments.run(case).history
-        shown = history["time_s"] <= 6.0
-        rotation, velocity = history["rotation_rad"][shown], history["angular_velocity_rad_s"][shown]
+        early = history["time_s"] <= 6.0
+        rotation, velocity = history["rotation_rad"][early], history["angular_velocity_rad_s"][early]
         lines.append(curve(rotation, velocity, case.what))
     yield (
         "The orbit through rest at the slenderness angle separates the motions that return from those that overturn: "
-        f"of {len(parted)} releases on either side {sum(parted)} ended so. The largest kick that "
-        f"returns is {' and '.join(f'{one:.4f}' for one in kicked)} of the analytic one for the rigid stack and box."
+        f"of {len(parted)} releases on either side {sum(parted)} ended so. The largest kick that returns "
+        f"is {' and '.join(f'{ratio:.4f}' for ratio in kicked)} of the analytic one for the rigid stack and box."
     )
     yield from cases
     yield draw_curves(
@@ -233,7 +233,7 @@ def _largest_kick(experiments: Experiments, case: PaperCase, kick: float) -> flo
     scan = case.scan("velocity", [factor * kick for factor in factors], "kicked by {:g} rad/s")
     rows = zip(factors, experiments.rows(scan), strict=True)
     changes = changes_of({factor: "stands" if stands(row) else "falls" for factor, row in rows})
-    return changes[0].value if [one.above for one in changes] == ["falls"] else math.nan
+    return changes[0].value if [change.above for change in changes] == ["falls"] else math.nan
 
 
 @claim(
@@ -322,11 +322,11 @@ def _at_plateau(experiments: Experiments) -> list[tuple[PaperCase, Finished]]:
     return [(case, experiments.run(case, also_failed=True)) for case in variants]
 
 
-def _band(quantity: str, found: list[tuple[PaperCase, Finished, float]]) -> VariantBand:
+def _band(quantity: str, runs: list[tuple[PaperCase, Finished, float]]) -> VariantBand:
     """Of values that must be at most 1; nan where a run gave none."""
     members = [
         variant_result(case, run.status if math.isfinite(value) else None, value, value <= 1.0)
-        for case, run, value in found
+        for case, run, value in runs
     ]
     return VariantBand(quantity=quantity, unit="-", criterion="at most 1", members=members)
 

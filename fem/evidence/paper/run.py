@@ -48,33 +48,33 @@ def check_claims(
     """
     began = time.perf_counter()
     way_on = "the same command continues"
-    with open_result_folder(folder, PAPER, STUDY, force=force, resume=True, way_on=way_on) as place:
-        entries = _decided(place)
-        place.require_room(ROOM, "the study", "make room")
-        place.begin(_document("running", entries, began), keep=bool(entries))
+    with open_result_folder(folder, PAPER, STUDY, force=force, resume=True, way_on=way_on) as results:
+        entries = _decided(results)
+        results.require_room(ROOM, "the study", "make room")
+        results.begin(_document("running", entries, began), keep=bool(entries))
         chosen = list(all_claims() if claims is None else claims)
         todo = [claim for claim in chosen if claim.name not in entries]
         status = "completed"
         for number, claim in enumerate(todo, start=1):
             report(f"[{number}/{len(todo)}] {claim.name}")
             try:
-                entries[claim.name] = _checked(claim, experiments, place)
+                entries[claim.name] = _checked(claim, experiments, results)
             except (InterruptedStudyError, KeyboardInterrupt):
                 status = "interrupted"
                 break
-            place.check()
-            place.write_result(_document("running", entries, began))
+            results.check()
+            results.write_result(_document("running", entries, began))
         undecided = any(entry["verdict"] == Conclusion.UNDECIDED.value for entry in entries.values())
         if status == "completed" and undecided:
             status = "failed"
         document = _document(status, entries, began)
-        place.check()
-        place.write_result(document)
-        place.write_text(PAGE, paper_report(folder))
+        results.check()
+        results.write_result(document)
+        results.write_text(PAGE, paper_report(folder))
         return document
 
 
-def _checked(claim: Claim, experiments: Experiments, place: ResultFolder) -> dict[str, Any]:
+def _checked(claim: Claim, experiments: Experiments, results: ResultFolder) -> dict[str, Any]:
     """Check a claim: its entry of `study.json`. A claim that cannot be computed gives the reason."""
     entry: dict[str, Any] = {name: getattr(claim, name) for name in ("name", "section", "quote", "tried")}
     entry["program"] = program_of_results()["program"]
@@ -84,7 +84,7 @@ def _checked(claim: Claim, experiments: Experiments, place: ResultFolder) -> dic
         entry |= {"verdict": Conclusion.UNDECIDED.value, "error": done.reason}
     else:
         for figure in done.result.figures:
-            place.write_text(f"{FIGURES}/{figure.name}.svg", figure.svg)
+            results.write_text(f"{FIGURES}/{figure.name}.svg", figure.svg)
         entry |= done.result.to_dict() | {"failed_runs": len(experiments.failed)}
     return entry | {"seconds": done.seconds}
 
@@ -98,28 +98,30 @@ def _document(status: str, entries: Entries, began: float) -> dict[str, Any]:
     return {
         "study": STUDY,
         "status": status,
-        "counts": {one.value: verdicts.count(one.value) for one in Conclusion},
+        "counts": {conclusion.value: verdicts.count(conclusion.value) for conclusion in Conclusion},
         "statements": len(verdicts),
         "groups": [group for group in groups if group["statements"]],
-        "untried": [dict(zip(("section", "quote", "reason"), one, strict=True)) for one in UNTRIED],
+        "untried": [dict(zip(("section", "quote", "reason"), sentence, strict=True)) for sentence in UNTRIED],
         **program_of_results(),
         "wall_s": time.perf_counter() - began,
     }
 
 
-def _decided(place: ResultFolder) -> Entries:
+def _decided(results: ResultFolder) -> Entries:
     """Claims in the folder that this version of the program decided, and whose figures are there."""
-    found, program = place.earlier or {}, program_of_results()
+    study, program = results.earlier or {}, program_of_results()
     try:
-        entries = [entry for group in found.get("groups", ()) for entry in group["statements"]]
+        entries = [entry for group in study.get("groups", ()) for entry in group["statements"]]
         return {
             entry["name"]: entry
             for entry in entries
-            if found["versions"] == program["versions"]
+            if study["versions"] == program["versions"]
             and entry["program"] == program["program"]
             and entry["verdict"] != Conclusion.UNDECIDED.value
-            and all((place.path / FIGURES / f"{one['name']}.svg").is_file() for one in entry["drawings"])
+            and all(
+                (results.path / FIGURES / f"{drawing['name']}.svg").is_file() for drawing in entry["drawings"]
+            )
         }
     except (KeyError, TypeError, AttributeError):
-        mark = place.path / place.kind.mark
+        mark = results.path / results.kind.mark
         raise FolderError(f"{mark}: damaged, or not the result of a study; {REMEDY}") from None

@@ -62,8 +62,10 @@ def cylinder(experiments: Experiments) -> Evidence:
     for name, change in zip(names, changes, strict=True):
         yield equal(f"{name}, cylinder over prism", change, 1.0, 0.02 if name == names[3] else 0.01)
     prism, solid = (
-        1.0 - (1.0 - math.cos(2.0 * math.atan2(HALF_WIDTH, 0.5))) / inertia_ratio(cylinder=one, height=1.0)
-        for one in (False, True)
+        1.0
+        - (1.0 - math.cos(2.0 * math.atan2(HALF_WIDTH, 0.5)))
+        / inertia_ratio(cylinder=is_cylinder, height=1.0)
+        for is_cylinder in (False, True)
     )
     yield equal("Housner's restitution of one box, cylinder less prism", solid - prism, 0.0, 0.05)
     yield (
@@ -116,8 +118,10 @@ def rigid_assumption(experiments: Experiments) -> Evidence:
         for name, case in bodies.items()
     ]
     numerics = [
-        cases[2].but({"solver.energy_tolerance": one}, what=f"{cases[2].what}, energy tolerance {one:g}")
-        for one in (0.1, 10.0)
+        cases[2].but(
+            {"solver.energy_tolerance": tolerance}, what=f"{cases[2].what}, energy tolerance {tolerance:g}"
+        )
+        for tolerance in (0.1, 10.0)
     ]
     rows = experiments.rows([*cases, *numerics])
     ends = [row["outcome"] for row in rows]
@@ -138,7 +142,7 @@ def rigid_assumption(experiments: Experiments) -> Evidence:
     yield (
         f"With mu_k = mu_s rigid block, shell and solid steel turn to {_range(ratios[3:6])} of the slenderness "
         f"angle, with mu_k = mu_s/2 to {_range(ratios[:3])}. {_CHANCE if len(set(ends[:3])) > 1 else ''}With an "
-        f"energy tolerance of 1, 0.1 and 10 solid steel slides by {', '.join(f'{one:.0f}' for one in slips)} mm"
+        f"energy tolerance of 1, 0.1 and 10 solid steel slides by {', '.join(f'{slip:.0f}' for slip in slips)} mm"
         f"{'' if reproduced else ': this slip is not reproducible'}."
     )
     yield from [*cases, *numerics]
@@ -148,7 +152,7 @@ def rigid_assumption(experiments: Experiments) -> Evidence:
         "rigid-assumption",
         "Rotation at the plateau value, mu 0.4/0.2: rigid block and shell of 8 mm.",
         "time [s] | rotation [rad]",
-        [curve(one["time_s"], one["rotation_rad"], name) for name, one in histories.items()],
+        [curve(history["time_s"], history["rotation_rad"], name) for name, history in histories.items()],
     )
     yield experiments.band(
         base,
@@ -203,8 +207,8 @@ def _joints(experiments: Experiments, case: PaperCase) -> tuple[float, str, str]
     ending = simulate(model, recorder)
     joints = (joint_demands(model, recorder.history()) if ending.status == "completed" else None) or ()
     tension = max(
-        (max(one.bolt_tension_left_N, one.bolt_tension_right_N) for one in joints), default=math.nan
+        (max(demand.bolt_tension_left_N, demand.bolt_tension_right_N) for demand in joints), default=math.nan
     )
-    opened = [str(one.joint) for one in joints if one.opens_at_s is not None]
-    slid = [str(one.joint) for one in joints if one.slides_at_s is not None]
+    opened = [str(demand.joint) for demand in joints if demand.opens_at_s is not None]
+    slid = [str(demand.joint) for demand in joints if demand.slides_at_s is not None]
     return tension / 1e3, ", ".join(opened) or "none", ", ".join(slid) or "none"

@@ -99,7 +99,7 @@ def slipping_stabilises(experiments: Experiments) -> Evidence:
     for mu in ((0.2, 0.1), (0.25, 0.125), (0.3, 0.15), PAPER_MU, (0.4, 0.4)):
         slipping = stack_map(experiments, mu, perturbed=mu[0] in (0.25, 0.4))
         slid = [pair for pair in pairs(holding, slipping) if pair[1].row["max_slip_m"] > 1e-3]
-        saved = [one for one, other in slid if one.fell and not other.fell]
+        saved = [held for held, slipped in slid if held.fell and not slipped.fell]
         lost = [pair for pair in slid if pair[1].fell and not pair[0].fell]
         sure = [pair for pair in lost if pair[0].sure and pair[1].sure]
         more = [pair for pair in slid if _turns_more(*pair)]
@@ -115,8 +115,8 @@ def slipping_stabilises(experiments: Experiments) -> Evidence:
         lines.append((name, len(slid), len(saved), len(lost), len(sure), len(more)))
         worse += [other.case for _, other in (sure or more)[:2]]
     certain = [pair for pair in _with_other_mu(experiments, PAPER_MU[0]) if pair[0].sure]
-    by_half = [other for one, other in certain if one.stood and other.fell]
-    reverse = sum(one.fell and other.stood for one, other in certain)
+    by_half = [other for base, other in certain if base.stood and other.fell]
+    reverse = sum(base.fell and other.stood for base, other in certain)
     half = "mu 0.4/0.2: sure cells that stand, and overturn with mu_k = mu_s"
     yield at_most(half, len(by_half), 0.0, inside=False)
     _, cells, saved_by, lost_by, surely, further = (list(column) for column in zip(*lines, strict=True))
@@ -215,7 +215,7 @@ def halt_at_extremes(experiments: Experiments) -> Evidence:
         motion = simulate_sliding(
             slider, floor, duration=12.0 * math.pi / frequency, slip_velocity=-peak / frequency
         )
-        ends = [one.end for one in motion.intervals if one.direction][-5:-1]
+        ends = [interval.end for interval in motion.intervals if interval.direction][-5:-1]
         phases = np.array(ends) * frequency % math.pi  # the extremes are at pi/2
         lags.append(float(np.degrees(np.abs(phases - 0.5 * math.pi)).max()))
     strong = max(lag for lag, peak in zip(lags, peaks, strict=True) if 0.2 * GRAVITY / peak <= 0.25)
@@ -292,8 +292,8 @@ def friction_ratio(experiments: Experiments) -> Evidence:
     rows = []
     for mu_kinetic, row in zip(kinetic, experiments.rows(boxes), strict=True):
         both = _with_other_mu(experiments, mu_kinetic)
-        differ = [one for one, other in both if one.fell != other.fell]
-        sure = sum(one.sure for one in differ)
+        differ = [base for base, other in both if base.fell != other.fell]
+        sure = sum(cell.sure for cell in differ)
         rows.append((f"{mu_kinetic / mu_static:.0%}", 1e3 * row["max_slip_m"], len(both), len(differ), sure))
     (_, half, cells, *_), (_, most, _, most_differ, _), (_, full, _, full_differ, _) = rows
     needs = "so it needs a reason" if most_differ or full_differ else "and it decides no outcome here"

@@ -86,16 +86,16 @@ def loose_stack_moves_as_one(experiments: Experiments) -> Evidence:
     }
     every = experiments.rows([*plain.values(), *loose.values()], also_failed=True)  # one batch
     halves = every[: len(points)], every[len(points) :]
-    found = [
+    pairs = [
         BoltedAndLoose(*key, *rows) for key, *rows in zip(points, *halves, strict=True) if computed(*rows)
     ]
     for rocks, which in ((False, "do not rock"), (True, "rock")):
         for share in SHARES:
-            group = [one for one in found if one.share == share and one.rocks is rocks]
+            group = [pair for pair in pairs if pair.share == share and pair.rocks is rocks]
             what = f"largest difference of stacks that {which} when bolted, {share:g} of the floor's friction"
-            apart = max((one.apart for one in group), default=math.nan)
+            apart = max((pair.apart for pair in group), default=math.nan)
             yield at_most(what, apart, AS_ONE, inside=not rocks and share >= 1.0)
-    yield _reading(found)
+    yield _reading(pairs)
     yield from (loose[4, share, PLATEAU_PEAK] for share in SHARES)
     yield table(
         "Bolted and loose stacks, friction between the boxes over that on the floor",
@@ -103,34 +103,40 @@ def loose_stack_moves_as_one(experiments: Experiments) -> Evidence:
         "slip on the floor, bolted [mm] | loose [mm] | outcome, loose",
         [
             (
-                *(one.boxes, one.share, one.peak, one.bolted["rotation_ratio"], one.loose["rotation_ratio"]),
-                *(1e3 * one.loose[name] for name in ("max_joint_slip_m", "max_joint_opening_m")),
-                *(1e3 * row["max_slip_m"] for row in (one.bolted, one.loose)),
-                one.loose["outcome"],
+                *(
+                    pair.boxes,
+                    pair.share,
+                    pair.peak,
+                    pair.bolted["rotation_ratio"],
+                    pair.loose["rotation_ratio"],
+                ),
+                *(1e3 * pair.loose[name] for name in ("max_joint_slip_m", "max_joint_opening_m")),
+                *(1e3 * row["max_slip_m"] for row in (pair.bolted, pair.loose)),
+                pair.loose["outcome"],
             )
-            for one in found
+            for pair in pairs
         ],
     )
 
 
-def _reading(found: Sequence[BoltedAndLoose]) -> str:
-    as_one = [one for one in found if one.apart <= AS_ONE]
-    rocking = [one for one in found if one.rocks]
-    flat = [one for one in found if not one.rocks and one.share >= 1.0]
-    most = max(found, key=lambda one: one.loose["max_joint_slip_m"])
+def _reading(pairs: Sequence[BoltedAndLoose]) -> str:
+    as_one = [pair for pair in pairs if pair.apart <= AS_ONE]
+    rocking = [pair for pair in pairs if pair.rocks]
+    flat = [pair for pair in pairs if not pair.rocks and pair.share >= 1.0]
+    most = max(pairs, key=lambda pair: pair.loose["max_joint_slip_m"])
     return (
-        f"{len(as_one)} of {len(found)} loose stacks move as one. Of those that do not rock when bolted, "
+        f"{len(as_one)} of {len(pairs)} loose stacks move as one. Of those that do not rock when bolted, "
         f"{_count(flat)} do so where the friction between the boxes is at least that on the floor; with less, boxes "
         "slide on one another first. A rocking stack needs more, since an impact shears its joints beyond that: with "
-        f"the friction of the floor {_count([one for one in rocking if one.share == 1.0])} move as one, with one and a "
-        f"half times that {_count([one for one in rocking if one.share == 1.5])}; in the others joints open. "
+        f"the friction of the floor {_count([pair for pair in rocking if pair.share == 1.0])} move as one, with one "
+        f"and a half times that {_count([pair for pair in rocking if pair.share == 1.5])}; in the others joints open. "
         f"The largest slip between boxes is {1e3 * most.loose['max_joint_slip_m']:.0f} mm ({most.boxes} boxes, "
         f"{most.share:g} of the friction, {most.peak:g} m/s²)."
     )
 
 
 def _count(pairs: Sequence[BoltedAndLoose]) -> str:
-    return f"{sum(one.apart <= AS_ONE for one in pairs)} of {len(pairs)}"
+    return f"{sum(pair.apart <= AS_ONE for pair in pairs)} of {len(pairs)}"
 
 
 @claim(
@@ -173,7 +179,7 @@ def slip_between_loose_boxes(experiments: Experiments) -> Evidence:
         f"The largest slip between boxes is {lines[0][2]:.0f} mm of two boxes and {lines[2][2]:.0f} mm of four at "
         f"{PLATEAU_PEAK:g} m/s², against {lines[0][3]:.0f} mm of one box on such a floor. Where it does not rock, a "
         "stack slides on its lowest box as that box on the floor. What limits it is the width: a box slides up to "
-        f"{max(one[2] for one in lines):.0f} mm of the {1e3 * WIDTH / 2:.0f} mm after which it loses its footing."
+        f"{max(line[2] for line in lines):.0f} mm of the {1e3 * WIDTH / 2:.0f} mm after which it loses its footing."
     )
     yield table(
         "Largest slip between loose boxes, and of one box on a floor with the same friction",
@@ -201,13 +207,13 @@ def loose_or_bolted_outcome(experiments: Experiments) -> Evidence:
     lines = []
     for share, cases in loose.items():
         pairs = [
-            (one, other)
-            for one, other in zip(
+            (plain_row, loose_row)
+            for plain_row, loose_row in zip(
                 *(experiments.rows(group, also_failed=True) for group in (plain, cases)), strict=True
             )
-            if computed(one, other)
+            if computed(plain_row, loose_row)
         ]
-        fell = np.array([[not stands(one) for one in pair] for pair in pairs])
+        fell = np.array([[not stands(row) for row in pair] for pair in pairs])
         new, gone = int((~fell[:, 0] & fell[:, 1]).sum()), int((fell[:, 0] & ~fell[:, 1]).sum())
         what = f"share of the cells that change between standing and overturning, {share:g} of the floor's friction"
         yield at_most(what, (new + gone) / len(pairs), FEW, inside=share == 1.0)

@@ -84,8 +84,11 @@ def fragility(content: Content, motions: list[GroundMotion]) -> Lognormal:
 
     counts = [
         sum(
-            falls(one, level * content.velocity / one.intensities["h"].peak_velocity_m_s * one.horizontal)
-            for one in motions
+            falls(
+                motion,
+                level * content.velocity / motion.intensities["h"].peak_velocity_m_s * motion.horizontal,
+            )
+            for motion in motions
         )
         for level in LEVELS.tolist()
     ]
@@ -100,9 +103,9 @@ def compute() -> Experiment:
     contents = read_contents()
     action = SiteAction(shape=eurocode_shape(1, GROUND), reference_acceleration=2.0)
     motions = artificial_motions(action, count=MOTIONS, seed=1, stationary=STATIONARY_S, vertical=False)
-    curves = [fragility(one, motions) for one in contents]
+    curves = [fragility(content, motions) for content in contents]
     ratios = np.array([curve.median for curve in curves])
-    published = np.array([one.median / one.velocity for one in contents])
+    published = np.array([content.median / content.velocity for content in contents])
     apart = float(np.exp(np.mean(np.log(ratios / published))))
     uneven, spread = float(ratios.max() / ratios.min()), [curve.deviation for curve in curves]
     return Experiment(
@@ -140,11 +143,11 @@ def compute() -> Experiment:
             ),
             *(
                 prediction(
-                    f"{one.name}, {one.width:g} x {one.height:g} m: median peak velocity [m/s]",
-                    f"{curve.median * one.velocity:.2f}",
-                    reference=one.median,
+                    f"{content.name}, {content.width:g} x {content.height:g} m: median peak velocity [m/s]",
+                    f"{curve.median * content.velocity:.2f}",
+                    reference=content.median,
                 )
-                for one, curve in zip(contents, curves, strict=True)
+                for content, curve in zip(contents, curves, strict=True)
             ),
         ),
         others=(

@@ -81,17 +81,17 @@ def compute() -> Experiment:
     """Fit the damping on half of the landings and predict the other half, and the reverse."""
     landings = read_landings()
     halves = cross_validated(landings, fitted_damping)
-    found = [(landing, landed(landing, ratio)) for ratio, others in halves for landing in others]
-    ratio = float(np.median([rebound.same_side / landing.rebound for landing, rebound in found]))
-    sides = sum(rebound.same_side > rebound.other_side for _, rebound in found)
-    hop = max(rebound.hop for _, rebound in found)
-    rest = max(rebound.rest_after for _, rebound in found)
+    predicted = [(landing, landed(landing, ratio)) for ratio, others in halves for landing in others]
+    ratio = float(np.median([rebound.same_side / landing.rebound for landing, rebound in predicted]))
+    sides = sum(rebound.same_side > rebound.other_side for _, rebound in predicted)
+    hop = max(rebound.hop for _, rebound in predicted)
+    rest = max(rebound.rest_after for _, rebound in predicted)
     authors = _damping_of(AUTHORS_RESTITUTION)
-    plastic = float(np.median([landed(one, authors).same_side / one.rebound for one in landings]))
+    plastic = float(np.median([landed(landing, authors).same_side / landing.rebound for landing in landings]))
     middle = halves[0][0]
     turned = sum(
         rebound.other_side > rebound.same_side
-        for rebound in (landed(one, middle, HIGH_FRICTION) for one in landings)
+        for rebound in (landed(landing, middle, HIGH_FRICTION) for landing in landings)
     )
     fits = " and ".join(
         f"{ratio:g} (a point rebounds with {restitution_of(ratio):.2f})" for ratio, _ in halves
@@ -148,18 +148,18 @@ def compute() -> Experiment:
                 note="a control, no measurement: friction decides the side",
             ),
         ),
-        figures=(_picture(next(one for one in landings if one.toss == SHOWN), halves[0][0]),),
+        figures=(_picture(next(landing for landing in landings if landing.toss == SHOWN), halves[0][0]),),
     )
 
 
 def _picture(landing: Landing, damping_ratio: float) -> Picture:
     history = _history(landing, damping_ratio, FRICTION)
     times, side = history["time_s"], np.sign(landing.rotation[0])
-    shown = times <= landing.times[-1]
+    until_end = times <= landing.times[-1]
     return drawings.landed(
         landing.toss,
         (landing.times, side * np.degrees(landing.rotation)),
-        (times[shown], side * np.degrees(history["rotation_rad"][shown])),
+        (times[until_end], side * np.degrees(history["rotation_rad"][until_end])),
     )
 
 
@@ -167,7 +167,7 @@ def fitted_damping(landings: Sequence[Landing]) -> float:
     """The damping ratio with which the median rebound is nearest to the measured one, by its logarithm."""
 
     def error(ratio: float) -> float:
-        sizes = [max(landed(one, ratio).same_side, 1e-9) / one.rebound for one in landings]
+        sizes = [max(landed(landing, ratio).same_side, 1e-9) / landing.rebound for landing in landings]
         return abs(math.log(float(np.median(sizes))))
 
     return min(DAMPING_RATIOS, key=error)

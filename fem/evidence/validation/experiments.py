@@ -63,7 +63,7 @@ class ValidationResult:
     @property
     def findings(self) -> Iterator[Finding]:
         """Every finding, in order."""
-        return (finding for one in self.experiments for finding in one.findings)
+        return (finding for experiment in self.experiments for finding in experiment.findings)
 
     @property
     def failures(self) -> int:
@@ -81,17 +81,18 @@ class ValidationResult:
         if not self.judged:
             return "No experiment was computed."
         judged = f"{self.judged - self.failures} of {self.judged} judged predictions meet their criterion"
-        missed = ", ".join(one.title for one in self.experiments if one.missed)
+        missed = ", ".join(experiment.title for experiment in self.experiments if experiment.missed)
         parts = [f"{judged}; missed: {missed}" if missed else judged]
-        if stated := [one for one in self.findings if one.holds is None]:
-            off = [one for one in stated if one.telling]
+        if stated := [finding for finding in self.findings if finding.holds is None]:
+            off = [finding for finding in stated if finding.telling]
             parts.append(f"{len(stated)} are stated and not judged")
             if off:
                 some = "; ".join(
-                    f"{one.what}: measured {one.reference}, predicted {one.value}" for one in off
+                    f"{finding.what}: measured {finding.reference}, predicted {finding.value}"
+                    for finding in off
                 )
                 parts[-1] += f", of which {len(off)} tell most ({some})"
-        if skipped := [one.title for one in self.experiments if one.not_computed]:
+        if skipped := [experiment.title for experiment in self.experiments if experiment.not_computed]:
             parts.append(
                 f"{len(skipped)} of {len(self.experiments)} experiments not computed ({', '.join(skipped)})"
             )
@@ -105,10 +106,10 @@ class ValidationResult:
             "judged": self.judged,
             "sentence": self.sentence,
             "experiments": [
-                {key: value for key, value in asdict(one).items() if key != "figures"}
-                | {"findings": [finding.document(KEYS) for finding in one.findings]}
-                | {"computed": not one.not_computed, "missed": one.missed}
-                for one in self.experiments
+                {key: value for key, value in asdict(experiment).items() if key != "figures"}
+                | {"findings": [finding.document(KEYS) for finding in experiment.findings]}
+                | {"computed": not experiment.not_computed, "missed": experiment.missed}
+                for experiment in self.experiments
             ],
             "versions": versions(),
         }

@@ -72,8 +72,8 @@ def compute() -> Experiment:
     fit = restitution_ratio("rubber", 5.0, width)
     widths = ", ".join(f"{fitted_width(rubber, strip):g} m ({100 * strip:g} %)" for strip in STRIPS)
     soft, stiff = (fitted_width(rubber, modulus=modulus) for modulus in MODULI)
-    some = (0.1, 0.2, 0.3, 0.4, 0.5)
-    over_widths = ", ".join(f"{restitution_ratio('rubber', 5.0, one):.2f}" for one in some)
+    trial_widths = (0.1, 0.2, 0.3, 0.4, 0.5)
+    over_widths = ", ".join(f"{restitution_ratio('rubber', 5.0, trial):.2f}" for trial in trial_widths)
     return Experiment(
         name="impacts",
         title="Restitution measured on concrete and rubber",
@@ -93,7 +93,7 @@ def compute() -> Experiment:
                 note="a fit of one unknown to one number: it shows that the preset can give it, not that it does",
             ),
             prediction(
-                f"the same for widths of {', '.join(f'{one:g}' for one in some)} m",
+                f"the same for widths of {', '.join(f'{trial:g}' for trial in trial_widths)} m",
                 over_widths,
                 reference=rubber,
                 note="no prediction without the width",
@@ -108,10 +108,10 @@ def compute() -> Experiment:
             *(
                 prediction(
                     f"slenderness {slenderness:g} on concrete: restitution over Housner's",
-                    f"{(found := restitution_ratio('concrete', slenderness, width)):.3f}",
+                    f"{(ratio := restitution_ratio('concrete', slenderness, width)):.3f}",
                     reference=measured["concrete", slenderness],
                     telling=True,
-                    note=f"a prediction, off by {found - measured['concrete', slenderness]:+.3f}: a rigid block on its "
+                    note=f"a prediction, off by {ratio - measured['concrete', slenderness]:+.3f}: a rigid block on its "
                     "edges loses no more than Housner's, and one so light crushes nothing; give "
                     "contact.restitution_over_housner where it is measured",
                 )

@@ -16,35 +16,36 @@ INTRODUCTION = (
     "before the comparison; a line without one is stated and not judged."
 )
 FINDINGS = [
-    Column[Finding]("quantity", lambda one: page.noted(one.what, one.note)),
-    Column("measured", lambda one: page.short_text(one.reference), NUMBER),
-    Column("predicted", lambda one: page.short_text(one.value), NUMBER),
-    Column("criterion", lambda one: one.criterion),
-    Column("result", lambda one: page.result_of(one.holds, *page.MET_OR_MISSED)),
+    Column[Finding]("quantity", lambda finding: page.noted(finding.what, finding.note)),
+    Column("measured", lambda finding: page.short_text(finding.reference), NUMBER),
+    Column("predicted", lambda finding: page.short_text(finding.value), NUMBER),
+    Column("criterion", lambda finding: finding.criterion),
+    Column("result", lambda finding: page.result_of(finding.holds, *page.MET_OR_MISSED)),
 ]
 OTHERS = [
-    Column[Predictor]("other predictors of the same tests", lambda one: one.name),
-    Column("share predicted", lambda one: one.agreement, NUMBER),
-    Column("source", lambda one: one.source),
+    Column[Predictor]("other predictors of the same tests", lambda predictor: predictor.name),
+    Column("share predicted", lambda predictor: predictor.agreement, NUMBER),
+    Column("source", lambda predictor: predictor.source),
 ]
 
 
 def lines_of(result: ValidationResult) -> list[str]:
     """The findings for a terminal."""
     groups = [
-        (f"{one.title}  ({one.tests} tests, {one.seconds:.0f} s)", _lines(one)) for one in _ordered(result)
+        (f"{experiment.title}  ({experiment.tests} tests, {experiment.seconds:.0f} s)", _lines(experiment))
+        for experiment in _ordered(result)
     ]
     return [result.sentence, *page.table_lines(groups, "")]
 
 
-def _lines(one: Experiment) -> list[str]:
-    if one.not_computed:
-        return [f"  not computed: {one.not_computed}"]
-    findings = (line for finding in one.findings for line in page.finding_lines(finding))
+def _lines(experiment: Experiment) -> list[str]:
+    if experiment.not_computed:
+        return [f"  not computed: {experiment.not_computed}"]
+    findings = (line for finding in experiment.findings for line in page.finding_lines(finding))
     return [
-        f"  fitted: {one.fitted}",
+        f"  fitted: {experiment.fitted}",
         *findings,
-        *(f"  {other.name}: {other.agreement}" for other in one.others),
+        *(f"  {other.name}: {other.agreement}" for other in experiment.others),
     ]
 
 
@@ -59,26 +60,29 @@ def page_of(result: ValidationResult) -> str:
             introduction=[Paragraph(result.sentence, f"sentence {look}".rstrip()), page.computed_now()],
             sections=[
                 INTRODUCTION,
-                *(PageSection(one.title, one.name, list(_blocks(one))) for one in _ordered(result)),
+                *(
+                    PageSection(experiment.title, experiment.name, list(_blocks(experiment)))
+                    for experiment in _ordered(result)
+                ),
             ],
         )
     )
 
 
-def _blocks(one: Experiment) -> Iterator[Block]:
-    yield Note(f"{typeset(one.source)}. Licence: {one.licence}.")
-    if one.not_computed:
-        yield f"Not computed: {one.not_computed}."
+def _blocks(experiment: Experiment) -> Iterator[Block]:
+    yield Note(f"{typeset(experiment.source)}. Licence: {experiment.licence}.")
+    if experiment.not_computed:
+        yield f"Not computed: {experiment.not_computed}."
         return
-    yield f"{one.tests} tests. Fitted: {typeset(one.fitted)}."
-    yield table_of(f"findings of {one.title}", FINDINGS, one.findings, row_look=page.look_of)
-    for picture in one.figures:
+    yield f"{experiment.tests} tests. Fitted: {typeset(experiment.fitted)}."
+    yield table_of(f"findings of {experiment.title}", FINDINGS, experiment.findings, row_look=page.look_of)
+    for picture in experiment.figures:
         svg = svg_element(picture.svg, label=picture.caption, prefix=picture.name)
         yield Figure(svg, picture.caption, caption=picture.caption)
-    if one.others:
-        yield table_of("other predictors", OTHERS, one.others)
+    if experiment.others:
+        yield table_of("other predictors", OTHERS, experiment.others)
 
 
 def _ordered(result: ValidationResult) -> list[Experiment]:
     """Experiments that are missed first."""
-    return sorted(result.experiments, key=lambda one: not one.missed)
+    return sorted(result.experiments, key=lambda experiment: not experiment.missed)

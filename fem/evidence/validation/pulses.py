@@ -30,7 +30,7 @@ SINGLE_STEPS = tuple(np.linspace(0.13, 0.22, 10).tolist())
 LEAST_RADIUS = 0.015  #: of a block of a laboratory [m]
 LEAST_AGREEMENT = 0.80
 FOLLOWED_S = 2.0
-PLACES = 24  #: of the figure, along each axis
+POINTS = 24  #: of the figure, along each axis
 RISE_S = 1e-3  #: not published; the shortest kick lasts 4 ms
 
 
@@ -98,10 +98,10 @@ def compute() -> Experiment:
 
 def _picture(kicks: Sequence[Kick]) -> Picture:
     """Where the block that fits all tests overturns."""
-    size, gap, speed = fitted_size(kicks), [one.gap for one in kicks], [one.speed for one in kicks]
-    gaps, speeds = np.linspace(min(gap), max(gap), PLACES), np.linspace(min(speed), max(speed), PLACES)
+    size, gap, speed = fitted_size(kicks), [kick.gap for kick in kicks], [kick.speed for kick in kicks]
+    gaps, speeds = np.linspace(min(gap), max(gap), POINTS), np.linspace(min(speed), max(speed), POINTS)
     falls = [[predicted(size, Kick(gap=g, speed=v, overturned=False)) for g in gaps] for v in speeds]
-    overturned = np.array([one.overturned for one in kicks])
+    overturned = np.array([kick.overturned for kick in kicks])
     return drawings.kicked(gaps, speeds, np.array(falls), (np.array(gap), np.array(speed)), overturned)
 
 

@@ -46,19 +46,19 @@ class Vote:
         weights = ((1.0 - SHARE) / SHARE) ** (right - right.max()).astype(np.float64)
         return np.asarray(weights / weights.sum(), dtype=np.float64)
 
-    def votes(self, family: str, fitted: BoolArray, asked: BoolArray) -> FloatArray:
-        """Shares of the votes for overturning (k,) on the tests asked for, by a fit on others; masks (tests,)."""
-        return np.asarray(self.weights(family, fitted) @ self.falls[family][:, asked], dtype=np.float64)
+    def votes(self, family: str, fitted: BoolArray, tested: BoolArray) -> FloatArray:
+        """Shares of the votes for overturning (k,) of the tests marked, by a fit on others; masks (tests,)."""
+        return np.asarray(self.weights(family, fitted) @ self.falls[family][:, tested], dtype=np.float64)
 
     def by_record(
         self, among: BoolArray, votes_of: Callable[[BoolArray, BoolArray], FloatArray]
     ) -> FloatArray:
         """Votes on each test among some (k,), by a fit on those of other records; a mask (tests,)."""
-        found = np.full(self.overturned.size, np.nan)
+        votes = np.full(self.overturned.size, np.nan)
         for record in np.unique(self.records[among]):
-            asked = among & (self.records == record)
-            found[asked] = votes_of(among & ~asked, asked)
-        return found[among]
+            tested = among & (self.records == record)
+            votes[tested] = votes_of(among & ~tested, tested)
+        return votes[among]
 
     def family(self, among: BoolArray) -> str:
         """The family that predicts some tests best, record by record; a mask (tests,)."""
@@ -69,9 +69,9 @@ class Vote:
 
         return min(self.falls, key=score)
 
-    def predicted(self, fitted: BoolArray, asked: BoolArray) -> FloatArray:
-        """Votes (k,) on the tests asked for, by family and weights that the tests fitted give; masks (tests,)."""
-        return self.votes(self.family(fitted), fitted, asked)
+    def predicted(self, fitted: BoolArray, tested: BoolArray) -> FloatArray:
+        """Votes (k,) of the tests marked, by the family and weights that the tests fitted give; masks (tests,)."""
+        return self.votes(self.family(fitted), fitted, tested)
 
 
 def probabilities(votes: FloatArray) -> FloatArray:
@@ -96,6 +96,6 @@ def best_threshold(measures: FloatArray, overturned: BoolArray) -> tuple[int, fl
 
 def by_threshold(measures: Sequence[FloatArray], overturned: BoolArray, fitted: BoolArray) -> BoolArray:
     """What a least value for overturning says of all tests (n,): of the measure, of some (n,), that fits best."""
-    scores = [best_threshold(one[fitted], overturned[fitted]) for one in measures]
+    scores = [best_threshold(measure[fitted], overturned[fitted]) for measure in measures]
     best = max(range(len(scores)), key=lambda k: scores[k][0])
     return np.asarray(measures[best] > scores[best][1])

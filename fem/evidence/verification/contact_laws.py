@@ -58,18 +58,18 @@ def patch_test() -> Findings:
 @check("contact", "static penetration")
 def penetration() -> Findings:
     """Static penetration under the weight: weight over penalty and area, in a run that stays at rest."""
-    found = {}
+    depths = {}
     for penalty in (1e8, 1e9, 1e10, 1e11):
         values = {"contact.normal_penalty_Pa_m": penalty, "support.kind": "flat", "solver.duration_s": 0.05}
-        found[1.0 / penalty] = float(runs.run(runs.STACK, values).track.max_penetration)
+        depths[1.0 / penalty] = float(runs.run(runs.STACK, values).track.max_penetration)
     yield analytic(
         "rigid stack on a flat base",
         "penetration at a penalty of 1e11 Pa/m [m]; order in 1/penalty",
-        found[1.0 / 1e11],
+        depths[1.0 / 1e11],
         98100.0 / (1e11 * 1.1 * 1.1),
         source="weight/(penalty x area)",
         relative=1e-6,
-        convergence=Convergence("1/penalty [m/Pa]", found, order=1.0, within=0.02),
+        convergence=Convergence("1/penalty [m/Pa]", depths, order=1.0, within=0.02),
     )
 
 
@@ -81,10 +81,10 @@ def flat_drops() -> Findings:
         model = build_model(runs.BOX.with_values({"contact.damping_ratio": 0.0, "solver.duration_s": 0.02}))
         gap = 1e-4 * speed
         done = runs.finish(runs.lifted(model, gap, math.sqrt(speed**2 - 2.0 * runs.GRAVITY * gap)))
-        found = 2.0 * float(done.track.peak_corner_force)
+        force = 2.0 * float(done.track.peak_corner_force)
         exact = drop_force(mass=2500.0, stiffness=model.base_stiffness, speed=speed, gravity=runs.GRAVITY)
         case = f"rigid box lands flat at {speed} m/s"
-        yield analytic(case, "largest floor force [N]", found, exact, source=source, relative=5e-3)
+        yield analytic(case, "largest floor force [N]", force, exact, source=source, relative=5e-3)
 
 
 @check("contact", "damped drops")
@@ -93,12 +93,12 @@ def damped_drops() -> Findings:
     steps = (4e-5, 2e-5, 1e-5, 5e-6)
     for ratio in (0.05, 0.1, 0.2, 0.5):
         exact = damped_drop_restitution(ratio)
-        found = {step: rebound(ratio, step) for step in steps}
-        errors = {step: abs(value - exact) for step, value in found.items()}
+        rebounds = {step: rebound(ratio, step) for step in steps}
+        errors = {step: abs(value - exact) for step, value in rebounds.items()}
         yield analytic(
             f"rigid box lands flat, heave damping ratio {ratio}, steps of 5 us",
             "rebound speed over approach speed; order in the step",
-            found[5e-6],
+            rebounds[5e-6],
             exact,
             source="contact ends where k x + c v = 0 (Schwager and Poschel 2007)",
             relative=2e-3,
@@ -111,16 +111,16 @@ def damped_drops() -> Findings:
 @check("contact", "impact of a bar", quick=False)
 def impact_bar() -> Findings:
     """An elastic bar strikes a wall: one reflection of the wave, then it leaves."""
-    found = bar_impact(elements=400)
+    impact = bar_impact(elements=400)
     case, source = "bar of 400 elements, penalty E/h, generalised-alpha 0.5", "d'Alembert: 2 L/c, rho c v, v"
     for compared, value, exact, tolerance in (
-        ("time in contact [s]", found.contact_time, 2.0 / 3.0, 0.02),
-        ("force per unit area, middle half of the contact", found.force, 300.0, 0.01),
-        ("speed of the mass centre after the rebound [m/s]", found.rebound, 10.0, 0.01),
+        ("time in contact [s]", impact.contact_time, 2.0 / 3.0, 0.02),
+        ("force per unit area, middle half of the contact", impact.force, 300.0, 0.01),
+        ("speed of the mass centre after the rebound [m/s]", impact.rebound, 10.0, 0.01),
     ):
         yield analytic(case, compared, value, exact, source=source, relative=tolerance)
     compared = "energy after the rebound over the energy before, minus 1"
-    yield analytic(case, compared, found.energy_change, source="an elastic impact", absolute=5e-3)
+    yield analytic(case, compared, impact.energy_change, source="an elastic impact", absolute=5e-3)
 
 
 @check("contact", "the energy audit refuses a gain")
@@ -131,10 +131,10 @@ def stiff_trapezoidal() -> Findings:
         ("trapezoidal rule, penalty 100 E/h", True, 100.0, True),
         ("generalised-alpha 0.5, penalty E/h", False, 1.0, False),
     ):
-        found = bar_impact(elements=100, trapezoidal=trapezoidal, penalty_ratio=ratio)
-        model, clock = as_model(found.flight), found.flight.run.clock[0]
+        impact = bar_impact(elements=100, trapezoidal=trapezoidal, penalty_ratio=ratio)
+        model, clock = as_model(impact.flight), impact.flight.run.clock[0]
         gained = audit(model) is not None and -clock.least_imbalance > clock.most_imbalance
-        case, note = f"bar of 100 elements, {name}", f"energy change {found.energy_change:+.2%} of the first"
+        case, note = f"bar of 100 elements, {name}", f"energy change {impact.energy_change:+.2%} of the first"
         yield analytic(case, compared, gained, refused, source="energy is conserved", absolute=0.0, note=note)
 
 

@@ -59,9 +59,9 @@ def rigid_rotation() -> Findings:
         elements = distorted_block(order)
         rotated = elements.nodes @ turn(0.3).T - elements.nodes
         linear = 0.5 * float(rotated.ravel() @ (elements.stiffness @ rotated.ravel()))
-        case, found = f"rigid rotation by 0.3 rad, order {order}", elements.strain_energy(rotated) / linear
+        case, ratio = f"rigid rotation by 0.3 rad, order {order}", elements.strain_energy(rotated) / linear
         compared = "strain energy over that of linear strain"
-        yield analytic(case, compared, found, source="objectivity", absolute=1e-10)
+        yield analytic(case, compared, ratio, source="objectivity", absolute=1e-10)
 
 
 @check("elasticity", "Cook's membrane")
@@ -72,12 +72,12 @@ def cook() -> Findings:
         case, bilinear = f"Cook's membrane, {cells} x {cells} bilinear", cook_deflection(1, cells)
         yield computed(case, "u_z at (48, 52)", bilinear, reference, source=source, absolute=0.005)
     limit = 23.965
-    found = {1.0 / cells: cook_deflection(2, cells) for cells in (8, 16, 32)}
-    errors = {size: abs(limit - value) for size, value in found.items()}
+    deflections = {1.0 / cells: cook_deflection(2, cells) for cells in (8, 16, 32)}
+    errors = {size: abs(limit - value) for size, value in deflections.items()}
     yield computed(
         "Cook's membrane, 32 x 32 quadratic",
         "u_z at (48, 52)",
-        found[1.0 / 32],
+        deflections[1.0 / 32],
         limit,
         source="converged value; the order is that of the corner's singularity",
         absolute=0.005,
@@ -92,8 +92,10 @@ def nafems() -> Findings:
     yield printed(case, "sigma_zz at D [Pa]", le1_stress(), 92.7e6, source=NAFEMS, absolute=0.05e6)
     case = "NAFEMS FV32, tapered membrane, 20 x 10 quadratic"
     references = (44.623, 130.03, 162.70, 246.05, 379.90, 391.44)
-    for number, (found, reference) in enumerate(zip(fv32_frequencies(), references, strict=True), start=1):
-        yield printed(case, f"frequency {number} [Hz]", found, reference, source=NAFEMS, relative=1e-3)
+    for number, (frequency, reference) in enumerate(
+        zip(fv32_frequencies(), references, strict=True), start=1
+    ):
+        yield printed(case, f"frequency {number} [Hz]", frequency, reference, source=NAFEMS, relative=1e-3)
 
 
 @check("elasticity", "elastica")
@@ -105,8 +107,8 @@ def elastica() -> Findings:
     names = ("deflection of the tip over L", "shortening over L")
     for limit, (load, references) in zip(limits, exact.items(), strict=True):
         case = f"elastica, P L^2/(E I) = {load:g}"
-        for name, found, reference in zip(names, limit, references, strict=True):
-            yield analytic(case, name, found, reference, source="elliptic integrals", relative=1e-5)
+        for name, value, reference in zip(names, limit, references, strict=True):
+            yield analytic(case, name, value, reference, source="elliptic integrals", relative=1e-5)
 
 
 @check("elasticity", "free square")
@@ -114,9 +116,11 @@ def free_square() -> Findings:
     """Frequencies of the free square."""
     case = "free-free unit square, nu = 0.3, 24 x 24 quadratic"
     exact = (2.43265, 2.59096, 2.59096, 2.75536, 3.13163)
-    for mode, (found, reference) in enumerate(zip(free_square_frequencies(), exact, strict=True), start=1):
+    for mode, (frequency, reference) in enumerate(
+        zip(free_square_frequencies(), exact, strict=True), start=1
+    ):
         compared = f"omega L sqrt(rho/E), mode {mode}"
-        yield computed(case, compared, found, reference, source="converged value", absolute=2e-5)
+        yield computed(case, compared, frequency, reference, source="converged value", absolute=2e-5)
 
 
 @check("elasticity", "column under its weight")
@@ -132,8 +136,8 @@ def column() -> Findings:
         nodes = np.arange(len(elements.nodes))
         base, corner = np.isin(nodes, elements.base_nodes), nodes == elements.base_nodes[0]
         displacement = linear_solution(elements, weight, free_unknowns(corner, base))
-        case, found = f"column under its weight, elements of order {order}", -displacement[:, 1].min()
-        yield analytic(case, "shortening [m]", found, exact, source="rho g c^2/(2E)", relative=1e-10)
+        case, shortening = f"column under its weight, elements of order {order}", -displacement[:, 1].min()
+        yield analytic(case, "shortening [m]", shortening, exact, source="rho g c^2/(2E)", relative=1e-10)
 
 
 @check("elasticity", "manufactured solution, static")
@@ -200,7 +204,7 @@ def cook_deflection(order: int, cells: int) -> float:
 def le1_stress() -> float:
     """Quarter of an elliptic plate with an elliptic hole, 10 MPa outward: sigma_zz at D = (2, 0) [Pa]."""
 
-    def place(s: FloatArray, t: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def ellipse(s: FloatArray, t: FloatArray) -> tuple[FloatArray, FloatArray]:
         # s from the hole to the outer edge, t from the x axis to the z axis
         inner, outer = (2.0, 1.0), (3.25, 2.75)
         angle = 0.5 * np.pi * t
@@ -212,7 +216,7 @@ def le1_stress() -> float:
         # 1e-3 of the load keeps the finite-strain terms of the stress below the digits compared
         return 1e-3 * 10e6 * 0.1 * normal / np.hypot(*normal)
 
-    mesh = mapped_mesh(32, 32, place, thickness=0.1)
+    mesh = mapped_mesh(32, 32, ellipse, thickness=0.1)
     elements = assemble(mesh, youngs_modulus=210e9, poisson_ratio=0.3, order=2)
     x, z = elements.nodes.T
     load = elements.edge_load(
@@ -257,7 +261,7 @@ def elastica_tip(load_ratios: Sequence[float], slenderness: float) -> FloatArray
     clamped = elements.nodes[:, 0] < 1e-9
     free = free_unknowns(clamped, clamped)
     tip = node_at(elements, 1.0, 0.0)
-    displacement, found = np.zeros(elements.unknowns), []
+    displacement, tips = np.zeros(elements.unknowns), []
     for ratio in np.arange(0.25, max(load_ratios) + 0.01, 0.25):
         load = ratio * bending_stiffness * unit.ravel()
         for _ in range(30):
@@ -270,8 +274,8 @@ def elastica_tip(load_ratios: Sequence[float], slenderness: float) -> FloatArray
         else:
             raise NewtonError(f"elastica: no equilibrium at P L^2/(E I) = {ratio}")
         if ratio in load_ratios:
-            found.append((-displacement[2 * tip + 1], -displacement[2 * tip]))
-    return np.array(found)
+            tips.append((-displacement[2 * tip + 1], -displacement[2 * tip]))
+    return np.array(tips)
 
 
 def free_unknowns(held_x: BoolArray, held_z: BoolArray) -> IntArray:

@@ -87,8 +87,8 @@ def landing() -> Findings:
     flight, cap, exact = landed(0.5, 2e-5, GROWTH)
     case, ended = f"rigid block, a cap that grows by {GROWTH:g}/m", cap * (1.0 + GROWTH * exact)
     source = "m v^2/2 - F(w)^2/(2 k) = F (w + g w^2/2), F(w) = F (1 + g w), rebound F(w)/sqrt(k m)"
-    found, work = flight.state.crushed.max(), float(flight.run.ledger[CRUSHING])
-    yield analytic(case, "indentation [m]", found, exact, source=source, relative=2e-3)
+    indentation, work = flight.state.crushed.max(), float(flight.run.ledger[CRUSHING])
+    yield analytic(case, "indentation [m]", indentation, exact, source=source, relative=2e-3)
     rebound = ended / math.sqrt(SPRINGS * MASS)
     yield analytic(
         case, "speed of the rebound [m/s]", flight.state.velocity[1], rebound, source=source, relative=2e-3
@@ -99,8 +99,8 @@ def landing() -> Findings:
     errors = {}
     for step in (4e-4, 2e-4, 1e-4, 5e-5):
         # the error of one run depends on where in a step the crushing begins
-        found = [landed(share, step) for share in np.linspace(0.3, 0.7, 21)]
-        errors[step] = np.mean([abs(one.state.crushed[0] / exact - 1.0) for one, _, exact in found])
+        landings = [landed(share, step) for share in np.linspace(0.3, 0.7, 21)]
+        errors[step] = np.mean([abs(flight.state.crushed[0] / exact - 1.0) for flight, _, exact in landings])
     yield analytic(
         "mean of 21 caps from 0.3 to 0.7",
         "indentation, error over the exact one",
@@ -118,8 +118,8 @@ def slab(stiffness: float, cap: float, ratio: float | None = None) -> runs.Keys:
         "floor.poisson_ratio": 0.2,
         "floor.bearing_strength_Pa": cap / (PATCH[0] * PATCH[1]),
     }
-    found = float(build_model(runs.STACK.with_values(keys)).run.problem.contact.normal_stiffness[0])
-    keys["floor.youngs_modulus_Pa"] *= stiffness / found
+    default = float(build_model(runs.STACK.with_values(keys)).run.problem.contact.normal_stiffness[0])
+    keys["floor.youngs_modulus_Pa"] *= stiffness / default
     return keys if ratio is None else keys | {"contact.damping_ratio": ratio}
 
 
@@ -161,10 +161,12 @@ def restitution() -> Findings:
     """Housner's whatever the cap, the stiffness and the dashpot, to what the springs hold at the cap and give back."""
     free: runs.Keys = RELEASED | {"contact.mu_static": 0.8, "solver.duration_s": 2.5}
     for stiffness, cap, (ratios, tolerance) in product(STIFFNESSES, CAPS, RATIOS.items()):
-        found = {ratio: runs.run(runs.STACK, free | slab(stiffness, cap, ratio)) for ratio in ratios}
-        exact = next(iter(found.values())).block.housner_restitution  # about where it turns on a weak floor
+        finished = {ratio: runs.run(runs.STACK, free | slab(stiffness, cap, ratio)) for ratio in ratios}
+        exact = next(
+            iter(finished.values())
+        ).block.housner_restitution  # about where it turns on a weak floor
         worst, value = max(
-            ((ratio, peaks(done)) for ratio, done in found.items()), key=lambda one: abs(one[1] - exact)
+            ((ratio, peaks(done)) for ratio, done in finished.items()), key=lambda item: abs(item[1] - exact)
         )
         yield analytic(
             f"rigid stack, {stiffness:g} N/m, cap {1e-6 * cap:g} MN, damping ratio {worst:g}, the worse of two",
@@ -188,9 +190,9 @@ def incline_limit() -> Findings:
             done = runs.run(runs.BOX, held | {"floor.slope_percent": sign * per_cent})
             return abs(float(done.joint.slip)) > 1e-5
 
-        found = runs.bisected(slides, 9.0, 11.0, resolution=1e-3)
+        limit = runs.bisected(slides, 9.0, 11.0, resolution=1e-3)
         case = f"{name}, mu 0.1, floor falls toward {'+x' if sign > 0.0 else '-x'}"
-        yield analytic(case, "limit of the slope [%]", found, 10.0, source="tan = mu", relative=5e-3)
+        yield analytic(case, "limit of the slope [%]", limit, 10.0, source="tan = mu", relative=5e-3)
 
 
 @check("floor", "a slider on a slope")

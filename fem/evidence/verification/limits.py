@@ -111,15 +111,13 @@ def plateau() -> Findings:
         settings = {"contact.normal_penalty_Pa_m": factor * default, "solver.duration_s": 8.0}
         done = run(STACK, harmonic(4.0 / 6.928**2, 6.928) | FRICTION | settings)
         case = f"rigid stack, peak 4.0 m/s2 at 6.928 rad/s, mu 0.4/0.2, penalty x {factor:.3g}"
-        compared, found = (
-            "largest rotation in 8 s over the slenderness angle",
-            float(done.track.max_rotation) / SLENDERNESS,
-        )
-        yield computed(case, compared, found, 0.399, source=source, absolute=0.01)
+        compared = "largest rotation in 8 s over the slenderness angle"
+        turned = float(done.track.max_rotation) / SLENDERNESS
+        yield computed(case, compared, turned, 0.399, source=source, absolute=0.01)
         compared, stands = "rocks without slip and stands (1)", done.status == "completed"
         note = f"slip {1e6 * float(done.joint.max_slip):.3g} um"
-        found = done.outcome == Outcome.ROCK and stands
-        yield computed(case, compared, found, 1.0, source=PLANAR_BLOCK, absolute=0.0, note=note)
+        rocks = done.outcome == Outcome.ROCK and stands
+        yield computed(case, compared, rocks, 1.0, source=PLANAR_BLOCK, absolute=0.0, note=note)
 
 
 @check("limits", "a floor that starts with a jerk")
@@ -127,10 +125,10 @@ def jerk() -> Findings:
     """The floor starts with a jerk under a stack at rest, mu 0.4/0.4."""
     settings = {"contact.mu_static": 0.4, "motion.start": "rest", "solver.duration_s": 20.0}
     for omega, exact, note in ((6.93, 0.2505, "the reference is for 6.93 rad/s"), (6.928, 0.25040, "")):
-        found = float(run(STACK, harmonic(0.05, omega) | settings).track.max_rotation) / SLENDERNESS
+        turned = float(run(STACK, harmonic(0.05, omega) | settings).track.max_rotation) / SLENDERNESS
         case = f"rigid stack at rest, 50 mm at {omega} rad/s from t = 0, mu 0.4/0.4"
         compared = "largest rotation over the slenderness angle"
-        yield computed(case, compared, found, exact, source=PLANAR_BLOCK, relative=0.01, note=note)
+        yield computed(case, compared, turned, exact, source=PLANAR_BLOCK, relative=0.01, note=note)
 
 
 @check("limits", "slide-rocking")
@@ -199,7 +197,7 @@ def refined_shell() -> Findings:
         yield computed(
             f"shell stack of 8 mm, peak 4.0 m/s2 at 6.928 rad/s, mu 0.4/0.4, {name}",
             "largest rotation in 12 s over the slenderness angle, the farther from the reference",
-            max((largest_of(change) for change in changes), key=lambda found: abs(found - exact)),
+            max((largest_of(change) for change in changes), key=lambda ratio: abs(ratio - exact)),
             exact,
             source="elements of 0.1 m, 100 modes, tolerance 0.1, steps of 0.2 ms",
             relative=0.01,
@@ -214,15 +212,15 @@ def friction_decides() -> Findings:
     body, default = RigidBlock.homogeneous(width=1.1, height=4.0), build_model(STACK).penalty
     sliding = PlanarBlock(body=body, mu_static=0.4, mu_kinetic=0.2)
     exact = simulate_planar_block(sliding, floor, duration=20.0).largest_rotation / SLENDERNESS
-    found = {}
+    ratios = {}
     for factor in (1.0 / 3.0, 1.0, 3.0):
         changed = {"contact.mu_kinetic": 0.2, "contact.normal_penalty_Pa_m": factor * default}
-        found[1.0 / factor] = float(run(STACK, motion | changed).track.max_rotation) / SLENDERNESS
-    errors = {size: abs(value - exact) for size, value in found.items()}
+        ratios[1.0 / factor] = float(run(STACK, motion | changed).track.max_rotation) / SLENDERNESS
+    errors = {size: abs(value - exact) for size, value in ratios.items()}
     yield computed(
         "rigid stack, peak 10.333 m/s2 at 6 rad/s, mu 0.4/0.2",
         "largest rotation in 20 s over the slenderness angle, at 3 x the default penalty",
-        found[1.0 / 3.0],
+        ratios[1.0 / 3.0],
         exact,
         source=PLANAR_BLOCK,
         relative=0.02,

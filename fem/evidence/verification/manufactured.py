@@ -135,9 +135,9 @@ class DrivenBody(FullBody):
 
     def motion(self, time: float) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Positions, velocities and accelerations of the nodes, each (n, 2)."""
-        places = [self._place(time + k * H) for k in OFFSETS]
-        velocity, acceleration = first_difference(places), second_difference(places)
-        return places[2], velocity / (12.0 * H), acceleration / (12.0 * H * H)
+        positions = [self._position(time + k * H) for k in OFFSETS]
+        velocity, acceleration = first_difference(positions), second_difference(positions)
+        return positions[2], velocity / (12.0 * H), acceleration / (12.0 * H * H)
 
     @property
     def weight(self) -> FloatArray:
@@ -148,7 +148,7 @@ class DrivenBody(FullBody):
         """Nodal forces (n, 2) that make the motion exact [N]."""
         raise NotImplementedError
 
-    def _place(self, time: float) -> FloatArray:
+    def _position(self, time: float) -> FloatArray:
         x, z = self.elements.nodes.T
         turn, strain = turn_and_strain(time)
         displacement = turned_and_strained(x, z, turn, strain).T
@@ -183,14 +183,14 @@ class ContinuumBody(DrivenBody):
             return DENSITY * THICKNESS * second_difference(moved) / (12.0 * H * H)
 
         load = self.elements.area_load(lambda x, z: static_source(x, z, turn, strain) + inertia(x, z))
-        for axis, place, sign in ((0, 0.0, -1.0), (0, 1.0, 1.0), (1, 0.0, -1.0), (1, 1.0, 1.0)):
-            face = partial(_on_face, axis, place)
+        for axis, coordinate, sign in ((0, 0.0, -1.0), (0, 1.0, 1.0), (1, 0.0, -1.0), (1, 1.0, 1.0)):
+            face = partial(_on_face, axis, coordinate)
             load += self.elements.edge_load(face, partial(_traction, axis, sign, turn, strain))
         return load + self.weight
 
 
-def _on_face(axis: int, place: float, x: FloatArray, z: FloatArray) -> BoolArray:
-    return np.asarray(np.abs((x, z)[axis] - place) < 1e-9)
+def _on_face(axis: int, coordinate: float, x: FloatArray, z: FloatArray) -> BoolArray:
+    return np.asarray(np.abs((x, z)[axis] - coordinate) < 1e-9)
 
 
 def _traction(axis: int, sign: float, turn: float, strain: float, x: FloatArray, z: FloatArray) -> FloatArray:
@@ -229,9 +229,9 @@ def unit_square(cells: int, order: int) -> FiniteElements:
 def curved_block(cells: int) -> PlainMesh:
     """`cells` x `cells` quads between two curved sides, none of them a parallelogram."""
 
-    def place(s: FloatArray, t: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def curved(s: FloatArray, t: FloatArray) -> tuple[FloatArray, FloatArray]:
         x = s * (1.0 + 0.3 * t) + 0.08 * np.sin(np.pi * t) * np.sin(np.pi * s)
         z = t * (1.2 - 0.2 * s) + 0.08 * np.sin(np.pi * t) * np.sin(2 * np.pi * s)
         return x, z
 
-    return mapped_mesh(cells, cells, place, thickness=THICKNESS)
+    return mapped_mesh(cells, cells, curved, thickness=THICKNESS)

@@ -24,7 +24,7 @@ class PlainMesh:
 
 
 def mapped_mesh(
-    columns: int, rows: int, place: Mapping, *, thickness: float = 1.0, density: float = 1.0
+    columns: int, rows: int, mapping: Mapping, *, thickness: float = 1.0, density: float = 1.0
 ) -> PlainMesh:
     """Quads on the image of the unit square under `place`(s, t); density in kg/m3."""
     s, t = np.meshgrid(np.linspace(0.0, 1.0, columns + 1), np.linspace(0.0, 1.0, rows + 1))
@@ -32,7 +32,7 @@ def mapped_mesh(
     corner = (j * (columns + 1) + i).ravel().astype(np.int64)
     full = np.ones(corner.size)
     return PlainMesh(
-        points=np.stack(place(s.ravel(), t.ravel()), axis=1),
+        points=np.stack(mapping(s.ravel(), t.ravel()), axis=1),
         quads=np.stack([corner, corner + 1, corner + columns + 2, corner + columns + 1], axis=1),
         region=np.zeros(corner.size, dtype=np.int64),
         box=np.zeros(corner.size, dtype=np.int64),

@@ -50,10 +50,10 @@ def initiation() -> Findings:
         expected = closed_forms_overturning.initiation_mode(
             acceleration_ratio=ratio, slenderness=lam, mu_static=mu_static, mu_kinetic=mu_kinetic
         ).value
-        found = first_motion(lam, ratio, mu_static, mu_kinetic, containers)
+        first = first_motion(lam, ratio, mu_static, mu_kinetic, containers)
         seen[expected] += 1
-        if found != expected:
-            wrong.append(f"c/a {lam}, {ratio} g, mu {mu_static}/{mu_kinetic}: {found}, not {expected}")
+        if first != expected:
+            wrong.append(f"c/a {lam}, {ratio} g, mu {mu_static}/{mu_kinetic}: {first}, not {expected}")
     counts = ", ".join(f"{count} {mode}" for mode, count in sorted(seen.items()))
     note = (
         "the floor's acceleration grows over 50 ms if it is below that of uplift, else it is sudden: a jump makes the "
@@ -77,9 +77,9 @@ def sustained_sine() -> Findings:
             f"event-driven block; slender {closed_forms_overturning.sustained_sine_threshold_slender(w):.5f}"
         )
         for name, (values, tolerance) in MODELS.items():
-            found = threshold(partial(sine, w=w), exact * UPLIFT, values) / UPLIFT
+            peak = threshold(partial(sine, w=w), exact * UPLIFT, values) / UPLIFT
             case = f"{name}: harmonic floor, w = {w:g}"
-            yield computed(case, PEAK, found, exact, source=source, relative=tolerance)
+            yield computed(case, PEAK, peak, exact, source=source, relative=tolerance)
 
 
 @check("overturning", "overturning by pulses")
@@ -105,9 +105,9 @@ def pulses() -> Findings:
         source = f"event-driven block; slender {slender:.5f}"
         for name, (values, tolerance) in MODELS.items():
             keys = partial(runs.pulse, length=length, shape=shape)
-            found = threshold(keys, exact * UPLIFT, values) / UPLIFT
+            peak = threshold(keys, exact * UPLIFT, values) / UPLIFT
             case = f"{name}: {shape} pulse, w = {w:g}"
-            yield computed(case, PEAK, found, exact, source=source, relative=tolerance)
+            yield computed(case, PEAK, peak, exact, source=source, relative=tolerance)
 
 
 @check("overturning", "overturning by a rectangular pulse")
@@ -117,9 +117,9 @@ def rectangular() -> Findings:
     compared = "shortest length that overturns without impact [s]"
     source = "work of the pulse = g R (1 - cos al); exact quadrature"
     for name, (values, tolerance) in MODELS.items():
-        found = threshold(lambda length: runs.pulse(2.0 * UPLIFT, length), exact, values)
+        shortest = threshold(lambda length: runs.pulse(2.0 * UPLIFT, length), exact, values)
         case = f"{name}: rectangular pulse of 2 g tan al"
-        yield analytic(case, compared, found, exact, source=source, relative=tolerance)
+        yield analytic(case, compared, shortest, exact, source=source, relative=tolerance)
 
 
 @check("overturning", "overturning by a velocity step")
@@ -129,11 +129,11 @@ def velocity_step() -> Findings:
     compared = "least velocity that overturns without impact [m/s]"
     source = "kinetic energy of the kick = M g R (1 - cos al)"
     for name, (values, tolerance) in MODELS.items():
-        found = threshold(
+        least = threshold(
             lambda speed: {"motion.kind": "none", "initial.velocity_m_s": -speed}, exact, values
         )
         case = f"{name}: sudden floor velocity"
-        yield analytic(case, compared, found, exact, source=source, relative=tolerance)
+        yield analytic(case, compared, least, exact, source=source, relative=tolerance)
 
 
 def sine(peak: float, w: float) -> runs.Keys:

@@ -41,10 +41,10 @@ def lines_of(result: SuiteResult) -> list[str]:
     verdict = "all pass" if result.failures == 0 else f"{result.failures} FAIL"
     groups = [
         (
-            one.name.upper().ljust(page.WIDE) + page.HEADING,
-            [line for check in one.checks for line in _lines(check)],
+            topic.name.upper().ljust(page.WIDE) + page.HEADING,
+            [line for check in topic.checks for line in _lines(check)],
         )
-        for one in result.topics
+        for topic in result.topics
     ]
     return page.table_lines(groups, f"{result.count} rows in {result.seconds:.0f} s: {verdict}")
 
@@ -72,7 +72,7 @@ def page_of(result: SuiteResult) -> str:
                 INTRODUCTION,
                 sections.Note(SYMBOLS),
                 sections.table_of(
-                    "overview", OVERVIEW, result.topics, row_look=lambda one: page.look_of(*one.findings)
+                    "overview", OVERVIEW, result.topics, row_look=lambda topic: page.look_of(*topic.findings)
                 ),
                 *map(_section, result.topics),
             ],
@@ -93,7 +93,9 @@ def _section(topic: Topic) -> sections.PageSection:
 
 def _convergences(topic: Topic) -> list[tuple[str, Convergence]]:
     """Names and orders of the findings that have one."""
-    return [(one.name, one.convergence) for one in topic.findings if one.convergence is not None]
+    return [
+        (finding.name, finding.convergence) for finding in topic.findings if finding.convergence is not None
+    ]
 
 
 def _largest_use(topic: Topic) -> str:
@@ -103,21 +105,21 @@ def _largest_use(topic: Topic) -> str:
 
 
 OVERVIEW = [
-    sections.Column[Topic]("topic", lambda one: sections.link(one.name, one.name)),
-    sections.Column("checks", lambda one: str(len(one.checks)), NUMBER),
-    sections.Column("rows", lambda one: str(len(one.findings)), NUMBER),
-    sections.Column("failed", lambda one: str(failures(one.findings)), NUMBER),
+    sections.Column[Topic]("topic", lambda topic: sections.link(topic.name, topic.name)),
+    sections.Column("checks", lambda topic: str(len(topic.checks)), NUMBER),
+    sections.Column("rows", lambda topic: str(len(topic.findings)), NUMBER),
+    sections.Column("failed", lambda topic: str(failures(topic.findings)), NUMBER),
     sections.Column("error / tolerance", _largest_use, NUMBER),
-    sections.Column("orders", lambda one: str(len(_convergences(one)) or ABSENT), NUMBER),
+    sections.Column("orders", lambda topic: str(len(_convergences(topic)) or ABSENT), NUMBER),
 ]
 COLUMNS = [
-    sections.Column[Finding]("value", lambda one: _number(one.value), NUMBER),
-    sections.Column("reference", lambda one: _number(one.reference), NUMBER),
-    sections.Column("its source", lambda one: _source(one)),
+    sections.Column[Finding]("value", lambda finding: _number(finding.value), NUMBER),
+    sections.Column("reference", lambda finding: _number(finding.reference), NUMBER),
+    sections.Column("its source", lambda finding: _source(finding)),
     sections.Column("error", page.error, NUMBER),
     sections.Column("tolerance", page.tolerance, NUMBER),
     sections.Column("order", page.order, NUMBER),
-    sections.Column("passed", lambda one: page.result_of(one.holds, "pass", "FAIL")),
+    sections.Column("passed", lambda finding: page.result_of(finding.holds, "pass", "FAIL")),
 ]
 HEAD = [sections.Cell(column.head, column.look) for column in COLUMNS]
 

@@ -37,8 +37,8 @@ def slendernesses() -> Findings:
     """Rigid blocks on corners."""
     known = {1.5: 0.5385, 2.0: 0.7, 2.5: 0.7931, 3.6364: 0.8945, 4.0: 0.91176, 10.0: 0.98515}
     for lam, exact in known.items():
-        case, found = f"rigid block, c/a = {lam:g}", peaks(released(block(lam)))
-        yield housner(case, COMPARED, found, exact, absolute=RIGID_TOLERANCE)
+        case, ratio = f"rigid block, c/a = {lam:g}", peaks(released(block(lam)))
+        yield housner(case, COMPARED, ratio, exact, absolute=RIGID_TOLERANCE)
 
 
 @check("restitution", "the error of a soft floor")
@@ -46,12 +46,12 @@ def penalty_limit() -> Findings:
     """The error of the rigid block's restitution falls with the penalty."""
     exact = 1.0 - 1.5 / (1.0 + (4.0 / 1.1) ** 2)
     factors = (1.0 / 3.0, 1.0, 3.0, 9.0)
-    found = {1.0 / factor: peaks(released(block(4.0 / 1.1), factor)) for factor in factors}
-    errors = {size: abs(value - exact) for size, value in found.items()}
+    ratios = {1.0 / factor: peaks(released(block(4.0 / 1.1), factor)) for factor in factors}
+    errors = {size: abs(value - exact) for size, value in ratios.items()}
     yield housner(
         "rigid stack, penalty from a third to nine times the default",
         "velocity ratio at nine times; order in 1/penalty",
-        found[1.0 / 9.0],
+        ratios[1.0 / 9.0],
         exact,
         absolute=RIGID_TOLERANCE,
         convergence=Convergence("default penalty/penalty", errors, order=1.0, within=0.25),
@@ -69,13 +69,13 @@ def variations() -> Findings:
     for lam, (name, (values, tolerance)) in itertools.product((2.0, 2.5, 3.6364), models.items()):
         sizes = {size: values | {"solver.element_size_m": size} for size in (0.2, 0.1)}
         containers = {size: discretise(block(lam, keys)) for size, keys in sizes.items()}
-        found = {}
+        ratios = {}
         for penalty, step, size in itertools.product((1.0, 3.0), ("auto", 1e-3), sizes):
             case = block(lam, sizes[size] | {"solver.step_s": step})
             ratio = peaks(released(case, penalty, containers[size]))
-            found[f"penalty x {penalty:g}, step {step}, h = {size} m"] = ratio
+            ratios[f"penalty x {penalty:g}, step {step}, h = {size} m"] = ratio
         exact = 1.0 - 1.5 / (1.0 + lam**2)
-        worst, value = max(found.items(), key=lambda item: abs(item[1] - exact))
+        worst, value = max(ratios.items(), key=lambda item: abs(item[1] - exact))
         yield housner(
             f"{name}, c/a = {lam:g}, worst of 8: {worst}", COMPARED, value, exact, absolute=tolerance
         )
@@ -106,15 +106,15 @@ def centroids_and_columns() -> Findings:
         yield housner(
             f"{count} boxes", COMPARED, peaks(released(boxes(count))), exact, absolute=RIGID_TOLERANCE
         )
-    found = peaks(released(block(20.0, {"solver.duration_s": 6.0})))
-    yield housner("column, c/a = 20", COMPARED, found, 1.0 - 1.5 / 401.0, absolute=1e-3)
+    ratio = peaks(released(block(20.0, {"solver.duration_s": 6.0})))
+    yield housner("column, c/a = 20", COMPARED, ratio, 1.0 - 1.5 / 401.0, absolute=1e-3)
 
 
 @check("restitution", "tolerances and steps of time stepping")
 def tolerances_and_steps() -> Findings:
     """Restitution depends on neither the tolerance of the energy balance nor the largest step."""
     for kind in ("corners", "flat"):
-        found = [
+        ratios = [
             peaks(
                 released(
                     block(
@@ -133,7 +133,7 @@ def tolerances_and_steps() -> Findings:
         yield analytic(
             f"rigid stack on {kind}, tolerance 0.01 to 10, steps of 0.1 to 10 ms",
             f"{COMPARED}, largest minus least",
-            max(found) - min(found),
+            max(ratios) - min(ratios),
             source="a property of the support",
             absolute=1e-3,
         )
@@ -142,8 +142,8 @@ def tolerances_and_steps() -> Findings:
 @check("restitution", "a stated restitution")
 def stated() -> Findings:
     """`contact.restitution_over_housner` in free rocking from large and small swings."""
-    asked = {2.0: (0.67, 0.9, 1.15), STACKED: (0.67, 0.96, 1.05), 10.0: (0.67, 0.96, 1.01)}
-    for lam, ratios in asked.items():
+    stated_ratios = {2.0: (0.67, 0.9, 1.15), STACKED: (0.67, 0.96, 1.05), 10.0: (0.67, 0.96, 1.01)}
+    for lam, ratios in stated_ratios.items():
         for ratio, share in itertools.product(ratios, (0.5, 0.2, 0.07)):
             start = {"initial.rotation_rad": share * math.atan(1.0 / lam)}
             done = released(block(lam, start | {"contact.restitution_over_housner": ratio}))
@@ -196,13 +196,13 @@ def bed_of_springs() -> Findings:
     for kind, values, sizes in beds:
         keys = {"support.kind": kind, "output.history_s": 1e-3} | values
         runs = {size: released(block(STACKED, keys | {"solver.element_size_m": size})) for size in sizes}
-        exact = kept(runs[0.05].block, turning_point_on_springs(runs[0.05], kind))
+        exact = velocity_ratio(runs[0.05].block, turning_point_on_springs(runs[0.05], kind))
         changed = "".join(f", {key.split('.')[1]} = {value:g}" for key, value in values.items())
         for size, done in runs.items():
             yield computed(
                 f"rigid stack on {kind}{changed}, elements of {size} m",
                 "velocity ratio by the turning points before and after the first impact",
-                kept(done.block, turning_points(done.history)[0]),
+                velocity_ratio(done.block, turning_points(done.history)[0]),
                 exact,
                 source="rigid block on springs, 2 for corners and 111 for a flat base",
                 absolute=2e-3,
@@ -222,7 +222,7 @@ def turning_point_on_springs(done: Finished, kind: str) -> float:
     )
 
 
-def kept(block: RigidBlock, rotation: float) -> float:
+def velocity_ratio(block: RigidBlock, rotation: float) -> float:
     """Velocity ratio of the first impact, by potential energies, from the turning point after it [rad]."""
     angle = block.slenderness_angle
     energy, left = (math.cos(angle - turned) - math.cos(angle) for turned in (0.5 * angle, rotation))

@@ -37,13 +37,13 @@ def first_impacts() -> Findings:
     for share in (0.1, 0.25, 0.75, 0.9):
         rotation = share * SLENDERNESS
         done = run(STACK, {"initial.rotation_rad": rotation, "solver.duration_s": 2.0})
-        exact, found = quarter_period(done.block, rotation), done.track.first_impact
+        exact, impact = quarter_period(done.block, rotation), done.track.first_impact
         case = f"rigid stack released at {share} of its slenderness angle"
-        yield analytic(case, "first impact [s]", found, exact, source=source, relative=3e-3)
+        yield analytic(case, "first impact [s]", impact, exact, source=source, relative=3e-3)
     for name, values in MODELS.items():
-        found = run(STACK, RELEASED | {"solver.duration_s": 2.0} | values).track.first_impact
+        impact = run(STACK, RELEASED | {"solver.duration_s": 2.0} | values).track.first_impact
         case = f"{name} released at half its slenderness angle"
-        yield analytic(case, "first impact [s]", found, 0.700737, source=source, relative=3e-3)
+        yield analytic(case, "first impact [s]", impact, 0.700737, source=source, relative=3e-3)
 
 
 @check("rocking", "decay of free rocking")
@@ -53,19 +53,16 @@ def free_decay() -> Findings:
     note = "the error of e adds up from impact to impact: 0.0003 of 0.8945 is 0.1 % of each peak"
     for name, values in MODELS.items():
         done = run(STACK, RELEASED | {"solver.duration_s": 8.0, "output.history_s": 0.001} | values)
-        found, block, case = (
-            turning_points(done.history),
-            done.block,
-            f"{name} released at half its slenderness angle",
-        )
+        peaks, block = turning_points(done.history), done.block
+        case = f"{name} released at half its slenderness angle"
         compared = "first peak after the first impact [rad]"
-        yield analytic(case, compared, found[0], 0.098783, source=source, relative=0.01)
+        yield analytic(case, compared, peaks[0], 0.098783, source=source, relative=0.01)
         exact = [
             peak_after_impacts(block, 0.5 * SLENDERNESS, n, block.housner_restitution) for n in range(1, 7)
         ]
-        worst = int(np.argmax([abs(a / b - 1.0) for a, b in zip(found, exact, strict=False)]))
+        worst = int(np.argmax([abs(a / b - 1.0) for a, b in zip(peaks, exact, strict=False)]))
         compared = f"the worst of peaks 1 to 6 ({worst + 1}) [rad]"
-        yield analytic(case, compared, found[worst], exact[worst], source=source, relative=0.03, note=note)
+        yield analytic(case, compared, peaks[worst], exact[worst], source=source, relative=0.03, note=note)
 
 
 @check("rocking", "equation of motion on a moving floor")
@@ -97,12 +94,10 @@ def tilt_statics() -> Findings:
             turned = run(STACK, tilted | pulse(-acceleration, 1.0)).history["rotation_rad"]
             speeds.append(float(turned[-1] - turned[0]))
         slope = (speeds[1] - speeds[0]) / (accelerations[1] - accelerations[0])
-        case, found = (
-            f"rigid stack held at {share} of its slenderness angle",
-            accelerations[0] - speeds[0] / slope,
-        )
+        case = f"rigid stack held at {share} of its slenderness angle"
+        balance = accelerations[0] - speeds[0] / slope
         compared = "floor acceleration under which it neither rises nor falls [m/s2]"
-        yield analytic(case, compared, found, hold, source="g tan(al - theta)", relative=2e-3)
+        yield analytic(case, compared, balance, hold, source="g tan(al - theta)", relative=2e-3)
 
 
 @check("rocking", "friction at an impact")
@@ -216,8 +211,8 @@ def difference_of_rotation(done: Finished, floor: FloorAcceleration) -> float:
 
 def velocity_jump(history: History, column: str, instant: float) -> float:
     """Jump of the velocity at an instant, between straight lines through the velocities around it [m/s]."""
-    times, place = history["time_s"], history[column]
-    middle, velocity = 0.5 * (times[1:] + times[:-1]), np.diff(place) / np.diff(times)
+    times, position = history["time_s"], history[column]
+    middle, velocity = 0.5 * (times[1:] + times[:-1]), np.diff(position) / np.diff(times)
     sides = []
     for low, high in ((-0.05, -0.003), (0.03, 0.1)):
         chosen = (middle > instant + low) & (middle < instant + high)

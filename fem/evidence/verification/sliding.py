@@ -193,9 +193,9 @@ def steady_strokes() -> Findings:
     source = "2 sqrt(1 - (pi kappa/2)^2), or two stops a cycle"
     for kappa, stroke in ((0.2, 1.898741), (0.5, 1.237982), (0.7, 0.432494)):
         done = runs.run(runs.BOX, runs.harmonic(AMPLITUDE, OMEGA) | friction_of(kappa) | sampling)
-        case, found = f"rigid box, mu g/(A Omega^2) = {kappa}", stroke_of(done) / AMPLITUDE
+        case, ratio = f"rigid box, mu g/(A Omega^2) = {kappa}", stroke_of(done) / AMPLITUDE
         compared = "steady slip, peak to peak, over A"
-        yield analytic(case, compared, found, stroke, source=source, relative=STROKE_TOLERANCE)
+        yield analytic(case, compared, ratio, stroke, source=source, relative=STROKE_TOLERANCE)
 
 
 @check("sliding", "sliding without stops")
@@ -269,10 +269,10 @@ def paper_slider() -> Findings:
     """Steady stroke of the box with 0.4/0.2 on a floor of 50 mm at 10 rad/s: rigid, and elastic."""
     models: dict[str, runs.Keys] = {"rigid box": {}, "stiff solid box, 20 modes": runs.STIFF_SOLID}
     for name, values in models.items():
-        found = stroke_of(runs.run(runs.BOX, PAPER_BOX | values | {"solver.duration_s": 20.0}))
+        stroke = stroke_of(runs.run(runs.BOX, PAPER_BOX | values | {"solver.duration_s": 20.0}))
         case = f"{name}, A = 0.05 m, Omega = 10 rad/s, mu 0.4/0.2"
         compared = "steady slip, peak to peak [m]"
-        yield computed(case, compared, found, 78.745e-3, source=SLIDER, relative=STROKE_TOLERANCE)
+        yield computed(case, compared, stroke, 78.745e-3, source=SLIDER, relative=STROKE_TOLERANCE)
 
 
 @check("sliding", "position of the paper's box")
@@ -310,12 +310,12 @@ def short_stops() -> Findings:
     values = PAPER_BOX | {"motion.start": "rest", "solver.duration_s": 10.0 * PERIOD}
     for name, (keys, tolerance) in bodies.items():
         done = runs.run(runs.BOX, values | keys)
-        found = float(done.history["slip_m"].min())
+        least = float(done.history["slip_m"].min())
         exact = float(slip_of_the_papers_slider(done.history["time_s"], start_velocity=-0.5).min())
         yield computed(
             f"{name}, A = 0.05 m, Omega = 10 rad/s, mu 0.4/0.2, at rest at t = 0",
             "least slip [m]",
-            found,
+            least,
             exact,
             source=SLIDER,
             relative=tolerance,
@@ -351,8 +351,8 @@ def pulses() -> Findings:
         friction = {"contact.mu_static": 0.4, "contact.mu_kinetic": kinetic}
         done = runs.run(runs.BOX, runs.pulse(8.0, 0.3) | friction | {"solver.duration_s": 2.0})
         exact = pulse_slip(peak=8.0, duration=0.3, mu_static=0.4, mu_kinetic=kinetic, gravity=runs.GRAVITY)
-        case, found = f"rigid box, 8 m/s2 for 0.3 s, mu 0.4/{kinetic}", done.history["slip_m"][-1]
-        yield analytic(case, "residual slip [m]", found, exact, source=source, relative=STROKE_TOLERANCE)
+        case, slip = f"rigid box, 8 m/s2 for 0.3 s, mu 0.4/{kinetic}", done.history["slip_m"][-1]
+        yield analytic(case, "residual slip [m]", slip, exact, source=source, relative=STROKE_TOLERANCE)
 
 
 def friction_of(kappa: float, static_ratio: float = 1.0) -> runs.Keys:

@@ -155,9 +155,9 @@ def four_patterns() -> Findings:
         case = f"{exact.patterns[-1].value}: {pair.peak / runs.GRAVITY:g} g for {pair.length} s"
         times = history["time_s"]
         states = exact.at(times)
-        found = rotations(history)
+        turned = rotations(history)
         opening = 0 if pattern is Pattern.AS_ONE else 1
-        of_run, of_blocks = (angles(one)[:, opening] for one in (found, states[:, [0, 2]]))
+        of_run, of_blocks = (angles(rotation)[:, opening] for rotation in (turned, states[:, [0, 2]]))
         yield computed(
             case,
             "time at which the interface has opened by 1 mrad [s]",
@@ -169,7 +169,7 @@ def four_patterns() -> Findings:
         yield computed(
             case,
             "rotations, largest difference [rad]",
-            np.nanmax(np.abs(found - states[:, [0, 2]])),
+            np.nanmax(np.abs(turned - states[:, [0, 2]])),
             source=BLOCKS,
             absolute=1e-3,
         )
@@ -215,7 +215,10 @@ def balance() -> Findings:
         ("vertical", "normal_force_N", sum(masses) * runs.GRAVITY, ("centre_z_m", "box_2_z_m")),
     ):
         momentum = np.sum(
-            [mass * np.gradient(history[one], times) for mass, one in zip(masses, columns, strict=True)],
+            [
+                mass * np.gradient(history[column], times)
+                for mass, column in zip(masses, columns, strict=True)
+            ],
             axis=0,
         )
         yield analytic(
@@ -265,7 +268,7 @@ def ten_boxes() -> Findings:
         yield analytic(
             f"ten loose boxes of 1.1 x 1 m, {name}, floor at rest for 2 s",
             "largest rotation [rad], slip or opening [m]",
-            max(float(np.abs(joints[one]).max()) for one in ("max_rotation", "max_slip", "max_opening")),
+            max(float(np.abs(joints[name]).max()) for name in ("max_rotation", "max_slip", "max_opening")),
             source="statics",
             absolute=1e-8,
         )

@@ -44,14 +44,14 @@ def paper_numbers() -> Findings:
         (1, "1 box, g = 10", (10e3, 5e3, 13.75e3, 10e3, 5e3, 1.98)),
         (4, "4 boxes, g = 10", (40e3, 20e3, 55e3, 40e3, 80e3, 3.30)),
     ):
-        found = paper_checks(boxes=boxes, gravity=10.0)
+        checks = paper_checks(boxes=boxes, gravity=10.0)
         values = (
-            ("sliding limit, static [N]", found.sliding_limit_static, 0.5),
-            ("sliding limit, kinetic [N]", found.sliding_limit_kinetic, 0.5),
-            ("restoring moment [Nm]", found.restoring_moment, 0.5),
-            ("base shear of the code [N]", found.code.sliding.demand, 0.5),
-            ("tilting moment of the code [Nm]", found.code.overturning.demand, 0.5),
-            ("period, Eq. (3) [s]", found.period_eq3, 0.005),
+            ("sliding limit, static [N]", checks.sliding_limit_static, 0.5),
+            ("sliding limit, kinetic [N]", checks.sliding_limit_kinetic, 0.5),
+            ("restoring moment [Nm]", checks.restoring_moment, 0.5),
+            ("base shear of the code [N]", checks.code.sliding.demand, 0.5),
+            ("tilting moment of the code [Nm]", checks.code.overturning.demand, 0.5),
+            ("period, Eq. (3) [s]", checks.period_eq3, 0.005),
         )
         for (name, value, tolerance), number in zip(values, numbers, strict=True):
             yield printed(case, name, value, number, source=PAPER, absolute=tolerance)
@@ -61,15 +61,15 @@ def paper_numbers() -> Findings:
 def with_exact_gravity() -> Findings:
     """The same containers with g = 9.81, and the stack under the floor motions of the runs below."""
     box, stack = (paper_checks(boxes=boxes, gravity=9.81) for boxes in (1, 4))
-    for case, found, numbers in (
+    for case, checks, numbers in (
         ("1 box, g = 9.81", box, (9810.0, 1.997, 3.14617, 0.17873)),
         ("4 boxes, g = 9.81", stack, (39240.0, 3.336, 1.88337, 0.89454)),
     ):
         values = (
-            ("sliding limit, static [N]", found.sliding_limit_static, 0.5),
-            ("period, Eq. (3) [s]", found.period_eq3, 5e-4),
-            ("frequency parameter [1/s]", found.frequency_parameter, 5e-6),
-            ("Housner's restitution", found.housner_restitution, 5e-6),
+            ("sliding limit, static [N]", checks.sliding_limit_static, 0.5),
+            ("period, Eq. (3) [s]", checks.period_eq3, 5e-4),
+            ("frequency parameter [1/s]", checks.frequency_parameter, 5e-6),
+            ("Housner's restitution", checks.housner_restitution, 5e-6),
         )
         for (name, value, tolerance), number in zip(values, numbers, strict=True):
             yield analytic(case, name, value, number, source=CLOSED_FORM, absolute=tolerance)

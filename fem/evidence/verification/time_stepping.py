@@ -74,9 +74,9 @@ def spectral_radii() -> Findings:
     note = "three equal eigenvalues meet at infinity: at 1e5 they differ by a cube root of rounding"
     compared = "spectral radius at omega h = 1e5"
     for radius in (0.0, 0.5, 0.8, 1.0):
-        found = np.abs(np.linalg.eigvals(amplification(generalised_alpha(radius), 1e5))).max()
+        largest = np.abs(np.linalg.eigvals(amplification(generalised_alpha(radius), 1e5))).max()
         case = f"generalised-alpha {radius}"
-        yield analytic(case, compared, found, radius, source=CHUNG_HULBERT, absolute=0.02, note=note)
+        yield analytic(case, compared, largest, radius, source=CHUNG_HULBERT, absolute=0.02, note=note)
 
 
 @check("time", "period error")
@@ -84,11 +84,11 @@ def period_errors() -> Findings:
     """Elongation of the period at omega h = 0.3, from the eigenvalues of a step."""
     compared = "elongation of the period at omega h = 0.3"
     for name, scheme in SCHEMES.items():
-        found = elongation(amplification(scheme, 0.3), 0.3)
+        value = elongation(amplification(scheme, 0.3), 0.3)
         exact, source = elongation(published_amplification(scheme, 0.3), 0.3), CHUNG_HULBERT
         if name == TRAPEZOIDAL:
             exact, source = 0.15 / math.atan(0.15) - 1.0, "omega h/(2 arctan(omega h/2)) - 1"
-        yield analytic(name, compared, found, exact, source=source, relative=1e-6)
+        yield analytic(name, compared, value, exact, source=source, relative=1e-6)
 
 
 @check("time", "energy closure")
@@ -139,11 +139,11 @@ def mirror() -> Findings:
     """The floor's motion mirrored: the container's motion mirrored."""
     note = "sin(Omega t + pi) is -sin(Omega t) except for rounding"
     for name, values in MODELS.items():
-        one, other = (
+        plain, mirrored = (
             runs.run(runs.STACK, VIOLENT | values | {"motion.phase_rad": phase}) for phase in (0.0, math.pi)
         )
         case = f"{name}, slide-rocking for 5 s, floor mirrored"
-        yield same_rotation(case, one, -other.history["rotation_rad"], source="symmetry", note=note)
+        yield same_rotation(case, plain, -mirrored.history["rotation_rad"], source="symmetry", note=note)
 
 
 @check("time", "scaling")
@@ -160,9 +160,9 @@ def scaling() -> Findings:
         "solver.element_size_m": 4.0,
         "output.history_s": 0.01,
     }
-    one, other = runs.run(runs.STACK, VIOLENT), runs.run(runs.STACK, VIOLENT | scaled)
+    plain, enlarged = runs.run(runs.STACK, VIOLENT), runs.run(runs.STACK, VIOLENT | scaled)
     case = "rigid stack, slide-rocking for 5 s, lengths x 4 and times x 2"
-    yield same_rotation(case, one, other.history["rotation_rad"], source="dimensional analysis")
+    yield same_rotation(case, plain, enlarged.history["rotation_rad"], source="dimensional analysis")
 
 
 @check("time", "Galilean invariance")
@@ -291,5 +291,5 @@ def same_rotation(
     count = min(rotation.size, other.size)
     largest = np.abs(rotation).max() / angle
     compared = f"rotation, largest difference over the slenderness angle (largest rotation {largest:.2f})"
-    found = np.abs(rotation[:count] - other[:count]).max() / angle
-    return analytic(case, compared, found, source=source, absolute=1e-6, note=note)
+    difference = np.abs(rotation[:count] - other[:count]).max() / angle
+    return analytic(case, compared, difference, source=source, absolute=1e-6, note=note)

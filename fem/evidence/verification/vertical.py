@@ -118,13 +118,13 @@ def difference_of_peaks(done: runs.Finished, floor: FloorAcceleration, count: in
     block = PlanarBlock(body=done.block, mu_static=friction.mu_static, mu_kinetic=friction.mu_kinetic)
     exact = simulate_planar_block(block, floor, duration=float(times[-1])).at(times).rotation
     angle = done.block.slenderness_angle
-    found, reference = (swings(rotation, 0.01 * angle) for rotation in (done.history["rotation_rad"], exact))
-    pairs = list(zip(found, reference, strict=False))[:count]
+    peaks, reference = (swings(rotation, 0.01 * angle) for rotation in (done.history["rotation_rad"], exact))
+    pairs = list(zip(peaks, reference, strict=False))[:count]
     return max(abs(a - b) for a, b in pairs) / angle if len(pairs) == count else math.nan
 
 
 def swings(rotation: np.ndarray, least: float) -> list[float]:
     """Largest rotation of each stretch to one side that goes beyond `least`, with its sign [rad]."""
     bounds = np.flatnonzero(np.diff(np.sign(rotation)) != 0.0) + 1
-    largest = [one[np.argmax(np.abs(one))] for one in np.split(rotation, bounds)]
-    return [float(one) for one in largest if abs(one) > least]
+    largest = [stretch[np.argmax(np.abs(stretch))] for stretch in np.split(rotation, bounds)]
+    return [float(peak) for peak in largest if abs(peak) > least]
