@@ -70,14 +70,14 @@ def read_columns(source: MotionText, *, unit: str | None, sample_interval: float
         require_interval(float(np.median(np.diff(times))), "the samples have")
     components = []
     for column, direction in enumerate(DIRECTIONS[count], start=int(has_time)):
-        found, by_file = settled_unit(stated[column], unit, source.name)
+        settled, by_file = settled_unit(stated[column], unit, source.name)
         components.append(
             Component(
                 times=times,
                 readings=table[:, column],
-                factor=UNITS[found].factor,
-                quantity=UNITS[found].quantity,
-                unit=found,
+                factor=UNITS[settled].factor,
+                quantity=UNITS[settled].quantity,
+                unit=settled,
                 unit_stated=by_file,
                 name="" if direction is None else direction,
                 direction=direction,
@@ -218,7 +218,11 @@ def given_record(times: FloatArray, accelerations: Mapping[Direction, FloatArray
 
 def written(record: Record) -> str:
     """Times and SI values of all components as a file of columns, which reads back to the same bits."""
-    columns = [record.components[0].times, *(one.values for one in record.components)]
-    names = ["acceleration_m_s2"] if len(columns) == 2 else [f"{one.name}_m_s2" for one in record.components]
+    columns = [record.components[0].times, *(component.values for component in record.components)]
+    names = (
+        ["acceleration_m_s2"]
+        if len(columns) == 2
+        else [f"{component.name}_m_s2" for component in record.components]
+    )
     rows = (",".join(map(repr, row)) for row in zip(*(column.tolist() for column in columns), strict=True))
     return "\n".join([",".join(["time_s", *names]), *rows, ""])

@@ -8,7 +8,7 @@ Motion Data Format (2001), tables 1 to 8.
 import re
 
 from fem.records.directions import direction_of, stream_direction
-from fem.records.fixed_width import fortran_format, read_block, regular_times, whole_number
+from fem.records.fixed_width import fortran_format, read_block, regular_component, whole_number
 from fem.records.record import Component, Direction, Record
 from fem.records.source import MotionText
 from fem.records.units import UNITS, settled_unit, unit_spelled
@@ -83,21 +83,12 @@ def _channel(source: MotionText, line: int, unit: str | None) -> tuple[Component
         raise source.refused("the number of the values and their format are needed here", line)
     count = whole_number(source, opening[1], "number of samples", line)
     stated = _unit(source, whole, opening[2], line)
-    settled, by_file = settled_unit(stated, unit, source.name)
+    settled = settled_unit(stated, unit, source.name)
     step = _interval(source, real, count, line)
     stream = next((m[1] for m in map(STREAM.search, source.lines[first : line - 1]) if m), "")
     readings, line = read_block(source, line + 1, count, per_line=layout[0], width=layout[1])
     direction, sense = _direction(whole, name, stream)
-    return Component(
-        times=regular_times(readings, step),
-        readings=readings,
-        factor=sense * UNITS[settled].factor,
-        quantity=UNITS[settled].quantity,
-        unit=settled,
-        unit_stated=by_file,
-        name=name,
-        direction=direction,
-    ), line
+    return regular_component(readings, step, settled, name=name, direction=direction, sense=sense), line
 
 
 def _numbers(source: MotionText, line: int, what: str) -> tuple[FloatArray, int]:

@@ -9,10 +9,16 @@ import re
 from dataclasses import dataclass
 
 from fem.records.directions import direction_of
-from fem.records.fixed_width import fortran_format, positive_number, read_block, regular_times, whole_number
+from fem.records.fixed_width import (
+    fortran_format,
+    positive_number,
+    read_block,
+    regular_component,
+    whole_number,
+)
 from fem.records.record import Component, Quantity, Record
 from fem.records.source import MotionText
-from fem.records.units import UNITS, settled_unit, unit_in_header
+from fem.records.units import settled_unit, unit_in_header
 
 NAME = "CSMIP"
 TITLE = re.compile(r"\s*(un)?corrected accelerogram|\s*response and fourier", re.IGNORECASE)
@@ -61,19 +67,12 @@ def read(source: MotionText, unit: str | None) -> Record:
         first = line + 1
         readings, line = read_block(source, first, opening.count, per_line=layout[0], width=layout[1])
         if opening.quantity == "acceleration":
-            settled, by_file = settled_unit(
-                unit_in_header(source, opening.unit.rstrip("."), opening.quantity), unit, source.name
-            )
+            stated = unit_in_header(source, opening.unit.rstrip("."), opening.quantity)
+            settled = settled_unit(stated, unit, source.name)
             direction, sense = direction_of(name)
             components.append(
-                Component(
-                    times=regular_times(readings, opening.step),
-                    readings=readings,
-                    factor=sense * UNITS[settled].factor,
-                    unit=settled,
-                    unit_stated=by_file,
-                    name=name,
-                    direction=direction,
+                regular_component(
+                    readings, opening.step, settled, name=name, direction=direction, sense=sense
                 )
             )
     if not components:
@@ -119,5 +118,5 @@ def _opening(source: MotionText, line: int) -> _Opening | None:
 
 
 def _station(source: MotionText) -> str:
-    found = (line.partition("Station No.")[2] for line in source.lines[:13] if "station no." in line.lower())
-    return next(found, "").strip().partition(" ")[0]
+    names = (line.partition("Station No.")[2] for line in source.lines[:13] if "station no." in line.lower())
+    return next(names, "").strip().partition(" ")[0]

@@ -3,10 +3,10 @@
 import re
 
 from fem.records.directions import stream_direction
-from fem.records.fixed_width import positive_number, read_separated, regular_times, whole_number
-from fem.records.record import PLURALS, Component, Record
+from fem.records.fixed_width import positive_number, read_separated, regular_component, whole_number
+from fem.records.record import PLURALS, Record
 from fem.records.source import MotionText
-from fem.records.units import UNITS, settled_unit, unit_in_header
+from fem.records.units import settled_unit, unit_in_header
 
 NAME = "ESM ASCII"
 KEY = re.compile(r"([A-Z][A-Z0-9_/^]*)\s*:\s*(.*)")  #: such as PGA_CM/S^2
@@ -37,20 +37,11 @@ def read(source: MotionText, unit: str | None) -> Record:
     spelled = header.get("UNITS", "")
     quantity = next((known for known in PLURALS if known == header["DATA_TYPE"].lower()), None)
     if quantity is None:
-        raise source.refused("its DATA_TYPE is no acceleration and no displacement")
+        raise source.refused("its DATA_TYPE is neither acceleration nor displacement")
     stated = unit_in_header(source, spelled, quantity) if spelled else None
-    unit, by_file = settled_unit(stated, unit, source.name)
-    readings = read_separated(source, first, count)[0]
-    component = Component(
-        times=regular_times(readings, step),
-        readings=readings,
-        factor=UNITS[unit].factor,
-        quantity=UNITS[unit].quantity,
-        unit=unit,
-        unit_stated=by_file,
-        name=header.get("STREAM", ""),
-        direction=stream_direction(header.get("STREAM", "")),
-    )
+    settled = settled_unit(stated, unit, source.name)
+    readings, stream = read_separated(source, first, count)[0], header.get("STREAM", "")
+    component = regular_component(readings, step, settled, name=stream, direction=stream_direction(stream))
     return Record(
         components=(component,),
         name=source.name,

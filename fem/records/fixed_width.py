@@ -4,8 +4,9 @@ import re
 
 import numpy as np
 
-from fem.records.record import RecordError
+from fem.records.record import Component, Direction, RecordError
 from fem.records.source import LARGEST_NUMBER, MOST_SAMPLES, MotionText, as_numbers, read_rows
+from fem.records.units import UNITS
 from fem.runtime.arrays import FloatArray
 
 #: such as (8f10.6), (5E15.7), (10I8), (1P8E10.3)
@@ -52,10 +53,10 @@ def read_block(
     for number, row in enumerate(rows, start=first):
         expected = per_line if number < behind - 1 else count - per_line * (len(rows) - 1)
         if len(row) != expected:
-            read = per_line * (number - first) + len(row)
+            so_far = per_line * (number - first) + len(row)
             raise source.refused(
                 f"the header says {count} values, {per_line} in a line of {width} columns each; found {len(row)} in "
-                f"this line, {read} up to it",
+                f"this line, {so_far} up to it",
                 number,
             )
     if len(rows) < behind - first:
@@ -69,9 +70,9 @@ def read_separated(source: MotionText, first: int, count: int) -> tuple[FloatArr
     Returns and raises as `read_block`.
     """
     lines = source.lines[first - 1 :]
-    found = sum(len(line.split()) for line in lines)
-    if found != count:
-        raise source.refused(f"the header says {count} values, found {found}")
+    total = sum(len(line.split()) for line in lines)
+    if total != count:
+        raise source.refused(f"the header says {count} values, found {total}")
     rows = ((number, line.split()) for number, line in enumerate(lines, start=first))
     return read_rows(source, rows), len(source.lines) + 1
 
@@ -109,17 +110,41 @@ def positive_number(source: MotionText, text: str, what: str, number: int | None
     return float(numbers[0])
 
 
-def regular_times(readings: FloatArray, step: float) -> FloatArray:
-    """Times of evenly spaced samples from zero, shape (n,) as the readings [s].
+def regular_component(
+    readings: FloatArray,
+    step: float,
+    unit: tuple[str, bool],
+    *,
+    name: str,
+    direction: Direction | None,
+    sense: float = 1.0,
+) -> Component:
+    """A component of evenly spaced samples from t = 0.
+
+    Args:
+        readings: as the file gives them, (n,).
+        step: between the samples [s].
+        unit: as by `settled_unit`.
+        name, direction: of the component.
+        sense: -1 where the readings are positive downward.
 
     Raises:
         RecordError: no sensor has such an interval.
     """
     require_interval(step, "the header gives")
-    return np.arange(readings.size, dtype=np.float64) * step
+    return Component(
+        times=np.arange(readings.size, dtype=np.float64) * step,
+        readings=readings,
+        factor=sense * UNITS[unit[0]].factor,
+        quantity=UNITS[unit[0]].quantity,
+        unit=unit[0],
+        unit_stated=unit[1],
+        name=name,
+        direction=direction,
+    )
 
 
-def require_interval(step: float, given: str) -> None:
+def require_interval(step: float, subject: str) -> None:
     """Refuse an interval [s] that no sensor has.
 
     Raises:
@@ -127,5 +152,5 @@ def require_interval(step: float, given: str) -> None:
     """
     if not INTERVALS[0] <= step <= INTERVALS[1]:
         raise RecordError(
-            f"{given} an interval of {step:g} s; it must be between {INTERVALS[0]:g} and {INTERVALS[1]:g} s"
+            f"{subject} an interval of {step:g} s; it must be between {INTERVALS[0]:g} and {INTERVALS[1]:g} s"
         )

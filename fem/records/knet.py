@@ -6,10 +6,16 @@ The scale factor of the header makes them gal; they stand about an offset, so th
 import re
 
 from fem.records.directions import direction_of
-from fem.records.fixed_width import positive_number, read_block, read_separated, regular_times, require_end
-from fem.records.record import Component, Record
+from fem.records.fixed_width import (
+    positive_number,
+    read_block,
+    read_separated,
+    regular_component,
+    require_end,
+)
+from fem.records.record import Record
 from fem.records.source import MotionText, as_numbers
-from fem.records.units import UNITS, settled_unit
+from fem.records.units import settled_unit
 from fem.runtime.arrays import FloatArray
 
 NAME = "K-NET"
@@ -39,21 +45,15 @@ def read(source: MotionText, unit: str | None) -> Record:
     factor = positive_number(source, scale[1], "scale factor", 14) / positive_number(
         source, scale[2], "scale factor", 14
     )
-    stated, _ = settled_unit("gal", unit, source.name)
+    settled = settled_unit("gal", unit, source.name)
     count = round(duration * rate)
     if not 1 <= count <= 10**8:
         raise source.refused("the header gives no number of samples", 12)
     counts = _counts(source, count)
     sensor = _value(source, 13)
     direction, _ = direction_of(SENSORS.get(sensor, sensor))
-    component = Component(
-        times=regular_times(counts, 1.0 / rate),
-        readings=(counts - counts.mean()) * factor,
-        factor=UNITS[stated].factor,
-        unit=stated,
-        name=sensor,
-        direction=direction,
-    )
+    readings = (counts - counts.mean()) * factor
+    component = regular_component(readings, 1.0 / rate, settled, name=sensor, direction=direction)
     return Record(
         components=(component,),
         name=source.name,

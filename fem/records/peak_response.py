@@ -35,7 +35,7 @@ def _free(rate: float, damping_ratio: float, value: float, slope: float) -> floa
 
 
 def _peaks_of(
-    values: FloatArray, step: float, damping_ratio: float, steps: FloatArray, found: FloatArray
+    values: FloatArray, step: float, damping_ratio: float, steps: FloatArray, peaks: FloatArray
 ) -> None:
     """Largest |relative displacement| [m] and |absolute acceleration| [m/s2] of oscillators.
 
@@ -71,8 +71,8 @@ def _peaks_of(
                 most_y = _between(h, y0, y, slope_0, slope, most_y)
                 last = now
         free_slope = -rate * (rate * v + double * y)
-        found[k, 0] = max(most_x, _free(rate, damping_ratio, x, v))
-        found[k, 1] = max(most_y, _free(rate, damping_ratio, y, free_slope))
+        peaks[k, 0] = max(most_x, _free(rate, damping_ratio, x, v))
+        peaks[k, 1] = max(most_y, _free(rate, damping_ratio, y, free_slope))
 
 
 peaks_of = compiled(_peaks_of, sources=(Path(__file__),))

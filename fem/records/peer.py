@@ -11,13 +11,13 @@ from fem.records.fixed_width import (
     positive_number,
     read_block,
     read_separated,
-    regular_times,
+    regular_component,
     require_end,
     whole_number,
 )
-from fem.records.record import PLURALS, Component, Quantity, Record
+from fem.records.record import PLURALS, Quantity, Record
 from fem.records.source import MotionText, as_numbers
-from fem.records.units import UNITS, settled_unit, unit_in_header
+from fem.records.units import settled_unit, unit_in_header
 from fem.runtime.arrays import FloatArray
 
 NAME = "PEER"
@@ -52,21 +52,12 @@ def read(source: MotionText, unit: str | None) -> Record:
     quantity = next((q for q in map(QUANTITY.search, source.lines[:last]) if q), None)
     if quantity is not None and quantity[2]:
         stated = unit_in_header(source, quantity[2], QUANTITIES[quantity[1].lower()])
-    unit, by_file = settled_unit(stated, unit, source.name)
+    settled = settled_unit(stated, unit, source.name)
     described = source.line(2) if last == 4 else ""
     name = described.rpartition(",")[2].strip() if "," in described else ""
     direction, sense = direction_of(name)
     readings = _numbers(source, last + 1, count)
-    component = Component(
-        times=regular_times(readings, step),
-        readings=readings,
-        factor=sense * UNITS[unit].factor,
-        quantity=UNITS[unit].quantity,
-        unit=unit,
-        unit_stated=by_file,
-        name=name,
-        direction=direction,
-    )
+    component = regular_component(readings, step, settled, name=name, direction=direction, sense=sense)
     event, _, station = described.rpartition(",")[0].partition(",")
     return Record(
         components=(component,),

@@ -63,14 +63,14 @@ class BaselineChange:
     def in_words(self) -> str:
         """What it changes, with both values."""
         before, after = self.accelerations
-        said = f"{self.baseline!r} changes the peak acceleration from {before:.3g} to {after:.3g} m/s2"
-        said += _per_cent(self.accelerations)
+        words = f"{self.baseline!r} changes the peak acceleration from {before:.3g} to {after:.3g} m/s2"
+        words += _per_cent(self.accelerations)
         if self.baseline == "mean":
-            return said
+            return words
         before, after = self.velocities
         return (
-            f"{said}, and the peak velocity from {before:.3g} m/s with 'mean', which only brings the floor to rest and "
-            f"keeps pulses, to {after:.3g} m/s{_per_cent(self.velocities)}"
+            f"{words}, and the peak velocity from {before:.3g} m/s with 'mean', which only brings the floor to rest "
+            f"and keeps pulses, to {after:.3g} m/s{_per_cent(self.velocities)}"
         )
 
 
@@ -165,8 +165,8 @@ def _trimmed(component: Component, processing: Processing) -> tuple[FloatArray, 
     inside = (times >= low) & (times <= high)
     if component.quantity == "acceleration" and low < high:
         ends = np.array([low, high])
-        kept = np.unique(np.concatenate([times[inside], ends]))
-        readings, times = np.interp(kept, times, readings), kept
+        instants = np.unique(np.concatenate([times[inside], ends]))
+        readings, times = np.interp(instants, times, readings), instants
     else:
         times, readings = times[inside], readings[inside]
     if times.size < 2:

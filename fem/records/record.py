@@ -57,10 +57,10 @@ class Component:
             )
         if self.times.size < 2:
             raise RecordError(f"two samples or more are needed, found {self.times.size}")
-        for what, column in (("time", self.times), ("value", self.readings)):
+        for kind, column in (("time", self.times), ("value", self.readings)):
             if not np.isfinite(column).all():
                 row = int(np.flatnonzero(~np.isfinite(column))[0])
-                raise RecordError(f"{what} of sample {row + 1} is not a finite number")
+                raise RecordError(f"{kind} of sample {row + 1} is not a finite number")
         steps = np.diff(self.times)
         if (steps <= 0.0).any():
             row = int(np.flatnonzero(steps <= 0.0)[0])
@@ -129,16 +129,16 @@ class Record:
         """
         if channel:
             return self._by_channel(channel, quantity)
-        of_quantity = [one for one in self.components if one.quantity == quantity]
+        of_quantity = [component for component in self.components if component.quantity == quantity]
         if not of_quantity:
-            held = " and ".join(sorted({PLURALS[one.quantity] for one in self.components}))
+            held = " and ".join(sorted({PLURALS[component.quantity] for component in self.components}))
             needed = PLURALS[quantity]
             raise RecordError(
                 f"{self.name}: it holds {held}, and {needed} are needed; take the file of {needed}"
                 + ('; or set quantity = "displacement"' if "displacement" in held else "")
             )
-        components = [one for one in of_quantity if one.direction == direction] or [
-            one for one in of_quantity if one.direction is None
+        components = [component for component in of_quantity if component.direction == direction] or [
+            component for component in of_quantity if component.direction is None
         ]
         if len(components) == 1:
             return components[0]
@@ -156,7 +156,9 @@ class Record:
         if 1 <= number <= len(self.components):
             components = [self.components[number - 1]]
         else:
-            components = [one for one in self.components if one.name.casefold() == channel.casefold()]
+            components = [
+                component for component in self.components if component.name.casefold() == channel.casefold()
+            ]
         if len(components) != 1:
             raise RecordError(f"{self.name}: no channel {channel[:40]!r} ({self._channels()})")
         if components[0].quantity != quantity:
@@ -167,7 +169,9 @@ class Record:
         return components[0]
 
     def _channels(self) -> str:
-        return "; ".join(f"#{number} {one.described}" for number, one in enumerate(self.components, start=1))
+        return "; ".join(
+            f"#{number} {component.described}" for number, component in enumerate(self.components, start=1)
+        )
 
 
 def require_together(components: Sequence[Component], names: Sequence[str]) -> None:
@@ -182,10 +186,10 @@ def require_together(components: Sequence[Component], names: Sequence[str]) -> N
             ("samples", first.times.size, other.times.size),
             ("s between samples", first.step, other.step),
         )
-        for what, one, two in pairs:
-            if abs(one - two) > SAME_TIME * min(one, two):
+        for unit, reference, value in pairs:
+            if abs(reference - value) > SAME_TIME * min(reference, value):
                 raise RecordError(
-                    f"{names[0]} and {name} do not belong together: {one:g} and {two:g} {what}; "
+                    f"{names[0]} and {name} do not belong together: {reference:g} and {value:g} {unit}; "
                     "both components must be of one recording, with the same interval and length"
                 )
         apart = (

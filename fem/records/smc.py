@@ -8,10 +8,10 @@ import math
 import re
 
 from fem.records.directions import direction_of
-from fem.records.fixed_width import read_block, regular_times, require_end
-from fem.records.record import Component, Direction, Record
+from fem.records.fixed_width import read_block, regular_component, require_end
+from fem.records.record import Direction, Record
 from fem.records.source import MotionText
-from fem.records.units import UNITS, settled_unit
+from fem.records.units import settled_unit
 
 NAME = "SMC"
 TEXT_LINES, WHOLE_LINES, REAL_LINES = 11, 6, 10
@@ -43,7 +43,7 @@ def read(source: MotionText, unit: str | None) -> Record:
     stated = UNIT.get(title[1] if title else "")
     if stated is None:
         raise source.refused("spectra do not move a floor; take the file of the accelerogram", 1)
-    stated, _ = settled_unit(stated, unit, source.name)
+    settled = settled_unit(stated, unit, source.name)
     line = TEXT_LINES + 1
     whole, line = read_block(source, line, 8 * WHOLE_LINES, per_line=8, width=10)
     real, line = read_block(source, line, 5 * REAL_LINES, per_line=5, width=15, largest=math.inf)
@@ -64,15 +64,7 @@ def read(source: MotionText, unit: str | None) -> Record:
     require_end(source, behind, count)
     name = source.line(6).partition("component=")[2].strip() or source.line(6).partition("comp=")[2].strip()
     direction, sense = _direction(name, whole[12], whole[13], whole[0])
-    component = Component(
-        times=regular_times(readings, 1.0 / rate),
-        readings=readings,
-        factor=sense * UNITS[stated].factor,
-        quantity=UNITS[stated].quantity,
-        unit=stated,
-        name=name,
-        direction=direction,
-    )
+    component = regular_component(readings, 1.0 / rate, settled, name=name, direction=direction, sense=sense)
     return Record(
         components=(component,),
         name=source.name,

@@ -146,7 +146,9 @@ def _steps_of(step: float, periods: FloatArray, damping_ratio: float) -> FloatAr
         parts = _parts(step, period)
         root, before, after = _step(step / parts, period, damping_ratio)
         turns = (root, complex(np.exp(root * step / parts)), before, after)
-        rows.append([2.0 * math.pi / period, parts, *(x for one in turns for x in (one.real, one.imag))])
+        rows.append(
+            [2.0 * math.pi / period, parts, *(x for factor in turns for x in (factor.real, factor.imag))]
+        )
     return np.array(rows, dtype=np.float64).reshape(-1, 10)
 
 
@@ -171,7 +173,7 @@ def exact_recursion(step: float, period: float, damping_ratio: float) -> tuple[l
     root, before, after = _step(step, period, damping_ratio)
     decay = complex(np.exp(root * step))
     numerator = [after, before - after * decay.conjugate(), -before * decay.conjugate()]
-    return [one.imag / root.imag for one in numerator], [1.0, -2.0 * decay.real, abs(decay) ** 2]
+    return [term.imag / root.imag for term in numerator], [1.0, -2.0 * decay.real, abs(decay) ** 2]
 
 
 def _step(step: float, period: float, damping_ratio: float) -> tuple[complex, complex, complex]:

@@ -54,23 +54,23 @@ def unit_spelled(text: str) -> str | None:
     return SPELLED.get(word)
 
 
-def settled_unit(stated: str | None, wanted: str | None, place: str) -> tuple[str, bool]:
+def settled_unit(stated: str | None, given_unit: str | None, name: str) -> tuple[str, bool]:
     """The unit of some values, and whether their file states it.
 
     Raises:
         RecordError: neither states one, both do and they differ, or the file's is not read.
     """
-    if stated is None and wanted is None:
-        raise RecordError(f"{place}: the file does not state the unit of its values; {OTHERWISE}")
+    if stated is None and given_unit is None:
+        raise RecordError(f"{name}: the file does not state the unit of its values; {OTHERWISE}")
     if stated is not None and stated not in UNITS:
         raise RecordError(
-            f"{place}: the header gives {stated!r}, which is not read; convert the values to one of {', '.join(STATED)}"
+            f"{name}: the header gives {stated!r}, which is not read; convert the values to one of {', '.join(STATED)}"
         )
-    if stated is not None and wanted is not None and UNITS[stated] != UNITS[wanted]:
+    if stated is not None and given_unit is not None and UNITS[stated] != UNITS[given_unit]:
         raise RecordError(
-            f"{place}: the file states {stated!r}, but unit = {wanted!r} is given; correct one of them"
+            f"{name}: the file states {stated!r}, but unit = {given_unit!r} is given; correct one of them"
         )
-    unit = stated or wanted or ""
+    unit = stated or given_unit or ""
     return unit, stated is not None
 
 
