@@ -69,11 +69,11 @@ def ensemble_answer(result: EnsembleResult) -> EnsembleAnswer | None:
     axis = answer_axis(axes) or next(iter(numeric), None)
     if axis is None or result.status != COMPLETED:
         return None
-    others = tuple(one for one in axes if one is not axis and len(one.values) > 1)
+    others = tuple(other for other in axes if other is not axis and len(other.values) > 1)
     rising = _is_rising(axis, result.points)
     lines: dict[tuple[Any, ...], list[Row]] = defaultdict(list)
-    for point in sorted(result.points, key=lambda one: one[axis.key], reverse=not rising):
-        lines[tuple(point[one.key] for one in others)].append(point)
+    for point in sorted(result.points, key=lambda row: row[axis.key], reverse=not rising):
+        lines[tuple(point[other.key] for other in others)].append(point)
     rows = []
     for values in sorted(lines):
         crossing = half_point(axis, lines[values])
@@ -86,7 +86,9 @@ def ensemble_answer(result: EnsembleResult) -> EnsembleAnswer | None:
     sentence = rows[0][2]
     if others and reached:
         point, crossing, _ = rows[safest(reached)[1]]
-        half = _half(result, axis, lines[tuple(point[one.key] for one in others)], crossing, rising=rising)
+        half = _half(
+            result, axis, lines[tuple(point[other.key] for other in others)], crossing, rising=rising
+        )
         sentence = f"{half}, first with {place_in_words(others, point)}"
     elif others:
         fell = falling_in_words(result.limit_slip_m, past=True)

@@ -42,8 +42,8 @@ class Distribution(BaseModel):
     @property
     def numbers(self) -> list[float]:
         """Values of the keys that the distribution needs."""
-        given = self.model_dump(by_alias=True)
-        return [given[name] for name in NEEDS[self.distribution]]
+        values = self.model_dump(by_alias=True)
+        return [values[name] for name in NEEDS[self.distribution]]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,7 +59,7 @@ class RandomQuantity:
         return self.spread.relative
 
     @property
-    def asked(self) -> dict[str, Any]:
+    def definition(self) -> dict[str, Any]:
         """As the file gives it."""
         return self.spread.model_dump(by_alias=True, exclude_none=True)
 
@@ -94,7 +94,7 @@ class RandomChoice:
         return self.axis.key
 
     @property
-    def asked(self) -> list[Any]:
+    def definition(self) -> list[Any]:
         """As the file gives it; pairs of motions as pairs."""
         verticals = self.axis.following.get(VERTICAL_FILE, (None,) * len(self.axis.values))
         pairs = zip(self.axis.values, verticals, strict=True)
@@ -111,24 +111,24 @@ class RandomChoice:
         return [self.axis.values[min(int(share * count), count - 1)] for share in shares.tolist()]
 
 
-def read_random(key: str, given: Any) -> RandomQuantity | RandomChoice:
+def read_random(key: str, entry: Any) -> RandomQuantity | RandomChoice:
     """One entry of `[random]`: a distribution, or a list of values that are equally likely.
 
     Raises:
         AxisError: with the reason why it cannot be used.
     """
-    if isinstance(given, list):
-        return RandomChoice(axis=read_axis(key, given))
+    if isinstance(entry, list):
+        return RandomChoice(axis=read_axis(key, entry))
     example = 'for instance { distribution = "uniform", from = 0.3, to = 0.4 }'
-    if not isinstance(given, dict):
-        raise AxisError(f"must be a distribution or a list of values, got {given!r}; {example}")
-    spread = read_inline(Distribution, given, example)
+    if not isinstance(entry, dict):
+        raise AxisError(f"must be a distribution or a list of values, got {entry!r}; {example}")
+    spread = read_inline(Distribution, entry, example)
     kind, needed = spread.distribution, NEEDS[spread.distribution]
-    missing = [name for name in needed if name not in given]
-    idle = [name for name in given if any(name in one for one in NEEDS.values()) and name not in needed]
+    missing = [name for name in needed if name not in entry]
+    idle = [name for name in entry if any(name in names for names in NEEDS.values()) and name not in needed]
     if missing or idle:
-        what = f"needs {' and '.join(missing)}" if missing else f"has no use for {' and '.join(idle)}"
-        raise AxisError(f"distribution = {kind!r} {what}; {example}")
+        problem = f"needs {' and '.join(missing)}" if missing else f"has no use for {' and '.join(idle)}"
+        raise AxisError(f"distribution = {kind!r} {problem}; {example}")
     first, second = spread.numbers
     if "from" in needed and not first < second:
         raise AxisError(f"from = {first:g} must be less than to = {second:g}")

@@ -76,8 +76,8 @@ def draw_fragility(
         capsize=2.0,
         label=f"counted, {100.0 * ensemble.confidence:g} % interval",
     )
-    asked = f"{100.0 * ensemble.probability:g} %"
-    axes.axhline(ensemble.probability, color=style.GREY, linewidth=0.8, linestyle=":", label=asked)
+    limit = f"{100.0 * ensemble.probability:g} %"
+    axes.axhline(ensemble.probability, color=style.GREY, linewidth=0.8, linestyle=":", label=limit)
     axes.set_ylim(-0.02, 1.02)
     axes.margins(x=0.02)
     axes.set_ylabel(f"probability of {falling_in_words(ensemble.limit_slip_m)} [-]")
@@ -137,9 +137,9 @@ def band_of(resampled: Resampled, strengths: FloatArray, confidence: float) -> t
 
 def _statement(ensemble: Ensemble, unknown: UnknownInputs) -> str:
     names = ", ".join(
-        one.key.rpartition(".")[2].removesuffix("_rad").replace("_", " ")
-        for one in ensemble.random
-        if one.key != MOTION_FILE
+        quantity.key.rpartition(".")[2].removesuffix("_rad").replace("_", " ")
+        for quantity in ensemble.random
+        if quantity.key != MOTION_FILE
     )
     ranges = f"; {len(unknown.keys)} unknown inputs drawn over their ranges" if unknown.keys else ""
     held = f"; {unknown.held}" if unknown.held else ""

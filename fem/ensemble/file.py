@@ -67,11 +67,15 @@ def load_ensemble(name_or_path: str | Path) -> Ensemble:
 
 
 def _read(data: Mapping[str, Any], origin: Origin) -> Ensemble:
-    given, tables = study_file.split_tables(data, TABLES)
-    heading = study_file.read_as("", EnsembleHeading, given)
+    heading_keys, tables = study_file.split_tables(data, TABLES)
+    heading = study_file.read_as("", EnsembleHeading, heading_keys)
     axes = study_file.read_axes(tables.get("axes", {}), MOST_AXES, EXAMPLE, _axis)
     random = _random(tables.get("random", {}), axes)
-    sets = [one.axis for one in random if isinstance(one, RandomChoice) and one.key == MOTION_FILE]
+    sets = [
+        quantity.axis
+        for quantity in random
+        if isinstance(quantity, RandomChoice) and quantity.key == MOTION_FILE
+    ]
     base = study_file.base_case(
         heading.case, tables.get("set", {}), origin, first_motion(sets), [axis.key for axis in axes]
     )
@@ -79,8 +83,9 @@ def _read(data: Mapping[str, Any], origin: Origin) -> Ensemble:
         raise CaseError(
             '[set] "solver.model" must be "rigid" or "reduced": an ensemble of the full model would take weeks'
         )
-    study_file.require_verticals(sets, [*(axis.key for axis in axes), *(one.key for one in random)], base)
-    drawn = [one.key for one in random if not one.relative]
+    varied_keys = [*(axis.key for axis in axes), *(quantity.key for quantity in random)]
+    study_file.require_verticals(sets, varied_keys, base)
+    drawn = [quantity.key for quantity in random if not quantity.relative]
     replicates = 1 if heading.sampling == "independent" else heading.replicates
     varied = [*(axis.key for axis in axes), *drawn, *tables.get("derived", {})]
     study_file.require_once(tables.get("set", {}), varied, base)
@@ -91,9 +96,7 @@ def _read(data: Mapping[str, Any], origin: Origin) -> Ensemble:
         base=base,
         axes=axes,
         random=random,
-        derived=_derived(
-            tables.get("derived", {}), [axis.key for axis in axes] + [one.key for one in random]
-        ),
+        derived=_derived(tables.get("derived", {}), varied_keys),
         draws=heading.draws,
         seed=heading.seed,
         sampling=heading.sampling,
@@ -112,7 +115,7 @@ def _read(data: Mapping[str, Any], origin: Origin) -> Ensemble:
 def _axis(key: str, value: Any) -> Axis:
     # A free variable takes any number, as the scale of a table of motion does.
     axis = replace(read_axis("motion.scale" if key.startswith(FREE) else key, value), key=key)
-    if not all(isinstance(one, float | int) and not isinstance(one, bool) for one in axis.values):
+    if not all(isinstance(number, float | int) and not isinstance(number, bool) for number in axis.values):
         raise AxisError("must hold numbers; make a file for each of its words")
     if list(axis.values) != sorted(axis.values):
         raise AxisError("must rise; sort its values")
@@ -129,14 +132,14 @@ def _random(content: Mapping[str, Any], axes: tuple[Axis, ...]) -> tuple[RandomQ
     for key, value in content.items():
         try:
             _check_key(key)
-            one = read_random(key, value)
+            quantity = read_random(key, value)
         except AxisError as error:
             raise CaseError(f"[random] {key!r} {error}") from None
-        if any(axis.key == key for axis in axes) and not one.relative:
+        if any(axis.key == key for axis in axes) and not quantity.relative:
             raise CaseError(
                 f"[random] {key!r} is an axis as well; give the scatter about its values with relative = true"
             )
-        quantities.append(one)
+        quantities.append(quantity)
     return tuple(quantities)
 
 
@@ -185,13 +188,13 @@ def _check_draws(ensemble: Ensemble) -> None:
 def _try_cases(ensemble: Ensemble) -> None:
     """Make the cases at the ends of axes and distributions; raises a CaseError for one that cannot be used."""
     ends = [(axis.values[0], axis.values[-1]) for axis in ensemble.axes]
-    drawn = [one.ends for one in ensemble.random]
+    drawn = [quantity.ends for quantity in ensemble.random]
     for corner in islice(product(*ends, *drawn), TRIED):
         point = {axis.key: value for axis, value in zip(ensemble.axes, corner, strict=False)}
         try:
             ensemble.case_of(point, corner[len(ends) :])
         except CaseError as error:
-            keys = [*(axis.key for axis in ensemble.axes), *(one.key for one in ensemble.random)]
+            keys = [*(axis.key for axis in ensemble.axes), *(quantity.key for quantity in ensemble.random)]
             where = ", ".join(
                 f"{key} = {value if isinstance(value, str) else format(value, 'g')}"
                 for key, value in zip(keys, corner, strict=True)

@@ -63,12 +63,16 @@ class Ensemble:
     @property
     def motions(self) -> Axis | None:
         """The set of motions that are drawn; None where there is one motion."""
-        sets = (one.axis for one in self.random if isinstance(one, RandomChoice) and one.key == MOTION_FILE)
+        sets = (
+            quantity.axis
+            for quantity in self.random
+            if isinstance(quantity, RandomChoice) and quantity.key == MOTION_FILE
+        )
         return next(sets, None)
 
     def draws_at(self, cell: int) -> list[Draw]:
         """The draws of a point; each motion of a set is drawn equally often, and is a replicate."""
-        spread = [one for one in self.random if one.key != MOTION_FILE]
+        spread = [quantity for quantity in self.random if quantity.key != MOTION_FILE]
         shares = np.empty((self.draws, 0))
         if spread:
             shares = draw_shares(
@@ -80,15 +84,15 @@ class Ensemble:
                 replicates=self.replicates,
             )
         columns: dict[str, Sequence[Any]] = {
-            one.key: np.asarray(one.values(shares[:, k]), dtype=object).tolist()
-            for k, one in enumerate(spread)
+            quantity.key: np.asarray(quantity.values(shares[:, k]), dtype=object).tolist()
+            for k, quantity in enumerate(spread)
         }
         each, following = self.draws // self.replicates, [dict[str, str | None]()] * self.replicates
         if self.motions is not None:
             columns[MOTION_FILE] = np.repeat(self.motions.values, each).tolist()
             names, keys = self.motions.following, zip(*self.motions.following.values(), strict=True)
-            following = [dict(zip(names, some, strict=True)) for some in keys] or following
-        rows = zip(*(columns[one.key] for one in self.random), strict=True)
+            following = [dict(zip(names, names_of_one, strict=True)) for names_of_one in keys] or following
+        rows = zip(*(columns[quantity.key] for quantity in self.random), strict=True)
         return [
             Draw(cell, number, drawn, following=following[number // each])
             for number, drawn in enumerate(rows)
@@ -107,10 +111,10 @@ class Ensemble:
     def of_draws(self) -> Self:
         """What makes the cases of draws, without the list of motions: small enough to go with every task."""
         random = tuple(
-            replace(one, axis=replace(one.axis, values=(), following={}))
-            if isinstance(one, RandomChoice) and one.key == MOTION_FILE
-            else one
-            for one in self.random
+            replace(quantity, axis=replace(quantity.axis, values=(), following={}))
+            if isinstance(quantity, RandomChoice) and quantity.key == MOTION_FILE
+            else quantity
+            for quantity in self.random
         )
         return replace(self, random=random, text="")
 
@@ -123,12 +127,12 @@ class Ensemble:
             CaseError: an expression has no value, a relative quantity has no value to scale, a bad case.
         """
         values = dict(point)
-        for one, value in zip(self.random, drawn, strict=True):
-            if isinstance(one, RandomChoice):
-                values |= with_following([one.axis], {one.key: value})
+        for quantity, value in zip(self.random, drawn, strict=True):
+            if isinstance(quantity, RandomChoice):
+                values |= with_following([quantity.axis], {quantity.key: value})
             else:
-                scale = number_of(one.key, values, self.base) if one.relative else 1.0
-                values[one.key] = value * scale
+                scale = number_of(quantity.key, values, self.base) if quantity.relative else 1.0
+                values[quantity.key] = value * scale
         values = with_derived(values, self.derived, self.base)
         keys = {key: value for key, value in values.items() if not key.startswith(FREE)}
         if unknown and keys.get("container.joints", self.base.container.joints) == "loose":

@@ -91,4 +91,4 @@ class EnsembleResult(StudyResult):
     @property
     def point_axes(self) -> tuple[Axis, ...]:
         """The axes, to name places on them."""
-        return tuple(one.axis for one in self.axes)
+        return tuple(axis.axis for axis in self.axes)

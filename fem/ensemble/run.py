@@ -55,7 +55,7 @@ class DrawRows:
         self._ensemble, self._unknown = ensemble, unknown
         #: keys that follow the motion of a draw
         self._following = [key for axis in sets_of(ensemble) for key in axis.following]
-        keys = [f"{one.key}{' factor' if one.relative else ''}" for one in ensemble.random]
+        keys = [f"{quantity.key}{' factor' if quantity.relative else ''}" for quantity in ensemble.random]
         keys += self._following
         numbers: Columns = dict.fromkeys(("point", "draw", "replicate"), int)
         self.columns = numbers | dict.fromkeys((*keys, *unknown.keys), str) | SHOWN
@@ -95,10 +95,12 @@ class DrawRows:
         return [draw for draw in draws if self.codes[draw.cell, draw.number] == Ending.UNKNOWN]
 
 
-def shown(row: Row) -> Row:
+def draw_row(row: Row) -> Row:
     """The result of a draw, by the names of `SHOWN`."""
     figures = {key: row[key] for key in (TURNED, SLIPPED)}
-    known = {key: one if one is not None and np.isfinite(one) else None for key, one in figures.items()}
+    known = {
+        key: figure if figure is not None and np.isfinite(figure) else None for key, figure in figures.items()
+    }
     return (
         {"outcome": WORDS[ending_of(row["status"], row["outcome"])]}
         | known
@@ -111,23 +113,23 @@ def run_ensemble(ensemble: Ensemble, *, folder: Path, **options: Unpack[StudyOpt
     with runner_of(**options) as reader:
         motions = read_motion_set(ensemble.base, sets_of(ensemble), reader)
         options["workers_of"] = reader.workers_of
-        asked = ensemble_hash(ensemble, [one.case_hash for one in motions])
+        request = ensemble_hash(ensemble, [motion.case_hash for motion in motions])
         unknown = UnknownInputs(ensemble)
         copied = motions if _is_copied(ensemble) else ()
-        begun = asked_of(ensemble, unknown, motions, asked)
+        begun = begun_result(ensemble, unknown, motions, request)
         study = Study(
             kind=ENSEMBLE,
-            request=asked,
+            request=request,
             result=EnsembleResult,
             begun=begun,
             cases=[ensemble.base],
-            motions=[one.case for one in copied],
+            motions=[motion.case for motion in copied],
             compute=partial(_compute, ensemble, unknown, motions, begun),
             texts={"ensemble.toml": ensemble.text, "base.toml": to_toml(ensemble.base)},
             size=required_disk(ensemble, unknown, copied),
             subject="the ensemble",
             way_out="take fewer draws",
-            progress=lambda place: "its draws so far",
+            progress=lambda folder: "its draws so far",
         )
         return run_study(study, folder, **options)
 
@@ -137,27 +139,27 @@ def _compute(
     unknown: UnknownInputs,
     motions: Sequence[FloorMotionPair],
     begun: EnsembleResult,
-    place: ResultFolder,
+    results: ResultFolder,
     runner: Runner,
 ) -> EnsembleResult:
     """Compute the draws that are missing, count what there is, and write it."""
     draws = DrawRows(ensemble, unknown)
     LoggedRuns(
         what="draws",
-        path=place.path / DRAWS,
+        path=results.path / DRAWS,
         columns=draws.columns,
         make=ensemble.of_draws.case,
         model_of=lambda draw: ensemble.base.solver.model,
         key=draws.key,
         note=draws.note,
-        shown=shown,
+        shown=draw_row,
         number=lambda draw: draw.cell * ensemble.draws + draw.number,
     ).run(runner, iter(draws.missing, []))
     complete = (draws.codes != Ending.UNKNOWN).all(axis=1)
     points = [count_point(ensemble, int(k), draws.codes[k], draws.slips[k]) for k in np.flatnonzero(complete)]
-    place.check()
-    place.write_text("points.csv", csv_of_points(ensemble, points))
-    place.write_text(DRAWS, draws.table())
+    results.check()
+    results.write_text("points.csv", csv_of_points(ensemble, points))
+    results.write_text(DRAWS, draws.table())
     regions = [point["region"] for point in points]
     result = replace(
         begun,
@@ -170,12 +172,14 @@ def _compute(
         return replace(result, missing=f"{len(points)} of {ensemble.count} points have all their draws")
     fragility = fragility_of(ensemble, draws.codes, points)
     for name, svg in ensemble_figures(ensemble, unknown, points, fragility).items():
-        place.write_text(f"figures/{name}.svg", svg)
+        results.write_text(f"figures/{name}.svg", svg)
     failed = all(point["failed"] == ensemble.draws for point in points)
     result = replace(result, status=FAILED if failed else COMPLETED, fragility=fragility)
     if motions:
-        measures = [one.numbers() | counts for one, counts in zip(motions, draws.by_replicate(), strict=True)]
-        figures = write_motions(place, motions, measures, dict.fromkeys(COUNTED, int), runner)
+        measures = [
+            motion.numbers() | counts for motion, counts in zip(motions, draws.by_replicate(), strict=True)
+        ]
+        figures = write_motions(results, motions, measures, dict.fromkeys(COUNTED, int), runner)
         result = replace(result, motions=tuple(measures), motion_figures=tuple(figures))
     answer = ensemble_answer(result)
     return replace(result, answer=answer.sentence if answer else None)
@@ -193,7 +197,7 @@ def required_disk(
     columns = OF_A_DRAW + len(ensemble.random) + len(unknown.keys)
     draws = 2 * table_bytes(ensemble.count * ensemble.draws, columns)
     motions = table_bytes(ensemble.replicates if ensemble.motions else 0, OF_A_MOTION)
-    motions += sum(path.stat().st_size for one in copied for path in one.case.data_files.values())
+    motions += sum(path.stat().st_size for motion in copied for path in motion.case.data_files.values())
     return draws + table_bytes(ensemble.count, OF_A_POINT) + motions + BYTES_BESIDE
 
 
@@ -203,22 +207,25 @@ def ensemble_hash(ensemble: Ensemble, motions: Sequence[str] | None = None) -> s
     Args:
         motions: hashes of the cases of a set of motions, where they are known.
     """
-    asked = {
+    request = {
         "base": case_hash(ensemble.base),
         "axes": [[axis.key, list(axis.values)] for axis in ensemble.axes],
         "random": [
-            [one.key, one.asked if isinstance(one, RandomChoice) else one.spread.model_dump()]
-            for one in ensemble.random
+            [
+                quantity.key,
+                quantity.definition if isinstance(quantity, RandomChoice) else quantity.spread.model_dump(),
+            ]
+            for quantity in ensemble.random
         ],
-        "derived": [[one.key, one.expression.text] for one in ensemble.derived],
+        "derived": [[derived.key, derived.expression.text] for derived in ensemble.derived],
     }
     if motions is None:
         motions = [case_hash(case) for case in motion_cases(ensemble.base, sets_of(ensemble))]
     if motions:
-        asked["motions"] = list(motions)
+        request["motions"] = list(motions)
     if ensemble.limit_slip_m is None:
-        return hash_of(asked | _counted(ensemble))
-    return hash_of(asked | _counted(ensemble) | {"limit_slip_m": ensemble.limit_slip_m})
+        return hash_of(request | _counted(ensemble))
+    return hash_of(request | _counted(ensemble) | {"limit_slip_m": ensemble.limit_slip_m})
 
 
 def sets_of(ensemble: Ensemble) -> list[Axis]:
@@ -232,12 +239,12 @@ def _counted(ensemble: Ensemble) -> dict[str, Any]:
     return {name: getattr(ensemble, name) for name in names}
 
 
-def asked_of(
-    ensemble: Ensemble, unknown: UnknownInputs, motions: Sequence[FloorMotionPair], asked: str
+def begun_result(
+    ensemble: Ensemble, unknown: UnknownInputs, motions: Sequence[FloorMotionPair], request: str
 ) -> EnsembleResult:
     """The part of `ensemble.json` that is known beforehand."""
     return EnsembleResult(
-        asked=asked,
+        asked=request,
         ensemble=ensemble.name,
         title=ensemble.title,
         case=ensemble.base.name,
@@ -245,8 +252,8 @@ def asked_of(
         duration_s=longest_time(ensemble.base) if not ends_at_rest(ensemble.base) else "auto",
         motion_covered=motions_left_out(ensemble.base, motions),
         axes=tuple(AxisResult(key=axis.key, values=axis.values, unit=axis.unit) for axis in ensemble.axes),
-        random={one.key: one.asked for one in ensemble.random},
-        derived={one.key: one.expression.text for one in ensemble.derived},
+        random={quantity.key: quantity.definition for quantity in ensemble.random},
+        derived={derived.key: derived.expression.text for derived in ensemble.derived},
         drawn_over_uncertainty=tuple(unknown.keys),
         held=unknown.held,
         limit_slip_m=ensemble.limit_slip_m,

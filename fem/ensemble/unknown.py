@@ -29,14 +29,14 @@ class UnknownInputs:
         self._ensemble = ensemble
         self._penalties = PenaltyCache()
         cases = list(_cases(ensemble))
-        given = {axis.key for axis in ensemble.axes} | {one.key for one in ensemble.random}
-        fixed = given | {one.key for one in ensemble.derived}
-        ranges = (one for case in cases for one in ranges_of(case, self._penalties.of(case)))
-        drawn = {one.key for one in ranges if one.drawn is not None} - fixed
+        varied = {axis.key for axis in ensemble.axes} | {quantity.key for quantity in ensemble.random}
+        fixed = varied | {derived.key for derived in ensemble.derived}
+        ranges = (interval for case in cases for interval in ranges_of(case, self._penalties.of(case)))
+        drawn = {interval.key for interval in ranges if interval.drawn is not None} - fixed
         #: keys of the inputs that are drawn
         self.keys = tuple(key for key in INPUTS if key in drawn) if ensemble.unknown_inputs == "drawn" else ()
         #: what is held fixed of the others, in words
-        self.held = held_inputs(cases, given | set(self.keys))
+        self.held = held_inputs(cases, varied | set(self.keys))
 
     def draws_at(self, cell: int) -> list[Draw]:
         """The draws of a point, with the values of the unknown inputs."""
@@ -44,7 +44,7 @@ class UnknownInputs:
         draws = ensemble.draws_at(cell)
         if not self.keys:
             return draws
-        places = draw_shares(
+        shares = draw_shares(
             ensemble.sampling,
             seed=ensemble.seed,
             cell=cell,
@@ -55,26 +55,26 @@ class UnknownInputs:
         )
         return [
             draw._replace(unknown=self._values(draw, row))
-            for draw, row in zip(draws, places.tolist(), strict=True)
+            for draw, row in zip(draws, shares.tolist(), strict=True)
         ]
 
-    def _values(self, draw: Draw, places: list[float]) -> dict[str, Value]:
+    def _values(self, draw: Draw, shares: list[float]) -> dict[str, Value]:
         """Values at places in the ranges that a draw has; none for a draw that cannot be made."""
         try:
             case = self._ensemble.case(draw)
-            place = dict(zip(self.keys, places, strict=True))
+            share = dict(zip(self.keys, shares, strict=True))
             ranges = ranges_of(case, self._penalties.of(case))
         except (CaseError, ValueError):
             return {}
-        drawn = [one for one in ranges if one.key in place]
-        return drawn_values(drawn, [place[one.key] for one in drawn])
+        drawn = [interval for interval in ranges if interval.key in share]
+        return drawn_values(drawn, [share[interval.key] for interval in drawn])
 
 
 def _cases(ensemble: Ensemble) -> Iterator[Case]:
     """The cases in the middle and at the ends of all distributions, at the ends of the axes, those that can be made."""
     corners = product(*((axis.values[0], axis.values[-1]) for axis in ensemble.axes))
     shares = np.array([0.5, 0.0, 1.0])
-    drawn = list(zip(*(one.values(shares) for one in ensemble.random), strict=True))
+    drawn = list(zip(*(quantity.values(shares) for quantity in ensemble.random), strict=True))
     for corner, values in product(corners, drawn):
         with suppress(CaseError):
             point = {axis.key: value for axis, value in zip(ensemble.axes, corner, strict=True)}

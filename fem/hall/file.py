@@ -107,8 +107,8 @@ class HallFile:
         return tuple(self._row(number, *line, comma=comma) for number, line in enumerate(self.lines, start=1))
 
     def _row(self, number: int, line: int, fields: list[str], *, comma: bool) -> HallRow:
-        given = tuple(fields[k] if k < len(fields) else "" for k in self.places)
-        row = _row(number, line, given, self.columns, self.keys, comma=comma)
+        chosen = tuple(fields[k] if k < len(fields) else "" for k in self.places)
+        row = _row(number, line, chosen, self.columns, self.keys, comma=comma)
         named = [k for k, name in enumerate(self.names) if name]
         if len(fields) > named[-1] and not any(fields[len(self.names) :]):
             return row
@@ -145,10 +145,14 @@ def read_hall(path: Path) -> HallFile:
     text = _text_of(path)
     names = _names(path, text)
     is_result = {"status", "outcome", TURNED} <= {*names}  # an earlier one, given as a list again
-    places = tuple(k for k, name in enumerate(names) if name and not (is_result and name in RESULT_COLUMNS))
-    columns = tuple(names[k] for k in places)
-    keys, kept = _keys_of(path, columns)
-    return HallFile(path=path, text=text, names=names, columns=columns, keys=keys, kept=kept, places=places)
+    positions = tuple(
+        k for k, name in enumerate(names) if name and not (is_result and name in RESULT_COLUMNS)
+    )
+    columns = tuple(names[k] for k in positions)
+    keys, others = _keys_of(path, columns)
+    return HallFile(
+        path=path, text=text, names=names, columns=columns, keys=keys, kept=others, places=positions
+    )
 
 
 def _text_of(path: Path) -> str:
@@ -189,7 +193,7 @@ def _names(path: Path, text: str) -> list[str]:
 
 def _keys_of(path: Path, columns: Sequence[str]) -> tuple[dict[str, str], tuple[str, ...]]:
     """The dotted keys by column, and the columns to keep; refuses what looks like a key and is none."""
-    problems, keys, kept = [], dict[str, str](), []
+    problems, keys, others = [], dict[str, str](), []
     for column, count in Counter(columns).items():
         if count > 1:
             problems.append(f"column {column!r} is there {count} times; leave one")
@@ -200,19 +204,19 @@ def _keys_of(path: Path, columns: Sequence[str]) -> tuple[dict[str, str], tuple[
         elif key := _key(column, problems):
             keys[column] = key
         elif key is None:
-            kept.append(column)
-    for what, count in Counter([*keys.values(), *filter(None, map(_own, columns))]).items():
+            others.append(column)
+    for meaning, count in Counter([*keys.values(), *filter(None, map(_own, columns))]).items():
         if count > 1:
-            same = [one for one in columns if keys.get(one, _own(one)) == what]
+            same = [column for column in columns if keys.get(column, _own(column)) == meaning]
             if len({*same}) > 1:
-                problems.append(f"columns {' and '.join(map(repr, same))} are both {what!r}; leave one")
+                problems.append(f"columns {' and '.join(map(repr, same))} are both {meaning!r}; leave one")
     for pair in (PLACE, GEOGRAPHIC):
         there = {*map(_own, columns)} & {*pair}
         if len(there) == 1:
             problems.append(f"{' and '.join(pair)} go together; there is {there.pop()} alone")
     if problems:
         raise CaseError("\n".join(f"{path}: {problem}" for problem in problems))
-    return keys, tuple(kept)
+    return keys, tuple(others)
 
 
 @cache
@@ -269,7 +273,7 @@ def _meant(column: str) -> str:
 
     stems = {
         stem(name): name
-        for name in [*OWN, *(key.rpartition(".")[2] for one in _plain_keys().values() for key in one)]
+        for name in [*OWN, *(key.rpartition(".")[2] for keys in _plain_keys().values() for key in keys)]
     }
     stems |= {"mu": "mu_static", "friction_coefficient": "mu_static", "longitude": "lon", "latitude": "lat"}
     near = difflib.get_close_matches(stem(column), stems, n=1, cutoff=LIKE) if len(stem(column)) > 1 else []
@@ -279,28 +283,28 @@ def _meant(column: str) -> str:
 def _row(
     number: int,
     line: int,
-    given: tuple[str, ...],
+    chosen: tuple[str, ...],
     columns: Sequence[str],
     keys: Mapping[str, str],
     *,
     comma: bool,
 ) -> HallRow:
-    fields = dict(zip(columns, given, strict=True))
+    fields = dict(zip(columns, chosen, strict=True))
     own = {_own(column): text for column, text in fields.items() if _own(column)}
     name = plain_text(own.get(NAME, "")) or str(number)
     problems: list[str] = []
 
     def numbers(pair: tuple[str, str], limits: tuple[float, float]) -> tuple[float, float] | None:
-        texts = [own.get(one, "") for one in pair]
+        texts = [own.get(column, "") for column in pair]
         if not any(texts):
             return None
         values = [_number(text, comma=comma) for text in texts]
-        for one, text, value, limit in zip(pair, texts, values, limits, strict=True):
+        for column, text, value, limit in zip(pair, texts, values, limits, strict=True):
             if value is None or abs(value) > limit:
-                problems.append(f"{one} must be a number of at most {limit:g}, got {text!r}")
+                problems.append(f"{column} must be a number of at most {limit:g}, got {text!r}")
         return None if None in values else (values[0] or 0.0, values[1] or 0.0)
 
-    place, geographic = numbers(PLACE, (1e6, 1e6)), numbers(GEOGRAPHIC, (180.0, 90.0))
+    position, geographic = numbers(PLACE, (1e6, 1e6)), numbers(GEOGRAPHIC, (180.0, 90.0))
     count = _number(own.get(COUNT) or "1", comma=comma)
     if count is None or not count.is_integer() or not 1 <= count <= LARGEST_COUNT:
         problems.append(f"count must be a whole number of at least 1, got {own.get(COUNT)!r}")
@@ -308,11 +312,11 @@ def _row(
     values = {key: _value(key, fields[column], comma=comma) for column, key in keys.items() if fields[column]}
     return HallRow(
         line=line,
-        given=given,
+        given=chosen,
         name=name,
         count=int(count),
         tag=plain_text(own.get(TAG, "")),
-        place=place,
+        place=position,
         geographic=geographic,
         values=values,
         reason="; ".join(problems),

@@ -17,7 +17,7 @@ from fem.html import sections as html
 from fem.html.page import Signature
 from fem.html.units import ABSENT, number
 from fem.report import studies
-from fem.report.comparison import asked_rows, limits_section
+from fem.report.comparison import case_rows, limits_section
 from fem.results.figures import TURNED, Place, figures_of
 from fem.results.kinds import HALL
 from fem.results.outcome import Outcome
@@ -89,11 +89,11 @@ def full_sections(
     info: HallResult, ranked: list[dict[str, Any]], folder: Path, case: Case
 ) -> list[html.PageSection]:
     """What the rows start from, the commands, the assumptions, and how to repeat it."""
-    given = html.Pairs(asked_rows(case), caption="Base case, where a row changes nothing", look="asked")
+    base_case = html.Pairs(case_rows(case), caption="Base case, where a row changes nothing", look="asked")
     motions = html.Group("", [html.Heading("Motions of every container"), html.Bullets(info.motions)])
     return [
         html.section(
-            "What the rows start from", "asked", html.columns(given, *([motions] if info.motions else []))
+            "What the rows start from", "asked", html.columns(base_case, *([motions] if info.motions else []))
         ),
         html.section("One container by itself", "commands", commands_table(ranked)),
         limits_section(case),
@@ -120,9 +120,9 @@ def again(info: HallResult) -> str:
 def found_section(info: HallResult) -> html.PageSection:
     """The answer, and what was computed."""
     under = f" under {len(info.motions)} motions" if len(info.motions) > 1 else ""
-    what = f"verified at {info.site}" if info.site else f"{info.runs} runs"
+    extent = f"verified at {info.site}" if info.site else f"{info.runs} runs"
     count = f"{info.rows} rows, {info.containers} containers, {info.distinct} that differ{under}: "
-    count += f"{what}{studies.unfinished(info)}."
+    count += f"{extent}{studies.unfinished(info)}."
     if info.checked:
         which = "all" if info.checked == info.distinct else f"the weakest {info.checked}"
         count += f" Sure, deciding inputs and margin are those of {which}, each under its governing motion."
@@ -146,13 +146,13 @@ def found_section(info: HallResult) -> html.PageSection:
 def tags_table(info: HallResult) -> html.Table:
     """What the containers of each tag did."""
     columns: list[html.Column[TagCount]] = [
-        html.Column("tag", lambda one: one.tag or ABSENT),
-        html.Column("containers", lambda one: str(one.containers), html.NUMBER),
+        html.Column("tag", lambda tag: tag.tag or ABSENT),
+        html.Column("containers", lambda tag: str(tag.containers), html.NUMBER),
         *(
             html.Column(word, partial(_count, word), html.NUMBER)
-            for word in dict.fromkeys(word for one in info.tags for word in sorted(one.counts))
+            for word in dict.fromkeys(word for tag in info.tags for word in sorted(tag.counts))
         ),
-        html.Column("least margin", lambda one: number(one.margin, figures=3), html.NUMBER),
+        html.Column("least margin", lambda tag: number(tag.margin, figures=3), html.NUMBER),
     ]
     return html.table_of("tags", columns, info.tags, file="hall.csv")
 
@@ -242,8 +242,8 @@ def _deciding(row: A_ROW) -> str:
     return ", ".join(named[:MOST_INPUTS]) + (f" and {more} more" if more > 0 else "")
 
 
-def _count(word: str, one: TagCount) -> str:
-    return str(one.counts.get(word, ""))
+def _count(word: str, tag: TagCount) -> str:
+    return str(tag.counts.get(word, ""))
 
 
 def _answer(row: A_ROW) -> html.Cell:

@@ -36,14 +36,15 @@ def plan_of(result: HallResult) -> list[tuple[float, float, Mapping[str, Any]]]:
     placed = [(*row["place_m"], row) for row in result.table if row["place_m"]]
     if placed:
         return placed
-    some = [(*row["lon_lat"], row) for row in result.table if row["lon_lat"]]
-    if not some:
+    located = [(*row["lon_lat"], row) for row in result.table if row["lon_lat"]]
+    if not located:
         return []
-    middle = [sum(one[k] for one in some) / len(some) for k in (0, 1)]
+    middle = [sum(point[k] for point in located) / len(located) for k in (0, 1)]
     a_degree = math.radians(1.0) * EARTH_RADIUS_M
     shrink = math.cos(math.radians(middle[1]))
     return [
-        (a_degree * shrink * (lon - middle[0]), a_degree * (lat - middle[1]), row) for lon, lat, row in some
+        (a_degree * shrink * (lon - middle[0]), a_degree * (lat - middle[1]), row)
+        for lon, lat, row in located
     ]
 
 
@@ -78,9 +79,9 @@ def draw_places(result: HallResult) -> str:
             axes.plot([], [], LOOKS[name][1], color=LOOKS[name][0], markersize=6.0, label=name)
         weakest = sorted((row["rank"], x, y, row["name"]) for x, y, row in placed if row["rank"])[:MOST_NAMED]
         for _, x, y, name in weakest:
-            place, over = (0.0, 0.5 * size + 2.0), "offset points"
+            offset, over = (0.0, 0.5 * size + 2.0), "offset points"
             axes.annotate(
-                name[:30], (x, y), place, textcoords=over, ha="center", fontsize=7.0, parse_math=False
+                name[:30], (x, y), offset, textcoords=over, ha="center", fontsize=7.0, parse_math=False
             )
         axes.set_aspect("equal", adjustable="datalim")
         local = bool(placed[0][2]["place_m"])
@@ -106,5 +107,5 @@ def geojson(result: HallResult) -> str:
     ]
     if not features:
         return ""
-    lines = ",\n".join(json.dumps(one, ensure_ascii=False, allow_nan=False) for one in features)
+    lines = ",\n".join(json.dumps(feature, ensure_ascii=False, allow_nan=False) for feature in features)
     return f'{{"type": "FeatureCollection", "features": [\n{lines}\n]}}\n'

@@ -187,16 +187,16 @@ def check_size(file: HallFile, base: Case, motions: int, jobs: int, *, force: bo
 
 
 def _axis(folder: Path, motions: Sequence[str]) -> Axis:
-    given = [[as_named_from(folder, name.strip()) for name in pair.split(",")] for pair in motions]
+    pairs = [[as_named_from(folder, name.strip()) for name in pair.split(",")] for pair in motions]
     try:
-        names, following = read_motion_files([pair if len(pair) > 1 else pair[0] for pair in given])
+        names, following = read_motion_files([pair if len(pair) > 1 else pair[0] for pair in pairs])
     except AxisError as error:
         raise CaseError(f"--motion {error}") from None
     return Axis(key=MOTION_FILE, values=names, following=following)
 
 
 def take_inventory(
-    file: HallFile, look: Callable[[Mapping[str, Any]], str], place: str, *, strict: bool
+    file: HallFile, look: Callable[[Mapping[str, Any]], str], base_place: str, *, strict: bool
 ) -> Inventory:
     """Look at every row before any is computed; equal ones are one container.
 
@@ -222,7 +222,7 @@ def take_inventory(
                 containers.setdefault(digest, row.values)
                 seen[values] = "", numbers.setdefault(digest, len(numbers))
             except ValueError as error:
-                seen[values] = _in_words_of_list(str(error), place), None
+                seen[values] = _in_words_of_list(str(error), base_place), None
         reason, container = (row.reason, None) if row.reason else seen[values]
         reasons.append(reason)
         of_row.append(container)
@@ -260,9 +260,10 @@ def _hash_of(cases: HallCases, values: Mapping[str, Any], *, outside: bool) -> s
     return case_hash(first)
 
 
-def _in_words_of_list(reason: str, place: str) -> str:
+def _in_words_of_list(reason: str, base_place: str) -> str:
     """Why a case cannot be used, without the words of the command line, on one line."""
     lines = (
-        re.sub(r" \(--set \S+?=.*\)$", "", line.removeprefix(f"{place}: ")) for line in reason.splitlines()
+        re.sub(r" \(--set \S+?=.*\)$", "", line.removeprefix(f"{base_place}: "))
+        for line in reason.splitlines()
     )
     return "; ".join(line for line in lines if line and not line.startswith("with --set "))

@@ -67,12 +67,16 @@ class HallRuns:
     def missing(self) -> list[HallItem]:
         """Runs that have no line."""
         return [
-            one for one in self.hall.items() if one.motion not in self.by_container.get(one.container, {})
+            item for item in self.hall.items() if item.motion not in self.by_container.get(item.container, {})
         ]
 
     def lines(self) -> list[str]:
         """`runs.csv`, in the order of containers and motions."""
-        return [run.line for _, some in sorted(self.by_container.items()) for _, run in sorted(some.items())]
+        return [
+            run.line
+            for _, by_motion in sorted(self.by_container.items())
+            for _, run in sorted(by_motion.items())
+        ]
 
     def governing(self, container: int) -> int:
         """The motion under which a container does worst, the first of equals."""
@@ -88,18 +92,18 @@ class HallRuns:
         endings = [run.ending for run in self.by_container[container].values()]
         return tuple(map(endings.count, (Ending.OVERTURNED, Ending.INVALID, Ending.FAILED)))
 
-    def to_check(self, wanted: str, order: Sequence[int]) -> list[HallItem]:
+    def to_check(self, checks: str, order: Sequence[int]) -> list[HallItem]:
         """The governing runs that are to be repeated, those that were not yet.
 
         Args:
             wanted: weakest | all | none.
             order: of the containers, the weakest first, before any is repeated.
         """
-        count = {"none": 0, "all": len(order)}.get(wanted, max(math.ceil(SHARE * len(order)), LEAST))
+        count = {"none": 0, "all": len(order)}.get(checks, max(math.ceil(SHARE * len(order)), LEAST))
         items = [self.hall.item(number, self.governing(number)) for number in order]
-        ended = [one for one in items if self.by_container[one.container][one.motion].ending != Ending.FAILED]
-        able = [one for one in ended if self.hall.model_of(one) != "full"]
-        return [one for one in able[:count] if one.container not in self.checked]
+        ended = [item for item in items if self.worst(item.container).ending != Ending.FAILED]
+        able = [item for item in ended if self.hall.model_of(item) != "full"]
+        return [item for item in able[:count] if item.container not in self.checked]
 
 
 def static_use(hall: Hall, item: HallItem) -> tuple[float | None, float | None]:

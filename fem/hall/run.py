@@ -60,7 +60,7 @@ def run_hall(
         hall = plan_hall(file, base, motions, runner, strict=strict, force=options.get("force", False))
         options["workers_of"] = runner.workers_of
         begun = replace(
-            asked_of(file, base, hall.inventory),
+            begun_result(file, base, hall.inventory),
             asked=hash_of([hall.inventory.hashes, [pair.case_hash for pair in hall.motions]]),
             listed=hash_of([file.text, checks]),
             motions=hall.named,
@@ -85,12 +85,12 @@ def study_of(file: HallFile, base: Case, begun: HallResult, compute: Any, size: 
         size=size + BYTES_BESIDE,
         subject=f"the hall ({begun.distinct} containers)",
         way_out="take fewer rows",
-        progress=lambda place: "what was computed so far",
-        again=lambda place, finished: finished if finished.listed == begun.listed else None,
+        progress=lambda results: "what was computed so far",
+        again=lambda results, finished: finished if finished.listed == begun.listed else None,
     )
 
 
-def asked_of(file: HallFile, base: Case, inventory: Inventory) -> HallResult:
+def begun_result(file: HallFile, base: Case, inventory: Inventory) -> HallResult:
     """What is known before any run, but for hashes."""
     return HallResult(
         hall=file.name,
@@ -107,12 +107,12 @@ def asked_of(file: HallFile, base: Case, inventory: Inventory) -> HallResult:
     )
 
 
-def _compute(hall: Hall, begun: HallResult, place: ResultFolder, runner: Runner) -> HallResult:
+def _compute(hall: Hall, begun: HallResult, results: ResultFolder, runner: Runner) -> HallResult:
     """Compute what is missing, and write the list with its results, and its page."""
     runs = HallRuns(hall=hall)
     LoggedRuns(
         what="runs",
-        path=place.path / RUNS,
+        path=results.path / RUNS,
         columns=RUN_COLUMNS,
         make=hall.cases,
         model_of=hall.model_of,
@@ -128,39 +128,39 @@ def _compute(hall: Hall, begun: HallResult, place: ResultFolder, runner: Runner)
         number: dict(zip(STATIC, static_use(hall, hall.item(number, runs.governing(number))), strict=True))
         for number in runs.by_container
     }
-    wanted = partial(runs.to_check, begun.checks, weakest_first(runs, static, margins=False))
+    to_check = partial(runs.to_check, begun.checks, weakest_first(runs, static, margins=False))
     LoggedRuns(
         what="containers repeated with other inputs and stronger motions",
-        path=place.path / CHECKS,
+        path=results.path / CHECKS,
         columns=CHECK_COLUMNS,
         make=hall.cases,
         model_of=hall.model_of,
         key=lambda item: (item.container,),
         note=runs.note_check,
         work=check_chunk,
-    ).run(runner, iter(wanted, []))
-    if left := len(wanted()):
+    ).run(runner, iter(to_check, []))
+    if left := len(to_check()):
         words = f"{left} of the weakest are still to be repeated"
         return replace(
             begun, status=INTERRUPTED, runs=len(hall.items()), checked=len(runs.checked), missing=words
         )
-    place.check()
-    place.write_text(RUNS, table_of_lines(RUN_COLUMNS, runs.lines()))
+    results.check()
+    results.write_text(RUNS, table_of_lines(RUN_COLUMNS, runs.lines()))
     checked = sorted(runs.checked.items())
-    place.write_text(CHECKS, table_text(CHECK_COLUMNS, ([k, *one.values()] for k, one in checked)))
-    values = {number: static[number] | _shown(runs, number) for number in runs.by_container}
+    results.write_text(CHECKS, table_text(CHECK_COLUMNS, ([k, *check.values()] for k, check in checked)))
+    values = {number: static[number] | _result_columns(runs, number) for number in runs.by_container}
     endings = {number: runs.worst(number).ending for number in runs.by_container}
     table = HallTable(
         file=hall.file,
         inventory=hall.inventory,
         values=values,
-        words={k: (str(one["outcome"] or WORDS[endings[k]]), WORDS[endings[k]]) for k, one in values.items()},
+        words={k: (str(row["outcome"] or WORDS[endings[k]]), WORDS[endings[k]]) for k, row in values.items()},
         order=weakest_first(runs, static),
         command=lambda row, container: hall.command(row, runs.governing(container)),
     )
     failed = {*endings.values()} == {Ending.FAILED}
     return written(
-        place,
+        results,
         table,
         replace(
             begun, status=FAILED if failed else COMPLETED, runs=len(hall.items()), checked=len(runs.checked)
@@ -168,29 +168,29 @@ def _compute(hall: Hall, begun: HallResult, place: ResultFolder, runner: Runner)
     )
 
 
-def written(place: ResultFolder, table: HallTable, result: HallResult) -> HallResult:
+def written(results: ResultFolder, table: HallTable, result: HallResult) -> HallResult:
     """Write the list with its results, plan and page; the result with its answer."""
     result = table.added_to(result)
     result = replace(result, answer=answer_of(result))
-    place.write_text(TABLE, table_text((*table.file.columns, *RESULT_COLUMNS), table.rows()))
+    results.write_text(TABLE, table_text((*table.file.columns, *RESULT_COLUMNS), table.rows()))
     for name, text in ((PICTURE, draw_places(result)), (GEOJSON, geojson(result))):
         if text:
-            place.write_text(name, text)
+            results.write_text(name, text)
         else:
-            place.remove(name)
-    place.write_text(PAGE, hall_report(place.path, result=result))
+            results.remove(name)
+    results.write_text(PAGE, hall_report(results.path, result=result))
     return result
 
 
-def _shown(runs: HallRuns, container: int) -> dict[str, Any]:
+def _result_columns(runs: HallRuns, container: int) -> dict[str, Any]:
     """What a container showed, by column."""
-    some, motion = runs.by_container[container], runs.governing(container)
+    by_motion, motion = runs.by_container[container], runs.governing(container)
     row = row_of(RUN_COLUMNS, runs.worst(container).line)
     values: dict[str, Any] = {name: row[name] for name in OF_A_RUN} | runs.checked.get(container, {})
     if names := [pair.name for pair in runs.hall.motions]:
-        slipped = max(sorted(some), key=lambda one: some[one].slip)
+        slipped = max(sorted(by_motion), key=lambda number: by_motion[number].slip)
         counts = runs.counts(container)
         values |= dict(
-            zip(OF_MOTIONS, (names[motion], *counts, some[slipped].slip, names[slipped]), strict=True)
+            zip(OF_MOTIONS, (names[motion], *counts, by_motion[slipped].slip, names[slipped]), strict=True)
         )
     return values

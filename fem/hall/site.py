@@ -21,7 +21,7 @@ from fem.case.validation import CaseError
 from fem.hall.file import HallFile
 from fem.hall.plan import Inventory, take_inventory
 from fem.hall.result import AT_SITE, RESULT_COLUMNS, HallResult
-from fem.hall.run import asked_of, study_of, written
+from fem.hall.run import begun_result, study_of, written
 from fem.hall.table import HallTable
 from fem.results.errors import FolderError
 from fem.results.figures import SLIPPED, TURNED
@@ -89,7 +89,7 @@ def run_hall_at_site(
         file, partial(_look, site, start, ground), start.origin_with({}).place, strict=strict
     )
     begun = replace(
-        asked_of(file, start, inventory),
+        begun_result(file, start, inventory),
         site=site.origin.place,
         model=site.heading.model,
         asked=hash_of(inventory.hashes),
@@ -127,22 +127,22 @@ class _AtSite:
     force: bool  #: verify every container again
     lines: dict[int, str] = field(default_factory=dict)  #: of the log, by container
 
-    def compute(self, place: ResultFolder, runner: Runner) -> HallResult:
+    def compute(self, results: ResultFolder, runner: Runner) -> HallResult:
         """Verify what is missing, and write the list with the answers, and its page."""
-        count, path = len(self.inventory.containers), place.path / SITES
+        count, path = len(self.inventory.containers), results.path / SITES
         numbers = list(range(count))
         mine = runner.share.of(numbers, numbers) if runner.share else numbers
         with closing(RowLog(path, COLUMNS)) as log:
             for line in log.lines:
                 self.lines[int(fields_of(line)[0])] = line
-            missing = [one for one in mine if one not in self.lines]
+            missing = [number for number in mine if number not in self.lines]
             if len(missing) > 1:
                 self._say_expected(missing, runner)
             for number in missing:
                 if runner.stop():
                     break
                 runner.reporter.message(f"container {number + 1} of {count} at the site")
-                if not (line := self._verify(number, place.path, runner)):
+                if not (line := self._verify(number, results.path, runner)):
                     break
                 log.append([line])
                 self.lines[number] = line
@@ -151,22 +151,22 @@ class _AtSite:
                 runner.share.waits = True
             words = f"{len(self.lines)} of {count} containers are verified"
             return replace(self.begun, status=INTERRUPTED, missing=words)
-        place.check()
-        place.write_text(SITES, table_of_lines(COLUMNS, (line for _, line in sorted(self.lines.items()))))
+        results.check()
+        results.write_text(SITES, table_of_lines(COLUMNS, (line for _, line in sorted(self.lines.items()))))
         rows = {k: row_of(COLUMNS, line) for k, line in self.lines.items()}
-        for k, one in rows.items():
+        for k, row in rows.items():
             page = self._folder(k) / "report.html"
-            one["page"] = page.as_posix() if (place.path / page).is_file() else None
+            row["page"] = page.as_posix() if (results.path / page).is_file() else None
         table = HallTable(
             file=self.file,
             inventory=self.inventory,
             values=rows,
-            words={k: (one["answer"] or NO_ANSWER,) * 2 for k, one in rows.items()},
+            words={k: (row["answer"] or NO_ANSWER,) * 2 for k, row in rows.items()},
             order=sorted(rows, key=lambda k: _weakness(rows[k])),
-            command=lambda row, container: self._command(place.path / self._folder(container)),
+            command=lambda row, container: self._command(results.path / self._folder(container)),
         )
-        status = FAILED if {one["status"] for one in rows.values()} == {FAILED} else COMPLETED
-        return written(place, table, replace(self.begun, status=status, runs=count))
+        status = FAILED if {row["status"] for row in rows.values()} == {FAILED} else COMPLETED
+        return written(results, table, replace(self.begun, status=status, runs=count))
 
     def _say_expected(self, missing: Sequence[int], runner: Runner) -> None:
         """How long these containers take at most, by the first of them."""
@@ -182,8 +182,8 @@ class _AtSite:
 
     def _request(self, number: int) -> SiteRequest:
         """The verification of a container."""
-        own = self.inventory.of_row.index(number)
-        name = self.file.rows[own].name
+        row = self.inventory.of_row.index(number)
+        name = self.file.rows[row].name
         return request_of(self.site, self.start, self.inventory.containers[number], name)
 
     def _verify(self, number: int, folder: Path, runner: Runner) -> str:
@@ -214,10 +214,21 @@ class _AtSite:
             copy_data_files(request.container, folder)
         answer = result.result
         outcome = answer.governing.outcome if answer.governing else None
-        shown = (outcome, answer.margin_factor, answer.rotation_ratio, answer.slip_m, answer.overturned, None)
         reasons = answer.reasons or ([] if answer.answer else [answer.sentence])
-        said = (answer.answer, " ".join(reasons), answer.factor_at_first_overturning)
-        return line_of((number, result.status, None if answer.answer else answer.sentence, *shown, *said))
+        return line_of(
+            [
+                *(number, result.status, None if answer.answer else answer.sentence),
+                *(
+                    outcome,
+                    answer.margin_factor,
+                    answer.rotation_ratio,
+                    answer.slip_m,
+                    answer.overturned,
+                    None,
+                ),
+                *(answer.answer, " ".join(reasons), answer.factor_at_first_overturning),
+            ]
+        )
 
     def _command(self, folder: Path) -> str:
         words = ["python", "-m", "fem", "assess", str(folder / "site.toml")]

@@ -23,7 +23,7 @@ class HallTable:
     command: Callable[[HallRow, int], str]  #: of a row, whose container this is
 
     def _results(self) -> Iterator[tuple[HallRow, int | None, dict[str, Any]]]:
-        ranks = {number: place for place, number in enumerate(self.order, start=1)}
+        ranks = {number: rank for rank, number in enumerate(self.order, start=1)}
         for row, container, reason in zip(
             self.file.rows, self.inventory.of_row, self.inventory.reasons, strict=True
         ):
@@ -45,7 +45,7 @@ class HallTable:
             outcome, counted = (REFUSED, REFUSED) if container is None else self.words[container]
             outcomes[outcome] += row.count
             tag = tags.get(row.tag, TagCount(tag=row.tag, containers=0, counts={}))
-            margins = [one for one in (tag.margin, values["margin"]) if one is not None]
+            margins = [margin for margin in (tag.margin, values["margin"]) if margin is not None]
             tags[row.tag] = replace(
                 tag,
                 containers=tag.containers + row.count,

@@ -139,26 +139,26 @@ def animation_of(model: Model, fields: Fields | None, links: tuple[DrawnLink, ..
     quads = quads if 5 * whole.size <= enough else quads[:0]
     drawn = whole if len(quads) else np.unique(np.concatenate([edges.ravel(), contact]))
     stride = max(1, math.ceil(count * 5 * drawn.size / FIELD_BYTES))
-    place = np.full(len(elements.nodes), -1)
-    place[drawn] = np.arange(drawn.size)
+    drawn_index = np.full(len(elements.nodes), -1)
+    drawn_index[drawn] = np.arange(drawn.size)
     bodies = (
         [_body(elements, nodes) for nodes in model.container.box_nodes]
         if model.container.row
         else bodies_of(elements, loose=loose)
     )
-    centroid = np.array([one.centre for one in bodies])
+    centroid = np.array([fit.centre for fit in bodies])
     body = np.zeros(len(elements.nodes), dtype=np.int64)
-    for k, one in enumerate(bodies):
-        body[one.nodes] = k
+    for k, fit in enumerate(bodies):
+        body[fit.nodes] = k
     return Animation(
         centroid=centroid,
         body=body[drawn],
         points=elements.nodes[drawn] - centroid[body[drawn]],
-        corners=place[[_corners(one) for one in bodies]],
+        corners=drawn_index[[_corners(fit) for fit in bodies]],
         rests=_rests(elements, loose=loose),
-        quads=place[quads],
-        edges=place[edges],
-        contact=place[contact],
+        quads=drawn_index[quads],
+        edges=drawn_index[edges],
+        contact=drawn_index[contact],
         frames=[_frame(model, bodies, fields.frame(k), drawn, contact) for k in range(0, count, stride)]
         if fields
         else [],
@@ -230,19 +230,19 @@ def _rests(elements: FiniteElements, *, loose: bool) -> FloatArray:
     return np.array(rests)
 
 
-def player_data(shown: Animation, history: History, *, model: Model) -> dict[str, Any]:
+def player_data(animation: Animation, history: History, *, model: Model) -> dict[str, Any]:
     """What the script `player.js` reads, of a run with samples."""
     stride = max(1, math.ceil(len(history) / MOST_SAMPLES))
     names = COLUMNS | (LIFT if history.vertical else {})
-    further = range(2, len(shown.centroid) + 1)
+    further = range(2, len(animation.centroid) + 1)
     for k in further:
         beside = (k - 1, "neighbour") if model.container.row else (k, "box")
         names |= {name.format(k): column.format(*beside) for name, column in BOX.items()}
     columns = {name: history[column][::stride] for name, column in names.items()}
     journey = max(float(np.ptp(columns[name])) for name in ("base", "lift") if name in columns)
     modes = sorted(set(history.modes))
-    mesh, angle, scale = model.container.mesh, model.static.slenderness_angle, shown.stress_scale
-    wide = len(shown.points) >= 65536
+    mesh, angle, scale = model.container.mesh, model.static.slenderness_angle, animation.stress_scale
+    wide = len(animation.points) >= 65536
     index = "<u4" if wide else "<u2"
     # The page opens at the largest rotation that is not yet a fall: that is what one looks for.
     rotation = np.max([np.abs(history[names[name]]) for name in names if name.startswith("rotation")], axis=0)
@@ -260,35 +260,35 @@ def player_data(shown: Animation, history: History, *, model: Model) -> dict[str
         "bodies": [
             {
                 "suffix": "" if k == 0 else f"_{k + 1}",
-                "corners": shown.corners[k].tolist(),
-                "hull": hull(shown.points[shown.body == k]).tolist(),
+                "corners": animation.corners[k].tolist(),
+                "hull": hull(animation.points[animation.body == k]).tolist(),
             }
-            for k in range(len(shown.centroid))
+            for k in range(len(animation.centroid))
         ],
-        "body": packed(shown.body, "u1"),
-        "rests": shown.rests.tolist(),
+        "body": packed(animation.body, "u1"),
+        "rests": animation.rests.tolist(),
         "links": [
             {
-                "x": one.x,
-                "outer": one.outer,
-                "height": one.height,
-                "until": min(one.until, LASTING),
+                "x": link.x,
+                "outer": link.outer,
+                "height": link.height,
+                "until": min(link.until, LASTING),
                 "node": int(node),
             }
-            for one, node in zip(shown.links, shown.held, strict=True)
+            for link, node in zip(animation.links, animation.held, strict=True)
         ],
-        "row": shown.in_a_row,
+        "row": animation.in_a_row,
         "follow": journey > WIDE_JOURNEY * mesh.width,
-        "points": packed_floats(shown.points.ravel()),
-        "quads": packed(shown.quads.ravel(), index),
-        "edges": packed(shown.edges.ravel(), index),
+        "points": packed_floats(animation.points.ravel()),
+        "quads": packed(animation.quads.ravel(), index),
+        "edges": packed(animation.edges.ravel(), index),
         "wide": wide,
-        "contact": shown.contact.tolist(),
-        "times": [frame.time for frame in shown.frames],
-        "elastic": packed_floats(np.array([frame.elastic for frame in shown.frames]).ravel()),
-        "stress": packed(_on_scale(shown.stresses, scale), "u1"),
+        "contact": animation.contact.tolist(),
+        "times": [frame.time for frame in animation.frames],
+        "elastic": packed_floats(np.array([frame.elastic for frame in animation.frames]).ravel()),
+        "stress": packed(_on_scale(animation.stresses, scale), "u1"),
         "stress_scale": scale,
-        "normal": packed_floats(np.array([frame.normal_force for frame in shown.frames]).ravel()),
+        "normal": packed_floats(np.array([frame.normal_force for frame in animation.frames]).ravel()),
         "colours": colour_scale("YlGnBu", COLOURS),
         "first": float(history["time_s"][opening]),
     }
@@ -299,23 +299,23 @@ def hull(points: FloatArray) -> FloatArray:
     return np.asarray(points[ConvexHull(points).vertices])
 
 
-def exaggeration(shown: Animation, height: float) -> float:
+def exaggeration(animation: Animation, height: float) -> float:
     """Factor on the elastic displacement as first shown; 0 where there is none.
 
     Most frames then deform visibly. Frames are in single precision: a factor that would show its rounding as
     deformation is not taken.
     """
-    if shown.largest_elastic == 0.0:
+    if animation.largest_elastic == 0.0:
         return 0.0
-    typical = float(np.percentile([np.hypot(*frame.elastic.T).max() for frame in shown.frames], TYPICAL))
-    reach = max(float(np.abs(frame.centre).max()) for frame in shown.frames) + height
+    typical = float(np.percentile([np.hypot(*frame.elastic.T).max() for frame in animation.frames], TYPICAL))
+    reach = max(float(np.abs(frame.centre).max()) for frame in animation.frames) + height
     most = SHOWN_ROUNDING * height / (SINGLE_PRECISION * reach)
     return max(1.0, round_down(min(SHOWN_ELASTIC * height / typical if typical else most, most)))
 
 
-def exaggerations(shown: Animation, height: float) -> list[float]:
+def exaggerations(animation: Animation, height: float) -> list[float]:
     """Factors to choose from; none where the container is rigid."""
-    fit = exaggeration(shown, height)
+    fit = exaggeration(animation, height)
     if fit == 0.0:
         return []
     return sorted({1.0, *(round_down(fit * factor) for factor in (0.1, 0.3, 1.0, 3.0) if fit * factor > 1.0)})

@@ -34,7 +34,7 @@ class Compared(NamedTuple):
     run: str  #: what the run found; empty where it is not to be compared
 
 
-def compared_rows(static: StaticChecks, verdict: Verdict, case: Case) -> list[Compared]:
+def compared_rows(static: StaticChecks, verdict: Verdict) -> list[Compared]:
     """Sliding and overturning under the run's own peak, then under the code's base shear."""
     actions = [(static.own_motion, typeset(own_motion_name(static.to_result())))]
     if static.own_motion_vertical is not None:
@@ -55,10 +55,10 @@ def compared_rows(static: StaticChecks, verdict: Verdict, case: Case) -> list[Co
             exceeded=not rule.passed,
             clause=rule.clause.removeprefix(EDITION).removesuffix(f", {check}"),
             rule=rule_says(check, rule.utilisation if math.isfinite(rule.utilisation) else None),
-            run=typeset(found(verdict)) if action in own and verdict.outcome else "",
+            run=typeset(words_of(verdict)) if action in own and verdict.outcome else "",
         )
         for action, name in actions
-        for check, rule, found in (
+        for check, rule, words_of in (
             ("sliding", action.sliding, run_slid),
             ("overturning", action.overturning, run_tilted),
         )
@@ -106,13 +106,13 @@ def _corners(case: Case) -> str:
     return f"castings of {short(casting[0], 1e3)} × {short(casting[1], 1e3)} mm, {where}"
 
 
-def asked_rows(case: Case) -> list[tuple[str, str]]:
+def case_rows(case: Case) -> list[tuple[str, str]]:
     """The case in words: name and value."""
     box, contact = case.container, case.contact
-    walls = ", ".join(dict.fromkeys(short(one.wall, 1e3) for one in case.stack))
+    walls = ", ".join(dict.fromkeys(short(stacked.wall, 1e3) for stacked in case.stack))
     section = f"shell, walls {walls} mm" if box.section == "shell" else "solid block"
     if (post := box.post_section) is not None:
-        section += f", posts {' × '.join(short(one, 1e3) for one in post)} mm"
+        section += f", posts {' × '.join(short(length, 1e3) for length in post)} mm"
     supports = {
         "corners": _corners(case),
         "feet": f"two feet, {short(case.support.foot_m, 1e3)} mm long",

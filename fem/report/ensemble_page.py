@@ -16,7 +16,7 @@ from fem.html import sections as html
 from fem.html.page import Signature
 from fem.html.units import ABSENT, number, short, typeset
 from fem.report import studies
-from fem.report.comparison import asked_rows, limits_section
+from fem.report.comparison import case_rows, limits_section
 from fem.report.motion_part import motions_of_ensemble
 from fem.results.figures import SLIPPED, Shown
 from fem.results.kinds import ENSEMBLE
@@ -37,7 +37,7 @@ def ensemble_report(folder: Path, *, signature: Signature | None = None) -> str:
     info = read_study(folder, ENSEMBLE, EnsembleResult)
     case, axes = load_case(str(folder / "base.toml")), info.point_axes
     answer, name = ensemble_answer(info), info.ensemble or folder.name
-    given = html.Pairs(asked_rows(case), caption="Base case, where nothing changes it", look="asked")
+    base_case = html.Pairs(case_rows(case), caption="Base case, where nothing changes it", look="asked")
     varied = html.Group("", [studies.axes_table(axes, info.derived), random_table(info)])
     return studies.study_html(
         "an ensemble",
@@ -60,7 +60,7 @@ def ensemble_report(folder: Path, *, signature: Signature | None = None) -> str:
                 *studies.drawings(folder, FIGURES, "ensemble"),
             ),
             motions_of_ensemble(folder, info),
-            html.section("The ensemble", "asked", html.columns(varied, given)),
+            html.section("The ensemble", "asked", html.columns(varied, base_case)),
             html.section("Points", "points", points_table(info)),
             limits_section(case),
             studies.repeat_section(
@@ -166,7 +166,7 @@ def _on_axis(axis: Axis, point: Mapping[str, Any]) -> str:
 def _drawn(spread: Mapping[str, Any] | Sequence[Any]) -> str:
     """A distribution, or a list of values, in words."""
     if not isinstance(spread, Mapping):
-        listed = (" + ".join(one) if isinstance(one, list) else str(one) for one in spread)
+        listed = (" + ".join(value) if isinstance(value, list) else str(value) for value in spread)
         return f"one of, equally often: {', '.join(listed)}"
     names = ("mean", "median", "deviation")
     parts = [f"{short(spread['from'])} to {short(spread['to'])}"] if "from" in spread else []

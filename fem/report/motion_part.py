@@ -37,7 +37,7 @@ def motions_of_ensemble(folder: Path, info: EnsembleResult) -> html.PageSection:
     outcomes = html.table_of(
         "outcome of each motion",
         html.in_order("motion", *COUNTED, look=html.NUMBER),
-        ([one["file"], *(str(one.get(name, 0)) for name in COUNTED)] for one in motions),
+        ([motion["file"], *(str(motion.get(name, 0)) for name in COUNTED)] for motion in motions),
         caption="Draws under each motion, at all points",
         file="motions.csv",
     )
@@ -52,14 +52,15 @@ def motions_of_sweep(folder: Path, table: SweepTable) -> html.PageSection:
     """The motions of a sweep, with what each did at each point of the other axes; empty as for an ensemble."""
     if not table.info.motions:
         return html.section("", "motions")
-    shown = {cell: shown_at(table, cell) for cell in range(len(table["cell"]))}
-    points = list(motions_at(table.axes, shown))
+    by_cell = {cell: shown_at(table, cell) for cell in range(len(table["cell"]))}
+    points = list(motions_at(table.axes, by_cell))
     rows = table.info.motion_set or ()
-    places = [row["where"] for row in rows]
-    tables = [_together(places, rows)]
+    labels = [row["where"] for row in rows]
+    tables = [_together(labels, rows)]
     if len(points) <= MOST_POINTS:
-        lines = ([some[0].motion, *map(_outcome, some)] for some in zip(*(p for _, p in points), strict=True))
-        columns = html.in_order("motion", *(place or "outcome" for place in places))
+        by_motion = zip(*(outcomes for _, outcomes in points), strict=True)
+        lines = ([outcomes[0].motion, *map(_outcome, outcomes)] for outcomes in by_motion)
+        columns = html.in_order("motion", *(label or "outcome" for label in labels))
         tables.append(
             html.table_of(
                 "outcome of each motion",
@@ -93,70 +94,72 @@ def _section(
 def _numbers(motions: Sequence[Mapping[str, Any]]) -> html.Table:
     """A row a component: peaks, significant duration, length, step."""
     columns: list[html.Column[Mapping[str, Any]]] = [
-        html.Column("motion", lambda one: one["file"] + ("" if "vertical" in one else " (vertical)")),
-        html.Column("PGA [g]", lambda one: number(one[PEAK], 1.0 / STANDARD_GRAVITY, 3), html.NUMBER),
+        html.Column(
+            "motion", lambda motion: motion["file"] + ("" if "vertical" in motion else " (vertical)")
+        ),
+        html.Column("PGA [g]", lambda motion: number(motion[PEAK], 1.0 / STANDARD_GRAVITY, 3), html.NUMBER),
         *html.figure_columns(MEASURES),
-        html.Column("length [s]", lambda one: short(one["duration_s"]), html.NUMBER),
-        html.Column("step [s]", lambda one: short(one["step_s"]), html.NUMBER),
+        html.Column("length [s]", lambda motion: short(motion["duration_s"]), html.NUMBER),
+        html.Column("step [s]", lambda motion: short(motion["step_s"]), html.NUMBER),
     ]
-    components = [part for one in motions for part in (one, one["vertical"]) if part]
+    components = [part for motion in motions for part in (motion, motion["vertical"]) if part]
     return html.table_of(
         "motions", columns, components, caption="The motions, as the base case takes them", file="motions.csv"
     )
 
 
-class _Place(NamedTuple):
+class _Point(NamedTuple):
     """What all motions did at a point of the other axes."""
 
     name: str
     counts: Mapping[str, Any]
 
 
-def _together(places: Sequence[str], rows: Sequence[Mapping[str, Any]]) -> html.Table:
-    def worst(place: _Place) -> str:
-        one = place.counts
-        words = _words(one["worst_outcome"], one[WORST_TURNED])
-        return f"{one['worst_motion']}: {words}" if one["worst_motion"] else ABSENT
+def _together(labels: Sequence[str], rows: Sequence[Mapping[str, Any]]) -> html.Table:
+    def worst(point: _Point) -> str:
+        counts = point.counts
+        words = _words(counts["worst_outcome"], counts[WORST_TURNED])
+        return f"{counts['worst_motion']}: {words}" if counts["worst_motion"] else ABSENT
 
-    def slip(place: _Place) -> str:
-        largest = place.counts["worst_slip_m"]
-        return f"{millimetres(largest)} mm, {place.counts['worst_slip_motion']}" if largest else ABSENT
+    def slip(point: _Point) -> str:
+        largest = point.counts["worst_slip_m"]
+        return f"{millimetres(largest)} mm, {point.counts['worst_slip_motion']}" if largest else ABSENT
 
-    def mean_ratio(place: _Place) -> str:
-        one = place.counts
-        of = f" (of {one['stood']})" if 0 < one["stood"] < one["motions"] else ""
-        return ratio(one[MEAN_TURNED]) + of
+    def mean_ratio(point: _Point) -> str:
+        counts = point.counts
+        of = f" (of {counts['stood']})" if 0 < counts["stood"] < counts["motions"] else ""
+        return ratio(counts[MEAN_TURNED]) + of
 
-    def interval(place: _Place) -> str:
-        return f"{short(place.counts['low'], 100.0, 3)} to {short(place.counts['high'], 100.0, 3)} %"
+    def interval(point: _Point) -> str:
+        return f"{short(point.counts['low'], 100.0, 3)} to {short(point.counts['high'], 100.0, 3)} %"
 
-    columns: list[html.Column[_Place]] = [
-        html.Column("", lambda place: place.name, optional=True),
-        html.Column("motions", lambda place: str(place.counts["motions"]), html.NUMBER),
-        html.Column("overturned", lambda place: str(place.counts["overturned"]), html.NUMBER),
+    columns: list[html.Column[_Point]] = [
+        html.Column("", lambda point: point.name, optional=True),
+        html.Column("motions", lambda point: str(point.counts["motions"]), html.NUMBER),
+        html.Column("overturned", lambda point: str(point.counts["overturned"]), html.NUMBER),
         html.Column("95 % interval", interval, html.NUMBER),
         html.Column(
-            "not valid", lambda place: str(place.counts.get("invalid") or ""), html.NUMBER, optional=True
+            "not valid", lambda point: str(point.counts.get("invalid") or ""), html.NUMBER, optional=True
         ),
-        html.Column("failed", lambda place: str(place.counts["failed"] or ""), html.NUMBER, optional=True),
+        html.Column("failed", lambda point: str(point.counts["failed"] or ""), html.NUMBER, optional=True),
         html.Column("worst", worst),
         html.Column("largest slip", slip),
         html.Column("mean rotation ratio", mean_ratio, html.NUMBER),
-        html.Column("mean slip [mm]", lambda place: millimetres(place.counts["mean_slip_m"]), html.NUMBER),
+        html.Column("mean slip [mm]", lambda point: millimetres(point.counts["mean_slip_m"]), html.NUMBER),
     ]
     return html.table_of(
         "the set of motions",
         columns,
-        map(_Place, places, rows),
+        map(_Point, labels, rows),
         caption="All motions together; means are of those under which it stood",
         file="motion_set.csv",
     )
 
 
-def _outcome(one: MotionOutcome) -> str:
+def _outcome(outcome: MotionOutcome) -> str:
     """An outcome with the figures that belong to it."""
-    words = _words(one.outcome, one.turned)
-    return f"{words}, {millimetres(one.slipped)} mm" if one.outcome in SLIDING else words
+    words = _words(outcome.outcome, outcome.turned)
+    return f"{words}, {millimetres(outcome.slipped)} mm" if outcome.outcome in SLIDING else words
 
 
 def _words(outcome: str | None, turned: float | None) -> str:

@@ -12,7 +12,7 @@ from fem.html import sections as html
 from fem.html.page import Signature
 from fem.html.units import ABSENT, short
 from fem.report import studies
-from fem.report.comparison import asked_rows, limits_section
+from fem.report.comparison import case_rows, limits_section
 from fem.response.answer import branches_in_words, response_answer
 from fem.response.records import POINT_FIGURES, PointRow
 from fem.response.result import ResponseResult
@@ -67,7 +67,7 @@ def response_report(folder: Path, *, signature: Signature | None = None) -> str:
                 "asked",
                 html.columns(
                     html.Pairs(drive_rows(info.request), caption="Drive", look="asked"),
-                    html.Pairs(asked_rows(case), caption="Case", look="asked"),
+                    html.Pairs(case_rows(case), caption="Case", look="asked"),
                 ),
             ),
             html.section("Points", "points", points_table(info)),

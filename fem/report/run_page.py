@@ -26,7 +26,7 @@ from fem.html.page import Page, Signature, html_of
 from fem.html.units import ABSENT, number, quantity, short, typeset
 from fem.model.model import build_model
 from fem.report.animation import animation_of
-from fem.report.comparison import asked_rows, compared_table, limits_section
+from fem.report.comparison import case_rows, compared_table, limits_section
 from fem.report.run_sections import (
     RunView,
     block_section,
@@ -230,8 +230,8 @@ def case_section(view: RunView) -> html.PageSection:
         peak_vertical=static.peak_vertical_acceleration,
     )
     floor = [(name, typeset(value)) for name, value in floor_rows(view.result.floor)]
-    asked = html.Pairs([*asked_rows(view.case), *floor], look="asked")
-    return html.section("The case", "asked", html.columns(html.Figure(drawn), asked))
+    inputs = html.Pairs([*case_rows(view.case), *floor], look="asked")
+    return html.section("The case", "asked", html.columns(html.Figure(drawn), inputs))
 
 
 def static_section(view: RunView) -> html.PageSection:
@@ -241,8 +241,8 @@ def static_section(view: RunView) -> html.PageSection:
     note: list[str] = [f"{code} {own}" if code else own]
     if not view.brief:
         note += [" See ", html.link("the static calculation", "sheet"), " for the numbers."]
-    given = dict(floor_rows(view.result.floor))
-    figures = [(name, typeset(value)) for name, value in result_rows(view.result) if name not in given]
+    of_floor = dict(floor_rows(view.result.floor))
+    figures = [(name, typeset(value)) for name, value in result_rows(view.result) if name not in of_floor]
     of_itself = ", of the container itself" if view.case.neighbour else ""
     return html.section(
         "Static rule and run",
@@ -258,13 +258,13 @@ def static_section(view: RunView) -> html.PageSection:
 def numerics_section(view: RunView) -> html.PageSection:
     """Warnings; steps and energies."""
     warnings = [typeset(warning) for warning in view.result.warnings or ()]
-    said: html.Block = html.Bullets(warnings, "") if warnings else "No warnings."
+    listed: html.Block = html.Bullets(warnings, "") if warnings else "No warnings."
     if view.brief or view.result.numerics is None:
         title = "Warnings" if view.brief else "Numerics and warnings"
-        return html.section(title, "numerics", said)
+        return html.section(title, "numerics", listed)
     steps = html.Pairs(_stepping(view.case, view.result.numerics), caption="Stepping")
     energies = html.Pairs(_energies(view), caption="Energy balance")
-    return html.section("Numerics and warnings", "numerics", said, html.columns(steps, energies))
+    return html.section("Numerics and warnings", "numerics", listed, html.columns(steps, energies))
 
 
 def _stepping(case: Case, numerics: Numerics) -> list[tuple[str, str]]:
@@ -294,7 +294,7 @@ def _stepping(case: Case, numerics: Numerics) -> list[tuple[str, str]]:
         *([("contact penalty", quantity(penalty, "GPa/m", 1e-9))] if penalty is not None else []),
         (
             "penetration, static and largest",
-            ", ".join(quantity(one, "µm", 1e6, 3) for one in penetrations),
+            ", ".join(quantity(penetration, "µm", 1e6, 3) for penetration in penetrations),
         ),
     ]
 

@@ -81,7 +81,7 @@ class RunView:
     @cached_property
     def compared(self) -> list[Compared]:
         """The static rules beside the run."""
-        return compared_rows(self.model.static, self.verdict, self.case)
+        return compared_rows(self.model.static, self.verdict)
 
     @cached_property
     def boxes(self) -> Sequence[Sequence[str]]:
@@ -104,11 +104,11 @@ class RunView:
         """Those of these drawings that there are."""
         return [
             html.Figure(
-                svg_element(one.svg, label=one.title, prefix=one.name),
-                f"figure: {one.title}",
-                axes=one.cursor,
+                svg_element(drawing.svg, label=drawing.title, prefix=drawing.name),
+                f"figure: {drawing.title}",
+                axes=drawing.cursor,
             )
-            for one in (self.drawn[name] for name in names if name in self.drawn)
+            for drawing in (self.drawn[name] for name in names if name in self.drawn)
         ]
 
 
@@ -120,14 +120,14 @@ def motion_section(view: RunView) -> html.PageSection:
     if not curves:
         return html.section("The motion", "motion-title", "There are no samples to show.")
     player = [_player(view)] if view.played else []
-    shown = html.Group("motion brief" if view.brief else "motion", [*player, html.Group("curves", curves)])
+    motion = html.Group("motion brief" if view.brief else "motion", [*player, html.Group("curves", curves)])
     stills = _stills(view)  # first: on paper they fill the sheet of the results, which no curve does
-    return html.section("The motion", "motion-title", *stills, shown)
+    return html.section("The motion", "motion-title", *stills, motion)
 
 
 def _player(view: RunView) -> html.Player:
-    shown, height = view.shown, view.model.container.mesh.height
-    chosen = exaggeration(shown, height)
+    animation, height = view.shown, view.model.container.mesh.height
+    chosen = exaggeration(animation, height)
     return html.Player(
         f"{_what_is_played(view)} Red: normal force, blue: friction, on the container; dashed: where it first stood on "
         f"the floor; ○: mass centre{' of each box' if view.boxes else ''}; ▲: where the middle of its base first was"
@@ -135,24 +135,25 @@ def _player(view: RunView) -> html.Player:
         loose=bool(view.boxes),
         exaggerations=[
             html.Choice(factor, f"× {short(factor)}", factor == chosen)
-            for factor in exaggerations(shown, height)
+            for factor in exaggerations(animation, height)
         ],
-        meshed=bool(shown.frames),
+        meshed=bool(animation.frames),
         legend=_legend(view),
     )
 
 
 def _what_is_played(view: RunView) -> str:
-    shown, every = view.shown, f"every {short(view.played['step'], 1000)} ms"
-    if shown.stress_scale:
+    animation, every = view.shown, f"every {short(view.played['step'], 1000)} ms"
+    if animation.stress_scale:
+        largest = quantity(animation.largest_stress, "MPa", 1e-6, 3)
         return (
-            f"The rigid motion follows the history ({every}); deformation and stress follow {len(shown.frames)} frames "
-            "and are interpolated between them. Largest stress in the frames: "
-            f"{quantity(shown.largest_stress, 'MPa', 1e-6, 3)}, in one place; 98 % of the values lie within the scale."
+            f"The rigid motion follows the history ({every}); deformation and stress follow "
+            f"{len(animation.frames)} frames and are interpolated between them. Largest stress in the frames: "
+            f"{largest}, in one place; 98 % of the values lie within the scale."
         )
-    if shown.frames:
+    if animation.frames:
         rigid = "The boxes are rigid: they have" if view.boxes else "The container is rigid: it has"
-        forces = f"the contact forces {len(shown.frames)} frames"
+        forces = f"the contact forces {len(animation.frames)} frames"
         return f"The motion follows the history ({every}), {forces}. {rigid} no stress."
     return "No fields were written: the container is shown without deformation."
 
@@ -179,7 +180,7 @@ def _stills(view: RunView) -> list[html.Block]:
             "whole",
             [
                 html.Heading("Stills"),
-                html.Group("stills", [html.Figure(one.svg, caption=one.caption) for one in pictures]),
+                html.Group("stills", [html.Figure(still.svg, caption=still.caption) for still in pictures]),
                 *([legend] if legend else []),
                 *([html.Note(f"In these drawings {level}.")] if level else []),
             ],
@@ -271,7 +272,7 @@ def _left_out(variations: VariationTable) -> list[html.Block]:
     if not variations.left_out:
         return []
     price = quantity(variations.price, "s", figures=2)
-    listed = "; ".join(" ".join(one.in_words) for one in variations.left_out)
+    listed = "; ".join(" ".join(change.in_words) for change in variations.left_out)
     return [
         html.Note(
             html.joined(
@@ -340,7 +341,10 @@ def _block_table(check: RigidCheckResult) -> html.Table:
         [
             (
                 "first impact [s]",
-                *("none" if one is None else number(one, figures=5) for one in (first.run, first.block)),
+                *(
+                    "none" if value is None else number(value, figures=5)
+                    for value in (first.run, first.block)
+                ),
             )
         ]
         if first
@@ -350,7 +354,7 @@ def _block_table(check: RigidCheckResult) -> html.Table:
         rows.append(
             (
                 "restitution there",
-                *("not measured" if one is None else number(one) for one in (ratio.run, ratio.block)),
+                *("not measured" if value is None else number(value) for value in (ratio.run, ratio.block)),
             )
         )
     rows += [

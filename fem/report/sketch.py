@@ -71,8 +71,8 @@ def sketch(
                 "", (-10 * unit, -15 * unit), (10 * unit, -15 * unit), arrowprops=_arrow("<|-|>", BLUE)
             )
         if peak_vertical is not None:
-            place = 15 * unit
-            axes.annotate("", (place, -19 * unit), (place, -11 * unit), arrowprops=_arrow("<|-|>", BLUE))
+            x = 15 * unit
+            axes.annotate("", (x, -19 * unit), (x, -11 * unit), arrowprops=_arrow("<|-|>", BLUE))
         words = _motion(case, peak_acceleration)
         if peak_vertical is not None:
             words = [*words, f"vertical: {case.vertical.kind}, peak {short(peak_vertical)} m/s²"]
@@ -101,8 +101,8 @@ def _draw_floor(axes: Axes, case: Case, unit: float) -> None:
     if slope := case.floor.slope_percent:
         side = math.copysign(1.0, slope)
         words = f"falls {short(abs(slope))} % →" if slope > 0.0 else f"← falls {short(abs(slope))} %"
-        place = side * reach, -2.5 * unit
-        axes.text(*place, words, color=BLUE, ha="right" if slope > 0.0 else "left", va="top")
+        position = side * reach, -2.5 * unit
+        axes.text(*position, words, color=BLUE, ha="right" if slope > 0.0 else "left", va="top")
     foot = case.foot or (unit if case.support.kind == "corners" else 0.5 * width)
     outer = 0.5 * width - case.support.inset
     for side in (-1.0, 1.0):
@@ -146,8 +146,8 @@ def _draw_container(axes: Axes, case: Case, unit: float) -> None:
     if rotation:
         height = boxes[-1].top
         side = "left" if rotation > 0.0 else "right"
-        place = pivot + math.sin(rotation) * height, 0.8 * height
-        axes.text(*place, f" θ = {degrees(rotation)} at t = 0 ", color=BLUE, ha=side)
+        position = pivot + math.sin(rotation) * height, 0.8 * height
+        axes.text(*position, f" θ = {degrees(rotation)} at t = 0 ", color=BLUE, ha=side)
     if case.container.is_loose:
         _draw_loose_joints(axes, case, unit)
     if case.container.is_loose or case.container.box is not None:
@@ -158,9 +158,13 @@ def _draw_beside(axes: Axes, case: Case, unit: float) -> tuple[float, float]:
     """Neighbours, stops and ties, as far as the figure is wide; left and right end of all that stands there [m]."""
     ends = [box.sides for box in case.stack]
     row = case.row
-    places = places_of(case, [one.stack[0].width for one in row])
-    for one, x in zip(row[1:], places.x[1:], strict=True):
-        left, width, height = x - 0.5 * one.stack[0].width, one.stack[0].width, one.stack[-1].top
+    places = places_of(case, [container.stack[0].width for container in row])
+    for neighbour, x in zip(row[1:], places.x[1:], strict=True):
+        left, width, height = (
+            x - 0.5 * neighbour.stack[0].width,
+            neighbour.stack[0].width,
+            neighbour.stack[-1].top,
+        )
         axes.add_patch(Rectangle((left, 0.0), width, height, fc=BODY, ec=GREY, lw=0.8, clip_on=True))
         ends.append((left, left + width))
     for link in drawn_links(case):
@@ -192,15 +196,15 @@ def _draw_loose_joints(axes: Axes, case: Case, unit: float) -> None:
     static, kinetic = (case.joint_friction[name] for name in ("mu_static", "mu_kinetic"))
     words = f"loose, μ {short(static)}" + (f" / {short(kinetic)}" if kinetic != static else "")
     top = case.stack[-1]
-    place = max(box.sides[1] for box in case.stack[-2:]) + unit, top.bottom + 0.5 * unit
-    axes.text(*place, words, color=BLUE, va="bottom")
+    position = max(box.sides[1] for box in case.stack[-2:]) + unit, top.bottom + 0.5 * unit
+    axes.text(*position, words, color=BLUE, va="bottom")
 
 
 def _number_boxes(axes: Axes, boxes: Sequence[Box], unit: float) -> None:
     """Numbers from the floor up."""
     for number, box in enumerate(boxes, 1):
-        place = box.sides[0] + unit, box.bottom + 0.5 * box.height
-        axes.text(*place, str(number), color=GREY, fontsize=8.0, ha="left", va="center")
+        position = box.sides[0] + unit, box.bottom + 0.5 * box.height
+        axes.text(*position, str(number), color=GREY, fontsize=8.0, ha="left", va="center")
 
 
 def _outlines(case: Case) -> list[tuple[float, float, float, float]]:

@@ -218,8 +218,8 @@ def _vertical_lines(static: StaticChecks, own: Numbers) -> list[SheetLine]:
 
 def _code_lines(code: CodeChecks, numbers: Numbers) -> list[SheetLine]:
     """The code's base shear, and the period up to which its method applies."""
-    given, lines = code.values.behaviour_factor, []
-    for q, action in {given: code.as_given, 1.0: code.q1}.items():
+    factor, lines = code.values.behaviour_factor, []
+    for q, action in {factor: code.as_given, 1.0: code.q1}.items():
         numbers_q = numbers | _action(action) | {"q": _Printed(q)}
         lines += [_line(PLATEAU, numbers_q), *_utilisations(action, numbers_q, "F_b")]
     within = "within the limit" if code.applicability.passed else "above the limit"

@@ -32,7 +32,7 @@ class Still(NamedTuple):
 
 
 def stills(
-    shown: Animation, history: History, verdict: Verdict, *, angle: float, width: float, height: float
+    animation: Animation, history: History, verdict: Verdict, *, angle: float, width: float, height: float
 ) -> list[Still]:
     """Start, first uplift, the extremes and the end, where frames show them and there was such a motion.
 
@@ -43,12 +43,12 @@ def stills(
         width, height: of the container [m].
     """
     judged = 1 if verdict.neighbours else None  # in a row the container itself, which is the first
-    chosen = _instants(shown, history, verdict, judged)
-    factor = exaggeration(shown, height)
-    frames = {k: shown.frames[k] for k in chosen}
+    chosen = _instants(animation, history, verdict, judged)
+    factor = exaggeration(animation, height)
+    frames = {k: animation.frames[k] for k in chosen}
     factors = {k: _bearable(frame, factor, height) for k, frame in frames.items()}
-    placed = {k: _placed(shown, frame, factors[k]) for k, frame in frames.items()}
-    walls = [abs(one.outer) for one in shown.links]
+    placed = {k: _placed(animation, frame, factors[k]) for k, frame in frames.items()}
+    walls = [abs(link.outer) for link in animation.links]
     span = 1.05 * max(
         [0.7 * width, *walls, *(float(np.abs(points[:, 0]).max()) for points in placed.values())]
     )
@@ -57,7 +57,7 @@ def stills(
         Still(
             f"t = {frame.time:.3f} s, {chosen[k]}; {_rotation_in_words(frame.rotation[:judged], angle)}"
             + (f"; elastic part × {factors[k]:g}" if factors[k] != factor else ""),
-            _drawing(shown, frame, placed[k] * [100.0 / span, -100.0 / span], top, 100.0 / span),
+            _drawing(animation, frame, placed[k] * [100.0 / span, -100.0 / span], top, 100.0 / span),
         )
         for k, frame in frames.items()
     ]
@@ -71,28 +71,28 @@ def _bearable(frame: AnimationFrame, factor: float, height: float) -> float:
 
 
 def _instants(
-    shown: Animation, history: History, verdict: Verdict, judged: int | None = None
+    animation: Animation, history: History, verdict: Verdict, judged: int | None = None
 ) -> dict[int, str]:
     """Frames to show, in the order of time, and why, by the rotation of so many bodies; None: of all."""
-    if not shown.frames or not len(history):
+    if not animation.frames or not len(history):
         return {}
-    times = np.array([frame.time for frame in shown.frames])
-    rotation = np.array([frame.rotation[_most_turned(frame.rotation[:judged])] for frame in shown.frames])
+    times = np.array([frame.time for frame in animation.frames])
+    rotation = np.array([frame.rotation[_most_turned(frame.rotation[:judged])] for frame in animation.frames])
     slips = [np.abs(history[name]) for name in history.numbers if name.endswith("slip_m")][
         :judged
     ]  # a loose box each
     slip = np.interp(times, history["time_s"], np.max(slips, axis=0))
-    wanted = [(0, "start")]
+    candidates = [(0, "start")]
     if verdict.first_uplift_s is not None:
-        wanted.append((int(np.searchsorted(times, verdict.first_uplift_s)), "after the first uplift"))
+        candidates.append((int(np.searchsorted(times, verdict.first_uplift_s)), "after the first uplift"))
     seen = {verdict.outcome, *verdict.modes}
     if not seen.isdisjoint((*ROCKING, Outcome.OVERTURNED)):
-        wanted.append((int(np.argmax(rotation)), "farthest to the right"))
-        wanted.append((int(np.argmin(rotation)), "farthest to the left"))
+        candidates.append((int(np.argmax(rotation)), "farthest to the right"))
+        candidates.append((int(np.argmin(rotation)), "farthest to the left"))
     if not seen.isdisjoint(SLIDING) or (verdict.max_joint_slip_m or 0.0) > MILLIMETRES.least:
-        wanted.append((int(np.argmax(slip)), "largest slip"))
+        candidates.append((int(np.argmax(slip)), "largest slip"))
     chosen: dict[int, str] = {}
-    for k, name in [*wanted, (len(times) - 1, "last frame")]:
+    for k, name in [*candidates, (len(times) - 1, "last frame")]:
         if k < len(times) and len(chosen) < MOST:
             chosen.setdefault(k, name)
     return dict(sorted(chosen.items()))
@@ -112,24 +112,24 @@ def _rotation_in_words(rotations: FloatArray, angle: float) -> str:
     return f"rotation ratio {sign}{ratio}{box if named else ''}"
 
 
-def _placed(shown: Animation, frame: AnimationFrame, factor: float) -> FloatArray:
+def _placed(animation: Animation, frame: AnimationFrame, factor: float) -> FloatArray:
     """Drawn nodes (n, 2), x from where the container first stood on the floor [m].
 
     An enlarged elastic part leaves the loaded points in place; a loose box stands on the corners of the one below.
     """
     weight = np.maximum(frame.normal_force, 0.0) + 1e-6 * max(1.0, float(np.abs(frame.normal_force).max()))
-    placed, ahead = np.empty_like(shown.points), np.zeros(2)
+    placed, ahead = np.empty_like(animation.points), np.zeros(2)
     for k, (centre, rotation) in enumerate(zip(frame.centre, frame.rotation, strict=True)):
-        own, corners = shown.body == k, shown.corners[k]
-        ahead = ahead * (not shown.in_a_row)
+        own, corners = animation.body == k, animation.corners[k]
+        ahead = ahead * (not animation.in_a_row)
         cosine, sine = math.cos(rotation), math.sin(rotation)
         turn = np.array([[cosine, -sine], [sine, cosine]])
-        arm = shown.points[own]
+        arm = animation.points[own]
         if factor:
             arm = arm + factor * frame.elastic[own]
             held = frame.elastic[corners[:2]].mean(axis=0)
             if k == 0:
-                held = np.average(frame.elastic[shown.contact], axis=0, weights=weight)
+                held = np.average(frame.elastic[animation.contact], axis=0, weights=weight)
             ahead = ahead - (factor - 1.0) * held @ turn
         placed[own] = centre - frame.floor + ahead + arm @ turn
         if factor:
@@ -137,25 +137,27 @@ def _placed(shown: Animation, frame: AnimationFrame, factor: float) -> FloatArra
     return placed
 
 
-def _drawing(shown: Animation, frame: AnimationFrame, points: FloatArray, top: float, scale: float) -> Markup:
+def _drawing(
+    animation: Animation, frame: AnimationFrame, points: FloatArray, top: float, scale: float
+) -> Markup:
     """Floor, stops and ties, cells by colour (one path a colour) and edges."""
     hatch = "".join(f"M{x} 0l-4 4" for x in range(-96, 108, 12))
     parts = [_path("M-104 0H104", stroke=INK, width=1.2), _path(hatch, stroke=QUIET, width=0.6)]
-    for one, held in zip(shown.links, points[shown.held], strict=True):
-        if frame.time < one.until:
-            foot = np.array([(one.x, 0.0), (one.outer, 0.0)]) * [scale, 1.0]
-            end = np.array([held]) if one.is_tie else (foot - [0.0, scale * one.height])[::-1]
+    for link, held in zip(animation.links, points[animation.held], strict=True):
+        if frame.time < link.until:
+            foot = np.array([(link.x, 0.0), (link.outer, 0.0)]) * [scale, 1.0]
+            end = np.array([held]) if link.is_tie else (foot - [0.0, scale * link.height])[::-1]
             parts.append(
                 _path("M" + _line(np.concatenate([foot, end])) + "Z", stroke=INK, width=1.0, fill=WALL)
             )
-    bins, paints = np.zeros(len(shown.quads), dtype=int), [STEEL]
-    if shown.stress_scale > 0.0 and frame.von_mises is not None:
-        level = frame.von_mises[shown.quads].mean(axis=1) / shown.stress_scale
+    bins, paints = np.zeros(len(animation.quads), dtype=int), [STEEL]
+    if animation.stress_scale > 0.0 and frame.von_mises is not None:
+        level = frame.von_mises[animation.quads].mean(axis=1) / animation.stress_scale
         bins, paints = np.clip((BINS * level).astype(int), 0, BINS - 1), colour_scale("YlGnBu", BINS)
     for k in np.unique(bins):
-        cells = "".join("M" + _line(points[quad]) + "Z" for quad in shown.quads[bins == k])
+        cells = "".join("M" + _line(points[quad]) + "Z" for quad in animation.quads[bins == k])
         parts.append(_path(cells, stroke=paints[k], width=0.3, fill=paints[k]))
-    parts.append(_path("".join("M" + _line(points[edge]) for edge in shown.edges), stroke=INK, width=0.7))
+    parts.append(_path("".join("M" + _line(points[edge]) for edge in animation.edges), stroke=INK, width=0.7))
     return Markup(
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="-105 {-top - 2.0:.1f} 210 {top + 8.0:.1f}" '
         f'role="img" aria-label="container at {frame.time:.3f} s">{"".join(parts)}</svg>'

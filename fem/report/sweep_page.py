@@ -26,7 +26,7 @@ from fem.html.page import Signature
 from fem.html.units import ABSENT, millimetres, number, short, typeset
 from fem.report import studies
 from fem.report.animation import colour_scale, packed
-from fem.report.comparison import asked_rows, limits_section
+from fem.report.comparison import case_rows, limits_section
 from fem.report.motion_part import motions_of_sweep
 from fem.results.errors import FolderError
 from fem.results.figures import Place, Shown, figures_of
@@ -66,7 +66,7 @@ def sweep_report(folder: Path, *, signature: Signature | None = None) -> str:
     info, case = table.info, load_case(str(folder / "base.toml"))
     data, drawn = map_data(table, folder), studies.drawings(folder, on_screen(table), "sweep")
     answer, name = sweep_answer(table, folder), info.sweep or folder.name
-    given = html.Pairs(asked_rows(case), caption="Base case, where no axis changes it", look="asked")
+    base_case = html.Pairs(case_rows(case), caption="Base case, where no axis changes it", look="asked")
     return studies.study_html(
         "a sweep",
         info=info,
@@ -92,7 +92,7 @@ def sweep_report(folder: Path, *, signature: Signature | None = None) -> str:
                 "Counts", "counts", counts_table(table), *_failures(table), *_thresholds(folder, table)
             ),
             html.section(
-                "The sweep", "asked", html.columns(studies.axes_table(table.axes, info.derived), given)
+                "The sweep", "asked", html.columns(studies.axes_table(table.axes, info.derived), base_case)
             ),
             limits_section(case),
             studies.repeat_section(
@@ -160,14 +160,14 @@ def cell_map(table: SweepTable, data: Mapping[str, Any]) -> html.CellMap:
     """The map, first over the one or two longest axes."""
     labels, known = [axis_label(axis) for axis in table.axes], {column["name"] for column in data["columns"]}
     longest = sorted(sorted(range(len(labels)), key=lambda k: -len(table.axes[k].values))[:2])
-    shown = (
+    quantities = (
         FLAGS[0],
         ("outcome", "outcome"),
         *FLAGS[1:],
-        *((name, one.on_map) for name, one in QUANTITIES.items()),
+        *((name, figure.on_map) for name, figure in QUANTITIES.items()),
     )
     return html.CellMap(
-        [html.Choice(name, label) for name, label in shown if name in known],
+        [html.Choice(name, label) for name, label in quantities if name in known],
         *([html.Choice(k, label, k == first) for k, label in enumerate(labels)] for first in longest),
     )
 
@@ -206,8 +206,8 @@ def answer_table(answer: SweepAnswer) -> html.Table:
     def slip(value: float | None) -> str:
         return "" if value is None else millimetres(value)
 
-    def ranges(found: Sequence[tuple[float, float]]) -> str:
-        return ranges_in_words(found, answer.axis, bare=True)
+    def ranges(intervals: Sequence[tuple[float, float]]) -> str:
+        return ranges_in_words(intervals, answer.axis, bare=True)
 
     columns: list[html.Column[AnswerRow]] = [
         html.Column("", where),
@@ -274,11 +274,11 @@ def map_data(table: SweepTable, folder: Path) -> dict[str, Any]:
     columns: list[dict[str, Any]] = [outcome | {"values": packed(outcomes, "u1")}]
     if _has(table, "unsure"):
         columns += _sureness(table)
-    room = MOST_BYTES - sum(len(one["values"]) for one in columns)
-    for k, (name, shown) in enumerate(QUANTITIES.items()):
+    room = MOST_BYTES - sum(len(column["values"]) for column in columns)
+    for k, (name, figure) in enumerate(QUANTITIES.items()):
         if k >= 1 and not _has(table, name):
             continue
-        column = _column(table, name, shown)
+        column = _column(table, name, figure)
         room -= len(column["values"])
         if room < 0 and k < NEEDED:
             raise FolderError(
@@ -319,7 +319,7 @@ def _sureness(table: SweepTable) -> list[dict[str, Any]]:
     if "sure" not in table.columns:
         return [_words("unsure", "unsure", np.where(table["unsure"] == 1.0, UNSURE, SURE), SURENESS)]
     sure = np.where(table["sure"] == "", "not tried", table["sure"])
-    deciding = [" ".join(map(_short_key, str(one).split())) or "-" for one in table["decided_by"]]
+    deciding = [" ".join(map(_short_key, str(inputs).split())) or "-" for inputs in table["decided_by"]]
     columns = [
         _words("sure", "how sure", sure, SURENESS),
         _words("decided_by", "decided by", np.array(deciding), dict.fromkeys(sorted(set(deciding)), "")),
@@ -333,9 +333,9 @@ def _sureness(table: SweepTable) -> list[dict[str, Any]]:
 def _words(name: str, label: str, values: NDArray[Any], colours: Mapping[str, str]) -> dict[str, Any]:
     """A column of words, as their places among those that have colours."""
     names = list(colours)
-    places = np.array([names.index(str(one)) for one in values], dtype="<f4")
+    indices = np.array([names.index(str(value)) for value in values], dtype="<f4")
     column = {"name": name, "label": label, "unit": "", "factor": 1.0, "names": names}
-    return column | {"colours": list(colours.values()), "values": packed(places, "<f4")}
+    return column | {"colours": list(colours.values()), "values": packed(indices, "<f4")}
 
 
 def counts(table: SweepTable) -> list[tuple[str, str, int, float]]:
@@ -364,10 +364,10 @@ def _has(table: SweepTable, name: str) -> bool:
     return name in table.columns and bool(np.isfinite(table[name].astype(float)).any())
 
 
-def _column(table: SweepTable, name: str, shown: Shown) -> dict[str, Any]:
+def _column(table: SweepTable, name: str, figure: Shown) -> dict[str, Any]:
     values: NDArray[Any] = table.columns.get(name, np.full(len(table["cell"]), np.nan)).astype("<f4")
-    unit = shown.unit
-    column = {"name": name, "label": shown.on_map, "unit": typeset(unit.name), "factor": unit.factor}
+    unit = figure.unit
+    column = {"name": name, "label": figure.on_map, "unit": typeset(unit.name), "factor": unit.factor}
     return column | {"values": packed(values, "<f4")}
 
 

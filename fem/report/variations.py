@@ -62,9 +62,9 @@ def further_changes(case: Case) -> Iterator[InputChange]:
             )
     peak, both = case.nominal_peak_acceleration, case.has_vertical and motion.kind != "none"
     for factor in STRENGTHS:
-        shown = f", peak {quantity(factor * peak, 'm/s²', figures=3)}" if peak else ""
+        at_peak = f", peak {quantity(factor * peak, 'm/s²', figures=3)}" if peak else ""
         if values := scaled_motion(case, factor):
-            yield change("strength", f"× {factor:g}{shown}{', both motions' * both}", values)
+            yield change("strength", f"× {factor:g}{at_peak}{', both motions' * both}", values)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -94,7 +94,9 @@ class VariationTable:
     def sentence(self) -> str:
         """The table in a few words."""
         count, outcomes = len(self.lines) - 1, [line.run.outcome for line in self.lines]
-        overturned, invalid = (outcomes[1:].count(one) for one in (Outcome.OVERTURNED, Outcome.INVALID))
+        overturned, invalid = (
+            outcomes[1:].count(outcome) for outcome in (Outcome.OVERTURNED, Outcome.INVALID)
+        )
         words = [
             f"The outcome is the same in all {count}."
             if self.changed == 0
@@ -163,9 +165,9 @@ def variation_table(
             write_atomically(path, text)
 
     kept_in = ChangedRunsFile(path, case_hash=case_hash(case), write=write, message=message)
-    there = {key_of(one.values) for one in (*known, *kept_in.read())}
+    there = {key_of(variation.values) for variation in (*known, *kept_in.read())}
     price = cost_of(numerics)
-    missing = [one for one in largest_first(changes) if key_of(one.values) not in there]
+    missing = [change for change in largest_first(changes) if key_of(change.values) not in there]
     most = len(missing) if every else max(1, int(BUDGET_S / price))
     left_out = missing[most:]
     if missing[:most]:
@@ -176,16 +178,16 @@ def variation_table(
         message(
             f"variations left out, because they take longer: {len(left_out)}; --all-variations computes them"
         )
-    wanted = [one for one in changes if one not in left_out]
-    runs = run_changes(model, wanted, numerics=numerics, stop=stop, known=known, kept_in=kept_in)
-    if any(one.status == "interrupted" for one in runs):
+    chosen = [change for change in changes if change not in left_out]
+    runs = run_changes(model, chosen, numerics=numerics, stop=stop, known=known, kept_in=kept_in)
+    if any(variation.status == "interrupted" for variation in runs):
         return None
     first = InputChange(kind="further", values={}, share=0.0, subject="as computed")
     return VariationTable(
         model=case.solver.model,
         lines=tuple(
-            Varied(change=change, run=one, changed=one.outcome != own.outcome)
-            for change, one in zip((first, *wanted), (own, *runs), strict=True)
+            Varied(change=change, run=variation, changed=variation.outcome != own.outcome)
+            for change, variation in zip((first, *chosen), (own, *runs), strict=True)
         ),
         left_out=tuple(left_out),
         price=price,

@@ -6,7 +6,7 @@ import pytest
 from cases import named_case
 
 from fem.assessment.floor_words import drawn_level
-from fem.report.comparison import asked_rows, assumptions, exclusions
+from fem.report.comparison import assumptions, case_rows, exclusions
 from fem.report.sketch import sketch
 
 LOOSE = {"container.joints": "loose", "joints.mu_static": 0.3, "joints.mu_kinetic": 0.25}
@@ -47,18 +47,18 @@ def test_loose_joints_are_marked_with_their_friction():
 
 
 def test_the_case_lists_boxes_that_differ_one_by_one():
-    rows = dict(asked_rows(named_case("uneven")))
+    rows = dict(case_rows(named_case("uneven")))
     assert rows["container"] == "3 boxes, bolted, from the floor up:"
     assert rows["box 2"].endswith(
         "7.848 kN with fill, mass centre at 0.4 m; its axis 100 mm right of that of box 1"
     )
-    assert "box 1" not in dict(asked_rows(named_case("seed_stack")))
+    assert "box 1" not in dict(case_rows(named_case("seed_stack")))
 
 
 @pytest.mark.parametrize(("values", "loose"), [({}, False), (LOOSE, True)])
 def test_the_page_says_whether_boxes_may_separate(values, loose):
     case = named_case("seed_stack", values)
-    assert ("friction between boxes" in dict(asked_rows(case))) is loose
+    assert ("friction between boxes" in dict(case_rows(case))) is loose
     assert any("without bolts" in line for line in assumptions(case)) is loose
     assert any("boxes without bolts" in line for line in exclusions(case)) is not loose
 
