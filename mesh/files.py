@@ -113,16 +113,16 @@ def _cells_of_boxes(points: FloatArray, quads: IntArray, boxes: Sequence[Stacked
             f"{heights[np.argmax(astride)].mean():.4g} m: put mesh lines at z = "
             f"{', '.join(f'{line:g}' for line in lines[1:])} m"
         )
-    cells = [np.flatnonzero(number == one) for one in range(len(boxes))]
-    for one, found in enumerate(cells, 1):
-        if not found.size:
-            raise MeshError(f"box {one} has no cells, the case has {len(boxes)} boxes")
+    cells = [np.flatnonzero(number == k) for k in range(len(boxes))]
+    for k, own in enumerate(cells, 1):
+        if not own.size:
+            raise MeshError(f"box {k} has no cells, the case has {len(boxes)} boxes")
     return cells
 
 
 def _require_places(points: FloatArray, used: Sequence[IntArray], boxes: Sequence[StackedBox]) -> None:
     """Refuse boxes that do not stand where the case has them."""
-    middles = [0.5 * (points[one, 0].min() + points[one, 0].max()) for one in used]
+    middles = [0.5 * (points[nodes, 0].min() + points[nodes, 0].max()) for nodes in used]
     for number, (middle, box) in enumerate(zip(middles, boxes, strict=True), 1):
         if abs(middle - middles[0] - box.axis) > TOLERANCE * box.geometry.width:
             raise MeshError(

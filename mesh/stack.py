@@ -62,16 +62,16 @@ def build_loose_mesh(
 
 def placed_apart(boxes: Sequence[StackedBox], meshes: Sequence[ContainerMesh]) -> ContainerMesh:
     """Meshes of single boxes, each standing on z = 0 and centred on x = 0, moved to their places as one mesh."""
-    starts = np.cumsum([0, *(len(one.points) for one in meshes)])
+    starts = np.cumsum([0, *(len(mesh.points) for mesh in meshes)])
     return ContainerMesh(
         points=np.concatenate(
-            [one.points + np.array([box.axis, box.bottom]) for box, one in zip(boxes, meshes, strict=True)]
+            [mesh.points + np.array([box.axis, box.bottom]) for box, mesh in zip(boxes, meshes, strict=True)]
         ),
-        quads=np.concatenate([one.quads + start for start, one in zip(starts, meshes, strict=False)]),
-        region=np.concatenate([one.region for one in meshes]),
-        box=np.repeat(np.arange(len(meshes)), [len(one.quads) for one in meshes]),
-        thickness=np.concatenate([one.thickness for one in meshes]),
-        areal_density=np.concatenate([one.areal_density for one in meshes]),
+        quads=np.concatenate([mesh.quads + start for start, mesh in zip(starts, meshes, strict=False)]),
+        region=np.concatenate([mesh.region for mesh in meshes]),
+        box=np.repeat(np.arange(len(meshes)), [len(mesh.quads) for mesh in meshes]),
+        thickness=np.concatenate([mesh.thickness for mesh in meshes]),
+        areal_density=np.concatenate([mesh.areal_density for mesh in meshes]),
     )
 
 
@@ -106,11 +106,11 @@ def joined(
         sides = boxes[number].sides, boxes[number + 1].sides
         left, right = max(side[0] for side in sides), min(side[1] for side in sides)
         faces = []
-        for one in (number, number + 1):
-            x, z = apart.points[np.unique(apart.quads[apart.box == one])].T
+        for k in (number, number + 1):
+            x, z = apart.points[np.unique(apart.quads[apart.box == k])].T
             near = _near(boxes) / SAME_LINE * 1e-6
             on_face = (np.abs(z - height) <= near) & (x >= left - near) & (x <= right + near)
-            faces.append(nodes[one][on_face])
+            faces.append(nodes[k][on_face])
         if not np.array_equal(*faces):
             raise MeshError(
                 f"boxes {number + 1} and {number + 2} do not share the nodes of the face between them: merge "
@@ -182,7 +182,7 @@ def build_bolted_mesh(
         points=points[used],
         quads=numbers.reshape(-1, 4),
         region=region,
-        box=np.repeat(np.arange(len(boxes)), [len(one) for one in quads]),
+        box=np.repeat(np.arange(len(boxes)), [len(part) for part in quads]),
         thickness=thickness,
         areal_density=density,
     )
@@ -214,12 +214,12 @@ def _near(boxes: Sequence[StackedBox]) -> float:
 
 def _lines_of_all(boxes: Sequence[StackedBox], element_size: float, foot: float | None) -> FloatArray:
     """x at which any box has a line that all must have, rising; lines that fall together are those of the lower box."""
-    kept: list[float] = []
+    merged: list[float] = []
     for number, box in enumerate(boxes):
         own: Segments = column_segments(box.geometry, element_size, None if number else foot)
         left, right = box.sides
         lines = left + np.cumsum([0.0, *own.lengths[:-1]])
         for line in (*lines, right):
-            if all(abs(line - one) > _near(boxes) for one in kept):
-                kept.append(float(line))
-    return np.array(sorted(kept))
+            if all(abs(line - other) > _near(boxes) for other in merged):
+                merged.append(float(line))
+    return np.array(sorted(merged))

@@ -52,15 +52,15 @@ def cell_regions(tags: CellTags, allowed: tuple[Region, ...]) -> IntArray:
         MeshError: no tag with the name of a region; a region that the section does not have; cells in no or several
             regions. The message lists the tags found.
     """
-    found: dict[str, BoolArray] = {}
+    tagged: dict[str, BoolArray] = {}
     for source in (_from_sets, _from_physical_groups, _from_region_field, _from_flags, _from_joined_field):
         groups = {name: cells for name, cells in source(tags).items() if cells.any()}
-        found = {**groups, **found}
+        tagged = {**groups, **tagged}
         if any(name in REGION_NAMES for name in groups):
             return _one_region_each(groups, tags.count, allowed)
     known = _join([region.name.lower() for region in allowed])
     raise MeshError(
-        f"no cell is tagged with a region ({known}); found {_listing(found, tags)}: name the groups of cells "
+        f"no cell is tagged with a region ({known}); found {_listing(tagged, tags)}: name the groups of cells "
         "(Gmsh physical surfaces, element sets) after the regions"
     )
 

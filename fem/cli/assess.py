@@ -84,9 +84,9 @@ def page_of(result: "SiteResult", folder: Path) -> Iterator[str]:
         return f", {count} destroyed a corner" if count else ""
 
     yield f"  runs       {answer.runs}, {answer.overturned} overturned{destroyed(answer.invalid)}"
-    for one in answer.actions:
-        used = "" if one.utilisation is None else f", utilisation {one.utilisation:.3g}"
-        yield f"  {one.name:<10} {one.answer or 'no answer'}{used}"
+    for single in answer.actions:
+        used = "" if single.utilisation is None else f", utilisation {single.utilisation:.3g}"
+        yield f"  {single.name:<10} {single.answer or 'no answer'}{used}"
     if answer.scan:
         fails, first = (
             "none" if factor is None else f"{factor:.3g}"

@@ -91,9 +91,9 @@ def page_of(result: "HallResult", folder: Path) -> Iterator[str]:
     """The lines of a hall, for people."""
     yield result.hall
     motions = f" under {len(result.motions)} motions" if len(result.motions) > 1 else ""
-    what = f"verified at {result.site}" if result.site else f"{result.runs} runs, model {result.model}"
+    extent = f"verified at {result.site}" if result.site else f"{result.runs} runs, model {result.model}"
     yield (
-        f"  {result.rows} rows, {result.containers} containers, {result.distinct} that differ{motions}: {what}, "
+        f"  {result.rows} rows, {result.containers} containers, {result.distinct} that differ{motions}: {extent}, "
         f"{result.status}"
     )
     if result.kept:
@@ -101,25 +101,25 @@ def page_of(result: "HallResult", folder: Path) -> Iterator[str]:
     for outcome, count in result.outcomes.items():
         yield f"  {outcome:13} {count:>7}"
     bad = [
-        (f"row {one['row']} {one['name']}", one["reason"])
-        for one in result.table
-        if one["status"] == "refused"
+        (f"row {row['row']} {row['name']}", row["reason"])
+        for row in result.table
+        if row["status"] == "refused"
     ]
     if bad:
         yield f"  refused    {len(bad)} of {result.rows} rows"
         yield from table_lines(bad, "hall.csv")
     if result.state == "finished":
         ranked = sorted(
-            (one for one in result.table if one["rank"]), key=lambda one: (one["rank"], one["row"])
+            (row for row in result.table if row["rank"]), key=lambda row: (row["rank"], row["row"])
         )
         if result.checked:
             yield f"  sure and margin of the weakest {result.checked}"
-        yield from table_lines([(one["name"], _shown(one)) for one in ranked[:10]])
+        yield from table_lines([(row["name"], _row_in_words(row)) for row in ranked[:10]])
     written = ": hall.csv, hall.json, report.html" if result.state == "finished" else ""
     yield f"  files      {folder}{written}"
 
 
-def _shown(row: dict[str, object]) -> str:
+def _row_in_words(row: dict[str, object]) -> str:
     """A container in a line."""
     words = [str(row["answer"] or row["outcome"] or row["reason"])]
     if isinstance(row["margin"], float):

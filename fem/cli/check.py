@@ -125,11 +125,11 @@ def _page(preview: Preview, document: dict[str, Any]) -> str:
     if (code := static.by_code) is not None:
         actions |= {f"code, q = {code.values.behaviour_factor:g}": code.as_given, "code, q = 1": code.q1}
     for action, result in actions.items():
-        for what, one in (("sliding", result.sliding), ("overturning", result.overturning)):
-            verdict = "" if one.passed else f"  {'slides' if what == 'sliding' else 'overturns'}"
+        for kind, rule in (("sliding", result.sliding), ("overturning", result.overturning)):
+            verdict = "" if rule.passed else f"  {'slides' if kind == 'sliding' else 'overturns'}"
             lines.append(
-                f"    {action:<14} {what:<12} {one.demand / 1e3:8.3f}   {one.capacity / 1e3:8.3f} "
-                f"{'k' + one.unit:<4} {one.utilisation:8.3f}{verdict}"
+                f"    {action:<14} {kind:<12} {rule.demand / 1e3:8.3f}   {rule.capacity / 1e3:8.3f} "
+                f"{'k' + rule.unit:<4} {rule.utilisation:8.3f}{verdict}"
             )
     for tied in preview.tied:
         breaks = ", where a tie breaks" if tied.broken else ""
@@ -163,7 +163,7 @@ def _restitution_of_contact(case: Case, document: Mapping[str, Any]) -> str:
         return "none: a cambered base rolls"
     if case.floor.is_slab:
         return f"of the slab: where it crushes about Housner's{of_it}"
-    given = f"damping ratio {case.contact.damping_ratio:g} on {case.support.kind}"
+    contact = f"damping ratio {case.contact.damping_ratio:g} on {case.support.kind}"
     if value is None:
-        return f"not calibrated for {given}{of_it}"
-    return f"{value / (factor or 1.0):8.4f} if rigid, with {given}{of_it}"
+        return f"not calibrated for {contact}{of_it}"
+    return f"{value / (factor or 1.0):8.4f} if rigid, with {contact}{of_it}"

@@ -27,12 +27,12 @@ def ensemble(
     ensemble:
         An ensemble file or the name of a shipped one: fragility, boundary.
     """
-    asked = importlib.import_module("fem.ensemble.file").load_ensemble(ensemble)
-    folder = flags.folder(asked.name)
+    plan = importlib.import_module("fem.ensemble.file").load_ensemble(ensemble)
+    folder = flags.folder(plan.name)
     # Loaded late: bad input is refused before anything is compiled.
     study = importlib.import_module("fem.ensemble.run")
     with flags.options() as options:
-        result = study.run_ensemble(asked, folder=folder, **options)
+        result = study.run_ensemble(plan, folder=folder, **options)
     return print_result(result, ENSEMBLE, folder, page_of(result, folder), as_json=flags.as_json)
 
 

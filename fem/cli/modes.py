@@ -34,7 +34,7 @@ def modes(
     """Print elastic frequencies of the free container; the shapes go to modes.vtu and modes.svg."""
     loaded = load_case(case, overrides)
     elements, free, modes_of = _free_bodies(loaded)
-    available = min(one.unknowns for one in free) - RIGID_MODES
+    available = min(body.unknowns for body in free) - RIGID_MODES
     if count is not None and not 1 <= count <= available:
         raise CaseError(f"--count {count}: this mesh has from 1 to {available} elastic modes")
     # A case may keep no elastic modes, or more than a coarse mesh has.

@@ -58,19 +58,19 @@ def picture(
             raise CaseError("--time is for a run, and this is a motion file")
         record = read_record(path, unit=unit, sample_interval=sample_interval)
         component = record.component("horizontal", quantity=quantity, channel=channel) if channel else None
-        shown = (
-            [one for one in record.components if one.quantity == quantity][:3]
+        components = (
+            [candidate for candidate in record.components if candidate.quantity == quantity][:3]
             if component is None
             else [component]
         )
-        if not shown:
+        if not components:
             record.component("horizontal", quantity=quantity)  # raises, with what it holds
         processing = Processing(baseline=baseline)
-        print(_write_motion([processed(one, processing) for one in shown], path, to))
-        for one in shown:
-            change = baseline_change(one, processing)
+        print(_write_motion([processed(component, processing) for component in components], path, to))
+        for component in components:
+            change = baseline_change(component, processing)
             if change is not None and change.is_said:
-                print(f"{one.name or path.name}: {change.in_words}")
+                print(f"{component.name or path.name}: {change.in_words}")
         return
     if not path.exists():
         raise CaseError(f"{run}: no such file or folder; give the folder of a run, or a motion file")

@@ -62,7 +62,7 @@ def report(
         )
     if pdf and to is not None and to.suffix.lower() == ".pdf":
         to = to.with_suffix(".html")  # the PDF lies beside the page
-    place = _place(to if to is not None else folder / PAGE)
+    target = _target(to if to is not None else folder / PAGE)
     reporter = ScreenReporter(quiet=quiet)
     interrupts = importlib.import_module("fem.runtime.signals")
     pages = importlib.import_module("fem.report.run_page")
@@ -83,15 +83,15 @@ def report(
                 message=reporter.message,
                 stop=stop,
             )
-    with writing_into(place.parent, ELSEWHERE_TO):
-        write_atomically(place, page)
-    print(place)
+    with writing_into(target.parent, ELSEWHERE_TO):
+        write_atomically(target, page)
+    print(target)
     if pdf:
         printing = importlib.import_module("fem.report.printing")
-        print(printing.print_page(place) or printing.BY_HAND)
+        print(printing.print_page(target) or printing.BY_HAND)
 
 
-def _place(path: Path) -> Path:
+def _target(path: Path) -> Path:
     """Where the page goes, checked before anything is computed; never a file of results."""
     if path.suffix.lower() not in SUFFIXES:
         raise FolderError(f"--to {path}: the page is HTML; give a name that ends in {' or '.join(SUFFIXES)}")

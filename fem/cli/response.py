@@ -94,8 +94,8 @@ def page_of(request: "ResponseRequest", result: "ResponseResult", folder: Path) 
         counted = Counter(point.words for point in result.points if point.direction == direction)
         words = ", ".join(f"{count} x {word}" for word, count in counted.items())
         yield f"  {direction:<11} {words or 'not reached'}"
-    for what, sweep, where, how in branches(result):
-        yield f"  {what:<11} {sweep}, {where}: {how}"
+    for change, sweep, where, how in branches(result):
+        yield f"  {change:<11} {sweep}, {where}: {how}"
     judged = [point.stable for point in result.points if point.stable is not None]
     yield (
         f"  stable      {sum(judged)} of {len(judged)} points: amplitudes do not diverge, and without drive the "

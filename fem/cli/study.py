@@ -46,7 +46,7 @@ def study(
         raise CaseError(f"no study {_unknown(name, STUDIES)}")
     every = importlib.import_module("fem.evidence.paper.index").all_claims()
     known = [claim.name for claim in every]
-    if unknown := [wanted for wanted in only if wanted not in known]:
+    if unknown := [claim for claim in only if claim not in known]:
         raise CaseError(f"--only: no such claim {_unknown(unknown[0], known)}")
     chosen = [claim for claim in every if not only or claim.name in only]
     folder = out if out is not None else Path("outputs") / f"study_{name}"

@@ -27,12 +27,12 @@ def sweep(
     sweep:
         A sweep file or the name of a shipped sweep (see `python -m fem list`).
     """
-    asked = load_sweep(sweep)
-    folder = flags.folder(asked.name)
+    plan = load_sweep(sweep)
+    folder = flags.folder(plan.name)
     # Loaded late: bad input is refused before anything is compiled.
     solver = importlib.import_module("fem.sweep.run")
     with flags.options() as options:
-        info = solver.run_sweep(asked, folder, **options)
+        info = solver.run_sweep(plan, folder, **options)
     return print_result(info, SWEEP, folder, page_of(info, folder), as_json=flags.as_json)
 
 
@@ -58,7 +58,7 @@ def page_of(info: "SweepResult", folder: Path) -> Iterator[str]:
     yield f"  {folder}: {table}, sweep.json" + "".join(f", {name}" for name in info.maps)
     if info.changes is not None:
         yield f"  {folder}: thresholds.csv, {info.changes} changes of outcome refined {info.held}".rstrip()
-    sets = ((one["where"], one["in_words"]) for one in info.motion_set or ())
+    sets = ((row["where"], row["in_words"]) for row in info.motion_set or ())
     yield from table_lines(sets, "motion_set.csv")
     if info.answer:
         tables = importlib.import_module("fem.sweep.table")

@@ -27,14 +27,14 @@ def write_figures(run: OpenedRun, container: Container) -> list[Path]:
         FolderError: the history is missing or damaged.
         OSError: the folder or a file cannot be written.
     """
-    place, drawings = run.place, _draw(run, container)
-    place.figures.mkdir(parents=True, exist_ok=True)
-    place.drawn.unlink(missing_ok=True)
+    files, drawings = run.place, _draw(run, container)
+    files.figures.mkdir(parents=True, exist_ok=True)
+    files.drawn.unlink(missing_ok=True)
     for drawing in drawings:
-        write_atomically(_svg(place, drawing.name), drawing.svg)
-    metadata = _identity(place) | {"figures": [_metadata(drawing) for drawing in drawings]}
-    write_atomically(place.drawn, to_json(metadata))
-    return [_svg(place, drawing.name) for drawing in drawings]
+        write_atomically(_svg(files, drawing.name), drawing.svg)
+    metadata = _identity(files) | {"figures": [_metadata(drawing) for drawing in drawings]}
+    write_atomically(files.drawn, to_json(metadata))
+    return [_svg(files, drawing.name) for drawing in drawings]
 
 
 def drawings_of(run: OpenedRun, container: Container) -> dict[str, Drawing]:
@@ -55,17 +55,17 @@ def _draw(run: OpenedRun, container: Container) -> list[Drawing]:
     return drawings
 
 
-def _cached(place: RunFiles) -> list[Drawing] | None:
+def _cached(files: RunFiles) -> list[Drawing] | None:
     """The drawings in a folder; None if one is missing, changed or out of date."""
     try:
-        metadata = json.loads(place.drawn.read_text(encoding="utf-8"))
+        metadata = json.loads(files.drawn.read_text(encoding="utf-8"))
         figures = metadata.pop("figures")
         # A name becomes a path, and ids in a page.
-        if metadata != _identity(place) or not all(figure["name"].isidentifier() for figure in figures):
+        if metadata != _identity(files) or not all(figure["name"].isidentifier() for figure in figures):
             return None
         drawings = []
         for figure in figures:
-            svg = _svg(place, figure["name"]).read_text(encoding="utf-8")
+            svg = _svg(files, figure["name"]).read_text(encoding="utf-8")
             require_drawing(svg)
             drawings.append(Drawing(**(figure | {"svg": svg})))
         return drawings if [_metadata(drawing) for drawing in drawings] == figures else None
@@ -73,9 +73,9 @@ def _cached(place: RunFiles) -> list[Drawing] | None:
         return None
 
 
-def _identity(place: RunFiles) -> dict[str, Any]:
+def _identity(run_files: RunFiles) -> dict[str, Any]:
     """Identity of the program and digests of the files from which the figures are drawn."""
-    files = (place.result, place.resolved, place.history, place.rigid_check)
+    files = (run_files.result, run_files.resolved, run_files.history, run_files.rigid_check)
     return {"program": program_identity(), "drawn_from": {path.name: _digest(path) for path in files}}
 
 
@@ -84,8 +84,8 @@ def _metadata(drawing: Drawing) -> dict[str, Any]:
     return asdict(drawing) | {"svg": hashlib.sha256(drawing.svg.encode()).hexdigest()}
 
 
-def _svg(place: RunFiles, name: str) -> Path:
-    return place.figures / f"{name}.svg"
+def _svg(files: RunFiles, name: str) -> Path:
+    return files.figures / f"{name}.svg"
 
 
 def _digest(path: Path) -> str | None:

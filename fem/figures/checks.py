@@ -25,7 +25,7 @@ def rigid_check_figure(run: RunData) -> Figure | None:
     if table is None or check is None:
         return None
     time = table["time_s"]
-    found, block = np.degrees(table["rotation_rad"]), np.degrees(table["analytic_rotation_rad"])
+    rotation, block = np.degrees(table["rotation_rad"]), np.degrees(table["analytic_rotation_rad"])
     reasons = "; ".join(check.reasons)
     fair = "A fair comparison" if check.meaningful else f"No fair comparison: {reasons}"
     lines = textwrap.wrap(f"{fair}.{_ratios(check)}", LINE_LENGTH)
@@ -34,7 +34,7 @@ def rigid_check_figure(run: RunData) -> Figure | None:
         above,
         "rotation [degrees]",
         time,
-        (found, style.BLUE, "-", f"container, {run.case.solver.model} model"),
+        (rotation, style.BLUE, "-", f"container, {run.case.solver.model} model"),
         (block, style.VERMILLION, "--", f"analytic {check.reference or 'rigid block'}"),
         zero=False,
     )
@@ -54,7 +54,7 @@ def rigid_check_figure(run: RunData) -> Figure | None:
             for axes in (above, below):
                 axes.axvline(impact, color=colour, linestyle=dashes, linewidth=1.0, label=label)
                 label = ""
-    style.curve_panel(below, "difference [degrees]", time, (found - block, style.BLACK, "-", None))
+    style.curve_panel(below, "difference [degrees]", time, (rotation - block, style.BLACK, "-", None))
     style.legend_above(above, columns=2)
     style.head(figure, "Comparison with the analytic rigid block", "\n".join(lines))
     return figure
@@ -70,13 +70,13 @@ def band_figure(run: RunData) -> Figure | None:
     for member in band.members:
         groups.setdefault(_group_of(member), []).append(member)
     figure, (above, below) = style.panels((2.2, 1.5), header=3, below=LABELS)
-    for place, members in enumerate(groups.values()):
+    for position, members in enumerate(groups.values()):
         spread = np.linspace(-0.3, 0.3, len(members)) if len(members) > 1 else np.zeros(1)
         for offset, member in zip(spread, members, strict=True):
             own = member is band.members[0]
             for axes, height in ((above, _height(member)), (below, 1e3 * member.slipped_most)):
                 axes.plot(
-                    place + offset,
+                    position + offset,
                     height,
                     marker="o" if member.outcome else "x",
                     color=style.STATE_COLOURS.get(member.outcome or "", style.VERMILLION),

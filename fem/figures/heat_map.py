@@ -40,10 +40,10 @@ class MapAxis:
 
     def places(self, values: FloatArray) -> FloatArray:
         """Where values lie, counted in cells from the middle of the first; nan outside of the axis."""
-        known, given = np.array(self.values, dtype=float), np.asarray(values, dtype=float)
+        known, points = np.array(self.values, dtype=float), np.asarray(values, dtype=float)
         if self.scale == "log":
-            known, given = np.log(known), np.log(given)
-        return np.interp(given, known, np.arange(known.size), left=np.nan, right=np.nan)
+            known, points = np.log(known), np.log(points)
+        return np.interp(points, known, np.arange(known.size), left=np.nan, right=np.nan)
 
     def ticks(self) -> tuple[list[float], list[str]]:
         """Places and labels of the marks."""
@@ -118,10 +118,10 @@ def draw_heat_map(
     height = {1: 4.6, 2: 3.4 * rows}.get(columns, 2.6 * rows)
     with house_style():
         figure = Figure(figsize=(WIDTH, height + 0.9), layout="constrained")
-        places = list(figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=True).flat)
-        for axes in places[len(panels) :]:
+        subplots = list(figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=True).flat)
+        for axes in subplots[len(panels) :]:
             axes.set_visible(False)
-        for k, (axes, panel) in enumerate(zip(places, panels, strict=False)):
+        for k, (axes, panel) in enumerate(zip(subplots, panels, strict=False)):
             look = panel.look or shared
             image = axes.imshow(
                 panel.values,
@@ -143,14 +143,14 @@ def draw_heat_map(
                 axes.set_xlabel(x.label)
                 axes.tick_params(labelbottom=True)
             if panel.look and k + columns >= len(panels):
-                handles = _classes([one for one in panels if one.look is panel.look], panel.look)
+                handles = _classes([other for other in panels if other.look is panel.look], panel.look)
                 below = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.2), "ncols": 2}
                 axes.legend(handles=handles, handlelength=1.4, columnspacing=1.0, **below)
         figure.suptitle(title, x=0.01, ha="left", fontsize=10.0)
         if bar:
-            figure.colorbar(image, ax=places[: len(panels)], label=bar, pad=0.02, aspect=30)
+            figure.colorbar(image, ax=subplots[: len(panels)], label=bar, pad=0.02, aspect=30)
         handles = _legend([panel for panel in panels if panel.look is None], shared)
-        handles += places[0].get_legend_handles_labels()[0]
+        handles += subplots[0].get_legend_handles_labels()[0]
         if handles:  # names of curves are long
             columns = 4 if len(handles) > 7 or any(panel.curves for panel in panels) else 7
             figure.legend(handles=handles, loc="outside lower center", ncols=min(len(handles), columns))

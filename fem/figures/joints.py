@@ -77,15 +77,15 @@ def _side_by_side(figure: Figure) -> list[Axes]:
     each = (wide - style.LEFT - style.RIGHT - 2.0 * BETWEEN) / 3.0
     bottom = tall - 0.08 - HEADER * style.LINE - RANGES
     panels: list[Axes] = []
-    for place in range(3):
+    for column in range(3):
         rectangle = (
-            (style.LEFT + place * (each + BETWEEN)) / wide,
+            (style.LEFT + column * (each + BETWEEN)) / wide,
             bottom / tall,
             each / wide,
             RANGES / tall,
         )
         panels.append(figure.add_axes(rectangle, sharey=panels[0] if panels else None))
-        panels[-1].tick_params(labelleft=place == 0)
+        panels[-1].tick_params(labelleft=column == 0)
     panels[0].set_ylabel("above the floor [m]")
     return panels
 
@@ -133,5 +133,5 @@ def _draw_bolt_force(
     if largest[instant] == 0.0:
         axes.plot([], [], color=colour, label=f"{name}: none")
         return
-    kept = style.kept_samples(largest)
-    axes.fill_between(time[kept], sign * largest[kept], color=colour, linewidth=0.4, label=name + where)
+    samples = style.kept_samples(largest)
+    axes.fill_between(time[samples], sign * largest[samples], color=colour, linewidth=0.4, label=name + where)

@@ -30,9 +30,9 @@ def modes_figure(
         modes: of these nodes.
         name: of the case, for the title.
     """
-    shown = min(len(modes.frequencies_Hz), MOST)
-    columns = min(COLUMNS, shown)
-    rows = math.ceil(shown / columns)
+    count = min(len(modes.frequencies_Hz), MOST)
+    columns = min(COLUMNS, count)
+    rows = math.ceil(count / columns)
     size = np.ptp(points, axis=0)
     reach = min(AMPLITUDE[0] * size.max(), AMPLITUDE[1] * size.min())
     low, high = points.min(axis=0) - 1.1 * reach, points.max(axis=0) + 1.1 * reach
@@ -42,11 +42,11 @@ def modes_figure(
     height = top + rows * (tall + LINE) + 0.1
     figure = Figure(figsize=(WIDTH, height))
     lines = chained(outline_edges(cells, box))
-    for k in range(shown):
+    for k in range(count):
         row, column = divmod(k, columns)
         bottom = height - top - (row + 1) * (tall + LINE)
-        place = ((0.1 + column * wide) / WIDTH, bottom / height, wide / WIDTH, tall / height)
-        axes = figure.add_axes(place)
+        rectangle = ((0.1 + column * wide) / WIDTH, bottom / height, wide / WIDTH, tall / height)
+        axes = figure.add_axes(rectangle)
         axes.set_axis_off()
         shape = modes.shapes[k]
         moved = points + shape * (reach / np.linalg.norm(shape, axis=1).max())
@@ -57,7 +57,7 @@ def modes_figure(
         axes.set_title(
             f"{k + 1}: {rounded(modes.frequencies_Hz[k], 4)} Hz", loc="center", fontsize=8.5, pad=3
         )
-    more = len(modes.frequencies_Hz) - shown
+    more = len(modes.frequencies_Hz) - count
     rest = f"; {more} more are in the table" if more else ""
     head(
         figure,

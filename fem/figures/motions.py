@@ -94,26 +94,26 @@ def draw_shares(curves: Sequence[ShareCurve], *, title: str, label: str) -> Figu
         style.head(
             figure, title, "share of the motions that overturn, worse sign of each, with 95 % intervals"
         )
-        widths = [float(np.ptp(one.strengths)) for one in curves]
-        for k, one in enumerate(curves):
-            known = np.isfinite(one.share)
+        widths = [float(np.ptp(curve.strengths)) for curve in curves]
+        for k, curve in enumerate(curves):
+            known = np.isfinite(curve.share)
             aside = 0.006 * widths[k] * (k - 0.5 * (len(curves) - 1))  # so that no interval hides another
             axes.errorbar(
-                one.strengths[known] + aside,
-                one.share[known],
-                yerr=[(one.share - one.low)[known], (one.high - one.share)[known]],
+                curve.strengths[known] + aside,
+                curve.share[known],
+                yerr=[(curve.share - curve.low)[known], (curve.high - curve.share)[known]],
                 color=COLOURS[k % len(COLOURS)],
                 linestyle=LINES[k // len(COLOURS) % len(LINES)],
                 marker="o",
                 markersize=3.0,
                 linewidth=0.9,
                 capsize=2.0,
-                label=one.label or None,
+                label=curve.label or None,
             )
         axes.set_ylim(-0.02, 1.02)
         axes.margins(x=0.02)
         axes.set_ylabel("share that overturns [-]")
         axes.set_xlabel(label)
-        if any(one.label for one in curves):
+        if any(curve.label for curve in curves):
             style.legend_above(axes, NAMES_A_LINE)
         return figure

@@ -58,11 +58,11 @@ def record_figure(components: Sequence[Component], title: str) -> Figure:
         components: three at most; those of one record lie over each other.
         title: such as the name of the file.
     """
-    named = [(one.name or one.direction or "", one) for one in components]
+    named = [(component.name or component.direction or "", component) for component in components]
     with style.house_style():
         figure, axes = style.panels((1.3, 1.3, 1.3, 2.2), gaps=(0.1, 0.1, 0.75), header=2 + (len(named) > 1))
-        for k, (name, one) in enumerate(named):
-            displacement, velocity, acceleration = motion_of(one)
+        for k, (name, component) in enumerate(named):
+            displacement, velocity, acceleration = motion_of(component)
             for panel, label, values in (
                 (axes[0], "acceleration [m/s²]", acceleration),
                 (axes[1], "velocity [m/s]", velocity),
@@ -74,7 +74,7 @@ def record_figure(components: Sequence[Component], title: str) -> Figure:
                     "-",
                     name if panel is axes[0] and len(named) > 1 else None,
                 )
-                style.curve_panel(panel, label, one.times, curve, zero=k == 0)
+                style.curve_panel(panel, label, component.times, curve, zero=k == 0)
         for panel in axes[:2]:
             panel.tick_params(labelbottom=False)
         axes[2].set_xlabel(style.TIME)
@@ -95,8 +95,8 @@ def _largest(component: Component) -> tuple[float, float]:
 
 
 def _draw_spectra(axes: Axes, named: Sequence[tuple[str, Component]]) -> None:
-    for k, (name, one) in enumerate(named):
-        spectrum = spectrum_of(one)
+    for k, (name, component) in enumerate(named):
+        spectrum = spectrum_of(component)
         axes.plot(
             spectrum.periods_s,
             spectrum.pseudo_acceleration_m_s2,

@@ -158,9 +158,9 @@ def rotation_figure(run: RunData) -> Figure:
         axes.plot([], [], " ", label=f"slenderness angle ±{rounded(angle, 4)}°: far off the scale")
     _mark_impact(axes, verdict)
     style.legend_above(axes)
-    found = math.degrees(verdict.max_rotation_rad or math.radians(largest))
-    least, ratio = math.degrees(DEGREES.least), RATIO.text(found / angle)
-    largest_shown = f"< {least:g}" if 0.0 < found < least else rounded(found)
+    turned = math.degrees(verdict.max_rotation_rad or math.radians(largest))
+    least, ratio = math.degrees(DEGREES.least), RATIO.text(turned / angle)
+    largest_shown = f"< {least:g}" if 0.0 < turned < least else rounded(turned)
     style.head(
         figure, f"Rotation: {largest_shown}° at most, {ratio} of the slenderness angle", status=run.status
     )
@@ -220,8 +220,8 @@ def phase_portrait_figure(run: RunData) -> Figure | None:
     rotation, rate = run.history["rotation_rad"], run.history["angular_velocity_rad_s"]
     figure, (axes,) = style.panels((4.0,), width=0.8 * style.WIDTH, header=2)
     axes.set_label(style.PLANE)  # for `cursor_axes`
-    kept = style.kept_samples(rotation, rate)
-    axes.plot(np.degrees(rotation[kept]), np.degrees(rate[kept]), color=style.BLUE, linewidth=0.7)
+    samples = style.kept_samples(rotation, rate)
+    axes.plot(np.degrees(rotation[samples]), np.degrees(rate[samples]), color=style.BLUE, linewidth=0.7)
     axes.plot(*np.degrees([rotation[0], rate[0]]), "o", color=style.GREEN, label="start")
     axes.plot(*np.degrees([rotation[-1], rate[-1]]), "s", color=style.VERMILLION, label="end")
     if parameter and np.abs(rotation).max() >= style.NEAR_LIMIT * angle:

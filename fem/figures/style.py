@@ -184,8 +184,8 @@ def curve_panel(
     if zero:
         zero_line(axes)
     for values, colour, line, name in curves:
-        kept = kept_samples(values)
-        axes.plot(time[kept], values[kept], color=colour, linestyle=line, label=name, **style)
+        samples = kept_samples(values)
+        axes.plot(time[samples], values[samples], color=colour, linestyle=line, label=name, **style)
 
 
 def head(figure: Figure, title: str, statement: str = "", *, status: str = "completed") -> None:
@@ -194,8 +194,8 @@ def head(figure: Figure, title: str, statement: str = "", *, status: str = "comp
     width, height = figure.get_size_inches()
     for row, (text, size, colour) in enumerate(((title, 10.0, BLACK), (statement, 8.0, GREY))):
         if text:
-            place = (LEFT / width, 1.0 - (0.06 + row * LINE) / height)
-            figure.text(*place, text, fontsize=size, color=colour, va="top")
+            position = (LEFT / width, 1.0 - (0.06 + row * LINE) / height)
+            figure.text(*position, text, fontsize=size, color=colour, va="top")
 
 
 def legend_above(axes: Axes, columns: int = 4) -> None:
@@ -237,13 +237,13 @@ def kept_samples(*columns: FloatArray) -> NDArray[np.int64]:
     if length <= 2 + 2 * len(columns):
         return np.arange(count)
     starts = np.arange(0, count, length)
-    kept = [starts, np.minimum(starts + length, count) - 1]
+    indices = [starts, np.minimum(starts + length, count) - 1]
     for column in columns:
         padded = np.full(len(starts) * length, column[-1])
         padded[:count] = column
         stretches = np.nan_to_num(padded).reshape(len(starts), length)
-        kept += [starts + stretches.argmin(axis=1), starts + stretches.argmax(axis=1)]
-    return np.unique(np.minimum(np.concatenate(kept), count - 1))
+        indices += [starts + stretches.argmin(axis=1), starts + stretches.argmax(axis=1)]
+    return np.unique(np.minimum(np.concatenate(indices), count - 1))
 
 
 def draw_limits(
@@ -259,11 +259,11 @@ def draw_limits(
     Args:
         of_weight: times and share (g + a_v)/g, where the limit follows a weight that changes.
     """
-    for place, name in ((value, label), (-value, None)):
+    for limit, name in ((value, label), (-value, None)):
         if of_weight is None:
-            axes.axhline(place, linewidth=0.9, label=name, **style)
+            axes.axhline(limit, linewidth=0.9, label=name, **style)
         else:
-            axes.plot(of_weight[0], place * of_weight[1], linewidth=0.9, label=name, **style)
+            axes.plot(of_weight[0], limit * of_weight[1], linewidth=0.9, label=name, **style)
 
 
 def changing_weight(history: History, gravity: float) -> tuple[FloatArray, FloatArray] | None:
@@ -299,22 +299,22 @@ def cursor_axes(figure: Figure) -> dict[str, Any] | None:
     figure out. A cursor over time spans all panels over time.
     """
     over_time = [axes for axes in figure.axes if axes.get_label() == TIME]
-    found = over_time or [axes for axes in figure.axes if axes.get_label() == PLANE]
-    if not found:
+    cursors = over_time or [axes for axes in figure.axes if axes.get_label() == PLANE]
+    if not cursors:
         return None
-    boxes = [axes.get_position() for axes in found]
-    place = {
+    boxes = [axes.get_position() for axes in cursors]
+    area = {
         "kind": "time" if over_time else "plane",
         "left": boxes[0].x0,
         "right": boxes[0].x1,
         "top": max(box.y1 for box in boxes),
         "bottom": min(box.y0 for box in boxes),
-        "x": list(found[0].get_xlim()),
+        "x": list(cursors[0].get_xlim()),
     }
     if over_time:
-        return place
-    return place | {
-        "y": list(found[0].get_ylim()),
+        return area
+    return area | {
+        "y": list(cursors[0].get_ylim()),
         "horizontal": "rotation",  # by the names that the player of a report gives them
         "vertical": "rate",
         "factors": [math.degrees(1.0)] * 2,  # from SI units to those of the axes

@@ -152,4 +152,4 @@ def _policy(scripts: Sequence[str]) -> str:
     if not scripts:
         return "'none'"
     hashes = (base64.b64encode(hashlib.sha256(text.encode()).digest()).decode() for text in scripts)
-    return " ".join(f"'sha256-{one}'" for one in hashes)
+    return " ".join(f"'sha256-{digest}'" for digest in hashes)

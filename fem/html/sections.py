@@ -180,7 +180,7 @@ def figure_columns(
     def column(key: str, shown: Shown) -> Column[Any]:
         return Column(figure_head(shown), lambda item: text(shown, value(item, key)), NUMBER)
 
-    return [column(*one) for one in figures.items()]
+    return [column(key, shown) for key, shown in figures.items()]
 
 
 def table_of(
@@ -208,7 +208,7 @@ def table_of(
     rows = [
         ([_cell(column.cell(item), column.look) for column in columns], row_look(item)) for item in listed
     ]
-    kept = [
+    visible = [
         k
         for k, column in enumerate(columns)
         if not column.optional or any(cells[k].text for cells, _ in rows)
@@ -216,8 +216,8 @@ def table_of(
     more = len(listed) - most
     return Table(
         label,
-        [Cell(columns[k].head, columns[k].look) for k in kept],
-        [TableRow([cells[k] for k in kept], look) for cells, look in rows[:most]],
+        [Cell(columns[k].head, columns[k].look) for k in visible],
+        [TableRow([cells[k] for k in visible], look) for cells, look in rows[:most]],
         left_out=f"{more} more rows are in {file}." if more > 0 else "",
         **options,
     )

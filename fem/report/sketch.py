@@ -158,8 +158,8 @@ def _draw_beside(axes: Axes, case: Case, unit: float) -> tuple[float, float]:
     """Neighbours, stops and ties, as far as the figure is wide; left and right end of all that stands there [m]."""
     ends = [box.sides for box in case.stack]
     row = case.row
-    places = places_of(case, [container.stack[0].width for container in row])
-    for neighbour, x in zip(row[1:], places.x[1:], strict=True):
+    positions = places_of(case, [container.stack[0].width for container in row])
+    for neighbour, x in zip(row[1:], positions.x[1:], strict=True):
         left, width, height = (
             x - 0.5 * neighbour.stack[0].width,
             neighbour.stack[0].width,

@@ -61,7 +61,7 @@ def response_answer(result: ResponseResult) -> str | None:
     elif len(fates.overturned) == len(points):
         parts = [f"overturned at {every}"]
     else:
-        fallen = [f"{found_at(found)} going {found.direction}" for found in result.drop_outs]
+        fallen = [f"{range_of(fall)} going {fall.direction}" for fall in result.drop_outs]
         parts = [f"overturned at {_listed(fallen)}"] if fallen else []
         if fates.destroyed:
             parts.append(f"not valid at {_counted(fates.destroyed)}: a corner is destroyed")
@@ -81,7 +81,7 @@ def response_answer(result: ResponseResult) -> str | None:
                 f"slid by up to {stroke} a period, at {slid.frequency_Hz:.4g} Hz going {slid.direction}"
             )
     if result.coexisting:
-        parts.append(f"two motions coexist at {_listed([found_at(found) for found in result.coexisting])}")
+        parts.append(f"two motions coexist at {_listed([range_of(pair) for pair in result.coexisting])}")
     if failed:
         parts.append(f"no outcome at {failed} of {len(result.points)} points")
     return "frequency: " + "; ".join(parts)
@@ -96,18 +96,18 @@ def branches_in_words(result: ResponseResult) -> Iterator[tuple[str, str, str, s
     """Where the curve changes: what happens there, on which sweep, at which frequencies, and how."""
     for fall in result.drop_outs:
         how = "a motion that was carried there" if fall.carried else "from its start"
-        yield "overturns", fall.direction, found_at(fall), how
+        yield "overturns", fall.direction, range_of(fall), how
     for pair in result.coexisting:
         words = f"{' or '.join(pair.up)} going up, {' or '.join(pair.down)} going down"
         if pair.largest_difference is not None:
             words += f", rotation ratios up to {RATIO.text(pair.largest_difference)} apart"
-        yield "coexist", "up and down", found_at(pair), words
+        yield "coexist", "up and down", range_of(pair), words
     for jump in result.jumps:
         before, after = map(RATIO.text, jump[TURNED])
-        yield "jump", jump.direction, found_at(jump), f"{jump.what}, rotation ratio {before} to {after}"
+        yield "jump", jump.direction, range_of(jump), f"{jump.what}, rotation ratio {before} to {after}"
 
 
-def found_at(change: Coexistence | Jump | DropOut) -> str:
+def range_of(change: Coexistence | Jump | DropOut) -> str:
     """The frequencies of a coexistence, a jump or a drop-out, in the order of its sweep."""
     return _range(change.from_Hz, change.to_Hz)
 

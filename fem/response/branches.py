@@ -60,20 +60,20 @@ def coexistences(records: Sequence[PointRecord]) -> list[Coexistence]:
     return [_coexistence(list(run)) for apart, run in groupby(pairs, lambda pair: differ(*pair)) if apart]
 
 
-def differ(one: PointRecord, other: PointRecord) -> bool:
+def differ(up: PointRecord, down: PointRecord) -> bool:
     """Whether two points at one frequency are different motions; a failed one says nothing."""
-    if "failed" in (one.row.status, other.row.status):
+    if "failed" in (up.row.status, down.row.status):
         return False
-    if not (one.stands and other.stands):
-        return one.stands != other.stands
-    if (one.row.long_time == "rest") != (other.row.long_time == "rest"):
+    if not (up.stands and down.stands):
+        return up.stands != down.stands
+    if (up.row.long_time == "rest") != (down.row.long_time == "rest"):
         return True
-    spread = max(record.row.turned - record.number("median_rotation_ratio") for record in (one, other))
-    if _apart(one, other, TURNED) > max(APART, spread):
+    spread = max(record.row.turned - record.number("median_rotation_ratio") for record in (up, down))
+    if _apart(up, down, TURNED) > max(APART, spread):
         return True
-    strokes = [record.extremes[:, 4] for record in (one, other)]
+    strokes = [record.extremes[:, 4] for record in (up, down)]
     spread = max(float(stroke.max() - np.median(stroke)) for stroke in strokes)
-    return _apart(one, other, "slip_stroke_m") > max(APART_STROKE * one.row.amplitude_m, spread)
+    return _apart(up, down, "slip_stroke_m") > max(APART_STROKE * up.row.amplitude_m, spread)
 
 
 def jumps(records: Sequence[PointRecord]) -> list[Jump]:
@@ -125,16 +125,16 @@ def drop_outs(records: Sequence[PointRecord]) -> list[DropOut]:
 
 
 def _coexistence(pairs: Sequence[tuple[PointRecord, PointRecord]]) -> Coexistence:
-    apart = [_apart(one, other, TURNED) for one, other in pairs if one.stands and other.stands]
+    apart = [_apart(up, down, TURNED) for up, down in pairs if up.stands and down.stands]
     return Coexistence(
         from_Hz=pairs[0][0].row.frequency_Hz,
         to_Hz=pairs[-1][0].row.frequency_Hz,
         frequencies=len(pairs),
-        up=tuple(dict.fromkeys(one.row.words for one, _ in pairs)),
-        down=tuple(dict.fromkeys(other.row.words for _, other in pairs)),
+        up=tuple(dict.fromkeys(up.row.words for up, _ in pairs)),
+        down=tuple(dict.fromkeys(down.row.words for _, down in pairs)),
         largest_difference=max(apart) if apart else None,
     )
 
 
-def _apart(one: PointRecord, other: PointRecord, column: str) -> float:
-    return abs(one.number(column) - other.number(column))
+def _apart(first: PointRecord, second: PointRecord, column: str) -> float:
+    return abs(first.number(column) - second.number(column))

@@ -120,10 +120,10 @@ def draw_portraits(records: Sequence[PointRecord]) -> Figure:
         ha="left",
         fontsize=10.0,
     )
-    places = list(figure.subplots(rows, COLUMNS, squeeze=False).flat)
-    for axes in places[len(chosen) :]:
+    subplots = list(figure.subplots(rows, COLUMNS, squeeze=False).flat)
+    for axes in subplots[len(chosen) :]:
         axes.set_visible(False)
-    for k, (axes, record) in enumerate(zip(places, chosen, strict=False)):
+    for k, (axes, record) in enumerate(zip(subplots, chosen, strict=False)):
         _draw_portrait(axes, record)
         if k % COLUMNS == 0:
             axes.set_ylabel("angular velocity [deg/s]")
@@ -143,7 +143,7 @@ def choose_portraits(records: Sequence[PointRecord]) -> list[PointRecord]:
     chosen = list(kinds.values())[:PORTRAITS]
     for share in np.linspace(0.0, 1.0, PORTRAITS):
         candidate = by_size[round(share * (len(by_size) - 1))]
-        if len(chosen) < PORTRAITS and all(candidate is not one for one in chosen):
+        if len(chosen) < PORTRAITS and all(candidate is not picked for picked in chosen):
             chosen.append(candidate)
     return sorted(chosen, key=lambda record: (record.row.frequency_Hz, record.row.direction))
 

@@ -145,11 +145,11 @@ def _open_ledger(driven: DrivenModel) -> None:
 def _step_to(driven: DrivenModel, end: float) -> tuple[int, FloatArray]:
     """Step to an instant; returns the code of the stepping and the samples on the way."""
     run, clock = driven.run, driven.run.clock[0]
-    taken = []
+    drained = []
     while True:
         code = advance_compiled(driven.body, run, end)
         count = int(clock.samples - clock.samples_drained)
-        taken.append(run.buffers.history.columns[:count].copy())
+        drained.append(run.buffers.history.columns[:count].copy())
         clock.samples_drained = clock.samples
         if code != REACHED or clock.time >= end or math.isinf(end):
-            return code, np.concatenate(taken)
+            return code, np.concatenate(drained)

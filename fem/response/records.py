@@ -136,8 +136,10 @@ def record_of(point: CurvePoint) -> PointRecord:
         reason=orbit.reason,
         **judged,
     )
-    kept = PORTRAYED if long_time is None else {"rest": 1}.get(long_time.kind, long_time.period or PORTRAYED)
-    portrait = orbit.portrait[-kept * SAMPLES_PER_PERIOD :]
+    periods = (
+        PORTRAYED if long_time is None else {"rest": 1}.get(long_time.kind, long_time.period or PORTRAYED)
+    )
+    portrait = orbit.portrait[-periods * SAMPLES_PER_PERIOD :]
     return PointRecord(row=row, sections=orbit.sections, extremes=extremes, portrait=portrait)
 
 

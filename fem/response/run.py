@@ -62,7 +62,7 @@ def run_response(
         size=required_disk(request),
         subject="the response curve",
         way_out="take fewer frequencies",
-        progress=lambda place: "its frequencies so far",
+        progress=lambda results: "its frequencies so far",
     )
     return run_study(study, folder, **options)
 
@@ -76,17 +76,17 @@ def required_disk(request: ResponseRequest) -> float:
 
 
 def _compute(
-    request: ResponseRequest, begun: ResponseResult, place: ResultFolder, runner: Runner
+    request: ResponseRequest, begun: ResponseResult, results: ResultFolder, runner: Runner
 ) -> ResponseResult:
     """Add the points that are missing, and write their tables and figures."""
-    records, saved = read_state(place)
+    records, saved = read_state(results)
     say_expected(runner.reporter, f"{2 * request.count} points", _expected_s(request))
-    status = _sweep(request, place, records, saved, runner)
-    place.write_text("response.csv", csv_of_rows(records))
-    place.write_text("sections.csv", csv_of_sections(records))
-    place.write_text("portraits.csv", csv_of_portraits(records))
+    status = _sweep(request, results, records, saved, runner)
+    results.write_text("response.csv", csv_of_rows(records))
+    results.write_text("sections.csv", csv_of_sections(records))
+    results.write_text("portraits.csv", csv_of_portraits(records))
     for name, svg in response_figures(request, records).items():
-        place.write_text(f"figures/{name}.svg", svg)
+        results.write_text(f"figures/{name}.svg", svg)
     result = replace(
         begun,
         status=status,
@@ -110,13 +110,13 @@ def _expected_s(request: ResponseRequest) -> float:
     return simulated * of_a_second(request.case)
 
 
-def read_state(place: ResultFolder) -> tuple[list[PointRecord], dict[str, np.ndarray]]:
+def read_state(results: ResultFolder) -> tuple[list[PointRecord], dict[str, np.ndarray]]:
     """Points already there and the state after the last of them; nothing where there is none.
 
     Raises:
         FolderError: the state is damaged.
     """
-    arrays = place.read_arrays(STATE)
+    arrays = results.read_arrays(STATE)
     if arrays is None:
         return [], {}
     rows = json.loads(str(arrays.pop("rows")))
@@ -151,7 +151,7 @@ def driven_from(case: Case, container: Container, arrays: dict[str, np.ndarray],
 
 def _sweep(
     request: ResponseRequest,
-    place: ResultFolder,
+    results: ResultFolder,
     records: list[PointRecord],
     saved: dict[str, np.ndarray],
     runner: Runner,
@@ -164,7 +164,7 @@ def _sweep(
     container, before = discretise(request.case), None
     if "clock" in saved:
         last = case_at(request, plan[len(records) - 1][1])
-        before = driven_from(last, container, saved, place.path / STATE)
+        before = driven_from(last, container, saved, results.path / STATE)
     reporter.start(sum(spans))
 
     def progress(time: float, rotation: float, mode: int) -> None:
@@ -175,7 +175,7 @@ def _sweep(
         return INTERRUPTED
     for point, after in points:
         records.append(record_of(point))
-        place.write_arrays(STATE, state_of(records, after))
+        results.write_arrays(STATE, state_of(records, after))
         done, angle = sum(spans[: len(records)]), point.slenderness_angle
         if runner.stop() and len(records) < len(plan):
             reporter.finish()

@@ -278,10 +278,10 @@ def _rounding(elements: FiniteElements) -> float:
 def _on_blocks(mass: csr_array, pattern: bsr_array) -> FloatArray:
     """Entries of the mass (n, n) at the blocks of the stiffness, which links the same nodes."""
     n = mass.shape[0]
-    ones = csr_array((np.ones(len(pattern.indices)), pattern.indices, pattern.indptr), shape=(n, n))
-    given, row = mass.tocoo(), np.repeat(np.arange(n), np.diff(ones.indptr))
-    values = np.zeros(ones.nnz)
-    values[np.searchsorted(row * n + ones.indices, given.row.astype(np.int64) * n + given.col)] = given.data
+    links = csr_array((np.ones(len(pattern.indices)), pattern.indices, pattern.indptr), shape=(n, n))
+    entries, row = mass.tocoo(), np.repeat(np.arange(n), np.diff(links.indptr))
+    values, at = np.zeros(links.nnz), entries.row.astype(np.int64) * n + entries.col
+    values[np.searchsorted(row * n + links.indices, at)] = entries.data
     return values
 
 

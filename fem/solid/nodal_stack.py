@@ -202,7 +202,7 @@ class FullStack:
         self.line: FloatArray | None = None  #: (k, 5), known once it stands
         self._corners = make_workspace(len(corner))
         self._tolerance = tolerance
-        self._leader = [responses.index(one) for one in responses]
+        self._leader = [responses.index(response) for response in responses]
         self.stack = self._compose()
 
     @property
@@ -264,7 +264,7 @@ class FullStack:
             faces=self._faces,
             centre=centre,
             point=point,
-            compliance=np.array([one.compliance for one in self._responses]),
+            compliance=np.array([response.compliance for response in self._responses]),
             load=np.array([[box.mass * downhill, -box.mass * gravity] for box in self.boxes]),
         )
         state.force[:] = rest.force

@@ -93,8 +93,8 @@ def reduced_basis(elements: FiniteElements, response: StaticResponse, modes: int
     shared = (free @ mass) @ attached.T * scale
     # The part of an attachment mode (of mass 1) outside the free modes; rounding noise if they span it.
     values, directions = np.linalg.eigh(scale[:, None] * products * scale - shared.T @ shared)
-    kept = values > INDEPENDENT
-    own = directions[:, kept] / np.sqrt(values[kept])
+    independent = values > INDEPENDENT
+    own = directions[:, independent] / np.sqrt(values[independent])
     columns = np.vstack([free, np.empty((own.shape[1], unknowns))])
     _combine(columns[len(free) :], (own.T * scale, attached), (-(shared @ own).T, free))
     gram = _products(columns, mass)
