@@ -202,17 +202,7 @@ def build_container_mesh(
 
     quads = grid_quads(columns.count, rows.count * geometry.boxes)
     box_quads = quads[: rows.count * columns.count]
-    area, centroid = areas_and_centroids(points, box_quads)
-    thickness = cell_thickness(geometry, box_region, centroid[:, 0])
-    cells = BoxCells(
-        region=box_region,
-        thickness=thickness,
-        area=area,
-        centroid=centroid[:, 1],
-        bottom=points[box_quads[:, 0], 1],
-        top=points[box_quads[:, 2], 1],
-    )
-    density, box_region = distribute_mass(geometry, fill, cells)
+    box_region, thickness, density = filled_grid(geometry, fill, points, box_quads, box_region)
     return ContainerMesh(
         points=points,
         quads=quads,
@@ -221,6 +211,24 @@ def build_container_mesh(
         thickness=np.tile(thickness, geometry.boxes),
         areal_density=np.tile(density, geometry.boxes),
     )
+
+
+def filled_grid(
+    geometry: ContainerGeometry, fill: MassFill, points: FloatArray, quads: IntArray, region: IntArray
+) -> tuple[IntArray, FloatArray, FloatArray]:
+    """Region, thickness and areal density of the cells of one box, a grid with points from its axis and its floor."""
+    area, centroid = areas_and_centroids(points, quads)
+    thickness = cell_thickness(geometry, region, centroid[:, 0])
+    cells = BoxCells(
+        region=region,
+        thickness=thickness,
+        area=area,
+        centroid=centroid[:, 1],
+        bottom=points[quads[:, 0], 1],
+        top=points[quads[:, 2], 1],
+    )
+    density, region = distribute_mass(geometry, fill, cells)
+    return region, thickness, density
 
 
 def ring_regions(geometry: ContainerGeometry, x: FloatArray, z: FloatArray) -> IntArray:

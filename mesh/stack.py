@@ -10,10 +10,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from mesh.cells import FloatArray, IntArray, areas_and_centroids
-from mesh.container import ContainerMesh, build_container_mesh, grid_quads, ring_regions
+from mesh.cells import FloatArray, IntArray
+from mesh.container import ContainerMesh, build_container_mesh, filled_grid, grid_quads, ring_regions
 from mesh.errors import MeshError
-from mesh.fill import BoxCells, MassFill, cell_thickness, distribute_mass
+from mesh.fill import MassFill
 from mesh.geometry import ContainerGeometry
 from mesh.grid import MOST_CELLS, Segments, column_segments, row_segments, segments_between
 
@@ -192,20 +192,8 @@ def _cells_of(box: StackedBox, x: FloatArray, z: FloatArray) -> tuple[IntArray, 
     """Region, thickness and areal density of the cells of one box between its lines x and z (above its bottom)."""
     points = np.column_stack([np.tile(x - box.axis, len(z)), np.repeat(z, len(x))])
     quads = grid_quads(len(x) - 1, len(z) - 1)
-    area, centroid = areas_and_centroids(points, quads)
-    geometry = box.geometry
-    region = ring_regions(geometry, x - box.axis + 0.5 * geometry.width, z)
-    thickness = cell_thickness(geometry, region, centroid[:, 0])
-    cells = BoxCells(
-        region=region,
-        thickness=thickness,
-        area=area,
-        centroid=centroid[:, 1],
-        bottom=points[quads[:, 0], 1],
-        top=points[quads[:, 2], 1],
-    )
-    density, region = distribute_mass(geometry, box.fill, cells)
-    return region, thickness, density
+    region = ring_regions(box.geometry, x - box.axis + 0.5 * box.geometry.width, z)
+    return filled_grid(box.geometry, box.fill, points, quads, region)
 
 
 def _near(boxes: Sequence[StackedBox]) -> float:

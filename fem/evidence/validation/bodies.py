@@ -8,7 +8,7 @@ import numpy as np
 from fem.case.case import Case
 from fem.evidence.verification.runs import STACK
 from fem.model.container import Container, discretise
-from mesh.container import ContainerMesh
+from mesh.container import ContainerMesh, grid_quads
 from mesh.errors import MeshError
 from mesh.region import Region
 
@@ -57,17 +57,16 @@ def specimen(case: Case, *, centroid: float, inertia_ratio: float, columns: int 
             f"no body of {width:g} x {height:g} m has its mass centre at {centroid:g} m and an inertia of "
             f"{inertia_ratio:g} m2 times its mass"
         )
-    nodes = columns + 1
-    low = (nodes * np.arange(LAYERS)[:, None] + np.arange(columns)).ravel()
-    across = np.linspace(-0.5 * width, 0.5 * width, nodes)
+    quads = grid_quads(columns, LAYERS)
+    across = np.linspace(-0.5 * width, 0.5 * width, columns + 1)
     return discretise(
         case,
         ContainerMesh(
             points=np.array([[x, z] for z in levels for x in across]),
-            quads=np.stack([low, low + 1, low + nodes + 1, low + nodes], axis=1),
-            region=np.full(low.size, int(Region.SOLID)),
-            box=np.zeros(low.size, dtype=np.int64),
-            thickness=np.full(low.size, case.container.depth_m),
+            quads=quads,
+            region=np.full(len(quads), int(Region.SOLID)),
+            box=np.zeros(len(quads), dtype=np.int64),
+            thickness=np.full(len(quads), case.container.depth_m),
             areal_density=np.repeat(np.asarray(mass * shares / (width * layer), dtype=np.float64), columns),
         ),
     )

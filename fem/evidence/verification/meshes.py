@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from fem.runtime.arrays import FloatArray, IntArray
-from mesh.container import ContainerMesh
+from mesh.container import ContainerMesh, grid_quads
+from mesh.region import Region
 
 Mapping = Callable[[FloatArray, FloatArray], tuple[FloatArray, FloatArray]]
 
@@ -26,16 +27,15 @@ class PlainMesh:
 def mapped_mesh(
     columns: int, rows: int, mapping: Mapping, *, thickness: float = 1.0, density: float = 1.0
 ) -> PlainMesh:
-    """Quads on the image of the unit square under `place`(s, t); density in kg/m3."""
+    """Quads on the image of the unit square under `mapping`(s, t); density in kg/m3."""
     s, t = np.meshgrid(np.linspace(0.0, 1.0, columns + 1), np.linspace(0.0, 1.0, rows + 1))
-    i, j = np.meshgrid(np.arange(columns), np.arange(rows))
-    corner = (j * (columns + 1) + i).ravel().astype(np.int64)
-    full = np.ones(corner.size)
+    quads = grid_quads(columns, rows)
+    full = np.ones(len(quads))
     return PlainMesh(
         points=np.stack(mapping(s.ravel(), t.ravel()), axis=1),
-        quads=np.stack([corner, corner + 1, corner + columns + 2, corner + columns + 1], axis=1),
-        region=np.zeros(corner.size, dtype=np.int64),
-        box=np.zeros(corner.size, dtype=np.int64),
+        quads=quads,
+        region=np.zeros(len(quads), dtype=np.int64),
+        box=np.zeros(len(quads), dtype=np.int64),
         thickness=thickness * full,
         areal_density=density * thickness * full,
     )
@@ -43,15 +43,14 @@ def mapped_mesh(
 
 def grid_mesh(x: FloatArray, z: FloatArray, *, depth: float, areal_density: float) -> ContainerMesh:
     """A solid block with mesh lines at x and z [m]; areal density in kg/m2 of the elevation."""
-    columns, rows = x.size - 1, z.size - 1
-    first = (np.arange(rows)[:, None] * (columns + 1) + np.arange(columns)).ravel()
+    quads = grid_quads(x.size - 1, z.size - 1)
     return ContainerMesh(
         points=np.column_stack([np.tile(x, z.size), np.repeat(z, x.size)]),
-        quads=np.column_stack([first, first + 1, first + columns + 2, first + columns + 1]),
-        region=np.full(first.size, 3),
-        box=np.zeros(first.size, dtype=np.int64),
-        thickness=np.full(first.size, depth),
-        areal_density=np.full(first.size, areal_density),
+        quads=quads,
+        region=np.full(len(quads), int(Region.SOLID)),
+        box=np.zeros(len(quads), dtype=np.int64),
+        thickness=np.full(len(quads), depth),
+        areal_density=np.full(len(quads), areal_density),
     )
 
 
