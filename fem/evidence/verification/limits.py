@@ -16,13 +16,11 @@ from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
 from fem.evidence.findings import Convergence, analytic, computed
 from fem.evidence.verification.checks import Findings, check
-from fem.evidence.verification.runs import FRICTION, SOLID, STACK, Keys, harmonic, run
+from fem.evidence.verification.runs import FRICTION, SLENDERNESS, SOLID, STACK, TILTED, Keys, harmonic, run
 from fem.model.model import build_model
 from fem.results.outcome import Outcome
 from fem.runtime.arrays import FloatArray
 
-SLENDERNESS = math.atan2(1.1, 4.0)
-TILTED: Keys = {"initial.rotation_rad": 0.5 * SLENDERNESS}
 RELEASED = TILTED | {"solver.duration_s": 0.65, "output.history_s": 0.01}
 SHELL = SOLID | {"container.wall_m": 0.008, "container.section": "shell"}
 PLANAR_BLOCK = "event-driven planar block"

@@ -20,14 +20,12 @@ from contact.reference.floor_acceleration import FloorAcceleration, sine_floor
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
 from fem.evidence.findings import analytic, computed
+from fem.evidence.verification import runs
 from fem.evidence.verification.checks import Findings, check
-from fem.evidence.verification.runs import GRAVITY, STACK, STIFF_SOLID, Finished, Keys, harmonic, pulse, run
 from fem.results.history import History
 
-SLENDERNESS = math.atan2(1.1, 4.0)
 BLOCK = RigidBlock.homogeneous(width=1.1, height=4.0)
-RELEASED: Keys = {"initial.rotation_rad": 0.5 * SLENDERNESS}
-MODELS: dict[str, Keys] = {"rigid stack": {}, "stiff solid stack, 20 modes": STIFF_SOLID}
+MODELS: dict[str, runs.Keys] = {"rigid stack": {}, "stiff solid stack, 20 modes": runs.STIFF_SOLID}
 
 
 @check("rocking", "first impact after release")
@@ -35,13 +33,13 @@ def first_impacts() -> Findings:
     """Time from release to the first impact."""
     source = "quarter period, exact (elliptic integral)"
     for share in (0.1, 0.25, 0.75, 0.9):
-        rotation = share * SLENDERNESS
-        done = run(STACK, {"initial.rotation_rad": rotation, "solver.duration_s": 2.0})
+        rotation = share * runs.SLENDERNESS
+        done = runs.run(runs.STACK, {"initial.rotation_rad": rotation, "solver.duration_s": 2.0})
         exact, impact = quarter_period(done.block, rotation), done.track.first_impact
         case = f"rigid stack released at {share} of its slenderness angle"
         yield analytic(case, "first impact [s]", impact, exact, source=source, relative=3e-3)
     for name, values in MODELS.items():
-        impact = run(STACK, RELEASED | {"solver.duration_s": 2.0} | values).track.first_impact
+        impact = runs.run(runs.STACK, runs.TILTED | {"solver.duration_s": 2.0} | values).track.first_impact
         case = f"{name} released at half its slenderness angle"
         yield analytic(case, "first impact [s]", impact, 0.700737, source=source, relative=3e-3)
 
@@ -52,13 +50,16 @@ def free_decay() -> Findings:
     source = "energy relation with Housner's e"
     note = "the error of e adds up from impact to impact: 0.0003 of 0.8945 is 0.1 % of each peak"
     for name, values in MODELS.items():
-        done = run(STACK, RELEASED | {"solver.duration_s": 8.0, "output.history_s": 0.001} | values)
+        done = runs.run(
+            runs.STACK, runs.TILTED | {"solver.duration_s": 8.0, "output.history_s": 0.001} | values
+        )
         peaks, block = turning_points(done.history), done.block
         case = f"{name} released at half its slenderness angle"
         compared = "first peak after the first impact [rad]"
         yield analytic(case, compared, peaks[0], 0.098783, source=source, relative=0.01)
         exact = [
-            peak_after_impacts(block, 0.5 * SLENDERNESS, n, block.housner_restitution) for n in range(1, 7)
+            peak_after_impacts(block, 0.5 * runs.SLENDERNESS, n, block.housner_restitution)
+            for n in range(1, 7)
         ]
         worst = int(np.argmax([abs(a / b - 1.0) for a, b in zip(peaks, exact, strict=False)]))
         compared = f"the worst of peaks 1 to 6 ({worst + 1}) [rad]"
@@ -69,9 +70,9 @@ def free_decay() -> Findings:
 def equation_of_motion() -> Findings:
     """Rotation under a moving floor, before any impact."""
     for name, factor, omega, until in (("grows", 1.5, 1.88337, 1.2), ("returns", 1.2, 6.928, 0.35)):
-        amplitude = factor * GRAVITY * 1.1 / 4.0 / omega**2
+        amplitude = factor * runs.GRAVITY * 1.1 / 4.0 / omega**2
         rough = {"contact.mu_static": 2.0, "solver.duration_s": until}
-        done = run(STACK, harmonic(amplitude, omega) | rough)
+        done = runs.run(runs.STACK, runs.harmonic(amplitude, omega) | rough)
         floor = sine_floor(amplitude=amplitude, angular_frequency=omega)
         yield computed(
             f"rigid stack under {factor} g tan al at {omega} rad/s, whose rotation {name}",
@@ -86,12 +87,12 @@ def equation_of_motion() -> Findings:
 def tilt_statics() -> Findings:
     """Floor acceleration that holds the tilted block: between one that lifts it further and one that lets it fall."""
     for share in (0.2, 0.7):
-        rotation = share * SLENDERNESS
+        rotation = share * runs.SLENDERNESS
         hold = holding_acceleration(BLOCK, rotation)
         tilted = {"initial.rotation_rad": rotation, "contact.mu_static": 2.0, "solver.duration_s": 0.1}
         accelerations, speeds = (0.98 * hold, 1.02 * hold), []
         for acceleration in accelerations:
-            turned = run(STACK, tilted | pulse(-acceleration, 1.0)).history["rotation_rad"]
+            turned = runs.run(runs.STACK, tilted | runs.pulse(-acceleration, 1.0)).history["rotation_rad"]
             speeds.append(float(turned[-1] - turned[0]))
         slope = (speeds[1] - speeds[0]) / (accelerations[1] - accelerations[0])
         case = f"rigid stack held at {share} of its slenderness angle"
@@ -104,7 +105,7 @@ def tilt_statics() -> Findings:
 def friction_at_impact() -> Findings:
     """Impulses of the first impact: their ratio is the friction that keeps it from sliding."""
     source = "Housner's impact: 3 tan al/(4 + tan^2 al) = 0.2024"
-    done = run(STACK, RELEASED | {"solver.duration_s": 0.9, "output.history_s": 0.001})
+    done = runs.run(runs.STACK, runs.TILTED | {"solver.duration_s": 0.9, "output.history_s": 0.001})
     impact = float(done.track.first_impact)
     along, up = (velocity_jump(done.history, name, impact) for name in ("centre_x_m", "centre_z_m"))
     case = "rigid stack released at half its slenderness angle, ample friction"
@@ -112,7 +113,9 @@ def friction_at_impact() -> Findings:
     yield analytic(case, compared, abs(along) / up, 0.2024, source=source, relative=0.01)
     for factor, slides in ((1.5, False), (0.9, True)):
         friction = {"contact.mu_static": factor * impact_friction_need(BLOCK)}
-        done = run(STACK, RELEASED | friction | {"solver.duration_s": 0.75, "output.history_s": 0.001})
+        done = runs.run(
+            runs.STACK, runs.TILTED | friction | {"solver.duration_s": 0.75, "output.history_s": 0.001}
+        )
         impact = float(done.track.first_impact)
         ends = np.interp([impact - 0.002, impact + 0.02], done.history["time_s"], done.history["slip_m"])
         slip = abs(float(ends[1] - ends[0]))
@@ -137,7 +140,7 @@ def steady_orbit() -> Findings:
         """Amplitude [m], frequency [rad/s], post-impact angular velocity [rad/s], the floor."""
         angle, rate = block.slenderness_angle, block.frequency_parameter
         omega = 3.0 * rate
-        amplitude = 3.0 * GRAVITY * angle / omega**2
+        amplitude = 3.0 * runs.GRAVITY * angle / omega**2
         floor = sine_floor(amplitude=amplitude, angular_frequency=omega, phase=orbit.impact_phase)
         return amplitude, omega, orbit.post_impact_speed * angle * rate, floor
 
@@ -171,7 +174,7 @@ def steady_orbit() -> Findings:
         "solver.duration_s": 40.0 * cycle,
         "output.history_s": 0.001,
     }
-    history = run(STACK, harmonic(amplitude, omega) | settings).history
+    history = runs.run(runs.STACK, runs.harmonic(amplitude, omega) | settings).history
     late = history["time_s"] > 38.0 * cycle
     yield computed(
         "rigid block of 4 m with e = 0.9 under a = 3, w = 3, after 38 cycles",
@@ -193,7 +196,7 @@ def turning_points(history: History) -> list[float]:
     return (middle + 0.125 * (right - left) ** 2 / (2.0 * middle - left - right)).tolist()
 
 
-def difference_of_rotation(done: Finished, floor: FloorAcceleration) -> float:
+def difference_of_rotation(done: runs.Finished, floor: FloorAcceleration) -> float:
     """Largest difference from the event-driven block up to its first impact, over the slenderness angle."""
     times = done.history["time_s"]
     initial = done.model.case.initial

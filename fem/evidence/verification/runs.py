@@ -52,9 +52,12 @@ STACK = read_case(
     """,
     name="stack",
 )
+SLENDERNESS = math.atan2(1.1, 4.0)  #: of the stack [rad]
+TILTED: Keys = {"initial.rotation_rad": 0.5 * SLENDERNESS}
 BOX = STACK.with_values({"container.height_m": 1.0, "container.weight_N": 24525.0})
 #: makes the stack an elastic solid with 20 modes
 SOLID: Keys = {"solver.model": "reduced", "solver.order": 2, "solver.element_size_m": 0.2}
+STACKS: dict[str, Keys] = {"rigid stack": {}, "solid stack, 20 modes": SOLID}
 #: stiff enough on its floor to count as rigid: f1/f_c = 16
 STIFF_SOLID = SOLID | {"container.youngs_modulus_Pa": 2.1e12}
 #: of the paper

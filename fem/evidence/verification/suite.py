@@ -47,7 +47,7 @@ MODULES = (
     limits,
 )
 CHECKS = tuple(check for module in MODULES for check in vars(module).values() if isinstance(check, Check))
-#: keys of a row of verify.json and what of a finding they hold
+#: keys of a row in verify.json, with the attributes of the finding that they hold
 KEYS = {"compared": "what", "passed": "holds"} | {
     name: name
     for name in ("case", "value", "reference", "kind", "source", "tolerance", "relative", "note", "error")

@@ -30,7 +30,6 @@ SCHEMES = {
     TRAPEZOIDAL: newmark(0.25, 0.5),
 }
 CHUNG_HULBERT = "Chung and Hulbert 1993"
-MODELS: dict[str, runs.Keys] = {"rigid stack": {}, "solid stack, 20 modes": runs.SOLID}
 OMEGA, DAMPING = 2.0 * math.pi, 0.05  #: of the oscillator
 SPIN = 20.0  #: of a block thrown into the air [rad/s]
 #: rocks, slides and strikes for 5 s
@@ -96,7 +95,7 @@ def energy_closure() -> Findings:
     """The energy balance closes with the square of the step if nothing opens, slides or strikes."""
     vibrating = {"initial.velocity_m_s": 1e-3, "contact.damping_ratio": 0.0, "solver.duration_s": 0.1}
     kinetic = 0.5 * 1e4 * 1e-6
-    for name, values in MODELS.items():
+    for name, values in runs.STACKS.items():
         errors: dict[float, float] = {}
         for step in (2e-4, 1e-4, 5e-5, 2.5e-5):
             model = build_model(runs.STACK.with_values(values | vibrating))
@@ -138,7 +137,7 @@ def spin() -> Findings:
 def mirror() -> Findings:
     """The floor's motion mirrored: the container's motion mirrored."""
     note = "sin(Omega t + pi) is -sin(Omega t) except for rounding"
-    for name, values in MODELS.items():
+    for name, values in runs.STACKS.items():
         plain, mirrored = (
             runs.run(runs.STACK, VIOLENT | values | {"motion.phase_rad": phase}) for phase in (0.0, math.pi)
         )

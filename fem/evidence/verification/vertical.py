@@ -19,7 +19,6 @@ from fem.evidence.verification.sliding import slip_of_a_driven_box
 OMEGA = 6.928
 #: the mass and the springs of the contact do not follow gravity here
 FIXED: runs.Keys = {"container.mass_kg": 1e4, "contact.normal_penalty_Pa_m": 4e9}
-MODELS: dict[str, runs.Keys] = {"rigid stack": {}, "solid stack, 20 modes": runs.SOLID}
 
 
 def vertical(keys: runs.Keys) -> runs.Keys:
@@ -33,7 +32,7 @@ def another_gravity() -> Findings:
     driven = (
         FIXED | runs.harmonic(4.5 / OMEGA**2, OMEGA) | {"solver.duration_s": 4.0, "output.history_s": 0.002}
     )
-    for name, model in MODELS.items():
+    for name, model in runs.STACKS.items():
         for acceleration in (-3.0, 3.0):
             lifted = runs.run(runs.STACK, driven | model | vertical(runs.pulse(acceleration, 10.0)))
             heavier = runs.run(runs.STACK, driven | model | {"gravity_m_s2": runs.GRAVITY + acceleration})
