@@ -1,4 +1,4 @@
-"""The meshes of containers beside one another as one."""
+"""The meshes of containers in a row as one mesh."""
 
 from collections.abc import Sequence
 from types import SimpleNamespace
@@ -10,7 +10,7 @@ from mesh.container import ContainerMesh
 
 
 def mesh_of_row(meshes: Sequence[ContainerMesh], x: Sequence[float]) -> Any:
-    """What the assembly needs of all meshes as one, one behind the other, with their axes at these places [m]."""
+    """All meshes as one, in their order and with their axes at x [m]: the part that the assembly needs."""
     starts = np.cumsum([0, *(len(mesh.points) for mesh in meshes)])
     boxes = np.cumsum([0, *(1 + mesh.box.max() for mesh in meshes)])
     return SimpleNamespace(

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-from fem.cli.console import STUDY, AllowBaseline, AllowOutside, StudyFlags, flag, print_result
+from fem.cli.console import STUDY, AllowBaseline, AllowOutside, StudyFlags, flag, print_result, print_to_pdf
 from fem.results.kinds import SITE
 from fem.runtime.progress import ScreenReporter
 
@@ -48,17 +48,13 @@ def assess(
         site, motion, allow_baseline=allow_baseline
     )
     folder = flags.folder(request.name)
-    # Loaded late: bad input is refused before anything is compiled.
     study = importlib.import_module("fem.site_check.run")
     with flags.options() as options:
         result = study.run_site(
             request, folder, allow_outside=allow_outside or bool(motion), quick=quick, **options
         )
     if pdf and result.status == "completed":
-        printing = importlib.import_module("fem.report.printing")
-        ScreenReporter(quiet=flags.quiet).message(
-            str(printing.print_page(folder / study.PAGE) or printing.BY_HAND)
-        )
+        ScreenReporter(quiet=flags.quiet).message(print_to_pdf(folder / study.PAGE))
     return print_result(result, SITE, folder, page_of(result, folder), as_json=flags.as_json)
 
 

@@ -9,7 +9,7 @@ from cyclopts import Parameter
 
 from fem.batch.answers import slip_in_words, table_lines
 from fem.case.case import CaseError, load_case
-from fem.cli.console import SHARED, AllowOutside, SharedFlags, flag, print_result
+from fem.cli.console import SHARED, AllowOutside, SharedFlags, flag, print_result, print_to_pdf
 from fem.results.figures import SLIPPED, TURNED
 from fem.results.kinds import HALL
 
@@ -68,7 +68,6 @@ def batch(
     listed = importlib.import_module("fem.hall.file").read_hall(hall)
     base = load_case(case, allow_outside=allow_outside) if case is not None else None
     folder = flags.folder(listed.name)
-    # Loaded late: bad input is refused before anything is compiled.
     with flags.options() as options:
         if site is not None:
             request = importlib.import_module("fem.site_check.file").load_site(site)
@@ -82,8 +81,7 @@ def batch(
                 listed, base, folder, motions=motion, checks=margins, strict=strict, **options
             )
     if pdf and result.status == "completed":
-        printing = importlib.import_module("fem.report.printing")
-        print(printing.print_page(folder / "report.html") or printing.BY_HAND)
+        print(print_to_pdf(folder / "report.html"))
     return print_result(result, HALL, folder, page_of(result, folder), as_json=flags.as_json)
 
 

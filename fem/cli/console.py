@@ -84,7 +84,7 @@ Quiet = Annotated[bool, flag("Print no progress.", "--quiet", "-q")]
 
 
 def connected(scheduler: str | None) -> AbstractContextManager[Any]:
-    """The workers of a cluster, for as long as the context lasts; None without a scheduler.
+    """The workers of a cluster, while the context lasts; None without a scheduler.
 
     dask is loaded only here: it is an optional dependency, and takes a second.
 
@@ -129,7 +129,7 @@ class StudyFlags:
     quiet: Quiet = False
 
     def folder(self, name: str) -> Path:
-        """Where the results go, unless another folder is given to those of this name."""
+        """Folder of the results: as given, else that of this name."""
         return self.out if self.out is not None else Path("outputs") / name
 
     @contextmanager
@@ -148,7 +148,7 @@ class StudyFlags:
 @Parameter(name="*")
 @dataclass(frozen=True, kw_only=True)
 class SharedFlags(StudyFlags):
-    """Options of a study that machines can share."""
+    """Options of a study that several machines can compute together."""
 
     shard: Annotated[
         str | None, Parameter(show_default=False, help="Compute one part alone, such as 3/64.")
@@ -169,7 +169,7 @@ class SharedFlags(StudyFlags):
     yes: Annotated[bool, flag("Submit them without asking.")] = False
 
     def folder(self, name: str) -> Path:
-        """That of a shard has its own."""
+        """As for any study; every shard has a folder of its own."""
         return super().folder(f"{name}-shard-{self.shard.replace('/', '-of-')}" if self.shard else name)
 
     @contextmanager
@@ -185,6 +185,12 @@ class SharedFlags(StudyFlags):
                 jobs = _optional("fem.batch.slurm", "--slurm", "slurm")
                 options = {**options, "workers_of": held.enter_context(jobs.slurm(self.slurm, yes=self.yes))}
             yield {**options, "shard": shard, "merge": self.merge}
+
+
+def print_to_pdf(page: Path) -> str:
+    """Print a page: the name of the PDF, or how to print it by hand where there is no browser."""
+    printing = importlib.import_module("fem.report.printing")
+    return str(printing.print_page(page) or printing.BY_HAND)
 
 
 STUDY = StudyFlags()

@@ -29,7 +29,6 @@ def ensemble(
     """
     plan = importlib.import_module("fem.ensemble.file").load_ensemble(ensemble)
     folder = flags.folder(plan.name)
-    # Loaded late: bad input is refused before anything is compiled.
     study = importlib.import_module("fem.ensemble.run")
     with flags.options() as options:
         result = study.run_ensemble(plan, folder=folder, **options)

@@ -6,7 +6,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from fem.cli.console import ELSEWHERE_TO, Quiet, flag
+from fem.cli.console import ELSEWHERE_TO, Quiet, flag, print_to_pdf
 from fem.results.errors import FolderError, writing_into
 from fem.results.files import write_atomically
 from fem.runtime.progress import ScreenReporter
@@ -87,8 +87,7 @@ def report(
         write_atomically(target, page)
     print(target)
     if pdf:
-        printing = importlib.import_module("fem.report.printing")
-        print(printing.print_page(target) or printing.BY_HAND)
+        print(print_to_pdf(target))
 
 
 def _target(path: Path) -> Path:

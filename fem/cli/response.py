@@ -73,7 +73,6 @@ def response(
         limit_slip_m=limit_slip,
     )
     folder = out if out is not None else Path("outputs") / f"{loaded.name}-response"
-    # Loaded late: bad input is refused before anything is compiled.
     study = importlib.import_module("fem.response.run")
     result = study.run_response(
         request, folder=folder, force=force, resume=resume, reporter=ScreenReporter(quiet=quiet)

@@ -61,7 +61,6 @@ def run(
         print(text, file=sys.stdout if dry_run else sys.stderr)
     if dry_run:
         return 0
-    # Loaded late: bad input is refused before anything is compiled.
     solver = importlib.import_module("fem.run.run")
     options = solver.RunOptions(check_rigid=check_rigid, band=band, margin=margin, resume=resume, force=force)
     result = solver.run_case(

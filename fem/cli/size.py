@@ -42,7 +42,6 @@ def size(
         request, over, low=low, high=high, count=count
     )
     folder = flags.folder(f"{request.name}_size")
-    # Loaded late: bad input is refused before anything is compiled.
     study = importlib.import_module("fem.site_check.size_run")
     with flags.options() as options:
         result = study.run_size(request, axis, folder, allow_outside=allow_outside, **options)

@@ -29,7 +29,6 @@ def sweep(
     """
     plan = load_sweep(sweep)
     folder = flags.folder(plan.name)
-    # Loaded late: bad input is refused before anything is compiled.
     solver = importlib.import_module("fem.sweep.run")
     with flags.options() as options:
         info = solver.run_sweep(plan, folder, **options)

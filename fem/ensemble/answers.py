@@ -1,4 +1,4 @@
-"""The answer of an ensemble: where half of the draws overturn, and up to where few enough do; from the result alone.
+"""The answer of an ensemble: where half of the draws overturn, and up to where few enough do.
 
 The shares counted at the points are joined by straight lines, and so are the ends of their intervals: half of the draws
 overturn where the line of the shares first passes one half, from the side on which fewer do; the interval of that value
@@ -31,12 +31,12 @@ class HalfPoint:
     low: float | None  #: end of its interval; None: not reached
     high: float | None
     at_once: bool  #: half or more do so at the first point already
-    few_to: float | None  #: up to here the interval ends at the probability asked for, or below
+    few_to: float | None  #: up to here the upper end of the interval is at most the given probability
 
 
 @dataclass(frozen=True, kw_only=True)
 class EnsembleAnswer:
-    """What an ensemble found along one axis."""
+    """The answer of an ensemble along one axis."""
 
     axis: Axis
     rising: bool  #: more overturn at larger values
@@ -101,7 +101,7 @@ def ensemble_answer(result: EnsembleResult) -> EnsembleAnswer | None:
 
 
 def half_point(axis: Axis, points: Sequence[Row]) -> HalfPoint:
-    """Where half of the draws overturn along a line of points, which begins on the side on which fewer do."""
+    """Where half of the draws overturn along a line of points, sorted from the side where fewer do."""
     known = [point for point in points if point["probability"] is not None]
     values = [float(point[axis.key]) for point in known]
     value, low, high = (

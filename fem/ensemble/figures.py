@@ -87,7 +87,7 @@ def draw_fragility(
 
 
 def draw_boundary(ensemble: Ensemble, unknown: UnknownInputs, points: Sequence[PointRow]) -> Figure:
-    """Which points overturn with at most the probability asked for, which with more, which is undecided."""
+    """Points that overturn with at most the given probability, with more, or undecided."""
     *outer, down, across = ensemble.axes
     outside = outer[0].values if outer else (None,)
     shape = (len(outside), len(down.values), len(across.values))

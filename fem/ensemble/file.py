@@ -1,4 +1,4 @@
-"""Read an ensemble file: base case, axes, random quantities, sampling; the reasons why it cannot be used.
+"""Read an ensemble file: base case, axes, random quantities, sampling; refuse it with all reasons.
 
 Beside the keys of a case, axes and draws may be variables `free.NAME`, to which derived keys refer.
 """

@@ -109,7 +109,7 @@ class Ensemble:
 
     @property
     def of_draws(self) -> Self:
-        """What makes the cases of draws, without the list of motions: small enough to go with every task."""
+        """The ensemble without text and list of motions: small enough to be sent with every task."""
         random = tuple(
             replace(quantity, axis=replace(quantity.axis, values=(), following={}))
             if isinstance(quantity, RandomChoice) and quantity.key == MOTION_FILE

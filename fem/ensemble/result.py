@@ -58,9 +58,9 @@ class Fragility(JsonBlock):
 
 @dataclass(frozen=True, kw_only=True)
 class EnsembleResult(StudyResult):
-    """Everything an ensemble found."""
+    """All results of an ensemble."""
 
-    asked: str  #: hash of what was asked
+    asked: str  #: hash of the request
     ensemble: str = ""  #: its name
     title: str = ""
     case: str = ""  #: name of the base case

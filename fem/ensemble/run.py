@@ -202,7 +202,7 @@ def required_disk(
 
 
 def ensemble_hash(ensemble: Ensemble, motions: Sequence[str] | None = None) -> str:
-    """Equal for ensembles that give the same result.
+    """A hash, equal for ensembles that give the same result.
 
     Args:
         motions: hashes of the cases of a set of motions, where they are known.

@@ -1,7 +1,7 @@
 """The unknown inputs, drawn over their ranges at every draw of an ensemble.
 
-What the file varies itself, by [axes], [random] or [derived], is as the file has it; the rest follows [uncertainty] of
-the case. These draws have random numbers of their own, so those of [random] do not depend on them.
+What the file varies itself, by [axes], [random] or [derived], stays as it is there; the rest follows [uncertainty]
+of the case. These draws have random numbers of their own, so those of [random] do not depend on them.
 """
 
 from collections.abc import Iterator
@@ -59,7 +59,7 @@ class UnknownInputs:
         ]
 
     def _values(self, draw: Draw, shares: list[float]) -> dict[str, Value]:
-        """Values at places in the ranges that a draw has; none for a draw that cannot be made."""
+        """Values at these shares of the ranges that a draw has; empty for a draw that cannot be made."""
         try:
             case = self._ensemble.case(draw)
             share = dict(zip(self.keys, shares, strict=True))

@@ -79,8 +79,8 @@ class Finding:
     case: str = ""  #: what was computed
     source: str = ""  #: of the reference
     note: str = ""
-    telling: bool = False  #: not judged, and to be seen with what is
-    inside: bool = True  #: whether it is made inside the stated bounds of its claim
+    telling: bool = False  #: not judged, but named with the findings that are
+    inside: bool = True  #: within the stated bounds of its claim
 
     def __post_init__(self) -> None:
         if self.kind == "limit":  # of a count, a truth value or a numpy number
@@ -102,7 +102,7 @@ class Finding:
 
     @property
     def holds(self) -> bool | None:
-        """Whether relation, tolerance, order and criterion are satisfied, as far as they are given; nan never does."""
+        """Whether relation, tolerance, order and criterion hold, as far as they are given; never for nan."""
         if self.kind == "measured":
             return self.met
         value, reference = float(self.value), float(self.reference)

@@ -1,4 +1,4 @@
-"""Evidence for people: what its pages share, and the lines of a terminal."""
+"""What the pages of evidence share, and their tables for a terminal."""
 
 import datetime as dt
 import math
@@ -13,7 +13,7 @@ from fem.html.units import short, typeset
 from fem.runtime.identity import versions
 
 MET_OR_MISSED = ("met", "MISSED")  #: a criterion
-WIDE = 76  #: of the names in a terminal
+WIDE = 76  #: characters of a name in a terminal
 HEADING = f"{'value':>13} {'reference':>12}  {'kind':<9} {'error':>9} {'tolerance':>9}  order"
 
 
@@ -29,12 +29,12 @@ def noted(text: str, note: str) -> Markup:
 
 
 def result_of(holds: bool | None, yes: str, no: str) -> Cell:
-    """A word for whether a finding holds; none where it is not judged."""
+    """Whether a finding holds, in a word; empty where it is not judged."""
     return Cell("") if holds is None else Cell(yes, "pass") if holds else Cell(no, "fail")
 
 
 def look_of(*findings: Finding) -> str:
-    """The look of the row of some findings."""
+    """The look of a row: failed where one of its findings fails."""
     return "failed" if failures(findings) else ""
 
 

@@ -1,4 +1,4 @@
-"""Work done one piece after the other, timed; what cannot be computed gives the reason, and the others go on."""
+"""Timed parts of a suite: a part that cannot be computed gives its reason, and the others go on."""
 
 import time
 from collections.abc import Callable, Iterable
@@ -20,7 +20,7 @@ class Attempt(Generic[ResultT]):
 
 
 def attempted(work: Callable[[], ResultT]) -> Attempt[ResultT]:
-    """Do some work and take its time."""
+    """Do some work, and measure its time."""
     began = time.perf_counter()
     result, reason = None, ""
     try:

@@ -1,4 +1,4 @@
-"""Read the list of a hall: a row a container, under a header of keys of a case.
+"""Read the list of a hall: one row a container, under a header of keys of a case.
 
 Columns are separated by semicolons, tabs or commas, decimals by points or, where all are, by commas. What is wrong with
 the list as a whole is an error; what is wrong with a row is its reason.
@@ -137,10 +137,10 @@ class HallFile:
 
 
 def read_hall(path: Path) -> HallFile:
-    """Read a list; its rows are looked at when they are asked for.
+    """Read a list; its rows are read on first use.
 
     Raises:
-        CaseError: no such file, no text, no header, a column that names no key or one twice, no rows.
+        CaseError: no such file, no text, no header, a column that names no key or a key twice, no rows.
     """
     text = _text_of(path)
     names = _names(path, text)
@@ -196,9 +196,9 @@ def _keys_of(path: Path, columns: Sequence[str]) -> tuple[dict[str, str], tuple[
     problems, keys, others = [], dict[str, str](), []
     for column, count in Counter(columns).items():
         if count > 1:
-            problems.append(f"column {column!r} is there {count} times; leave one")
+            problems.append(f"column {column!r} occurs {count} times; keep one")
         elif column in RESULT_COLUMNS:
-            problems.append(f"column {column!r} has the name of a result; name it otherwise")
+            problems.append(f"column {column!r} has the name of a result; rename it")
         elif _own(column):
             continue
         elif key := _key(column, problems):
@@ -209,11 +209,11 @@ def _keys_of(path: Path, columns: Sequence[str]) -> tuple[dict[str, str], tuple[
         if count > 1:
             same = [column for column in columns if keys.get(column, _own(column)) == meaning]
             if len({*same}) > 1:
-                problems.append(f"columns {' and '.join(map(repr, same))} are both {meaning!r}; leave one")
+                problems.append(f"columns {' and '.join(map(repr, same))} both set {meaning!r}; keep one")
     for pair in (PLACE, GEOGRAPHIC):
         there = {*map(_own, columns)} & {*pair}
         if len(there) == 1:
-            problems.append(f"{' and '.join(pair)} go together; there is {there.pop()} alone")
+            problems.append(f"{' and '.join(pair)} belong together, and only {there.pop()} is there")
     if problems:
         raise CaseError("\n".join(f"{path}: {problem}" for problem in problems))
     return keys, tuple(others)
@@ -258,8 +258,8 @@ def _key(column: str, problems: list[str]) -> str | None:
         return ""
     if meant := _meant(column):
         problems.append(
-            f"column {column!r} is no key of a case; did you mean {meant!r}? To keep it as it is, name it otherwise, "
-            f"such as 'note {column}'"
+            f"column {column!r} is no key of a case; did you mean {meant!r}? To keep it as a note, rename it, "
+            f"for instance to 'note {column}'"
         )
         return ""
     return None

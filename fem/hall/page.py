@@ -127,19 +127,16 @@ def found_section(info: HallResult) -> html.PageSection:
         which = "all" if info.checked == info.distinct else f"the weakest {info.checked}"
         count += f" Sure, deciding inputs and margin are those of {which}, each under its governing motion."
     elif not info.site and info.state == "finished":
-        count += " No run was repeated: nothing is known of sureness and margins."
+        count += " No run was repeated, so sureness and margins are not known."
     outcomes = ", ".join(f"{word}: {number}" for word, number in info.outcomes.items())
-    note = "A container under several motions has the outcome of the one that does worst, the governing motion: one "
-    note += "that overturns it, else one that destroys a corner, else the largest rotation. The margin under another "
-    note += "motion may be less."
+    note = "Of several motions the worst governs: one that overturns the container, else one that destroys a corner, "
+    note += "else the one of the largest rotation. The margin under another motion may be less."
     return studies.answer_section(
         info,
         info.answer,
         count,
         *([f"{outcomes[0].upper()}{outcomes[1:]}."] if outcomes else []),
-        note=note
-        if under
-        else "Each container by itself; neighbours and the floor between them play no part.",
+        note=note if under else "Each container by itself, without neighbours.",
     )
 
 

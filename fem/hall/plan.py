@@ -60,11 +60,11 @@ class HallCases:
 
 @dataclass(frozen=True, kw_only=True)
 class Inventory:
-    """The rows of a list, looked at."""
+    """The rows of a list, checked."""
 
     reasons: tuple[str, ...]  #: why each is refused; empty where it is not
     of_row: tuple[int | None, ...]  #: the container of each
-    containers: tuple[Mapping[str, Any], ...]  #: what the rows of each set that differ
+    containers: tuple[Mapping[str, Any], ...]  #: values of the keys that each sets; no two alike
     hashes: tuple[str, ...]  #: of these
 
 
@@ -81,7 +81,7 @@ class Hall:
 
     @property
     def containers(self) -> tuple[Mapping[str, Any], ...]:
-        """What the rows of each set that differ."""
+        """Values of the keys that each container sets."""
         return self.inventory.containers
 
     def items(self) -> list[HallItem]:
@@ -129,7 +129,7 @@ def plan_hall(
     strict: bool = False,
     force: bool = False,
 ) -> Hall:
-    """Look at every row before any is computed.
+    """Check every row before any is computed.
 
     Args:
         file: the list.
@@ -137,7 +137,7 @@ def plan_hall(
         motions: files named on the command line, "H" or "H,V"; none: the motion of the base case.
         runner: its workers read a large set of motions.
         strict: refuse the whole list for one bad row.
-        force: take more runs than anybody asks for on purpose.
+        force: allow more than `MOST_RUNS` runs.
 
     Raises:
         CaseError: too many runs, motions that cannot be used, no good row; with `strict` any bad row.
@@ -145,7 +145,7 @@ def plan_hall(
     check_size(file, base, max(len(motions), 1), runner.jobs, force=force, say=runner.reporter.message)
     named = [key for key in file.keys.values() if key in (MOTION_FILE, VERTICAL_FILE)]
     if motions and named:
-        raise CaseError(f"{file.name}: the column {named[0]!r} and --motion name the motion; leave one")
+        raise CaseError(f"{file.name}: column {named[0]!r} and --motion both name the motion; use one")
     pairs: tuple[FloorMotionPair, ...] = ()
     cases = HallCases(base=base, motions=({},))
     if motions:
@@ -166,7 +166,7 @@ def plan_hall(
 
 
 def check_size(file: HallFile, base: Case, motions: int, jobs: int, *, force: bool, say: Any) -> None:
-    """Say how long a long list takes before its rows are read, and refuse more runs than anybody means.
+    """Announce how long a long list takes, before its rows are read; refuse more than `MOST_RUNS` runs.
 
     Raises:
         CaseError: with the number, the time and the way out.
@@ -180,7 +180,7 @@ def check_size(file: HallFile, base: Case, motions: int, jobs: int, *, force: bo
     time = f"roughly {clock_time(seconds)} on {jobs} core{'s' * (jobs > 1)}"
     if runs > MOST_RUNS and not force:
         raise CaseError(
-            f"{file.name}: {words}, {runs} runs: {time}; take fewer rows, share them with --shard, or say --force"
+            f"{file.name}: {words}, {runs} runs: {time}; take fewer rows, split them with --shard, or use --force"
         )
     if seconds > 20.0:
         say(f"{file.name}: {words}: {time}")
@@ -198,12 +198,12 @@ def _axis(folder: Path, motions: Sequence[str]) -> Axis:
 def take_inventory(
     file: HallFile, look: Callable[[Mapping[str, Any]], str], base_place: str, *, strict: bool
 ) -> Inventory:
-    """Look at every row before any is computed; equal ones are one container.
+    """Check every row before any is computed; equal rows are one container.
 
     Args:
         file: the list.
         look: gives a hash of a container from the values of a row, or raises a ValueError.
-        place: the base case, as messages of `look` begin with it.
+        base_place: how messages of `look` name the base case.
         strict: refuse the whole list for one bad row.
 
     Raises:
@@ -261,7 +261,7 @@ def _hash_of(cases: HallCases, values: Mapping[str, Any], *, outside: bool) -> s
 
 
 def _in_words_of_list(reason: str, base_place: str) -> str:
-    """Why a case cannot be used, without the words of the command line, on one line."""
+    """Why a case cannot be used, on one line, without mention of the command line."""
     lines = (
         re.sub(r" \(--set \S+?=.*\)$", "", line.removeprefix(f"{base_place}: "))
         for line in reason.splitlines()

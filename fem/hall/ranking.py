@@ -93,10 +93,10 @@ class HallRuns:
         return tuple(map(endings.count, (Ending.OVERTURNED, Ending.INVALID, Ending.FAILED)))
 
     def to_check(self, checks: str, order: Sequence[int]) -> list[HallItem]:
-        """The governing runs that are to be repeated, those that were not yet.
+        """The governing runs that are still to be repeated.
 
         Args:
-            wanted: weakest | all | none.
+            checks: weakest | all | none.
             order: of the containers, the weakest first, before any is repeated.
         """
         count = {"none": 0, "all": len(order)}.get(checks, max(math.ceil(SHARE * len(order)), LEAST))

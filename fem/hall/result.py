@@ -37,7 +37,7 @@ class TagCount(JsonBlock):
 
 @dataclass(frozen=True, kw_only=True)
 class HallResult(StudyResult):
-    """Everything about a hall."""
+    """All results of a hall."""
 
     written_where_given = StudyResult.written_where_given | {"allow_outside"}
     hall: str

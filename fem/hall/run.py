@@ -91,7 +91,7 @@ def study_of(file: HallFile, base: Case, begun: HallResult, compute: Any, size: 
 
 
 def begun_result(file: HallFile, base: Case, inventory: Inventory) -> HallResult:
-    """What is known before any run, but for hashes."""
+    """The result before any run, without its hashes."""
     return HallResult(
         hall=file.name,
         case=base.origin_with({}).place,
@@ -183,7 +183,7 @@ def written(results: ResultFolder, table: HallTable, result: HallResult) -> Hall
 
 
 def _result_columns(runs: HallRuns, container: int) -> dict[str, Any]:
-    """What a container showed, by column."""
+    """Results of a container, by column."""
     by_motion, motion = runs.by_container[container], runs.governing(container)
     row = row_of(RUN_COLUMNS, runs.worst(container).line)
     values: dict[str, Any] = {name: row[name] for name in OF_A_RUN} | runs.checked.get(container, {})

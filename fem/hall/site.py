@@ -81,9 +81,9 @@ def run_hall_at_site(
     ]
     if idle:
         raise CaseError(
-            f"{file.path}: {idle[0]!r} has no effect at a site, whose file says it; leave the column out"
+            f"{file.path}: {idle[0]!r} has no effect at a site, whose file sets it; leave the column out"
         )
-    # of records the contents, too: their names stay where they change
+    # of records the contents: they may change under the same name
     ground = ground_motions(site, LAST_PERIOD_S, allow_outside=allow_outside) if site.motions.files else []
     inventory = take_inventory(
         file, partial(_look, site, start, ground), start.origin_with({}).place, strict=strict
@@ -240,7 +240,7 @@ class _AtSite:
 
 
 def _is_of_another_program(folder: Path) -> bool:
-    """Whether a verification is there that this program does not vouch for."""
+    """Whether the folder holds a verification by another version of the program."""
     if not (folder / SITE.mark).exists():
         return False
     try:

@@ -12,7 +12,7 @@ from fem.hall.result import REFUSED, RESULT_COLUMNS, HallResult, TagCount
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class HallTable:
-    """The rows of a list with what their containers showed."""
+    """The rows of a list with the results of their containers."""
 
     file: HallFile
     inventory: Inventory

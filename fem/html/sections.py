@@ -25,7 +25,7 @@ def code(text: object) -> Markup:
 
 
 def strong(text: object) -> Markup:
-    """A word within a text that stands out."""
+    """An emphasised word."""
     return Markup("<strong>{}</strong>").format(text)
 
 
@@ -61,7 +61,7 @@ class Note:
 
 @dataclass(frozen=True)
 class Quote:
-    """Words of somebody else."""
+    """A quotation."""
 
     text: str
 
@@ -135,7 +135,7 @@ class TableRow:
 class Table:
     """A table, which scrolls sideways where it is too wide."""
 
-    label: str  #: for those who cannot see it
+    label: str  #: for screen readers
     head: Sequence[Cell]
     rows: Sequence[TableRow]
     _: KW_ONLY
@@ -196,7 +196,7 @@ def table_of(
     """A table with a row for each item, cut to the rows that a page can carry.
 
     Args:
-        label: for those who cannot see it.
+        label: for screen readers.
         columns: of the table; the first names its rows.
         items: what the rows are about.
         row_look: the look of a row.
@@ -233,7 +233,7 @@ class Figure:
     """A drawing; with a label in a box that scrolls."""
 
     svg: Markup
-    label: str = ""  #: for those who cannot see it
+    label: str = ""  #: for screen readers
     _: KW_ONLY
     axes: Mapping[str, Any] | None = None  #: where a cursor moves over it
     caption: str = ""
@@ -249,7 +249,7 @@ class Group:
 
 @dataclass(frozen=True)
 class Folded:
-    """Blocks behind a line that opens them."""
+    """Blocks folded behind a line, which opens them."""
 
     summary: str
     blocks: Sequence["Block"]
@@ -286,7 +286,7 @@ class Legend:
 
 
 class Choice(NamedTuple):
-    """One of a menu."""
+    """An entry of a menu."""
 
     value: Any
     text: str

@@ -1,7 +1,7 @@
 """Columns of numbers: values with a sampling interval; time and value; or time, horizontal and vertical value.
 
 Columns are separated by semicolons, tabs, commas or blanks; decimals by points, or by commas where these do not
-separate. `#` starts a comment. Lines before the first number are a header, whose units must be those that are given.
+separate. `#` starts a comment. Lines before the first number are a header, whose units must agree with the given one.
 """
 
 import re
@@ -87,7 +87,7 @@ def read_columns(source: MotionText, *, unit: str | None, sample_interval: float
 
 
 def _contents(lines: Sequence[str], first: int = 1) -> Iterator[tuple[int, str]]:
-    """Those of the lines from number `first` on that are not empty, without comments, with their numbers."""
+    """The lines from number `first` on, with their numbers, without comments and empty lines."""
     for number, line in enumerate(lines, start=first):
         content = (line.partition("#")[0] if "#" in line else line).strip()
         if content:
@@ -144,7 +144,7 @@ def _table(source: MotionText, first: int, separator: str | None, decimal_comma:
 def _plain_table(
     lines: Sequence[str], separator: str | None, decimal_comma: bool, count: int
 ) -> FloatArray | None:
-    """Lines of nothing but numbers as numpy reads them, many times faster; None where these are no such lines."""
+    """Lines of numbers alone, read by numpy, many times faster; None where they hold anything else."""
     if not lines[0].strip() or (decimal_comma and any("." in line for line in lines)):
         return None
     points = [line.replace(",", ".") for line in lines] if decimal_comma else lines

@@ -9,8 +9,8 @@ from fem.records.source import LARGEST_NUMBER, MOST_SAMPLES, MotionText, as_numb
 from fem.records.units import UNITS
 from fem.runtime.arrays import FloatArray
 
+INTERVALS = (1e-6, 10.0)  #: shortest and longest between samples [s]
 #: such as (8f10.6), (5E15.7), (10I8), (1P8E10.3)
-INTERVALS = (1e-6, 10.0)  #: shortest and longest of samples [s]
 FORMAT = re.compile(r"\(\s*(?:1P\s*,?\s*)?(\d+)\s*[FEGDI]\s*(\d+)(?:\.\d+)?(?:E\d+)?\s*\)", re.IGNORECASE)
 
 
@@ -31,7 +31,7 @@ def read_block(
     width: int,
     largest: float = LARGEST_NUMBER,
 ) -> tuple[FloatArray, int]:
-    """Numbers that fill whole lines but for the last.
+    """Numbers in full lines, but for the last.
 
     Args:
         source: the file.
@@ -148,7 +148,7 @@ def require_interval(step: float, subject: str) -> None:
     """Refuse an interval [s] that no sensor has.
 
     Raises:
-        RecordError: beginning with `given`, such as "the header gives".
+        RecordError: beginning with `subject`, such as "the header gives".
     """
     if not INTERVALS[0] <= step <= INTERVALS[1]:
         raise RecordError(

@@ -44,7 +44,7 @@ def _peaks_of(
         step: between its samples [s].
         steps: of the oscillators, (k, 10): rate w, parts of a step between samples, and real and imaginary parts of
             the root m, of its factor exp(m h), and of the factors of the accelerations before and after a part h.
-        found: the peaks, (k, 2), written.
+        peaks: (k, 2), written.
     """
     for k in range(steps.shape[0]):
         rate, parts, root, damped = steps[k, 0], int(steps[k, 1]), steps[k, 2], steps[k, 3]

@@ -16,7 +16,7 @@ from fem.runtime.arrays import FloatArray
 
 Baseline = Literal["none", "mean", "linear", "zero-end"]
 BASELINES: tuple[Baseline, ...] = get_args(Baseline)
-#: changes of the peaks by a baseline that are said, and that are refused, over the peaks
+#: changes of a peak by a baseline, over the peak: what is reported (two), and what is refused
 SAID_ACCELERATION, SAID_VELOCITY, DOUBTFUL = 0.01, 0.03, 0.2
 
 
@@ -51,12 +51,12 @@ class BaselineChange:
 
     @property
     def is_said(self) -> bool:
-        """Whether a user must know of it."""
+        """Whether it is large enough to be reported."""
         return _share(self.accelerations) > SAID_ACCELERATION or _share(self.velocities) > SAID_VELOCITY
 
     @property
     def is_doubtful(self) -> bool:
-        """Whether it is refused unless it is allowed."""
+        """Whether it is so large that it is refused unless allowed."""
         return max(_share(self.accelerations), _share(self.velocities)) > DOUBTFUL
 
     @property
@@ -127,7 +127,7 @@ def baseline_change(component: Component, processing: Processing) -> BaselineCha
 def stated_baseline(
     name: str, component: Component, processing: Processing, *, allowed: bool, way_out: str
 ) -> str | None:
-    """What the baseline changes, in words, where a user must know of it.
+    """What the baseline changes, in words; None where that is too little to be reported.
 
     Args:
         name: of the record.

@@ -79,7 +79,7 @@ def response_spectrum(
         damping_ratio: of the oscillators, below 1.
 
     Raises:
-        ValueError: a step, damping ratio or acceleration that is none; a period shorter than two steps, which the
+        ValueError: an invalid step, damping ratio or acceleration; a period shorter than two steps, which the
             samples do not describe.
 
     Nigam and Jennings (1969), Bulletin of the Seismological Society of America 59. Peaks between samples count: below
@@ -133,8 +133,8 @@ def _checked(
     wrong = periods[~((periods >= shortest) & (periods < math.inf))]
     if wrong.size:
         raise ValueError(
-            f"response spectrum: a period of {wrong[0]:g} s is asked; samples {step_s:g} s apart describe periods from "
-            f"{LEAST_STEPS * step_s:g} s, two steps"
+            f"response spectrum: a period of {wrong[0]:g} s is out of range: samples {step_s:g} s apart describe "
+            f"periods from {LEAST_STEPS * step_s:g} s, two steps"
         )
     return values, periods
 

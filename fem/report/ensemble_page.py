@@ -102,7 +102,7 @@ def region_labels(info: EnsembleResult) -> dict[str, str]:
 
 
 def answer_table(answer: EnsembleAnswer, info: EnsembleResult) -> html.Table:
-    """Where half of the draws overturn, for each combination of values of the other axes."""
+    """Where half of the draws overturn, for all values of the other axes."""
 
     def in_axis(value: float | None) -> str:
         return ABSENT if value is None else in_words(answer.axis, [value])

@@ -40,7 +40,7 @@ def sketch(
         case: the case.
         centroid: height of the mass centre above the floor [m].
         peak_acceleration: largest |acceleration| of the floor in the run [m/s2].
-        peak_vertical: .. up or down; None: it does not move so.
+        peak_vertical: the largest vertical one [m/s2]; None: no vertical motion.
     """
     boxes, width = case.stack, case.stack[0].width
     low, high = min(box.sides[0] for box in boxes), max(box.sides[1] for box in boxes)

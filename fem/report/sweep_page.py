@@ -39,7 +39,7 @@ from fem.sweep.table import RATIOS, SweepTable, open_sweep
 
 #: what can be shown, by column
 QUANTITIES = figures_of(Place.MAP) | RATIOS | {"wall_s": Shown("computing time", units.SECONDS)}
-#: shown by a colour for every word; the last in folders of before
+#: shown by a colour for every word; the last in folders of earlier versions
 FLAGS = (("overturned_share", "variations that do not stand"), ("sure", "how sure"), ("unsure", "unsure"))
 SURENESS = {SURE: "#e3e8ee", REGIME_UNSURE: "#f2c879", UNSURE: "#c2410c", "not tried": "#ffffff"}
 NEEDED = 3  #: of these, in the order above: without them no page is made
@@ -315,7 +315,7 @@ def _short_key(key: str) -> str:
 
 
 def _sureness(table: SweepTable) -> list[dict[str, Any]]:
-    """How sure each cell is and what decides, as numbers of words; in a folder of before, whether it is unsure."""
+    """How sure each cell is and what decides, as numbers of words; of earlier versions only whether it is unsure."""
     if "sure" not in table.columns:
         return [_words("unsure", "unsure", np.where(table["unsure"] == 1.0, UNSURE, SURE), SURENESS)]
     sure = np.where(table["sure"] == "", "not tried", table["sure"])
@@ -349,7 +349,7 @@ def counts(table: SweepTable) -> list[tuple[str, str, int, float]]:
 
 
 def deciding(table: SweepTable) -> list[tuple[str, int]]:
-    """The inputs that decide unsure cells, and how many each; none for a folder of before."""
+    """The inputs that decide unsure cells, and how many each; none for a folder of an earlier version."""
     inputs = table.info.decided_by or {}
     return sorted(inputs.items(), key=lambda pair: -pair[1])
 
@@ -372,5 +372,5 @@ def _column(table: SweepTable, name: str, figure: Shown) -> dict[str, Any]:
 
 
 def _plain(values: NDArray[Any]) -> list[Any]:
-    """Numbers as they are; what is no number as text that changes nothing."""
+    """Numbers as they are, and "auto" for what is no number."""
     return [float(value) if np.isfinite(value) else "auto" for value in values.astype(float)]

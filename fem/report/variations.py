@@ -33,7 +33,7 @@ from fem.runtime.units import RATIO
 PHASES = (0.25, 0.5, 0.75)  #: of half a turn; a whole half turn is the mirror image
 STRENGTHS = (0.9, 1.1)  #: the margin of a run tries more
 ROTATIONS = (0.9, 1.1)
-BUDGET_S = 8.0  #: processor time of lines that are not asked for, by the estimate of `cost_of` [s]
+BUDGET_S = 8.0  #: processor time of all lines unless every one is wanted, by the estimate of `cost_of` [s]
 
 
 def further_changes(case: Case) -> Iterator[InputChange]:

@@ -76,9 +76,9 @@ def sweep_points(
     """The points of a curve in the order in which they are swept, each with the motion that is carried on.
 
     Args:
-        request: what is asked.
+        request: frequencies and drive.
         container: of its case.
-        skip: points that are there already.
+        skip: number of points that are computed already.
         before: the motion after the last of these; None: the next point begins as the case does.
         progress: called within a point with the time since its beginning [s], the rotation [rad] and the mode.
     """
@@ -146,7 +146,7 @@ def settled(
     before: DrivenModel | None,
     progress: Progress,
 ) -> tuple[DrivenModel, Orbit]:
-    """The model after the periods that are left out, and these; none where it fell before the first section."""
+    """The model after the periods left out, and their orbit; an empty one where it fell before the first section."""
     if before is None:
         before, until = begin_drive(case, container)
         status = step_until(before, until) if until > 0.0 else "completed"

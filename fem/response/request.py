@@ -151,6 +151,6 @@ class ResponseRequest:
 
     @property
     def hash(self) -> str:
-        """Equal for requests that give the same result."""
+        """A hash, equal for requests that give the same result."""
         document = self.to_dict() | {"case": case_hash(self.case)}
         return hashlib.sha256(json.dumps(document, sort_keys=True).encode()).hexdigest()

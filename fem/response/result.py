@@ -10,7 +10,7 @@ from fem.response.records import PointRow
 
 @dataclass(frozen=True, kw_only=True)
 class ResponseResult(StudyResult):
-    """Everything a response curve found."""
+    """All results of a response curve."""
 
     asked: str  #: hash of the request
     case: str = ""  #: its name

@@ -105,7 +105,6 @@ def _compute(
 def _expected_s(request: ResponseRequest) -> float:
     """Time of all points, each of which is driven for as many periods [s]."""
     periods = request.settle + request.observe
-
     simulated = 2 * request.count * periods / (0.5 * (request.first_Hz + request.last_Hz))
     return simulated * of_a_second(request.case)
 
@@ -128,7 +127,7 @@ def read_state(results: ResultFolder) -> tuple[list[PointRecord], dict[str, np.n
 
 
 def state_of(records: Sequence[PointRecord], driven: DrivenModel | None) -> dict[str, np.ndarray]:
-    """All that is needed to continue: the points, and the motion that is carried on; None after a fall."""
+    """What a resumed curve starts from: its points, and the motion carried on (None after a fall)."""
     arrays = {"rows": np.array(json.dumps([asdict(record.row) for record in records]))}
     for k, record in enumerate(records):
         arrays |= {f"{name}_{k}": getattr(record, name) for name in ARRAYS}

@@ -113,7 +113,7 @@ class FiniteElements:
 
     @cached_property
     def _parts(self) -> dict[bytes, Basis]:
-        """Bases of some cells alone, as asked for; the members of a band differ in their masses."""
+        """Bases of some cells alone, made on first use; the members of a band differ in their masses."""
         return {}
 
     @property

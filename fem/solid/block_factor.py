@@ -24,10 +24,10 @@ SOURCES = (Path(__file__),)  #: on which the machine code of this module depends
 class BlockPattern(NamedTuple):
     """Which blocks exist; n nodes, in the order of their elimination."""
 
-    place: IntArray  #: (n,) of a node in this order
+    place: IntArray  #: (n,) rank of each node in this order
     starts: IntArray  #: (n + 1,) blocks of L below the diagonal, by columns
     rows: IntArray  #: (b,)
-    row_starts: IntArray  #: (n + 1,) .. by rows
+    row_starts: IntArray  #: (n + 1,) the same blocks, by rows
     row_columns: IntArray  #: (b,)
     row_blocks: IntArray  #: (b,) where they stand among those by columns
     matrix_starts: IntArray  #: (n + 1,) blocks of the matrix, on and below its diagonal, by columns

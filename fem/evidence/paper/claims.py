@@ -31,7 +31,7 @@ class Conclusion(Enum):
 ClaimKind = Literal["statement", "print", "remark"]
 
 
-#: keys of a comparison of study.json and what of a finding they hold
+#: keys of a comparison in study.json, with the attributes of the finding that they hold
 KEYS = {"measured": "value", "limit": "reference"} | {
     name: name for name in ("what", "relation", "unit", "tolerance", "inside", "holds")
 }

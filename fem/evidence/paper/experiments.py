@@ -42,7 +42,7 @@ class InterruptedStudyError(Exception):
 
 @dataclass(frozen=True, kw_only=True)
 class VariantResult:
-    """The case of a claim on another container or floor; where its run failed nothing is known."""
+    """The case of a claim on another container or floor; without outcome and value where its run failed."""
 
     what: str
     command: str
@@ -59,7 +59,7 @@ class VariantBand:
     unit: str
     criterion: str
     members: Sequence[VariantResult]
-    drop: bool = False  #: mu_k is below mu_s in it
+    drop: bool = False  #: mu_k is below mu_s
 
     @property
     def low(self) -> float:
@@ -103,7 +103,7 @@ class VariantBand:
 
 
 def variant_result(case: PaperCase, outcome: str | None, value: float | None, holds: bool) -> VariantResult:
-    """What a variant gave; nothing if it has no outcome."""
+    """The result of a variant; without value and criterion if it has no outcome."""
     known, met = (None, None) if outcome is None else (value, bool(holds))
     return VariantResult(what=case.what, command=case.command, outcome=outcome, value=known, holds=met)
 
@@ -114,7 +114,7 @@ def capped_ratio(row: Row) -> float:
 
 
 def stands(row: Row) -> bool:
-    """Whether the container stands, of a run that did not fail: it neither overturned nor destroyed a corner."""
+    """Whether the container of a run that did not fail neither overturned nor destroyed a corner."""
     return row["outcome"] not in ENDINGS
 
 

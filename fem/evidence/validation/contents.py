@@ -1,7 +1,7 @@
 """Bookcases and file cabinets that nothing holds: the velocity of the floor at which half of them fall over.
 
-FEMA P-58 gives medians of nine bodies; they are 0.79 times the velocity of Kaneko and Hayashi, which was found with
-furniture that fell in earthquakes and on shake tables. The program's rigid blocks of these widths and heights stand
+FEMA P-58 gives medians of nine bodies: 0.79 times the velocity of Kaneko and Hayashi, who observed furniture in
+earthquakes and on shake tables. The program's rigid blocks of these widths and heights stand
 under artificial motions, and those that overturn are counted at several levels. Both tell how the median grows with
 width and height; the level itself depends on the motions, on friction and on what is in a cabinet.
 """
@@ -99,7 +99,7 @@ def fragility(content: Content, motions: list[GroundMotion]) -> Lognormal:
 
 
 def compute() -> Experiment:
-    """Count the blocks that overturn, and set their medians beside those of FEMA P-58."""
+    """Count the blocks that overturn, and compare their medians with those of FEMA P-58."""
     contents = read_contents()
     action = SiteAction(shape=eurocode_shape(1, GROUND), reference_acceleration=2.0)
     motions = artificial_motions(action, count=MOTIONS, seed=1, stationary=STATIONARY_S, vertical=False)

@@ -2,8 +2,8 @@
 
 Each run starts from the measured state at about 12 degrees of tilt, with one corner on the table or above it. One
 number is fitted, the damping of the contact; friction is the authors' value. The impact of so squat a body on a
-slippery table is decided by the corner that lands, not by Housner's impact about it: the cube rebounds to the side that
-it comes from.
+slippery table is decided by the corner that lands, not by Housner's impact about it: the cube rebounds to the side it
+comes from.
 """
 
 import math

@@ -8,7 +8,7 @@ from fem.evidence.findings import Finding
 from fem.evidence.suite import failures
 from fem.runtime.identity import versions
 
-#: keys of a finding of validate.json and what of a finding they hold
+#: keys of a finding in validate.json, with the attributes that they hold
 KEYS = {"quantity": "what", "measured": "reference", "predicted": "value", "passed": "met"} | {
     name: name for name in ("criterion", "note")
 }

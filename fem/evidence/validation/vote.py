@@ -1,7 +1,7 @@
 """Fit blocks to outcomes by likelihood, and predict by their weighted vote.
 
-A test comes out as a block of the right size says it does, except in a share s of cases that no planar block can say:
-twins on one table do otherwise in 0.13 of 582 tests. The likelihood of a block is (1 - s)^right s^wrong. The blocks
+A block of the right size predicts the outcome of a test, except in a share s that no planar block can predict: in 0.13
+of 582 tests, twins on one table differ. The likelihood of a block is (1 - s)^right s^wrong. The blocks
 tried, weighted by their likelihoods, vote on a test that is not in the fit; a vote v is a probability of overturning
 s + (1 - 2 s) v.
 
@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from fem.runtime.arrays import FloatArray
 
 BoolArray = NDArray[np.bool_]
-SHARE = 0.13  #: of the tests that no block says
+SHARE = 0.13  #: of the tests, which no block predicts
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,7 +53,7 @@ class Vote:
     def by_record(
         self, among: BoolArray, votes_of: Callable[[BoolArray, BoolArray], FloatArray]
     ) -> FloatArray:
-        """Votes on each test among some (k,), by a fit on those of other records; a mask (tests,)."""
+        """Votes (k,) on the tests marked, each by a fit on those of the other records; a mask (tests,)."""
         votes = np.full(self.overturned.size, np.nan)
         for record in np.unique(self.records[among]):
             tested = among & (self.records == record)
@@ -85,7 +85,7 @@ def brier(probabilities: FloatArray, overturned: BoolArray) -> float:
 
 
 def best_threshold(measures: FloatArray, overturned: BoolArray) -> tuple[int, float]:
-    """Most outcomes that a least value of a measure for overturning says, and that value; measures (n,)."""
+    """The most outcomes that a threshold of a measure (n,) predicts, and the threshold, above which it overturns."""
     levels = np.sort(measures)
     between = np.concatenate([[-np.inf], 0.5 * (levels[1:] + levels[:-1]), [np.inf]])
     right = ((measures[None, :] > between[:, None]) == overturned).sum(axis=1)
@@ -95,7 +95,7 @@ def best_threshold(measures: FloatArray, overturned: BoolArray) -> tuple[int, fl
 
 
 def by_threshold(measures: Sequence[FloatArray], overturned: BoolArray, fitted: BoolArray) -> BoolArray:
-    """What a least value for overturning says of all tests (n,): of the measure, of some (n,), that fits best."""
+    """Outcomes of all tests (n,) by the threshold of the measure (n,) that fits best."""
     scores = [best_threshold(measure[fitted], overturned[fitted]) for measure in measures]
     best = max(range(len(scores)), key=lambda k: scores[k][0])
     return np.asarray(measures[best] > scores[best][1])

@@ -256,8 +256,8 @@ def test_lists_of_every_spreadsheet_are_read(tmp_path, text, encoding):
         ("name,Weight (kN)\na,1\n", "did you mean 'weight_N'"),
         ("name,container.colour\na,1\n", "'container.colour' is no key of a case file"),
         ("name,damping_ratio\na,1\n", "may be container.damping_ratio or contact.damping_ratio"),
-        ("name,width_m,container.width_m\na,1,1\n", "are both 'container.width_m'"),
-        ("name,width_m,width_m\na,1,1\n", "'width_m' is there 2 times"),
+        ("name,width_m,container.width_m\na,1,1\n", "both set 'container.width_m'"),
+        ("name,width_m,width_m\na,1,1\n", "'width_m' occurs 2 times"),
         ("name,margin,width_m\na,1,1\n", "'margin' has the name of a result"),
         ("name,x_m,width_m\na,1,1\n", "there is x_m alone"),
         ("name,width_m,\na,1,lost\n", "line 2: column 3 has values and no name"),
@@ -300,7 +300,7 @@ def test_a_bad_row_has_its_reason_and_strict_refuses(tmp_path, base, monkeypatch
 
 def test_too_many_rows_are_told_the_time_before_any_is_read(tmp_path, base):
     file = read_hall(listed(tmp_path, "width_m,\n" + "1.0,without a name\n" * 250_000))
-    with pytest.raises(CaseError, match=r"250000 rows, 250000 runs: roughly \d+ .* or say --force"):
+    with pytest.raises(CaseError, match=r"250000 rows, 250000 runs: roughly \d+ .* or use --force"):
         run_hall(file, load_case(base), tmp_path / "out")
 
 

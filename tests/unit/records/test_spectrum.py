@@ -115,7 +115,7 @@ def test_two_other_programs_agree():
             np.ones(9),
             0.0199,
             0.05,
-            r"0\.0199 s is asked; samples 0\.01 s apart describe periods from 0\.02 s",
+            r"0\.0199 s is out of range: samples 0\.01 s apart describe periods from 0\.02 s",
         ),
         (0.01, np.ones(9), math.nan, 0.05, "a period of nan s"),
         (0.01, np.ones(9), math.inf, 0.05, "a period of inf s"),
