@@ -90,12 +90,12 @@ class Ensemble:
         each, following = self.draws // self.replicates, [dict[str, str | None]()] * self.replicates
         if self.motions is not None:
             columns[MOTION_FILE] = np.repeat(self.motions.values, each).tolist()
-            names, keys = self.motions.following, zip(*self.motions.following.values(), strict=True)
-            following = [dict(zip(names, names_of_one, strict=True)) for names_of_one in keys] or following
-        rows = zip(*(columns[quantity.key] for quantity in self.random), strict=True)
+            keys, rows = self.motions.following, zip(*self.motions.following.values(), strict=True)
+            following = [dict(zip(keys, row, strict=True)) for row in rows] or following
+        draws = zip(*(columns[quantity.key] for quantity in self.random), strict=True)
         return [
             Draw(cell, number, drawn, following=following[number // each])
-            for number, drawn in enumerate(rows)
+            for number, drawn in enumerate(draws)
         ]
 
     def case(self, draw: Draw) -> Case:

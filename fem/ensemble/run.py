@@ -99,13 +99,10 @@ def draw_row(row: Row) -> Row:
     """The result of a draw, by the names of `SHOWN`."""
     figures = {key: row[key] for key in (TURNED, SLIPPED)}
     known = {
-        key: figure if figure is not None and np.isfinite(figure) else None for key, figure in figures.items()
+        key: None if value is None or not np.isfinite(value) else value for key, value in figures.items()
     }
-    return (
-        {"outcome": WORDS[ending_of(row["status"], row["outcome"])]}
-        | known
-        | {key: row[key] for key in FELL_FIRST}
-    )
+    outcome = {"outcome": WORDS[ending_of(row["status"], row["outcome"])]}
+    return outcome | known | {key: row[key] for key in FELL_FIRST}
 
 
 def run_ensemble(ensemble: Ensemble, *, folder: Path, **options: Unpack[StudyOptions]) -> EnsembleResult:

@@ -73,10 +73,10 @@ def _cached(files: RunFiles) -> list[Drawing] | None:
         return None
 
 
-def _identity(run_files: RunFiles) -> dict[str, Any]:
+def _identity(files: RunFiles) -> dict[str, Any]:
     """Identity of the program and digests of the files from which the figures are drawn."""
-    files = (run_files.result, run_files.resolved, run_files.history, run_files.rigid_check)
-    return {"program": program_identity(), "drawn_from": {path.name: _digest(path) for path in files}}
+    sources = (files.result, files.resolved, files.history, files.rigid_check)
+    return {"program": program_identity(), "drawn_from": {path.name: _digest(path) for path in sources}}
 
 
 def _metadata(drawing: Drawing) -> dict[str, Any]:

@@ -38,15 +38,15 @@ class MapAxis:
     values: Sequence[Any]  #: one a column or row; numbers that rise, or words
     scale: str = "list"  #: linear | log: round values between the cells are marked; list: cells are
 
-    def places(self, values: FloatArray) -> FloatArray:
-        """Where values lie, counted in cells from the middle of the first; nan outside of the axis."""
+    def positions(self, values: FloatArray) -> FloatArray:
+        """Positions of values, counted in cells from the middle of the first; nan outside of the axis."""
         known, points = np.array(self.values, dtype=float), np.asarray(values, dtype=float)
         if self.scale == "log":
             known, points = np.log(known), np.log(points)
         return np.interp(points, known, np.arange(known.size), left=np.nan, right=np.nan)
 
     def ticks(self) -> tuple[list[float], list[str]]:
-        """Places and labels of the marks."""
+        """Positions and labels of the marks."""
         count = len(self.values)
         if self.scale == "list":
             chosen = sorted({round(k) for k in np.linspace(0, count - 1, min(count, TICKS))})
@@ -57,7 +57,7 @@ class MapAxis:
             locator = LogLocator(subs=(1.0,) if high / low > 100.0 else (1.0, 2.0, 3.0, 5.0), numticks=20)
         margin = 1e-9 * abs(high)
         marks = [mark for mark in locator.tick_values(low, high) if low - margin <= mark <= high + margin]
-        return self.places(np.clip(marks, low, high)).tolist(), [rounded(mark) for mark in marks]
+        return self.positions(np.clip(marks, low, high)).tolist(), [rounded(mark) for mark in marks]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -203,8 +203,8 @@ def _draw_over(axes: Axes, x: MapAxis, y: MapAxis, panel: Panel, look: Look | No
             axes.text(column, row, text, ha="center", va="center", fontsize=6.5, color=colour)
     for curve, style in zip(panel.curves, ("-", "--", ":", "-."), strict=False):
         axes.plot(
-            x.places(curve.x),
-            y.places(curve.y),
+            x.positions(curve.x),
+            y.positions(curve.y),
             style,
             color=BLACK,
             linewidth=1.2,

@@ -299,22 +299,22 @@ def cursor_axes(figure: Figure) -> dict[str, Any] | None:
     figure out. A cursor over time spans all panels over time.
     """
     over_time = [axes for axes in figure.axes if axes.get_label() == TIME]
-    cursors = over_time or [axes for axes in figure.axes if axes.get_label() == PLANE]
-    if not cursors:
+    chosen = over_time or [axes for axes in figure.axes if axes.get_label() == PLANE]
+    if not chosen:
         return None
-    boxes = [axes.get_position() for axes in cursors]
+    boxes = [axes.get_position() for axes in chosen]
     area = {
         "kind": "time" if over_time else "plane",
         "left": boxes[0].x0,
         "right": boxes[0].x1,
         "top": max(box.y1 for box in boxes),
         "bottom": min(box.y0 for box in boxes),
-        "x": list(cursors[0].get_xlim()),
+        "x": list(chosen[0].get_xlim()),
     }
     if over_time:
         return area
     return area | {
-        "y": list(cursors[0].get_ylim()),
+        "y": list(chosen[0].get_ylim()),
         "horizontal": "rotation",  # by the names that the player of a report gives them
         "vertical": "rate",
         "factors": [math.degrees(1.0)] * 2,  # from SI units to those of the axes

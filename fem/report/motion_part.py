@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from fem.ensemble.result import EnsembleResult
 from fem.html import sections as html
@@ -55,12 +55,11 @@ def motions_of_sweep(folder: Path, table: SweepTable) -> html.PageSection:
     by_cell = {cell: shown_at(table, cell) for cell in range(len(table["cell"]))}
     points = list(motions_at(table.axes, by_cell))
     rows = table.info.motion_set or ()
-    labels = [row["where"] for row in rows]
-    tables = [_together(labels, rows)]
+    tables = [_together(rows)]
     if len(points) <= MOST_POINTS:
         by_motion = zip(*(outcomes for _, outcomes in points), strict=True)
         lines = ([outcomes[0].motion, *map(_outcome, outcomes)] for outcomes in by_motion)
-        columns = html.in_order("motion", *(label or "outcome" for label in labels))
+        columns = html.in_order("motion", *(row["where"] or "outcome" for row in rows))
         tables.append(
             html.table_of(
                 "outcome of each motion",
@@ -108,49 +107,40 @@ def _numbers(motions: Sequence[Mapping[str, Any]]) -> html.Table:
     )
 
 
-class _Point(NamedTuple):
-    """What all motions did at a point of the other axes."""
+def _together(rows: Sequence[Mapping[str, Any]]) -> html.Table:
+    """What all motions did at each point of the other axes."""
 
-    name: str
-    counts: Mapping[str, Any]
+    def worst(row: Mapping[str, Any]) -> str:
+        words = _words(row["worst_outcome"], row[WORST_TURNED])
+        return f"{row['worst_motion']}: {words}" if row["worst_motion"] else ABSENT
 
+    def slip(row: Mapping[str, Any]) -> str:
+        largest = row["worst_slip_m"]
+        return f"{millimetres(largest)} mm, {row['worst_slip_motion']}" if largest else ABSENT
 
-def _together(labels: Sequence[str], rows: Sequence[Mapping[str, Any]]) -> html.Table:
-    def worst(point: _Point) -> str:
-        counts = point.counts
-        words = _words(counts["worst_outcome"], counts[WORST_TURNED])
-        return f"{counts['worst_motion']}: {words}" if counts["worst_motion"] else ABSENT
+    def mean_ratio(row: Mapping[str, Any]) -> str:
+        of = f" (of {row['stood']})" if 0 < row["stood"] < row["motions"] else ""
+        return ratio(row[MEAN_TURNED]) + of
 
-    def slip(point: _Point) -> str:
-        largest = point.counts["worst_slip_m"]
-        return f"{millimetres(largest)} mm, {point.counts['worst_slip_motion']}" if largest else ABSENT
+    def interval(row: Mapping[str, Any]) -> str:
+        return f"{short(row['low'], 100.0, 3)} to {short(row['high'], 100.0, 3)} %"
 
-    def mean_ratio(point: _Point) -> str:
-        counts = point.counts
-        of = f" (of {counts['stood']})" if 0 < counts["stood"] < counts["motions"] else ""
-        return ratio(counts[MEAN_TURNED]) + of
-
-    def interval(point: _Point) -> str:
-        return f"{short(point.counts['low'], 100.0, 3)} to {short(point.counts['high'], 100.0, 3)} %"
-
-    columns: list[html.Column[_Point]] = [
-        html.Column("", lambda point: point.name, optional=True),
-        html.Column("motions", lambda point: str(point.counts["motions"]), html.NUMBER),
-        html.Column("overturned", lambda point: str(point.counts["overturned"]), html.NUMBER),
+    columns: list[html.Column[Mapping[str, Any]]] = [
+        html.Column("", lambda row: row["where"], optional=True),
+        html.Column("motions", lambda row: str(row["motions"]), html.NUMBER),
+        html.Column("overturned", lambda row: str(row["overturned"]), html.NUMBER),
         html.Column("95 % interval", interval, html.NUMBER),
-        html.Column(
-            "not valid", lambda point: str(point.counts.get("invalid") or ""), html.NUMBER, optional=True
-        ),
-        html.Column("failed", lambda point: str(point.counts["failed"] or ""), html.NUMBER, optional=True),
+        html.Column("not valid", lambda row: str(row.get("invalid") or ""), html.NUMBER, optional=True),
+        html.Column("failed", lambda row: str(row["failed"] or ""), html.NUMBER, optional=True),
         html.Column("worst", worst),
         html.Column("largest slip", slip),
         html.Column("mean rotation ratio", mean_ratio, html.NUMBER),
-        html.Column("mean slip [mm]", lambda point: millimetres(point.counts["mean_slip_m"]), html.NUMBER),
+        html.Column("mean slip [mm]", lambda row: millimetres(row["mean_slip_m"]), html.NUMBER),
     ]
     return html.table_of(
         "the set of motions",
         columns,
-        map(_Point, labels, rows),
+        rows,
         caption="All motions together; means are of those under which it stood",
         file="motion_set.csv",
     )

@@ -108,7 +108,7 @@ def run_report(
 def _broken(result: RunResult) -> list[float]:
     """When stops and ties broke, in the order of the case; empty where none was computed [s]."""
     links = (*(result.stops or ()), *(result.ties or ()))
-    return [math.inf if one.broken_at_s is None else one.broken_at_s for one in links]
+    return [math.inf if link.broken_at_s is None else link.broken_at_s for link in links]
 
 
 def _page(view: RunView, signature: Signature | None, varied: VariationTable | None) -> Page:

@@ -129,10 +129,10 @@ def _products(rows: FloatArray, matrix: csc_array) -> FloatArray:
 
 
 def _combine(
-    target: FloatArray, one: tuple[FloatArray, FloatArray], other: tuple[FloatArray, FloatArray]
+    target: FloatArray, first: tuple[FloatArray, FloatArray], second: tuple[FloatArray, FloatArray]
 ) -> None:
     """Sum of two products of coefficients and rows, into `target`."""
-    (factors, rows), (more_factors, more_rows) = one, other
+    (factors, rows), (more_factors, more_rows) = first, second
     for block in blocks(len(target), _affordable(rows)):
         target[block] = factors[block] @ rows + more_factors[block] @ more_rows
 

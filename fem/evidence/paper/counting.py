@@ -223,11 +223,9 @@ def region_of_safety(experiments: Experiments) -> Evidence:
     every_map, shells = (maps.shape_maps(experiments, rigid=rigid) for rigid in (True, False))
     for outcome_map in (*every_map, *shells):
         changes = f"{outcome_map.title}: changes from falling back to standing along c/a"
+        share = outcome_map.standing_share()
         yield at_least(
-            f"{outcome_map.title}: share of cells that stand",
-            outcome_map.standing_share(),
-            0.05,
-            inside=outcome_map.rigid,
+            f"{outcome_map.title}: share of cells that stand", share, 0.05, inside=outcome_map.rigid
         )
         yield at_most(changes, _re_entries(outcome_map), 0.0, inside=False)
     both = [pair for rigid, shell in zip(every_map, shells, strict=True) for pair in maps.pairs(rigid, shell)]
@@ -292,14 +290,9 @@ def _mode_table(modes: Counter[tuple[Outcome, str]]) -> ClaimTable:
 
 def _witnesses(outcome_map: maps.OutcomeMap, criterion: criteria.Criterion) -> list[PaperCase]:
     """One sure cell of either error, to be run again."""
-    sure = [cell for cell in outcome_map.cells if cell.sure]
-    return [
-        cell.case
-        for overturns in (True, False)
-        for cell in [
-            cell for cell in sure if cell.fell is not overturns and criterion(cell.motion) is overturns
-        ][:1]
-    ]
+    wrong = [cell for cell in outcome_map.cells if cell.sure and criterion(cell.motion) is not cell.fell]
+    first = [next((cell for cell in wrong if cell.fell is fell), None) for fell in (False, True)]
+    return [cell.case for cell in first if cell is not None]
 
 
 def _shape_figure(outcome_map: maps.OutcomeMap) -> ClaimFigure:

@@ -104,12 +104,7 @@ def short_before_reversal(experiments: Experiments) -> Evidence:
         "When the stack begins to tilt, in periods before the floor reverses, and its outcome.",
         "angular frequency [rad/s] | lead over the period [-]",
         [
-            curve(
-                [cell.motion.angular_frequency for cell in cells],
-                [_lead(cell) for cell in cells],
-                label,
-                style,
-            )
+            curve([cell.motion.angular_frequency for cell in cells], list(map(_lead, cells)), label, style)
             for cells, label, style in ((standing, "stands", "."), (fallen, "overturns", "x"))
         ],
     )

@@ -61,11 +61,9 @@ def cylinder(experiments: Experiments) -> Evidence:
     changes = [solid / prism for prism, solid in zip(rows[0][2:], rows[1][2:], strict=True)]
     for name, change in zip(names, changes, strict=True):
         yield equal(f"{name}, cylinder over prism", change, 1.0, 0.02 if name == names[3] else 0.01)
+    loss = 1.0 - math.cos(2.0 * math.atan2(HALF_WIDTH, 0.5))
     prism, solid = (
-        1.0
-        - (1.0 - math.cos(2.0 * math.atan2(HALF_WIDTH, 0.5)))
-        / inertia_ratio(cylinder=is_cylinder, height=1.0)
-        for is_cylinder in (False, True)
+        1.0 - loss / inertia_ratio(cylinder=cylindrical, height=1.0) for cylindrical in (False, True)
     )
     yield equal("Housner's restitution of one box, cylinder less prism", solid - prism, 0.0, 0.05)
     yield (

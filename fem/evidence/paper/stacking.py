@@ -103,13 +103,8 @@ def loose_stack_moves_as_one(experiments: Experiments) -> Evidence:
         "slip on the floor, bolted [mm] | loose [mm] | outcome, loose",
         [
             (
-                *(
-                    pair.boxes,
-                    pair.share,
-                    pair.peak,
-                    pair.bolted["rotation_ratio"],
-                    pair.loose["rotation_ratio"],
-                ),
+                *pair[:3],
+                *(row["rotation_ratio"] for row in (pair.bolted, pair.loose)),
                 *(1e3 * pair.loose[name] for name in ("max_joint_slip_m", "max_joint_opening_m")),
                 *(1e3 * row["max_slip_m"] for row in (pair.bolted, pair.loose)),
                 pair.loose["outcome"],

@@ -1,9 +1,9 @@
 """Bookcases and file cabinets that nothing holds: the velocity of the floor at which half of them fall over.
 
 FEMA P-58 gives medians of nine bodies: 0.79 times the velocity of Kaneko and Hayashi, who observed furniture in
-earthquakes and on shake tables. The program's rigid blocks of these widths and heights stand
-under artificial motions, and those that overturn are counted at several levels. Both tell how the median grows with
-width and height; the level itself depends on the motions, on friction and on what is in a cabinet.
+earthquakes and on shake tables. The program's rigid blocks of these widths and heights stand under artificial motions,
+and those that overturn are counted at several levels. Both tell how the median grows with width and height; the level
+itself depends on the motions, on friction and on what is in a cabinet.
 """
 
 from dataclasses import dataclass
@@ -18,7 +18,6 @@ from fem.evidence.validation.tables import measured_table
 from fem.model.container import discretise
 from fem.model.model import build_model
 from fem.run.outcome import run_without_history
-from fem.runtime.arrays import FloatArray
 from fem.seismic.action import SiteAction, eurocode_shape
 from fem.seismic.artificial import artificial_motions
 from fem.seismic.ground_motion import GroundMotion
@@ -75,23 +74,15 @@ def fragility(content: Content, motions: list[GroundMotion]) -> Lognormal:
     )
     container = discretise(case)
 
-    def falls(motion: GroundMotion, acceleration: FloatArray) -> bool:
-        driven = case.with_motion(motion.times, acceleration)
+    def falls(motion: GroundMotion, level: float) -> bool:
+        factor = level * content.velocity / motion.intensities["h"].peak_velocity_m_s
+        driven = case.with_motion(motion.times, factor * motion.horizontal)
         verdict, error = run_without_history(build_model(driven, container), None)
         if error is not None:
             raise ArithmeticError(f"{content.name}: {error}")
         return verdict.overturned_at_s is not None
 
-    counts = [
-        sum(
-            falls(
-                motion,
-                level * content.velocity / motion.intensities["h"].peak_velocity_m_s * motion.horizontal,
-            )
-            for motion in motions
-        )
-        for level in LEVELS.tolist()
-    ]
+    counts = [sum(falls(motion, level) for motion in motions) for level in LEVELS.tolist()]
     curve = fit_lognormal(LEVELS, np.array(counts, dtype=float), np.full(LEVELS.size, float(len(motions))))
     if curve is None:
         raise ArithmeticError(f"{content.name}: no curve fits {counts} of {len(motions)} that overturn")

@@ -92,10 +92,8 @@ def nafems() -> Findings:
     yield printed(case, "sigma_zz at D [Pa]", le1_stress(), 92.7e6, source=NAFEMS, absolute=0.05e6)
     case = "NAFEMS FV32, tapered membrane, 20 x 10 quadratic"
     references = (44.623, 130.03, 162.70, 246.05, 379.90, 391.44)
-    for number, (frequency, reference) in enumerate(
-        zip(fv32_frequencies(), references, strict=True), start=1
-    ):
-        yield printed(case, f"frequency {number} [Hz]", frequency, reference, source=NAFEMS, relative=1e-3)
+    for number, (value, reference) in enumerate(zip(fv32_frequencies(), references, strict=True), start=1):
+        yield printed(case, f"frequency {number} [Hz]", value, reference, source=NAFEMS, relative=1e-3)
 
 
 @check("elasticity", "elastica")
@@ -116,11 +114,9 @@ def free_square() -> Findings:
     """Frequencies of the free square."""
     case = "free-free unit square, nu = 0.3, 24 x 24 quadratic"
     exact = (2.43265, 2.59096, 2.59096, 2.75536, 3.13163)
-    for mode, (frequency, reference) in enumerate(
-        zip(free_square_frequencies(), exact, strict=True), start=1
-    ):
+    for mode, (value, reference) in enumerate(zip(free_square_frequencies(), exact, strict=True), start=1):
         compared = f"omega L sqrt(rho/E), mode {mode}"
-        yield computed(case, compared, frequency, reference, source="converged value", absolute=2e-5)
+        yield computed(case, compared, value, reference, source="converged value", absolute=2e-5)
 
 
 @check("elasticity", "column under its weight")
