@@ -137,11 +137,7 @@ def _parse(path: Path) -> tuple[FloatArray, IntArray, CellTags]:
     suffix = path.suffix.lower()
     reader = importlib.import_module(_READERS[suffix])
     try:
-        with (
-            contextlib.redirect_stdout(chatter),
-            contextlib.redirect_stderr(chatter),
-            bounded_memory(path),
-        ):
+        with contextlib.redirect_stdout(chatter), contextlib.redirect_stderr(chatter), bounded_memory(path):
             mesh = reader.read(str(path))
         return _checked(mesh)
     except MeshError:
@@ -201,12 +197,7 @@ def _container(
     thickness = cell_thickness(geometry, region, areas_and_centroids(points, quads)[1][:, 0])
     density, region, box = _fill_boxes(points, quads, region, thickness, geometry, fill)
     return ContainerMesh(
-        points=points,
-        quads=quads,
-        region=region,
-        box=box,
-        thickness=thickness,
-        areal_density=density,
+        points=points, quads=quads, region=region, box=box, thickness=thickness, areal_density=density
     )
 
 

@@ -30,10 +30,7 @@ INSTALL_PACKAGES = "python -m pip install --upgrade unanchored"
 LEAST_FREE_GB = 1.0
 
 
-def doctor(
-    *,
-    as_json: AsJson = False,
-) -> None:
+def doctor(*, as_json: AsJson = False) -> None:
     """Report versions, rendering, cores and free disk, and how to install what is missing."""
     versions = {name: _version(name) for name in DISTRIBUTIONS}
     rendering = probe_rendering()

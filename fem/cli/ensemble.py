@@ -14,12 +14,7 @@ if TYPE_CHECKING:
     from fem.ensemble.result import EnsembleResult
 
 
-def ensemble(
-    ensemble: str,
-    /,
-    *,
-    flags: SharedFlags = SHARED,
-) -> int:
+def ensemble(ensemble: str, /, *, flags: SharedFlags = SHARED) -> int:
     """Sample the uncertain parameters and count how often the container overturns, with confidence intervals.
 
     Parameters

@@ -41,11 +41,7 @@ def modes(
     shapes = modes_of(count or min(loaded.solver.elastic_modes or SHOWN, available))
     with house_style():
         drawn = modes_figure(
-            points=elements.nodes,
-            cells=elements.cells,
-            box=elements.box,
-            modes=shapes,
-            name=loaded.name,
+            points=elements.nodes, cells=elements.cells, box=elements.box, modes=shapes, name=loaded.name
         )
     folder = out if out is not None else Path("outputs") / loaded.name / "modes"
     with writing_into(folder, ELSEWHERE_OUT):
@@ -71,9 +67,7 @@ def modes(
     print(f"\n{figure} shows the shapes, {path} in ParaView (Warp By Vector)")
 
 
-def _free_bodies(
-    case: Case,
-) -> tuple[FiniteElements, list[FiniteElements], Callable[[int], ElasticModes]]:
+def _free_bodies(case: Case) -> tuple[FiniteElements, list[FiniteElements], Callable[[int], ElasticModes]]:
     """Elements of the container and of its free bodies, and what finds their lowest modes."""
     if case.container.is_loose:
         stack = discretise(case.with_values({"solver.model": "rigid"}))

@@ -14,12 +14,7 @@ if TYPE_CHECKING:
     from fem.sweep.result import SweepResult
 
 
-def sweep(
-    sweep: str,
-    /,
-    *,
-    flags: SharedFlags = SHARED,
-) -> int:
+def sweep(sweep: str, /, *, flags: SharedFlags = SHARED) -> int:
     """Compute the cases of a sweep: where does the container rest, slide, rock or overturn?
 
     Parameters

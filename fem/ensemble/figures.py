@@ -28,10 +28,7 @@ MOST_NUMBERS = 320  #: cells of a panel up to which each holds its number
 
 
 def ensemble_figures(
-    ensemble: Ensemble,
-    unknown: UnknownInputs,
-    points: Sequence[PointRow],
-    fragility: Fragility | None,
+    ensemble: Ensemble, unknown: UnknownInputs, points: Sequence[PointRow], fragility: Fragility | None
 ) -> dict[str, str]:
     """Figures as SVG documents, by name."""
     with style.house_style():
@@ -41,10 +38,7 @@ def ensemble_figures(
 
 
 def draw_fragility(
-    ensemble: Ensemble,
-    unknown: UnknownInputs,
-    points: Sequence[PointRow],
-    fragility: Fragility | None,
+    ensemble: Ensemble, unknown: UnknownInputs, points: Sequence[PointRow], fragility: Fragility | None
 ) -> Figure:
     """Counts with their intervals, and the lognormal curve with its band."""
     statement = fill(_statement(ensemble, unknown), SMALL_LINE)

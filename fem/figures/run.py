@@ -259,13 +259,7 @@ FIGURES: dict[str, Callable[[RunData], Figure | None]] = {
 
 
 def _panel(
-    run: RunData,
-    values: FloatArray,
-    label: str,
-    name: str | None = None,
-    *,
-    legend: bool,
-    zero: bool = False,
+    run: RunData, values: FloatArray, label: str, name: str | None = None, *, legend: bool, zero: bool = False
 ) -> tuple[Figure, Axes]:
     """One curve over time with the states of motion below it, and room for a legend above."""
     figure, (axes,) = style.time_panels((2.3,), history=run.history, header=2 if legend else 1)

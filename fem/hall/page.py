@@ -37,11 +37,7 @@ A_ROW = Mapping[str, Any]
 
 
 def hall_report(
-    folder: Path,
-    *,
-    signature: Signature | None = None,
-    result: HallResult | None = None,
-    brief: bool = False,
+    folder: Path, *, signature: Signature | None = None, result: HallResult | None = None, brief: bool = False
 ) -> str:
     """The page, as the text of an HTML file.
 

@@ -12,13 +12,7 @@ import numpy as np
 
 from fem.records.fixed_width import require_interval
 from fem.records.record import Component, Direction, Record
-from fem.records.source import (
-    BLOCK,
-    LARGEST_NUMBER,
-    MotionText,
-    as_numbers,
-    read_rows,
-)
+from fem.records.source import BLOCK, LARGEST_NUMBER, MotionText, as_numbers, read_rows
 from fem.records.units import UNITS, settled_unit, unit_spelled
 from fem.runtime.arrays import FloatArray
 
@@ -30,11 +24,7 @@ NOT_NUMBERS = ("nan", "inf", "+inf", "-inf")
 DECIMAL_COMMA = re.compile(r"[-+]?\d+,\d+(\s+[-+]?\d+,\d+)+\s*", re.ASCII)
 #: bounded: a line of brackets would be scanned for each of them
 BRACKETED = re.compile(r"[\[(]([^\])]{0,40})[\])]")
-DIRECTIONS: dict[int, tuple[Direction | None, ...]] = {
-    1: (None,),
-    2: (None,),
-    3: ("horizontal", "vertical"),
-}
+DIRECTIONS: dict[int, tuple[Direction | None, ...]] = {1: (None,), 2: (None,), 3: ("horizontal", "vertical")}
 
 
 def read_columns(source: MotionText, *, unit: str | None, sample_interval: float | None) -> Record:

@@ -33,11 +33,7 @@ RATED = re.compile(
 )
 CHANNEL = re.compile(r"\bChan\s+(\d+):\s*(\S+(?: \S+)*)", re.IGNORECASE | re.ASCII)
 LAYOUTS = {"spaced": (8, 10), "rated": (8, 9)}  #: where the line gives no format
-QUANTITIES: dict[str, Quantity] = {
-    "accel": "acceleration",
-    "veloc": "velocity",
-    "displ": "displacement",
-}
+QUANTITIES: dict[str, Quantity] = {"accel": "acceleration", "veloc": "velocity", "displ": "displacement"}
 
 
 def recognises(source: MotionText) -> bool:

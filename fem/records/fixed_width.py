@@ -23,13 +23,7 @@ def fortran_format(text: str) -> tuple[int, int] | None:
 
 
 def read_block(
-    source: MotionText,
-    first: int,
-    count: int,
-    *,
-    per_line: int,
-    width: int,
-    largest: float = LARGEST_NUMBER,
+    source: MotionText, first: int, count: int, *, per_line: int, width: int, largest: float = LARGEST_NUMBER
 ) -> tuple[FloatArray, int]:
     """Numbers in full lines, but for the last.
 

@@ -109,9 +109,7 @@ def oscillator_response(
     x, v = _response(step_s / parts, _denser(values, parts), period_s, damping_ratio)
     x, v, rate = x[::parts], v[::parts], 2.0 * math.pi / period_s
     return OscillatorHistory(
-        displacement_m=x,
-        velocity_m_s=v,
-        acceleration_m_s2=-rate * (rate * x + 2.0 * damping_ratio * v),
+        displacement_m=x, velocity_m_s=v, acceleration_m_s2=-rate * (rate * x + 2.0 * damping_ratio * v)
     )
 
 

@@ -10,12 +10,7 @@ from fem.assessment.code_note import code_note
 from fem.assessment.drawn_links import drawn_links
 from fem.assessment.floor_words import floor_rows
 from fem.assessment.loose_boxes import largest_joint_slip
-from fem.assessment.ranges import (
-    largest_ratio,
-    largest_rotation,
-    largest_slip,
-    of_band,
-)
+from fem.assessment.ranges import largest_ratio, largest_rotation, largest_slip, of_band
 from fem.assessment.rule_or_run import governing
 from fem.assessment.summary import MARGIN_NOTE, lacks_margin, outcome_sentence, result_rows
 from fem.case.case import Case
@@ -283,14 +278,8 @@ def _stepping(case: Case, numerics: Numerics) -> list[tuple[str, str]]:
         ("unknowns, contact nodes", f"{numerics.unknowns}, {numerics.contact_nodes}"),
         ("scheme", f"{solver.scheme}, {scheme}"),
         ("steps, rejected", f"{numerics.steps}, {numerics.rejected}"),
-        (
-            "step, smallest to largest",
-            f"{smallest} to {quantity(numerics.largest_step_s, 'ms', 1000, 3)}",
-        ),
-        (
-            "element size, order",
-            f"{quantity(solver.element_size_m, 'mm', 1000, 3)}, {solver.order}",
-        ),
+        ("step, smallest to largest", f"{smallest} to {quantity(numerics.largest_step_s, 'ms', 1000, 3)}"),
+        ("element size, order", f"{quantity(solver.element_size_m, 'mm', 1000, 3)}, {solver.order}"),
         *([("contact penalty", quantity(penalty, "GPa/m", 1e-9))] if penalty is not None else []),
         (
             "penetration, static and largest",

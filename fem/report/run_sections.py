@@ -18,14 +18,7 @@ from fem.html import sections as html
 from fem.html.page import svg_element
 from fem.html.units import number, quantity, ratio, short, typeset
 from fem.model.model import Model
-from fem.report.animation import (
-    COLOURS,
-    Animation,
-    colour_scale,
-    exaggeration,
-    exaggerations,
-    player_data,
-)
+from fem.report.animation import COLOURS, Animation, colour_scale, exaggeration, exaggerations, player_data
 from fem.report.comparison import Compared, compared_rows
 from fem.report.static_sheet import SheetLine, static_sheet
 from fem.report.stills import stills

@@ -140,11 +140,7 @@ def follow_point(
 
 
 def settled(
-    request: ResponseRequest,
-    case: Case,
-    container: Container,
-    before: DrivenModel | None,
-    progress: Progress,
+    request: ResponseRequest, case: Case, container: Container, before: DrivenModel | None, progress: Progress
 ) -> tuple[DrivenModel, Orbit]:
     """The model after the periods left out, and their orbit; an empty one where it fell before the first section."""
     if before is None:

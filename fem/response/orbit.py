@@ -54,11 +54,7 @@ def no_progress(time: float, rotation: float, mode: int) -> None:
 
 
 def follow_periods(
-    driven: DrivenModel,
-    count: int,
-    *,
-    portrayed: int = 0,
-    progress: Progress = no_progress,
+    driven: DrivenModel, count: int, *, portrayed: int = 0, progress: Progress = no_progress
 ) -> tuple[DrivenModel, Orbit]:
     """Step through `count` periods from a section.
 

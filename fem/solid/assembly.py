@@ -251,10 +251,7 @@ def assemble(mesh: QuadMesh, *, youngs_modulus: float, poisson_ratio: float, ord
 def factorised(matrix: csc_array) -> SuperLU:
     """Factors of a symmetric, positive definite matrix; with pivots on the diagonal, a third of the usual fill."""
     return splu(
-        matrix.tocsc(),
-        permc_spec="MMD_AT_PLUS_A",
-        diag_pivot_thresh=0.0,
-        options={"SymmetricMode": True},
+        matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
     )
 
 

@@ -109,11 +109,7 @@ def forces(body: NodalBody, position: FloatArray, velocity: FloatArray) -> None:
         body.displacement[i, 0] = position[2 * i] - body.node[i, 0]
         body.displacement[i, 1] = position[2 * i + 1] - body.node[i, 1]
     body.strain_energy[0] = element_forces(
-        body.cells,
-        body.first,
-        body.shear,
-        body.displacement,
-        body.internal,
+        body.cells, body.first, body.shear, body.displacement, body.internal
     )
     for i in range(n):
         body.internal[i, 0] -= body.source[i, 0]

@@ -31,15 +31,7 @@ from fem.solid.nodal_kernels import SOURCES, NodalBody
 from fem.solid.reduction import StaticResponse
 
 #: factors of a box, the same for equal boxes
-FACTORS = (
-    "cached_step",
-    "order",
-    "pattern",
-    "lower",
-    "inverse_pivot",
-    "to_base",
-    "base_compliance",
-)
+FACTORS = ("cached_step", "order", "pattern", "lower", "inverse_pivot", "to_base", "base_compliance")
 
 
 @struct
@@ -120,12 +112,7 @@ def respond(stack: NodalStack, scheme: Scheme, step: float, old: State, new: Sta
     largest = 0.0
     for b in range(len(stack.boxes)):
         error = nodal_kernels.respond(
-            stack.boxes[b],
-            scheme,
-            step,
-            state_of(stack, old, b),
-            state_of(stack, new, b),
-            work_of(work, b),
+            stack.boxes[b], scheme, step, state_of(stack, old, b), state_of(stack, new, b), work_of(work, b)
         )
         largest = max(largest, error)
     return largest

@@ -175,11 +175,7 @@ def paper_criteria(experiments: Experiments) -> Evidence:
         [
             MapCurve(x=smooth, y=HALF_WIDTH * smooth**2, label="A = a/2"),
             MapCurve(x=smooth, y=np.full_like(smooth, UPLIFT), label="M_T = M_R"),
-            MapCurve(
-                x=smooth,
-                y=np.full_like(smooth, PAPER_MU[0] * GRAVITY),
-                label="stiction",
-            ),
+            MapCurve(x=smooth, y=np.full_like(smooth, PAPER_MU[0] * GRAVITY), label="stiction"),
         ],
     )
 

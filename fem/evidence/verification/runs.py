@@ -151,11 +151,7 @@ def bisected(happens: Callable[[float], bool], low: float, high: float, *, resol
 def with_steps_of(model: Model, step: float) -> Model:
     """The model with every step of one size [s], whatever its energy balance."""
     loose = model.run.problem.control._replace(
-        largest_step=step,
-        smallest_step=step,
-        event_step=step,
-        closing_step=step,
-        energy_rate=1e30,
+        largest_step=step, smallest_step=step, event_step=step, closing_step=step, energy_rate=1e30
     )
     return replace(model, run=model.run.with_problem(control=loose))
 
