@@ -154,26 +154,26 @@ def _fill_shares(
     """Share (len(room),) of every cell in `room` that is filled, so that the box meets its centroid."""
     area, centroid = cells.area[room], cells.centroid[room]
     bottom, top = cells.bottom[room], cells.top[room]
-    wanted = (fill.mass * fill.centroid_height - wall_moment) / fill_mass
+    target = (fill.mass * fill.centroid_height - wall_moment) / fill_mass
     full = float(area @ centroid / area.sum())
     extent = float(top.max() - bottom.min())
-    # What rounding of the two moments can do to the centroid wanted of the fill.
+    # What rounding of the two moments can do to the target centroid of the fill.
     rounding = ROUNDING * extent * max(1.0, fill.mass / fill_mass)
-    if abs(wanted - full) <= rounding:
+    if abs(target - full) <= rounding:
         return np.ones(len(room))
     lowest = _shares_below(float(top.min()), bottom, top)
     highest = _shares_below(float(-bottom.max()), -top, -bottom)
     reach = [float((area * share) @ centroid / (area @ share)) for share in (lowest, highest)]
-    if not reach[0] - rounding <= wanted <= reach[1] + rounding:
+    if not reach[0] - rounding <= target <= reach[1] + rounding:
         low, high = ((wall_moment + fill_mass * height) / fill.mass for height in reach)
         raise MeshError(
             f"centroid height {fill.centroid_height} m is out of reach: with walls of "
             f"{fill.mass - fill_mass:.6g} kg and fill of {fill_mass:.6g} kg the box can have it between "
             f"{low:.6g} and {high:.6g} m; smaller elements reach a little further"
         )
-    if wanted < full:
-        return _shares_to_level(wanted, area, centroid, bottom, top)
-    return _shares_to_level(-wanted, area, -centroid, -top, -bottom)
+    if target < full:
+        return _shares_to_level(target, area, centroid, bottom, top)
+    return _shares_to_level(-target, area, -centroid, -top, -bottom)
 
 
 def _shares_below(level: float, bottom: FloatArray, top: FloatArray) -> FloatArray:
@@ -182,9 +182,9 @@ def _shares_below(level: float, bottom: FloatArray, top: FloatArray) -> FloatArr
 
 
 def _shares_to_level(
-    wanted: float, area: FloatArray, centroid: FloatArray, bottom: FloatArray, top: FloatArray
+    target: float, area: FloatArray, centroid: FloatArray, bottom: FloatArray, top: FloatArray
 ) -> FloatArray:
-    """Shares (m,) for which the fill below one level has its centroid at `wanted`; bisection to rounding.
+    """Shares (m,) for which the fill below one level has its centroid at `target`; bisection to rounding.
 
     With rows the centroid rises with the level; below the top of the lowest row it stays at that
     row's middle, since what a cut cell carries is spread over the cell.
@@ -192,7 +192,7 @@ def _shares_to_level(
     low, high = float(top.min()), float(top.max())
     while low < (middle := 0.5 * (low + high)) < high:
         share = _shares_below(middle, bottom, top)
-        if (area * share) @ (centroid - wanted) < 0.0:
+        if (area * share) @ (centroid - target) < 0.0:
             low = middle
         else:
             high = middle

@@ -159,7 +159,7 @@ class SharedFlags(StudyFlags):
             consume_multiple=True,
             negative=(),
             show_default=False,
-            help="Folders of all shards, to make the whole of; with --shard, to share its next stage.",
+            help="Folders of all shards, to merge; with --shard, to share the next stage.",
         ),
     ] = ()
 

@@ -13,7 +13,7 @@ from fem.html.units import rounded
 from fem.results.figures import BOX_FIGURES, BoxResult
 from fem.results.reader import RunData
 
-#: of so many boxes; of more, those of a colour map
+#: of up to six boxes; more take theirs from a colour map
 COLOURS = (style.BLUE, style.VERMILLION, style.GREEN, style.ORANGE, style.PURPLE, style.SKY)
 LEGEND_COLUMNS = 6
 THICK, THIN = 3.2, 0.9  #: lines of the lowest and the uppermost box
@@ -93,5 +93,5 @@ def box_figure(run: RunData, quantity: BoxQuantity, boxes: tuple[BoxResult, ...]
 
 
 def colour_of(box: int, boxes: int) -> str:
-    """Colour of a box, from 0 at the floor, of so many."""
+    """Colour of a box, from 0 at the floor, in a stack of `boxes`."""
     return COLOURS[box] if boxes <= len(COLOURS) else str(to_hex(colormaps["viridis"](box / (boxes - 1))))

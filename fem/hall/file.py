@@ -167,12 +167,14 @@ def _text_of(path: Path) -> str:
 
 def _records(path: Path, text: str) -> Iterator[tuple[int, list[str]]]:
     """The lines with something in them: number and fields."""
-    told = re.match(r"sep=(.)\n", text, re.IGNORECASE)  # as Excel writes it
-    first = next((line for line in text[told.end() if told else 0 :].split("\n", 99) if line.strip()), "")
-    separator = told[1] if told else next((mark for mark in ";\t" if mark in first), ",")
+    sep_line = re.match(r"sep=(.)\n", text, re.IGNORECASE)  # as Excel writes it
+    first = next(
+        (line for line in text[sep_line.end() if sep_line else 0 :].split("\n", 99) if line.strip()), ""
+    )
+    separator = sep_line[1] if sep_line else next((mark for mark in ";\t" if mark in first), ",")
     reader = csv.reader(io.StringIO(text, newline=""), delimiter=separator)
     try:
-        for line in islice(reader, int(bool(told)), None):
+        for line in islice(reader, int(bool(sep_line)), None):
             fields = [field.strip() for field in line]
             if any(fields):
                 yield reader.line_num, fields

@@ -26,7 +26,7 @@ SHARE, LEAST = 0.1, 30
 
 @dataclass(frozen=True, kw_only=True)
 class ContainerRun:
-    """A run as it is in the log."""
+    """A run of the log."""
 
     line: str
     ending: Ending

@@ -14,7 +14,7 @@ SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def number(value: float | None, factor: float = 1.0, figures: int = 4) -> str:
-    """A number times a factor with so many significant figures; a dash where there is none."""
+    """A number times a factor, with this many significant figures; a dash for none."""
     if value is None or not math.isfinite(value):
         return ABSENT
     scaled = factor * value

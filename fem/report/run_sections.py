@@ -90,11 +90,11 @@ class RunView:
 
     @property
     def note_on_level(self) -> str:
-        """That a floor is drawn level which slopes; empty of one that is level."""
+        """A note that a sloping floor is drawn level; empty for a level one."""
         return drawn_level(self.case.floor.slope_percent)
 
     def figures(self, *names: str) -> list[html.Figure]:
-        """Those of these drawings that there are."""
+        """Figures of the drawings with these names, where there are any."""
         return [
             html.Figure(
                 svg_element(drawing.svg, label=drawing.title, prefix=drawing.name),

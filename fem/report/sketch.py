@@ -117,7 +117,7 @@ def _draw_floor(axes: Axes, case: Case, unit: float) -> None:
 
 
 def _height(boxes: Sequence[Box]) -> str:
-    """Height of the stack: of so many equal boxes, or the sum of heights that differ."""
+    """Height of the stack: a multiple of equal heights, or the sum of different ones."""
     heights = {box.height for box in boxes}
     if len(boxes) == 1:
         return f"c = {short(boxes[0].height)} m"

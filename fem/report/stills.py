@@ -73,7 +73,7 @@ def _bearable(frame: AnimationFrame, factor: float, height: float) -> float:
 def _instants(
     animation: Animation, history: History, verdict: Verdict, judged: int | None = None
 ) -> dict[int, str]:
-    """Frames to show, in the order of time, and why, by the rotation of so many bodies; None: of all."""
+    """Frames to show, in the order of time, and why, by the rotation of the first `judged` bodies; None: all."""
     if not animation.frames or not len(history):
         return {}
     times = np.array([frame.time for frame in animation.frames])

@@ -65,7 +65,7 @@ def study_html(
 def answer_section(
     info: StudyResult, answer: str | None, count: str, *more: html.Block, note: str
 ) -> html.PageSection:
-    """The answer of a study or what is missing of it, how far it was computed, and how to read it."""
+    """The answer of a study or what it lacks, how much of it is computed, and how to read it."""
     answer = info.no_answer_yet or answer
     sentence = [html.Paragraph(typeset(f"{answer[0].upper()}{answer[1:]}."), "sentence")] if answer else []
     counted = count if answer else html.Paragraph(count, "sentence")

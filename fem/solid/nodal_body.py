@@ -213,7 +213,7 @@ class FullBody:
 
 
 def full_model_memory(nodes: int) -> float:
-    """Memory of one run of the full model with so many nodes [bytes]."""
+    """Memory of one run of the full model [bytes]."""
     return FACTOR_MEMORY + BYTES_OF_A_NODE * nodes
 
 

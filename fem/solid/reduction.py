@@ -34,7 +34,7 @@ class StaticResponse:
     compliance: FloatArray  #: (2 n_c, 2 n_c) seen at those points [m/N]
 
     def of_first(self, points: int) -> "StaticResponse":
-        """That to forces at the first so many points."""
+        """The response to forces at the first points alone."""
         first = slice(2 * points)
         return StaticResponse(displacement=self.displacement[first], compliance=self.compliance[first, first])
 

@@ -27,7 +27,7 @@ UNSAFE = "sure cells it calls standing and that overturn"
 
 
 def _maps(experiments: Experiments) -> list[maps.OutcomeMap]:
-    """All maps: the rigid ones first, of these the stack's first."""
+    """All maps, the rigid ones first; of either kind the stack's first."""
     return [
         outcome_map
         for rigid in (True, False)

@@ -139,7 +139,7 @@ def finish(model: Model) -> Finished:
 
 
 def bisected(happens: Callable[[float], bool], low: float, high: float, *, resolution: float) -> float:
-    """Least parameter at which something happens, to a share of it; nan if that is not within the bracket."""
+    """Least parameter at which `happens`, to a relative resolution; nan if it is not within the bracket."""
     if happens(low) or not happens(high):
         return math.nan
     while high - low > resolution * high:

@@ -22,7 +22,7 @@ PAPER, CLOSED_FORM = "the paper, section 7", "closed form"
 
 
 def paper_checks(*, boxes: int, gravity: float, peak: float = 2.4) -> StaticChecks:
-    """Static checks of so many of the paper's containers under a floor's peak acceleration [m/s2]."""
+    """Static checks of a stack of the paper's boxes under a floor's peak acceleration [m/s2]."""
     mass, height = boxes * BOX_MASS, boxes * BOX_HEIGHT
     return static_checks(
         mass=mass,
