@@ -259,7 +259,7 @@ def test_lists_of_every_spreadsheet_are_read(tmp_path, text, encoding):
         ("name,width_m,container.width_m\na,1,1\n", "both set 'container.width_m'"),
         ("name,width_m,width_m\na,1,1\n", "'width_m' occurs 2 times"),
         ("name,margin,width_m\na,1,1\n", "'margin' has the name of a result"),
-        ("name,x_m,width_m\na,1,1\n", "there is x_m alone"),
+        ("name,x_m,width_m\na,1,1\n", "only x_m is there"),
         ("name,width_m,\na,1,lost\n", "line 2: column 3 has values and no name"),
         ("name;width_m\na;1,5\nb;1.5\n", "decimal commas (line 2) and decimal points (line 3)"),
         ("\0\1", "not a text file"),
