@@ -251,3 +251,10 @@ def test_elastic_containers_leave_a_soft_stop_as_the_rigid_one_does(model):
     found = run(with_links(SLIDER.with_values(keys), stop=(stop,)), {"solver.duration_s": 0.4})
     assert velocity_at_end(found) == pytest.approx(-0.5 * SPEED, rel=0.02)
     assert found.model.run.links[0].hits == 1
+
+
+def test_a_strap_of_great_stiffness_fixes_the_corner():
+    moving = HELD.with_values({"initial.angular_velocity_rad_s": 0.3, "solver.duration_s": 0.5})
+    free = run(moving).track.max_rotation
+    fixed = run(with_links(moving, tie=({**STRAP, "stiffness_N_m": 1e12},))).track.max_rotation
+    assert fixed < 0.02 * free  # what is left is the penalty of the floor, 2.8e9 N/m under each corner
