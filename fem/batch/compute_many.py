@@ -73,7 +73,18 @@ def compute_many(
         ValueError: jobs is less than 1.
         WorkersLostError: a process died, perhaps for want of memory.
     """
-    asked = list(cases)
+    wanted = WantedChecks(check_rigid=check_rigid, band=band, margin=margin)
+    return compute_all(list(cases), wanted, jobs, errors=errors)
+
+
+def compute_all(
+    asked: Sequence[Case],
+    wanted: WantedChecks,
+    jobs: int | None = None,
+    *,
+    errors: Literal["raise", "return"] = "raise",
+) -> Sequence[Run | ValueError]:
+    """`compute_many` with any checks."""
     for case in asked:
         require_case(case)
     jobs = cores() if jobs is None else jobs
@@ -92,13 +103,13 @@ def compute_many(
         warnings.warn(
             f"{script} {unfit}, so its cases are computed by threads of this process only; {fit} to use several "
             "processes",
-            stacklevel=2,
+            stacklevel=3,
         )
     first: dict[Hashable, int] = {}
     for number, case in enumerate(asked):
         first.setdefault(container_key(case), number)
     order = sorted(range(len(asked)), key=lambda number: first[container_key(asked[number])])
-    work = partial(_compute, WantedChecks(check_rigid=check_rigid, band=band, margin=margin), len(asked))
+    work = partial(_compute, wanted, len(asked))
     with LocalWorkers(jobs, WORTH_PROCESSES if script is None else IN_THREADS) as workers_of:
         for model in WORTH_PROCESSES:
             items = [(n, asked[n]) for n in order if asked[n].solver.model == model and n not in runs]

@@ -82,7 +82,12 @@ def plan_of(model: Model, result: RunResult) -> Plan:
 
 
 def with_band(
-    model: Model, result: RunResult, *, stop: Callable[[], bool], kept_in: ChangedRunsFile | None = None
+    model: Model,
+    result: RunResult,
+    *,
+    stop: Callable[[], bool],
+    kept_in: ChangedRunsFile | None = None,
+    inner_forces: bool = True,
 ) -> Verdict | None:
     """Compute the members of a band side by side and judge the verdict of the run by them.
 
@@ -91,6 +96,7 @@ def with_band(
         result: of the run, which is itself a member.
         stop: called in pauses; true ends the band.
         kept_in: the file of its finished members, to resume from.
+        inner_forces: whether the members find stresses and the forces in joints of a stack.
 
     Returns:
         The verdict with its band, or None if it was stopped.
@@ -99,7 +105,9 @@ def with_band(
         OSError: the file could not be written; the other members have stopped then.
     """
     plan, numerics = plan_of(model, result), result.numerics or Numerics()
-    members = run_changes(model, plan.changes, numerics=numerics, stop=stop, kept_in=kept_in)
+    members = run_changes(
+        model, plan.changes, numerics=numerics, stop=stop, kept_in=kept_in, inner_forces=inner_forces
+    )
     if any(member.status == "interrupted" for member in members):
         return None
     verdict = result.verdict or Verdict()

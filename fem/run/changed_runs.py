@@ -48,7 +48,7 @@ class Shared:
 
     short: bool  #: they are stepped in one go
     recovery: Recovery | None  #: of stresses
-    joints: Joints | None  #: of a stack
+    joints: Joints | None  #: of a bolted stack, where forces in them are wanted
     #: containers with their cases: that of the run first, then those built for bases that touch at other points
     built: list[tuple[Case, Container]]
     one_at_a_time: Lock  #: builds
@@ -92,6 +92,7 @@ def run_changes(
     stop: Callable[[], bool],
     known: Iterable[ChangedRun] = (),
     kept_in: ChangedRunsFile | None = None,
+    inner_forces: bool = True,
 ) -> list[ChangedRun]:
     """One run for each change, side by side; a problem of any kind is its error, never an outcome.
 
@@ -102,6 +103,7 @@ def run_changes(
         stop: called in pauses; true ends the work.
         known: finished runs that need no computing.
         kept_in: a file of finished runs, to resume from and to add to.
+        inner_forces: find stresses and the forces in joints of a stack, which takes twice as long.
 
     Returns:
         The runs in the order of the changes; those not finished have the status "interrupted".
@@ -113,8 +115,8 @@ def run_changes(
     short = case.solver.model != "full" and cost_of(numerics) <= SHORT_S
     shared = Shared(
         short=short,
-        recovery=recovery_of(model) if case.solver.model == "reduced" else None,
-        joints=joints_of(model) if short else None,
+        recovery=recovery_of(model) if inner_forces and case.solver.model == "reduced" else None,
+        joints=joints_of(model) if inner_forces and short and case.container.bolted_joints else None,
         built=[(case, model.container)],
         one_at_a_time=Lock(),
     )
@@ -164,7 +166,7 @@ def _run_changed(run: Model, change: InputChange, shared: Shared, stop: Callable
         model = build_model(case, shared.container_of(case), motions=motions)
         same_elements = model.container.elements is run.container.elements
         recovery = shared.recovery if same_elements or shared.recovery is None else recovery_of(model)
-        if shared.short and (change.kind != "one" or case.container.bolted_joints == 0):
+        if shared.short and (change.kind != "one" or shared.joints is None):
             verdict, error = run_without_history(model, recovery)
             status = "completed" if verdict.overturned_at_s is None else "overturned"
             if error is not None:

@@ -30,6 +30,7 @@ class WantedChecks:
     check_rigid: bool = False
     band: bool | None = None  #: None: wherever it takes no longer than it is worth
     margin: bool | None = None  #: None: wherever it takes seconds, and a band is not refused
+    inner_forces: bool = True  #: whether members of a band find stresses and the forces in joints of a stack
 
 
 def add_checks(
@@ -69,7 +70,7 @@ def add_checks(
             result = replace(result, rigid_check=RigidCheckResult(reasons=(str(error),)))
     if lacks_band(result, model.case, wanted) and not stop():
         reporter.message("band: repeating the run over what is not known of its inputs")
-        judged = with_band(model, result, stop=stop, kept_in=members)
+        judged = with_band(model, result, stop=stop, kept_in=members, inner_forces=wanted.inner_forces)
         if judged is not None:
             result = replace(result, verdict=judged)
     elif verdict.sure is None and wanted.band is None and rests_far_below_limits(model.case, result):
