@@ -125,7 +125,7 @@ def verdict_from(
     boxes = box_results(model)
     rotation = max((box.max_rotation_rad for box in boxes), default=track.max_rotation)
     neighbours = neighbour_results(model, (largest_von_mises or ())[1:])
-    sampled = end is not None and end > 0.0
+    followed = end is not None and end > 0.0 and not model.case.output.stop_when_still
     rocked = outcome in (Outcome.ROCK, Outcome.SLIDE_ROCK)
     return Verdict(
         **_recorded(FIGURES, track=track, joint=joint),
@@ -142,8 +142,8 @@ def verdict_from(
         restored=rocked and _largest_rotation(model) < ROCKING * angle,
         at_rest_s=_finite(float(run.clock[0].rest_since)),
         restitution_first=None if model.container.row else _restitution(track),
-        max_top_displacement_m=track.max_top_displacement if sampled else None,
-        max_acceleration_m_s2=track.max_acceleration if sampled else None,
+        max_top_displacement_m=track.max_top_displacement if followed else None,
+        max_acceleration_m_s2=track.max_acceleration if followed else None,
         max_von_mises_Pa=None if largest_von_mises is None else largest_von_mises[0],
         yield_strength_Pa=YIELD_STRENGTH if is_steel_shell(model.case) else None,
         stress_from_corner_m=None if largest_von_mises is None else casting_length(model.case),

@@ -31,6 +31,7 @@ def compute_many(
     band: bool | None = None,
     margin: bool | None = None,
     check_rigid: bool = False,
+    inner_forces: bool = True,
     errors: Literal["raise"] = "raise",
 ) -> list[Run]: ...
 @overload
@@ -41,6 +42,7 @@ def compute_many(
     band: bool | None = None,
     margin: bool | None = None,
     check_rigid: bool = False,
+    inner_forces: bool = True,
     errors: Literal["return"],
 ) -> list[Run | ValueError]: ...
 def compute_many(
@@ -50,6 +52,7 @@ def compute_many(
     band: bool | None = None,
     margin: bool | None = None,
     check_rigid: bool = False,
+    inner_forces: bool = True,
     errors: Literal["raise", "return"] = "raise",
 ) -> Sequence[Run | ValueError]:
     """Compute cases in memory, side by side; no file is written.
@@ -62,6 +65,8 @@ def compute_many(
         cases: from `fem.load_case`, `fem.case_from` or `case.replace`, of any models.
         jobs: cores to use; default: all.
         band, margin, check_rigid: as for `fem.compute`.
+        inner_forces: whether the members of a band find stresses, and forces in the joints of a stack, which takes
+            twice as long.
         errors: "raise" that of the first case that cannot be computed, which is looked for before any is computed; or
             "return" it in place of its run.
 
@@ -73,18 +78,7 @@ def compute_many(
         ValueError: jobs is less than 1.
         WorkersLostError: a process died, perhaps for want of memory.
     """
-    wanted = WantedChecks(check_rigid=check_rigid, band=band, margin=margin)
-    return compute_all(list(cases), wanted, jobs, errors=errors)
-
-
-def compute_all(
-    asked: Sequence[Case],
-    wanted: WantedChecks,
-    jobs: int | None = None,
-    *,
-    errors: Literal["raise", "return"] = "raise",
-) -> Sequence[Run | ValueError]:
-    """`compute_many` with any checks."""
+    asked = list(cases)
     for case in asked:
         require_case(case)
     jobs = cores() if jobs is None else jobs
@@ -103,12 +97,13 @@ def compute_all(
         warnings.warn(
             f"{script} {unfit}, so its cases are computed by threads of this process only; {fit} to use several "
             "processes",
-            stacklevel=3,
+            stacklevel=2,
         )
     first: dict[Hashable, int] = {}
     for number, case in enumerate(asked):
         first.setdefault(container_key(case), number)
     order = sorted(range(len(asked)), key=lambda number: first[container_key(asked[number])])
+    wanted = WantedChecks(check_rigid=check_rigid, band=band, margin=margin, inner_forces=inner_forces)
     work = partial(_compute, wanted, len(asked))
     with LocalWorkers(jobs, WORTH_PROCESSES if script is None else IN_THREADS) as workers_of:
         for model in WORTH_PROCESSES:

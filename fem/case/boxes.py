@@ -54,6 +54,7 @@ def centroid_at(container: Any, height: float) -> float:
     return 0.5 * height if half else float(container.centroid_m)
 
 
+@lru_cache(maxsize=64)  # likewise
 def boxes_of(container: Any, gravity: float) -> tuple[Box, ...]:
     """All boxes of a table [container], from the floor up; raises AttributeError where a box has no mass."""
     tables = container.box or (None,) * container.boxes

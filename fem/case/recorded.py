@@ -7,7 +7,7 @@ import numpy as np
 
 from fem.case import quantities as q
 from fem.case.case import Case
-from fem.case.motion_tables import MotionTable, VerticalTable
+from fem.case.motion_tables import FloorMotionTable
 from fem.case.validation import CaseError
 from fem.records.files import read_record
 from fem.records.processing import Processing, motion_of, processed, stated_baseline
@@ -39,17 +39,23 @@ def recorded_motion(case: Case, table: MotionKey) -> RecordedMotion:
         CaseError: its file is missing, or no motion, or its components do not belong together, or the keys do not fit.
     """
     try:
-        motion = _recorded(case, table)
+        found = _recorded(case, table)
         if table == "vertical" and case.motion.kind == "table":
-            _require_pair(_recorded(case, "motion"), motion)
-        return motion
+            _require_pair(_component(case, "motion"), (found.record, found.component))
+        return found
     except RecordError as error:
         raise CaseError(f"[{table}] {error}") from None
 
 
-def _recorded(case: Case, table: MotionKey) -> RecordedMotion:
-    keys: MotionTable | VerticalTable = case.vertical if table == "vertical" else case.motion
-    shared = case.motion if table == "vertical" and case.motion.kind == "table" else keys
+def _keys(case: Case, table: MotionKey) -> tuple[FloorMotionTable, FloorMotionTable]:
+    """The keys of a table, and those that it shares."""
+    keys: FloorMotionTable = case.vertical if table == "vertical" else case.motion
+    return keys, case.motion if table == "vertical" and case.motion.kind == "table" else keys
+
+
+def _component(case: Case, table: MotionKey) -> tuple[Record, Component]:
+    """The record of a table, and what it takes of it."""
+    keys, shared = _keys(case, table)
     beside = keys if keys.file is not None else shared  # whose keys describe the file
     record, channel = case.recorded, ""
     if record is None:
@@ -61,6 +67,12 @@ def _recorded(case: Case, table: MotionKey) -> RecordedMotion:
     )
     if beside.gaps is None:
         component.require_no_gap(record.name, WAYS_OUT)
+    return record, component
+
+
+def _recorded(case: Case, table: MotionKey) -> RecordedMotion:
+    keys, shared = _keys(case, table)
+    record, component = _component(case, table)
     scale = keys.scale
     if keys is not shared and keys.scale_to_m_s2 is None:
         scale *= _factor_to_peak(case)
@@ -144,17 +156,15 @@ def _other_units(component: Component, peak: float) -> str:
     return f" (it would be {' or '.join(fitting)})" if fitting else ""
 
 
-def _require_pair(horizontal: RecordedMotion, vertical: RecordedMotion) -> None:
+def _require_pair(horizontal: tuple[Record, Component], vertical: tuple[Record, Component]) -> None:
     """Refuse one component for both directions, and two that were not sampled together."""
-    one, two = horizontal.component, vertical.component
+    (of_one, one), (of_two, two) = horizontal, vertical
     if one is two:
         raise RecordError(
-            f"{vertical.record.name}: the file has one motion, which moves the floor along x already; name the file of "
+            f"{of_two.name}: the file has one motion, which moves the floor along x already; name the file of "
             "the vertical component"
         )
     require_together(
         (one, two),
-        (horizontal.record.name, vertical.record.name)
-        if horizontal.record.name != vertical.record.name
-        else (f"{horizontal.record.name} {one.name}", two.name),
+        (of_one.name, of_two.name) if of_one.name != of_two.name else (f"{of_one.name} {one.name}", two.name),
     )

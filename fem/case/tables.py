@@ -382,7 +382,7 @@ class OutputTable(CaseTable):
     stop_when_overturned: bool = case_key("end the run when the container lies on its side", True)
     stop_when_still: bool = case_key(
         "rigid, under records: end the run when the container is at rest and what is left of them is below 0.9 of what "
-        "moves it",
+        "moves it; acceleration and sway of the contents are then not followed",
         False,
     )
 

@@ -214,5 +214,5 @@ def written(record: Record) -> str:
         if len(columns) == 2
         else [f"{component.name}_m_s2" for component in record.components]
     )
-    rows = (",".join(map(repr, row)) for row in zip(*(column.tolist() for column in columns), strict=True))
+    rows = map(",".join, zip(*(map(repr, column.tolist()) for column in columns), strict=True))
     return "\n".join([",".join(["time_s", *names]), *rows, ""])

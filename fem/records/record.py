@@ -6,6 +6,7 @@ not state stays empty. Values are positive as in the file.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -75,7 +76,7 @@ class Component:
         """The readings in SI, shape (n,) [m/s2], [m/s] or [m]."""
         return self.readings * self.factor
 
-    @property
+    @cached_property
     def step(self) -> float:
         """Median interval of the samples [s]."""
         return float(np.median(np.diff(self.times)))

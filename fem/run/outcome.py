@@ -30,6 +30,10 @@ def run_without_history(model: Model, recovery: Recovery | None) -> tuple[Verdic
     """
     assert isinstance(model.body, ModalBody | LooseStack | LinkedBody)
     run, duration, until = model.run, model.duration, end_of_drive(model)
+    if model.case.output.stop_when_still:  # its samples and contents are not wanted
+        history = run.buffers.history
+        samples = history._replace(columns=history.columns[:, :0].copy())
+        run = run._replace(buffers=run.buffers._replace(history=samples))
     if recovery is None:  # nobody looks at the steps that strain it most
         run = run._replace(strained=run.strained[:, :0].copy())
     status, kept = run_to_end(

@@ -3,10 +3,9 @@
 from collections.abc import Mapping
 
 from fem.assessment.ranges import largest_bolt_forces
-from fem.batch.compute_many import compute_all
+from fem.batch.compute_many import compute_many
 from fem.results.figures import Place
 from fem.results.outcome import ENDINGS
-from fem.run.checks import WantedChecks
 from fem.site_check.result import LIMITED, ConfirmedRun, SiteRun
 from fem.site_check.runs import SET, RunCases, RunKey
 
@@ -38,8 +37,8 @@ def confirmed(
     """
     results: list[ConfirmedRun] = []
     try:
-        wanted = WantedChecks(margin=False, inner_forces=False)
-        again = compute_all([cases(key._replace(model=MODEL)) for key in keys], wanted, jobs)
+        repeated = [cases(key._replace(model=MODEL)) for key in keys]
+        again = compute_many(repeated, jobs, margin=False, inner_forces=False)
     except KeyboardInterrupt:
         return results
     for key, run in zip(keys, again, strict=True):
