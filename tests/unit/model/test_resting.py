@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from fem.case.case import Case, case_from
+from fem.model.model import build_model
 from fem.run.compute import compute
+from fem.run.outcome import run_without_history
 
 STEP = 0.01
 BOX = {
@@ -28,6 +30,16 @@ def shaken(coda: float, **keys: object) -> Case:
         .with_motion(time, acceleration)
         .with_values({f"output.{k}": v for k, v in keys.items()})
     )
+
+
+def test_a_run_that_stops_when_still_moves_as_one_whose_contents_are_followed():
+    case = shaken(0.3, stop_when_still=True)
+    brief, error = run_without_history(build_model(case), None)
+    assert error is None and brief.max_acceleration_m_s2 is None and brief.max_top_displacement_m is None
+    followed = compute(shaken(0.3), band=False, margin=False).verdict
+    assert followed.max_acceleration_m_s2 > 1.0
+    for name in ("outcome", "max_rotation_rad", "max_slip_m", "max_uplift_m", "impacts"):
+        assert getattr(brief, name) == getattr(followed, name)
 
 
 def ended(case: Case) -> tuple[float, float, float]:

@@ -215,3 +215,17 @@ def test_a_base_of_another_camber_touches_as_one(camber):
     ):
         alone, _ = run_without_history(build_model(model.case.with_values(change.values)), None)
         assert (run.outcome, run.rotation_ratio) == (alone.outcome, alone.rotation_ratio)
+
+
+def test_members_without_inner_forces_move_as_those_with_them():
+    model = build_model(load_case("rocking", ["solver.duration_s=1", "output.fields_s=0"]))
+    changes = [one for one in changes_of(model.case, model.penalty) if "contact.mu_kinetic" in one.values][:1]
+    found = [
+        run_changes(model, changes, numerics=Numerics(), stop=lambda: False, inner_forces=wanted)[0]
+        for wanted in (True, False)
+    ]
+    with_them, without = found
+    assert with_them.bolt_tension_N > 0.0 and with_them.max_von_mises_Pa > 0.0
+    assert without.bolt_tension_N is None and without.max_von_mises_Pa is None
+    for name in ("outcome", "rotation_ratio", "max_slip_m", "max_uplift_m"):
+        assert without[name] == with_them[name]
