@@ -22,7 +22,15 @@ from fem.evidence.findings import Finding, prediction
 from fem.evidence.validation import drawings, shake_tests
 from fem.evidence.validation.bodies import rigid_case, specimen
 from fem.evidence.validation.experiments import Experiment, Predictor
-from fem.evidence.validation.vote import Block, BoolArray, Vote, brier, by_threshold, probabilities
+from fem.evidence.validation.vote import (
+    Block,
+    BoolArray,
+    Vote,
+    brier,
+    by_threshold,
+    probabilities,
+    with_neighbours,
+)
 from fem.model.container import Container
 from fem.model.model import build_model
 from fem.records.spectrum import evenly_sampled, response_spectrum
@@ -70,7 +78,7 @@ def compute(folder: Path | None) -> Experiment:
         found = runner.each("runs of blocks on the table", pairs, partial(falls, series))
     rows = [found[first : first + count] for first in range(0, len(found), count)]
     possible = [block for block, row in zip(tried, rows, strict=True) if None not in row]
-    falling = np.array([row for row in rows if None not in row], dtype=bool)
+    said = with_neighbours(possible, np.array([row for row in rows if None not in row], dtype=bool))
     sharp = np.array([block.uplift == 0.0 for block in possible])
     records = np.unique([test.record for test in series.tests], return_inverse=True)[1]
     every = np.ones(len(series.tests), dtype=bool)
@@ -80,7 +88,7 @@ def compute(folder: Path | None) -> Experiment:
     others = []
     for number, name in enumerate(series.specimens):
         overturned = np.array([test.overturned[number] for test in series.tests])
-        vote = Vote(falls={SHARP: falling[sharp], CAMBERED: falling}, overturned=overturned, records=records)
+        vote = Vote(falls={SHARP: said[sharp], CAMBERED: said}, overturned=overturned, records=records)
         votes = vote.predicted(fitted, asked) if series.set_apart else vote.by_record(every, vote.predicted)
         fits.append(f"{name}: {_described(vote, possible, sharp, fitted)}")
         findings += _findings(name, votes, overturned[asked], judged=not series.own)

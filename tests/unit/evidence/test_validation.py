@@ -11,7 +11,14 @@ from fem.evidence.validation import contents
 from fem.evidence.validation.bodies import cross_validated, specimen
 from fem.evidence.validation.experiments import Experiment, ValidationResult
 from fem.evidence.validation.page import lines_of, page_of
-from fem.evidence.validation.vote import Vote, best_threshold, by_threshold, probabilities
+from fem.evidence.validation.vote import (
+    Block,
+    Vote,
+    best_threshold,
+    by_threshold,
+    probabilities,
+    with_neighbours,
+)
 from fem.evidence.verification.runs import STACK
 from fem.seismic.action import SiteAction, eurocode_shape
 from fem.seismic.artificial import artificial_motions
@@ -77,16 +84,31 @@ def test_a_telling_number_that_is_not_judged_stands_in_the_sentence():
 
 def test_a_vote_is_weighted_by_what_the_blocks_said_of_the_others():
     # Two blocks: the first is right of three records, the second of one; the fourth is asked for.
-    falls = np.array([[1, 0, 1, 1], [0, 1, 1, 0]], dtype=bool)
+    falls = np.array([[1, 0, 1, 1], [0, 1, 1, 0]], dtype=float)
     vote = Vote(falls={"all": falls}, overturned=np.array([1, 0, 1, 1], dtype=bool), records=np.arange(4))
     fitted = np.array([1, 1, 1, 0], dtype=bool)
-    odds = (0.87 / 0.13) ** 2
+    odds = (0.93 / 0.07) ** 2
     assert vote.votes("all", fitted, ~fitted) == pytest.approx([odds / (1.0 + odds)])
-    assert probabilities(np.array([0.0, 0.5, 1.0])) == pytest.approx([0.13, 0.5, 0.87])
+    assert probabilities(np.array([0.0, 0.5, 1.0])) == pytest.approx([0.07, 0.5, 0.93])
+
+
+def test_two_specimens_that_depart_from_one_block_differ_as_often_as_the_twins():
+    # 0.13 of the 582 tests of both rocks: one of the two departs.
+    departs = float(probabilities(np.zeros(1))[0])
+    assert 2.0 * departs * (1.0 - departs) == pytest.approx(0.13, abs=0.005)
+
+
+def test_a_block_says_the_share_of_its_neighbours_in_angle_that_overturn():
+    angles = np.linspace(0.04, 0.16, 9)
+    blocks = [Block(angle=angle, restitution=one) for one in (1.0, 0.9) for angle in angles]
+    falling = np.array([*(angles < 0.08), *(angles < 0.0)])[:, None]
+    said = with_neighbours(blocks, falling)[:, 0]
+    assert said[:9] == pytest.approx([3 / 4, 3 / 5, 3 / 6, 3 / 7, 2 / 7, 1 / 7, 0.0, 0.0, 0.0])
+    assert not said[9:].any()
 
 
 def test_tests_of_one_record_are_not_in_the_fit_that_predicts_them():
-    falls = np.array([[1, 1, 0], [0, 0, 0]], dtype=bool)
+    falls = np.array([[1, 1, 0], [0, 0, 0]], dtype=float)
     vote = Vote(falls={"all": falls}, overturned=np.array([1, 1, 0], dtype=bool), records=np.array([0, 0, 1]))
     every = np.ones(3, dtype=bool)
     found = vote.by_record(every, partial(vote.votes, "all"))
@@ -98,7 +120,8 @@ def test_tests_of_one_record_are_not_in_the_fit_that_predicts_them():
 
 def test_the_family_that_predicts_better_is_taken():
     good, bad = np.array([[1, 0, 1, 0]], dtype=bool), np.array([[0, 1, 1, 0]], dtype=bool)
-    vote = Vote(falls={"bad": bad, "good": good}, overturned=good[0], records=np.arange(4))
+    falls = {"bad": bad.astype(float), "good": good.astype(float)}
+    vote = Vote(falls=falls, overturned=good[0], records=np.arange(4))
     assert vote.family(np.ones(4, dtype=bool)) == "good"
 
 
