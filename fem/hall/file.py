@@ -18,7 +18,7 @@ from itertools import islice
 from pathlib import Path
 from typing import Any, get_args
 
-from fem.batch.axes import NO_AXIS, AxisError, field_of
+from fem.batch.axes import NAMED, NO_AXIS, AxisError, field_of
 from fem.batch.table import plain_text
 from fem.case.tables import TABLES
 from fem.case.validation import CaseError, known_keys, quantity_of
@@ -238,13 +238,13 @@ def _own(column: str) -> str:
 
 
 def _is_known(column: str) -> bool:
-    return bool(_own(column)) or column.lower() in _plain_keys() or column.partition(".")[0] in TABLES
+    return bool(_own(column)) or column.lower() in _plain_keys() or column.partition(".")[0] in NAMED
 
 
 def _key(column: str, problems: list[str]) -> str | None:
     """The key that a column names; None for a column to keep, empty where it is refused, with a problem."""
     table, dot, _ = column.partition(".")
-    near_table = difflib.get_close_matches(table.lower(), TABLES, n=1, cutoff=LIKE) if dot else []
+    near_table = difflib.get_close_matches(table.lower(), NAMED, n=1, cutoff=LIKE) if dot else []
     if near_table:
         try:
             field_of(column)

@@ -112,6 +112,20 @@ def test_a_row_is_the_run_by_itself_bit_for_bit(tmp_path, base, monkeypatch, cap
 
 
 @pytest.mark.slow
+def test_columns_of_links_and_neighbours_are_keys(tmp_path, base):
+    links = '[[neighbour]]\nside = "right"\ngap_m = 0.05\nstiffness_N_m = 1e8\n'
+    base.write_text(base.read_text() + links)
+    (tmp_path / "list.csv").write_text("name,neighbour.gap_m,stop.gap_m\nnear,0.01,\nfar,5.0,\nwrong,,0.1\n")
+    case = load_case(base)
+    result = run_hall(read_hall(tmp_path / "list.csv"), case, tmp_path / "out", checks="none")
+    near, far, wrong = result.table
+    for row, gap in ((near, 0.01), (far, 5.0)):
+        alone = compute(case.replace({"neighbour.gap_m": gap}), band=False, margin=False).verdict
+        assert (row["rotation_ratio"], row["link_hits"]) == (alone.rotation_ratio, alone.link_hits)
+    assert near["link_hits"] > 0 == far["link_hits"]
+    assert wrong["status"] == "refused" and "stop" in wrong["reason"]
+
+
 def test_every_container_is_verified_at_a_site_as_by_assess(tmp_path, base, monkeypatch, capsys):
     monkeypatch.setattr("fem.site_check.run.confirmed", lambda *arguments: [])
     monkeypatch.setattr("fem.site_check.runs.SCANNED", (0.5,))
