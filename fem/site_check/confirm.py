@@ -6,6 +6,7 @@ from fem.assessment.ranges import largest_bolt_forces
 from fem.batch.compute_many import compute_many
 from fem.results.figures import Place
 from fem.results.outcome import ENDINGS
+from fem.results.run_result import Band
 from fem.site_check.result import LIMITED, ConfirmedRun, SiteRun
 from fem.site_check.runs import SET, RunCases, RunKey
 
@@ -43,6 +44,7 @@ def confirmed(
         return results
     for key, run in zip(keys, again, strict=True):
         verdict, joints = run.verdict, run.typed_result.joints or ()
+        band = verdict.band or Band()
         tension, shear = largest_bolt_forces(joints) if joints else (None, None)
         used = [one.bolt_utilisation for one in joints if one.bolt_utilisation is not None]
         results.append(
@@ -55,7 +57,9 @@ def confirmed(
                 bolt_shear_N=shear,
                 bolt_utilisation=max(used, default=None),
                 sure=verdict.sure or "",
-                outcomes=verdict.band.outcomes if verdict.band else (),
+                outcomes=band.outcomes,
+                rotation_ratio_range=band.rotation_ratio or (),
+                max_slip_m_range=band.max_slip_m or (),
             )
         )
     return results

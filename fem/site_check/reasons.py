@@ -139,7 +139,11 @@ class Evidence:
         if fell:
             yield Reason(NOT_SURE, f"{fell} of {len(again)} {words} can overturn.")
         elif beyond and not self.rule.fails(self.limits):
-            yield Reason(NOT_SURE, f"{beyond} of {len(again)} {words} go beyond a limit of a single motion.")
+            yield Reason(
+                NOT_SURE,
+                f"{beyond} of {len(again)} deciding runs, repeated with the elastic model, go beyond a limit of a "
+                "single motion.",
+            )
 
 
 def against(one: FurtherMotions) -> Iterator[Reason]:

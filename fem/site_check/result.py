@@ -244,6 +244,8 @@ class ConfirmedRun(figures.RunFigures):
     model: str
     sure: str = ""  #: of the verdict: sure | regime unsure | unsure
     outcomes: tuple[str, ...] = ()  #: over the band
+    rotation_ratio_range: tuple[float, ...] = ()  #: of the members of the band that end as the run does
+    max_slip_m_range: tuple[float, ...] = ()
     bolt_utilisation: float | None = None  #: largest tension over joints.bolt_capacity_N; None: not given
 
     written_where_given = figures.keys_beside(figures.Place.KEY) | figures.WHERE_GIVEN | {"bolt_utilisation"}

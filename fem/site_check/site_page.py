@@ -13,7 +13,7 @@ from fem.html import sections as html
 from fem.html.page import Page, Signature, html_of
 from fem.html.units import ABSENT, millimetres, number, quantity, ratio, short, typeset
 from fem.results.errors import FolderError
-from fem.results.figures import FIGURES, TURNED
+from fem.results.figures import FIGURES, TURNED, RunFigures
 from fem.results.kinds import SITE
 from fem.results.outcome import Outcome
 from fem.runtime.arrays import FloatArray
@@ -181,14 +181,15 @@ def beside_the_set(result: SiteResult) -> list[str]:
         low, high = (short(end, 100, 2) for end in worst.interval)
         place = "floor" if result.floor and result.floor.z_over_h is None else "site"
         of_both = " of both" if worst.invalid else ""
-        pairs = (
-            f", for each of {len(known)} combinations of weight and friction at most"
-            if len(known) > 1
-            else ""
+        pairs, most = "", ""
+        if len(known) > 1:
+            pairs, most = f" for each of {len(known)} combinations of weight and friction", "at most "
+        overturned, beyond = (
+            f"{most}{count}" if count else "none" for count in (worst.overturned, furthest.beyond_limits)
         )
         words.append(
-            f"Of {worst.motions} further motions{pairs} {worst.overturned} overturned it{destroyed(worst.invalid)} "
-            f"(95 % interval{of_both} {low} to {high} %) and {furthest.beyond_limits} went beyond a limit of a single "
+            f"Of {worst.motions} further motions{pairs} {overturned} overturned it{destroyed(worst.invalid)} "
+            f"(95 % interval{of_both} {low} to {high} %) and {beyond} went beyond a limit of a single "
             f"motion{both_ways(furthest)}{slid}. All these motions have the spectrum of the {place}; recorded ones "
             "scatter more."
         )
@@ -443,23 +444,34 @@ def confirmation(result: SiteResult) -> str:
     again = result.result.confirmed
     if not again:
         return ""
-    words = f"The {len(again)} deciding runs, repeated with the elastic model over their unknown inputs"
+    words = f"The {len(again)} deciding runs, repeated with the elastic model"
+    inputs = "their unknown inputs"
     if len(again) == 1:
-        words = "The deciding run, repeated with the elastic model over its unknown inputs"
+        words, inputs = "The deciding run, repeated with the elastic model", "its unknown inputs"
     failed = sum(one.outcome is None for one in again)
     invalid = sum(Outcome.INVALID in (one.outcome, *one.outcomes) for one in again)
     fell = sum(Outcome.OVERTURNED in (one.outcome, *one.outcomes) for one in again)
     if failed or fell or invalid:
         corner = f", {invalid} can destroy a corner" if invalid else ""
-        return f"{words}: {fell} can overturn{corner}, {failed} failed."
-    found, own = (
-        f"{ratio(max(one.turned for one in some))}, largest slip {millimetres(max(one.slipped for one in some))} mm"
-        for some in (again, [one.run for one in again])
+        return f"{words} over {inputs}: {fell} can overturn{corner}, {failed} failed."
+
+    def largest(runs: Sequence[RunFigures]) -> str:
+        turned, slipped = max(run.turned for run in runs), max(run.slipped for run in runs)
+        return f"largest rotation ratio {ratio(turned)}, largest slip {millimetres(slipped)} mm"
+
+    turned, slipped = (
+        max((end for run in again for end in reach(run)), default=None)
+        for reach in (lambda run: run.rotation_ratio_range, lambda run: run.max_slip_m_range)
+    )
+    over = (
+        f"; over {inputs} none overturns, either, with up to {ratio(turned)} and {millimetres(slipped)} mm"
+        if turned is not None and slipped is not None
+        else ""
     )
     return (
-        f"{words}: none overturns, largest rotation ratio {found}; in the set {own}. The answer rests on the set: a "
-        "single rotation is chaotic with either model, and a repetition counts where it overturns, destroys a corner, "
-        "fails or goes beyond a limit of a single motion."
+        f"{words}: none overturns, {largest(again)}{over}; in the set {largest([run.run for run in again])}. The "
+        "answer rests on the set: a single rotation is chaotic with either model, and a repetition counts where it "
+        "overturns, destroys a corner, fails or, with the inputs as given, goes beyond a limit of a single motion."
     )
 
 

@@ -88,7 +88,7 @@ def test_what_the_answer_rests_on_stands_on_the_page(folders):
         "That any overturning means not fulfilled, the limit of a single rotation, and the largest slip against",
         "names no number of motions, no limit of rotation or slip and no partial factor",
         "two horizontal components",
-        "Of 100 further motions 0 overturned it (95 % interval 0 to 3.6 %) and 2 went beyond a limit of a single",
+        "Of 100 further motions none overturned it (95 % interval 0 to 3.6 %) and 2 went beyond a limit of a single",
         "for building structures in special cases and applied here by analogy",
         "the rule first fails at1.62 × the set",
         "first overturned at1.75 × the set",
@@ -197,7 +197,14 @@ CONFIRMED = example()[0].result.confirmed[0]
             {},
             "none overturns, largest rotation ratio 0.00400, largest slip 4.10 mm; in the set {own}. The answer rests "
             "on the set: a single rotation is chaotic with either model, and a repetition counts where it overturns, "
-            "destroys a corner, fails or goes beyond a limit of a single motion.",
+            "destroys a corner, fails or, with the inputs as given, goes beyond a limit of a single motion.",
+        ),
+        (
+            {"rotation_ratio_range": (0.001, 0.31), "max_slip_m_range": (0.002, 0.12)},
+            "largest slip 4.10 mm; over its unknown inputs none overturns, either, with up to 0.310 and 120 mm; in "
+            "the set {own}. The answer rests on the set: a single rotation is chaotic with either model, and a "
+            "repetition counts where it overturns, destroys a corner, fails or, with the inputs as given, goes beyond "
+            "a limit of a single motion.",
         ),
         ({"outcomes": ("rock", "overturned")}, "1 can overturn, 0 failed."),
         ({"outcome": None}, "0 can overturn, 1 failed."),
@@ -207,7 +214,7 @@ def test_what_decides_is_repeated(change, words):
     result, _ = example()
     once = replace(CONFIRMED.run, rotation_ratio=0.47, max_slip_m=0.0052)
     answer = replace(result.result, confirmed=(replace(CONFIRMED, run=once, **change),))
-    own = "0.470, largest slip 5.20 mm"
+    own = "largest rotation ratio 0.470, largest slip 5.20 mm"
     assert confirmation(replace(result, result=answer)).endswith(words.format(own=own))
 
 
@@ -228,7 +235,7 @@ def test_destroyed_corners_are_named_beside_the_runs_that_overturned():
     crushed = replace(result, result=answer, runs=(*runs, *result.runs[2:]))
     words = words_of(box_of(crushed))
     assert "0 of 112 runs, 2 destroyed a corner" in words
-    assert "0 overturned it, 7 destroyed a corner (95 % interval of both 2.9 to 14 %)" in words
+    assert "none overturned it, 7 destroyed a corner (95 % interval of both 2.9 to 14 %)" in words
     assert "further    0 of 100 motions overturn it, 7 destroyed a corner" in "\n".join(
         lines_of(crushed, Path("out"))
     )
