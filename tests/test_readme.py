@@ -19,7 +19,7 @@ from fem.run.run import RunOptions, run_case
 from fem.site_check.file import load_site
 
 ROOT = Path(__file__).parents[1]
-PAGES = [ROOT / "README.md", *sorted(ROOT.glob("*/README.md")), *sorted(ROOT.glob("fem/*/README.md"))]
+PAGES = [ROOT / "README.md", *sorted(ROOT.glob("*/README.md")), *sorted(ROOT.glob("fem/**/README.md"))]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 LINES = [
     line
@@ -43,6 +43,16 @@ FEWER_RUNS = {
     "mu_static = [0.3, 0.4]": "mu_static = [0.4, 0.4]",
     "mu_kinetic_over_static = [0.5, 1.0]": "mu_kinetic_over_static = [1.0, 1.0]",
 }
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
+def test_pages_can_be_read_without_scrolling_sideways(page):
+    text = re.sub(r"^```.*?^```$", "", page.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
+    for line in text.splitlines():
+        if line.startswith("|"):
+            assert len(line) <= 190, line  # a longer row is a list
+        elif not line.startswith(("<", "    ", "`python")):
+            assert len(line) <= 110, line
 
 
 def python_m_fem(*arguments: str, folder: Path) -> subprocess.CompletedProcess[str]:
