@@ -118,6 +118,8 @@ def _require_file(folder: Path, key: str, name: str, path: Path, *, trusted: boo
             + (
                 ", which is a folder"
                 if path.is_dir()
+                else ", which is a device or a pipe"
+                if path.exists()
                 else ""
                 if Path(name).is_absolute()
                 else f", looked for in {real_path(folder)}; its path is relative to the case file"

@@ -9,9 +9,7 @@ import math
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, GetJsonSchemaHandler
-from pydantic.json_schema import JsonSchemaValue
-from pydantic_core import CoreSchema
+from pydantic import Field
 
 from fem.case import quantities as q
 from fem.case.boxes import boxes_of
@@ -34,9 +32,7 @@ class FloorPreset:
     source: str
 
 
-PresetName = Literal["concrete C25/30", "asphalt", "compacted gravel", "steel plate", "rubber mat"]
-
-PRESETS: dict[PresetName, FloorPreset] = {
+PRESETS: dict[str, FloorPreset] = {
     "concrete C25/30": FloorPreset(
         youngs_modulus=31e9,
         youngs_modulus_range=(22e9, 37e9),
@@ -100,7 +96,17 @@ PRESETS: dict[PresetName, FloorPreset] = {
 }
 
 #: short names of presets
-ALIASES: dict[str, PresetName] = {"concrete": "concrete C25/30", "steel": "steel plate"}
+SHORT_NAMES = {"concrete": "concrete C25/30", "C25/30": "concrete C25/30", "steel": "steel plate"}
+PresetName = Literal[
+    "concrete C25/30",
+    "asphalt",
+    "compacted gravel",
+    "steel plate",
+    "rubber mat",
+    "concrete",
+    "C25/30",
+    "steel",
+]
 
 #: keys of [floor] that a slab alone has
 SLAB_KEYS = ("preset", "youngs_modulus_Pa", "poisson_ratio", "bearing_strength_Pa", "corner_patch_m")
@@ -183,19 +189,12 @@ class FloorTable(CaseTable):
     rules = FLOOR_RULES
 
     @classmethod
-    def __get_pydantic_json_schema__(cls, core: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
-        """The schema of the table; an editor takes the short names of presets, too."""
-        schema = handler.resolve_ref_schema(handler(core))
-        schema["properties"]["preset"]["anyOf"][0]["enum"].extend(ALIASES)
-        return schema
-
-    @classmethod
     def as_meant(cls, given: dict[str, Any]) -> dict[str, Any]:
         """A preset by its short name, and the slab that it implies."""
         preset = given.get("preset")
         if not isinstance(preset, str):
             return given
-        return {"kind": "slab"} | given | {"preset": ALIASES.get(preset, preset)}
+        return {"kind": "slab"} | given | {"preset": SHORT_NAMES.get(preset, preset)}
 
     @property
     def is_slab(self) -> bool:

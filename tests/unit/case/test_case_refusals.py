@@ -173,6 +173,7 @@ least    | motion.amplitude_m=-1.0 | [motion] amplitude_m must be between 0 and 
 least    | motion.kind=quake | [motion] kind must be "none" or "harmonic" or "pulse" or "table"
 least    | initial.rotation_rad=1.6 | [initial] rotation_rad must be more than -1.5708 and less than 1.5708 rad
 least    | floor.preset=concrete C30 | got the text 'concrete C30'; did you mean 'concrete C25/30'?
+least    | floor.preset=grass | "rubber mat" or "concrete" or "C25/30" or "steel", got the text 'grass'
 least    | floor.kind=rigid & floor.preset=asphalt | [floor] preset belongs to kind = "slab", this floor is "rigid"; set
 least    | floor.bearing_strength_Pa=25e6 | [floor] bearing_strength_Pa belongs to kind = "slab", this floor is "rigid"
 least    | floor.kind=slab | [floor] youngs_modulus_Pa is missing: kind = "slab" needs it, or a preset (

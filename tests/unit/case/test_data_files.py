@@ -1,5 +1,7 @@
 """Mesh and motion files are looked for beside the case file; what its user names may lie anywhere."""
 
+import os
+
 import pytest
 from cases import TABLE
 
@@ -30,6 +32,12 @@ def test_found_beside_the_case_file(tmp_path):
 
 def test_missing_is_refused_with_the_folder(tmp_path):
     with pytest.raises(CaseError, match=f"names no file: 'floor.csv', looked for in {tmp_path}"):
+        assert case_in(tmp_path, "floor.csv").data_files
+
+
+def test_a_pipe_is_refused_as_one(tmp_path):
+    os.mkfifo(tmp_path / "floor.csv")
+    with pytest.raises(CaseError, match=r"names no file: 'floor\.csv', which is a device or a pipe"):
         assert case_in(tmp_path, "floor.csv").data_files
 
 

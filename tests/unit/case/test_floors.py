@@ -32,7 +32,13 @@ def test_a_resolved_slab_has_the_numbers_of_its_preset_and_no_penalty():
 
 
 @pytest.mark.parametrize(
-    ("name", "meant"), [("concrete", "concrete C25/30"), ("steel", "steel plate"), ("asphalt", "asphalt")]
+    ("name", "meant"),
+    [
+        ("concrete", "concrete C25/30"),
+        ("C25/30", "concrete C25/30"),
+        ("steel", "steel plate"),
+        ("asphalt", "asphalt"),
+    ],
 )
 def test_a_preset_alone_is_a_slab_by_its_full_or_short_name(name, meant):
     tables = load_case("seed_stack").given()
