@@ -141,6 +141,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         # The reader has seen enough; Python would complain once more when it flushes at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
+    except SystemExit:  # so Rich, which prints help, tells the same
+        return 0
     except OSError as error:
         code = FAILED if error.errno in NO_ROOM else BAD_INPUT
         return _refuse(f"{error.filename or 'input or output'}: {error.strerror or error}", code)

@@ -152,6 +152,17 @@ def test_streams_that_are_closed_are_no_error(closed):
     assert (code, err) == (0, "")
 
 
+@pytest.mark.parametrize("words", ["list", "--help", "run --help"])
+def test_a_reader_that_has_seen_enough_is_no_error(words):
+    reader, writer = os.pipe()
+    os.close(reader)
+    with os.fdopen(writer, "wb") as broken:
+        done = subprocess.run(
+            [sys.executable, "-m", "fem", *words.split()], stdout=broken, stderr=subprocess.PIPE, check=False
+        )
+    assert (done.returncode, done.stderr) == (0, b"")
+
+
 def test_an_interrupt_of_which_a_module_in_c_makes_another_error_is_told_as_one():
     said = """
 import os, signal
