@@ -13,6 +13,7 @@ from fem.assessment.loose_boxes import largest_joint_slip
 from fem.assessment.ranges import largest_ratio, largest_rotation, largest_slip, of_band
 from fem.assessment.rule_or_run import governing
 from fem.assessment.summary import MARGIN_NOTE, lacks_margin, outcome_sentence, result_rows
+from fem.assessment.sureness import ending
 from fem.case.case import Case
 from fem.case.unknown_inputs import WORDS
 from fem.figures.cache import drawings_of
@@ -207,7 +208,10 @@ def _reading(view: RunView, variations: VariationTable | None) -> Iterator[str]:
         yield f"{MARGIN_NOTE} "
     if variations is not None and (count := len(variations.lines) - 1):
         yield html.link(f"{variations.changed} of {count} variations of one input", "variations")
-        yield f" change{'s' if variations.changed == 1 else ''} the outcome. "
+        yield f" change{'s' if variations.changed == 1 else ''} the outcome"
+        members = view.verdict.band.members if view.verdict.band else ()
+        crossing = [one for one in members if one.kind == "draw" and ending(one) != ending(members[0])]
+        yield "; draws of all inputs at once do. " if crossing and not variations.changed else ". "
     if warnings := len(view.result.warnings or ()):
         yield f"{warnings} warning{'' if warnings == 1 else 's'}: see "
         yield html.link("numerics", "numerics")
