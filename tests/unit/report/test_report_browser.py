@@ -1,12 +1,15 @@
 """Reports in a browser: nothing is loaded, the animation plays, keys and slider work, everybody can read them."""
 
+import base64
 import json
 import shutil
 import subprocess
 import time
+from io import BytesIO
 
 import pytest
 from browser import CHROMIUM, FAINT, Browser
+from matplotlib.image import imread
 from study_folders import ensemble_folder, response_folder
 
 from fem.case.case import load_case
@@ -116,6 +119,24 @@ class TestEveryReport:
             )
             assert browser.evaluate(outside) == 0
         finally:
+            browser.window(1280, 900)
+
+    def test_what_goes_on_beyond_the_edge_has_a_shadow_there(self, browser, pages, name):
+        browser.window(390, 844)
+        browser.call("Emulation.setScrollbarsHidden", hidden=True)  # a picture has none, and is wider
+        try:
+            browser.open(pages / name)
+            cut = (
+                "[...document.querySelectorAll('.scroll')]"
+                ".filter((one) => one.checkVisibility() && one.scrollWidth > one.clientWidth + 1)"
+                ".map((one) => { const { right, top, height } = one.getBoundingClientRect(); "
+                "return { x: right - 2, y: top, width: 1, height, scale: 1 }; })"
+            )
+            for clip in browser.evaluate(cut):
+                shot = browser.call("Page.captureScreenshot", clip=clip, captureBeyondViewport=True)
+                assert imread(BytesIO(base64.b64decode(shot["data"])))[2:-2, :, :3].min(axis=2).max() < 0.95
+        finally:
+            browser.call("Emulation.setScrollbarsHidden", hidden=False)
             browser.window(1280, 900)
 
 
