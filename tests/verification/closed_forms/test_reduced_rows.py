@@ -242,8 +242,9 @@ def test_containers_with_other_gaps_are_not_reduced_again():
 
 @pytest.mark.parametrize("eccentricity", [0.0, 0.05])
 def test_gaps_are_those_at_rest_of_shells_that_bulge_and_lean(eccentricity):
+    # before the moment of the weight over the lean, which the equilibrium leaves out, moves the top: 10 nm in 20 ms
     still = SHELL.with_values(
-        {"motion.kind": "none", "container.eccentricity_m": eccentricity, "solver.duration_s": 0.02}
+        {"motion.kind": "none", "container.eccentricity_m": eccentricity, "solver.duration_s": 0.002}
     )
     for gap in (0.0, 1e-3):
         found = run(in_a_row(still, {**LOW, "gap_m": gap}))
