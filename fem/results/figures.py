@@ -203,36 +203,37 @@ class Figures(JsonBlock, Generic[ValueT]):
     bolt_shear_N: Annotated[ValueT | None, Shown("shear of the bolts", units.KILONEWTONS, BAND)] = None
 
 
+OF_LINKS = COLUMN | BAND | READ
+
+
 @dataclass(frozen=True, kw_only=True)
 class LinkFigures(JsonBlock, Generic[ValueT]):
     """What stops, ties and neighbours do, all of a kind together; None of a container without them."""
 
-    stop_force_N: Annotated[
-        ValueT | None, Shown("largest force on a stop", units.KILONEWTONS, COLUMN | BAND | READ)
-    ] = None
-    tie_force_N: Annotated[
-        ValueT | None, Shown("largest force in a tie", units.KILONEWTONS, COLUMN | BAND | READ)
-    ] = None
+    stop_force_N: Annotated[ValueT | None, Shown("largest force on a stop", units.KILONEWTONS, OF_LINKS)] = (
+        None
+    )
+    tie_force_N: Annotated[ValueT | None, Shown("largest force in a tie", units.KILONEWTONS, OF_LINKS)] = None
     neighbour_force_N: Annotated[
-        ValueT | None, Shown("largest force between containers", units.KILONEWTONS, COLUMN | BAND | READ)
+        ValueT | None, Shown("largest force between containers", units.KILONEWTONS, OF_LINKS)
     ] = None
     #: how often a gap or slack was used up
     link_hits: Annotated[
-        ValueT | None, Shown("hits on stops, ties and neighbours", units.COUNT, COLUMN | BAND | READ)
+        ValueT | None, Shown("hits on stops, ties and neighbours", units.COUNT, OF_LINKS)
     ] = None
     #: with which one was used up
     link_velocity_m_s: Annotated[
-        ValueT | None, Shown("largest closing velocity", units.VELOCITY, COLUMN | BAND | READ)
+        ValueT | None, Shown("largest closing velocity", units.VELOCITY, OF_LINKS)
     ] = None
     #: the first that broke
     link_broken_at_s: Annotated[
-        ValueT | None, Shown("first stop or tie broken at", units.SECONDS, COLUMN | BAND | READ)
+        ValueT | None, Shown("first stop or tie broken at", units.SECONDS, OF_LINKS)
     ] = None
     #: of those that are whole; the least
-    link_slack_m: Annotated[ValueT | None, Shown("least gap or slack left", MM, COLUMN | BAND | READ)] = None
+    link_slack_m: Annotated[ValueT | None, Shown("least gap or slack left", MM, OF_LINKS)] = None
     #: over its own slenderness angle
     neighbour_rotation_ratio: Annotated[
-        ValueT | None, Shown("rotation ratio of the neighbours", units.RATIO, COLUMN | BAND | READ)
+        ValueT | None, Shown("rotation ratio of the neighbours", units.RATIO, OF_LINKS)
     ] = None
 
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from fem.runtime.progress import Reporter
 
 INTERRUPTED = 4  #: the exit code
-AGAIN_S = 0.05  #: until a signal is delivered anew that could not be heeded
+AGAIN_S = 0.05  #: after which a lost signal is sent again [s]
 _raised: list[int] = []
 _requests: list[list[int]] = []  #: signals received by each `interruptible` under way
 DEFAULTS: dict[signal.Signals, Any] = {
@@ -113,7 +113,7 @@ def _raise(number: int, frame: FrameType | None) -> None:
 
 
 def _raise_again(unraisable: "sys.UnraisableHookArgs") -> None:
-    """Deliver a signal anew that was lost where nothing can be raised: in a callback from C, as the compiler makes."""
+    """Send a signal again whose KeyboardInterrupt was lost: ctypes drops what callbacks of the compiler raise."""
     if issubclass(unraisable.exc_type, KeyboardInterrupt):
         again = threading.Timer(AGAIN_S, _thread.interrupt_main)
         again.daemon = True

@@ -459,10 +459,8 @@ def confirmation(result: SiteResult) -> str:
         turned, slipped = max(run.turned for run in runs), max(run.slipped for run in runs)
         return f"largest rotation ratio {ratio(turned)}, largest slip {millimetres(slipped)} mm"
 
-    turned, slipped = (
-        max((end for run in again for end in reach(run)), default=None)
-        for reach in (lambda run: run.rotation_ratio_range, lambda run: run.max_slip_m_range)
-    )
+    turned = max((end for run in again for end in run.rotation_ratio_range), default=None)
+    slipped = max((end for run in again for end in run.max_slip_m_range), default=None)
     over = (
         f"; over {inputs} none overturns, either, with up to {ratio(turned)} and {millimetres(slipped)} mm"
         if turned is not None and slipped is not None

@@ -56,8 +56,6 @@ def test_a_large_file_is_refused_as_soon_as_a_small_one(name):
 
 @pytest.mark.parametrize("name", NAMED)
 def test_what_is_no_regular_file_is_refused_where_a_file_is_read(name):
-    if name == "jobs.toml":
-        pytest.importorskip("dask_jobqueue", reason="the extra 'slurm' is not installed")
     for kind in SPECIAL:
         end = answer_to(special(name, kind))
         assert end.code == 2 and not end.broken, (kind, end.cpu_s, end.words)
