@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 
 from fem.case import quantities as q
 from fem.case.case import Case
-from fem.case.quantities import with_unit
 from fem.case.unknown_inputs import (
     CAMBER,
     JOINTS_MU_KINETIC,
@@ -36,6 +35,7 @@ from fem.case.unknown_inputs import (
     other_patch,
     ranges_of,
     short,
+    value_in_words,
 )
 
 #: static and kinetic friction of the same surfaces
@@ -74,12 +74,13 @@ class InputChange:
         """What it changes and to what, for people."""
         if self.subject:
             return self.subject, self.to
-        units = {key: one.unit for key, one in QUANTITIES.items()}
-        values = (
-            value if isinstance(value, str) else with_unit(value, units.get(key, ""))
-            for key, value in self.values.items()
+        return (
+            ", ".join(WORDS[key] for key in self.values),
+            ", ".join(
+                value if isinstance(value, str) else value_in_words(key, value)
+                for key, value in self.values.items()
+            ),
         )
-        return ", ".join(WORDS[key] for key in self.values), ", ".join(values)
 
 
 def largest_first(changes: Sequence[InputChange]) -> list[InputChange]:
