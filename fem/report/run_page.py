@@ -144,10 +144,12 @@ def _changes(view: RunView) -> list[html.Block]:
 def verdict_section(view: RunView, variations: VariationTable | None) -> html.PageSection:
     """The answer: one sentence, the first figures, and where to read on."""
     verdict = view.verdict
+    first, _, further = outcome_sentence(view.result).partition(". ")
     return html.section(
         "Verdict",
         "verdict-title",
-        html.Paragraph(typeset(outcome_sentence(view.result)), "sentence"),
+        html.Paragraph(typeset(f"{first}." if further else first), "sentence"),
+        *([html.Paragraph(typeset(further))] if further else []),
         *([html.Headlines(list(_headlines(view)))] if verdict.outcome else []),
         html.Note(html.joined(*_reading(view, variations))),
         look=f"answer {_standing(view.run.status, verdict)}",
