@@ -5,10 +5,10 @@ input and are always tried, ten times tighter. Friction between loose boxes keep
 floor changes (`as_changed`).
 """
 
-import importlib
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import Any, Literal
 
 import numpy as np
@@ -43,6 +43,7 @@ FRICTIONS = ((MU_STATIC, MU_KINETIC), (JOINTS_MU_STATIC, JOINTS_MU_KINETIC))
 TIGHTER = 0.1  #: energy tolerance over that of the case
 #: stiffness over that of the case at which a flat base must still open, or it does so by softness
 STIFF_FLOOR = 30.0
+HYPERCUBES = 200  #: of which the one whose coordinates are least correlated is drawn
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -125,7 +126,7 @@ def pairs_of(case: Case) -> tuple[InputChange, ...]:
 
 
 def draws_of(case: Case, penalty: float | None, count: int | None = None) -> tuple[InputChange, ...]:
-    """All inputs drawn at once from their ranges, by Sobol's points; the numerics stay as they are.
+    """All inputs drawn at once from their ranges, by a Latin hypercube; the numerics stay as they are.
 
     Args:
         case, penalty: as for `ranges_of`.
@@ -134,7 +135,7 @@ def draws_of(case: Case, penalty: float | None, count: int | None = None) -> tup
     ranges = [one for one in ranges_of(case, penalty) if one.drawn is not None]
     if not ranges:
         return ()
-    places = sobol_points(case.uncertainty.draws if count is None else count, len(ranges))
+    places = latin_hypercube(case.uncertainty.draws if count is None else count, len(ranges))
     return tuple(
         InputChange(kind="draw", values=drawn_values(ranges, row), share=1.0, place=tuple(row))
         for row in places.tolist()
@@ -189,9 +190,16 @@ def stiff_floor(case: Case, penalty: float) -> InputChange:
     return InputChange(kind="floor", values={key: min(most, short(STIFF_FLOOR * value))}, share=1.0)
 
 
-def sobol_points(count: int, dimensions: int) -> NDArray[np.float64]:
-    """The first points of Sobol's sequence, each in the middle of its cell, shape (count, dimensions)."""
-    sampling = importlib.import_module("scipy.stats.qmc")  # imported late: it takes longer than a short run
-    bits = math.ceil(math.log2(max(count, 1)))
-    points: NDArray[np.float64] = sampling.Sobol(dimensions, scramble=False).random_base2(bits)[:count]
-    return points + 0.5 / 2**bits
+@cache
+def latin_hypercube(count: int, dimensions: int) -> NDArray[np.float64]:
+    """Points, each coordinate once in the middle of each of `count` cells, shape (count, dimensions).
+
+    Of some at random, always the same, those whose coordinates are least correlated: at most 0.4 for 20 inputs in 32
+    points. The first points of Sobol's sequence would draw two of them as one (0.99).
+    """
+    cells = np.random.default_rng(0).random((HYPERCUBES, dimensions, count)).argsort(axis=2)
+    centred = cells - 0.5 * (count - 1)
+    largest = [np.abs(np.triu(one @ one.T, 1)).max() for one in centred]
+    points: NDArray[np.float64] = (cells[int(np.argmin(largest))].T + 0.5) / count
+    points.flags.writeable = False
+    return points

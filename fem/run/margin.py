@@ -97,9 +97,8 @@ def margin_of(model: Model, result: RunResult, *, drawn: bool, stop: Callable[[]
                 trials = [_trial(model, change.values, stop) for change in changes]
                 near = [pool.submit(_near, one, start, least, most) for one in trials]
                 ends = [one.result() for one in near]
-                lowest = _lowest(pool, trials, [*ends, first.high if first else None], least)
-                if own == Ending.STANDING and _overturns_in_band(verdict):
-                    lowest = min(lowest or 1.0, 1.0)
+                by_band = 1.0 if own == Ending.STANDING and _overturns_in_band(verdict) else None
+                lowest = _lowest(pool, trials, [*ends, first.high if first else None, by_band], least)
     except StoppedError:
         return None
     factor = None if first is None else first.high

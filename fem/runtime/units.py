@@ -91,7 +91,7 @@ def visible_number(value: float | None, factor: float = 1.0, form: str = ".4g") 
     """A number in a table on a screen; 0 where it is rounding, a hyphen where there is none."""
     if value is None:
         return "-"
-    shown = factor * value
+    shown = float(f"{factor * value:.12g}")  # half a digit, 53.955, is rounded alike on all machines
     return "0" if abs(shown) < INVISIBLE else format(shown, form)
 
 

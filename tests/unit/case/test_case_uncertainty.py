@@ -9,7 +9,7 @@ from cases import named_case
 from fem.case.case import CaseError, load_case, read_case, to_toml
 from fem.case.links import ROWS
 from fem.case.tables import TABLES
-from fem.case.uncertainty import as_changed, changes_of, draws_of, pairs_of, sobol_points, stiff_floor
+from fem.case.uncertainty import as_changed, changes_of, draws_of, latin_hypercube, pairs_of, stiff_floor
 from fem.case.unknown_inputs import INPUTS, UNKNOWN, UnknownNumber, ranges_of
 
 PENALTY = 1e9
@@ -256,9 +256,13 @@ def test_draws_fill_every_range_and_make_cases_that_can_be_read():
 
 @pytest.mark.parametrize("count", [1, 2, 32])
 def test_points_lie_in_the_middle_of_their_cells_one_in_each(count):
-    points, middles = sobol_points(count, 12), (np.arange(count) + 0.5) / count
+    points, middles = latin_hypercube(count, 12), (np.arange(count) + 0.5) / count
     np.testing.assert_array_equal(np.sort(points, axis=0), np.repeat(middles[:, None], 12, axis=1))
-    np.testing.assert_array_equal(sobol_points(5, 12), sobol_points(8, 12)[:5])
+
+
+def test_no_two_of_many_inputs_are_drawn_as_one():
+    correlation = np.corrcoef(latin_hypercube(32, 20), rowvar=False)
+    assert np.abs(correlation - np.eye(20)).max() < 0.45
 
 
 def test_every_key_of_the_table_is_an_unknown_input_and_every_input_a_key_of_the_case():
@@ -340,7 +344,7 @@ def test_draws_of_a_loose_stack_draw_its_joints_and_its_floor_apart():
     assert 0.2 < static.min() < 0.21 and 0.76 < static.max() < 0.8
     assert 0.5 < share.min() < 0.52 and 0.98 < share.max() < 1.0
     floor = [one.contact.mu_kinetic for one in drawn]
-    assert abs(np.corrcoef(floor, share)[0, 1]) < 0.2
+    assert abs(np.corrcoef(floor, share)[0, 1]) < 0.45
     assert len({one.joint_friction["weakening_m"] / one.contact.weakening_m for one in drawn}) > 16
 
 

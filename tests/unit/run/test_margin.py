@@ -110,9 +110,10 @@ def test_the_low_end_is_that_of_a_draw_of_margin_or_band(with_draws):
         ]
         return any(one.verdict.outcome == "overturned" for one in runs)
 
-    assert margin.low == 1.0
-    assert run.verdict.band.draws_overturned > 0  # of 32; none of the 16 of the margin does
-    assert not falls(1.0 / search.DRAWN_STEP)
+    assert run.verdict.band.draws_overturned > 0
+    assert margin.low <= 1.0
+    assert margin.low == 1.0 or falls(margin.low)
+    assert not falls(margin.low / search.DRAWN_STEP)
 
 
 def test_a_motion_is_made_as_strong_as_its_keys_allow():
