@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 import pytest
+from block_at_wall import SETTLED, fall_back
 
 from contact.interface.penalty import damping_ratio_of, restitution_of
 from contact.stepping.ledger import BASE_WORK, CONTACT_DAMPING, FRICTION, IMBALANCE
@@ -79,6 +80,79 @@ def test_a_plastic_wall_stops_one_sided_rocking_in_its_first_landing():
     assert np.abs(found.history["rotation_rad"][landed]).max() < 1e-3 * angle
     free = run(HELD, start)
     assert np.abs(free.history["rotation_rad"][landed]).max() > 0.3 * tilt
+
+
+@pytest.mark.parametrize("restitution", [0.3, 0.6, 0.9])
+def test_what_falls_back_on_one_corner_against_a_wall_keeps_its_restitution(restitution):
+    # It slid toward the wall, which it therefore meets while it is still tilted: its corner holds, as the impulse
+    # presses it into the floor. About that corner the mass at a height z is I/z^2.
+    block = run(HELD, {"solver.duration_s": 0.01}).block
+    inertia = MASS * GRAVITY * block.radius / block.frequency_parameter**2
+    ratio = damping_ratio_of(restitution) * math.sqrt(inertia / (MASS * 4.0**2))
+    wall = {"side": "left", "height_m": 4.0, "gap_m": 0.0, "stiffness_N_m": 1e9, "damping_ratio": ratio}
+    keys = {
+        "contact.mu_static": 1.5,
+        "contact.normal_penalty_Pa_m": 1e12,  # the floor is stiff beside the wall
+        "initial.rotation_rad": 0.12,
+        "initial.angular_velocity_rad_s": 0.5,
+        "initial.velocity_m_s": -1.5,
+        "solver.duration_s": 1.3,
+        "output.history_s": 5e-4,
+    }
+    found = run(with_links(HELD.with_values(keys), stop=(wall,)))
+    history = found.history
+    pushed = np.flatnonzero(history["stop_1_force_N"] > 0.0)
+    before, after = (
+        pushed[0] - 1,
+        pushed[history["time_s"][pushed] < history["time_s"][pushed[0]] + 0.05][-1] + 1,
+    )
+    tilt, rate = history["rotation_rad"], history["angular_velocity_rad_s"]
+    assert tilt[before] > 5e-3 and found.track.first_impact > history["time_s"][after]
+    assert history["slip_m"][after] == pytest.approx(history["slip_m"][before], abs=1e-8)
+    assert rate[after] == pytest.approx(-restitution * rate[before], rel=0.01)
+    angle, kinetic = (
+        block.slenderness_angle,
+        0.5 * (restitution * rate[before] / block.frequency_parameter) ** 2,
+    )
+    rebound = angle - math.acos(math.cos(angle - tilt[after]) + kinetic)
+    assert tilt[after:].max() == pytest.approx(rebound, rel=0.01)
+
+
+@pytest.mark.parametrize("restitution", [0.3, 0.6, 0.9])
+@pytest.mark.parametrize("height", [3.0, 4.0])
+def test_a_container_that_rocks_into_a_wall_leaves_its_corner_and_is_struck_as_a_free_body(
+    height, restitution
+):
+    gap, inertia = 0.1, MASS * (0.55**2 + MIDDLE**2) / 3.0
+    tilt = math.asin(gap / height)
+    arm = height * math.cos(tilt) - MIDDLE * math.cos(tilt) - 0.55 * math.sin(tilt)
+    mass = 1.0 / (1.0 / MASS + arm**2 / inertia)  # of the point that is struck
+    ratio = damping_ratio_of(restitution) * math.sqrt(mass / MASS)
+    wall = {"side": "right", "height_m": height, "gap_m": gap, "stiffness_N_m": 1e9, "damping_ratio": ratio}
+    keys = {"initial.angular_velocity_rad_s": 0.6, "solver.duration_s": 0.1, "output.history_s": 2e-4}
+    found = run(with_links(HELD.with_values(keys), stop=(wall,)))
+    history = found.history
+    pushed = np.flatnonzero(history["stop_1_force_N"] > 0.0)
+    rate = history["angular_velocity_rad_s"][[pushed[0] - 1, pushed[-1] + 1]]
+    impulse = (1.0 + restitution) * mass * rate[0] * height * math.cos(tilt)
+    assert rate[1] - rate[0] == pytest.approx(-impulse * arm / inertia, rel=2e-3)
+    assert history["uplift_m"][pushed[-1] + 1] > 0.0
+
+
+@pytest.mark.parametrize("restitution", [0.3, 0.6, 0.9])
+def test_a_wall_without_a_gap_is_struck_as_the_other_corner_lands_and_returns_what_both_springs_leave(
+    restitution,
+):
+    tilt = 0.1
+    wall = {"side": "left", "height_m": 4.0, "gap_m": 0.0, "stiffness_N_m": 1e9, "restitution": restitution}
+    start = {"initial.rotation_rad": tilt, "solver.duration_s": 1.5}
+    found = run(with_links(HELD.with_values(start), stop=(wall,)))
+    contact = found.model.run.problem.contact
+    floor, against = zip(contact.normal_stiffness[1:], contact.relaxation_time[1:], strict=True)
+    landed, rebound = fall_back(0.55, MIDDLE, MASS, tilt, floor, 3.0, against, 2e-6, 1.5)
+    assert found.track.first_impact == pytest.approx(landed, rel=1e-3)
+    later = found.history["time_s"] > landed + SETTLED
+    assert found.history["rotation_rad"][later].max() == pytest.approx(rebound, rel=0.03)
 
 
 @pytest.mark.parametrize(("stiffness", "slack"), [(1e5, 0.0), (1e6, 0.0), (1e6, 0.02), (3e6, 0.01)])
