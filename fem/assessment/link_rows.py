@@ -33,7 +33,7 @@ def _beside(table: NeighbourTable, alone: Case) -> str:
 
 
 def _stiffness(link: StopTable | TieTable | NeighbourTable) -> str:
-    return f", {1e-3 * link.stiffness_N_m:.4g} kN/m"
+    return f", {1e-3 * link.stiffness_N_m:.6g} kN/m"
 
 
 def _friction(link: StopTable | NeighbourTable) -> str:

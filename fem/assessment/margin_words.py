@@ -26,20 +26,22 @@ def margin_in_words(verdict: Verdict | None) -> str:
         up_to = "" if stands else f"stands up to {FACTOR.text(margin.stands_up_to)} times this motion, "
         times = " times this motion" if stands else ""
         words = f"{it}{up_to}overturns first at {FACTOR.text(margin.factor)}{times}"
-    without = "alone" if verdict.neighbours else "without its stops and ties"
     late = "" if early else _destroyed(margin)
-    words += f"{_range(margin)}{_islands(margin)}{late}{_without_links(margin, without)}."
+    words += f"{_range(margin)}{_islands(margin)}{late}{_without_links(verdict, margin)}."
     return f"{words}{_draws(margin)}"
 
 
-def _without_links(margin: Margin, without: str) -> str:
-    """What the same container does without its stops and ties, or its neighbours."""
-    most = margin.without_links_tried_to
+def _without_links(verdict: Verdict, margin: Margin) -> str:
+    """What the same container does without its stops, ties and neighbours."""
+    most, it = margin.without_links_tried_to, "without its stops and ties it"
+    if verdict.neighbours:
+        held = verdict.stop_force_N is not None or verdict.tie_force_N is not None
+        it = f"the container alone{', without stops and ties,' if held else ''}"
     if most is None:
         return ""
     if margin.factor_without_links is None:
-        return f"; {without} it stands up to {most:.3g}"
-    return f"; {without} it overturns first at {FACTOR.text(margin.factor_without_links)}"
+        return f"; {it} stands up to {most:.3g}"
+    return f"; {it} overturns first at {FACTOR.text(margin.factor_without_links)}"
 
 
 def _range(margin: Margin) -> str:

@@ -7,6 +7,7 @@ from fem.results.run_result import Band, JointDemand, Numerics, RunResult, Stati
 from fem.runtime.units import KILONEWTONS, Reach, figures_of
 
 IMPACT = "impact, not for design unless the floor is known"
+STRUCK = "of spring and dashpot, not for design unless both are known"
 #: note for a floor that crushes, whose strength and stiffness nothing has varied
 UNTRIED = "impact; the band tries other floors (--band)"
 
@@ -23,7 +24,8 @@ def in_words(result: RunResult, key: str) -> str:
             return largest_stress(verdict)
     if not (words := of_band(verdict, key)):
         return ""
-    return f"{words}{_filtered(result, key)}{impact_note(verdict) if shown.impact else ''}"
+    struck = f"; {STRUCK}" if shown.struck and getattr(verdict, key) else ""
+    return f"{words}{_filtered(result, key)}{impact_note(verdict) if shown.impact else ''}{struck}"
 
 
 def of_band(verdict: Verdict, key: str) -> str:

@@ -242,7 +242,9 @@ def run_lifted(verdict: run_result.Verdict) -> str:
 def run_tilted(verdict: run_result.Verdict) -> str:
     """Whether the run overturned, and how far it turned; in a row the container itself."""
     if verdict.outcome == Outcome.OVERTURNED and fall_in_row(verdict):
-        return f"stood until a neighbour fell, ratio {largest_ratio(verdict)}"
+        beyond = (verdict.rotation_ratio or 0.0) > 1.0
+        how = "had turned beyond its slenderness angle when" if beyond else "stood until"
+        return f"{how} a neighbour fell, ratio {largest_ratio(verdict)}"
     if verdict.outcome and verdict.outcome in ENDINGS:
         return Outcome(verdict.outcome).verb
     ratio = largest_ratio(verdict)

@@ -52,6 +52,7 @@ class Shown:
     below: str = ""  #: the figure that it follows in a summary; empty: the one declared before
     lowest: bool = False  #: of a loose stack, that of its lowest box
     impact: bool = False  #: an impact decides
+    struck: bool = False  #: spring and dashpot of what is struck decide
     window: str = ""  #: key of `Numerics`: the time over which it is a mean
     cutoff: str = ""  #: key of `Numerics`: that of the filter in place of a mean
     column: str = ""  #: of a box: with the numbers of all boxes
@@ -210,12 +211,12 @@ OF_LINKS = COLUMN | BAND | READ
 class LinkFigures(JsonBlock, Generic[ValueT]):
     """What stops, ties and neighbours do, all of a kind together; None of a container without them."""
 
-    stop_force_N: Annotated[ValueT | None, Shown("largest force on a stop", units.KILONEWTONS, OF_LINKS)] = (
-        None
-    )
+    stop_force_N: Annotated[
+        ValueT | None, Shown("largest force on a stop", units.KILONEWTONS, OF_LINKS, struck=True)
+    ] = None
     tie_force_N: Annotated[ValueT | None, Shown("largest force in a tie", units.KILONEWTONS, OF_LINKS)] = None
     neighbour_force_N: Annotated[
-        ValueT | None, Shown("largest force between containers", units.KILONEWTONS, OF_LINKS)
+        ValueT | None, Shown("largest force between containers", units.KILONEWTONS, OF_LINKS, struck=True)
     ] = None
     #: how often a gap or slack was used up
     link_hits: Annotated[

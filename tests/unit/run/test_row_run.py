@@ -1,5 +1,7 @@
 """A row of containers as a run: the fall of a neighbour is not taken for one of the container itself."""
 
+from dataclasses import replace
+
 import pytest
 
 import fem
@@ -39,6 +41,8 @@ def test_what_falls_is_named_and_the_container_is_compared_with_its_own_rule(fal
     assert fallen.verdict.outcome == "overturned"
     assert fallen.verdict.neighbours[0].outcome == "overturned" and fallen.verdict.rotation_ratio < 0.001
     assert run_tilted(fallen.verdict) == "stood until a neighbour fell, ratio < 0.001"
+    leant = replace(fallen.verdict, rotation_ratio=4.9)
+    assert run_tilted(leant) == "had turned beyond its slenderness angle when a neighbour fell, ratio 4.9"
     assert governing(fallen.typed_result) == ()
 
 
