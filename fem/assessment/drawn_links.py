@@ -1,4 +1,4 @@
-"""Stops and ties as they are drawn: a wall that stands on the floor, a line from a point of a side down to it."""
+"""Stops and ties as they are drawn: a wall that stands on the floor, a line from a point of a side to its anchor."""
 
 import math
 from collections.abc import Sequence
@@ -13,6 +13,7 @@ from fem.model.tied_capacity import side_of
 from fem.runtime.arrays import FloatArray, IntArray
 
 WALL = 0.03  #: thickness of a stop over the height of the container
+TO_WALL = 0.15  #: length of a tie to a wall over that height
 REACH = 1.0  #: gap over that height beyond which a stop is out of the picture
 INWARD = (
     1e-6  #: so much nearer to the axis than its side the point of a tie is sought, where neighbours touch
@@ -23,15 +24,16 @@ INWARD = (
 class DrawnLink:
     """A stop or a tie on the floor at rest, x from the axis of the container of the case."""
 
-    x: float  #: of the face of a stop, or of a tie [m]
-    outer: float  #: of the other end of a stop; of a tie x [m]
+    x: float  #: of the face of a stop, or of the point of a tie [m]
+    outer: float  #: of the other end of a stop, or of the anchor of a tie [m]
     height: float  #: of its point [m]
+    anchor: float | None = None  #: height of the anchor of a tie [m]
     until: float = math.inf  #: when it broke [s]
 
     @property
     def is_tie(self) -> bool:
         """Whether it pulls."""
-        return self.outer == self.x
+        return self.anchor is not None
 
 
 def drawn_links(case: Case, broken_s: Sequence[float] = ()) -> tuple[DrawnLink, ...]:
@@ -46,10 +48,13 @@ def drawn_links(case: Case, broken_s: Sequence[float] = ()) -> tuple[DrawnLink, 
     found = []
     for link, until in zip(case.links, broken_s or [math.inf] * len(case.links), strict=True):
         side = axes[holder_of(case, link)] + side_of(case, link)
+        outward = -1.0 if link.side == "left" else 1.0
         if not isinstance(link, StopTable):
-            found.append(DrawnLink(x=side, outer=side, height=link.height_m, until=until))
+            outer, anchor = side, 0.0
+            if link.to == "wall":
+                outer, anchor = side + outward * TO_WALL * tallest, link.height_m
+            found.append(DrawnLink(x=side, outer=outer, height=link.height_m, anchor=anchor, until=until))
         elif link.gap_m <= REACH * tallest:
-            outward = -1.0 if link.side == "left" else 1.0
             x, thick = side + outward * link.gap_m, outward * WALL * tallest
             found.append(DrawnLink(x=x, outer=x + thick, height=max(link.height_m, abs(thick)), until=until))
     return tuple(found)

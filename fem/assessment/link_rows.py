@@ -20,7 +20,8 @@ def _stop(stop: StopTable) -> str:
 
 
 def _tie(tie: TieTable) -> str:
-    where = f"on the {tie.side} from {tie.height_m:g} m down to the floor, slack {1e3 * tie.slack_m:g} mm"
+    to = "level to a wall" if tie.to == "wall" else "down to the floor"
+    where = f"on the {tie.side} from {tie.height_m:g} m {to}, slack {1e3 * tie.slack_m:g} mm"
     return where + _stiffness(tie) + _strength(tie)
 
 

@@ -1,8 +1,8 @@
 """Stops and ties of a container: tables [[stop]] and [[tie]], of which a case may have several, and their rules.
 
 A stop is a wall or a kerb that moves with the floor and stands beside a point of a side; a tie runs from such a point
-down to the floor below it. Both hold nothing until their gap or slack is used up. In a row a stop stands at its end,
-and a tie holds the container of the case.
+down to the floor below it, or level to a wall of that side. Both hold nothing until their gap or slack is used up. In a
+row a stop stands at its end, and a tie holds the container of the case.
 """
 
 from typing import Annotated, Any, Literal
@@ -34,7 +34,10 @@ class StopTable(StruckTable):
 
 
 class TieTable(CaseTable):
-    """A strap from a point of a side of the container straight down to the floor; it pulls, and stays vertical."""
+    """A strap from a point of a side of the container; it pulls, and always in one direction.
+
+    Straight down to the floor, or level to a wall that stands on that side and moves with the floor.
+    """
 
     from_: Literal["left", "right"] = Field(
         alias="from", description="side of the container from which it runs", examples=["left"]
@@ -42,7 +45,8 @@ class TieTable(CaseTable):
     height_m: Annotated[float, q.LINK_HEIGHT] = case_key(
         "of its point; at a joint of loose boxes that of the lower box", example=0.5
     )
-    slack_m: Annotated[float, q.GAP] = case_key("how far its point rises before it holds", 0.0)
+    to: Literal["floor", "wall"] = case_key('"floor": straight down | "wall": level, on that side', "floor")
+    slack_m: Annotated[float, q.GAP] = case_key("how far its point moves away before it holds", 0.0)
     stiffness_N_m: Annotated[float, q.LINK_STIFFNESS] = case_key("of the strap", example=1e6)
     strength_N: Annotated[float, q.LINK_FORCE] | None = case_key(
         "force at which it breaks, for good; default: it does not", None, example=5e4
@@ -107,6 +111,13 @@ def _above(name: str) -> Rule:
 LINK_RULES = (
     _above("stop"),
     _above("tie"),
+    Rule(
+        "tie.to",
+        lambda case: (
+            not any(one.to == "wall" and outermost(case, one.side) for one in getattr(case, "tie", ()))
+        ),
+        'must be "floor" on a side with a [[neighbour]], which stands before the wall',
+    ),
     Rule(
         "container.mesh_file",
         lambda case: case.container.mesh_file is None or not links_of_case(case),

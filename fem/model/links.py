@@ -76,10 +76,11 @@ def heights_of_links(case: Case, nodes: FloatArray) -> list[float]:
 
 
 def direction_of(link: StopTable | TieTable) -> tuple[float, float]:
-    """Direction in which the point of a link may go: away from a stop, down from a tie."""
-    if isinstance(link, TieTable):
-        return 0.0, -1.0
-    return (1.0, 0.0) if link.side == "left" else (-1.0, 0.0)
+    """Direction in which the point of a link may go: away from a stop, to where a tie is held."""
+    outward = -1.0 if link.side == "left" else 1.0
+    if isinstance(link, StopTable):
+        return -outward, 0.0
+    return (outward, 0.0) if link.to == "wall" else (0.0, -1.0)
 
 
 def dashpot_of(struck: StruckTable, mass: float) -> float:

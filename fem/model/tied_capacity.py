@@ -10,9 +10,11 @@ from fem.case.boxes import Box
 from fem.case.case import Case
 from fem.case.links import StopTable, TieTable, holder_of
 from fem.model.floor import pivot_share
+from fem.runtime.arrays import FloatArray
 from mesh.container import ContainerMesh
 
-MOST_TURNED, TURNS = 0.5 * math.pi, 20_001  #: rotations at which a capacity is sought [rad]
+MOST_TURNED, TURNS = 0.5 * math.pi, 2_001  #: rotations at which a capacity is sought [rad]
+BISECTIONS = 40  #: of the rotation at which a tie reaches its strength
 
 
 def box_at(case: Case, height: float) -> Box:
@@ -51,27 +53,28 @@ class TiedCapacity:
 def tied_capacities(case: Case, mesh: ContainerMesh) -> list[TiedCapacity]:
     """The capacity toward each side; none where the case has no ties, or where they need not hold all loose boxes.
 
-    A tie whose point rises by u carries k (u - slack), up to its strength, and then no more.
+    A tie whose point moves away by u carries k (u - slack), up to its strength, and then no more.
     """
     found = []
-    rotation = np.linspace(0.0, MOST_TURNED, TURNS)
     for side, sign in (("left", -1.0), ("right", 1.0)) if case.tie and not case.container.is_loose else ():
         corner = 0.5 * pivot_share(case, mesh) * mesh.width
         arm = corner - sign * mesh.centroid[0]
         weight = mesh.mass * case.gravity_toward_floor
         downhill = sign * mesh.mass * case.gravity_downhill  # x falls toward +x
+        beside = [corner - sign * side_of(case, tie) for tie in case.tie]
+        rotation = np.linspace(0.0, MOST_TURNED, TURNS)
+        breaking = [_breaks_at(tie, side, one, rotation) for tie, one in zip(case.tie, beside, strict=True)]
+        rotation = np.sort(np.concatenate([rotation, *breaking]))
         moment = weight * (arm * np.cos(rotation) - mesh.centroid[1] * np.sin(rotation))
         moment -= downhill * (mesh.centroid[1] * np.cos(rotation) + arm * np.sin(rotation))
-        breaks = np.zeros(TURNS, dtype=bool)
-        for tie in case.tie:
-            beside = corner - sign * side_of(case, tie)  # of its point from the corner, against the turn
-            rise = beside * np.sin(rotation) + tie.height_m * (np.cos(rotation) - 1.0)
-            force = tie.stiffness_N_m * np.maximum(rise - tie.slack_m, 0.0)
+        breaks = np.zeros(rotation.size, dtype=bool)
+        for tie, one in zip(case.tie, beside, strict=True):
+            force, lever = _pull(tie, side, one, rotation)
             if tie.strength_N is not None:
-                broken = np.logical_or.accumulate(force >= tie.strength_N)
+                broken = np.logical_or.accumulate(force > tie.strength_N)
                 breaks |= np.append(broken[1:] & ~broken[:-1], False)
                 force[broken] = 0.0
-            moment += force * (beside * np.cos(rotation) - tie.height_m * np.sin(rotation))
+            moment += force * lever
         most = int(np.argmax(moment))
         found.append(
             TiedCapacity(
@@ -83,3 +86,33 @@ def tied_capacities(case: Case, mesh: ContainerMesh) -> list[TiedCapacity]:
             )
         )
     return found
+
+
+def _pull(tie: TieTable, side: str, beside: float, rotation: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Force of a tie that does not break [N], and its lever about the corner [m].
+
+    Args:
+        tie: it; side: toward which the container turns.
+        beside: of its point from the corner, against the turn [m].
+        rotation: [rad].
+    """
+    up = beside * np.sin(rotation) + tie.height_m * np.cos(rotation)
+    ahead = beside * (1.0 - np.cos(rotation)) + tie.height_m * np.sin(rotation)
+    away, lever = up - tie.height_m, beside - ahead
+    if tie.to == "wall":
+        away, lever = (-ahead, -up) if tie.side == side else (ahead, up)
+    return tie.stiffness_N_m * np.maximum(away - tie.slack_m, 0.0), lever
+
+
+def _breaks_at(tie: TieTable, side: str, beside: float, rotation: FloatArray) -> FloatArray:
+    """The rotation at which a tie reaches its strength, or none [rad]."""
+    force, _ = _pull(tie, side, beside, rotation)
+    if tie.strength_N is None or force.max() <= tie.strength_N:
+        return rotation[:0]
+    over = np.flatnonzero(force > tie.strength_N)
+    low, high = rotation[over[0] - 1], rotation[over[0]]
+    for _ in range(BISECTIONS):
+        middle = 0.5 * (low + high)
+        strong = float(_pull(tie, side, beside, np.array([middle]))[0][0]) > tie.strength_N
+        low, high = (low, middle) if strong else (middle, high)
+    return np.array([low])

@@ -272,6 +272,7 @@ def player_data(animation: Animation, history: History, *, model: Model) -> dict
                 "x": link.x,
                 "outer": link.outer,
                 "height": link.height,
+                "anchor": link.anchor,
                 "until": min(link.until, LASTING),
                 "node": int(node),
             }

@@ -169,8 +169,9 @@ def _draw_beside(axes: Axes, case: Case, unit: float) -> tuple[float, float]:
         ends.append((left, left + width))
     for link in drawn_links(case):
         x, outer, height = link.x, link.x, max(link.height, unit)
-        if link.is_tie:
-            axes.plot((x, x), (0.0, height), color=BLUE, linewidth=1.2, linestyle=":", zorder=6)
+        if link.anchor is not None:
+            outer = link.outer
+            axes.plot((x, outer), (height, link.anchor), color=BLUE, linewidth=1.2, linestyle=":", zorder=6)
             axes.plot((x,), (height,), color=BLUE, marker="o", markersize=3, zorder=6)
         else:
             outer = x + math.copysign(2 * unit, link.outer - x)

@@ -146,7 +146,9 @@ def _drawing(
     for link, held in zip(animation.links, points[animation.held], strict=True):
         if frame.time < link.until:
             foot = np.array([(link.x, 0.0), (link.outer, 0.0)]) * [scale, 1.0]
-            end = np.array([held]) if link.is_tie else (foot - [0.0, scale * link.height])[::-1]
+            end = (foot - [0.0, scale * link.height])[::-1]
+            if link.anchor is not None:
+                foot, end = scale * np.array([(link.outer, -link.anchor)]), np.array([held])
             parts.append(
                 _path("M" + _line(np.concatenate([foot, end])) + "Z", stroke=INK, width=1.0, fill=WALL)
             )

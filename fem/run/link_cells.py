@@ -16,7 +16,7 @@ from fem.runtime.arrays import FloatArray
 SQUARE = np.array(
     [(0, 0), (1, 0), (1, 1), (0, 1), (0.5, 0), (1, 0.5), (0.5, 1), (0, 0.5), (0.5, 0.5)], dtype=float
 )
-STRAP = 0.005  #: width of a tie over its height
+STRAP = 0.005  #: width of a tie over its length
 
 
 class LinkCells:
@@ -31,9 +31,7 @@ class LinkCells:
         self._share = np.array([square[:, 1] * one.is_tie for one in links]).reshape(-1, 1)
         behind = len(elements.nodes) + np.arange(self._share.size).reshape(-1, self._count)
         self.mesh: dict[str, Any] = {
-            "points": np.concatenate(
-                [elements.nodes, *(_corners(one) + _size(one) * square for one in links)]
-            ),
+            "points": np.concatenate([elements.nodes, *(_nodes(one, square) for one in links)]),
             "cells": np.concatenate([elements.cells, behind]),
             "region": np.append(
                 elements.region.astype(np.int64), [TIE if one.is_tie else STOP for one in links]
@@ -53,7 +51,7 @@ class LinkCells:
         for k, one in enumerate(links):
             if one.until <= frame.time:
                 own = slice(k * self._count, (k + 1) * self._count)
-                moved[own] = place + ((one.x, 0.0) - self.mesh["points"][first:][own])
+                moved[own] = place + ((one.outer, one.anchor or 0.0) - self.mesh["points"][first:][own])
         return replace(
             frame,
             displacement=np.concatenate([frame.displacement, moved]),
@@ -63,12 +61,14 @@ class LinkCells:
         )
 
 
-def _corners(link: DrawnLink) -> FloatArray:
-    return np.array((min(link.x, link.outer) - 0.5 * STRAP * link.height * link.is_tie, 0.0))
-
-
-def _size(link: DrawnLink) -> FloatArray:
-    return np.array((STRAP * link.height if link.is_tie else abs(link.outer - link.x), link.height))
+def _nodes(link: DrawnLink, square: FloatArray) -> FloatArray:
+    """Nodes of a cell at rest; of a tie from its anchor, along the second axis of the square, to its point."""
+    if link.anchor is None:
+        return (min(link.x, link.outer), 0.0) + np.array((abs(link.outer - link.x), link.height)) * square
+    along = np.array((link.x - link.outer, link.height - link.anchor))
+    across = STRAP * along[::-1] * (1.0, -1.0)
+    moved: FloatArray = (link.outer, link.anchor) + square[:, 1:] * along + (square[:, :1] - 0.5) * across
+    return moved
 
 
 def _broken(run: RunState, count: int) -> Sequence[float]:

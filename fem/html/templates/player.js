@@ -121,7 +121,7 @@
     }
   };
 
-  const links = (pulls) => run.links.filter(({ x, outer, until }) => (x === outer) === pulls && now < until);
+  const links = (pulls) => run.links.filter(({ anchor, until }) => (anchor !== null) === pulls && now < until);
   const drawStops = (X, Z, origin) => {  // until they break
     pen.strokeStyle = INK; pen.fillStyle = WALL; pen.lineWidth = 1.4;
     for (const { x, outer, height } of links(false)) {
@@ -130,8 +130,8 @@
   };
   const drawTies = (X, Z, origin) => {
     pen.strokeStyle = INK; pen.lineWidth = 2.5;
-    for (const { x, node } of links(true)) {
-      pen.beginPath(); pen.moveTo(X(origin + x), Z(0)); pen.lineTo(placed[2 * node], placed[2 * node + 1]); pen.stroke();
+    for (const { outer, anchor, node } of links(true)) {
+      pen.beginPath(); pen.moveTo(X(origin + outer), Z(anchor)); pen.lineTo(placed[2 * node], placed[2 * node + 1]); pen.stroke();
     }
   };
 

@@ -19,6 +19,7 @@ STOPS = [
     {"side": "right", "height_m": 1.5, "gap_m": 9.0, **SIDES},
 ]
 TIE_ROW = {"from": "left", "height_m": 2.0, "slack_m": 0.0, "stiffness_N_m": 1e6, "strength_N": 2e3}
+TO_WALL = {"from": "left", "to": "wall", "height_m": 3.5, "slack_m": 0.5, "stiffness_N_m": 1e6}
 BESIDE = {"side": "right", "gap_m": 0.1, "boxes": 2, **SIDES}
 CASE = fem.load_case(
     "free_rocking",
@@ -37,7 +38,7 @@ CASE = fem.load_case(
         "neighbour": [BESIDE],
         "initial.rotation_rad": 0.0,
         "initial.angular_velocity_rad_s": 0.4,
-        "tie": [TIE_ROW],
+        "tie": [TIE_ROW, TO_WALL],
     }
 )
 
@@ -49,11 +50,15 @@ def run(tmp_path_factory):
 
 
 def test_stops_stand_at_their_gap_and_height_beside_the_last_container_of_their_side():
-    left, right, tie = drawn_links(CASE)
+    left, right, tie, level = drawn_links(CASE)
     half, beyond = 0.55, 0.55 + 0.1 + 1.1  # of the container; the far side of the neighbour
     assert (left.x, left.height) == pytest.approx((-half - 0.05, 0.3)) and left.outer < left.x
     assert (right.x, right.height) == pytest.approx((beyond + 0.2, 1.5)) and right.outer > right.x
-    assert tie.is_tie and (tie.x, tie.height) == pytest.approx((-half, 2.0))
+    assert tie.is_tie and (tie.x, tie.height, tie.outer, tie.anchor) == pytest.approx(
+        (-half, 2.0, -half, 0.0)
+    )
+    assert level.is_tie and (level.x, level.height, level.anchor) == pytest.approx((-half, 3.5, 3.5))
+    assert level.outer < level.x
 
 
 def test_paraview_reads_all_bodies_with_their_links(run):
@@ -74,8 +79,29 @@ def test_paraview_reads_all_bodies_with_their_links(run):
         )  # the outer face of a wall
 
 
+def test_paraview_shows_ties_from_where_their_points_are_to_where_they_are_held(run):
+    reader, broken = pyvista.get_reader(run.place.fields / "run.pvd"), run.typed_result.ties[0].broken_at_s
+    for point, time in enumerate(reader.time_values):
+        reader.set_active_time_point(point)
+        (grid,) = reader.read()
+        moved = grid.warp_by_vector("displacement_m")
+        bodies = grid.extract_cells(grid.cell_data["box"] > 0)
+        floor, ties = 0.1 * np.sin(3.0 * time), np.flatnonzero(grid.cell_data["region"] == TIE)
+        for tie, place, anchor in zip(
+            ties, ((-0.55, 2.0), (-0.55, 3.5)), ((-0.55, 0.0), (-1.15, 3.5)), strict=True
+        ):
+            ends = moved.get_cell(tie).points[:4, :2].reshape(2, 2, 2).mean(axis=1)
+            assert ends[0] == pytest.approx((anchor[0] + floor, anchor[1]), abs=1e-5)
+            node = bodies.find_closest_point((*place, 0.0))
+            if anchor[1] or time < broken:
+                held = bodies.points[node] + bodies.point_data["displacement_m"][node]
+                assert ends[1] == pytest.approx(held[:2], abs=1e-5)
+            else:
+                assert ends[1] == pytest.approx(ends[0], abs=1e-6)
+
+
 def test_a_tie_runs_from_its_point_to_the_floor_until_it_breaks(run):
-    (tie,) = run.typed_result.ties
+    tie, _ = run.typed_result.ties
     times = run.fields.times
     assert times[0] < tie.broken_at_s < times[-1]
     for k, time in enumerate(times):
@@ -94,10 +120,10 @@ def test_a_tie_runs_from_its_point_to_the_floor_until_it_breaks(run):
 
 def test_the_animation_and_its_stills_show_them(run):
     model = build_model(run.case)
-    links = drawn_links(run.case, [np.inf] * 3 + [run.typed_result.ties[0].broken_at_s])
+    links = drawn_links(run.case, [np.inf] * 3 + [run.typed_result.ties[0].broken_at_s, np.inf])
     shown = animation_of(model, run.fields, links)
     data = player_data(shown, run.history, model=model)
-    assert [one["height"] for one in data["links"]] == [0.3, 1.5, 2.0] and data["row"]
+    assert [one["height"] for one in data["links"]] == [0.3, 1.5, 2.0, 3.5] and data["row"]
     assert data["links"][2]["until"] == run.typed_result.ties[0].broken_at_s
     held = shown.points[data["links"][2]["node"]] + shown.centroid[0]
     assert held == pytest.approx((-0.55, 2.0), abs=1e-9)
@@ -109,7 +135,7 @@ def test_the_animation_and_its_stills_show_them(run):
         ]
         for each in (shown, bare)
     ]
-    assert counts[0][0] - counts[1][0] == 3 and counts[0][-1] - counts[1][-1] == 2  # the tie is gone
+    assert counts[0][0] - counts[1][0] == 4 and counts[0][-1] - counts[1][-1] == 3  # one tie is gone
 
 
 def test_without_links_the_mesh_of_the_fields_is_that_of_the_container():
