@@ -40,7 +40,7 @@ ROW_FAULTS = (
         name="what neighbours push is not taken from what holds a container",
         old="stands, first, last, load_from_beside(run, j)",
         new="stands, first, last, pushed",
-        tests=(ROWS, "-k", "pulses"),
+        tests=(ROWS, "-k", "friction_holds"),
     ),
     Mutation(
         name="leaning is standing",

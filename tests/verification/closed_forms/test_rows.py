@@ -9,7 +9,10 @@ import numpy as np
 import pytest
 from moreau import slide_in_a_row
 
+from contact.stepping.body import stands_loose
+from contact.stepping.joints import holding_force
 from contact.stepping.ledger import CONTACT_DAMPING, FRICTION
+from contact.stepping.links import links_of
 from fem.assessment.verdict import verdict_of
 from fem.case.case import Case, CaseError, load_case
 from fem.case.neighbours import case_of
@@ -19,7 +22,7 @@ from fem.model.model import build_model
 from fem.model.motion import build_motions
 from fem.run.solve import chosen_values
 
-MASS, WIDTH, SPEED = 1e4, 1.1, 0.5
+MASS, WIDTH, SPEED, GRAVITY = 1e4, 1.1, 0.5, 9.81
 BESIDE = {"side": "right", "gap_m": 0.1, "stiffness_N_m": 1e8}
 #: held by friction, so that it rocks
 HELD = STACK.with_values({"contact.mu_static": 3.0, "solver.duration_s": 3.0, **pulse(4.5, 0.4)})
@@ -175,6 +178,22 @@ def test_a_heavy_neighbour_is_a_wall():
     assert velocities(beside)[0] == pytest.approx(-0.5 * SPEED, abs=2e-3 * SPEED)
     assert velocities(beside)[0] == pytest.approx(before.model.run.old.pose[4], abs=2e-3 * SPEED)
     assert beside.model.run.links[0].max_force == pytest.approx(before.model.run.links[0].max_force, rel=2e-3)
+
+
+def test_of_what_presses_a_row_against_a_wall_friction_holds_what_the_next_does_not():
+    push, mu = 5.0, 0.2
+    keys = {**pulse(-push, 2.0), "initial.velocity_m_s": 0.0, "solver.duration_s": 1.0}
+    low = SLIDER.with_values({**keys, "contact.mu_static": 0.4, "contact.mu_kinetic": mu})
+    wall = {"side": "right", "height_m": 0.5, "gap_m": 0.02, "stiffness_N_m": 1e8}
+    found = run(in_a_row(low.with_values({"stop": [wall]}), {**BESIDE, "gap_m": 0.02}))
+    beside, before = (found.history[f"{name}_1_force_N"][-1] for name in ("neighbour", "stop"))
+    assert mu * MASS * GRAVITY + MASS * push == pytest.approx(beside, rel=1e-6)  # both have swung back
+    assert 2.0 * beside == pytest.approx(before, rel=1e-6)
+    body = found.model.body
+    for number in range(2):
+        holding, normal = holding_force(found.model.run, number, stands_loose(body), links_of(body))
+        assert holding == pytest.approx(beside - MASS * push, rel=1e-5)
+        assert normal == pytest.approx(MASS * GRAVITY, rel=1e-5)
 
 
 SHAKEN = STACK.with_values(
