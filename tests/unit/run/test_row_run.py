@@ -42,7 +42,7 @@ def test_what_falls_is_named_and_the_container_is_compared_with_its_own_rule(fal
     assert fallen.verdict.neighbours[0].outcome == "overturned" and fallen.verdict.rotation_ratio < 0.001
     assert run_tilted(fallen.verdict) == "stood until a neighbour fell, ratio < 0.001"
     leant = replace(fallen.verdict, rotation_ratio=4.9)
-    assert run_tilted(leant) == "had turned beyond its slenderness angle when a neighbour fell, ratio 4.9"
+    assert run_tilted(leant) == "had turned beyond its slenderness angle when a neighbour fell, ratio 4.90"
     assert governing(fallen.typed_result) == ()
 
 
