@@ -15,10 +15,14 @@ def margin_in_words(verdict: Verdict | None) -> str:
     lead, early = f"{'Stands' if stands else 'Overturns'}; ", _destroyed_first(margin)
     it = f"{lead}{early} and it " if early else lead
     if margin.factor is None:
-        most, others = f"{margin.largest_tried:.3g}", f"other motion{'s' * (margin.runs != 1)}"
-        none = f"none of {margin.runs}" if margin.runs > 1 else "not one"
+        count, also = margin.runs, " and " if early else ""
         whom = "one of the row" if verdict.neighbours else "it"
-        words = f"{lead}{early}{' and ' * bool(early)}{none} {others} up to {most} times as strong overturns {whom}"
+        tried = f"{count or 'no'} multiple{'s' * (count > 1)} of this motion"
+        if count:
+            tried += f", up to {margin.largest_tried:.3g} times, do{'es' * (count == 1)} not overturn {whom}"
+        else:
+            tried += f" shows whether {whom} overturns"
+        words = f"{lead}{early}{also}{tried}"
     elif margin.stands_up_to is None:
         still = "overturns" if stands else "still does"
         words = f"{it}{still} at {margin.factor:.3g} times this motion, the weakest tried"

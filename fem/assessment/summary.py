@@ -147,8 +147,10 @@ def _found(result: run_result.RunResult) -> str:
         )
         return "; ".join(filter(None, (fell, links_in_words(result))))
     restored = ", returned upright" if verdict.restored else _leaning(verdict, result.static)
-    under = f"{covered_in_words(motion)}{missing_peak(motion)}"
-    found = f"{Outcome(verdict.outcome).verb}{restored} and did not overturn under {under}"
+    under = f" under {covered_in_words(motion)}{missing_peak(motion)}"
+    if motion.kind == "none" and motion.vertical is None:  # it was pushed, or stood tilted
+        under = ""
+    found = f"{Outcome(verdict.outcome).verb}{restored} and did not overturn{under}"
     return "; ".join(filter(None, (found, joints_in_words(verdict, result.static), links_in_words(result))))
 
 

@@ -134,6 +134,7 @@ def test_the_summary_holds_what_the_run_found_in_units_for_people():
             changed(verdict__outcome="rest", verdict__restored=False),
             "Result: rested and did not overturn under this motion.",
         ),
+        (changed(motion=MotionResult(kind="none")), "Result: rocked, returned upright and did not overturn."),
         (
             changed(verdict__outcome="slide-rock", verdict__band=Band(unsure=True)),
             "Result: slid, rocked, returned upright and did not overturn under this motion. "

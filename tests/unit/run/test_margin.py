@@ -203,18 +203,18 @@ MARGIN = Margin(
         (
             {"factor": None, "stands_up_to": None, "runs": 16},
             "slide",
-            "Stands; none of 16 other motions up to 4 times as strong overturns it.",
+            "Stands; 16 multiples of this motion, up to 4 times, do not overturn it.",
         ),
         (
             {"factor": None, "stands_up_to": None, "low": 1.9, "draws": 16, "draws_standing": 15},
             "slide",
-            "Stands; none of 20 other motions up to 4 times as strong overturns it. Over what is not known it "
+            "Stands; 20 multiples of this motion, up to 4 times, do not overturn it. Over what is not known it "
             "overturns from 1.9 times on; of 16 draws 15 stand at 4 times.",
         ),
         (
             {"factor": None, "stands_up_to": None, "draws": 16, "draws_standing": 16},
             "slide",
-            "Stands; none of 20 other motions up to 4 times as strong overturns it, nor does the strongest overturn "
+            "Stands; 20 multiples of this motion, up to 4 times, do not overturn it, nor does the strongest overturn "
             "any of 16 draws of what is not known.",
         ),
         (
@@ -249,8 +249,8 @@ MARGIN = Margin(
         (
             {"factor": None, "stands_up_to": None, "destroyed_from": 2.42},
             "rock",
-            "Stands; at 2.42 times this motion a corner is destroyed, and none of 20 other motions up to 4 times as "
-            "strong overturns it.",
+            "Stands; at 2.42 times this motion a corner is destroyed, and 20 multiples of this motion, up to 4 "
+            "times, do not overturn it.",
         ),
         (
             {"factor_without_links": 2.0, "without_links_tried_to": 4.0},
@@ -265,7 +265,13 @@ MARGIN = Margin(
         (
             {"factor": None, "stands_up_to": None, "runs": 1},
             "rest",
-            "Stands; not one other motion up to 4 times as strong overturns it.",
+            "Stands; 1 multiple of this motion, up to 4 times, does not overturn it.",
+        ),
+        (
+            {"factor": None, "stands_up_to": None, "destroyed_from": 1.15, "runs": 0},
+            "rock",
+            "Stands; at 1.15 times this motion a corner is destroyed, and no multiple of this motion shows whether it "
+            "overturns.",
         ),
         (
             {"factor": 0.05, "stands_up_to": None, "largest_tried": 1.0},
