@@ -16,6 +16,7 @@ from fem.batch.runner import ChunkWork, ItemT, Row, Runner
 from fem.batch.shard import number_of
 from fem.batch.table import Columns, line_of, read_lines, table_of_lines
 from fem.case.case import Case
+from fem.results.errors import FolderLostError
 
 
 class RowLog:
@@ -28,6 +29,7 @@ class RowLog:
 
     def __init__(self, path: Path, columns: Iterable[str]) -> None:
         columns = tuple(columns)
+        self._path = path
         self.lines = read_lines(path, columns)  #: already there
         kept = table_of_lines(columns, self.lines).encode()
         self._file = open(path, "r+b" if self.lines else "wb", buffering=0)  # noqa: SIM115
@@ -38,7 +40,13 @@ class RowLog:
             self._file.write(kept)
 
     def append(self, lines: Iterable[str]) -> None:
-        """Write lines in one go."""
+        """Write lines in one go.
+
+        Raises:
+            OSError: they cannot be written; FolderLostError: the log was removed.
+        """
+        if os.fstat(self._file.fileno()).st_nlink == 0:
+            raise FolderLostError(None, "the folder was removed during the run", str(self._path.parent))
         data = "".join(f"{line}\n" for line in lines).encode()
         done = 0
         while done < len(data):

@@ -32,7 +32,7 @@ def writing_into(folder: Path, way_on: str) -> Iterator[None]:
 
     Args:
         folder: of the results.
-        way_on: what to do when there is room again, such as "--resume continues the sweep".
+        way_on: what to do when it can be written again, such as "--resume continues the sweep".
 
     Raises:
         FolderError: a file stands where a folder should, or the folder cannot be made.
@@ -51,9 +51,11 @@ def writing_into(folder: Path, way_on: str) -> Iterator[None]:
 
 def unwritable(folder: Path, error: OSError, way_on: str) -> str:
     """The message of a write that failed half-way."""
+    if isinstance(error, FolderLostError):
+        return f"{error.filename}: {error.strerror}; run the command again, or {OTHER_FOLDER}"
     return (
         f"{error.filename or folder}: cannot be written ({error.strerror or error}); what was written before can be "
-        f"read; when there is room again, {way_on}"
+        f"read; when it can be written again, {way_on}"
     )
 
 

@@ -181,7 +181,11 @@ def open_result_folder(
     with locked_folder(path) as lock:
         earlier = find_result(path, kind, request, force=force)
         with writing_into(path, way_on or "--resume continues"):
-            yield ResultFolder(path=path, kind=kind, lock=lock, earlier=earlier, resume=resume and not force)
+            try:
+                yield ResultFolder(path=path, kind=kind, lock=lock, earlier=earlier, resume=resume and not force)
+            except Exception:
+                lock.check()  # whatever fails in a folder that is gone, that is the reason
+                raise
 
 
 def find_result(path: Path, kind: ResultKind, request: str, *, force: bool = False) -> dict[str, Any] | None:

@@ -1,11 +1,14 @@
-"""Tables: what is written reads back, and a spreadsheet computes nothing of it."""
+"""Tables and logs: what is written reads back, a spreadsheet computes nothing of it, a removed log ends the study."""
 
 import re
+from contextlib import closing
 from pathlib import Path
 
 import pytest
 
+from fem.batch.log import RowLog
 from fem.batch.table import fields_of, line_of, row_of
+from fem.results.errors import FolderLostError
 from fem.results.figures import RUN_COLUMNS, types_of
 from fem.site_check.runs import RunKey
 
@@ -32,6 +35,15 @@ def test_numbers_and_other_texts_stay_as_they_are(value):
     line = line_of([value, "x"])
     assert "'" not in line
     assert line_of(fields_of(line)) == line
+
+
+def test_rows_are_not_added_to_a_log_that_was_removed(tmp_path):
+    """The study ends with the first row after that, not when all are computed."""
+    with closing(RowLog(tmp_path / "rows.csv", ["a"])) as log:
+        log.append(["1"])
+        (tmp_path / "rows.csv").unlink()
+        with pytest.raises(FolderLostError, match="removed during the run"):
+            log.append(["2"])
 
 
 def test_a_row_reads_back_with_the_types_of_its_columns():

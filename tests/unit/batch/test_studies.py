@@ -23,7 +23,7 @@ from fem.hall.run import run_hall
 from fem.response.request import ResponseRequest
 from fem.response.run import run_response
 from fem.results import kinds
-from fem.results.errors import FolderError
+from fem.results.errors import FolderError, OutputError
 from fem.runtime.progress import SilentReporter
 from fem.site_check.file import load_site
 from fem.site_check.run import run_site
@@ -61,6 +61,19 @@ class Interrupting(SilentReporter):
             os.kill(os.getpid(), signal.SIGINT)
         elif self.left == 0:
             raise KeyboardInterrupt
+
+    def update(self, time, rotation_ratio, mode):
+        self.tell(lambda: "")
+
+
+class Removing(SilentReporter):
+    """Removes the folder of the results at every report of progress."""
+
+    def __init__(self, folder):
+        self.folder = folder
+
+    def tell(self, line):
+        shutil.rmtree(self.folder, ignore_errors=True)
 
     def update(self, time, rotation_ratio, mode):
         self.tell(lambda: "")
@@ -179,6 +192,14 @@ def test_an_interrupted_study_continues_to_the_same_files(tmp_path, whole, study
                     run(folder)
     run(folder, resume=True)
     assert files_of(folder) == files_of(whole(study))
+
+
+@STUDIES
+def test_a_study_whose_folder_is_removed_ends_in_a_sentence(tmp_path, study, mark, log):
+    folder = tmp_path / "out"
+    with pytest.raises(OutputError, match=r"out: the folder was removed during the run; run the command again"):
+        study(tmp_path)(folder, reporter=Removing(folder))
+    assert not folder.exists()
 
 
 @STUDIES
