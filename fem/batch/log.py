@@ -14,9 +14,10 @@ from typing import Any, Generic
 
 from fem.batch.runner import ChunkWork, ItemT, Row, Runner
 from fem.batch.shard import number_of
-from fem.batch.table import Columns, line_of, read_lines, table_of_lines
+from fem.batch.table import Columns, is_row, line_of, read_lines, table_of_lines
 from fem.case.case import Case
-from fem.results.errors import FolderLostError
+from fem.results.errors import FolderError, FolderLostError
+from fem.results.files import write_atomically
 
 
 class RowLog:
@@ -24,14 +25,18 @@ class RowLog:
 
     Args:
         path: of the table; continued behind its last whole line if it has these columns, else begun.
-        columns: names in the header.
+        columns: of the table.
+        warn: receives a sentence where lines are no rows, as after a fault of the disk; they are removed.
     """
 
-    def __init__(self, path: Path, columns: Iterable[str]) -> None:
-        columns = tuple(columns)
+    def __init__(self, path: Path, columns: Columns, warn: Callable[[str], None]) -> None:
         self._path = path
-        self.lines = read_lines(path, columns)  #: already there
+        there = read_lines(path, columns)
+        self.lines = [line for line in there if is_row(columns, line)]  #: already there
         kept = table_of_lines(columns, self.lines).encode()
+        if damaged := len(there) - len(self.lines):
+            warn(f"{path}: damaged rows, which are computed again: {damaged}")
+            write_atomically(path, kept)
         self._file = open(path, "r+b" if self.lines else "wb", buffering=0)  # noqa: SIM115
         if self.lines:
             self._file.truncate(len(kept))
@@ -82,10 +87,18 @@ class LoggedRuns(Generic[ItemT]):
         Args:
             runner: runs the cases.
             batches: of missing items; each is asked for when all rows before are noted.
+
+        Raises:
+            FolderError: the log holds a row of another study.
         """
-        with closing(RowLog(self.path, self.columns)) as log:
+        with closing(RowLog(self.path, self.columns, runner.reporter.warning)) as log:
             for line in log.lines:
-                self.note(line)
+                try:
+                    self.note(line)
+                except (AttributeError, LookupError, TypeError, ValueError):
+                    raise FolderError(
+                        f"{self.path}: damaged, no run of this study has the row {line:.60}; start over with --force"
+                    ) from None
             for items in batches:
                 if runner.stop():
                     break

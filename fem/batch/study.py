@@ -122,9 +122,8 @@ def run_study(study: Study[ResultT], folder: Path, **options: Unpack[StudyOption
         compilation_announced(runner.reporter.message),
     ):
         shard, merge = options.get("shard"), options.get("merge") or ()
-        before = (
-            Shard.from_json(place.earlier["shard"]) if place.earlier and place.earlier.get("shard") else None
-        )
+        part = (place.earlier or {}).get("shard")
+        before = typed_result(Shard, part, folder / kind.mark) if part else None
         if before and shard and (before.number, before.count) != (shard.number, shard.count):
             raise FolderError(f"{folder} holds shard {before} of this {kind.name}; {OTHER_FOLDER}")
         if before and before.done and shard and not merge:

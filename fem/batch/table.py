@@ -47,6 +47,15 @@ def row_of(columns: Columns, line: str) -> dict[str, Any]:
     return {name: READERS[kind](field) if field else None for (name, kind), field in fields}
 
 
+def is_row(columns: Columns, line: str) -> bool:
+    """Whether a line has a value of the right type for each column."""
+    try:
+        row_of(columns, line)
+    except (ValueError, StopIteration, csv.Error):
+        return False
+    return True
+
+
 def table_text(columns: Iterable[str], rows: Iterable[Iterable[Any]]) -> str:
     """A table as text."""
     return table_of_lines(columns, map(line_of, rows))

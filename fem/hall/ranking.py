@@ -49,15 +49,16 @@ class HallRuns:
     checked: dict[int, Row] = field(default_factory=dict)  #: what the repetition showed, by container
 
     def note(self, line: str) -> None:
-        """Add a line of the log of the runs."""
+        """Add a line of the log of the runs; IndexError: of a container that is not in the list."""
         row = row_of(RUN_COLUMNS, line)
+        item = self.hall.item(row["container"], row["motion"])
         run = ContainerRun(
             line=line,
             ending=ending_of(row["status"], row["outcome"]),
             ratio=row[TURNED] or 0.0,
             slip=row[SLIPPED] or 0.0,
         )
-        self.by_container.setdefault(row["container"], {})[row["motion"]] = run
+        self.by_container.setdefault(item.container, {})[item.motion] = run
 
     def note_check(self, line: str) -> None:
         """Add a line of the log of the repetitions."""

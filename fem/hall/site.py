@@ -132,7 +132,7 @@ class _AtSite:
         count, path = len(self.inventory.containers), results.path / SITES
         numbers = list(range(count))
         mine = runner.share.of(numbers, numbers) if runner.share else numbers
-        with closing(RowLog(path, COLUMNS)) as log:
+        with closing(RowLog(path, COLUMNS, runner.reporter.warning)) as log:
             for line in log.lines:
                 self.lines[int(fields_of(line)[0])] = line
             missing = [number for number in mine if number not in self.lines]

@@ -39,11 +39,22 @@ def test_numbers_and_other_texts_stay_as_they_are(value):
 
 def test_rows_are_not_added_to_a_log_that_was_removed(tmp_path):
     """The study ends with the first row after that, not when all are computed."""
-    with closing(RowLog(tmp_path / "rows.csv", ["a"])) as log:
+    with closing(RowLog(tmp_path / "rows.csv", {"a": int}, pytest.fail)) as log:
         log.append(["1"])
         (tmp_path / "rows.csv").unlink()
         with pytest.raises(FolderLostError, match="removed during the run"):
             log.append(["2"])
+
+
+@pytest.mark.parametrize("line", ["2", "2,0.5,7", "2,fast", "x,0.5", "", "\0,1"])
+def test_a_damaged_row_is_left_out_and_told(tmp_path, line):
+    path, told = tmp_path / "rows.csv", []
+    path.write_text(f"a,b\n1,0.5\n{line}\n3,1.5\n4,")
+    with closing(RowLog(path, {"a": int, "b": float}, told.append)) as log:
+        assert log.lines == ["1,0.5", "3,1.5"]
+        log.append(["2,0.25"])
+    assert path.read_text() == "a,b\n1,0.5\n3,1.5\n2,0.25\n"
+    assert told == [f"{path}: damaged rows, which are computed again: 1"]
 
 
 def test_a_row_reads_back_with_the_types_of_its_columns():

@@ -194,10 +194,27 @@ def test_an_interrupted_study_continues_to_the_same_files(tmp_path, whole, study
     assert files_of(folder) == files_of(whole(study))
 
 
+@pytest.mark.parametrize("study", [ensemble, hall])
+def test_a_damaged_row_is_computed_again_and_one_of_no_run_is_refused(tmp_path, whole, study):
+    run, folder = study(tmp_path), tmp_path / "out"
+    with pytest.raises(KeyboardInterrupt):
+        run(folder, reporter=Interrupting(1))
+    path = folder / ("draws.csv" if study is ensemble else "runs.csv")
+    header, first, second, *others = path.read_text().splitlines()
+    path.write_text("\n".join([header, first, "777777" + second, *others, ""]))
+    with pytest.raises(FolderError, match=r"damaged, no run of this study has the row 777777.*--force"):
+        run(folder, resume=True)
+    path.write_text("\n".join([header, first, second[: len(second) // 2], *others, ""]))
+    run(folder, resume=True)
+    assert files_of(folder) == files_of(whole(study))
+
+
 @STUDIES
 def test_a_study_whose_folder_is_removed_ends_in_a_sentence(tmp_path, study, mark, log):
     folder = tmp_path / "out"
-    with pytest.raises(OutputError, match=r"out: the folder was removed during the run; run the command again"):
+    with pytest.raises(
+        OutputError, match=r"out: the folder was removed during the run; run the command again"
+    ):
         study(tmp_path)(folder, reporter=Removing(folder))
     assert not folder.exists()
 
@@ -276,6 +293,7 @@ def test_results_of_another_program_are_not_continued(tmp_path, study, mark, log
         run(folder, reporter=Interrupting(1))
     found = json.loads((folder / mark).read_text())
     for change, words in (
+        ({"shard": 7}, "damaged, cannot be read as Shard"),
         ({"program": "other"}, "another version of the program"),
         ({"versions": found["versions"] | {"numpy": "1.0"}}, r"another version of numpy \(1.0, here "),
     ):

@@ -7,6 +7,7 @@ import re
 import shlex
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from small_site import SITE
@@ -19,6 +20,7 @@ from fem.case.validation import CaseError
 from fem.cli.batch import page_of
 from fem.hall.file import read_hall
 from fem.hall.places import INVALID, UNKNOWN, class_of, draw_places, plan_of
+from fem.hall.plan import HallItem
 from fem.hall.ranking import RUN_COLUMNS, HallRuns, weakest_first
 from fem.hall.result import HallResult
 from fem.hall.run import run_hall
@@ -168,14 +170,14 @@ def noted(runs, container, motion, outcome, ratio):
 
 
 def test_motions_that_destroy_a_corner_are_counted_by_themselves_and_are_worse_than_those_without_an_outcome():
-    runs = HallRuns(hall=None)
+    runs = HallRuns(hall=SimpleNamespace(item=lambda *at: HallItem(*at, {})))
     for motion, outcome in enumerate(["rock", "", "invalid", "", "invalid", ""]):
         noted(runs, 0, motion, outcome, 0.3)
     assert (runs.counts(0), runs.governing(0)) == ((0, 2, 3), 2)
 
 
 def test_of_what_stands_the_larger_rotation_is_weaker_and_what_does_not_rock_follows_the_static_rule():
-    runs, static = HallRuns(hall=None), {}
+    runs, static = HallRuns(hall=SimpleNamespace(item=lambda *at: HallItem(*at, {}))), {}
     for container, (outcome, ratio, use) in enumerate(
         [
             ("rest", 0.001, 0.8),
