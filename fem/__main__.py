@@ -22,7 +22,7 @@ from cyclopts import App, CycloptsError, Group, MissingArgumentError, UnusedCliT
 
 from fem.runtime.late_modules import load_late
 from fem.runtime.memory import shortage
-from fem.runtime.signals import INTERRUPTED, interruptions, raise_on_signal
+from fem.runtime.signals import INTERRUPTED, NO_ANSWER, interruptions, raise_on_signal
 from fem.runtime.threads import use_one_blas_thread
 
 BAD_INPUT, FAILED = 2, 3
@@ -122,7 +122,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     tokens = list(sys.argv[1:] if arguments is None else arguments)
     if tokens and tokens[0] not in COMMANDS and tokens[0] not in FLAGS:
         return _refuse(_unknown_command(tokens[0]))
-    if tokens and (short := shortage(computing=tokens[0] in set(COMMANDS) - READING)):
+    if tokens and (short := shortage(tokens[0] in set(COMMANDS) - READING, _jobs_of(tokens))):
         return _refuse(short, FAILED)
     try:
         result = build_app()(tokens, exit_on_error=False, print_error=False)
@@ -131,7 +131,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         command = f"{tokens[0]} " if tokens and tokens[0] in COMMANDS else ""
         return _refuse(f"{_in_words(error)}\nsee python -m fem {command}--help")
     except KeyboardInterrupt:
-        return _refuse("interrupted", INTERRUPTED)
+        return _interrupted(tokens)
     except MemoryError:
         return _refuse(
             "out of memory; fewer jobs (-j 1), larger elements or the model rigid need less, and --resume continues",
@@ -148,7 +148,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _refuse(f"{error.filename or 'input or output'}: {error.strerror or error}", code)
     except Exception as error:
         if interruptions() > before:
-            return _refuse("interrupted", INTERRUPTED)
+            return _interrupted(tokens)
         if type(error).__module__.partition(".")[0] not in OWN_PACKAGES:
             raise  # not the user's fault: show where
         return _refuse(str(error), getattr(error, "exit_code", BAD_INPUT))
@@ -173,6 +173,21 @@ def _in_words(error: CycloptsError) -> str:
         lambda found: f"{WORDS[found[2]]} is needed, not {found[1]}",
         str(error),
     )
+
+
+def _jobs_of(tokens: Sequence[str]) -> int | None:
+    """The cores that `-j` asks for; None where it does not."""
+    for token, following in zip(tokens, [*tokens[1:], ""], strict=True):
+        if (asked := re.fullmatch(r"(?:-j|--jobs)=?(\d*)", token)) and (asked[1] or following).isdigit():
+            return int(asked[1] or following)
+    return None
+
+
+def _interrupted(tokens: Sequence[str]) -> int:
+    """End a command that could not say itself how far it came."""
+    if "--json" in tokens:
+        print(NO_ANSWER, end="")
+    return _refuse("interrupted", INTERRUPTED)
 
 
 def _refuse(message: str, exit_code: int = BAD_INPUT) -> int:

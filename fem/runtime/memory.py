@@ -13,12 +13,17 @@ COMPUTING, READING = 700, 250
 OF_A_CORE = 150  #: of each thread that computes: a report takes 946 on two cores, and asks for ever with 800
 
 
-def shortage(computing: bool) -> str:
-    """What the limit on memory gives and the program needs, in words; empty where it is enough or none is set."""
+def shortage(computing: bool, jobs: int | None = None) -> str:
+    """What the limit on memory gives and the program needs, in words; empty where it is enough or none is set.
+
+    Args:
+        computing: whether the command computes.
+        jobs: cores that it is to use; None: all.
+    """
     if sys.platform == "win32":
         return ""
     limit, _ = resource.getrlimit(resource.RLIMIT_AS)
-    needed = COMPUTING + OF_A_CORE * cores() if computing else READING
+    needed = COMPUTING + OF_A_CORE * (jobs or cores()) if computing else READING
     if limit == resource.RLIM_INFINITY or limit >= needed << 20:
         return ""
     return f"memory is limited to {limit >> 20} MB, and this needs {needed} MB or more; raise the limit (ulimit -v)"

@@ -7,10 +7,12 @@ This module is imported first and loads no other of this program.
 """
 
 import _thread
+import math
 import os
 import signal
 import sys
 import threading
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import FrameType
@@ -20,6 +22,9 @@ if TYPE_CHECKING:
     from fem.runtime.progress import Reporter
 
 INTERRUPTED = 4  #: the exit code
+#: what `--json` prints of a command that was interrupted before it could say more
+NO_ANSWER = '{"state": "interrupted", "answer": null}\n'
+SAME_PRESS_S = 1.0  #: within which a further Ctrl-C belongs to the one before [s]
 AGAIN_S = 0.05  #: after which a lost signal is sent again [s]
 _raised: list[int] = []
 _requests: list[list[int]] = []  #: signals received by each `interruptible` under way
@@ -43,15 +48,23 @@ def raise_on_signal() -> None:
 
 @contextmanager
 def interruptible(reporter: "Reporter") -> Iterator[Callable[[], bool]]:
-    """Turn the first signal into a request to stop at the next safe point; a second Ctrl-C raises KeyboardInterrupt.
+    """Turn the first signal into a request to stop at the next safe point; a later Ctrl-C raises KeyboardInterrupt.
+
+    Whoever presses the keys twice in a hurry wants the stop, and what was found: that is one request.
 
     Yields:
         Whether a stop is requested: of this work, or of that which it is a part of.
     """
     received: list[int] = []
+    last = -math.inf
 
     def note(number: int, frame: FrameType | None) -> None:
+        nonlocal last
+        before, last = last, time.monotonic()
         if received and number == signal.SIGINT:
+            if last - before < SAME_PRESS_S:
+                return
+            reporter.warning("quitting now, in the middle of a step; what is in the files is kept")
             raise KeyboardInterrupt
         received.append(number)
         reporter.message("stopping after the current step; press Ctrl-C again to quit now")
@@ -98,6 +111,8 @@ def _replace_defaults(handler: Handler) -> None:
 
 
 def _exit(number: int, frame: FrameType | None) -> None:
+    if "--json" in sys.argv:
+        os.write(1, NO_ANSWER.encode())
     os.write(2, b"interrupted\n")
     os._exit(INTERRUPTED)
 

@@ -1,5 +1,6 @@
 """Ctrl-C and SIGTERM in the first moments of the process."""
 
+import json
 import os
 import signal
 import subprocess
@@ -35,6 +36,22 @@ command_line.program()
     assert outcome("-m", script) == (4, "interrupted\n")
 
 
+@pytest.mark.parametrize("moment", ["imported", "before it can say how far it came"])
+def test_an_interrupted_command_that_is_asked_for_json_gives_it(moment):
+    there = "sys.argv += ['run', '--json']\n"
+    kill = "os.kill(os.getpid(), signal.SIGINT)"
+    script = f"""
+from fem import __main__ as command_line
+command_line.build_app = lambda: lambda *_, **__: {kill}
+command_line.program()
+"""
+    program = f"import os, signal, sys\nsignal.signal(signal.SIGINT, signal.default_int_handler)\n{there}"
+    program += "sys.argv[0] = '-m'\nimport fem\n" + (kill if moment == "imported" else script)
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (4, "interrupted\n")
+    assert json.loads(done.stdout) == {"state": "interrupted", "answer": None}
+
+
 def test_a_signal_within_a_callback_from_c_is_not_lost():
     # ctypes drops what a callback raises; the compiler of the kernels calls back whenever it has made one.
     script = """
@@ -64,8 +81,30 @@ def test_a_signal_that_is_ignored_stays_ignored():
     assert outcome("a script", script) == (0, "")
 
 
-def test_the_first_signal_requests_a_stop_and_a_second_ctrl_c_insists():
-    reporter, before = SilentReporter(), signal.getsignal(signal.SIGINT)
+class Telling(SilentReporter):
+    """Keeps what it is told."""
+
+    def __init__(self):
+        self.told = []
+
+    def message(self, text):
+        self.told.append(text)
+
+    warning = message
+
+
+def test_ctrl_c_pressed_twice_in_a_hurry_is_one_request_to_stop():
+    reporter = Telling()
+    with interruptible(reporter) as stop:
+        for _ in range(3):
+            os.kill(os.getpid(), signal.SIGINT)
+        assert stop()
+    assert reporter.told == ["stopping after the current step; press Ctrl-C again to quit now"]
+
+
+def test_the_first_signal_requests_a_stop_and_a_second_ctrl_c_insists(monkeypatch):
+    monkeypatch.setattr("fem.runtime.signals.SAME_PRESS_S", 0.0)
+    reporter, before = Telling(), signal.getsignal(signal.SIGINT)
     for number in (signal.SIGTERM, signal.SIGINT):
         with interruptible(reporter) as stop:
             assert not stop()
@@ -76,6 +115,7 @@ def test_the_first_signal_requests_a_stop_and_a_second_ctrl_c_insists():
             with pytest.raises(KeyboardInterrupt):
                 os.kill(os.getpid(), signal.SIGINT)
                 signal.sigtimedwait([], 1.0)
+            assert reporter.told.pop().startswith("quitting now")
     assert not stop_requested()
     assert signal.getsignal(signal.SIGINT) is before
 
