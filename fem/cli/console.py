@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter, Token
 
 from fem.case.validation import CaseError
+from fem.results.errors import require_writable
 from fem.results.kinds import ResultKind
 from fem.runtime.progress import ScreenReporter
 
@@ -129,8 +130,14 @@ class StudyFlags:
     quiet: Quiet = False
 
     def folder(self, name: str) -> Path:
-        """Folder of the results: as given, else that of this name."""
-        return self.out if self.out is not None else Path("outputs") / name
+        """Folder of the results, which can be written: as given, else that of this name.
+
+        Raises:
+            OutputError: it cannot; motions may take long before it is opened.
+        """
+        folder = self.out if self.out is not None else Path("outputs") / name
+        require_writable(folder)
+        return folder
 
     @contextmanager
     def options(self) -> "Iterator[StudyOptions]":

@@ -5,7 +5,8 @@ from pathlib import Path
 from typing import Any
 
 from fem.cli.console import ELSEWHERE_OUT
-from fem.results.errors import writing_into
+from fem.results.disk import BYTES_BESIDE
+from fem.results.errors import require_writable, writing_into
 from fem.results.files import to_json, write_atomically
 
 FAILED = 3
@@ -13,6 +14,7 @@ FAILED = 3
 
 def compute_into(out: Path, name: str, compute: Callable[[], Any], pages: Any, *, as_json: bool) -> int:
     """Write NAME.json and NAME.html, print the document or the table; the exit code, 3 where a finding fails."""
+    require_writable(out, ELSEWHERE_OUT, BYTES_BESIDE)
     with writing_into(out, ELSEWHERE_OUT):
         out.mkdir(parents=True, exist_ok=True)
     result = compute()

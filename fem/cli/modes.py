@@ -14,7 +14,7 @@ from fem.figures.modes import modes_figure
 from fem.figures.style import house_style, svg_of
 from fem.model.container import discretise
 from fem.model.geometry import build_container
-from fem.results.errors import writing_into
+from fem.results.errors import require_writable, writing_into
 from fem.results.files import write_atomically
 from fem.solid.assembly import FiniteElements, assemble
 from fem.solid.modes import ElasticModes, elastic_mode_table, elastic_modes, write_modes
@@ -33,6 +33,8 @@ def modes(
 ) -> None:
     """Print elastic frequencies of the free container; the shapes go to modes.vtu and modes.svg."""
     loaded = load_case(case, overrides)
+    folder = out if out is not None else Path("outputs") / loaded.name / "modes"
+    require_writable(folder, ELSEWHERE_OUT)
     elements, free, modes_of = _free_bodies(loaded)
     available = min(body.unknowns for body in free) - RIGID_MODES
     if count is not None and not 1 <= count <= available:
@@ -43,7 +45,6 @@ def modes(
         drawn = modes_figure(
             points=elements.nodes, cells=elements.cells, box=elements.box, modes=shapes, name=loaded.name
         )
-    folder = out if out is not None else Path("outputs") / loaded.name / "modes"
     with writing_into(folder, ELSEWHERE_OUT):
         path = write_modes(elements, shapes, folder)
         figure = path.with_suffix(".svg")

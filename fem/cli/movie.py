@@ -10,7 +10,8 @@ from cyclopts import Parameter
 
 from fem.cli.console import ELSEWHERE_TO, Quiet, RunFolder
 from fem.render.opengl import require_rendering
-from fem.results.errors import writing_into
+from fem.results.disk import BYTES_BESIDE
+from fem.results.errors import require_writable, writing_into
 from fem.results.reader import open_run
 from fem.run.expected import say_expected
 from fem.runtime.progress import ScreenReporter
@@ -38,6 +39,7 @@ def movie(
     """Animate the frames of a run in real time; MP4 needs imageio-ffmpeg."""
     opened = open_run(run)
     _ = opened.fields  # raises where there are no frames to draw
+    require_writable(to.parent if to else run, ELSEWHERE_TO, BYTES_BESIDE)
     require_rendering()
     # Loads pyvista.
     film = importlib.import_module("fem.render.movie")

@@ -13,7 +13,7 @@ from fem.records.files import read_record
 from fem.records.processing import Baseline, Processing, baseline_change, processed
 from fem.records.record import Component
 from fem.render.opengl import require_rendering
-from fem.results.errors import writing_into
+from fem.results.errors import require_writable, writing_into
 from fem.results.files import write_atomically
 from fem.results.reader import open_run
 
@@ -76,6 +76,7 @@ def picture(
         raise CaseError(f"{run}: no such file or folder; give the folder of a run, or a motion file")
     opened = open_run(Path(run))
     _ = opened.fields  # raises where there are no frames to draw
+    require_writable(to.parent if to else Path(run), ELSEWHERE_TO)
     require_rendering()
     # Loads pyvista.
     pictures = importlib.import_module("fem.render.picture")

@@ -7,7 +7,8 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from fem.cli.console import ELSEWHERE_TO, Quiet, flag, print_to_pdf
-from fem.results.errors import FolderError, writing_into
+from fem.results.disk import BYTES_BESIDE
+from fem.results.errors import FolderError, require_writable, writing_into
 from fem.results.files import write_atomically
 from fem.runtime.progress import ScreenReporter
 
@@ -63,6 +64,7 @@ def report(
     if pdf and to is not None and to.suffix.lower() == ".pdf":
         to = to.with_suffix(".html")  # the PDF lies beside the page
     target = _target(to if to is not None else folder / PAGE)
+    require_writable(target.parent, ELSEWHERE_TO, BYTES_BESIDE)
     reporter = ScreenReporter(quiet=quiet)
     interrupts = importlib.import_module("fem.runtime.signals")
     pages = importlib.import_module("fem.report.run_page")

@@ -4,6 +4,7 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from tempfile import TemporaryFile
 
 OTHER_FOLDER = "choose another folder with --out DIR"
 
@@ -47,6 +48,28 @@ def writing_into(folder: Path, way_on: str) -> Iterator[None]:
         if isinstance(error, FileNotFoundError) and not existed:
             raise FolderError(f"{folder}: cannot be made ({error.strerror}); choose another place") from None
         raise OutputError(unwritable(folder, error, way_on)) from None
+
+
+def require_writable(folder: Path, elsewhere: str = OTHER_FOLDER, size: int = 1) -> None:
+    """Refuse a place for results before they are computed; nothing is left in it.
+
+    Args:
+        folder: of the results; the nearest folder on the way to it that exists is tried.
+        elsewhere: the way out.
+        size: to be written [bytes].
+
+    Raises:
+        OutputError: a read-only place, or a full disk.
+    """
+    place = next((one for one in (folder, *folder.absolute().parents) if one.exists()), folder)
+    if place.is_dir():  # what else it may be is said where it is used
+        try:
+            with TemporaryFile(dir=place) as file:
+                file.write(bytes(size))
+        except OSError as error:
+            raise OutputError(
+                f"{place}: cannot be written ({error.strerror or error}); {elsewhere}"
+            ) from None
 
 
 def unwritable(folder: Path, error: OSError, way_on: str) -> str:

@@ -182,7 +182,9 @@ def open_result_folder(
         earlier = find_result(path, kind, request, force=force)
         with writing_into(path, way_on or "--resume continues"):
             try:
-                yield ResultFolder(path=path, kind=kind, lock=lock, earlier=earlier, resume=resume and not force)
+                yield ResultFolder(
+                    path=path, kind=kind, lock=lock, earlier=earlier, resume=resume and not force
+                )
             except Exception:
                 lock.check()  # whatever fails in a folder that is gone, that is the reason
                 raise

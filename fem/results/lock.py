@@ -84,6 +84,9 @@ def locked_folder(folder: Path) -> Iterator[FolderLock]:
         except FileNotFoundError as error:
             raise FolderError(f"{folder}: cannot be made ({error.strerror}); {OTHER_FOLDER}") from None
         except OSError as error:
+            if folder in missing:
+                with contextlib.suppress(OSError):
+                    (folder / LOCK_NAME).unlink()
             raise OutputError(f"{folder}: cannot be written ({error.strerror}); {OTHER_FOLDER}") from None
         try:
             yield lock

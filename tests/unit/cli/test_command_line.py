@@ -4,6 +4,7 @@ import errno
 import json
 import os
 import re
+import resource
 import subprocess
 import sys
 import time
@@ -194,6 +195,8 @@ def test_too_little_memory_is_told_in_a_line(monkeypatch, capsys):
     [
         (500_000, "run rocking", 700 + 150 * cores()),
         (800_000, "report d", 700 + 150 * cores()),
+        (800_000, "sweep outcome_map -j 1", 850),
+        (800_000, "assess site --jobs=1", 850),
         (60_000, "list", 250),
     ],
 )
@@ -204,6 +207,39 @@ def test_a_limit_on_memory_that_is_too_low_is_told_at_once(kilobytes, command, n
         rf"memory is limited to \d+ MB, and this needs {needed} MB or more; raise the limit \(ulimit -v\)\n"
     )
     assert (code, out) == (3, "") and re.fullmatch(words, err)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="limits of POSIX")
+@pytest.mark.parametrize(
+    "command",
+    [
+        "report .",
+        "modes",
+        "verify --quick",
+        "validate",
+        "sweep outcome_map",
+        "ensemble fragility",
+        "assess site",
+        "size site --over container.boxes",
+        "batch hall.csv --case seed_box",
+        "response --from 1 --to 2",
+    ],
+)
+def test_a_place_that_cannot_be_written_is_refused_before_anything_is_computed(
+    tmp_path, monkeypatch, capsys, command
+):
+    (tmp_path / "hall.csv").write_text("name,boxes\na,1\n")
+    monkeypatch.chdir(tmp_path)
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (0, before[1]))
+    try:
+        code = command_line.main(command.split())
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    said = capsys.readouterr()
+    assert (code, said.out) == (3, "")
+    assert re.search(r"^\S+: cannot be written \(File too large\); .*--(out DIR|to FILE)\n\Z", said.err, re.M)
+    assert [path.name for path in tmp_path.iterdir()] == ["hall.csv"]
 
 
 def test_work_goes_on_when_nobody_reads_its_progress_any_more():
