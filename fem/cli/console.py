@@ -13,6 +13,7 @@ from fem.case.validation import CaseError
 from fem.results.errors import require_writable
 from fem.results.kinds import ResultKind
 from fem.runtime.progress import ScreenReporter
+from fem.runtime.signals import unheard
 
 if TYPE_CHECKING:
     from fem.batch.study import StudyOptions, StudyResult
@@ -204,6 +205,12 @@ STUDY = StudyFlags()
 SHARED = SharedFlags()
 
 
+def print_json(text: str) -> None:
+    """Print a document, whole or not at all."""
+    with unheard():
+        print(text.rstrip(), flush=True)
+
+
 def print_result(
     result: "StudyResult", kind: ResultKind, folder: Path, page: Iterable[str], *, as_json: bool
 ) -> int:
@@ -213,7 +220,7 @@ def print_result(
         page: the lines before the last, which is the answer or what is missing.
     """
     if as_json:
-        print((folder / kind.mark).read_text(encoding="utf-8"), end="")
+        print_json((folder / kind.mark).read_text(encoding="utf-8"))
     else:
         print("\n".join([*page, *filter(None, [result.no_answer_yet or result.answer])]))
     return 0 if result.shard is not None and result.shard.done else EXIT_CODES[result.status]

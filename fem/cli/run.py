@@ -72,7 +72,7 @@ def run(
     )
     stopped = solver.was_stopped(result, options)
     if as_json:
-        print(json.dumps(read_result(folder / "run.json"), indent=2))
+        console.print_json(json.dumps(read_result(folder / "run.json"), indent=2))
     else:
         brief = importlib.import_module("fem.assessment.summary").brief_summary
         whole = (folder / "summary.txt").read_text(encoding="utf-8")

@@ -10,7 +10,7 @@ from cyclopts import Parameter
 
 from fem.case.case import CaseError
 from fem.case.validation import did_you_mean
-from fem.cli.console import EXIT_CODES, Jobs, Quiet, flag
+from fem.cli.console import EXIT_CODES, Jobs, Quiet, flag, print_json
 from fem.results.files import to_json
 from fem.run.expected import say_expected
 from fem.runtime.progress import ScreenReporter
@@ -52,7 +52,7 @@ def study(
     folder = out if out is not None else Path("outputs") / f"study_{name}"
     document = _checked(folder, chosen, jobs=jobs, force=force, quiet=quiet)
     if as_json:
-        print(to_json(document).rstrip())
+        print_json(to_json(document))
     else:
         page = importlib.import_module("fem.evidence.paper.page")
         print("\n".join(page.lines_of(document)))

@@ -90,6 +90,13 @@ def ending_at_once() -> Iterator[None]:
 
 
 @contextmanager
+def unheard() -> Iterator[None]:
+    """Let neither signal cut off what is printed of finished work."""
+    with _handled_by(lambda number, frame: None):
+        yield
+
+
+@contextmanager
 def _handled_by(handler: Handler) -> Iterator[None]:
     earlier = {}
     for number in DEFAULTS:
