@@ -37,10 +37,12 @@ def margin_in_words(verdict: Verdict | None) -> str:
 
 def _without_links(verdict: Verdict, margin: Margin) -> str:
     """What the same container does without its stops, ties and neighbours."""
-    most, it = margin.without_links_tried_to, "without its stops and ties it"
+    most = margin.without_links_tried_to
+    forces = {"stops": verdict.stop_force_N, "ties": verdict.tie_force_N}
+    held = " and ".join(name for name, force in forces.items() if force is not None)
+    it = f"without its {held} it"
     if verdict.neighbours:
-        held = verdict.stop_force_N is not None or verdict.tie_force_N is not None
-        it = f"the container alone{', without stops and ties,' if held else ''}"
+        it = f"the container alone{f', without {held},' if held else ''}"
     if most is None:
         return ""
     if margin.factor_without_links is None:

@@ -43,6 +43,18 @@ LINK_FAULTS = (
         tests=(LINKS, "-k", "strap_takes"),
     ),
     Mutation(
+        name="ties to a wall that hold from the floor",
+        old='return (outward, 0.0) if link.to == "wall" else (0.0, -1.0)',
+        new="return 0.0, -1.0",
+        tests=(LINKS, "-k", "tie_to_a_wall"),
+    ),
+    Mutation(
+        name="the lever of a tie to a wall at rest",
+        old="(-ahead, -up) if tie.side == side else (ahead, up)",
+        new="(-ahead, -up) if tie.side == side else (ahead, 0.0 * up + tie.height_m)",
+        tests=(LINKS, "-k", "tie_to_a_wall"),
+    ),
+    Mutation(
         name="restitution of a dashpot that pulls",
         old="math.exp(-math.tan(angle) * (math.pi - 2.0 * angle))",
         new="math.exp(-math.tan(angle) * math.pi)",

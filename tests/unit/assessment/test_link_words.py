@@ -66,7 +66,7 @@ def test_a_neighbour_is_said_to_have_done_what_it_did():
 
 @pytest.mark.parametrize(
     ("force", "subject"),
-    [(None, "the container alone"), (2e5, "the container alone, without stops and ties,")],
+    [(None, "the container alone"), (2e5, "the container alone, without stops,")],
 )
 def test_beside_the_margin_of_a_row_stands_that_of_the_container_alone(force, subject):
     margin = Margin(factor=1.5, stands_up_to=1.4, least_tried=0.2, largest_tried=4.0, runs=9)

@@ -255,12 +255,12 @@ MARGIN = Margin(
         (
             {"factor_without_links": 2.0, "without_links_tried_to": 4.0},
             "rock",
-            "Stands; overturns first at 1.50 times this motion; without its stops and ties it overturns first at 2.00.",
+            "Stands; overturns first at 1.50 times this motion; without its stops it overturns first at 2.00.",
         ),
         (
             {"without_links_tried_to": 4.0},
             "rock",
-            "Stands; overturns first at 1.50 times this motion; without its stops and ties it stands up to 4.",
+            "Stands; overturns first at 1.50 times this motion; without its stops it stands up to 4.",
         ),
         (
             {"factor": None, "stands_up_to": None, "runs": 1},
@@ -281,7 +281,7 @@ MARGIN = Margin(
     ],
 )
 def test_the_sentence_says_what_was_tried(changes, outcome, words):
-    verdict = Verdict(outcome=outcome, margin=replace(MARGIN, **changes))
+    verdict = Verdict(outcome=outcome, margin=replace(MARGIN, **changes), stop_force_N=0.0)
     assert margin_in_words(verdict) == words
 
 

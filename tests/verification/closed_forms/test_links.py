@@ -275,11 +275,11 @@ OTHER = {"left": "right", "right": "left"}
 
 
 def test_the_mirrored_motion_hits_the_mirrored_links_alike():
-    right = run(with_links(SHAKEN, stop=KERBS, tie=(TIE,)))
+    ties = (TIE, {**TIE, "to": "wall", "stiffness_N_m": 1e5})
+    right = run(with_links(SHAKEN, stop=KERBS, tie=ties))
     mirrored = tuple({**one, "side": OTHER[one["side"]]} for one in KERBS)
-    left = run(
-        with_links(SHAKEN, stop=mirrored, tie=({**TIE, "from": "right"},)), {"motion.phase_rad": math.pi}
-    )
+    other = tuple({**one, "from": "right"} for one in ties)
+    left = run(with_links(SHAKEN, stop=mirrored, tie=other), {"motion.phase_rad": math.pi})
     assert right.model.run.links.hits.min() > 0
     early = right.history["time_s"] < 1.0
     assert left.history["rotation_rad"][early] == pytest.approx(
