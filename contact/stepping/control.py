@@ -114,12 +114,13 @@ def allowed_imbalance(run: RunState, step: float, dissipated: float) -> float:
     """Allowed energy error of the attempted step [J].
 
     It includes a share of the dissipation of this step and of the recent dissipation, so that the ringing after an
-    impact is resolved in proportion to the impact; crushing does not ring and is left out. A first touch switches a
-    dashpot on: the error there is of first order in the step, so it is compared with the energy that meets the floor.
+    impact is resolved in proportion to the impact; crushing does not ring and is left out. A step that gains energy by
+    damping is in error, and excuses nothing. A first touch switches a dashpot on: the error there is of first order in
+    the step, so it is compared with the energy that meets the floor.
     """
     control, old, new = run.problem.control, run.old, run.attempt.new
     allowed = control.reference_energy * (control.energy_floor + control.energy_rate * step)
-    allowed += control.energy_share * abs(dissipated)
+    allowed += control.energy_share * max(dissipated, 0.0)
     allowed += control.recent_share * run.clock[0].recent_dissipation * step / control.recent_time
     closing, closing_beside = False, False
     for i in range(new.point.shape[0]):
