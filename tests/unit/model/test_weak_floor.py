@@ -175,6 +175,8 @@ def block(times):
         (3.0, "sine", 1.0, 3.4),
         (3.0, "sine", 1.0, 3.6),
         (3.0, "sine", 1.0, 3.8),
+        (3.9, "sine", 1.0, 3.4),
+        (3.9, "sine", 1.0, 3.8),
     ],
 )
 def test_it_rocks_as_an_event_driven_block_of_that_width(times, shape, seconds, peak):
