@@ -9,6 +9,8 @@ uplift, is met, and the vertical one is more than that of the source: 1.09 and 1
 less there.
 """
 
+import math
+
 import numpy as np
 
 from contact.interface.support import Support
@@ -40,15 +42,18 @@ def edge_factors(case: Case, support: Support, x: FloatArray) -> FloatArray:
     wanted = rocking_ratio(case)
     if wanted is None:
         return np.ones(x.size)
-    ratio, half = min(wanted, LARGEST), 0.5 * float(x[-1] - x[0])
-    squares, lengths = ((x - x[0]) / half - 1.0) ** 2, support.length
-    outside = (
-        squares >= 0.25 + 0.25 * ratio
-    )  # farther out than the radius wanted, so that the inside pushes, too
-    zones = (~outside, outside)
-    sums = np.array([[(lengths * power)[zone].sum() for zone in zones] for power in (squares**0, squares)])
+    ratio, half, lengths = min(wanted, LARGEST), 0.5 * float(x[-1] - x[0]), support.length
+    # from farther out than the radius wanted, so that the inside pushes, too; a point may have a part of it, so that
+    # its place does not depend on where the nodes are
+    zone = half * (1.0 - math.sqrt(0.25 + 0.25 * ratio))
+    ends = np.cumsum(lengths)
+    left, right = (np.clip(zone - before, 0.0, lengths) for before in (ends - lengths, ends[-1] - ends))
+    outside = (left + right) / lengths
+    squares = ((x - x[0]) / half - 1.0) ** 2
+    parts = lengths * np.array([1.0 - outside, outside])
+    sums = np.array([parts.sum(axis=1), parts @ squares])
     inside, edge = np.linalg.solve(sums, lengths.sum() * np.array([1.0, ratio / 3.0]))
     # of edges that would be crushed at rest, only as much as they carry
     bearable = MOST_AT_REST * 2.0 * slab_of(case, case.mass).cap / (case.mass * case.gravity_m_s2)
     elastic = float(np.clip((bearable - 1.0) / (edge - 1.0), 0.0, 1.0))
-    return 1.0 + elastic * (wanted / ratio * np.where(outside, edge, inside) - 1.0)
+    return 1.0 + elastic * (wanted / ratio * (inside + (edge - inside) * outside) - 1.0)

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from contact.interface.support import choose_support
 from fem.case.case import load_case
 from fem.model.edge_springs import edge_factors
 from fem.model.half_space import HalfSpace
@@ -63,3 +64,15 @@ def test_other_bases_share_their_springs_as_before(values):
     model = build_model(load_case("rocking", ["solver.model=rigid", *values]))
     x = model.container.elements.nodes[model.container.nodes, 0]
     assert (edge_factors(model.case, model.container.support, x) == 1.0).all()
+
+
+def test_the_edge_springs_have_one_place_whatever_the_mesh():
+    # another place of the force is another stress: it goes into the wall, or beside it into the bottom plate
+    case, places = load_case("rocking", ["support.kind=flat"]), []
+    for elements in (24, 32, 48, 64, 96, 128, 500):
+        x = np.linspace(-0.55, 0.55, 2 * elements + 1)
+        support = choose_support("flat", x, depth=1.1, order=2)
+        springs = support.length * edge_factors(case, support, x)
+        outer = x > 0.45
+        places.append(springs[outer] @ x[outer] / springs[outer].sum())
+    assert places == pytest.approx([places[-1]] * len(places), rel=0.005)
