@@ -11,10 +11,10 @@ from contact.interface.penalty import damping_ratio_of
 from contact.interface.workspace import Contact
 from contact.stepping.body import State
 from contact.stepping.links import APART, make_lines, place_links
-from fem.case.case import Case, CaseError
-from fem.case.links import StopTable, TieTable, holder_of
+from fem.case.case import Case
+from fem.case.links import StopTable, holder_of
 from fem.case.neighbours import USUAL_DAMPING, StruckTable, top_of
-from fem.model.tied_capacity import box_at, side_of
+from fem.model.tied_capacity import box_at, direction_of, overlapped, side_of
 from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid.sides import nodes_at, shapes_at
 
@@ -73,14 +73,6 @@ def heights_of_links(case: Case, nodes: FloatArray) -> list[float]:
     if case.solver.model != "full" or case.container.is_loose:
         return [one.height_m for one in case.links]
     return [float(z) for z in nodes[len(nodes) - len(case.links) :, 1]]
-
-
-def direction_of(link: StopTable | TieTable) -> tuple[float, float]:
-    """Direction in which the point of a link may go: away from a stop, to where a tie is held."""
-    outward = -1.0 if link.side == "left" else 1.0
-    if isinstance(link, StopTable):
-        return -outward, 0.0
-    return (outward, 0.0) if link.to == "wall" else (0.0, -1.0)
 
 
 def dashpot_of(struck: StruckTable, mass: float) -> float:
@@ -150,11 +142,6 @@ def begin_links(case: Case, body: Any, state: State) -> None:
         return
     place_links(line, state.point)
     gaps = state.point[-len(line) :, 1]
-    for number, (link, gap) in enumerate(zip(case.links, gaps, strict=True), 1):
+    for number, gap in enumerate(gaps, 1):
         if gap < -OVERLAP:
-            own = number if isinstance(link, StopTable) else number - len(case.stop)
-            name, key = ("stop", "gap_m") if isinstance(link, StopTable) else ("tie", "slack_m")
-            raise CaseError(
-                f"[{name}] {name} {own}: {key} = {link.slack:g} m is overlapped by {-gap:.3g} m at the start, as the "
-                "container stands in its initial rotation; take a wider one, or another [initial]"
-            )
+            raise overlapped(case, number, -gap)

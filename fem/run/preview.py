@@ -15,7 +15,7 @@ from fem.model.geometry import node_count
 from fem.model.restitution import contact_restitution, require_loss
 from fem.model.static_checks import StaticChecks, static_checks_of
 from fem.model.support import build_support, normal_penalty
-from fem.model.tied_capacity import TiedCapacity, tied_capacities
+from fem.model.tied_capacity import TiedCapacity, require_room, tied_capacities
 from fem.model.validity import require_bearing, require_stiff_contact
 from fem.results.run_result import FloorNumbers, MotionResult
 from fem.run.size import frames_of, required_disk, samples_of
@@ -77,6 +77,7 @@ class Preview:
         require_stiff_contact(case, mesh, stiffness)
         require_loss(case, self.static)
         require_bearing(case, mesh)
+        require_room(case, mesh)
         return {
             "model": solver.model,
             "scheme": solver.scheme,
