@@ -88,7 +88,7 @@ def read_shards(place: ResultFolder, request: str, folders: Sequence[Path]) -> l
         mark = read_result(folder / place.kind.mark, place.kind)
         shard = Shard.from_json(mark["shard"]) if isinstance(mark.get("shard"), dict) else None
         if mark[place.kind.request] != request or shard is None:
-            other = f"of another {place.kind.asked}" if shard else f"of no shard of a {place.kind.name}"
+            other = f"of another {place.kind.asked}" if shard else f"of no shard of {place.kind.article} {place.kind.name}"
             raise FolderError(f"--merge {folder}: it holds the results {other}")
         ResultFolder(
             path=folder, kind=place.kind, lock=place.lock, earlier=mark, resume=True
@@ -122,8 +122,8 @@ def join_logs(place: Path, kind: ResultKind, folders: Sequence[Path]) -> None:
     for name in kind.logs:
         lines: dict[str, None] = {}
         for path in (folder / name for folder in (place, *folders)):
-            text = path.read_text(encoding="utf-8") if path.is_file() else ""
-            whole = text[: text.rfind("\n") + 1].splitlines()
+            text = path.read_text(encoding="utf-8", errors="replace") if path.is_file() else ""
+            whole = text.split("\n")[:-1]
             if whole and lines and whole[0] != next(iter(lines)):
                 raise FolderError(f"{path}: damaged, its columns are not those of the other shards")
             lines |= dict.fromkeys(whole)

@@ -356,15 +356,20 @@ def test_later_stages_are_shared_by_shards_of_a_merge(tmp_path, whole):
         assert files_of(tmp_path / name) == files_of(whole(sweep))
 
 
-def test_shards_of_something_else_are_not_merged(tmp_path):
+def test_shards_of_something_else_and_damaged_ones_are_not_merged(tmp_path, whole):
     run = hall(tmp_path)
     run(tmp_path / "one", shard=Shard(1, 1))
     hall(tmp_path, other=True)(tmp_path / "other", shard=Shard(1, 1))
     run(tmp_path / "half", shard=Shard(1, 2))
+    shutil.copytree(whole(hall), tmp_path / "whole")
+    run(tmp_path / "binary", shard=Shard(2, 2))
+    (tmp_path / "binary" / "runs.csv").write_bytes(bytes(range(256)))
     for folders, words in (
         (["other"], "results of another hall"),
         (["one", "half"], "shards of 1 and of 2"),
         (["nowhere"], "cannot be read"),
+        (["whole"], "no shard of a hall"),
+        (["half", "binary"], "runs.csv: damaged, its columns are not those"),
     ):
         with pytest.raises(FolderError, match=words):
             run(tmp_path / "merged", merge=[tmp_path / name for name in folders])
