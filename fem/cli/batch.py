@@ -98,21 +98,12 @@ def page_of(result: "HallResult", folder: Path) -> Iterator[str]:
         yield f"  kept       {', '.join(result.kept)}"
     for outcome, count in result.outcomes.items():
         yield f"  {outcome:13} {count:>7}"
-    bad = [
-        (f"row {row['row']} {row['name']}", row["reason"])
-        for row in result.table
-        if row["status"] == "refused"
-    ]
-    if bad:
+    if bad := [(f"row {row['row']} {row['name']}", row["reason"]) for row in result.not_computed]:
         yield f"  refused    {len(bad)} of {result.rows} rows"
         yield from table_lines(bad, "hall.csv")
-    if result.state == "finished":
-        ranked = sorted(
-            (row for row in result.table if row["rank"]), key=lambda row: (row["rank"], row["row"])
-        )
-        if result.checked:
-            yield f"  sure and margin of the weakest {result.checked}"
-        yield from table_lines([(row["name"], _row_in_words(row)) for row in ranked[:10]])
+    if result.checked and result.state == "finished":
+        yield f"  sure and margin of the weakest {result.checked}"
+    yield from table_lines([(row["name"], _row_in_words(row)) for row in result.ranked[:10]])
     written = ": hall.csv, hall.json, report.html" if result.state == "finished" else ""
     yield f"  files      {folder}{written}"
 

@@ -1,7 +1,7 @@
 """The page of a hall: what the containers did, the weakest first, by tag, and the command of each."""
 
 import shlex
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -12,7 +12,8 @@ from fem.batch.study import read_study
 from fem.case.case import Case, load_case
 from fem.case.unknown_inputs import WORDS
 from fem.hall.places import PICTURE
-from fem.hall.result import REFUSED, HallResult, TagCount
+from fem.hall.result import HallResult, TagCount
+from fem.hall.table import NO_ANSWER
 from fem.html import sections as html
 from fem.html.page import Signature
 from fem.html.units import ABSENT, number
@@ -32,6 +33,10 @@ MARGIN = (
 AT_SITE = (
     "By the rule of each page, to which the answers lead: rotation and slip that count, and as margin the least of the "
     "factors tried on the motions at which the rule fails. The outcome is that of the run that governs."
+)
+OF_SEVERAL = (
+    "Of several motions the worst governs: one that overturns the container, else one that destroys a corner, else the "
+    "one of the largest rotation. The margin under another motion may be less."
 )
 A_ROW = Mapping[str, Any]
 
@@ -53,22 +58,22 @@ def hall_report(
     """
     info = result or read_study(folder, HALL, HallResult)
     case = load_case(str(folder / "base.toml"), allow_outside=True)
-    ranked = sorted((row for row in info.table if row["rank"]), key=lambda row: (row["rank"], row["row"]))
-    refused = [row for row in info.table if row["status"] == REFUSED]
+    ranked, refused = info.ranked, info.not_computed
+    shown = weakest_table(ranked, BRIEFLY if brief else html.MOST_ROWS, linked=not brief)
     sections = [
         found_section(info),
         html.section("In plan", "plan", *studies.drawings(folder, [PICTURE], "batch")),
         html.section("By tag", "tags", *([tags_table(info)] if info.tags else [])),
-        html.section(
-            "The weakest first",
-            "weakest",
-            weakest_table(ranked, BRIEFLY if brief else html.MOST_ROWS, linked=not brief),
-            html.Note(AT_SITE if info.site else MARGIN),
-        ),
+        html.section("The weakest first", "weakest", shown, html.Note(AT_SITE if info.site else MARGIN)),
         html.section("Refused rows", "refused", *([refused_table(refused)] if refused else [])),
     ]
     if not brief:
-        sections += full_sections(info, ranked, folder, case)
+        sections += [
+            start_section(info, case),
+            html.section("One container by itself", "commands", commands_table(ranked)),
+            limits_section(case),
+            repeat_section(info, folder),
+        ]
     return studies.study_html(
         "a hall",
         info=info,
@@ -81,36 +86,33 @@ def hall_report(
     )
 
 
-def full_sections(
-    info: HallResult, ranked: list[dict[str, Any]], folder: Path, case: Case
-) -> list[html.PageSection]:
-    """What the rows start from, the commands, the assumptions, and how to repeat it."""
+def start_section(info: HallResult, case: Case) -> html.PageSection:
+    """The base case, and the motions of all containers."""
     base_case = html.Pairs(case_rows(case), caption="Base case, where a row changes nothing", look="asked")
     motions = html.Group("", [html.Heading("Motions of every container"), html.Bullets(info.motions)])
-    return [
-        html.section(
-            "What the rows start from", "asked", html.columns(base_case, *([motions] if info.motions else []))
+    both = html.columns(base_case, *([motions] if info.motions else []))
+    return html.section("What the rows start from", "asked", both)
+
+
+def repeat_section(info: HallResult, folder: Path) -> html.PageSection:
+    """From what the hall was computed, and how to compute it again."""
+    return studies.repeat_section(
+        [("hall", f"{info.hall}, {info.status}, model {info.model}"), ("hash", info.asked)],
+        info,
+        studies.Again(
+            words="With the two files of this folder, and the motions or the site:",
+            command=again(info),
+            files=[("base.toml", studies.text_of(folder / "base.toml"))],
         ),
-        html.section("One container by itself", "commands", commands_table(ranked)),
-        limits_section(case),
-        studies.repeat_section(
-            [("hall", f"{info.hall}, {info.status}, model {info.model}"), ("hash", info.asked)],
-            info,
-            studies.Again(
-                words="With the two files of this folder, and the motions or the site:",
-                command=again(info),
-                files=[("base.toml", studies.text_of(folder / "base.toml"))],
-            ),
-        ),
-    ]
+    )
 
 
 def again(info: HallResult) -> str:
     """The command that computes the hall."""
     words = ["python", "-m", "fem", "batch", "list.csv", "--case", "base.toml"]
-    motions = ["--motion", *info.motions] if info.motions else ["--site", info.site] if info.site else []
-    words += [*motions, *(["--margins", info.checks] * (info.checks != "weakest"))]
-    return shlex.join([*words, *(["--allow-outside"] if info.allow_outside else [])])
+    words += ["--motion", *info.motions] if info.motions else ["--site", info.site] if info.site else []
+    words += ["--margins", info.checks] * (info.checks != "weakest")
+    return shlex.join([*words, *["--allow-outside"] * bool(info.allow_outside)])
 
 
 def found_section(info: HallResult) -> html.PageSection:
@@ -125,62 +127,62 @@ def found_section(info: HallResult) -> html.PageSection:
     elif not info.site and info.state == "finished":
         count += " No run was repeated, so sureness and margins are not known."
     outcomes = ", ".join(f"{word}: {number}" for word, number in info.outcomes.items())
-    note = "Of several motions the worst governs: one that overturns the container, else one that destroys a corner, "
-    note += "else the one of the largest rotation. The margin under another motion may be less."
     return studies.answer_section(
         info,
         info.answer,
         count,
         *([f"{outcomes[0].upper()}{outcomes[1:]}."] if outcomes else []),
-        note=note if under else "Each container by itself, without neighbours.",
+        note=OF_SEVERAL if under else "Each container by itself, without neighbours.",
     )
 
 
 def tags_table(info: HallResult) -> html.Table:
     """What the containers of each tag did."""
+
+    def count(word: str, tag: TagCount) -> str:
+        return str(tag.counts.get(word, ""))
+
+    words = dict.fromkeys(word for tag in info.tags for word in sorted(tag.counts))
     columns: list[html.Column[TagCount]] = [
         html.Column("tag", lambda tag: tag.tag or ABSENT),
         html.Column("containers", lambda tag: str(tag.containers), html.NUMBER),
-        *(
-            html.Column(word, partial(_count, word), html.NUMBER)
-            for word in dict.fromkeys(word for tag in info.tags for word in sorted(tag.counts))
-        ),
+        *(html.Column(word, partial(count, word), html.NUMBER) for word in words),
         html.Column("least margin", lambda tag: number(tag.margin, figures=3), html.NUMBER),
     ]
     return html.table_of("tags", columns, info.tags, file="hall.csv")
 
 
-def weakest_table(rows: list[dict[str, Any]], most: int, *, linked: bool) -> html.Table:
+def weakest_table(rows: Sequence[A_ROW], most: int, *, linked: bool) -> html.Table:
     """A row a container, the weakest first; its name leads to its command."""
+
+    def column(head: str, key: str, empty: object = None, look: str = "") -> html.Column[A_ROW]:
+        """A column of a field, which is left out where it is empty in every row."""
+        return html.Column(
+            head, lambda row: "" if row[key] in (None, empty) else str(row[key]), look, optional=True
+        )
 
     def figure(row: A_ROW, name: str) -> Any:
         fallen = name == TURNED and row["outcome"] == Outcome.OVERTURNED  # how far it fell says nothing
         return None if fallen else row[name]
 
+    def name(row: A_ROW) -> html.Cell:
+        return html.Cell(html.link(row["name"], f"row-{row['row']}") if linked else row["name"])
+
     columns: list[html.Column[A_ROW]] = [
-        html.Column(
-            "container",
-            lambda row: html.Cell(html.link(row["name"], f"row-{row['row']}") if linked else row["name"]),
-        ),
-        html.Column("line", lambda row: str(row["line"]), html.NUMBER),
-        html.Column(
-            "count", lambda row: "" if row["count"] == 1 else str(row["count"]), html.NUMBER, optional=True
-        ),
-        html.Column("tag", lambda row: row["tag"], optional=True),
+        html.Column("container", name),
+        column("line", "line", look=html.NUMBER),
+        column("count", "count", 1, html.NUMBER),
+        column("tag", "tag"),
         html.Column("answer", _answer, optional=True),
-        html.Column(
-            "outcome", lambda row: row["outcome"] or (f"none: {row['reason']}" if row["reason"] else ABSENT)
-        ),
+        html.Column("outcome", _outcome),
         html.Column("margin", margin_words, html.NUMBER),
-        html.Column("sure", lambda row: row["sure"] or "", optional=True),
+        column("sure", "sure"),
         html.Column("decided by", _deciding, optional=True),
         *html.figure_columns(figures_of(Place.KEY), value=figure),
         html.Column("utilisation", _utilisation, html.NUMBER, optional=True),
-        html.Column("motion", lambda row: row["motion"] or "", optional=True),
-        html.Column("runs overturned", _share, html.NUMBER, optional=True),
-        html.Column(
-            "runs not valid", lambda row: str(row["motions_invalid"] or ""), html.NUMBER, optional=True
-        ),
+        column("motion", "motion"),
+        column("runs overturned", "motions_overturned", look=html.NUMBER),
+        column("runs not valid", "motions_invalid", 0, html.NUMBER),
     ]
     return html.table_of(
         "containers",
@@ -194,36 +196,28 @@ def weakest_table(rows: list[dict[str, Any]], most: int, *, linked: bool) -> htm
 
 def margin_words(row: A_ROW) -> str:
     """A margin with its range: "1.8 (1.5 to 2.1)", "1.8 (from 1.5)" where not all overturn, "> 4"; empty without."""
-    margin, low, high, tried = (
-        row[name] for name in ("margin", "margin_low", "margin_high", "margin_tried_to")
-    )
+    margin, low, high = row["margin"], row["margin_low"], row["margin_high"]
     if margin is None:
+        tried = row["margin_tried_to"]
         return "" if tried is None else f"> {number(tried, figures=3)}"
+    words = number(margin, figures=3)
     if low is None:
-        return number(margin, figures=3)
-    reach = (
-        f"from {number(low, figures=2)}"
-        if high is None
-        else f"{number(low, figures=2)} to {number(high, figures=2)}"
-    )
-    return f"{number(margin, figures=3)} ({reach})"
+        return words
+    least = number(low, figures=2)
+    return f"{words} (from {least})" if high is None else f"{words} ({least} to {number(high, figures=2)})"
 
 
-def refused_table(rows: list[dict[str, Any]]) -> html.Table:
+def refused_table(rows: Sequence[A_ROW]) -> html.Table:
     """The rows that were not computed, and why."""
-    columns = html.in_order("container", "line", "reason")
-    return html.table_of(
-        "refused rows", columns, ([row["name"], str(row["line"]), row["reason"]] for row in rows)
-    )
+    texts = ([row["name"], str(row["line"]), row["reason"]] for row in rows)
+    return html.table_of("refused rows", html.in_order("container", "line", "reason"), texts)
 
 
-def commands_table(rows: list[dict[str, Any]]) -> html.Table:
+def commands_table(rows: Sequence[A_ROW]) -> html.Table:
     """The command that computes each container by itself, under its governing motion."""
+    target = Markup('<span id="row-{}">{}</span>')
     columns: list[html.Column[A_ROW]] = [
-        html.Column(
-            "container",
-            lambda row: html.Cell(Markup('<span id="row-{}">{}</span>').format(row["row"], row["name"])),
-        ),
+        html.Column("container", lambda row: html.Cell(target.format(row["row"], row["name"]))),
         html.Column("command", lambda row: html.Cell(html.code(row["command"]))),
     ]
     return html.table_of("commands", columns, rows, file="hall.json")
@@ -235,20 +229,15 @@ def _deciding(row: A_ROW) -> str:
     return ", ".join(named[:MOST_INPUTS]) + (f" and {more} more" if more > 0 else "")
 
 
-def _count(word: str, tag: TagCount) -> str:
-    return str(tag.counts.get(word, ""))
+def _outcome(row: A_ROW) -> str:
+    return row["outcome"] or (f"none: {row['reason']}" if row["reason"] else ABSENT)
 
 
 def _answer(row: A_ROW) -> html.Cell:
-    words = row["answer"] or ("no answer" if row["reasons"] else "")
-    linked = Markup('<a href="{}">{}</a>').format(row["page"], words) if row["page"] else words
-    return html.Cell(linked)
+    words = row["answer"] or (NO_ANSWER if row["reasons"] else "")
+    return html.Cell(Markup('<a href="{}">{}</a>').format(row["page"], words) if row["page"] else words)
 
 
 def _utilisation(row: A_ROW) -> str:
     use = row["utilisation_overturning"]
     return "" if use is None else number(use, figures=3)
-
-
-def _share(row: A_ROW) -> str:
-    return "" if row["motions_overturned"] is None else str(row["motions_overturned"])

@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from pathlib import Path
 from typing import Any, NamedTuple
 
 from fem.batch.axes import MOTION_FILE, VERTICAL_FILE, Axis, AxisError, read_motion_files
@@ -22,12 +21,11 @@ from fem.case.validation import CaseError
 from fem.hall.file import HallFile, HallRow
 from fem.model.geometry import build_container
 from fem.model.motion import build_motions
-from fem.run.expected import expected_s
-from fem.runtime.progress import clock_time
+from fem.run.expected import expected_s, expected_words, say_expected
 
 MOST_RUNS = 200_000  #: unless it is forced
-#: processor time of checking a row [s]
-OF_A_ROW = 3e-3
+MOST_NAMED = 20  #: bad rows in a refusal
+OF_A_ROW = 3e-3  #: processor time of checking a row [s]
 
 
 class HallItem(NamedTuple):
@@ -43,7 +41,9 @@ class HallCases:
     """Makes the case of a run; picklable."""
 
     base: Case
-    motions: tuple[Mapping[str, Any], ...]  #: keys that set each; one without keys: that of the base case
+    motions: Sequence[Mapping[str, Any]] = (
+        {},
+    )  #: keys that set each; one without keys: that of the base case
 
     def __call__(self, item: HallItem) -> Case:
         """The case of a run.
@@ -62,57 +62,11 @@ class HallCases:
 class Inventory:
     """The rows of a list, checked."""
 
-    reasons: tuple[str, ...]  #: why each is refused; empty where it is not
-    of_row: tuple[int | None, ...]  #: the container of each
+    file: HallFile
+    base: Case  #: that the rows change
+    rows: tuple[HallRow, ...]  #: each with its container, or why it is refused
     containers: tuple[Mapping[str, Any], ...]  #: values of the keys that each sets; no two alike
     hashes: tuple[str, ...]  #: of these
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Hall:
-    """A list of containers with the case that they start from, and the motions that they undergo."""
-
-    file: HallFile
-    base: Case
-    motions: tuple[FloorMotionPair, ...]
-    cases: HallCases
-    inventory: Inventory
-    named: tuple[str, ...] = ()  #: motions as they were named on the command line
-
-    @property
-    def containers(self) -> tuple[Mapping[str, Any], ...]:
-        """Values of the keys that each container sets."""
-        return self.inventory.containers
-
-    def items(self) -> list[HallItem]:
-        """All runs; those of a container follow one another."""
-        return [
-            HallItem(number, motion, values)
-            for number, values in enumerate(self.containers)
-            for motion in range(len(self.cases.motions))
-        ]
-
-    def item(self, container: int, motion: int) -> HallItem:
-        """One run."""
-        return HallItem(container, motion, self.containers[container])
-
-    def model_of(self, item: HallItem) -> str:
-        """The model of a run."""
-        return str(item.values.get("solver.model", self.base.solver.model))
-
-    def command(self, row: HallRow, motion: int) -> str:
-        """The command that computes a row under a motion by itself."""
-        words = ["python", "-m", "fem", "run", self.base_place]
-        words += ["--allow-outside"] * self.base.origin_with({}).allow_outside
-        if self.named:
-            words += ["--motion", self.named[motion].partition(",")[0].strip()]
-        # of a pair its vertical file; of a motion alone among pairs that it has none
-        set_by_motion = {k: v for k, v in self.cases.motions[motion].items() if k != MOTION_FILE}
-        for key, value in set_by_motion.items():
-            words += ["--set", f"{key}={value}"]
-        for key, value in row.values.items():
-            words += ["--set", f"{key}={value if isinstance(value, str) else toml_value(value)}"]
-        return shlex.join(words)
 
     @property
     def base_place(self) -> str:
@@ -120,14 +74,46 @@ class Hall:
         return self.base.origin_with({}).place
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Hall:
+    """A list of containers with the motions that they undergo."""
+
+    inventory: Inventory
+    motions: tuple[FloorMotionPair, ...]
+    cases: HallCases
+    named: tuple[str, ...]  #: motions as they were named on the command line
+
+    def items(self) -> list[HallItem]:
+        """All runs; those of a container follow one another."""
+        return [
+            self.item(number, motion)
+            for number in range(len(self.inventory.containers))
+            for motion in range(len(self.cases.motions))
+        ]
+
+    def item(self, container: int, motion: int) -> HallItem:
+        """One run."""
+        return HallItem(container, motion, self.inventory.containers[container])
+
+    def model_of(self, item: HallItem) -> str:
+        """The model of a run."""
+        return str(item.values.get("solver.model", self.cases.base.solver.model))
+
+    def command(self, row: HallRow, motion: int) -> str:
+        """The command that computes a row under a motion by itself."""
+        words = ["python", "-m", "fem", "run", self.inventory.base_place]
+        words += ["--allow-outside"] * self.inventory.base.origin_with({}).allow_outside
+        if self.named:
+            words += ["--motion", self.named[motion].partition(",")[0].strip()]
+        # of a pair its vertical file; of a motion alone among pairs that it has none
+        set_by_motion = {k: v for k, v in self.cases.motions[motion].items() if k != MOTION_FILE}
+        for key, value in {**set_by_motion, **row.values}.items():
+            words += ["--set", f"{key}={value if isinstance(value, str) else toml_value(value)}"]
+        return shlex.join(words)
+
+
 def plan_hall(
-    file: HallFile,
-    base: Case,
-    motions: Sequence[str],
-    runner: Runner,
-    *,
-    strict: bool = False,
-    force: bool = False,
+    file: HallFile, base: Case, motions: tuple[str, ...], runner: Runner, *, strict: bool, force: bool
 ) -> Hall:
     """Check every row before any is computed.
 
@@ -142,52 +128,44 @@ def plan_hall(
     Raises:
         CaseError: too many runs, motions that cannot be used, no good row; with `strict` any bad row.
     """
-    check_size(file, base, max(len(motions), 1), runner.jobs, force=force, say=runner.reporter.message)
-    named = [key for key in file.keys.values() if key in (MOTION_FILE, VERTICAL_FILE)]
+    _say_expected(file, base, max(len(motions), 1), runner, force=force)
+    named = [key for key in file.keys if key in (MOTION_FILE, VERTICAL_FILE)]
     if motions and named:
         raise CaseError(f"{file.name}: column {named[0]!r} and --motion both name the motion; use one")
     pairs: tuple[FloorMotionPair, ...] = ()
-    cases = HallCases(base=base, motions=({},))
+    cases = HallCases(base=base)
     if motions:
         origin = replace(base.origin_with({}), trusted=frozenset(FILE_KEYS), allow_outside=True)
         base_of_set = base.from_origin(origin)
-        pairs = read_motion_set(base_of_set, [_axis(base.folder, motions)], runner)
-        cases = HallCases(base=base_of_set, motions=tuple(pair.keys for pair in pairs))
-    return Hall(
-        file=file,
-        base=base,
-        motions=pairs,
-        cases=cases,
-        inventory=take_inventory(
-            file, partial(_hash_of, cases, outside=bool(motions)), base.origin_with({}).place, strict=strict
-        ),
-        named=tuple(motions),
-    )
+        pairs = read_motion_set(base_of_set, [_axis(base, motions)], runner)
+        cases = HallCases(base=base_of_set, motions=[pair.keys for pair in pairs])
+    look = partial(_hash_of, cases, outside=bool(motions))
+    inventory = take_inventory(file, base, look, strict=strict)
+    return Hall(inventory=inventory, motions=pairs, cases=cases, named=motions)
 
 
-def check_size(file: HallFile, base: Case, motions: int, jobs: int, *, force: bool, say: Any) -> None:
-    """Announce how long a long list takes, before its rows are read; refuse more than `MOST_RUNS` runs.
+def _say_expected(file: HallFile, base: Case, motions: int, runner: Runner, *, force: bool) -> None:
+    """Say how long a long list takes, before its rows are read; refuse more than `MOST_RUNS` runs.
 
     Raises:
         CaseError: with the number, the time and the way out.
     """
-    rows, each = file.count, 1.0
-    runs = rows * motions
+    rows, each, jobs = file.count, 1.0, runner.jobs
     with suppress(ValueError):
         each = expected_s(base)
-    seconds = float(f"{runs * each / jobs + OF_A_ROW * rows:.1g}")
-    words = f"{rows} rows" + (f" under {motions} motions" if motions > 1 else "")
-    time = f"roughly {clock_time(seconds)} on {jobs} core{'s' * (jobs > 1)}"
-    if runs > MOST_RUNS and not force:
+    seconds = rows * (motions * each / jobs + OF_A_ROW)
+    words = f"{file.name}: {rows} rows" + (f" under {motions} motions" if motions > 1 else "")
+    if rows * motions > MOST_RUNS and not force:
         raise CaseError(
-            f"{file.name}: {words}, {runs} runs: {time}; take fewer rows, split them with --shard, or use --force"
+            f"{words}, {rows * motions} runs: {expected_words(seconds, jobs)}; take fewer rows, split them with "
+            "--shard, or use --force"
         )
-    if seconds > 20.0:
-        say(f"{file.name}: {words}: {time}")
+    say_expected(runner.reporter, words, seconds, jobs)
 
 
-def _axis(folder: Path, motions: Sequence[str]) -> Axis:
-    pairs = [[as_named_from(folder, name.strip()) for name in pair.split(",")] for pair in motions]
+def _axis(base: Case, motions: Sequence[str]) -> Axis:
+    """Motions named on the command line, as the values of a study."""
+    pairs = [[as_named_from(base.folder, name.strip()) for name in pair.split(",")] for pair in motions]
     try:
         names, following = read_motion_files([pair if len(pair) > 1 else pair[0] for pair in pairs])
     except AxisError as error:
@@ -196,44 +174,42 @@ def _axis(folder: Path, motions: Sequence[str]) -> Axis:
 
 
 def take_inventory(
-    file: HallFile, look: Callable[[Mapping[str, Any]], str], base_place: str, *, strict: bool
+    file: HallFile, base: Case, look: Callable[[Mapping[str, Any]], str], *, strict: bool
 ) -> Inventory:
     """Check every row before any is computed; equal rows are one container.
 
     Args:
         file: the list.
+        base: that rows change.
         look: gives a hash of a container from the values of a row, or raises a ValueError.
-        base_place: how messages of `look` name the base case.
         strict: refuse the whole list for one bad row.
 
     Raises:
         CaseError: no good row; with `strict` any bad row.
     """
-    reasons: list[str] = []
-    of_row: list[int | None] = []
+    rows: list[HallRow] = []
     containers: dict[str, Mapping[str, Any]] = {}
-    seen: dict[str, tuple[str, int | None]] = {}  #: by what a row sets: why not, and which container
     numbers: dict[str, int] = {}  #: of the containers, by hash
+    seen: dict[str, dict[str, Any]] = {}  #: by what a row sets: its container, or why it is refused
     for row in file.rows:
         values = repr(sorted(row.values.items()))
         if not row.reason and values not in seen:
             try:
                 digest = look(row.values)
                 containers.setdefault(digest, row.values)
-                seen[values] = "", numbers.setdefault(digest, len(numbers))
+                seen[values] = {"container": numbers.setdefault(digest, len(numbers))}
             except ValueError as error:
-                seen[values] = _in_words_of_list(str(error), base_place), None
-        reason, container = (row.reason, None) if row.reason else seen[values]
-        reasons.append(reason)
-        of_row.append(container)
-    bad = [(row, reason) for row, reason in zip(file.rows, reasons, strict=True) if reason]
+                seen[values] = {"reason": _in_words_of_list(str(error), base)}
+        rows.append(row if row.reason else replace(row, **seen[values]))
+    bad = [f"{file.name}, line {row.line} ({row.name}): {row.reason}" for row in rows if row.reason]
     if not containers or (strict and bad):
-        lines = [f"{file.name}, line {row.line} ({row.name}): {reason}" for row, reason in bad[:20]]
-        lines += [f"and {len(bad) - 20} more rows"] * (len(bad) > 20)
-        raise CaseError("\n".join(lines + ["no row can be computed"] * (not containers)))
+        more = [f"and {len(bad) - MOST_NAMED} more rows"] * (len(bad) > MOST_NAMED)
+        none = ["no row can be computed"] * (not containers)
+        raise CaseError("\n".join([*bad[:MOST_NAMED], *more, *none]))
     return Inventory(
-        reasons=tuple(reasons),
-        of_row=tuple(of_row),
+        file=file,
+        base=base,
+        rows=tuple(rows),
         containers=tuple(containers.values()),
         hashes=tuple(containers),
     )
@@ -246,9 +222,7 @@ def _hash_of(cases: HallCases, values: Mapping[str, Any], *, outside: bool) -> s
         CaseError, MeshError, RecordError: what a run would be refused for.
     """
     mesh = values.get("container.mesh_file")
-    if (
-        outside and isinstance(mesh, str) and not stays_in_the_folder(mesh)
-    ):  # the motions alone may lie anywhere
+    if outside and isinstance(mesh, str) and not stays_in_the_folder(mesh):  # motions alone may lie anywhere
         raise CaseError(f"[container] mesh_file {outside_the_folder(mesh)}")
     moved = any(key.startswith(("motion.", "vertical.")) for key in values)
     first = cases(HallItem(0, 0, values))
@@ -260,10 +234,10 @@ def _hash_of(cases: HallCases, values: Mapping[str, Any], *, outside: bool) -> s
     return case_hash(first)
 
 
-def _in_words_of_list(reason: str, base_place: str) -> str:
+def _in_words_of_list(reason: str, base: Case) -> str:
     """Why a case cannot be used, on one line, without mention of the command line."""
     lines = (
-        re.sub(r" \(--set \S+?=.*\)$", "", line.removeprefix(f"{base_place}: "))
+        re.sub(r" \(--set \S+?=.*\)$", "", line.removeprefix(f"{base.origin_with({}).place}: "))
         for line in reason.splitlines()
     )
     return "; ".join(line for line in lines if line and not line.startswith("with --set "))

@@ -1,14 +1,15 @@
 """What the runs of a hall show, container by container, and which containers are the weakest."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 from fem.batch.checked import CHECKED
 from fem.batch.runner import Row
 from fem.batch.table import row_of
 from fem.hall.plan import Hall, HallItem
-from fem.hall.result import OF_A_RUN
+from fem.hall.result import OF_A_RUN, OF_MOTIONS, STATIC
 from fem.model.geometry import build_container
 from fem.model.motion import build_motions, peaks_in_run
 from fem.model.static_checks import static_checks_of
@@ -22,6 +23,7 @@ ROCKS = 0.01
 #: share of the containers, the weakest first, whose run is repeated under stronger motions and with other inputs; at
 #: least so many
 SHARE, LEAST = 0.1, 30
+WORST_FIRST = (Ending.OVERTURNED, Ending.INVALID, Ending.FAILED, Ending.STANDING)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,8 +38,8 @@ class ContainerRun:
     @property
     def weakness(self) -> tuple[float, ...]:
         """Smaller for the worse: overturned, not valid, without an outcome, the larger rotation, the larger slip."""
-        order = (Ending.OVERTURNED, Ending.INVALID, Ending.FAILED, Ending.STANDING).index(self.ending)
-        return order, -self.ratio if self.ending == Ending.STANDING else 0.0, -self.slip
+        turned = -self.ratio if self.ending == Ending.STANDING else 0.0
+        return WORST_FIRST.index(self.ending), turned, -self.slip
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -47,6 +49,8 @@ class HallRuns:
     hall: Hall
     by_container: dict[int, dict[int, ContainerRun]] = field(default_factory=dict)  #: and by motion
     checked: dict[int, Row] = field(default_factory=dict)  #: what the repetition showed, by container
+    #: of each container, utilisations by `STATIC` under the peak of its governing motion
+    static: dict[int, dict[str, float | None]] = field(default_factory=dict)
 
     def note(self, line: str) -> None:
         """Add a line of the log of the runs; IndexError: of a container that is not in the list."""
@@ -101,37 +105,46 @@ class HallRuns:
             order: of the containers, the weakest first, before any is repeated.
         """
         count = {"none": 0, "all": len(order)}.get(checks, max(math.ceil(SHARE * len(order)), LEAST))
-        items = [self.hall.item(number, self.governing(number)) for number in order]
-        ended = [item for item in items if self.worst(item.container).ending != Ending.FAILED]
-        able = [item for item in ended if self.hall.model_of(item) != "full"]
+        ended = [number for number in order if self.worst(number).ending != Ending.FAILED]
+        items = [self.hall.item(number, self.governing(number)) for number in ended]
+        able = [item for item in items if self.hall.model_of(item) != "full"]
         return [item for item in able[:count] if item.container not in self.checked]
 
+    def find_static(self) -> None:
+        """Note the utilisations of the containers, once all are run."""
+        for number in self.by_container:
+            case = self.hall.cases(self.hall.item(number, self.governing(number)))
+            peaks = peaks_in_run(case, *build_motions(case))
+            found = static_checks_of(case, build_container(case), *peaks).ruling.to_result()
+            self.static[number] = {name: getattr(found, name) for name in STATIC}
 
-def static_use(hall: Hall, item: HallItem) -> tuple[float | None, float | None]:
-    """Utilisations of the static rules for sliding and overturning under the peak of a run's own motion."""
-    case = hall.cases(item)
-    checks = static_checks_of(case, build_container(case), *peaks_in_run(case, *build_motions(case)))
-    static = checks.ruling.to_result()
-    return static.utilisation_sliding, static.utilisation_overturning
+    def weakest_first(self, *, margins: bool = True) -> list[int]:
+        """The containers in the order of their weakness.
 
+        What overturned comes first, then what destroyed a corner, then what has no outcome, then what stood; within
+        these what has a margin before what has none, by the margin; then by rotation or, where nothing rocks, by the
+        static rule; then by slip.
+        """
 
-def weakest_first(
-    runs: HallRuns, static: Mapping[int, Mapping[str, float | None]], *, margins: bool = True
-) -> list[int]:
-    """The containers in the order of their weakness.
+        def weakness(number: int) -> tuple[float, ...]:
+            run = self.worst(number)
+            order, turned, slip = run.weakness
+            check = self.checked.get(number, {}) if margins else {}
+            margin = check.get("margin") or check.get("margin_tried_to")
+            rocked = turned if run.ratio > ROCKS else 0.0
+            static = -(self.static[number]["utilisation_overturning"] or 0.0)
+            return order, margin is None, margin or 0.0, rocked, static, slip, number
 
-    What overturned comes first, then what destroyed a corner, then what has no outcome, then what stood; within these
-    what has a margin before what has none, by the margin; then by rotation or, where nothing rocks, by the static
-    rule; then by slip.
-    """
+        return sorted(self.by_container, key=weakness)
 
-    def weakness(number: int) -> tuple[float, ...]:
-        run = runs.worst(number)
-        order, _, slip = run.weakness
-        check = runs.checked.get(number, {}) if margins else {}
-        margin = check.get("margin") or check.get("margin_tried_to")
-        turned = -run.ratio if run.ratio > ROCKS and run.ending == Ending.STANDING else 0.0
-        known = margin is None, margin or 0.0
-        return order, *known, turned, -(static[number]["utilisation_overturning"] or 0.0), slip, number
-
-    return sorted(runs.by_container, key=weakness)
+    def found(self, container: int) -> dict[str, Any]:
+        """Results of a container, by column."""
+        by_motion, row = self.by_container[container], row_of(RUN_COLUMNS, self.worst(container).line)
+        values: dict[str, Any] = {name: row[name] for name in OF_A_RUN}
+        values |= self.static[container] | self.checked.get(container, {})
+        if names := [pair.name for pair in self.hall.motions]:
+            slipped = max(sorted(by_motion), key=lambda number: by_motion[number].slip)
+            most = by_motion[slipped].slip, names[slipped]
+            under = names[self.governing(container)], *self.counts(container), *most
+            values |= zip(OF_MOTIONS, under, strict=True)
+        return values

@@ -61,6 +61,14 @@ class HallResult(StudyResult):
     kept: tuple[str, ...] = ()  #: columns of the list that set nothing
     columns: tuple[str, ...] = ()  #: of the list
     allow_outside: bool | None = None  #: files of the case or the site may lie outside its folder
-    table: tuple[
-        dict[str, Any], ...
-    ] = ()  #: a row of `hall.csv` each, with `row`, `name`, `count`, `command`
+    table: tuple[dict[str, Any], ...] = ()  #: rows of `hall.csv`, with `row`, `name`, `count`, `command`
+
+    @property
+    def ranked(self) -> list[dict[str, Any]]:
+        """The rows that were computed, the weakest first."""
+        return sorted((row for row in self.table if row["rank"]), key=lambda row: (row["rank"], row["row"]))
+
+    @property
+    def not_computed(self) -> list[dict[str, Any]]:
+        """The rows that were refused."""
+        return [row for row in self.table if row["status"] == REFUSED]

@@ -13,25 +13,23 @@ from fem.batch.checked import check_chunk
 from fem.batch.log import LoggedRuns
 from fem.batch.motion_set import motions_left_out
 from fem.batch.runner import Runner
-from fem.batch.study import COMPLETED, FAILED, INTERRUPTED, Study, StudyOptions, hash_of, run_study, runner_of
-from fem.batch.table import row_of, table_of_lines, table_text
+from fem.batch.study import INTERRUPTED, Study, StudyOptions, hash_of, run_study, runner_of
+from fem.batch.table import table_of_lines, table_text
 from fem.case.case import Case
 from fem.case.toml import toml_document
 from fem.hall.file import HallFile
 from fem.hall.page import hall_report
 from fem.hall.places import PICTURE, draw_places, geojson
 from fem.hall.plan import Hall, Inventory, plan_hall
-from fem.hall.ranking import CHECK_COLUMNS, RUN_COLUMNS, HallRuns, static_use, weakest_first
-from fem.hall.result import OF_A_RUN, OF_MOTIONS, RESULT_COLUMNS, STATIC, HallResult
-from fem.hall.table import HallTable, answer_of
+from fem.hall.ranking import CHECK_COLUMNS, RUN_COLUMNS, HallRuns
+from fem.hall.result import RESULT_COLUMNS, HallResult
+from fem.hall.table import with_table
 from fem.results.disk import BYTES_BESIDE, table_bytes
 from fem.results.folder import ResultFolder
 from fem.results.kinds import HALL
-from fem.results.outcome import COUNTED, Ending
 
 RUNS, CHECKS, TABLE, PAGE, GEOJSON = "runs.csv", "checks.csv", "hall.csv", "report.html", "hall.geojson"
 Checks = Literal["weakest", "all", "none"]
-WORDS = {ending: word for word, ending in COUNTED.items()}
 
 
 def run_hall(
@@ -49,7 +47,6 @@ def run_hall(
     Args:
         file: the list.
         base: the case that its rows change.
-        folder: of the results.
         motions: files of motions in place of that of the case, "H" or "H,V" each; every container undergoes all.
         checks: which governing runs are repeated for `sure` and `margin`: those of the weakest tenth and of at least
             30 containers, all, or none.
@@ -59,8 +56,8 @@ def run_hall(
     with runner_of(**options) as runner:
         hall = plan_hall(file, base, motions, runner, strict=strict, force=options.get("force", False))
         options["workers_of"] = runner.workers_of
-        begun = replace(
-            begun_result(file, base, hall.inventory),
+        begun = begun_result(
+            hall.inventory,
             asked=hash_of([hall.inventory.hashes, [pair.case_hash for pair in hall.motions]]),
             listed=hash_of([file.text, checks]),
             motions=hall.named,
@@ -68,12 +65,12 @@ def run_hall(
             checks=checks,
         )
         size = 2.0 * table_bytes(len(hall.items()), len(RUN_COLUMNS))
-        study = study_of(file, base, begun, partial(_compute, hall, begun), size)
+        study = study_of(hall.inventory, begun, partial(_compute, hall, begun), size)
         copied = [pair.case for pair in hall.motions]
         return run_study(replace(study, cases=[] if copied else [base], motions=copied), folder, **options)
 
 
-def study_of(file: HallFile, base: Case, begun: HallResult, compute: Any, size: float) -> Study[HallResult]:
+def study_of(inventory: Inventory, begun: HallResult, compute: Any, size: float) -> Study[HallResult]:
     """The study of a list; `size` is that of its tables [bytes]."""
     return Study(
         kind=HALL,
@@ -81,7 +78,7 @@ def study_of(file: HallFile, base: Case, begun: HallResult, compute: Any, size: 
         result=HallResult,
         begun=begun,
         compute=compute,
-        texts={"list.csv": file.text, "base.toml": toml_document(base.given())},
+        texts={"list.csv": inventory.file.text, "base.toml": toml_document(inventory.base.given())},
         size=size + BYTES_BESIDE,
         subject=f"the hall ({begun.distinct} containers)",
         way_out="take fewer rows",
@@ -90,89 +87,73 @@ def study_of(file: HallFile, base: Case, begun: HallResult, compute: Any, size: 
     )
 
 
-def begun_result(file: HallFile, base: Case, inventory: Inventory) -> HallResult:
-    """The result before any run, without its hashes."""
+def begun_result(inventory: Inventory, **fields: Any) -> HallResult:
+    """The result before any run; `fields` are those of its way of computing."""
+    rows, file, origin = inventory.rows, inventory.file, inventory.base.origin_with({})
+    known: dict[str, Any] = {
+        "model": inventory.base.solver.model,
+        "allow_outside": origin.allow_outside or None,
+    }
     return HallResult(
         hall=file.name,
-        case=base.origin_with({}).place,
-        asked="",
-        model=base.solver.model,
-        rows=len(file.rows),
-        containers=sum(row.count for row in file.rows),
+        case=origin.place,
+        rows=len(rows),
+        containers=sum(row.count for row in rows),
         distinct=len(inventory.containers),
-        refused=sum(map(bool, inventory.reasons)),
+        refused=sum(row.container is None for row in rows),
         kept=file.kept,
         columns=file.columns,
-        allow_outside=base.origin_with({}).allow_outside or None,
+        **(known | fields),
     )
 
 
 def _compute(hall: Hall, begun: HallResult, results: ResultFolder, runner: Runner) -> HallResult:
     """Compute what is missing, and write the list with its results, and its page."""
-    runs = HallRuns(hall=hall)
+    runs, total = HallRuns(hall=hall), len(hall.items())
     LoggedRuns(
         what="runs",
         path=results.path / RUNS,
         columns=RUN_COLUMNS,
         make=hall.cases,
         model_of=hall.model_of,
-        key=lambda item: (item.container, item.motion),
+        key=lambda item: item[:2],
         note=runs.note,
         number=lambda item: item.container * len(hall.cases.motions) + item.motion,
     ).run(runner, iter(runs.missing, []))
     if missing := len(runs.missing()):
-        total = len(hall.items())
         words = f"{total - missing} of {total} runs are computed"
         return replace(begun, status=INTERRUPTED, runs=total - missing, missing=words)
-    static = {
-        number: dict(zip(STATIC, static_use(hall, hall.item(number, runs.governing(number))), strict=True))
-        for number in runs.by_container
-    }
-    to_check = partial(runs.to_check, begun.checks, weakest_first(runs, static, margins=False))
+    runs.find_static()
+    to_check = partial(runs.to_check, begun.checks, runs.weakest_first(margins=False))
     LoggedRuns(
         what="containers repeated with other inputs and stronger motions",
         path=results.path / CHECKS,
         columns=CHECK_COLUMNS,
         make=hall.cases,
         model_of=hall.model_of,
-        key=lambda item: (item.container,),
+        key=lambda item: item[:1],
         note=runs.note_check,
         work=check_chunk,
     ).run(runner, iter(to_check, []))
+    begun = replace(begun, runs=total, checked=len(runs.checked))
     if left := len(to_check()):
-        words = f"{left} of the weakest are still to be repeated"
-        return replace(
-            begun, status=INTERRUPTED, runs=len(hall.items()), checked=len(runs.checked), missing=words
-        )
+        return replace(begun, status=INTERRUPTED, missing=f"{left} of the weakest are still to be repeated")
     results.check()
     results.write_text(RUNS, table_of_lines(RUN_COLUMNS, runs.lines()))
     checked = sorted(runs.checked.items())
     results.write_text(CHECKS, table_text(CHECK_COLUMNS, ([k, *check.values()] for k, check in checked)))
-    values = {number: static[number] | _result_columns(runs, number) for number in runs.by_container}
-    endings = {number: runs.worst(number).ending for number in runs.by_container}
-    table = HallTable(
-        file=hall.file,
-        inventory=hall.inventory,
-        values=values,
-        words={k: (str(row["outcome"] or WORDS[endings[k]]), WORDS[endings[k]]) for k, row in values.items()},
-        order=weakest_first(runs, static),
-        command=lambda row, container: hall.command(row, runs.governing(container)),
-    )
-    failed = {*endings.values()} == {Ending.FAILED}
+    found = {number: runs.found(number) for number in runs.by_container}
+    order = runs.weakest_first()
     return written(
         results,
-        table,
-        replace(
-            begun, status=FAILED if failed else COMPLETED, runs=len(hall.items()), checked=len(runs.checked)
-        ),
+        with_table(begun, hall.inventory, found, order, lambda row, k: hall.command(row, runs.governing(k))),
     )
 
 
-def written(results: ResultFolder, table: HallTable, result: HallResult) -> HallResult:
-    """Write the list with its results, plan and page; the result with its answer."""
-    result = table.added_to(result)
-    result = replace(result, answer=answer_of(result))
-    results.write_text(TABLE, table_text((*table.file.columns, *RESULT_COLUMNS), table.rows()))
+def written(results: ResultFolder, result: HallResult) -> HallResult:
+    """Write the list with its results, its plan and its page."""
+    rows = ([*row["given"].values(), *(row[name] for name in RESULT_COLUMNS)] for row in result.table)
+    results.write_text(TABLE, table_text((*result.columns, *RESULT_COLUMNS), rows))
     for name, text in ((PICTURE, draw_places(result)), (GEOJSON, geojson(result))):
         if text:
             results.write_text(name, text)
@@ -180,17 +161,3 @@ def written(results: ResultFolder, table: HallTable, result: HallResult) -> Hall
             results.remove(name)
     results.write_text(PAGE, hall_report(results.path, result=result))
     return result
-
-
-def _result_columns(runs: HallRuns, container: int) -> dict[str, Any]:
-    """Results of a container, by column."""
-    by_motion, motion = runs.by_container[container], runs.governing(container)
-    row = row_of(RUN_COLUMNS, runs.worst(container).line)
-    values: dict[str, Any] = {name: row[name] for name in OF_A_RUN} | runs.checked.get(container, {})
-    if names := [pair.name for pair in runs.hall.motions]:
-        slipped = max(sorted(by_motion), key=lambda number: by_motion[number].slip)
-        counts = runs.counts(container)
-        values |= dict(
-            zip(OF_MOTIONS, (names[motion], *counts, by_motion[slipped].slip, names[slipped]), strict=True)
-        )
-    return values

@@ -13,22 +13,23 @@ from pathlib import Path
 from typing import Any, Unpack
 
 from fem.batch.log import RowLog
-from fem.batch.runner import Runner
-from fem.batch.study import COMPLETED, FAILED, INTERRUPTED, StudyOptions, hash_of, run_study
-from fem.batch.table import fields_of, line_of, row_of, table_of_lines
+from fem.batch.runner import Row, Runner
+from fem.batch.study import FAILED, INTERRUPTED, StudyOptions, hash_of, run_study
+from fem.batch.table import line_of, row_of, table_of_rows
 from fem.case.case import Case
 from fem.case.validation import CaseError
 from fem.hall.file import HallFile
 from fem.hall.plan import Inventory, take_inventory
 from fem.hall.result import AT_SITE, RESULT_COLUMNS, HallResult
 from fem.hall.run import begun_result, study_of, written
-from fem.hall.table import HallTable
+from fem.hall.table import NO_ANSWER, with_table
 from fem.results.errors import FolderError
 from fem.results.figures import SLIPPED, TURNED
 from fem.results.folder import ResultFolder, program_of_results
 from fem.results.kinds import SITE, read_result
 from fem.results.run_files import copy_data_files
-from fem.runtime.progress import SilentReporter, clock_time
+from fem.run.expected import expected_words
+from fem.runtime.progress import SilentReporter
 from fem.seismic.action import LAST_PERIOD_S
 from fem.seismic.ground_motion import GroundMotion
 from fem.site_check.bodies import body_of
@@ -41,14 +42,12 @@ from fem.site_check.run import run_site, site_hash
 from mesh.errors import MeshError
 
 SITES, FOLDERS = "sites.csv", "sites"
-MU = "contact.mu_static"
 #: tables of a case that a verification takes from its site file
 OF_THE_SITE = ("motion", "vertical", "initial", "static", "solver", "output", "uncertainty", "joints")
 FIGURES = ("outcome", "margin", TURNED, SLIPPED, "motions_overturned", "motions_failed")
 COLUMNS = {"container": int} | {
     name: RESULT_COLUMNS[name] for name in ("status", "reason", *FIGURES, *AT_SITE)
 }
-NO_ANSWER = "no answer"
 WORST_FIRST = ("not fulfilled", NO_ANSWER, "not sure", "fulfilled")
 
 
@@ -73,123 +72,140 @@ def run_hall_at_site(
         allow_outside: take records from outside the folder of the site file.
         options: of every study.
     """
-    start = base or site.container
-    idle = [
-        key
-        for key in file.keys.values()
-        if key.partition(".")[0] in OF_THE_SITE or key == "contact.mu_kinetic"
-    ]
-    if idle:
-        raise CaseError(
-            f"{file.path}: {idle[0]!r} has no effect at a site, whose file sets it; leave the column out"
-        )
-    # of records the contents: they may change under the same name
-    ground = ground_motions(site, LAST_PERIOD_S, allow_outside=allow_outside) if site.motions.files else []
-    inventory = take_inventory(
-        file, partial(_look, site, start, ground), start.origin_with({}).place, strict=strict
+    for key in file.keys:
+        if key.partition(".")[0] in OF_THE_SITE or key == "contact.mu_kinetic":
+            raise CaseError(
+                f"{file.path}: {key!r} has no effect at a site, whose file sets it; leave the column out"
+            )
+    work = _AtSite(
+        site=site,
+        start=base or site.container,
+        # of records the contents: they may change under the same name
+        ground=ground_motions(site, LAST_PERIOD_S, allow_outside=allow_outside) if site.motions.files else [],
+        outside=allow_outside or bool(site.motions.files),
+        force=options.get("force", False),
     )
-    begun = replace(
-        begun_result(file, start, inventory),
+    inventory = take_inventory(file, work.start, work.look, strict=strict)
+    begun = begun_result(
+        inventory,
         site=site.origin.place,
         model=site.heading.model,
         asked=hash_of(inventory.hashes),
         listed=hash_of(file.text),
         allow_outside=allow_outside or None,
     )
-    force = options.get("force", False)
-    work = _AtSite(file=file, site=site, start=start, inventory=inventory, begun=begun, force=force)
-    return run_study(study_of(file, start, begun, work.compute, 0.0), folder, **options)
-
-
-def request_of(site: SiteRequest, start: Case, values: Mapping[str, Any], name: str) -> SiteRequest:
-    """The verification of a container.
-
-    Raises:
-        CaseError: it cannot be verified at the site.
-    """
-    mu = values.get(MU)
-    if mu is not None and not isinstance(mu, float):
-        raise CaseError(
-            f"[contact] mu_static must be a number at a site, whose [friction] has the range, got {mu!r}"
-        )
-    return site.of_container(name, start.with_values(values) if values else start, mu)
+    study = study_of(inventory, begun, partial(work.compute, inventory, begun), 0.0)
+    return run_study(study, folder, **options)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _AtSite:
     """A hall at a site under way."""
 
-    file: HallFile
     site: SiteRequest
-    start: Case
-    inventory: Inventory
-    begun: HallResult
+    start: Case  #: that the rows change
+    ground: Sequence[GroundMotion]  #: records of the site
+    outside: bool  #: records may lie outside the folder of the site file
     force: bool  #: verify every container again
-    lines: dict[int, str] = field(default_factory=dict)  #: of the log, by container
+    rows: dict[int, Row] = field(default_factory=dict)  #: of the log, by container
 
-    def compute(self, results: ResultFolder, runner: Runner) -> HallResult:
+    def request(self, values: Mapping[str, Any], name: str) -> SiteRequest:
+        """The verification of a container.
+
+        Raises:
+            CaseError: it cannot be verified at the site.
+        """
+        mu = values.get("contact.mu_static")
+        if mu is not None and not isinstance(mu, float):
+            raise CaseError(
+                f"[contact] mu_static must be a number at a site, whose [friction] has the range, got {mu!r}"
+            )
+        return self.site.of_container(name, self.start.with_values(values) if values else self.start, mu)
+
+    def look(self, values: Mapping[str, Any]) -> str:
+        """The hash of a verification, once its bodies can be built and the wind on them is known.
+
+        Raises:
+            CaseError, MeshError: what it would be refused for.
+        """
+        request = self.request(values, "container")
+        wind_utilisation([body_of(variant) for variant in request.variants], inputs_of(request))
+        return hash_of([request.portable, site_hash(request, self.ground)])
+
+    def compute(
+        self, inventory: Inventory, begun: HallResult, results: ResultFolder, runner: Runner
+    ) -> HallResult:
         """Verify what is missing, and write the list with the answers, and its page."""
-        count, path = len(self.inventory.containers), results.path / SITES
-        numbers = list(range(count))
-        mine = runner.share.of(numbers, numbers) if runner.share else numbers
-        with closing(RowLog(path, COLUMNS, runner.reporter.warning)) as log:
+        numbers = range(len(inventory.containers))
+        mine = runner.share.of(numbers, numbers) if runner.share else [*numbers]
+        names = {row.container: row.name for row in reversed(inventory.rows)}
+        folders = [Path(FOLDERS) / f"{k + 1:03d}-{inventory.hashes[k][:8]}" for k in numbers]
+        with closing(RowLog(results.path / SITES, COLUMNS, runner.reporter.warning)) as log:
             for line in log.lines:
-                self.lines[int(fields_of(line)[0])] = line
-            missing = [number for number in mine if number not in self.lines]
-            if len(missing) > 1:
-                self._say_expected(missing, runner)
-            for number in missing:
+                self._note(line)
+            missing = [number for number in mine if number not in self.rows]
+            requests = (self.request(inventory.containers[k], names[k]) for k in missing)
+            for done, (number, request) in enumerate(zip(missing, requests, strict=True)):
                 if runner.stop():
                     break
-                runner.reporter.message(f"container {number + 1} of {count} at the site")
-                if not (line := self._verify(number, results.path, runner)):
+                if done == 0 and len(missing) > 1:
+                    self._say_expected(len(missing), request, runner)
+                runner.reporter.message(f"container {number + 1} of {len(numbers)} at the site")
+                if (row := self._verified(request, results.path / folders[number], runner)) is None:
                     break
+                line = line_of((number, *(row.get(name) for name in [*COLUMNS][1:])))
                 log.append([line])
-                self.lines[number] = line
-        if len(self.lines) < count:
-            if runner.share and not {*mine} - self.lines.keys():
+                self._note(line)
+        if len(self.rows) < len(numbers):
+            if runner.share and not {*mine} - self.rows.keys():
                 runner.share.waits = True
-            words = f"{len(self.lines)} of {count} containers are verified"
-            return replace(self.begun, status=INTERRUPTED, missing=words)
+            words = f"{len(self.rows)} of {len(numbers)} containers are verified"
+            return replace(begun, status=INTERRUPTED, missing=words)
         results.check()
-        results.write_text(SITES, table_of_lines(COLUMNS, (line for _, line in sorted(self.lines.items()))))
-        rows = {k: row_of(COLUMNS, line) for k, line in self.lines.items()}
-        for k, row in rows.items():
-            page = self._folder(k) / "report.html"
-            row["page"] = page.as_posix() if (results.path / page).is_file() else None
-        table = HallTable(
-            file=self.file,
-            inventory=self.inventory,
-            values=rows,
-            words={k: (row["answer"] or NO_ANSWER,) * 2 for k, row in rows.items()},
-            order=sorted(rows, key=lambda k: _weakness(rows[k])),
-            command=lambda row, container: self._command(results.path / self._folder(container)),
+        rows = [self.rows[number] for number in numbers]
+        results.write_text(SITES, table_of_rows(COLUMNS, rows))
+        pages = [folder / "report.html" for folder in folders]
+        found = {
+            number: {**row, "page": page.as_posix() if (results.path / page).is_file() else None}
+            for number, row, page in zip(numbers, rows, pages, strict=True)
+        }
+        flags = ["--allow-outside"] * self.outside
+        return written(
+            results,
+            with_table(
+                replace(begun, runs=len(numbers)),
+                inventory,
+                found,
+                sorted(numbers, key=lambda number: _weakness(found[number])),
+                lambda row, number: shlex.join(
+                    [
+                        "python",
+                        "-m",
+                        "fem",
+                        "assess",
+                        str(results.path / folders[number] / "site.toml"),
+                        *flags,
+                    ]
+                ),
+            ),
         )
-        status = FAILED if {row["status"] for row in rows.values()} == {FAILED} else COMPLETED
-        return written(results, table, replace(self.begun, status=status, runs=count))
 
-    def _say_expected(self, missing: Sequence[int], runner: Runner) -> None:
-        """How long these containers take at most, by the first of them."""
+    def _note(self, line: str) -> None:
+        """Add a line of the log."""
+        row = row_of(COLUMNS, line)
+        self.rows[row["container"]] = row
+
+    def _say_expected(self, count: int, request: SiteRequest, runner: Runner) -> None:
+        """How long so many containers take at most, by the first of them."""
         with suppress(CaseError, MeshError):  # its row says why it cannot be verified
-            each = forecast_of(
-                self._request(missing[0]), runner.jobs, allow_outside=bool(self.site.motions.files)
-            )
-            time = clock_time(float(f"{each.seconds * len(missing):.1g}"))
+            each = forecast_of(request, runner.jobs, allow_outside=bool(request.motions.files))
             runner.reporter.message(
-                f"{len(missing)} containers with up to {each.most} runs each: at most about {time} on {runner.jobs} "
-                f"core{'s' * (runner.jobs > 1)}, and the deciding runs with their bands"
+                f"{count} containers with up to {each.most} runs each: at most "
+                f"{expected_words(each.seconds * count, runner.jobs)}, and the deciding runs with their bands"
             )
 
-    def _request(self, number: int) -> SiteRequest:
-        """The verification of a container."""
-        row = self.inventory.of_row.index(number)
-        name = self.file.rows[row].name
-        return request_of(self.site, self.start, self.inventory.containers[number], name)
-
-    def _verify(self, number: int, folder: Path, runner: Runner) -> str:
-        """The line of a container; empty where it was interrupted."""
-        request = self._request(number)
-        folder /= self._folder(number)
+    def _verified(self, request: SiteRequest, folder: Path, runner: Runner) -> Row | None:
+        """The row of a container; None where it was interrupted."""
         try:
             result = run_site(
                 request,
@@ -203,40 +219,25 @@ class _AtSite:
                 copy_records=False,  # of every container the same: the site file names them where they are
             )
         except (CaseError, MeshError) as error:
-            row: dict[str, Any] = {"container": number, "status": FAILED} | dict.fromkeys(
-                ("reason", "reasons"), str(error)
-            )
-            return line_of(row.get(name) for name in COLUMNS)
+            return {"status": FAILED, "reason": str(error), "reasons": str(error)}
         if result.state != "finished":
-            return ""
+            return None
         # for the command of the row; what is no motion is not handed on
         with suppress(CaseError):
             copy_data_files(request.container, folder)
         answer = result.result
-        outcome = answer.governing.outcome if answer.governing else None
-        reasons = answer.reasons or ([] if answer.answer else [answer.sentence])
-        return line_of(
-            [
-                *(number, result.status, None if answer.answer else answer.sentence),
-                *(
-                    outcome,
-                    answer.margin_factor,
-                    answer.rotation_ratio,
-                    answer.slip_m,
-                    answer.overturned,
-                    None,
-                ),
-                *(answer.answer, " ".join(reasons), answer.factor_at_first_overturning),
-            ]
-        )
-
-    def _command(self, folder: Path) -> str:
-        words = ["python", "-m", "fem", "assess", str(folder / "site.toml")]
-        outside = self.site.motions.files or self.begun.allow_outside
-        return shlex.join([*words, *(["--allow-outside"] if outside else [])])
-
-    def _folder(self, number: int) -> Path:
-        return Path(FOLDERS) / f"{number + 1:03d}-{self.inventory.hashes[number][:8]}"
+        return {
+            "status": result.status,
+            "reason": None if answer.answer else answer.sentence,
+            "outcome": answer.governing.outcome if answer.governing else None,
+            "margin": answer.margin_factor,
+            TURNED: answer.rotation_ratio,
+            SLIPPED: answer.slip_m,
+            "motions_overturned": answer.overturned,
+            "answer": answer.answer,
+            "reasons": " ".join(answer.reasons or ([] if answer.answer else [answer.sentence])),
+            "factor_at_first_overturning": answer.factor_at_first_overturning,
+        }
 
 
 def _is_of_another_program(folder: Path) -> bool:
@@ -248,17 +249,6 @@ def _is_of_another_program(folder: Path) -> bool:
     except FolderError:  # damaged
         return True
     return any(mark.get(name) != value for name, value in program_of_results().items())
-
-
-def _look(site: SiteRequest, start: Case, ground: Sequence[GroundMotion], values: Mapping[str, Any]) -> str:
-    """The hash of a verification, once its bodies can be built and the wind on them is known.
-
-    Raises:
-        CaseError, MeshError: what it would be refused for.
-    """
-    request = request_of(site, start, values, "container")
-    wind_utilisation([body_of(variant) for variant in request.variants], inputs_of(request))
-    return hash_of([request.portable, site_hash(request, ground)])
 
 
 def _weakness(row: Mapping[str, Any]) -> tuple[float, ...]:

@@ -1,70 +1,94 @@
-"""The list with its results: `hall.csv`, the counts and rows of `hall.json`, its answer."""
+"""The list with its results: the rows, counts and answer of `hall.json`."""
 
-from collections import Counter
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from collections import Counter, defaultdict
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
-from fem.hall.file import HallFile, HallRow
+from fem.batch.study import COMPLETED, FAILED
+from fem.hall.file import HallRow
 from fem.hall.plan import Inventory
 from fem.hall.result import REFUSED, RESULT_COLUMNS, HallResult, TagCount
+from fem.results.outcome import COUNTED, ending_of
+
+NO_ANSWER = "no answer"  #: of a container at a site
+WORDS = {ending: word for word, ending in COUNTED.items()}
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class HallTable:
-    """The rows of a list with the results of their containers."""
+def with_table(
+    begun: HallResult,
+    inventory: Inventory,
+    found: Mapping[int, Mapping[str, Any]],
+    order: Sequence[int],
+    command: Callable[[HallRow, int], str],
+) -> HallResult:
+    """The finished result: rows, counts by outcome and tag, the answer.
 
-    file: HallFile
-    inventory: Inventory
-    #: of each container, by column
-    values: Mapping[int, Mapping[str, Any]]
-    words: Mapping[int, tuple[str, str]]  #: what the outcomes count each container as, and what the tags do
-    order: list[int]  #: of the containers, the weakest first
-    command: Callable[[HallRow, int], str]  #: of a row, whose container this is
+    Args:
+        begun: without these.
+        inventory: the rows, checked.
+        found: results of each container, by column.
+        order: of the containers, the weakest first.
+        command: of a row, whose container this is.
+    """
+    table = tuple(_rows(inventory, found, order, command))
+    outcomes, tags = Counter[str](), defaultdict[str, list[dict[str, Any]]](list)
+    for row in table:
+        outcomes[_counted(row, begun)[0]] += row["count"]
+        tags[row["tag"]].append(row)
+    result = replace(
+        begun,
+        status=FAILED if {one["status"] for one in found.values()} == {FAILED} else COMPLETED,
+        outcomes=dict(sorted(outcomes.items())),
+        tags=tuple(_tag(tag, rows, begun) for tag, rows in sorted(tags.items())) if {*tags} != {""} else (),
+        table=table,
+    )
+    return replace(result, answer=answer_of(result))
 
-    def _results(self) -> Iterator[tuple[HallRow, int | None, dict[str, Any]]]:
-        ranks = {number: rank for rank, number in enumerate(self.order, start=1)}
-        for row, container, reason in zip(
-            self.file.rows, self.inventory.of_row, self.inventory.reasons, strict=True
-        ):
-            if container is None:
-                yield row, None, {"status": REFUSED, "reason": reason}
-            else:
-                yield row, container, {**self.values[container], "rank": ranks[container]}
 
-    def rows(self) -> Iterator[tuple[Any, ...]]:
-        """`hall.csv`: the fields of the list as they were given, then the results."""
-        for row, _, values in self._results():
-            yield *row.given, *(values.get(name) for name in RESULT_COLUMNS)
+def _rows(
+    inventory: Inventory,
+    found: Mapping[int, Mapping[str, Any]],
+    order: Sequence[int],
+    command: Callable[[HallRow, int], str],
+) -> Iterator[dict[str, Any]]:
+    ranks = {number: rank for rank, number in enumerate(order, start=1)}
+    for number, row in enumerate(inventory.rows, start=1):
+        results: Mapping[str, Any] = {"status": REFUSED, "reason": row.reason}
+        if row.container is not None:
+            results = {**found[row.container], "rank": ranks[row.container]}
+        yield {
+            "row": number,
+            "line": row.line,
+            "name": row.name,
+            "count": row.count,
+            "tag": row.tag,
+            "place_m": row.place,
+            "lon_lat": row.geographic,
+            "given": dict(zip(inventory.file.columns, row.given, strict=True)),
+            **{name: results.get(name) for name in RESULT_COLUMNS},
+            "command": None if row.container is None else command(row, row.container),
+        }
 
-    def added_to(self, result: HallResult) -> HallResult:
-        """The result with counts and rows."""
-        table, outcomes, tags = [], Counter[str](), dict[str, TagCount]()
-        for number, (row, container, results) in enumerate(self._results(), start=1):
-            values = {name: results.get(name) for name in RESULT_COLUMNS}
-            outcome, counted = (REFUSED, REFUSED) if container is None else self.words[container]
-            outcomes[outcome] += row.count
-            tag = tags.get(row.tag, TagCount(tag=row.tag, containers=0, counts={}))
-            margins = [margin for margin in (tag.margin, values["margin"]) if margin is not None]
-            tags[row.tag] = replace(
-                tag,
-                containers=tag.containers + row.count,
-                counts={**tag.counts, counted: tag.counts.get(counted, 0) + row.count},
-                margin=min(margins, default=None),
-            )
-            table.append(
-                {"row": number, "line": row.line, "name": row.name, "count": row.count, "tag": row.tag}
-                | {"place_m": row.place, "lon_lat": row.geographic}
-                | {"given": dict(zip(self.file.columns, row.given, strict=True))}
-                | values
-                | {"command": None if container is None else self.command(row, container)}
-            )
-        return replace(
-            result,
-            outcomes=dict(sorted(outcomes.items())),
-            tags=tuple(tags[tag] for tag in sorted(tags)) if {*tags} != {""} else (),
-            table=tuple(table),
-        )
+
+def _counted(row: Mapping[str, Any], result: HallResult) -> tuple[str, str]:
+    """What the outcomes count a row as, and what its tag does."""
+    if row["status"] == REFUSED:
+        return REFUSED, REFUSED
+    if result.site:
+        return row["answer"] or NO_ANSWER, row["answer"] or NO_ANSWER
+    ending = WORDS[ending_of(row["status"], row["outcome"])]
+    return row["outcome"] or ending, ending
+
+
+def _tag(tag: str, rows: Sequence[Mapping[str, Any]], result: HallResult) -> TagCount:
+    counts = Counter[str]()
+    for row in rows:
+        counts[_counted(row, result)[1]] += row["count"]
+    margins = [row["margin"] for row in rows if row["margin"] is not None]
+    return TagCount(
+        tag=tag, containers=counts.total(), counts=dict(counts), margin=min(margins, default=None)
+    )
 
 
 def answer_of(result: HallResult) -> str:
@@ -81,13 +105,10 @@ def answer_of(result: HallResult) -> str:
         words += f"; {invalid} destroyed a corner, which is not valid" if invalid else ""
         words += f"; {failed} have no outcome" if failed else ""
     words += f"; {result.refused} row{'s were' if result.refused != 1 else ' was'} refused" if refused else ""
-    weakest = next(row for row in result.table if row["rank"] == 1)
+    weakest = result.ranked[0]
     words += f"; the weakest is {weakest['name']}"
-    if weakest["margin"] is not None:
-        does = (
-            "fails the rule from {:.3g} times the motions on"
-            if result.site
-            else "overturns from {:.3g} times its motion on"
-        )
-        words += f", which {does.format(weakest['margin'])}"
+    if (margin := weakest["margin"]) is not None:
+        does = "fails the rule" if result.site else "overturns"
+        what = "the motions" if result.site else "its motion"
+        words += f", which {does} from {margin:.3g} times {what} on"
     return words

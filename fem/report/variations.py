@@ -24,9 +24,8 @@ from fem.results.reader import OpenedRun
 from fem.results.run_result import ChangedRun, Numerics
 from fem.run.changed_runs import changed_run, cost_of, run_changes
 from fem.run.changed_runs_file import ChangedRunsFile, key_of
-from fem.run.expected import LONG_S
+from fem.run.expected import LONG_S, expected_words
 from fem.run.outcome import run_without_history
-from fem.runtime.progress import clock_time
 from fem.runtime.threads import cores
 from fem.runtime.units import RATIO
 
@@ -172,7 +171,7 @@ def variation_table(
     left_out = missing[most:]
     if missing[:most]:
         seconds = price * min(most, len(missing)) / cores()
-        long = f": roughly {clock_time(float(f'{seconds:.1g}'))}" if seconds > LONG_S else ""
+        long = f": {expected_words(seconds)}" if seconds > LONG_S else ""
         message(f"computing {min(most, len(missing))} variations of the run{long}")
     if left_out:
         message(

@@ -46,8 +46,13 @@ def with_band_s(case: Case, cores: int = 1) -> float:
     return one + of_its_band_s(one) / cores
 
 
+def expected_words(seconds: float, cores: int = 1) -> str:
+    """A wall time of which one figure is known, and the cores that it is for: "roughly 2 min 00 s on 2 cores"."""
+    on = f" on {cores} cores" if cores > 1 else ""
+    return f"roughly {clock_time(float(f'{seconds:.1g}'))}{on}"
+
+
 def say_expected(reporter: Reporter, what: str, seconds: float, cores: int = 1) -> None:
     """Tell how long something takes on these cores, where that is long; `seconds` of wall time."""
     if seconds > LONG_S:
-        on = f" on {cores} cores" if cores > 1 else ""
-        reporter.message(f"{what}: roughly {clock_time(float(f'{seconds:.1g}'))}{on}")
+        reporter.message(f"{what}: {expected_words(seconds, cores)}")

@@ -21,7 +21,7 @@ from fem.cli.batch import page_of
 from fem.hall.file import read_hall
 from fem.hall.places import INVALID, UNKNOWN, class_of, draw_places, plan_of
 from fem.hall.plan import HallItem
-from fem.hall.ranking import RUN_COLUMNS, HallRuns, weakest_first
+from fem.hall.ranking import RUN_COLUMNS, HallRuns
 from fem.hall.result import HallResult
 from fem.hall.run import run_hall
 from fem.hall.site import run_hall_at_site
@@ -177,7 +177,7 @@ def test_motions_that_destroy_a_corner_are_counted_by_themselves_and_are_worse_t
 
 
 def test_of_what_stands_the_larger_rotation_is_weaker_and_what_does_not_rock_follows_the_static_rule():
-    runs, static = HallRuns(hall=SimpleNamespace(item=lambda *at: HallItem(*at, {}))), {}
+    runs = HallRuns(hall=SimpleNamespace(item=lambda *at: HallItem(*at, {})))
     for container, (outcome, ratio, use) in enumerate(
         [
             ("rest", 0.001, 0.8),
@@ -189,8 +189,8 @@ def test_of_what_stands_the_larger_rotation_is_weaker_and_what_does_not_rock_fol
         ]
     ):
         noted(runs, container, 0, outcome, ratio)
-        static[container] = {"utilisation_overturning": use}
-    assert weakest_first(runs, static) == [5, 4, 3, 1, 2, 0]
+        runs.static[container] = {"utilisation_overturning": use}
+    assert runs.weakest_first() == [5, 4, 3, 1, 2, 0]
 
 
 def test_equal_rows_are_computed_once_and_labels_cost_nothing(tmp_path, base):
