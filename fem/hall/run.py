@@ -17,7 +17,7 @@ from fem.batch.study import INTERRUPTED, Study, StudyOptions, hash_of, run_study
 from fem.batch.table import table_of_lines, table_text
 from fem.case.case import Case
 from fem.case.toml import toml_document
-from fem.hall.file import HallFile
+from fem.hall.file import HallFile, HallRow
 from fem.hall.page import hall_report
 from fem.hall.places import PICTURE, draw_places, geojson
 from fem.hall.plan import Hall, Inventory, plan_hall
@@ -143,11 +143,11 @@ def _compute(hall: Hall, begun: HallResult, results: ResultFolder, runner: Runne
     checked = sorted(runs.checked.items())
     results.write_text(CHECKS, table_text(CHECK_COLUMNS, ([k, *check.values()] for k, check in checked)))
     found = {number: runs.found(number) for number in runs.by_container}
-    order = runs.weakest_first()
-    return written(
-        results,
-        with_table(begun, hall.inventory, found, order, lambda row, k: hall.command(row, runs.governing(k))),
-    )
+
+    def command(row: HallRow, number: int) -> str:
+        return hall.command(row, runs.governing(number))
+
+    return written(results, with_table(begun, hall.inventory, found, runs.weakest_first(), command))
 
 
 def written(results: ResultFolder, result: HallResult) -> HallResult:

@@ -18,7 +18,7 @@ from fem.batch.study import FAILED, INTERRUPTED, StudyOptions, hash_of, run_stud
 from fem.batch.table import line_of, row_of, table_of_rows
 from fem.case.case import Case
 from fem.case.validation import CaseError
-from fem.hall.file import HallFile
+from fem.hall.file import HallFile, HallRow
 from fem.hall.plan import Inventory, take_inventory
 from fem.hall.result import AT_SITE, RESULT_COLUMNS, HallResult
 from fem.hall.run import begun_result, study_of, written
@@ -42,6 +42,7 @@ from fem.site_check.run import run_site, site_hash
 from mesh.errors import MeshError
 
 SITES, FOLDERS = "sites.csv", "sites"
+ASSESS = ("python", "-m", "fem", "assess")
 #: tables of a case that a verification takes from its site file
 OF_THE_SITE = ("motion", "vertical", "initial", "static", "solver", "output", "uncertainty", "joints")
 FIGURES = ("outcome", "margin", TURNED, SLIPPED, "motions_overturned", "motions_failed")
@@ -170,25 +171,13 @@ class _AtSite:
             for number, row, page in zip(numbers, rows, pages, strict=True)
         }
         flags = ["--allow-outside"] * self.outside
-        return written(
-            results,
-            with_table(
-                replace(begun, runs=len(numbers)),
-                inventory,
-                found,
-                sorted(numbers, key=lambda number: _weakness(found[number])),
-                lambda row, number: shlex.join(
-                    [
-                        "python",
-                        "-m",
-                        "fem",
-                        "assess",
-                        str(results.path / folders[number] / "site.toml"),
-                        *flags,
-                    ]
-                ),
-            ),
-        )
+
+        def command(row: HallRow, number: int) -> str:
+            return shlex.join([*ASSESS, str(results.path / folders[number] / "site.toml"), *flags])
+
+        order = sorted(numbers, key=lambda number: _weakness(found[number]))
+        begun = replace(begun, runs=len(numbers))
+        return written(results, with_table(begun, inventory, found, order, command))
 
     def _note(self, line: str) -> None:
         """Add a line of the log."""

@@ -366,24 +366,32 @@ def test_a_result_may_be_the_list_of_the_next_hall(tmp_path, base):
 def test_places_are_drawn_in_plan_and_written_as_geojson(tmp_path, base):
     """The picture has one mark a container, its class by outcome; formulas and mathematics in names stay text."""
     text = "name,width_m,lon,lat,note\n=A$x_,0.3,8.40,49.0,<b>\nB,3,8.41,49.0,\nbad,-1,8.42,49.0,\nnowhere,3,,,\n"
+    text += "far,3,200,49.0,\n"
     out = tmp_path / "out"
     result = run_hall(read_hall(listed(tmp_path, text)), load_case(base), out, checks="none")
     found = json.loads((out / "hall.geojson").read_text(encoding="utf-8"))
-    assert found["type"] == "FeatureCollection" and len(found["features"]) == 3
+    assert found["type"] == "FeatureCollection"
+    assert len(found["features"]) == 3  # no place beyond the globe
     first, _, bad = found["features"]
     assert first["geometry"] == {"type": "Point", "coordinates": [8.4, 49.0]}
     assert first["properties"]["name"] == "=A$x_" and first["properties"]["note"] == "<b>"
     assert (first["properties"]["outcome"], bad["properties"]["status"]) == ("overturned", "refused")
     east = [x for x, _, _ in plan_of(result)]
     assert east[1] - east[0] == pytest.approx(0.01 * 111.19e3 * 0.6561, rel=1e-3)  # cos 49 degrees
-    assert [class_of(row) for row in result.table] == ["overturned", UNKNOWN, "no outcome", UNKNOWN]
+    assert [class_of(row) for row in result.table] == [
+        "overturned",
+        UNKNOWN,
+        "no outcome",
+        UNKNOWN,
+        "no outcome",
+    ]
     destroyed = result.table[1] | {"outcome": "invalid"}
     assert class_of(destroyed) == INVALID
     assert INVALID in draw_places(replace(result, table=(result.table[0], destroyed)))
     drawn = (out / "figures" / "hall.svg").read_text(encoding="utf-8")
     assert "=A$x_" in drawn and "east of the middle" in drawn
     assert 'id="plan"' in (out / "report.html").read_text(encoding="utf-8")
-    without = re.sub(r"8\.4\d,49\.0", ",", text)
+    without = re.sub(r"(8\.4\d|200),49\.0", ",", text)
     run_hall(read_hall(listed(tmp_path, without)), load_case(base), out, checks="none")
     assert not (out / "hall.geojson").exists() and not (out / "figures").exists()
 
