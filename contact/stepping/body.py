@@ -65,6 +65,15 @@ class State(NamedTuple):
     numbers: FloatArray  #: all but the monitored points; the fields above are views of it
 
 
+class Ground(NamedTuple):
+    """The floor at one instant: displacement [m] and velocity [m/s], along x and upward."""
+
+    floor: float
+    floor_velocity: float
+    lift: float
+    lift_velocity: float
+
+
 def make_state(coordinates: int, points: int, monitors: int, boxes: int = 0) -> State:
     """Allocate a state for these numbers of coordinates, base points, monitored points and boxes of a loose stack."""
     shapes = shapes_of(State, **{"d": coordinates, "n": points, "N": boxes, "4N": 4 * boxes})
@@ -94,6 +103,18 @@ def implements(
     return register
 
 
+def passes_on(layer: type, *operations: Callable[..., Any]) -> None:
+    """Let a layer over a body, its field `body`, leave these operations to that body."""
+    for operation in operations:
+        _pass_on(layer, operation)
+
+
+def _pass_on(layer: type, operation: Callable[..., Any]) -> None:
+    @implements(operation, layer, inline=True)
+    def beneath(over: Any, *arguments: Any) -> Any:
+        return operation(over.body, *arguments)
+
+
 def weigh(body: Any, contact: Contact, old: State) -> None:
     """Set the stiffness of the contact points for a step that begins with `old`."""
     body.weigh(contact, old)
@@ -105,23 +126,13 @@ def predict(body: Any, scheme: Scheme, step: float, old: State, new: State) -> N
 
 
 def release(
-    body: Any,
-    scheme: Scheme,
-    step: float,
-    old: State,
-    new: State,
-    work: Workspace,
-    floor: float,
-    floor_velocity: float,
-    lift: float,
-    lift_velocity: float,
+    body: Any, scheme: Scheme, step: float, old: State, new: State, work: Workspace, ground: Ground
 ) -> None:
     """Base points without contact force, and their compliance, from the iterate in `new`.
 
-    Writes `work.free`, `work.free_velocity` (relative to the floor) and `work.compliance`. Displacement and velocity
-    of the floor: `floor` along x, `lift` upward.
+    Writes `work.free`, `work.free_velocity` (relative to the floor) and `work.compliance`.
     """
-    body.release(scheme, step, old, new, work, floor, floor_velocity, lift, lift_velocity)
+    body.release(scheme, step, old, new, work, ground)
 
 
 def respond(body: Any, scheme: Scheme, step: float, old: State, new: State, work: Workspace) -> float:

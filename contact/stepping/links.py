@@ -19,10 +19,10 @@ import numpy as np
 from numba.extending import overload
 
 from contact.arrays import FloatArray, IntArray
-from contact.interface.workspace import Contact, Workspace
+from contact.interface.workspace import Workspace
 from contact.jit import compiled, inlined, options_of_piece
 from contact.stepping import body as interface
-from contact.stepping.body import CENTRE_X, CENTRE_Z, State, implements, stands_loose
+from contact.stepping.body import CENTRE_X, CENTRE_Z, Ground, State, implements, passes_on, stands_loose
 from contact.stepping.ledger import CONTACT_DAMPING, CRUSHING
 from contact.stepping.observables import NEVER
 from contact.stepping.scheme import Scheme
@@ -42,6 +42,16 @@ class LinkedBody(NamedTuple):
 
     body: Any
     line: FloatArray  #: (k, 5), see `ALONG_X`
+
+
+passes_on(
+    LinkedBody,
+    interface.weigh,
+    interface.predict,
+    interface.observe,
+    interface.shift_velocity,
+    interface.prepared,
+)
 
 
 def make_lines(
@@ -116,34 +126,13 @@ def place_in(line: FloatArray, point: FloatArray) -> None:
 place_links = compiled(place_in)
 
 
-@implements(interface.weigh, LinkedBody, inline=True)
-def weigh(links: LinkedBody, contact: Contact, old: State) -> None:
-    """Stiffness of the contact points."""
-    interface.weigh(links.body, contact, old)
-
-
-@implements(interface.predict, LinkedBody, inline=True)
-def predict(links: LinkedBody, scheme: Scheme, step: float, old: State, new: State) -> None:
-    """Coordinates after `step`, for the last acceleration."""
-    interface.predict(links.body, scheme, step, old, new)
-
-
 @implements(interface.release, LinkedBody, inline=True)
 def release(
-    links: LinkedBody,
-    scheme: Scheme,
-    step: float,
-    old: State,
-    new: State,
-    work: Workspace,
-    floor: float,
-    floor_velocity: float,
-    lift: float,
-    lift_velocity: float,
+    links: LinkedBody, scheme: Scheme, step: float, old: State, new: State, work: Workspace, ground: Ground
 ) -> None:
     """Points at the end of the step without contact force, and their compliance."""
     turn_out(links.line, work.force)
-    interface.release(links.body, scheme, step, old, new, work, floor, floor_velocity, lift, lift_velocity)
+    interface.release(links.body, scheme, step, old, new, work, ground)
     turn_in(links.line, work.force)
     place_in(links.line, work.free)
     turn_in(links.line, work.free_velocity)
@@ -178,26 +167,6 @@ def complete(links: LinkedBody, new: State, floor: float, lift: float, lift_velo
     interface.complete(links.body, new, floor, lift, lift_velocity)
     turn_in(links.line, new.force)
     place_in(links.line, new.point)
-
-
-@implements(interface.observe, LinkedBody, inline=True)
-def observe(links: LinkedBody, state: State, floor: float, lift: float) -> None:
-    """Displacement and velocity of the monitored points."""
-    interface.observe(links.body, state, floor, lift)
-
-
-@implements(interface.shift_velocity, LinkedBody, inline=True)
-def shift_velocity(
-    links: LinkedBody, state: State, velocity: float, lift_velocity: float, spin: float
-) -> None:
-    """Subtract the velocities of a frame."""
-    interface.shift_velocity(links.body, state, velocity, lift_velocity, spin)
-
-
-@implements(interface.prepared, LinkedBody, inline=True)
-def prepared(links: LinkedBody, step: float) -> bool:
-    """Whether the body is prepared."""
-    return bool(interface.prepared(links.body, step))
 
 
 @inlined

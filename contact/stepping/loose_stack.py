@@ -29,8 +29,10 @@ from contact.stepping.body import (
     ROTATION,
     VELOCITY_X,
     VELOCITY_Z,
+    Ground,
     State,
     implements,
+    passes_on,
 )
 from contact.stepping.scheme import Scheme
 from contact.structs import struct
@@ -48,6 +50,9 @@ class LooseStack(NamedTuple):
     tolerance: float  #: error of a contact point at which an iteration stops [m]
     in_a_row: bool  #: the boxes are stacks beside one another
     corners: Workspace  #: scratch, of the corners
+
+
+passes_on(LooseStack, interface.observe, interface.shift_velocity, interface.prepared)
 
 
 @implements(interface.weigh, LooseStack, inline=True)
@@ -69,16 +74,7 @@ def predict(stack: LooseStack, scheme: Scheme, step: float, old: State, new: Sta
 
 @implements(interface.release, LooseStack, inline=True)
 def release(
-    stack: LooseStack,
-    scheme: Scheme,
-    step: float,
-    old: State,
-    new: State,
-    work: Workspace,
-    floor: float,
-    floor_velocity: float,
-    lift: float,
-    lift_velocity: float,
+    stack: LooseStack, scheme: Scheme, step: float, old: State, new: State, work: Workspace, ground: Ground
 ) -> None:
     """Contact points at the end of the step without contact force, and their compliance.
 
@@ -86,7 +82,7 @@ def release(
     the forces that are found.
     """
     corners = stack.corners
-    interface.release(stack.body, scheme, step, old, new, corners, floor, floor_velocity, lift, lift_velocity)
+    interface.release(stack.body, scheme, step, old, new, corners, ground)
     share_forces(stack.faces, work.force, corners.force)
     move_corners(corners)
     linearise_points(stack.faces, corners.point, work.free)
@@ -130,23 +126,3 @@ def complete(stack: LooseStack, new: State, floor: float, lift: float, lift_velo
             new.pose[row] += stack.mass[b] / total * new.boxes[b, row]
     new.pose[ROTATION] = new.boxes[0, ROTATION]
     new.pose[ANGULAR_VELOCITY] = new.boxes[0, ANGULAR_VELOCITY]
-
-
-@implements(interface.observe, LooseStack, inline=True)
-def observe(stack: LooseStack, state: State, floor: float, lift: float) -> None:
-    """Displacement and velocity of the monitored points."""
-    interface.observe(stack.body, state, floor, lift)
-
-
-@implements(interface.shift_velocity, LooseStack, inline=True)
-def shift_velocity(
-    stack: LooseStack, state: State, velocity: float, lift_velocity: float, spin: float
-) -> None:
-    """Subtract the velocities of a frame."""
-    interface.shift_velocity(stack.body, state, velocity, lift_velocity, spin)
-
-
-@implements(interface.prepared, LooseStack, inline=True)
-def prepared(stack: LooseStack, step: float) -> bool:
-    """Whether the body beneath is prepared."""
-    return bool(interface.prepared(stack.body, step))

@@ -26,6 +26,7 @@ from contact.stepping.body import (
     STRAIN,
     VELOCITY_X,
     VELOCITY_Z,
+    Ground,
     State,
     implements,
 )
@@ -98,17 +99,10 @@ def strain_points(body: ModalBody, position: FloatArray) -> None:
 
 @compiled(inline=True)
 def place_points(
-    body: ModalBody,
-    state: State,
-    work: Workspace,
-    floor: float,
-    floor_velocity: float,
-    lift: float,
-    lift_velocity: float,
-    cosine: float,
-    sine: float,
+    body: ModalBody, state: State, work: Workspace, ground: Ground, cosine: float, sine: float
 ) -> None:
     """Base points and their velocities at the iterate, relative to the floor; arms into `body.arm`."""
+    floor, floor_velocity, lift, lift_velocity = ground
     m = body.stiffness.size
     rate = state.velocity[2]
     strained, swung = body.moved[0], body.moved[1]
@@ -135,16 +129,7 @@ def place_points(
 
 @implements(interface.release, *MODAL, inline=True)
 def release(
-    body: ModalBody,
-    scheme: Scheme,
-    step: float,
-    old: State,
-    new: State,
-    work: Workspace,
-    floor: float,
-    floor_velocity: float,
-    lift: float,
-    lift_velocity: float,
+    body: ModalBody, scheme: Scheme, step: float, old: State, new: State, work: Workspace, ground: Ground
 ) -> None:
     """Base points at the end of the step without contact force, and their compliance."""
     m = body.stiffness.size
@@ -153,7 +138,7 @@ def release(
     inverse = body.inverse[slot]
     now, before = 1.0 - scheme.alpha_f, scheme.alpha_f
     cosine, sine = math.cos(new.position[2]), math.sin(new.position[2])
-    place_points(body, new, work, floor, floor_velocity, lift, lift_velocity, cosine, sine)
+    place_points(body, new, work, ground, cosine, sine)
     for j in range(3 + m):
         force = before * (old.external[j] - old.internal[j])
         if j == 0:

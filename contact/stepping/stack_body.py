@@ -17,7 +17,7 @@ from contact.jit import compiled, inlined
 from contact.layout import exchanging, row_of, shapes_of
 from contact.stepping import body as interface
 from contact.stepping import modal_kernels  # noqa: F401 - registers the operations of a modal body
-from contact.stepping.body import State, implements
+from contact.stepping.body import Ground, State, implements
 from contact.stepping.loose_stack import LooseStack
 from contact.stepping.modal_body import STEP_SLOTS, ModalBody, by_modes
 from contact.stepping.scheme import Scheme
@@ -201,16 +201,7 @@ def predict(stack: StackBody, scheme: Scheme, step: float, old: State, new: Stat
 
 @implements(interface.release, StackBody, inline=True)
 def release(
-    stack: StackBody,
-    scheme: Scheme,
-    step: float,
-    old: State,
-    new: State,
-    work: Workspace,
-    floor: float,
-    floor_velocity: float,
-    lift: float,
-    lift_velocity: float,
+    stack: StackBody, scheme: Scheme, step: float, old: State, new: State, work: Workspace, ground: Ground
 ) -> None:
     """Corners at the end of the step without contact force, and their compliance."""
     for b in range(stack.energy.shape[0]):
@@ -221,10 +212,7 @@ def release(
             state_of(stack, old, b),
             state_of(stack, new, b),
             work_of(work, b),
-            floor,
-            floor_velocity,
-            lift,
-            lift_velocity,
+            ground,
         )
 
 

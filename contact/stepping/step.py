@@ -19,6 +19,7 @@ from contact.stepping.body import (
     POTENTIAL,
     ROTATION,
     STRAIN,
+    Ground,
     State,
     complete,
     predict,
@@ -210,6 +211,7 @@ def attempt(body: Any, run: RunState, step: float) -> int:
     ):  # else it stays where it is, and the call would cost as much as a tenth of a step
         run.lift[1, 0], run.lift[1, 1], run.lift[1, 2] = rare_motion(run.problem.vertical, clock.time + step)
     lift, lift_velocity = run.lift[1, 0], run.lift[1, 1]
+    ground = Ground(floor, floor_velocity, lift, lift_velocity)
     slope = scheme.newmark_gamma / (scheme.newmark_beta * step)
     rebase_acceleration(scheme, old, clock.lag_step - step)
     clock.lag_step = step
@@ -229,7 +231,7 @@ def attempt(body: Any, run: RunState, step: float) -> int:
     rolls = contact.rolling_time > 0.0
     clock.rolling = rolling_share(run, step) if rolls else 0.0
     for iteration in range(ITERATION_LIMIT):
-        release(body, scheme, step, old, new, work, floor, floor_velocity, lift, lift_velocity)
+        release(body, scheme, step, old, new, work, ground)
         indent(contact, work.free, old.crushed)
         if rolls:
             push_rolling(run, clock.rolling, slope)

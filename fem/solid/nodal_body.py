@@ -15,7 +15,7 @@ from scipy.sparse import bsr_array, csr_array
 
 from contact.interface.equilibrium import Stance
 from contact.interface.workspace import Contact, Workspace
-from contact.stepping.body import State
+from contact.stepping.body import Ground, State
 from contact.stepping.integrator import UNPREPARED, advance, enter_floor_frame_compiled
 from contact.stepping.links import LinkedBody
 from contact.stepping.loose_stack import LooseStack
@@ -170,21 +170,10 @@ class FullBody:
         nodal_kernels.predict(self.nodal, scheme, step, old, new)
 
     def release(
-        self,
-        scheme: Scheme,
-        step: float,
-        old: State,
-        new: State,
-        work: Workspace,
-        floor: float,
-        floor_velocity: float,
-        lift: float,
-        lift_velocity: float,
+        self, scheme: Scheme, step: float, old: State, new: State, work: Workspace, ground: Ground
     ) -> None:
         """See `contact.stepping.body.release`."""
-        nodal_kernels.release(
-            self.nodal, scheme, step, old, new, work, floor, floor_velocity, lift, lift_velocity
-        )
+        nodal_kernels.release(self.nodal, scheme, step, old, new, work, ground)
 
     def respond(self, scheme: Scheme, step: float, old: State, new: State, work: Workspace) -> float:
         """See `contact.stepping.body.respond`; the error is the residual over its tolerance."""

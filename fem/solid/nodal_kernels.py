@@ -26,6 +26,7 @@ from contact.stepping.body import (
     STRAIN,
     VELOCITY_X,
     VELOCITY_Z,
+    Ground,
     State,
     implements,
 )
@@ -197,18 +198,10 @@ def predict(body: NodalBody, scheme: Scheme, step: float, old: State, new: State
 @compiled(sources=SOURCES)
 @implements(interface.release, NodalBody)
 def release(
-    body: NodalBody,
-    scheme: Scheme,
-    step: float,
-    old: State,
-    new: State,
-    work: Workspace,
-    floor: float,
-    floor_velocity: float,
-    lift: float,
-    lift_velocity: float,
+    body: NodalBody, scheme: Scheme, step: float, old: State, new: State, work: Workspace, ground: Ground
 ) -> None:
     """Base points at the end of the step without contact force, and their compliance."""
+    floor, floor_velocity, lift, lift_velocity = ground
     slot = slot_of(body, step)
     if body.known[0] == 0:
         unbalanced(body, scheme, old, new)

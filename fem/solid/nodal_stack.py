@@ -16,7 +16,7 @@ from contact.interface.stacking import stacked
 from contact.interface.workspace import Contact, Workspace, make_workspace
 from contact.jit import compiled
 from contact.stepping import body as interface
-from contact.stepping.body import State, implements
+from contact.stepping.body import Ground, State, implements
 from contact.stepping.integrator import advance, enter_floor_frame
 from contact.stepping.links import LinkedBody
 from contact.stepping.loose_stack import LooseStack
@@ -78,16 +78,7 @@ def predict(stack: NodalStack, scheme: Scheme, step: float, old: State, new: Sta
 @compiled(sources=SOURCES)
 @implements(interface.release, NodalStack)
 def release(
-    stack: NodalStack,
-    scheme: Scheme,
-    step: float,
-    old: State,
-    new: State,
-    work: Workspace,
-    floor: float,
-    floor_velocity: float,
-    lift: float,
-    lift_velocity: float,
+    stack: NodalStack, scheme: Scheme, step: float, old: State, new: State, work: Workspace, ground: Ground
 ) -> None:
     """Corners at the end of the step without contact force, and their compliance."""
     for b in range(len(stack.boxes)):
@@ -98,10 +89,7 @@ def release(
             state_of(stack, old, b),
             state_of(stack, new, b),
             work_of(work, b),
-            floor,
-            floor_velocity,
-            lift,
-            lift_velocity,
+            ground,
         )
 
 

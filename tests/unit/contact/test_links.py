@@ -48,7 +48,7 @@ def released(
         error = interface.respond(body, scheme, step, old, new, work)
         interface.complete(body, new, 0.05, 0.01, 0.0)
         return float(error)
-    interface.release(body, scheme, step, old, new, work, 0.05, 0.0, 0.01, 0.0)
+    interface.release(body, scheme, step, old, new, work, interface.Ground(0.05, 0.0, 0.01, 0.0))
     return 0.0
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from contact.interface.workspace import Workspace, make_workspace
-from contact.stepping.body import KINETIC, POTENTIAL, STRAIN, State, make_state
+from contact.stepping.body import KINETIC, POTENTIAL, STRAIN, Ground, State, make_state
 from contact.stepping.modal_body import ModalBody, make_modal_body
 from contact.stepping.modal_kernels import complete, gather_force, observe, predict, release, respond
 from contact.stepping.scheme import Scheme, generalised_alpha, newmark
@@ -158,7 +158,7 @@ def take(
     work.force[:] = force
     error = math.inf
     for _ in range(iterations):
-        release(body, scheme, STEP, old, new, work, 0.03, 0.2, 0.0, 0.0)
+        release(body, scheme, STEP, old, new, work, Ground(0.03, 0.2, 0.0, 0.0))
         error = respond(body, scheme, STEP, old, new, work)
     complete(body, new, 0.03, 0.0, 0.0)
     return new, work, error
@@ -245,7 +245,7 @@ def test_the_compliance_follows_a_change_of_step():
     found = []
     for step in (1e-3, 2e-4, 1e-3):
         predict(body, scheme, step, old, new)
-        release(body, scheme, step, old, new, work, 0.0, 0.0, 0.0, 0.0)
+        release(body, scheme, step, old, new, work, Ground(0.0, 0.0, 0.0, 0.0))
         found.append(work.compliance.copy())
     assert found[0] == pytest.approx(found[2], rel=1e-3)
     # inertia alone: beta h^2/m; with modes besides it lies between the two limits

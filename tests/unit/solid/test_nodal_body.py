@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.sparse.linalg import spsolve
 
+from contact.stepping.body import Ground
 from fem.case.case import load_case, read_case
 from fem.model.model import build_model
 from fem.run.recorder import Recorder
@@ -100,7 +101,7 @@ def test_an_iterate_that_has_run_away_is_never_taken_for_converged():
     body.prepare(run.problem.scheme, STEP)
     body.predict(run.problem.scheme, STEP, run.old, run.attempt.new)
     run.attempt.new.position[::3] = math.nan
-    body.release(run.problem.scheme, STEP, run.old, run.attempt.new, run.work, 0.0, 0.0, 0.0, 0.0)
+    body.release(run.problem.scheme, STEP, run.old, run.attempt.new, run.work, Ground(0.0, 0.0, 0.0, 0.0))
     assert body.respond(run.problem.scheme, STEP, run.old, run.attempt.new, run.work) == math.inf
 
 
