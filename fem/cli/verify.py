@@ -28,14 +28,15 @@ def verify(
     """Compute the verification checks; writes verify.json and verify.html; ends with 3 if one row fails."""
     suite = importlib.import_module("fem.evidence.verification.suite")
     pages = importlib.import_module("fem.evidence.verification.page")
-    suite.chosen_checks(quick=quick, topics=topic)  # refuses an unknown topic before a folder is made
+    chosen = suite.chosen_checks(quick=quick, topics=topic)  # refuses an unknown topic before a folder is made
 
     def report(number: int, count: int, check: Any) -> None:
         if not quiet:
             print(f"[{number}/{count}] {check.topic}: {check.title}", file=sys.stderr, flush=True)
 
-    if not (quiet or topic):
-        seconds = QUICK_S if quick else ALL_S
+    if not quiet:
+        share = len(chosen) / len(suite.chosen_checks(quick=quick, topics=()))
+        seconds = share * (QUICK_S if quick else ALL_S)
         say_expected(ScreenReporter(), "the checks, once kernels are compiled", seconds)
     return compute_into(
         out,
