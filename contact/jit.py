@@ -113,7 +113,7 @@ class Kernel(CPUDispatcher):
         The caller guarantees that instances of a class have fields of one type, but for a field `body`, whose class may
         differ: other fields would be misread.
         """
-        classes = (*map(type, arguments), *(type(getattr(one, "body", None)) for one in arguments))
+        classes = (*map(type, arguments), *(type(getattr(argument, "body", None)) for argument in arguments))
         code = self._code_by_class.get(classes)
         if code is not None:
             return code(*arguments)

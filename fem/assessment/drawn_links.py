@@ -62,5 +62,5 @@ def drawn_links(case: Case, broken_s: Sequence[float] = ()) -> tuple[DrawnLink, 
 
 def held_nodes(links: Sequence[DrawnLink], nodes: FloatArray) -> IntArray:
     """The node nearest to the point of each link, (k,); `nodes`: of the undeformed containers, (n, 2) [m]."""
-    places = [((1.0 - INWARD) * one.x, one.height) for one in links]
+    places = [((1.0 - INWARD) * link.x, link.height) for link in links]
     return np.array([np.hypot(*(nodes - place).T).argmin() for place in places], dtype=np.int64)

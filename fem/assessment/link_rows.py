@@ -8,8 +8,8 @@ from fem.case.neighbours import NeighbourTable
 def link_rows(case: Case) -> list[tuple[str, str]]:
     """Each stop, tie and neighbour of a case: name and what it is."""
     return [
-        *(("stop", _stop(one)) for one in case.stop),
-        *(("tie", _tie(one)) for one in case.tie),
+        *(("stop", _stop(stop)) for stop in case.stop),
+        *(("tie", _tie(tie)) for tie in case.tie),
         *(("neighbour", _beside(*pair)) for pair in zip(case.neighbour, case.row[1:], strict=True)),
     ]
 

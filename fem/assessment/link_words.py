@@ -39,8 +39,8 @@ def links_in_words(result: RunResult) -> str:
     beside = enumerate((result.verdict or Verdict()).neighbours or (), 1)
     return "; ".join(
         [
-            *(_of_stop(one) for one in stops),
-            *(_of_tie(one) for one in ties),
+            *(_of_stop(stop) for stop in stops),
+            *(_of_tie(tie) for tie in ties),
             *(_of_neighbour(number, one) for number, one in beside),
         ]
     )
@@ -49,9 +49,9 @@ def links_in_words(result: RunResult) -> str:
 def fall_in_row(verdict: Verdict) -> str:
     """Who overturned first in a row, and when; empty where there are no neighbours or none of them did."""
     fallen = [
-        (one.overturned_at_s, number, one)
-        for number, one in enumerate(verdict.neighbours or (), 1)
-        if one.overturned_at_s is not None
+        (neighbour.overturned_at_s, number, neighbour)
+        for number, neighbour in enumerate(verdict.neighbours or (), 1)
+        if neighbour.overturned_at_s is not None
     ]
     if not fallen:
         return ""

@@ -93,7 +93,8 @@ def box_rows(result: RunResult) -> list[tuple[str, ...]]:
     for number, (box, reach) in enumerate(zip(verdict.boxes or (), _reaches(verdict), strict=True), 1):
         of_band = f"in {reach.fell} of {members} runs" if reach and reach.fell else ""
         figures = (
-            one.text(box[key], reach[key] if reach else None, bare=True) for key, one in BOX_FIGURES.items()
+            figure.text(box[key], reach[key] if reach else None, bare=True)
+            for key, figure in BOX_FIGURES.items()
         )
         rows.append((str(number), *figures, ", ".join(filter(None, ("fell" if box.fell else "", of_band)))))
     return rows
@@ -111,7 +112,7 @@ def box_table(result: RunResult) -> Iterator[RenderableType]:
     if not rows:
         return
     shown = _shown((result.verdict or Verdict()).boxes or ())
-    heads = (f">{one.words} {one.unit.name}" for one in BOX_FIGURES.values())
+    heads = (f">{figure.words} {figure.unit.name}" for figure in BOX_FIGURES.values())
     table = titled_table("Boxes, from the floor up", "box", *heads, "")
     for k in shown:
         table.add_row(*(cell.replace(" (", "\n(").replace(", ", ",\n") for cell in rows[k]))

@@ -118,8 +118,8 @@ def plastic_corner(verdict: Verdict) -> str:
 
 def largest_bolt_forces(joints: Sequence[JointDemand]) -> tuple[float, float]:
     """Largest tension along an edge, of all joints and both sides, and largest shear [N]."""
-    tension = max(max(one.bolt_tension_left_N, one.bolt_tension_right_N) for one in joints)
-    return tension, max(one.bolt_shear_N for one in joints)
+    tension = max(max(joint.bolt_tension_left_N, joint.bolt_tension_right_N) for joint in joints)
+    return tension, max(joint.bolt_shear_N for joint in joints)
 
 
 def bolt_forces(result: RunResult) -> str:

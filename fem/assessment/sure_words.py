@@ -47,7 +47,7 @@ def sureness_in_words(result: RunResult) -> str:
             f"Sure: the utilisation of the static rule is {used:.2f} and nothing else acts, so this motion was not "
             "repeated with other inputs."
         )
-    tried = [one for one in band.members[1:] if one.outcome is not None]
+    tried = [member for member in band.members[1:] if member.outcome is not None]
     if not tried:
         return (
             "Nothing was varied: all inputs are held."
@@ -72,34 +72,36 @@ def _lands_in_a_row(verdict: Verdict) -> bool:
     """Whether containers of a row rocked: their restitution has no range, as that of one alone has."""
     beside = verdict.neighbours or ()
     return bool(beside) and any(
-        outcome in ROCKING for outcome in (verdict.outcome, *(one.outcome for one in beside))
+        outcome in ROCKING for outcome in (verdict.outcome, *(neighbour.outcome for neighbour in beside))
     )
 
 
 def _doubts(verdict: Verdict, band: Band, tried: Sequence[ChangedRun]) -> Iterator[str]:
     """Why it is not sure whether it stands."""
     own = band.members[0]
-    crossing = [one for one in tried if ending(one) != ending(own) and not numerical(one)]
-    draws = [one for one in tried if one.kind == "draw"]
+    crossing = [member for member in tried if ending(member) != ending(own) and not numerical(member)]
+    draws = [member for member in tried if member.kind == "draw"]
     if crossing:
-        drawn = [one for one in draws if one in crossing]
-        alone = [one for one in crossing if one.kind != "draw"]
+        drawn = [draw for draw in draws if draw in crossing]
+        alone = [member for member in crossing if member.kind != "draw"]
         for kind, does in DOES.items():
-            if alike := [one for one in alone if ending(one) == kind]:
+            if alike := [member for member in alone if ending(member) == kind]:
                 yield f"{does} with {changes_in_words(alike)}"
         if drawn:
             yield _counted(draws) + _value_that_decides(draws)
         elif draws:
-            undrawn = any(not set(one.values or {}) <= set(draws[0].values or {}) for one in alone)
+            undrawn = any(not set(member.values or {}) <= set(draws[0].values or {}) for member in alone)
             yield f"not in {len(draws)} draws of {'the other' if undrawn else 'all'} inputs at once"
     if verdict.numerically_unsure:
-        verb = next(DOES[ending(one)] for one in tried if numerical(one) and ending(one) != ending(own))
+        verb = next(
+            DOES[ending(member)] for member in tried if numerical(member) and ending(member) != ending(own)
+        )
         yield f"numerically: it {verb} with steps ten times as accurate"
     if below_uplift(band.members):
         does = "rests" if rests_on_stiff_floor(band.members) else "still rocks"
         yield f"it is below uplift of a rigid block, and on a floor thirty times as stiff it {does}"
-    if failed := [one for one in band.members if one.outcome is None]:
-        alone = [one for one in failed if one.kind != "draw"]
+    if failed := [member for member in band.members if member.outcome is None]:
+        alone = [member for member in failed if member.kind != "draw"]
         of_them = f", among them with {changes_in_words(alone)}" if alone else ""
         yield f"{len(failed)} of {len(band.members) - 1} variations have no outcome{of_them}"
     if band.left_out:
@@ -108,7 +110,7 @@ def _doubts(verdict: Verdict, band: Band, tried: Sequence[ChangedRun]) -> Iterat
 
 def changes_in_words(runs: Sequence[ChangedRun]) -> str:
     """What was changed in the first of these runs, and how many more there are."""
-    words = " and with ".join(in_words(one.values or {}) for one in runs[:MOST_NAMED])
+    words = " and with ".join(in_words(run.values or {}) for run in runs[:MOST_NAMED])
     more = len(runs) - MOST_NAMED
     return words if more <= 0 else f"{words} and {more} other change{'s' * (more > 1)}"
 
@@ -117,7 +119,7 @@ def _counted(draws: Sequence[ChangedRun]) -> str:
     """How many draws overturned, and how many destroyed a corner, with the intervals of their shares."""
     parts = []
     for kind, words in ((Ending.OVERTURNED, "overturned"), (Ending.INVALID, "a corner destroyed")):
-        count = sum(ending(one) == kind for one in draws)
+        count = sum(ending(draw) == kind for draw in draws)
         if count or (kind == Ending.OVERTURNED and all(map(stands, draws))):
             low, high = binomial_interval(count, len(draws), CONFIDENCE)
             parts.append(
@@ -132,11 +134,13 @@ def _value_that_decides(draws: Sequence[ChangedRun]) -> str:
     Draws that have nothing to do with an input leave the k largest (or smallest) of n values to s draws of one kind
     with the probability C(s, k)/C(n, k); that of all inputs and sides together is below 1 - CONFIDENCE.
     """
-    keys, valid = draws[0].values or {}, all(ending(one) != Ending.INVALID for one in draws)
+    keys, valid = draws[0].values or {}, all(ending(draw) != Ending.INVALID for draw in draws)
     least: tuple[float, str] = (1.0 - CONFIDENCE, "")
     for key in keys:
         known = [
-            (value, stands(one)) for one in draws if isinstance(value := (one.values or {}).get(key), float)
+            (value, stands(draw))
+            for draw in draws
+            if isinstance(value := (draw.values or {}).get(key), float)
         ]
         for standing, words in ((True, "stand"), (False, "overturn" if valid else "do not stand")):
             same = [value for value, stood in known if stood is standing]
@@ -157,11 +161,11 @@ def _value_that_decides(draws: Sequence[ChangedRun]) -> str:
 def _other_regime(verdict: Verdict, band: Band) -> str:
     """What variations do otherwise and what decides, with the ranges of slip and rotation."""
     own, own_fell, on = band.members[0].outcome, band.members[0].fell_in_row, _depending(verdict)
-    others = {one.outcome for one in band.members if one.outcome is not None} - {own}
+    others = {member.outcome for member in band.members if member.outcome is not None} - {own}
     if own == Outcome.OVERTURNED:
         another = "container" if own_fell else "box"
         return f"Another {another} may fall first{on and f', depending on {on}'}"
-    may = _may(Outcome(own), {Outcome(one) for one in others}) if own else ""
+    may = _may(Outcome(own), {Outcome(other) for other in others}) if own else ""
     if may:
         lead = f"It may {may}{on and f', depending on {on}'}"
     else:

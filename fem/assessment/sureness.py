@@ -47,25 +47,25 @@ def judged(
         width: of the container [m].
     """
     own, others = members[0], members[1:]
-    levels = [difference(own, one, width) for one in others]
+    levels = [difference(own, other, width) for other in others]
     numerically = OTHER_END in (level for level, one in zip(levels, changes, strict=True) if numerical(one))
     missing = [one for one in left_out if one.kind != "draw"]
-    no_outcome = any(one.outcome is None for one in others)
+    no_outcome = any(other.outcome is None for other in others)
     destroyed = own.outcome == Outcome.INVALID
     if no_outcome or missing or OTHER_END in levels or below_uplift(members) or destroyed:
         sure = UNSURE
     else:
         sure = REGIME_UNSURE if OTHER_REGIME in levels else SURE
-    outcomes = {one.outcome for one in members}
-    alike = [one for one in members if ending(one) == ending(own) and one.outcome is not None]
-    draws = [one for one in others if one.kind == "draw"]
-    ranges: dict[str, Any] = {key: _reach(one[key] for one in alike) for key in keys_of(Place.BAND)}
+    outcomes = {member.outcome for member in members}
+    alike = [member for member in members if ending(member) == ending(own) and member.outcome is not None]
+    draws = [other for other in others if other.kind == "draw"]
+    ranges: dict[str, Any] = {key: _reach(member[key] for member in alike) for key in keys_of(Place.BAND)}
     band = Band(
         outcomes=tuple(outcome for outcome in Outcome if outcome in outcomes),
         unsure=sure == UNSURE,
         draws=len(draws),
-        draws_overturned=sum(one.outcome == Outcome.OVERTURNED for one in draws),
-        draws_invalid=sum(one.outcome == Outcome.INVALID for one in draws),
+        draws_overturned=sum(draw.outcome == Outcome.OVERTURNED for draw in draws),
+        draws_invalid=sum(draw.outcome == Outcome.INVALID for draw in draws),
         left_out=tuple(one.label for one in missing),
         draws_left_out=len(left_out) - len(missing),
         members=tuple(members),
@@ -85,13 +85,15 @@ def judged(
 
 def below_uplift(members: Sequence[ChangedRun]) -> bool:
     """True if the run rocks although a rigid block on a rigid floor would rest; a member has a stiff floor."""
-    return bool(members) and members[0].outcome in ROCKING and any(one.kind == "floor" for one in members)
+    return (
+        bool(members) and members[0].outcome in ROCKING and any(member.kind == "floor" for member in members)
+    )
 
 
 def rests_on_stiff_floor(members: Sequence[ChangedRun]) -> bool:
     """True if on a practically rigid floor the container rests, or slides without rocking."""
     still = (Outcome.REST, Outcome.SLIDE)
-    return any(one.kind == "floor" and one.outcome in still for one in members)
+    return any(member.kind == "floor" and member.outcome in still for member in members)
 
 
 def static_use(result: RunResult) -> float | None:
@@ -157,9 +159,9 @@ def _reach_of_boxes(
     alike: Sequence[ChangedRun], members: Sequence[ChangedRun]
 ) -> tuple[BoxReach, ...] | None:
     """The ranges of each box over the members that end as the run does, and in how many of all it fell first."""
-    fell = Counter(one.fell_box for one in members)
+    fell = Counter(member.fell_box for member in members)
     ranges = []
-    for number, same in enumerate(zip(*(one.boxes for one in alike if one.boxes), strict=True), 1):
+    for number, same in enumerate(zip(*(member.boxes for member in alike if member.boxes), strict=True), 1):
         values = {name: [box[name] for box in same] for name in BOX_FIGURES}
         reach = {name: (min(some), max(some)) for name, some in values.items()}
         ranges.append(BoxReach(fell=fell[number], **reach))
@@ -174,12 +176,12 @@ def deciding_inputs(levels: Sequence[int], changes: Sequence[InputChange]) -> It
     """
     named: list[str] = []
     for level in (OTHER_END, OTHER_REGIME):
-        differing = [one for one, reached in zip(changes, levels, strict=True) if reached == level]
+        differing = [change for change, reached in zip(changes, levels, strict=True) if reached == level]
         smallest: dict[str, float] = {}
         for kind in (("one", "floor"), ("pair",)):
-            for one in differing if not smallest else ():
-                if one.kind in kind:
-                    smallest |= {key: min(one.share, smallest.get(key, 1.0)) for key in one.inputs}
+            for change in differing if not smallest else ():
+                if change.kind in kind:
+                    smallest |= {key: min(change.share, smallest.get(key, 1.0)) for key in change.inputs}
         keys = sorted(smallest, key=lambda key: (smallest[key], ORDER.get(key, -1)))
         named += keys or _drawn_together(changes, [one == level for one in levels])
     yield from dict.fromkeys(named)
@@ -187,7 +189,7 @@ def deciding_inputs(levels: Sequence[int], changes: Sequence[InputChange]) -> It
 
 def _drawn_together(changes: Sequence[InputChange], differs: Sequence[bool]) -> list[str]:
     """Inputs whose places in their ranges differ most between draws that differ from the run and the others."""
-    draws = [(one, other) for one, other in zip(changes, differs, strict=True) if one.kind == "draw"]
+    draws = [(change, other) for change, other in zip(changes, differs, strict=True) if change.kind == "draw"]
     if not any(differ for _, differ in draws):
         return []
     places = np.array([one.place for one, _ in draws])

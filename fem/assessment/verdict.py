@@ -161,7 +161,7 @@ def verdict_from(
 
 def _recorded(figures: Mapping[str, Shown], **records: Any) -> dict[str, Any]:
     """The figures that the stepper records, by key; of an event that has not happened, None."""
-    sources = {key: one.of.split(".") for key, one in figures.items() if one.of}
+    sources = {key: figure.of.split(".") for key, figure in figures.items() if figure.of}
     values = {key: getattr(records[record], name) for key, (record, name) in sources.items()}
     return {key: _finite(value) if figures[key].unit is SECONDS else value for key, value in values.items()}
 
@@ -185,11 +185,11 @@ def neighbour_results(model: Model, stresses: Sequence[float]) -> tuple[Neighbou
     `stresses`: the largest of each, of a reduced model [Pa].
     """
     found = []
-    for number, one in enumerate(model.case.neighbour, 1):
+    for number, neighbour in enumerate(model.case.neighbour, 1):
         joint, gap = _numbers(model.run.joints[number:]), _numbers(model.run.links[number - 1 :])
         found.append(
             NeighbourResult(
-                side=one.side,
+                side=neighbour.side,
                 outcome=_outcome_in_row(joint),
                 max_rotation_rad=joint.max_rotation,
                 rotation_ratio=relative_rotation(joint.max_rotation, joint.angle),
@@ -226,7 +226,7 @@ def _of_row(model: Model, outcome: Outcome, neighbours: Sequence[NeighbourResult
         "fell_in_row": (f"neighbour {first}" if first else "container")
         if np.isfinite(fell_at[first])
         else None,
-        "row_outcomes": ", ".join([own, *(one.outcome for one in neighbours)]),
+        "row_outcomes": ", ".join([own, *(neighbour.outcome for neighbour in neighbours)]),
     }
 
 
@@ -245,7 +245,7 @@ def _of_links(model: Model, neighbours: Sequence[NeighbourResult]) -> dict[str, 
         "link_velocity_m_s": float(links["largest_closing_velocity"].max()),
         "link_broken_at_s": _finite(float(links["broken_at"].min())),
         "link_slack_m": float(whole["least_gap"].min()) if whole.size else None,
-        "neighbour_rotation_ratio": max((one.rotation_ratio for one in neighbours), default=None),
+        "neighbour_rotation_ratio": max((neighbour.rotation_ratio for neighbour in neighbours), default=None),
     }
 
 
@@ -353,8 +353,10 @@ def numerics_of(model: Model, stepping_cpu: float) -> Numerics:
         contact_frequency_Hz=contact_frequency(mass, stiffness),
         static_penetration_m=mass * model.case.gravity_m_s2 / stiffness,
         max_penetration_m=float(run.track[0].max_penetration),
-        elastic_frequencies_Hz=tuple(sorted(f for one in spectra for f in one[:elastic].tolist())),
-        attachment_frequencies_Hz=tuple(sorted(f for one in spectra for f in one[elastic:].tolist())),
+        elastic_frequencies_Hz=tuple(sorted(f for spectrum in spectra for f in spectrum[:elastic].tolist())),
+        attachment_frequencies_Hz=tuple(
+            sorted(f for spectrum in spectra for f in spectrum[elastic:].tolist())
+        ),
         corner_force_window_s=FORCE_WINDOW / run.problem.control.frequency_parameter,
         contents_filter=CONTENTS_FILTER,
         contents_filter_Hz=model.case.output.contents_filter_Hz,

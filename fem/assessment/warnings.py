@@ -163,8 +163,8 @@ def rest_proves_nothing(result: run_result.RunResult, case: Case) -> str | None:
 def _largest_stress(verdict: run_result.Verdict) -> tuple[float | None, str]:
     """Largest von Mises stress of all that stands in the row [Pa], and in which neighbour."""
     every = [(verdict.max_von_mises_Pa, "")]
-    for number, one in enumerate(verdict.neighbours or (), 1):
-        every.append((one.max_von_mises_Pa, f" in neighbour {number}"))
+    for number, neighbour in enumerate(verdict.neighbours or (), 1):
+        every.append((neighbour.max_von_mises_Pa, f" in neighbour {number}"))
     return max(every, key=lambda one: one[0] or 0.0)
 
 

@@ -87,8 +87,8 @@ def is_rising(axis: Axis, trials: Iterable[Trial]) -> bool:
     if axis.key in STRENGTHS:
         return True
     kinds: dict[float, set[Ending]] = defaultdict(set)
-    for one in trials:
-        kinds[one.value].add(one.kind)
+    for trial in trials:
+        kinds[trial.value].add(trial.kind)
     return not (Ending.OVERTURNED in kinds[axis.values[0]] and kinds[axis.values[-1]] == {Ending.STANDING})
 
 
@@ -105,7 +105,7 @@ def answer_of(trials: Sequence[Trial], *, rising: bool, limit_slip: float | None
         beyond = limit_slip is not None and one.kind == Ending.STANDING and (one.slip or 0.0) > limit_slip
         return beyond or one.kind in NOT_STANDING
 
-    lines = len({one.line for one in trials})
+    lines = len({trial.line for trial in trials})
     at: dict[float, list[Trial]] = defaultdict(list)
     for one in trials:
         at[one.value].append(one)
@@ -205,7 +205,7 @@ def ends_in_words(answer: Answer, axis: Axis, *, bare: bool = False) -> tuple[st
     ends = (answer.stood_to, answer.overturned_from)
     words = ("", "")
     for figures in range(3, MOST_FIGURES + 1):
-        stood, fell = ("" if one is None else in_words(axis, [one], figures, bare=bare) for one in ends)
+        stood, fell = ("" if end is None else in_words(axis, [end], figures, bare=bare) for end in ends)
         words = stood, fell
         if stood != fell:
             break
@@ -214,7 +214,7 @@ def ends_in_words(answer: Answer, axis: Axis, *, bare: bool = False) -> tuple[st
 
 def ranges_in_words(ranges: Sequence[Range], axis: Axis, *, bare: bool = False) -> str:
     """Ranges of values: "0.5 to 0.55 g, 0.61 g"; those after the fourth are counted."""
-    shown = [in_words(axis, sorted({*one}), bare=bare) for one in ranges[:MOST_RANGES]]
+    shown = [in_words(axis, sorted({*span}), bare=bare) for span in ranges[:MOST_RANGES]]
     more = len(ranges) - len(shown)
     return ", ".join(shown) + (f" and {more} more" if more else "")
 

@@ -155,7 +155,7 @@ def field_of(key: str) -> FieldInfo:
             return TOP[name]
         owners = [known for known, model in NAMED.items() if name in known_keys(model)]
         if owners:
-            wanted = " or ".join(f"{one}.{name}" for one in owners)
+            wanted = " or ".join(f"{owner}.{name}" for owner in owners)
             raise AxisError(f"is no key before the first table; write {wanted!r}")
         keys = [f"{known}.{one}" for known, model in NAMED.items() for one in known_keys(model)]
         raise AxisError(f"is no key of a case file{hint(name, [*TOP, *keys])}")
@@ -190,7 +190,7 @@ def read_axis(key: str, given: Any) -> Axis:
             "for instance [0.2, 0.3] or { from = 1.0, to = 4.0, count = 13 }"
         )
     kinds = (field.annotation, *get_args(field.annotation))
-    if any(one is int or get_args(one)[:1] == (int,) for one in kinds):
+    if any(kind is int or get_args(kind)[:1] == (int,) for kind in kinds):
         values = tuple(_whole(value) for value in values)
     for value in values:
         _check(field, quantity, unit, value)
@@ -210,7 +210,7 @@ def read_motion_files(given: Any) -> tuple[tuple[str, ...], dict[str, tuple[str 
         raise AxisError(
             f'must be a list of files or pairs, such as ["a.at2", ["b_h.at2", "b_v.at2"]], got {given!r}'
         )
-    pairs = [_pair(one) for one in given]
+    pairs = [_pair(entry) for entry in given]
     named = [name for horizontal, vertical in pairs for name in {horizontal, vertical} if name is not None]
     if twice := [name for name, count in Counter(named).items() if count > 1]:
         raise AxisError(

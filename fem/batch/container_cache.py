@@ -35,10 +35,15 @@ def container_key(case: Case, *, mass: bool = True, gaps: bool = True) -> Hashab
         solver.element_size_m,
         solver.order,
         case.output.stop_when_overturned,
-        tuple((one.side, one.height_m) for one in case.links),
+        tuple((link.side, link.height_m) for link in case.links),
         tuple(
-            (one.side, one.gap_m if gaps else None, one.case, *(getattr(one, name) for name in OWN))
-            for one in case.neighbour
+            (
+                neighbour.side,
+                neighbour.gap_m if gaps else None,
+                neighbour.case,
+                *(getattr(neighbour, name) for name in OWN),
+            )
+            for neighbour in case.neighbour
         ),
     )
 

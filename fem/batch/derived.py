@@ -67,13 +67,13 @@ def with_derived(values: Mapping[str, Any], derived: Iterable[Derived], base: Ca
         CaseError: an expression has no value.
     """
     complete = dict(values)
-    for one in derived:
-        known = {key: number_of(key, complete, base) for key in one.expression.keys}
+    for quantity in derived:
+        known = {key: number_of(key, complete, base) for key in quantity.expression.keys}
         try:
-            value = one.expression.value(known)
+            value = quantity.expression.value(known)
         except ExpressionError as error:
-            raise CaseError(f"[derived] {one.key} {error}") from None
-        complete[one.key] = int(value) if one.key in _WHOLE_KEYS and value == int(value) else value
+            raise CaseError(f"[derived] {quantity.key} {error}") from None
+        complete[quantity.key] = int(value) if quantity.key in _WHOLE_KEYS and value == int(value) else value
     return complete
 
 

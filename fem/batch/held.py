@@ -21,9 +21,12 @@ def held_inputs(cases: Sequence[Case], varied: Collection[str]) -> str:
 def _friction(cases: Sequence[Case], varied: Collection[str]) -> Iterator[str]:
     contacts = [case.contact for case in cases]
     law = ""
-    if any(one.mu_kinetic < one.mu_static for one in contacts) and not {WEAKENING, STRIBECK} & set(varied):
-        slips = [one.weakening_m for one in contacts]
-        speeds = [one.stribeck_velocity_m_s for one in contacts]
+    if any(contact.mu_kinetic < contact.mu_static for contact in contacts) and not {
+        WEAKENING,
+        STRIBECK,
+    } & set(varied):
+        slips = [contact.weakening_m for contact in contacts]
+        speeds = [contact.stribeck_velocity_m_s for contact in contacts]
         over = [f"{1e3 * slip:g} mm" for slip in slips[:1] if slip] + [f"{v:g} m/s" for v in speeds[:1] if v]
         if len({*slips}) == len({*speeds}) == 1:
             law = f" falling over {' and '.join(over)}" if over else " falling at once"
@@ -31,8 +34,8 @@ def _friction(cases: Sequence[Case], varied: Collection[str]) -> Iterator[str]:
         if law:
             yield f"friction{law}"
         return
-    ratios = [one.mu_kinetic / one.mu_static for one in contacts if one.mu_static > 0.0]
-    same = ratios and all(math.isclose(one, ratios[0], rel_tol=1e-9) for one in ratios)
+    ratios = [contact.mu_kinetic / contact.mu_static for contact in contacts if contact.mu_static > 0.0]
+    same = ratios and all(math.isclose(ratio, ratios[0], rel_tol=1e-9) for ratio in ratios)
     if same:
         inverse = 1.0 / ratios[0] if ratios[0] else 0.0
         times = f"{ratios[0]:.3g} mu_s"
@@ -41,7 +44,7 @@ def _friction(cases: Sequence[Case], varied: Collection[str]) -> Iterator[str]:
         elif inverse and math.isclose(inverse, round(inverse), rel_tol=1e-9):
             times = f"mu_s/{round(inverse)}"
         yield f"mu_k = {times}{law}"
-    elif len({one.mu_kinetic for one in contacts}) == 1:
+    elif len({contact.mu_kinetic for contact in contacts}) == 1:
         yield f"mu_k = {contacts[0].mu_kinetic:g}{law}"
     elif law:
         yield f"friction{law}"
@@ -51,7 +54,7 @@ def _beginning(cases: Sequence[Case], varied: Collection[str]) -> Iterator[str]:
     motions = [case.motion for case in cases if case.motion.kind == "harmonic"]
     if not motions:
         return
-    ramps, starts = {one.ramp_cycles for one in motions}, {one.start for one in motions}
+    ramps, starts = {motion.ramp_cycles for motion in motions}, {motion.start for motion in motions}
     if START not in varied and starts == {"rest"}:
         yield "a start at rest"
     if RAMP not in varied and len(ramps) == 1:

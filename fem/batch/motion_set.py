@@ -146,7 +146,7 @@ def motions_left_out(base: Case, motions: Sequence[FloorMotionPair]) -> str | No
     """
     if not motions:
         return motion_left_out(base)
-    cut = [(one.name, one.left_out) for one in motions if one.left_out is not None]
+    cut = [(motion.name, motion.left_out) for motion in motions if motion.left_out is not None]
     if not cut:
         return None
     name, words = cut[0]
@@ -169,7 +169,7 @@ def write_motions(
     periods, spectra = spectra_of(motions, runner)
     rows = np.column_stack([periods, *spectra.values()]).tolist()
     place.write_text("spectra.csv", table_text(["period_s", *spectra], rows))
-    vertical = [one.vertical.name for one in motions if one.vertical is not None]
+    vertical = [motion.vertical.name for motion in motions if motion.vertical is not None]
     place.write_text(SPECTRA, svg_of(draw_spectra(periods, spectra, vertical=vertical)))
     return [SPECTRA]
 
@@ -178,14 +178,14 @@ def spectra_of(
     motions: Sequence[FloorMotionPair], runner: Runner | None = None
 ) -> tuple[FloatArray, dict[str, FloatArray]]:
     """Periods (k,) [s] that all motions resolve, and pseudo-accelerations (k,) [m/s2] by `file`, 5 % damping."""
-    step = max(one.step_s for motion in motions for one in motion.components)
+    step = max(component.step_s for motion in motions for component in motion.components)
     periods = log_spaced_periods(step, longest_s=max(LONGEST_PERIOD_S, 10.0 * step))
     work = partial(_spectra, CaseMaker(motions[0].case), periods)
     by_motion = _each(runner, "spectra", [one.keys for one in motions], work)
     return periods, {
-        one.name: values
+        component.name: values
         for motion, spectra in zip(motions, by_motion, strict=True)
-        for one, values in zip(motion.components, spectra, strict=True)
+        for component, values in zip(motion.components, spectra, strict=True)
     }
 
 
@@ -196,9 +196,9 @@ def _motions_table(measures: Sequence[Mapping[str, Any]], outcomes: Columns) -> 
         return {f"vertical_{name}": value for name, value in numbers.items()}
 
     columns = MEASURED | outcomes
-    if any(one["vertical"] for one in measures):
+    if any(measure["vertical"] for measure in measures):
         columns |= upward(MEASURED)
-    return table_of_rows(columns, ({**one, **upward(one["vertical"] or {})} for one in measures))
+    return table_of_rows(columns, ({**measure, **upward(measure["vertical"] or {})} for measure in measures))
 
 
 def _keys_of(axes: Iterable[Axis]) -> list[dict[str, Any]]:
@@ -245,12 +245,12 @@ def _pair_of(case: Case, keys: Mapping[str, Any], facts: MotionFacts) -> FloorMo
 def _read(make: CaseMaker, keys: Mapping[str, Any]) -> MotionFacts:
     case = make(keys)
     numbers, contents = [], []
-    for one in _components_of(case, repeat({})):
-        motion = one.motion
-        times, file = motion.times, case.data_files[f"{one.table}.file"]
+    for component in _components_of(case, repeat({})):
+        motion = component.motion
+        times, file = motion.times, case.data_files[f"{component.table}.file"]
         numbers.append(
             {
-                "file": one.name,
+                "file": component.name,
                 "duration_s": float(np.ptp(times)),
                 "step_s": float(np.ptp(times)) / (times.size - 1),
                 "samples": times.size,
@@ -264,10 +264,12 @@ def _read(make: CaseMaker, keys: Mapping[str, Any]) -> MotionFacts:
 
 
 def _spectra(make: CaseMaker, periods: FloatArray, keys: Mapping[str, Any]) -> list[FloatArray]:
-    motions = (one.motion for one in _components_of(make(keys), repeat({})))
+    motions = (component.motion for component in _components_of(make(keys), repeat({})))
     return [
-        response_spectrum(*evenly_sampled(one.times, one.accelerations), periods).pseudo_acceleration_m_s2
-        for one in motions
+        response_spectrum(
+            *evenly_sampled(motion.times, motion.accelerations), periods
+        ).pseudo_acceleration_m_s2
+        for motion in motions
     ]
 
 

@@ -59,7 +59,7 @@ class Share:
     def of(self, items: Sequence[ItemT], numbers: Iterable[int]) -> list[ItemT]:
         """Its own of some items, by their numbers."""
         own = self.shard.number - 1
-        return [one for one, number in zip(items, numbers, strict=True) if number % self.shard.count == own]
+        return [item for item, number in zip(items, numbers, strict=True) if number % self.shard.count == own]
 
 
 def number_of(item: object) -> int:
@@ -88,7 +88,11 @@ def read_shards(place: ResultFolder, request: str, folders: Sequence[Path]) -> l
         mark = read_result(folder / place.kind.mark, place.kind)
         shard = Shard.from_json(mark["shard"]) if isinstance(mark.get("shard"), dict) else None
         if mark[place.kind.request] != request or shard is None:
-            other = f"of another {place.kind.asked}" if shard else f"of no shard of {place.kind.article} {place.kind.name}"
+            other = (
+                f"of another {place.kind.asked}"
+                if shard
+                else f"of no shard of {place.kind.article} {place.kind.name}"
+            )
             raise FolderError(f"--merge {folder}: it holds the results {other}")
         ResultFolder(
             path=folder, kind=place.kind, lock=place.lock, earlier=mark, resume=True

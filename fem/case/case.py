@@ -153,7 +153,7 @@ class Case(CaseHeading):
             CaseError: two have one name there.
         """
         found: dict[str, Case] = {}
-        names = {one.case for one in self.neighbour} - {None}
+        names = {neighbour.case for neighbour in self.neighbour} - {None}
         for name in sorted(map(str, names)):
             own = self._beside(name)
             found[data_files.copied_name(self.folder, name)] = own.with_values(case_of(own, None))
@@ -501,7 +501,7 @@ def _read(data: Mapping[str, Any], origin: Origin, overrides: Mapping[str, Any])
         lines = problem_lines(problems, f"{origin.place}: ")
         raise CaseError("\n".join(naming_overrides(lines, overrides)))
     case = Case.model_validate(values)
-    named = sorted({one.case for one in case.neighbour if one.case is not None})
+    named = sorted({neighbour.case for neighbour in case.neighbour if neighbour.case is not None})
     if not named:
         return case.from_origin(origin)
     read = {name: origin.beside.get(name) or _neighbour_case(name, case, origin, overrides) for name in named}

@@ -82,7 +82,7 @@ def held_above(case: Any) -> bool:
         return False
     first = case.container.height_m if case.container.box is None else case.container.box[0].height_m
     lowest = case.container.height_m if first is None else first
-    return any(one.height_m > lowest * (1.0 + 1e-9) for one in links)
+    return any(link.height_m > lowest * (1.0 + 1e-9) for link in links)
 
 
 def holder_of(case: Any, link: Any) -> int:

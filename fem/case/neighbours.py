@@ -130,19 +130,21 @@ def places_of(case: Any, widths: Sequence[float]) -> Places:
     """The row of a case, of whose containers these are the widths [m]."""
     x, pairs, distance = [0.0], [], []
     last = {"left": 0, "right": 0}
-    for number, one in enumerate(case.neighbour, 1):
-        before = last[one.side]
-        apart = 0.5 * (widths[before] + widths[number]) + one.gap_m
-        x.append(x[before] + (apart if one.side == "right" else -apart))
-        pairs.append((before, number) if one.side == "right" else (number, before))
+    for number, neighbour in enumerate(case.neighbour, 1):
+        before = last[neighbour.side]
+        apart = 0.5 * (widths[before] + widths[number]) + neighbour.gap_m
+        x.append(x[before] + (apart if neighbour.side == "right" else -apart))
+        pairs.append((before, number) if neighbour.side == "right" else (number, before))
         distance.append(apart)
-        last[one.side] = number
+        last[neighbour.side] = number
     return Places(x=tuple(x), pairs=tuple(pairs), distance=tuple(distance))
 
 
 def outermost(case: Any, side: str) -> int:
     """Number of the last neighbour on a side of a case; 0, the container itself, where it has none there."""
-    return max((number for number, one in enumerate(_neighbours(case), 1) if one.side == side), default=0)
+    return max(
+        (number for number, neighbour in enumerate(_neighbours(case), 1) if neighbour.side == side), default=0
+    )
 
 
 def top_of(case: Any, number: int) -> float:

@@ -169,7 +169,7 @@ def longest_time(case: Any) -> float:
     if not ends_at_rest(case):
         return USUAL_DURATION
     pulses = [one for one in (case.motion, case.vertical) if one.kind == "pulse"]
-    return max([0.0, *(one.delay_s + (one.pulse_s or 0.0) for one in pulses)]) + MOST_FREE_MOTION
+    return max([0.0, *(pulse.delay_s + (pulse.pulse_s or 0.0) for pulse in pulses)]) + MOST_FREE_MOTION
 
 
 def duration_in_words(case: Any) -> str:

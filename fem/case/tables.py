@@ -165,12 +165,12 @@ class ContainerTable(CaseTable):
         """Height of all boxes together [m]."""
         if self.box is None:
             return self.boxes * self.height_m
-        return sum(self.height_m if one.height_m is None else one.height_m for one in self.box)
+        return sum(self.height_m if box.height_m is None else box.height_m for box in self.box)
 
 
 def _has_walls(values: dict[str, Any]) -> bool:
     """Whether [container] or one of its boxes has a wall."""
-    return values["wall_m"] is not None or any(one.wall_m is not None for one in values["box"] or ())
+    return values["wall_m"] is not None or any(value.wall_m is not None for value in values["box"] or ())
 
 
 class SupportTable(CaseTable):

@@ -41,7 +41,9 @@ def toml_document(tables: Mapping[str, Any]) -> str:
             such a sequence itself.
     """
     scalars = {
-        key: one for key, one in tables.items() if not isinstance(one, Mapping) and not _are_tables(one)
+        key: table
+        for key, table in tables.items()
+        if not isinstance(table, Mapping) and not _are_tables(table)
     }
     top = [f"{key} = {toml_value(value)}" for key, value in scalars.items()]
     blocks = ["\n".join(top)] if top else []
@@ -52,7 +54,7 @@ def toml_document(tables: Mapping[str, Any]) -> str:
             blocks.append(_block(f"[{name}]", own))
             blocks += [_block(f"[[{name}.{key}]]", one) for key, value in rows.items() for one in value]
         elif name not in scalars:
-            blocks += [_block(f"[[{name}]]", one) for one in content]
+            blocks += [_block(f"[[{name}]]", table) for table in content]
     return "\n\n".join(blocks) + "\n"
 
 

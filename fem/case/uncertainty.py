@@ -94,11 +94,11 @@ def changes_of(case: Case, penalty: float | None) -> tuple[InputChange, ...]:
     """One input changed at a time, to each end of its range and between, and the numerics ten times tighter."""
     changes = [
         InputChange(
-            kind="one", values={one.key: value}, share=one.share(value) if isinstance(value, float) else 1.0
+            kind="one", values={span.key: value}, share=span.share(value) if isinstance(value, float) else 1.0
         )
-        for one in ranges_of(case, penalty)
-        if one.alone
-        for value in (*one.between, *one.ends)
+        for span in ranges_of(case, penalty)
+        if span.alone
+        for value in (*span.between, *span.ends)
     ]
     tolerance = max(TIGHTER * case.solver.energy_tolerance, q.ENERGY_TOLERANCE.least or 0.0)
     if tolerance < case.solver.energy_tolerance:
@@ -111,7 +111,7 @@ def pairs_of(case: Case) -> tuple[InputChange, ...]:
 
     At `mu_kinetic = mu_static` nothing falls, so the pair is tried half way.
     """
-    ranges = {one.key: one for one in ranges_of(case, None)}
+    ranges = {span.key: span for span in ranges_of(case, None)}
     if MU_KINETIC not in ranges:
         return ()
     friction = ranges[MU_KINETIC]
@@ -132,7 +132,7 @@ def draws_of(case: Case, penalty: float | None, count: int | None = None) -> tup
         case, penalty: as for `ranges_of`.
         count: of draws; None: as the case says.
     """
-    ranges = [one for one in ranges_of(case, penalty) if one.drawn is not None]
+    ranges = [span for span in ranges_of(case, penalty) if span.drawn is not None]
     if not ranges:
         return ()
     places = latin_hypercube(case.uncertainty.draws if count is None else count, len(ranges))
@@ -147,8 +147,8 @@ def drawn_values(ranges: Sequence[InputRange], places: Sequence[float]) -> dict[
 
     A range of kinetic friction holds for the static friction of the case, and scales with it.
     """
-    values = {one.key: one.drawn(place) for one, place in zip(ranges, places, strict=True) if one.drawn}
-    own = {one.key: one.own for one in ranges}
+    values = {span.key: span.drawn(place) for span, place in zip(ranges, places, strict=True) if span.drawn}
+    own = {span.key: span.own for span in ranges}
     for static, kinetic in FRICTIONS:
         if static in values and kinetic in values:
             share = float(values[static]) / float(own[static])

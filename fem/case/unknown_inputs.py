@@ -439,13 +439,15 @@ UNKNOWN: tuple[UnknownNumber | UnknownChoice, ...] = (
            matters=lambda case: case.solver.model != "rigid"),
 )
 # fmt: on
-INPUTS = (*(one.key for one in UNKNOWN), TOLERANCE)
-WORDS = {one.key: one.words for one in UNKNOWN} | {TOLERANCE: "energy tolerance of the steps"}
-QUANTITIES = {one.key: one.quantity for one in UNKNOWN if isinstance(one, UnknownNumber)}
+INPUTS = (*(unknown.key for unknown in UNKNOWN), TOLERANCE)
+WORDS = {unknown.key: unknown.words for unknown in UNKNOWN} | {TOLERANCE: "energy tolerance of the steps"}
+QUANTITIES = {unknown.key: unknown.quantity for unknown in UNKNOWN if isinstance(unknown, UnknownNumber)}
 
 
 UNCERTAINTY_RULES = tuple(
-    refused(f"uncertainty.{one.name}", one.refusal) for one in UNKNOWN if isinstance(one, UnknownNumber)
+    refused(f"uncertainty.{unknown.name}", unknown.refusal)
+    for unknown in UNKNOWN
+    if isinstance(unknown, UnknownNumber)
 )
 
 
@@ -468,13 +470,13 @@ def value_in_words(key: str, value: Value) -> str:
 def excluded_values(case: Any) -> list[str]:
     """What is wrong with stated ranges that do not hold the value of the case; one sentence each."""
     reasons = []
-    for one in UNKNOWN:
-        stated = getattr(case.uncertainty, one.name)
-        own = _own(case, one.key, None) if isinstance(stated, list) else None
+    for unknown in UNKNOWN:
+        stated = getattr(case.uncertainty, unknown.name)
+        own = _own(case, unknown.key, None) if isinstance(stated, list) else None
         if isinstance(own, float) and not stated[0] - 1e-9 <= own <= stated[1] * (1.0 + 1e-9) + 1e-9:
             reasons.append(
-                f"[uncertainty] {one.name} = {stated} excludes the value of the case, {one.key} = {own:g}; widen "
-                "the range, or change the value"
+                f"[uncertainty] {unknown.name} = {stated} excludes the value of the case, {unknown.key} = {own:g}; "
+                "widen the range, or change the value"
             )
     return reasons
 
@@ -486,5 +488,5 @@ def ranges_of(case: Any, penalty: float | None) -> tuple[InputRange, ...]:
         case: with its table [uncertainty].
         penalty: normal stiffness of its contact, chosen where the case says "auto" [Pa/m]; None: leave it out.
     """
-    ranges = (one.range_in(case, penalty) for one in UNKNOWN)
-    return tuple(one for one in ranges if one is not None and one.ends)
+    ranges = (unknown.range_in(case, penalty) for unknown in UNKNOWN)
+    return tuple(span for span in ranges if span is not None and span.ends)

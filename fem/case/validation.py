@@ -177,7 +177,7 @@ def _read_rows(
 ) -> tuple[Any, list[Problem]]:
     """Tables [[name]] as far as they can be read, in place of the content; and problems, each with its number."""
     table, _, key = name.rpartition(".")
-    tables = isinstance(content, list | tuple) and all(isinstance(one, Mapping) for one in content)
+    tables = isinstance(content, list | tuple) and all(isinstance(row, Mapping) for row in content)
     if not tables or len(content) not in count:
         one = f", one a {key} {order}" if order else ""
         reason = f"must be {count[0]} to {count[-1]} tables [[{name}]]{one}, got {_shown(content)}"

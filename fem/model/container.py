@@ -291,8 +291,8 @@ def _in_a_row(case: Case, mesh: ContainerMesh | None) -> Container:
 def _beside_one_another(case: Case, row: Sequence[Container]) -> Container:
     """Containers as a row; the elements and boxes are those of all."""
     meshes = [one.mesh for one in row]
-    places = places_of(case, [one.width for one in meshes])
-    struck = np.array(places.struck([(one.width, one.height) for one in meshes]))
+    places = places_of(case, [mesh.width for mesh in meshes])
+    struck = np.array(places.struck([(mesh.width, mesh.height) for mesh in meshes]))
     elements = _assembled(case, mesh_of_row(meshes, places.x))
     first, nodes = 0, []
     for one in row:

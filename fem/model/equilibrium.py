@@ -112,15 +112,15 @@ def _of_row(case: Case, container: Container, gravity: float) -> Equilibrium:
     """
     penalty = None if case.floor.is_slab else normal_penalty(case, container.mesh)
     row = [find_equilibrium(*one, gravity, penalty) for one in zip(case.row, container.row, strict=True)]
-    meshes = [one.mesh for one in container.row]
+    meshes = [settled.mesh for settled in container.row]
     require_no_jam(case, meshes)
     masses = [mesh.mass for mesh in meshes]
-    contact = with_links(case, contact_of_row(case, [one.contact for one in row], masses), masses)
-    bodies = [one.body for one in row if isinstance(one.body, ModalBody)]
+    contact = with_links(case, contact_of_row(case, [settled.contact for settled in row], masses), masses)
+    bodies = [settled.body for settled in row if isinstance(settled.body, ModalBody)]
     body = body_of_row(case, bodies, container.row, contact)
     upright = [
-        None if alone.initial.rotation_rad != 0.0 else one.stance
-        for alone, one in zip(case.row, row, strict=True)
+        None if alone.initial.rotation_rad != 0.0 else settled.stance
+        for alone, settled in zip(case.row, row, strict=True)
     ]
     standing = corners_at_rest(body, bodies, upright)
     measure_gaps(body, standing, own_stiffness(contact))

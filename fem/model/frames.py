@@ -30,4 +30,4 @@ def frame_interval(case: Case, nodes: int, duration: float) -> float:
     if ends_at_rest(case):
         duration -= MOST_FREE_MOTION - USUAL_FREE_MOTION
     most = MOST_BYTES / frame_bytes(nodes)
-    return next((one for one in INTERVALS if duration / one < most), INTERVALS[-1])
+    return next((interval for interval in INTERVALS if duration / interval < most), INTERVALS[-1])

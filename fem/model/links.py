@@ -26,21 +26,21 @@ def places_of_links(case: Case) -> FloatArray:
 
     Of a row from the axis of the container that each holds.
     """
-    return np.array([(side_of(case, one), one.height_m) for one in case.links]).reshape(-1, 2)
+    return np.array([(side_of(case, link), link.height_m) for link in case.links]).reshape(-1, 2)
 
 
 def side_points(case: Case) -> tuple[SidePoint, ...]:
     """The points of links on the sides of loose boxes, or of the containers of a row, one for each link."""
     found = []
-    for one in case.links:
+    for link in case.links:
         if case.container.is_loose:
-            box = box_at(case, one.height_m)
+            box = box_at(case, link.height_m)
             number, bottom, height = case.stack.index(box), box.bottom, box.height
         else:
-            number = holder_of(case, one)
+            number = holder_of(case, link)
             bottom, height = 0.0, top_of(case, number)
-        place = min((one.height_m - bottom) / height, 1.0)
-        found.append(SidePoint(box=number, right=one.side == "right", place=place))
+        place = min((link.height_m - bottom) / height, 1.0)
+        found.append(SidePoint(box=number, right=link.side == "right", place=place))
     return tuple(found)
 
 
@@ -71,7 +71,7 @@ def heights_of_links(case: Case, nodes: FloatArray) -> list[float]:
     `nodes`: (n, 2) contact nodes of the container.
     """
     if case.solver.model != "full" or case.container.is_loose:
-        return [one.height_m for one in case.links]
+        return [link.height_m for link in case.links]
     return [float(z) for z in nodes[len(nodes) - len(case.links) :, 1]]
 
 
@@ -91,17 +91,17 @@ def with_links(case: Case, contact: Contact, masses: Sequence[float]) -> Contact
     links = case.links
     if not links:
         return contact
-    mu = [one.mu if isinstance(one, StopTable) else 0.0 for one in links]
-    stiffness = [one.stiffness_N_m for one in links]
+    mu = [link.mu if isinstance(link, StopTable) else 0.0 for link in links]
+    stiffness = [link.stiffness_N_m for link in links]
     nothing = [0.0] * len(links)
     added: dict[str, Any] = {
         "normal_stiffness": stiffness,
         "tangential_stiffness": stiffness,
-        "cap": [math.inf if one.strength_N is None else one.strength_N for one in links],
+        "cap": [math.inf if link.strength_N is None else link.strength_N for link in links],
         "cap_growth": nothing,
         "relaxation_time": [
-            dashpot_of(one, masses[holder_of(case, one)]) if isinstance(one, StopTable) else 0.0
-            for one in links
+            dashpot_of(link, masses[holder_of(case, link)]) if isinstance(link, StopTable) else 0.0
+            for link in links
         ],
         "mu_static": mu,
         "mu_kinetic": mu,
@@ -124,11 +124,11 @@ def lines_at(case: Case, place: FloatArray, width: float) -> FloatArray | None:
     """
     if not case.links:
         return None
-    direction = np.array([direction_of(one) for one in case.links])
+    direction = np.array([direction_of(link) for link in case.links])
     box = None
     if case.bodies > 1:
         box = np.array([point.box for point in side_points(case)])
-    return make_lines(direction, place, np.array([one.slack for one in case.links]), width, box)
+    return make_lines(direction, place, np.array([link.slack for link in case.links]), width, box)
 
 
 def begin_links(case: Case, body: Any, state: State) -> None:

@@ -80,7 +80,7 @@ def _built(case: Case, table: MotionKey) -> BaseMotion:
 
 def motions_end(*motions: BaseMotion) -> float:
     """When the last of them ends; infinite where none has an end [s]."""
-    return max((one.span[1] for one in motions if not isinstance(one, NoMotion)), default=math.inf)
+    return max((motion.span[1] for motion in motions if not isinstance(motion, NoMotion)), default=math.inf)
 
 
 def longest_run(case: Case, *motions: BaseMotion) -> float:

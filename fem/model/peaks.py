@@ -48,7 +48,7 @@ def stressed_nodes(case: Case, elements: FiniteElements, basis: ReducedBasis, lo
     counted = counted_nodes(case, elements)
     amplitudes = basis.shapes[:, loaded].reshape(len(basis.shapes), -1).T / basis.angular_frequencies**2
     shapes = np.concatenate([amplitudes, np.eye(LOWEST, len(basis.shapes))])
-    stresses = (von_mises(one @ basis.stress)[counted] for one in shapes)
+    stresses = (von_mises(shape @ basis.stress)[counted] for shape in shapes)
     return counted[np.unique([np.argmax(stress) for stress in stresses])]
 
 

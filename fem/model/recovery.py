@@ -111,7 +111,8 @@ class Recovery:
     def frame(self, position: FloatArray, velocity: FloatArray) -> NodalFields:
         """Fields for one row of coordinates and their rates."""
         parts = [
-            (one, one.body.frame(position[one.coordinates], velocity[one.coordinates])) for one in self.bodies
+            (body, body.body.frame(position[body.coordinates], velocity[body.coordinates]))
+            for body in self.bodies
         ]
         if len(parts) == 1:
             return parts[0][1]
@@ -126,7 +127,7 @@ class Recovery:
 
     def largest_in(self, stress: FloatArray) -> float:
         """Largest counted one of the nodal stresses (n,) of a frame [Pa]."""
-        return max(float(stress[one.nodes][one.body.counted].max()) for one in self.bodies)
+        return max(float(stress[body.nodes][body.body.counted].max()) for body in self.bodies)
 
     def largest_of_steps(self, strained: FloatArray) -> tuple[float, ...] | None:
         """Largest counted nodal von Mises stress of a reduced run over the steps of `RunState.strained` [Pa].
@@ -136,7 +137,7 @@ class Recovery:
         rows = strained[strained[:, :, 0] >= 0.0, 1:] if strained.size else strained
         if not rows.size:
             return None
-        found = tuple(one.body.largest_von_mises(rows[:, one.coordinates]) for one in self.bodies)
+        found = tuple(body.body.largest_von_mises(rows[:, body.coordinates]) for body in self.bodies)
         return found if self.in_a_row else (max(found),)
 
 

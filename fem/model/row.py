@@ -67,9 +67,9 @@ def contact_of_row(case: Case, contacts: Sequence[Contact], masses: Sequence[flo
     """The contact of containers of these masses [kg] with the floor, each its own, and of their sides."""
     sides = []
     places = places_of(case, [1.0] * len(masses))
-    for one, (left, right) in zip(case.neighbour, places.pairs, strict=True):
+    for neighbour, (left, right) in zip(case.neighbour, places.pairs, strict=True):
         mass = masses[left] * masses[right] / (masses[left] + masses[right])
-        sides.append((0.5 * one.stiffness_N_m, dashpot_of(one, mass), one.mu))
+        sides.append((0.5 * neighbour.stiffness_N_m, dashpot_of(neighbour, mass), neighbour.mu))
     stiffness, relaxation, mu = (np.repeat(one, POINTS_OF_GAP) for one in zip(*sides, strict=True))
     nothing = np.zeros_like(mu)
     added = {
@@ -84,7 +84,7 @@ def contact_of_row(case: Case, contacts: Sequence[Contact], masses: Sequence[flo
         "camber": nothing,
     }
     arrays: Any = {
-        name: np.concatenate([*(getattr(one, name) for one in contacts), of_sides])
+        name: np.concatenate([*(getattr(contact, name) for contact in contacts), of_sides])
         for name, of_sides in added.items()
     }
     return contacts[0]._replace(resolution=contacts[0].resolution * (1.0 + 64.0 * len(sides)), **arrays)
@@ -100,7 +100,7 @@ def body_of_row(
         bodies: of the containers alone, with their points over the floor; containers: they.
         contact: of all points at full weight.
     """
-    meshes = [one.mesh for one in containers]
+    meshes = [container.mesh for container in containers]
     places = places_of(case, [one.width for one in meshes])
     struck = np.array(places.struck([(one.width, one.height) for one in meshes]))
     inset = [
@@ -111,7 +111,10 @@ def body_of_row(
     # of the neighbours no point is watched
     watched = [
         corners[0],
-        *(one._replace(monitor=one.monitor[:0], monitor_shape=one.monitor_shape[:0]) for one in corners[1:]),
+        *(
+            corner._replace(monitor=corner.monitor[:0], monitor_shape=corner.monitor_shape[:0])
+            for corner in corners[1:]
+        ),
     ]
     springs = contact.normal_stiffness.copy(), contact.tangential_stiffness.copy()
     return make_stack(watched, *springs, (*facing(places), np.array(inset)), held=side_points(case))
@@ -204,17 +207,17 @@ def begin_row(
         for own, single in zip(getattr(state, name).reshape(len(alone), -1), alone, strict=True):
             own[: single.position.size] = getattr(single, name)
     sides = slice(floor, floor + POINTS_OF_GAP * len(case.neighbour))
-    state.force[:floor] = np.concatenate([one.force for one in alone])
+    state.force[:floor] = np.concatenate([settled.force for settled in alone])
     if contact.friction == ELASTIC_STICK:
-        state.stick[:floor] = np.concatenate([one.stick for one in alone])
+        state.stick[:floor] = np.concatenate([settled.stick for settled in alone])
     weigh_points(body.faces, (boxes.rest[:, None] + boxes.point).reshape(-1, 2), state.point, contact)
     start_stack(body, state, place=place, lift_velocity=lift_velocity)
     gaps = state.point[sides, 1].reshape(-1, POINTS_OF_GAP).min(axis=1)
-    for number, (one, gap) in enumerate(zip(case.neighbour, gaps, strict=True), 1):
+    for number, (neighbour, gap) in enumerate(zip(case.neighbour, gaps, strict=True), 1):
         if gap < -OVERLAP:
             raise CaseError(
-                f"[neighbour] neighbour {number}: gap_m = {one.gap_m:g} m is overlapped by {-gap:.3g} m at the start, "
-                "as the containers stand; take a wider one, or another [initial]"
+                f"[neighbour] neighbour {number}: gap_m = {neighbour.gap_m:g} m is overlapped by {-gap:.3g} m at the "
+                "start, as the containers stand; take a wider one, or another [initial]"
             )
     return state
 
@@ -222,9 +225,9 @@ def begin_row(
 def joints_of_row(meshes: Sequence[ContainerMesh], angles: Sequence[float]) -> Any:
     """Records of where the containers of a row stand on the floor; `angles`: of slenderness [rad]."""
     return make_joints(
-        [one.mass for one in meshes],
-        [one.inertia for one in meshes],
-        [one.width for one in meshes],
+        [mesh.mass for mesh in meshes],
+        [mesh.inertia for mesh in meshes],
+        [mesh.width for mesh in meshes],
         angles,
         in_a_row=True,
     )

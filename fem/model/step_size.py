@@ -139,10 +139,10 @@ def control_of(
     """
     mesh, base = container.mesh, container.support.index.size
     bodies = [one.mesh for one in container.row] or [mesh]
-    mass = sum(one.mass for one in bodies)
+    mass = sum(body.mass for body in bodies)
     energies = [one.overturning_energy for one in row or [static]]
     reference = min(energies)
-    softest = min(SOFT_CLOSING * energy / one.mass for energy, one in zip(energies, bodies, strict=True))
+    softest = min(SOFT_CLOSING * energy / body.mass for energy, body in zip(energies, bodies, strict=True))
     rate = static.frequency_parameter
     loose = case.solver.energy_tolerance
     share, trail, eager = MOST_SHARE, MOST_TRAIL, False
@@ -174,7 +174,7 @@ def control_of(
         gravity=case.gravity_toward_floor,
         downhill=case.gravity_downhill,
         frequency_parameter=rate,
-        resting_energy=sum(one.mass * case.gravity_toward_floor * one.centroid[1] for one in bodies),
+        resting_energy=sum(body.mass * case.gravity_toward_floor * body.centroid[1] for body in bodies),
         slowest_rocking=min(one.frequency_parameter for one in (static, *row)),
         slenderness_angle=static.slenderness_angle,
         width=static.width,

@@ -212,7 +212,9 @@ def _reading(view: RunView, variations: VariationTable | None) -> Iterator[str]:
         yield html.link(f"{variations.changed} of {count} variations of one input", "variations")
         yield f" change{'s' if variations.changed == 1 else ''} the outcome"
         members = view.verdict.band.members if view.verdict.band else ()
-        crossing = [one for one in members if one.kind == "draw" and ending(one) != ending(members[0])]
+        crossing = [
+            member for member in members if member.kind == "draw" and ending(member) != ending(members[0])
+        ]
         yield "; draws of all inputs at once do. " if crossing and not variations.changed else ". "
     if warnings := len(view.result.warnings or ()):
         yield f"{warnings} warning{'' if warnings == 1 else 's'}: see "

@@ -306,15 +306,17 @@ PGD, DURATION = Shown("PGD", MM), Shown("D5-95", units.SECONDS)
 
 def _hints(kind: type) -> dict[str, Any]:
     """Fields of a class, then its properties, with their types."""
-    derived = {key: one.fget for key, one in vars(kind).items() if isinstance(one, property)}
-    of_derived = {key: get_type_hints(one, include_extras=True)["return"] for key, one in derived.items()}
+    derived = {key: var.fget for key, var in vars(kind).items() if isinstance(var, property)}
+    of_derived = {
+        key: get_type_hints(quantity, include_extras=True)["return"] for key, quantity in derived.items()
+    }
     return get_type_hints(kind, include_extras=True) | of_derived
 
 
 def noted_in(kind: type, note: type[NoteT]) -> dict[str, NoteT]:
     """The notes of a sort on what a class holds, by key."""
     hints = _hints(kind).items()
-    return {key: one for key, hint in hints for one in get_args(hint) if isinstance(one, note)}
+    return {key: arg for key, hint in hints for arg in get_args(hint) if isinstance(arg, note)}
 
 
 def declared_in(kind: type) -> dict[str, Shown]:
@@ -350,7 +352,7 @@ TURNED, SLIPPED = "rotation_ratio", "max_slip_m"
 
 def keys_of(place: Place) -> tuple[str, ...]:
     """The keys of the figures of a place, in the order of the columns of tables."""
-    return tuple(key for key, one in FIGURES.items() if place in one.places)
+    return tuple(key for key, figure in FIGURES.items() if place in figure.places)
 
 
 def columns_of(place: Place) -> dict[str, type]:
@@ -372,7 +374,7 @@ def keys_beside(place: Place) -> frozenset[str]:
 #: scalars of a verdict, as columns of a table; None where they do not apply
 SCALARS = {"outcome": str} | columns_of(COLUMN)
 #: columns with one number for each box of a loose stack, from the floor up, by what they hold of it
-BOXES = {one.column: key for key, one in BOX_FIGURES.items() if one.column}
+BOXES = {figure.column: key for key, figure in BOX_FIGURES.items() if figure.column}
 #: of a run in the tables of studies
 RUN_COLUMNS = SCALARS | dict.fromkeys(BOXES, tuple)
 
@@ -380,8 +382,8 @@ RUN_COLUMNS = SCALARS | dict.fromkeys(BOXES, tuple)
 def summary_order() -> list[str]:
     """The keys of the figures of a summary, in the order of reading."""
     keys = list(FIGURES)
-    for key, one in FIGURES.items():
-        if one.below:
+    for key, figure in FIGURES.items():
+        if figure.below:
             keys.remove(key)
-            keys.insert(keys.index(one.below) + 1, key)
+            keys.insert(keys.index(figure.below) + 1, key)
     return [key for key in keys if SUMMARY in FIGURES[key].places]

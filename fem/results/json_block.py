@@ -30,7 +30,7 @@ class JsonBlock:
 
     def __getitem__(self, key: str) -> Any:
         """A value by its key in the file; KeyError names the keys there are."""
-        names = [one.name for one in fields(self)]  # type: ignore[arg-type]
+        names = [field.name for field in fields(self)]  # type: ignore[arg-type]
         if key not in names:
             raise KeyError(f"no key {key!r}; known: {', '.join(names)}")
         return getattr(self, key)
@@ -41,7 +41,7 @@ class JsonBlock:
 
     def to_json(self) -> dict[str, Any]:
         """The block as JSON types, its keys in the order of the fields."""
-        block = {one.name: _plain(getattr(self, one.name)) for one in fields(self)}  # type: ignore[arg-type]
+        block = {field.name: _plain(getattr(self, field.name)) for field in fields(self)}  # type: ignore[arg-type]
         idle = self.written_where_given
         return {key: value for key, value in block.items() if value is not None or key not in idle}
 
@@ -56,7 +56,7 @@ def _plain(value: Any) -> Any:
 def _readers(kind: type[JsonBlock]) -> dict[str, Callable[[Any], Any]]:
     """For each field, what makes its value from JSON types."""
     hints = get_type_hints(kind)
-    return {one.name: _reader(hints[one.name]) for one in fields(kind)}  # type: ignore[arg-type]
+    return {field.name: _reader(hints[field.name]) for field in fields(kind)}  # type: ignore[arg-type]
 
 
 def _reader(hint: Any) -> Callable[[Any], Any]:

@@ -78,7 +78,9 @@ def copy_data_files(case: Case, folder: Path, *, read: bool = False) -> None:
         target.parent.mkdir(parents=True, exist_ok=True)
         if real_path(target) != real_path(path):
             shutil.copyfile(path, target)
-    own = {real_path(case.folder / one.case) for one in case.neighbour if one.case is not None}
+    own = {
+        real_path(case.folder / neighbour.case) for neighbour in case.neighbour if neighbour.case is not None
+    }
     for name, text in case.texts.items():
         target = folder / name
         target.parent.mkdir(parents=True, exist_ok=True)

@@ -49,12 +49,13 @@ class ChangedRunsFile:
         Raises:
             OSError: the file cannot be written, or the folder was lost.
         """
-        self._write(to_json(self._owner | {"members": [one.to_json() for one in runs]}))
+        self._write(to_json(self._owner | {"members": [run.to_json() for run in runs]}))
 
 
 def key_of(values: Mapping[str, Value] | None) -> tuple[tuple[str, Value], ...]:
     """Equal for runs that change the same inputs to the same values, within rounding."""
     rounded = {
-        key: float(f"{one:.9g}") if isinstance(one, float) else one for key, one in (values or {}).items()
+        key: float(f"{value:.9g}") if isinstance(value, float) else value
+        for key, value in (values or {}).items()
     }
     return tuple(sorted(rounded.items()))

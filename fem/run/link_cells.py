@@ -28,13 +28,13 @@ class LinkCells:
         square = SQUARE[: elements.cells.shape[1]]
         self._held, self._count = held_nodes(links, elements.nodes), len(square)
         #: share of the motion of its point, of each node; the rest is that of the floor
-        self._share = np.array([square[:, 1] * one.is_tie for one in links]).reshape(-1, 1)
+        self._share = np.array([square[:, 1] * link.is_tie for link in links]).reshape(-1, 1)
         behind = len(elements.nodes) + np.arange(self._share.size).reshape(-1, self._count)
         self.mesh: dict[str, Any] = {
-            "points": np.concatenate([elements.nodes, *(_nodes(one, square) for one in links)]),
+            "points": np.concatenate([elements.nodes, *(_nodes(link, square) for link in links)]),
             "cells": np.concatenate([elements.cells, behind]),
             "region": np.append(
-                elements.region.astype(np.int64), [TIE if one.is_tie else STOP for one in links]
+                elements.region.astype(np.int64), [TIE if link.is_tie else STOP for link in links]
             ),
             "box": np.append(1 + elements.box.astype(np.int64), [0] * len(links)),
         }
@@ -48,10 +48,10 @@ class LinkCells:
         place = (frame.floor_displacement, frame.floor_lift)
         moved = place + self._share * (frame.displacement[held] - place)
         first = len(frame.displacement)
-        for k, one in enumerate(links):
-            if one.until <= frame.time:
+        for k, link in enumerate(links):
+            if link.until <= frame.time:
                 own = slice(k * self._count, (k + 1) * self._count)
-                moved[own] = place + ((one.outer, one.anchor or 0.0) - self.mesh["points"][first:][own])
+                moved[own] = place + ((link.outer, link.anchor or 0.0) - self.mesh["points"][first:][own])
         return replace(
             frame,
             displacement=np.concatenate([frame.displacement, moved]),
@@ -72,4 +72,4 @@ def _nodes(link: DrawnLink, square: FloatArray) -> FloatArray:
 
 
 def _broken(run: RunState, count: int) -> Sequence[float]:
-    return [float(one.broken_at) for one in run.links[len(run.links) - count :]]
+    return [float(link.broken_at) for link in run.links[len(run.links) - count :]]

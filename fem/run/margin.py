@@ -102,7 +102,7 @@ def margin_of(model: Model, result: RunResult, *, drawn: bool, stop: Callable[[]
     except StoppedError:
         return None
     factor = None if first is None else first.high
-    factors = [one for one in ends if one is None or not math.isnan(one)]
+    factors = [end for end in ends if end is None or not math.isnan(end)]
     return Margin(
         factor=factor,
         stands_up_to=None if first is None or first.low == 0.0 else first.low,
@@ -125,7 +125,7 @@ def margin_of(model: Model, result: RunResult, *, drawn: bool, stop: Callable[[]
 def _overturns_in_band(verdict: Verdict) -> bool:
     """Whether a member of the band overturns under the motion of the run, by another input."""
     members = verdict.band.members[1:] if verdict.band else ()
-    return any(ending(one) == Ending.OVERTURNED and not numerical(one) for one in members)
+    return any(ending(member) == Ending.OVERTURNED and not numerical(member) for member in members)
 
 
 def _bare(
@@ -203,9 +203,9 @@ def _locate(known: dict[float, Ending], trial: Trial) -> None:
     """Halve the changes that are too wide, the lowest first, until all are narrow or no run is left."""
     while len(known) <= MOST_RUNS:
         middles = [
-            math.sqrt(one.low * one.high)
-            for one in _changes(known)
-            if one.high - one.low > RESOLUTION * one.high
+            math.sqrt(change.low * change.high)
+            for change in _changes(known)
+            if change.high - change.low > RESOLUTION * change.high
         ]
         left = [middle for middle in middles if middle not in known]  # those that failed are
         if not left:
@@ -247,7 +247,7 @@ def _first(known: dict[float, Ending]) -> Change | None:
     fallen = [factor for factor, ending in known.items() if ending == Ending.OVERTURNED]
     if not fallen:
         return None
-    falls = [one for one in _changes(known) if one.high == min(fallen)]
+    falls = [change for change in _changes(known) if change.high == min(fallen)]
     return falls[0] if falls else Change(low=0.0, high=min(fallen), below="", above=Ending.OVERTURNED.word)
 
 
@@ -293,7 +293,7 @@ def _lowest(
     pool: Executor, trials: Sequence[Trial], ends: Sequence[float | None], least: float
 ) -> float | None:
     """The least of the factors found, or one below it at which a draw overturns as well, one step after the other."""
-    known = [one for one in ends if one is not None and not math.isnan(one)]
+    known = [end for end in ends if end is not None and not math.isnan(end)]
     low = min(known, default=None)
     while trials and low is not None and low > least:
         below = max(least, low / DRAWN_STEP)
@@ -305,7 +305,7 @@ def _lowest(
 
 def _highest(ends: Sequence[float | None]) -> float | None:
     """The largest; None where there is none for one of them."""
-    known = [one for one in ends if one is not None]
+    known = [end for end in ends if end is not None]
     return max(known) if len(known) == len(ends) else None
 
 

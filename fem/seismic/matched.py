@@ -136,7 +136,7 @@ def _matched(step: float, acceleration: FloatArray, target: Target, longest: flo
     present = present - zero_end.baseline(present)
     best, least = present, math.inf
     for _ in range(PASSES):
-        responses = np.array([lfilter(*one, present) for one in bank.recursions])
+        responses = np.array([lfilter(*recursion, present) for recursion in bank.recursions])
         places, peaks = _peaks(responses)
         error = float(np.mean((np.abs(peaks) / wanted - 1.0) ** 2))
         if error < least:

@@ -114,7 +114,7 @@ def check_set(
         target: Callable[[FloatArray], FloatArray], components: Sequence[FloatArray | None]
     ) -> ComponentSpectra | None:
         """None where a motion lacks this component."""
-        known = [one for one in components if one is not None]
+        known = [component for component in components if component is not None]
         if len(known) < len(motions):
             return None
         return ComponentSpectra(target=target(periods), motions=_spectra(motions, known, periods))
@@ -196,7 +196,9 @@ def check_set(
                 clause=f"{CLAUSE} (3)",
             )
         )
-    reasons = [one.reason for one in requirements if one.reason and not one.fulfilled]
+    reasons = [
+        requirement.reason for requirement in requirements if requirement.reason and not requirement.fulfilled
+    ]
     if 0 < sum(motion.vertical is not None for motion in motions) < len(motions):
         reasons.append("some motions have a vertical component and some have none")
     reasons += [
@@ -237,9 +239,9 @@ def largest_correlation(motions: Sequence[GroundMotion]) -> float:
     """Largest |correlation coefficient| at no shift: between horizontal components, and within a motion [-]."""
     pairs = [(one, one.horizontal, other, other.horizontal) for one, other in combinations(motions, 2)]
     within = [
-        (one, a, one, b)
-        for one in motions
-        for a, b in combinations((one.horizontal, one.vertical, one.second), 2)
+        (motion, a, motion, b)
+        for motion in motions
+        for a, b in combinations((motion.horizontal, motion.vertical, motion.second), 2)
         if a is not None and b is not None
     ]
     return max(

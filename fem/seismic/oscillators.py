@@ -42,7 +42,7 @@ def _groups(step: float, periods: tuple[float, ...]) -> tuple[_Group, ...]:
             # Pseudo-acceleration, so displacement times the square of the rate.
             numerator, denominator = exact_recursion(step / count, period, DAMPING_RATIO)
             square = (2.0 * math.pi / period) ** 2
-            rows.append([*(square * one for one in numerator), *denominator[1:]])
+            rows.append([*(square * coefficient for coefficient in numerator), *denominator[1:]])
         groups.append(_Group(members, count, np.ascontiguousarray(np.array(rows).T)))
     return tuple(groups)
 

@@ -34,7 +34,7 @@ def read_points(path: Path, choices: Sequence[Sequence[str]]) -> dict[str, tuple
     text = text_of(path)
     first, *lines = [line for line in text.splitlines() if line.strip()] or [""]
     names = [name.strip() for name in first.split(",")]
-    if names not in [[*one] for one in choices]:
+    if names not in [[*choice] for choice in choices]:
         found = f"got {first[:80]!r}" if first else "and the file is empty"
         raise ValueError(
             f"{path.name}: the first line must be {' or '.join(map(','.join, choices))}, {found}"

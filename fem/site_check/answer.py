@@ -239,7 +239,7 @@ def rule_range(
     span = result.RuleRange(
         **ranges,
         repetitions=len(repetitions),
-        overturned=sum(one.overturned + one.invalid > 0 for one in repetitions),
+        overturned=sum(repetition.overturned + repetition.invalid > 0 for repetition in repetitions),
     )
     return span, sum(run.outcome is None for some in again.values() for run in some)
 

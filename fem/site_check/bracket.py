@@ -205,7 +205,7 @@ def _point(value: float, answer: SiteAnswer) -> SizePoint:
         overturned=answer.overturned,
         invalid=answer.invalid,
         runs=answer.runs,
-        **{one.name: answer[one.name] for one in fields(ByRule)},
+        **{field.name: answer[field.name] for field in fields(ByRule)},
         fails=_reason(answer),
     )
 

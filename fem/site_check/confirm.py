@@ -46,7 +46,7 @@ def confirmed(
         verdict, joints = run.verdict, run.typed_result.joints or ()
         band = verdict.band or Band()
         tension, shear = largest_bolt_forces(joints) if joints else (None, None)
-        used = [one.bolt_utilisation for one in joints if one.bolt_utilisation is not None]
+        used = [joint.bolt_utilisation for joint in joints if joint.bolt_utilisation is not None]
         results.append(
             ConfirmedRun(
                 run=runs[key],

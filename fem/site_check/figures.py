@@ -214,7 +214,8 @@ def _over(
 def draw_methods(methods: Sequence[result.SiteMethod], answer: result.SiteAnswer, name: str) -> str:
     """Capacity over strength by each method: the factor on the action at which it is used up."""
     drawn = sorted(
-        (one for one in methods if one.factor is not None), key=lambda one: list(COLOURS).index(one.quantity)
+        (method for method in methods if method.factor is not None),
+        key=lambda one: list(COLOURS).index(one.quantity),
     )
     with style.house_style():
         figure, (axes,) = style.panels([0.17 * len(drawn) + 0.1], header=3, width=style.WIDTH)
@@ -276,9 +277,9 @@ def _draw_spectrum(
 ) -> None:
     if target:
         axes.axvspan(*band, color=style.SKY, alpha=0.12, linewidth=0, label="band")
-    for k, one in enumerate(spectra):
+    for k, spectrum in enumerate(spectra):
         axes.plot(
-            periods, one, color=style.GREY, linewidth=0.6, alpha=0.7, label="motions" if k == 0 else None
+            periods, spectrum, color=style.GREY, linewidth=0.6, alpha=0.7, label="motions" if k == 0 else None
         )
     if target:
         inside = (periods >= band[0]) & (periods <= band[1])

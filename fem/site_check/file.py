@@ -162,7 +162,11 @@ class SiteRequest:
     def point_files(self) -> dict[str, str]:
         """Names of the files of points beside the site file, by the tables that name them."""
         given = {"hazard": self.hazard, "floor_spectrum": self.floor_spectrum}
-        return {table: one.file for table, one in given.items() if one is not None and one.file is not None}
+        return {
+            table: entry.file
+            for table, entry in given.items()
+            if entry is not None and entry.file is not None
+        }
 
     @property
     def frictions(self) -> list[tuple[float, float]]:

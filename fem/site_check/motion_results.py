@@ -74,9 +74,9 @@ def set_result(
         reasons=checked.reasons,
         notes=tuple(dict.fromkeys(note for motion in ground for note in motion.notes)),
         checks=tuple(
-            SetCheck(**{key.name: getattr(one, key.name) for key in fields(SetCheck)})
-            for one in checked.requirements
-            if asked.source != "floor" or not one.fits  # motions of a floor fit no target
+            SetCheck(**{key.name: getattr(requirement, key.name) for key in fields(SetCheck)})
+            for requirement in checked.requirements
+            if asked.source != "floor" or not requirement.fits  # motions of a floor fit no target
         ),
         motions=tuple(
             replace(
@@ -135,11 +135,11 @@ def floor_result(
 ) -> FloorResult | None:
     """What the motions are on the floor of a building, or on a given floor: means over the set; None on the ground."""
     if request.on_given_floor:
-        given, upward = floors[None], [one.vertical for one in floors[None] if one.vertical is not None]
+        given, upward = floors[None], [floor.vertical for floor in floors[None] if floor.vertical is not None]
         return FloorResult(
             building=GIVEN_FLOORS[request.motions.source == "floor"],
-            peak_m_s2=float(np.mean([one.peak for one in given])),
-            peak_velocity_m_s=float(np.mean([one.intensities["h"].peak_velocity_m_s for one in given])),
+            peak_m_s2=float(np.mean([entry.peak for entry in given])),
+            peak_velocity_m_s=float(np.mean([entry.intensities["h"].peak_velocity_m_s for entry in given])),
             mean_m_s2=_numbers(checked.horizontal.mean),
             vertical_peak_m_s2=float(np.mean([np.abs(one).max() for one in upward])) if upward else None,
             vertical_mean_m_s2=_numbers(checked.vertical.mean) if checked.vertical else (),
@@ -147,12 +147,14 @@ def floor_result(
     if request.building is None or None in floors:
         return None
     varied = {period: motions for period, motions in floors.items() if period is not None}
-    peaks = {period: float(np.mean([one.peak for one in motions])) for period, motions in varied.items()}
+    peaks = {
+        period: float(np.mean([motion.peak for motion in motions])) for period, motions in varied.items()
+    }
     worst = max(peaks, key=lambda period: peaks[period])
     motions = varied[worst]
     spectra = [
-        response_spectrum(one.step, one.horizontal, checked.periods).pseudo_acceleration_m_s2
-        for one in motions
+        response_spectrum(motion.step, motion.horizontal, checked.periods).pseudo_acceleration_m_s2
+        for motion in motions
     ]
     return FloorResult(
         z_over_h=request.building.z_over_h,
@@ -160,7 +162,7 @@ def floor_result(
         building_periods_s=tuple(varied),
         damping_ratio=request.building.damping_ratio,
         peak_m_s2=peaks[worst],
-        peak_velocity_m_s=float(np.mean([one.intensities["h"].peak_velocity_m_s for one in motions])),
+        peak_velocity_m_s=float(np.mean([motion.intensities["h"].peak_velocity_m_s for motion in motions])),
         mean_m_s2=_numbers(np.mean(spectra, axis=0)),
     )
 

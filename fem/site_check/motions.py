@@ -92,10 +92,10 @@ def motion_target(request: SiteRequest, motions: Sequence[GroundMotion], longest
         ]
         return peak, *np.mean(spectra, axis=0).tolist()
 
-    upward = [(one.step, one.vertical) for one in motions if one.vertical is not None]
+    upward = [(motion.step, motion.vertical) for motion in motions if motion.vertical is not None]
     return FloorSpectrum(
         periods=(RIGID_PERIOD_S, *periods.tolist()),
-        accelerations=mean([(one.step, one.horizontal) for one in motions]),
+        accelerations=mean([(motion.step, motion.horizontal) for motion in motions]),
         vertical_accelerations=mean(upward) if upward else (),
         ground=request.action,
     )
@@ -202,10 +202,10 @@ def _even(components: Sequence[Component]) -> tuple[float, list[FloatArray]]:
     steps = np.diff(times)
     step = float(np.median(steps))
     if np.ptp(steps) <= UNEVEN * step:
-        return step, [one.values for one in components]
+        return step, [component.values for component in components]
     step = float(steps.min())
     even = times[0] + np.arange(math.floor((times[-1] - times[0]) / step * (1.0 + 1e-12)) + 1) * step
-    return step, [np.asarray(np.interp(even, one.times, one.values)) for one in components]
+    return step, [np.asarray(np.interp(even, component.times, component.values)) for component in components]
 
 
 def _require_independent(records: Sequence[GroundMotion]) -> None:

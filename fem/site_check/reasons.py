@@ -119,17 +119,17 @@ class Evidence:
     def _confirmed(self) -> Iterator[Reason]:
         """What the elastic model and the unknown inputs make of the deciding runs."""
         again = self.confirmed
-        failed = sum(one.outcome is None for one in again)
-        invalid = sum(Outcome.INVALID in (one.outcome, *one.outcomes) for one in again)
-        fell = sum(Outcome.OVERTURNED in (one.outcome, *one.outcomes) for one in again)
+        failed = sum(repeated.outcome is None for repeated in again)
+        invalid = sum(Outcome.INVALID in (repeated.outcome, *repeated.outcomes) for repeated in again)
+        fell = sum(Outcome.OVERTURNED in (repeated.outcome, *repeated.outcomes) for repeated in again)
         beyond = sum(
-            one.turned > self.limits.single_rotation_ratio or one.slipped > self.limits.slip_m
-            for one in again
+            repeated.turned > self.limits.single_rotation_ratio or repeated.slipped > self.limits.slip_m
+            for repeated in again
         )
         words = "deciding runs, repeated with the elastic model over their unknown inputs,"
         if failed:
             yield Reason(NOT_SURE, f"{failed} of {len(again)} {words} failed.")
-        if (bolts := max((one.bolt_utilisation or 0.0 for one in again), default=0.0)) > 1.0:
+        if (bolts := max((repeated.bolt_utilisation or 0.0 for repeated in again), default=0.0)) > 1.0:
             yield Reason(
                 NOT_SURE,
                 f"In a deciding run the bolts carry {bolts:.2g} of their capacity: the stack does not stay one body.",
@@ -215,9 +215,9 @@ def places_of(key: str, limit: float, values: Sequence[float]) -> int:
             figures
             for figures in (FIGURES, FIGURES + 1)
             if all(
-                unit.text(one, figures=figures) != unit.text(limit, figures=figures)
-                for one in values
-                if one != limit
+                unit.text(value, figures=figures) != unit.text(limit, figures=figures)
+                for value in values
+                if value != limit
             )
         ),
         FIGURES + 2,

@@ -188,9 +188,9 @@ class ByRule(JsonBlock):
 BY_RULE = figures.declared_in(ByRule)
 LIMITS = figures.noted_in(ByRule, Limited)
 #: the figure that each limit is on
-FIGURE_OF = {one.key: name for name, one in LIMITS.items()}
+FIGURE_OF = {limit.key: name for name, limit in LIMITS.items()}
 #: the figure of a run that each of those that govern is on
-LIMITED = {name: one.of for name, one in LIMITS.items() if one.of}
+LIMITED = {name: limit.of for name, limit in LIMITS.items() if limit.of}
 
 
 @dataclass(frozen=True, kw_only=True)

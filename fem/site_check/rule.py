@@ -114,7 +114,7 @@ class RuleFound:
     @classmethod
     def of(cls, groups: Sequence[RunGroup]) -> Self:
         """From the runs of groups."""
-        found = {one.name: [group.by_rule[one.name] for group in groups] for one in fields(ByRule)}
+        found = {field.name: [group.by_rule[field.name] for group in groups] for field in fields(ByRule)}
         return cls(
             overturned=sum(group.overturned for group in groups),
             failed=sum(group.failed for group in groups),
@@ -138,7 +138,7 @@ class RuleFound:
             None if self.by_rule[name] is None else self.by_rule[name] / getattr(limits, key)
             for key, name in FIGURE_OF.items()
         ]
-        known = [one for one in used if one is not None]
+        known = [use for use in used if use is not None]
         return max(known) if len(known) == len(used) else None
 
 

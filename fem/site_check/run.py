@@ -193,7 +193,7 @@ class _Verification:
                 again = confirmed(cases, runs, keys, runner.jobs)
         if runner.stop():
             return None
-        velocity = sum(one.pgv_m_s for one in motions.motions) / max(len(motions.motions), 1)
+        velocity = sum(motion.pgv_m_s for motion in motions.motions) / max(len(motions.motions), 1)
         beside = replace(stages.beside(again, self.wind, self.bodies, velocity), left_out=left_out)
         for file in place.path.glob(f"{MOTIONS}/{HAZARD}_*.csv"):  # the seed gives them again
             file.unlink()

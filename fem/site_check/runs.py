@@ -176,7 +176,8 @@ class RunCases:
     def of(cls, request: SiteRequest, folder: Path) -> "RunCases":
         """For a request whose motions are written in a folder."""
         bases = {
-            (one.mass, one.elevation): still(one.case, request.heading.model) for one in request.variants
+            (variant.mass, variant.elevation): still(variant.case, request.heading.model)
+            for variant in request.variants
         }
         return cls(folder=folder.resolve(), bases=bases)
 

@@ -34,12 +34,12 @@ class Screening:
             CaseError, MeshError: one cannot be built.
         """
         bodies = {}
-        for one in request.variants:
-            case = one.case.with_values({"solver.model": request.heading.model})
+        for variant in request.variants:
+            case = variant.case.with_values({"solver.model": request.heading.model})
             mesh = build_container(case)
             body = BodyAtRest.of(case, mesh, static_checks_of(case, mesh, 0.0))
             if body is not None:
-                bodies[one.mass, one.elevation] = body
+                bodies[variant.mass, variant.elevation] = body
         return cls(bodies=bodies, motions=motions)
 
     def moves_at(self, key: RunKey) -> float | None:

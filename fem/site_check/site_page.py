@@ -156,9 +156,13 @@ def answer_section(result: SiteResult) -> html.PageSection:
 def actions_in_words(actions: Sequence[ActionAnswer]) -> Markup:
     """The answer for each action with its utilisation, on a line."""
     parts: list[object] = []
-    for one in actions:
-        used = "" if one.utilisation is None else f" (utilisation {number(one.utilisation, figures=3)})"
-        parts += ["; " if parts else "", html.strong(f"{one.name}:"), f" {one.answer or 'no answer'}{used}"]
+    for action in actions:
+        used = "" if action.utilisation is None else f" (utilisation {number(action.utilisation, figures=3)})"
+        parts += [
+            "; " if parts else "",
+            html.strong(f"{action.name}:"),
+            f" {action.answer or 'no answer'}{used}",
+        ]
     return html.joined(*parts, ".")
 
 
@@ -173,7 +177,7 @@ def beside_the_set(result: SiteResult) -> list[str]:
         words.append(f"{count} below uplift and slip of a rigid body and were not computed.")
     if answer.two_directions:
         words.append(two_directions_in_words(answer.two_directions))
-    if known := [one for one in answer.further if one.motions]:
+    if known := [group for group in answer.further if group.motions]:
         worst = max(known, key=lambda one: (one.overturned + one.invalid, one.beyond_limits))
         furthest = max(known, key=lambda one: one.beyond_limits)
         slips = [one.slip_largest_m for one in known if one.slip_largest_m is not None]
@@ -236,7 +240,7 @@ def rates_in_words(rates: AnnualRates, slip_limit: float) -> list[str]:
     if rates.slip_per_year is not None:
         slow, shigh = rates.slip_interval
         slip = f"{rates.slip_per_year:.2g} per year ({slow:.2g} to {shigh:.2g})."
-    failed = sum(one.failed for one in rates.levels)
+    failed = sum(level.failed for level in rates.levels)
     return [
         f"Rate of overturning by counts: {rates.overturning_per_year:.2g} per year ({low:.2g} to {high:.2g} with the "
         f"95 % intervals of all counts and the tails as bounds), {100.0 * rates.in_50_years:.2g} % in 50 years"
@@ -448,9 +452,9 @@ def confirmation(result: SiteResult) -> str:
     inputs = "their unknown inputs"
     if len(again) == 1:
         words, inputs = "The deciding run, repeated with the elastic model", "its unknown inputs"
-    failed = sum(one.outcome is None for one in again)
-    invalid = sum(Outcome.INVALID in (one.outcome, *one.outcomes) for one in again)
-    fell = sum(Outcome.OVERTURNED in (one.outcome, *one.outcomes) for one in again)
+    failed = sum(repeated.outcome is None for repeated in again)
+    invalid = sum(Outcome.INVALID in (repeated.outcome, *repeated.outcomes) for repeated in again)
+    fell = sum(Outcome.OVERTURNED in (repeated.outcome, *repeated.outcomes) for repeated in again)
     if failed or fell or invalid:
         corner = f", {invalid} can destroy a corner" if invalid else ""
         return f"{words} over {inputs}: {fell} can overturn{corner}, {failed} failed."
@@ -475,7 +479,7 @@ def confirmation(result: SiteResult) -> str:
 
 def bolts_in_words(confirmed: Sequence[ConfirmedRun]) -> str:
     """What the bolts of a stack carry in the deciding runs; empty of a single box, or without such runs."""
-    loaded = [one for one in confirmed if one.bolt_tension_N is not None]
+    loaded = [repeated for repeated in confirmed if repeated.bolt_tension_N is not None]
     if not loaded:
         return ""
     most = max(loaded, key=lambda one: one.bolt_tension_N or 0.0)

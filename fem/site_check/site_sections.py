@@ -489,9 +489,15 @@ def friction(run: SiteRun) -> str:
 def merged_methods(methods: Sequence[SiteMethod]) -> list[SiteMethod]:
     """The methods side by side; weights of which a method says the same, to three figures, share a row."""
     merged: dict[tuple[str, ...], list[SiteMethod]] = {}
-    for one in methods:
-        shown = one.name, one.quantity, one.elevation, number(one.utilisation, figures=3), one.says
-        merged.setdefault((*shown, one.compared), []).append(one)
+    for method in methods:
+        shown = (
+            method.name,
+            method.quantity,
+            method.elevation,
+            number(method.utilisation, figures=3),
+            method.says,
+        )
+        merged.setdefault((*shown, method.compared), []).append(method)
     rows = []
     for same in merged.values():
         found = {one.mass: one.found for one in same}

@@ -231,7 +231,7 @@ class _Sizing:
     def _try(self, value: float, working: Path) -> None:
         """Make the motions of a value, and the cases of its runs."""
         request = at(self.request, self.axis, value)
-        bodies = [body_of(one) for one in request.variants]
+        bodies = [body_of(variant) for variant in request.variants]
         longest = longest_period([body.frequency_parameter_1_s for body in bodies])
         ground = ground_motions(request, longest, allow_outside=self.allow_outside)
         floors = floor_motions(request, ground)
@@ -282,7 +282,7 @@ def written_motions(
 
 
 def _ground(request: SiteRequest, allow_outside: bool) -> list[GroundMotion]:
-    longest = longest_period([body_of(one).frequency_parameter_1_s for one in request.variants])
+    longest = longest_period([body_of(variant).frequency_parameter_1_s for variant in request.variants])
     return ground_motions(request, longest, allow_outside=allow_outside)
 
 

@@ -119,7 +119,7 @@ class Stages:
             return sum(not self.screening.at_rest(key) for key in keys)
 
         own = left(self.plan.of_set())
-        masses = len({one.mass for one in self.request.variants})
+        masses = len({variant.mass for variant in self.request.variants})
         of_a_group = self.plan.motions * len(self.plan.signs)
         of_a_mass = len(self.plan.of_set()) // (of_a_group * masses)  # groups, of which two govern
         pairs = min(2, of_a_mass) * masses if own else 0

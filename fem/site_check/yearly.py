@@ -40,7 +40,9 @@ def rocks_from(body: SiteBody, motions: Sequence[GroundMotion]) -> float:
     """The factor on some motions below which none of them lets a body rock."""
     slenderness = math.tan(body.slenderness_angle_rad)
     resting = BodyAtRest(gravity=body.gravity_m_s2, slenderness=slenderness, slope=0.0)
-    return kept_of(body) * min(moves_at(resting, one, sign, math.inf) for one in motions for sign in (1, -1))
+    return kept_of(body) * min(
+        moves_at(resting, motion, sign, math.inf) for motion in motions for sign in (1, -1)
+    )
 
 
 def kept_of(body: SiteBody) -> float:
@@ -51,9 +53,9 @@ def kept_of(body: SiteBody) -> float:
 def slides_from(body: SiteBody, mu_static: float, motions: Sequence[GroundMotion]) -> float:
     """The factor on some motions below which none of them slides a body in any direction."""
     strongest = 0.0
-    for one in motions:
-        along = one.horizontal if one.second is None else np.hypot(one.horizontal, one.second)
-        lift = 0.0 if one.vertical is None else np.abs(one.vertical)
+    for motion in motions:
+        along = motion.horizontal if motion.second is None else np.hypot(motion.horizontal, motion.second)
+        lift = 0.0 if motion.vertical is None else np.abs(motion.vertical)
         strongest = max(strongest, float(np.max(along + mu_static * lift)))
     return KEPT * mu_static * body.gravity_m_s2 / strongest if strongest > 0.0 else math.inf
 
@@ -89,7 +91,7 @@ def hazard_runs(
 
 
 def _body_of(bodies: Sequence[SiteBody], run: SiteRun) -> SiteBody:
-    return next(one for one in bodies if (one.mass, one.elevation) == (run.mass, run.elevation))
+    return next(body for body in bodies if (body.mass, body.elevation) == (run.mass, run.elevation))
 
 
 def rocking_most(groups: Sequence[RunGroup], bodies: Sequence[SiteBody]) -> RunGroup:

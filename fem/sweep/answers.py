@@ -113,7 +113,7 @@ def sweep_answer(table: SweepTable, folder: Path) -> SweepAnswer | None:
             groups[tuple(point[one.key] for one in kept)] += line
         for values, trials in groups.items():
             answer = answer_of(trials, rising=rising, limit_slip=table.info.limit_slip_m)
-            rest = [one for one in others if one not in kept]
+            rest = [other for other in others if other not in kept]
             where = "" if answer.line is None else place_in_words(rest, point_of(table.axes, answer.line))
             yield AnswerRow(
                 point=dict(zip((one.key for one in kept), values, strict=True)),
@@ -122,7 +122,7 @@ def sweep_answer(table: SweepTable, folder: Path) -> SweepAnswer | None:
             )
 
     motions = set_axis(others)
-    kept = [one for one in others if motions is None or one not in sign_axes(others)]
+    kept = [other for other in others if motions is None or other not in sign_axes(others)]
     outer = [one for one in kept if one is not motions]
     rows = [*rows_of(outer), *rows_of(kept)] if motions and outer else list(rows_of(kept))
     (together,) = rows_of(())

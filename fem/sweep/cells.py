@@ -52,7 +52,7 @@ def shown_at(table: SweepTable, cell: int) -> RunShown:
     """What a cell of a table shows, but for the boxes of a loose stack."""
     outcome, values = str(table["outcome"][cell]), {key: float(table[key][cell]) for key in FIGURES}
     kind = ending_of(str(table["status"][cell]), outcome)
-    figures: dict[str, Any] = {key: one for key, one in values.items() if math.isfinite(one)}
+    figures: dict[str, Any] = {key: value for key, value in values.items() if math.isfinite(value)}
     return RunShown(kind=kind, outcome=None if kind is Ending.FAILED else outcome, **figures)
 
 
@@ -60,7 +60,7 @@ class CellRows:
     """The rows of the cells, and what follows from them, cell by cell."""
 
     def __init__(self, sweep: Sweep) -> None:
-        self.columns = row_columns(sweep.axes, (one.key for one in sweep.derived))
+        self.columns = row_columns(sweep.axes, (quantity.key for quantity in sweep.derived))
         self.lines: dict[int, str] = {}  #: row of each cell, as in the log
         self.shown: dict[int, RunShown] = {}
         self.kind: IntArray = np.full(sweep.count, Ending.UNKNOWN)  #: endings, (n_cells,)

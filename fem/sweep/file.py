@@ -64,7 +64,7 @@ def _read(data: Mapping[str, Any], origin: Origin) -> Sweep:
     )
     study_file.require_verticals(axes, [axis.key for axis in axes], base)
     derived = _derived(tables.get("derived", {}), base, axes)
-    varied = [axis.key for axis in axes] + [one.key for one in derived]
+    varied = [axis.key for axis in axes] + [quantity.key for quantity in derived]
     study_file.require_once(tables.get("set", {}), varied, base)
     sweep = Sweep(
         name=origin.name,

@@ -282,4 +282,4 @@ def _picks(
             for (_, axis), index in pairs
         )
         picks.append((name, {k: index for (k, _), index in pairs}))
-    return picks, int(np.prod([len(one) for one in choices])) - len(picks)
+    return picks, int(np.prod([len(choice) for choice in choices])) - len(picks)

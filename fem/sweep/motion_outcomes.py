@@ -77,11 +77,11 @@ def motions_at(
 
 def set_row(outcomes: Sequence[MotionOutcome]) -> dict[str, Any]:
     """The outcome of a set of motions at a point, by `SET_COLUMNS`."""
-    kinds = np.array([one.kind for one in outcomes])
+    kinds = np.array([outcome.kind for outcome in outcomes])
     fallen = np.isin(kinds, NOT_STANDING)
     share = estimate(fallen, kinds == Ending.FAILED, replicates=1, confidence=CONFIDENCE)
-    computed = [one for one in outcomes if one.kind != Ending.FAILED]
-    standing = [one for one in computed if one.kind == Ending.STANDING]
+    computed = [outcome for outcome in outcomes if outcome.kind != Ending.FAILED]
+    standing = [cell for cell in computed if cell.kind == Ending.STANDING]
     worst = max(computed, key=severity, default=None)
     slipped = max(computed, key=lambda one: one.slipped, default=None)
     return {
@@ -95,8 +95,8 @@ def set_row(outcomes: Sequence[MotionOutcome]) -> dict[str, Any]:
         WORST_TURNED: worst and worst[TURNED],
         "worst_slip_motion": slipped and slipped.motion,
         "worst_slip_m": slipped and slipped[SLIPPED],
-        MEAN_TURNED: _mean([one[TURNED] for one in standing]),
-        "mean_slip_m": _mean([one[SLIPPED] for one in standing]),
+        MEAN_TURNED: _mean([cell[TURNED] for cell in standing]),
+        "mean_slip_m": _mean([cell[SLIPPED] for cell in standing]),
     }
 
 
@@ -131,17 +131,17 @@ def by_motion(points: Sequence[Sequence[MotionOutcome]]) -> dict[str, dict[str, 
     """Counts and largest figures of each motion over all points, by its name; the figures where it stood."""
     rows: dict[str, dict[str, Any]] = {}
     for outcomes in zip(*points, strict=True):
-        standing = [one for one in outcomes if one.kind == Ending.STANDING]
-        rows[outcomes[0].motion] = counts_of([one.kind for one in outcomes]) | {
-            f"max_{TURNED}": max((one.turned for one in standing), default=None),
-            SLIPPED: max((one.slipped for one in standing), default=None),
+        standing = [outcome for outcome in outcomes if outcome.kind == Ending.STANDING]
+        rows[outcomes[0].motion] = counts_of([outcome.kind for outcome in outcomes]) | {
+            f"max_{TURNED}": max((cell.turned for cell in standing), default=None),
+            SLIPPED: max((cell.slipped for cell in standing), default=None),
         }
     return rows
 
 
 def _worst(motion: str, signs: Sequence[RunShown]) -> MotionOutcome:
     """The outcome of a motion, with the worse of its signs; a failed run hides no fall and never counts as standing."""
-    slip = max((one[SLIPPED] for one in signs if one[SLIPPED] is not None), default=None)
+    slip = max((sign[SLIPPED] for sign in signs if sign[SLIPPED] is not None), default=None)
     return MotionOutcome(**vars(max(signs, key=severity)) | {"motion": motion, SLIPPED: slip})
 
 

@@ -87,7 +87,7 @@ class PerturbedRows:
         unsure = ~self._cells.decided
         for cell, copies in self.rows.items():
             unsure[cell] |= any(
-                one.level == OTHER_END for one in copies.values() if drawn or not one.copy.drawn
+                copy.level == OTHER_END for copy in copies.values() if drawn or not copy.copy.drawn
             )
         return unsure
 
@@ -103,8 +103,8 @@ class PerturbedRows:
         levels = [one.level if one.level == most else SAME for one in copies]
         changes = [one.copy.change for one in copies]
         alone = [
-            replace(one, values=dict([*one.values.items()][:1])) if copy.copy.small else one
-            for one, copy in zip(changes, copies, strict=True)
+            replace(change, values=dict([*change.values.items()][:1])) if copy.copy.small else change
+            for change, copy in zip(changes, copies, strict=True)
         ]
         word = {SAME: SURE, OTHER_REGIME: REGIME_UNSURE, OTHER_END: UNSURE}[most]
         return word, tuple(deciding_inputs(levels, alone))
@@ -112,7 +112,7 @@ class PerturbedRows:
     def ratios(self, cell: int) -> tuple[float | None, float | None]:
         """Least and largest rotation ratio of a cell and its copies; None where there is none."""
         copies = self.rows.get(cell, {}).values()
-        ratios = [ratio for one in copies if (ratio := one.shown[TURNED]) is not None]
+        ratios = [ratio for copy in copies if (ratio := copy.shown[TURNED]) is not None]
         own = float(self._cells.ratio[cell])
         return (min(own, *ratios), max(own, *ratios)) if ratios and np.isfinite(own) else (None, None)
 
@@ -125,9 +125,9 @@ class PerturbedRows:
         if self._cells.kind[cell] in (Ending.UNKNOWN, Ending.FAILED):
             return None
         own, tried = self._cells.kind[cell] == Ending.STANDING, self.rows.get(cell, {}).values()
-        known = [one.shown.kind for one in tried if one.shown.kind != Ending.FAILED]
+        known = [trial.shown.kind for trial in tried if trial.shown.kind != Ending.FAILED]
         turned = sum((kind == Ending.STANDING) != own for kind in known)
-        drawn = any(one.copy.drawn for one in tried)
+        drawn = any(trial.copy.drawn for trial in tried)
         share = turned / (1 + sum(drawn or not copy.drawn for copy in self.copies.of(cell)))
         return share if own else 1.0 - share
 

@@ -161,7 +161,7 @@ class Sweep:
 
     @cached_property
     def _varies_container(self) -> bool:
-        moving = {axis.key for axis in self.axes} | {one.key for one in self.derived}
+        moving = {axis.key for axis in self.axes} | {quantity.key for quantity in self.derived}
         return any(key.startswith(OF_THE_CONTAINER) for key in moving)
 
     @cached_property

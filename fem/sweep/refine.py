@@ -68,7 +68,7 @@ def table_of_changes(sweep: Sweep, changes: Sequence[tuple[int, Change]]) -> str
 
 def change_columns(axes: Sequence[Axis], along: str) -> Columns:
     """The columns of `thresholds.csv`: where on the other axes, and the bracket of a change."""
-    words = {axis.key: any(isinstance(one, str | bool) for one in axis.values) for axis in axes}
+    words = {axis.key: any(isinstance(value, str | bool) for value in axis.values) for axis in axes}
     return {key: str if words[key] else float for key in words if key != along} | CHANGES
 
 

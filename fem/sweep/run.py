@@ -76,7 +76,7 @@ def run_sweep(sweep: Sweep, folder: Path, **options: Unpack[StudyOptions]) -> Sw
         result=SweepResult,
         begun=replace(asked, band_hash=None),  # until the copies of another band are gone
         cases=[sweep.base],
-        motions=[one.case for one in motions],
+        motions=[motion.case for motion in motions],
         compute=partial(_compute, sweep, motions, asked),
         texts={"sweep.toml": sweep.text, "base.toml": toml_document(sweep.base.given())},
         size=table_bytes(sweep.count, OF_A_CELL) + BYTES_BESIDE,
@@ -97,7 +97,7 @@ def sweep_hash(sweep: Sweep) -> str:
             case_hash(base),
             toml_document(given),
             [(axis.key, axis.values) for axis in sweep.axes],
-            [(one.key, repr(one.expression.tree)) for one in sweep.derived],
+            [(quantity.key, repr(quantity.expression.tree)) for quantity in sweep.derived],
             [case_hash(case) for case in motion_cases(sweep.base, sweep.axes)],
         ]
     )
@@ -154,7 +154,7 @@ def asked_of(sweep: Sweep, motions: Sequence[FloorMotionPair], jobs: int) -> Swe
             )
             for axis in sweep.axes
         ),
-        derived={one.key: one.expression.text for one in sweep.derived},
+        derived={quantity.key: quantity.expression.text for quantity in sweep.derived},
         held=held_inputs(sweep.ends(), [axis.key for axis in sweep.axes]),
         perturbation=sweep.perturbation.model_dump(),
         uncertainty=sweep.base.uncertainty.model_dump(),
@@ -321,7 +321,7 @@ class _Cells:
                 values = self.sweep.values(point)
             except CaseError:  # the row has the reason
                 values = {}
-            yield from (values.get(one.key) for one in self.sweep.derived)
+            yield from (values.get(quantity.key) for quantity in self.sweep.derived)
 
     def _note(self, line: str) -> None:
         self.rows.note(line)

@@ -28,7 +28,7 @@ def write_set(
     """Write the files of the set; returns its part of `sweep.json`."""
     points = list(motions_at(sweep.axes, cells.shown))
     outcomes = by_motion([at_point for _, at_point in points])
-    measures = [one.numbers() | outcomes[one.name] for one in motions]
+    measures = [motion.numbers() | outcomes[motion.name] for motion in motions]
     rows = [values | set_row(at_point) for values, at_point in points]
     others = [axis for axis in sweep.axes if axis.key in rows[0]]
     columns = dict.fromkeys((axis.key for axis in others), str) | SET_COLUMNS

@@ -112,7 +112,7 @@ def compute(folder: Path | None) -> Experiment:
 def blocks(body: shake_tests.Body) -> tuple[Block, ...]:
     """The blocks tried for a body."""
     angles = np.linspace(*body.angles, ANGLES).tolist()
-    sharp = [Block(angle=angle, restitution=one) for one in RESTITUTIONS for angle in angles]
+    sharp = [Block(angle=angle, restitution=restitution) for restitution in RESTITUTIONS for angle in angles]
     cambered = [
         Block(angle=angle, uplift=uplift, damping=damping)
         for uplift in UPLIFTS
@@ -309,7 +309,7 @@ def _others(scores: Sequence[dict[str, float]]) -> tuple[Predictor, ...]:
     return tuple(
         Predictor(
             name=name,
-            agreement=", ".join(f"{one[name]:.2f}" for one in scores),
+            agreement=", ".join(f"{score[name]:.2f}" for score in scores),
             source=SOURCES.get(name, "the same tests, fitted as the blocks are"),
         )
         for name in scores[0]
