@@ -342,8 +342,8 @@ MUTATIONS = (
     ),
     Mutation(
         name="the last overturning taken for the first",
-        old="one.high == min(fallen)",
-        new="one.high == max(fallen)",
+        old="change.high == min(fallen)",
+        new="change.high == max(fallen)",
         tests=("unit/run/test_margin.py",),
     ),
     *VERTICAL_MOTION,

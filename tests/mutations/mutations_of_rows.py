@@ -32,8 +32,8 @@ ROW_FAULTS = (
     ),
     Mutation(
         name="sides without friction",
-        old="dashpot_of(one, mass), one.mu))",
-        new="dashpot_of(one, mass), 0.0))",
+        old="dashpot_of(neighbour, mass), neighbour.mu))",
+        new="dashpot_of(neighbour, mass), 0.0))",
         tests=(ROWS, "-k", "drags"),
     ),
     Mutation(
