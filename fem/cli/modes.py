@@ -16,10 +16,13 @@ from fem.model.container import discretise
 from fem.model.geometry import build_container
 from fem.results.errors import require_writable, writing_into
 from fem.results.files import write_atomically
+from fem.run.expected import say_expected
+from fem.runtime.progress import ScreenReporter
 from fem.solid.assembly import FiniteElements, assemble
 from fem.solid.modes import ElasticModes, elastic_mode_table, elastic_modes, write_modes
 
 RIGID_MODES, SHOWN = 3, 20
+OF_AN_UNKNOWN_S = 4e-6  #: processor time of a mode and an unknown [s]
 
 
 def modes(
@@ -40,7 +43,10 @@ def modes(
     if count is not None and not 1 <= count <= available:
         raise CaseError(f"--count {count}: this mesh has from 1 to {available} elastic modes")
     # A case may keep no elastic modes, or more than a coarse mesh has.
-    shapes = modes_of(count or min(loaded.solver.elastic_modes or SHOWN, available))
+    wanted = count or min(loaded.solver.elastic_modes or SHOWN, available)
+    unknowns = sum(body.unknowns for body in free)
+    say_expected(ScreenReporter(), f"{wanted} modes", OF_AN_UNKNOWN_S * wanted * unknowns)
+    shapes = modes_of(wanted)
     with house_style():
         drawn = modes_figure(
             points=elements.nodes, cells=elements.cells, box=elements.box, modes=shapes, name=loaded.name

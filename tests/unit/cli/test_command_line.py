@@ -450,6 +450,11 @@ class TestModes:
         for row in document["modes"]:
             assert f">{row['mode']}: {row['frequency_Hz']:.4g} Hz<" in figure
 
+    def test_says_beforehand_that_many_modes_take_long(self, tmp_path, monkeypatch, capsys):
+        monkeypatch.setattr("fem.cli.modes.OF_AN_UNKNOWN_S", 1.0)
+        assert command_line.main(["modes", "seed_box", "--count", "2", "--out", str(tmp_path)]) == 0
+        assert "2 modes: roughly" in capsys.readouterr().err
+
 
 class TestDoctor:
     def test_names_versions_and_the_line_that_mends_missing_pictures(self, monkeypatch, capsys):
