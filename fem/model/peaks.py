@@ -20,6 +20,7 @@ VON_MISES_ROOT = np.array([[1.0, -0.5, 0.0], [0.0, math.sqrt(0.75), 0.0], [0.0, 
 #: relative rounding error of a stress against its bound
 ROUNDING = 1e-9
 LOWEST = 4  #: modes by which nodes are chosen whose stress is looked at
+ALIKE = 1e-3  #: relative difference of stresses at a node and its mirror image, at most
 
 
 def casting_length(case: Case) -> float | None:
@@ -41,15 +42,17 @@ def counted_nodes(case: Case, elements: FiniteElements) -> IntArray:
 def stressed_nodes(case: Case, elements: FiniteElements, basis: ReducedBasis, loaded: IntArray) -> IntArray:
     """Nodes whose stress is looked at in every step of a reduced body that bears at the nodes `loaded`.
 
-    These; with posts, the counted ones that a force at one of these, or one of the lowest modes, stresses most.
+    These; with posts, the counted ones that a force at one of these, or one of the lowest modes, stresses most: of a
+    symmetric container both of a pair, whichever rounding makes the larger.
     """
     if casting_length(case) is None:
         return loaded
     counted = counted_nodes(case, elements)
     amplitudes = basis.shapes[:, loaded].reshape(len(basis.shapes), -1).T / basis.angular_frequencies**2
     shapes = np.concatenate([amplitudes, np.eye(LOWEST, len(basis.shapes))])
-    stresses = (von_mises(shape @ basis.stress)[counted] for shape in shapes)
-    return counted[np.unique([np.argmax(stress) for stress in stresses])]
+    stresses = np.array([von_mises(shape @ basis.stress)[counted] for shape in shapes])
+    largest = stresses >= (1.0 - ALIKE) * stresses.max(axis=1, keepdims=True)
+    return counted[largest.any(axis=0)]
 
 
 def stress_bounds(stress: FloatArray, angular_frequencies: FloatArray) -> FloatArray:

@@ -5,6 +5,7 @@ import pytest
 
 from fem.case.case import load_case
 from fem.model.model import build_model
+from fem.model.peaks import stressed_nodes
 from fem.model.recovery import recovery_of
 from fem.run.outcome import run_without_history
 from fem.run.recorder import Recorder
@@ -30,6 +31,17 @@ def test_the_largest_stress_is_that_of_all_nodes_in_all_samples(recovery, seed):
     positions = np.column_stack([np.zeros((count, 3)), modal])
     each = [recovery.frame(row, np.zeros_like(row)).von_mises[recovery.counted] for row in positions]
     assert recovery.largest_von_mises(positions) == pytest.approx(np.max(each), rel=1e-12)
+
+
+def test_of_a_symmetric_container_both_nodes_of_a_pair_are_watched():
+    case = load_case("rocking", ["solver.element_size_m=0.25", "solver.order=1"])
+    container = build_model(case).container
+    nodes = container.elements.nodes[
+        stressed_nodes(case, container.elements, container.basis, container.nodes)
+    ]
+    mirrored = nodes * (-1.0, 1.0)
+    distance = np.linalg.norm(nodes[:, None] - mirrored[None], axis=2).min(axis=1)
+    assert len(nodes) > 4 and distance.max() < 1e-9
 
 
 @pytest.mark.parametrize("changes", [[], ["container.joints=loose"]])

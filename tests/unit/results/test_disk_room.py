@@ -154,5 +154,5 @@ def test_a_report_that_cannot_be_written_ends_with_3_and_names_another_place(
     capsys.readouterr()
     assert main(["report", str(small / "r")]) == 3
     message = capsys.readouterr().err
-    assert "report.html: cannot be written (Read-only file system)" in message and "--to FILE" in message
+    assert "cannot be written (Read-only file system)" in message and "--to FILE" in message
     assert main(["report", str(small / "r"), "--to", str(tmp_path / "page.html")]) == 0

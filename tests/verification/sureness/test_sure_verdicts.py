@@ -3,6 +3,8 @@
 The runs are those in which an independent review found verdicts that were sure and depended on unknown inputs.
 """
 
+import re
+
 import pytest
 from cases import named_case
 
@@ -78,8 +80,9 @@ def test_the_default_motion_hangs_on_the_fall_of_friction(tmp_path, section):
     verdict = verdict_of(tmp_path, "seed_stack_plateau", values).verdict
     assert verdict.sure == "regime unsure" and verdict.decided_by[0] == "contact.mu_kinetic"
     low, high = verdict.band.rotation_ratio
-    assert low < 0.25 and high == pytest.approx(0.39, abs=0.02)  # the block without slip: 0.399
-    assert "depending on kinetic friction" in verdict.first_line and "contact." not in verdict.first_line
+    assert low < 0.25 and high == pytest.approx(0.399, abs=0.02)  # the block without slip
+    assert re.search("depend(s|ing) on kinetic friction", verdict.first_line)
+    assert "contact." not in verdict.first_line
 
 
 @pytest.mark.parametrize(("model", "share"), [("rigid", 0.98), ("reduced", 0.92)])
