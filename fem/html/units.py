@@ -7,7 +7,7 @@ import math
 import re
 
 from fem.results.figures import Shown
-from fem.runtime.units import MILLIMETRES, RATIO, DisplayUnit, plain_number
+from fem.runtime.units import MILLIMETRES, RATIO, DisplayUnit, in_unit, plain_number
 
 ABSENT = "–"
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -17,7 +17,7 @@ def number(value: float | None, factor: float = 1.0, figures: int = 4) -> str:
     """A number times a factor, with this many significant figures; a dash for none."""
     if value is None or not math.isfinite(value):
         return ABSENT
-    scaled = factor * value
+    scaled = in_unit(value, factor)
     if scaled == 0.0:
         return "0"
     mantissa, _, exponent = f"{scaled:.{figures - 1}e}".partition("e")

@@ -68,11 +68,16 @@ def figures_of(reach: Reach | None, many: int = MANY) -> int:
     return FEW if reach[1] - reach[0] > WIDE * max(map(abs, reach)) else many
 
 
+def in_unit(value: float, factor: float) -> float:
+    """A number times a factor; half a digit, as in 53.955, is then rounded alike on all machines."""
+    return float(f"{factor * value:.12g}")
+
+
 def in_figures(value: float, figures: int, factor: float = 1.0, least: float = 0.0, under: str = "<") -> str:
     """A number with so many significant figures, without an exponent where it has at most six digits."""
     if 0.0 < abs(value) < least:
         return f"{under} {factor * least:g}"
-    shown = factor * value
+    shown = in_unit(value, factor)
     if shown == 0.0:
         return "0"
     digits = figures - 1 - math.floor(math.log10(abs(float(f"{shown:.{figures - 1}e}"))))
@@ -91,7 +96,7 @@ def visible_number(value: float | None, factor: float = 1.0, form: str = ".4g") 
     """A number in a table on a screen; 0 where it is rounding, a hyphen where there is none."""
     if value is None:
         return "-"
-    shown = float(f"{factor * value:.12g}")  # half a digit, 53.955, is rounded alike on all machines
+    shown = in_unit(value, factor)
     return "0" if abs(shown) < INVISIBLE else format(shown, form)
 
 

@@ -2,7 +2,8 @@
 
 import pytest
 
-from fem.runtime.units import RATIO, DisplayUnit, in_figures
+from fem.html.units import number
+from fem.runtime.units import RATIO, DisplayUnit, in_figures, visible_number
 
 
 @pytest.mark.parametrize(
@@ -35,3 +36,8 @@ def test_figures_are_rounded_without_an_exponent(value, figures, words):
 )
 def test_a_rotation_ratio_has_three_figures(ratio, text):
     assert RATIO.text(ratio) == text
+
+
+@pytest.mark.parametrize("moment", [53954.99999999999, 53955.0, 53955.00000000001])
+def test_half_a_digit_is_rounded_alike_everywhere(moment):
+    assert visible_number(moment, 1e-3) == in_figures(moment, 4, 1e-3) == number(moment, 1e-3) == "53.95"
