@@ -51,7 +51,7 @@ class RowLog:
             OSError: they cannot be written; FolderLostError: the log was removed.
         """
         if os.fstat(self._file.fileno()).st_nlink == 0:
-            raise FolderLostError(None, "the folder was removed during the run", str(self._path.parent))
+            raise FolderLostError(self._path.parent)
         data = "".join(f"{line}\n" for line in lines).encode()
         done = 0
         while done < len(data):

@@ -31,6 +31,12 @@ class Shard(JsonBlock):
     number: int
     count: int
     done: bool = False
+    lines: int = field(default=0, compare=False)  #: of its logs, when it was done
+
+    def lost(self, folder: Path, kind: ResultKind) -> str:
+        """What its folder lacks since it was done, in words; "" where nothing is missing."""
+        lines = lines_of_logs(folder, kind)
+        return f"{' and '.join(kind.logs)}: {lines} of {self.lines} lines" if lines < self.lines else ""
 
     @classmethod
     def parse(cls, text: str) -> Self:
@@ -101,6 +107,10 @@ def read_shards(place: ResultFolder, request: str, folders: Sequence[Path]) -> l
             raise FolderError(
                 f"--merge {folder}: shard {shard} is not finished; --shard {shard} --resume continues it"
             )
+        if lost := shard.lost(folder, place.kind):
+            raise FolderError(
+                f"--merge {folder}: damaged, {lost}; --shard {shard} --resume computes what is missing"
+            )
         marks.append(mark)
         numbers.add((shard.number, shard.count))
     counts = {count for _, count in numbers}
@@ -117,6 +127,17 @@ def read_shards(place: ResultFolder, request: str, folders: Sequence[Path]) -> l
     return marks
 
 
+def whole_lines(path: Path) -> list[str]:
+    """The lines of a log but for one that was not written whole; none where there is no file."""
+    text = path.read_text(encoding="utf-8", errors="replace") if path.is_file() else ""
+    return text.split("\n")[:-1]
+
+
+def lines_of_logs(folder: Path, kind: ResultKind) -> int:
+    """How many whole lines the logs of a study have."""
+    return sum(len(whole_lines(folder / name)) for name in kind.logs)
+
+
 def join_logs(place: Path, kind: ResultKind, folders: Sequence[Path]) -> None:
     """Write the logs of a study from those of its shards, every line once; what is there already stays.
 
@@ -126,8 +147,7 @@ def join_logs(place: Path, kind: ResultKind, folders: Sequence[Path]) -> None:
     for name in kind.logs:
         lines: dict[str, None] = {}
         for path in (folder / name for folder in (place, *folders)):
-            text = path.read_text(encoding="utf-8", errors="replace") if path.is_file() else ""
-            whole = text.split("\n")[:-1]
+            whole = whole_lines(path)
             if whole and lines and whole[0] != next(iter(lines)):
                 raise FolderError(f"{path}: damaged, its columns are not those of the other shards")
             lines |= dict.fromkeys(whole)

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any, Generic, TypedDict, TypeVar, Unpack
 
 from fem.batch.runner import Runner
-from fem.batch.shard import Shard, Share, join_logs, read_shards
+from fem.batch.shard import Shard, Share, join_logs, lines_of_logs, read_shards
 from fem.batch.workers import LocalWorkers, WorkersOf
 from fem.case.case import Case
 from fem.results.errors import OTHER_FOLDER, FolderError
@@ -126,7 +126,7 @@ def run_study(study: Study[ResultT], folder: Path, **options: Unpack[StudyOption
         before = typed_result(Shard, part, folder / kind.mark) if part else None
         if before and shard and (before.number, before.count) != (shard.number, shard.count):
             raise FolderError(f"{folder} holds shard {before} of this {kind.name}; {OTHER_FOLDER}")
-        if before and before.done and shard and not merge:
+        if before and before.done and shard and not merge and not before.lost(folder, kind):
             runner.reporter.message(f"{folder} holds shard {shard} of this {kind.name} already")
             return typed_result(study.result, place.earlier or {}, folder / kind.mark)
         if place.finished and place.earlier:
@@ -153,7 +153,8 @@ def run_study(study: Study[ResultT], folder: Path, **options: Unpack[StudyOption
             copy_data_files(case, place.path, read=True)
         result = study.compute(place, replace(runner, stop=halted, share=share))
         if shard and share:
-            result = replace(result, shard=replace(shard, done=share.waits or result.status in kind.finished))
+            done, lines = share.waits or result.status in kind.finished, lines_of_logs(folder, kind)
+            result = replace(result, shard=replace(shard, done=done, lines=lines))
         place.check()
         replace(place, beside={}).write_result(result.to_json() | mark)
         if result.status in kind.finished and not shard:

@@ -105,7 +105,7 @@ class Hall:
         words += ["--allow-outside"] * self.inventory.base.origin_with({}).allow_outside
         if self.named:
             words += ["--motion", self.named[motion].partition(",")[0].strip()]
-        # of a pair its vertical file; of a motion alone among pairs that it has none
+        # with a vertical file of a pair, or that a motion among pairs has none
         set_by_motion = {k: v for k, v in self.cases.motions[motion].items() if k != MOTION_FILE}
         for key, value in {**set_by_motion, **row.values}.items():
             words += ["--set", f"{key}={value if isinstance(value, str) else toml_value(value)}"]

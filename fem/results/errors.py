@@ -26,6 +26,9 @@ class OutputError(RuntimeError):
 class FolderLostError(OSError):
     """The folder was removed, or taken by another process, while this one was using it."""
 
+    def __init__(self, folder: Path, how: str = "removed") -> None:
+        super().__init__(None, f"the folder was {how} during the run", str(folder))
+
 
 @contextmanager
 def writing_into(folder: Path, way_on: str) -> Iterator[None]:

@@ -2,7 +2,7 @@
 
 One JSON file marks the folder; it holds the status and the hash of what was asked. It is written first, with status
 "running", so that whatever comes between, the folder is known as this request's, and as unfinished. Every file is
-replaced whole, one process writes at a time, and only files of the result's kind are ever removed.
+replaced whole, one process writes at a time, and only files of results are ever removed.
 """
 
 from collections.abc import Iterator, Mapping
@@ -17,7 +17,7 @@ from fem.results.archive import read_archive, write_archive
 from fem.results.disk import free_disk, in_units
 from fem.results.errors import OTHER_FOLDER, FolderError, writing_into
 from fem.results.files import remove_files, to_json, write_atomically
-from fem.results.kinds import ResultKind, read_result
+from fem.results.kinds import KINDS, ResultKind, read_result
 from fem.results.lock import FolderLock, locked_folder
 from fem.runtime.identity import program_identity, versions
 
@@ -53,7 +53,7 @@ class ResultFolder:
     def begin(
         self, mark: Mapping[str, Any], texts: Mapping[str, str] | None = None, *, keep: bool | None = None
     ) -> None:
-        """Mark the folder, remove the files of an earlier result, and write what was asked.
+        """Mark the folder, remove the files of an earlier result of any kind, and write what was asked.
 
         Args:
             mark: content of the marking file, with status "running" and the hash of the request.
@@ -69,6 +69,9 @@ class ResultFolder:
             self.write_result(mark)
             if not (self.resuming if keep is None else keep):
                 self.remove(*self.kind.own)
+                for other in KINDS:  # only where it was told to overwrite what is there
+                    if other is not self.kind and (self.path / other.mark).is_file():
+                        self.remove(other.mark, *other.own)
             for name, text in texts.items():
                 self.write_text(name, text)
         except OSError as error:

@@ -59,7 +59,7 @@ class FolderLock:
         """
         if not self.is_held:
             lost = "emptied or taken by another process" if self._folder.is_dir() else "removed"
-            raise FolderLostError(None, f"the folder was {lost} during the run", str(self._folder))
+            raise FolderLostError(self._folder, lost)
 
 
 @contextmanager

@@ -156,9 +156,11 @@ def _least(model: Model) -> float:
     row = zip(case.row, model.container.row, strict=True)
     rules = [model.static.ruling, *(static_checks_of(one, alone.mesh, *peaks).ruling for one, alone in row)]
     uses = [rule.overturning.utilisation for rule in rules]
-    if (
-        case.stop or case.neighbour or any(tie.to == "wall" for tie in case.tie)
-    ):  # what slides may fall over it
+    if [
+        *case.stop,
+        *case.neighbour,
+        *(tie for tie in case.tie if tie.to == "wall"),
+    ]:  # what slides may fall over it
         uses += [rule.sliding.utilisation or math.inf for rule in rules]
     use = max((one for one in uses if one is not None), default=0.0)
     return LEAST if use <= 0.0 else min(LARGEST, max(LEAST, SURELY_AT_REST / use))

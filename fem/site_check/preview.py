@@ -55,9 +55,9 @@ def _rounded(seconds: float) -> str:
     return clock_time(float(f"{seconds:.1g}"))
 
 
-def forecast(stages: Stages, jobs: int, *, quick: bool = False) -> Forecast:
-    """How many runs there will be, before the first is computed."""
-    own, most = stages.most_runs(quick=quick)
+def forecast(stages: Stages, jobs: int, *, quick: bool = False, scan: bool = True) -> Forecast:
+    """How many runs there will be, before the first is computed; arguments as `Stages.most_runs`."""
+    own, most = stages.most_runs(quick=quick, scan=scan)
     request = stages.request
     case = still(request.variants[0].case, request.heading.model)
     total = len(stages.plan.of_set())

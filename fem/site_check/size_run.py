@@ -21,6 +21,7 @@ from fem.case.case import Case
 from fem.results.disk import BYTES_BESIDE
 from fem.results.folder import ResultFolder
 from fem.results.kinds import SIZE
+from fem.run.expected import say_expected
 from fem.seismic.ground_motion import GroundMotion
 from fem.seismic.motion_set import check_set
 from fem.site_check.answer import FULFILLED, answer_of, governing_run
@@ -33,6 +34,7 @@ from fem.site_check.inputs import copy_files, inputs_of, texts_of
 from fem.site_check.methods import wind_utilisation
 from fem.site_check.motion_results import set_result, write_csv_files
 from fem.site_check.motions import floor_motions, ground_motions, longest_period
+from fem.site_check.preview import forecast
 from fem.site_check.reasons import NOT_FULFILLED
 from fem.site_check.result import ConfirmedRun, MotionSet, SiteAnswer
 from fem.site_check.run import site_hash
@@ -183,6 +185,7 @@ class _Sizing:
         while not runner.stop() and (values := next_values(self.axis, self.answers())):
             for value in values:
                 self._try(value, working)
+            self._say_expected(values, runner)
             under_way = {value: self._stages(value, runner) for value in values}
             while under_way:
                 batch: list[SizeKey] = []
@@ -195,6 +198,12 @@ class _Sizing:
             for value in values:
                 if not runner.stop():
                     self.tried[value].confirm(self.cases.cases[value], runner.jobs)
+
+    def _say_expected(self, values: Sequence[float], runner: Runner) -> None:
+        """How long the runs of these values take at most, without the deciding ones."""
+        each = [forecast(self.tried[value].stages, runner.jobs, scan=False) for value in values]
+        what = f"{len(values)} value{'s' * (len(values) > 1)}, up to {sum(value.most for value in each)} runs"
+        say_expected(runner.reporter, what, sum(value.seconds for value in each), runner.jobs)
 
     def _stages(self, value: float, runner: Runner) -> Iterator[Sequence[RunKey]]:
         """The runs of a value, until it is known not to fulfil the rule."""

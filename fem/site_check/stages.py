@@ -112,8 +112,13 @@ class Stages:
         """Whether no run of the set need be computed."""
         return all(self.screening.at_rest(key) for key in self.plan.of_set())
 
-    def most_runs(self, *, quick: bool = False) -> tuple[int, int]:
-        """Runs of the set that must be computed, and of all stages at most, without the deciding ones."""
+    def most_runs(self, *, quick: bool = False, scan: bool = True) -> tuple[int, int]:
+        """Runs of the set that must be computed, and of all stages at most, without the deciding ones.
+
+        Args:
+            quick: the set and its repetitions alone.
+            scan: with the set at other factors, and the levels of the rate per year.
+        """
 
         def left(keys: Sequence[RunKey]) -> int:
             return sum(not self.screening.at_rest(key) for key in keys)
@@ -126,8 +131,11 @@ class Stages:
         most = own + pairs * of_a_group * len(REPETITIONS)
         if quick:
             return own, most
-        most += pairs * self.request.motions.further * len(self.plan.signs) + hazard_motions(self.request)
-        return own, most + sum(left(self.plan.scanned(factor)) for factor in self.plan.factors)
+        most += pairs * self.request.motions.further * len(self.plan.signs)
+        if scan:
+            most += hazard_motions(self.request)
+            most += sum(left(self.plan.scanned(factor)) for factor in self.plan.factors)
+        return own, most
 
     def of_the_margin(self) -> Iterator[Sequence[RunKey]]:
         """The set at other factors, up to the first at which a run overturns, and between.

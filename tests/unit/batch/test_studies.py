@@ -331,6 +331,13 @@ def test_a_shard_is_resumed_and_an_unfinished_one_is_not_merged(tmp_path, whole,
     with pytest.raises(FolderError, match="shard 2/2 is not finished; --shard 2/2 --resume continues it"):
         run(tmp_path / "merged", merge=parts)
     run(parts[1], shard=Shard(2, 2), resume=True)
+    log = parts[0] / ("draws.csv" if study is ensemble else "runs.csv")
+    log.write_bytes(log.read_bytes()[:-9])  # as a disk that was full leaves it
+    with pytest.raises(
+        FolderError, match=r"damaged, .*: \d+ of \d+ lines; --shard 1/2 --resume computes what"
+    ):
+        run(tmp_path / "merged", merge=parts)
+    run(parts[0], shard=Shard(1, 2), resume=True)
     run(tmp_path / "merged", merge=parts)
     assert files_of(tmp_path / "merged") == files_of(whole(study))
 
@@ -363,7 +370,7 @@ def test_shards_of_something_else_and_damaged_ones_are_not_merged(tmp_path, whol
     run(tmp_path / "half", shard=Shard(1, 2))
     shutil.copytree(whole(hall), tmp_path / "whole")
     run(tmp_path / "binary", shard=Shard(2, 2))
-    (tmp_path / "binary" / "runs.csv").write_bytes(bytes(range(256)))
+    (tmp_path / "binary" / "runs.csv").write_bytes(20 * bytes(range(256)))
     for folders, words in (
         (["other"], "results of another hall"),
         (["one", "half"], "shards of 1 and of 2"),

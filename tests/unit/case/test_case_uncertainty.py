@@ -262,7 +262,7 @@ def test_points_lie_in_the_middle_of_their_cells_one_in_each(count):
 
 def test_no_two_of_many_inputs_are_drawn_as_one():
     correlation = np.corrcoef(latin_hypercube(32, 20), rowvar=False)
-    assert np.abs(correlation - np.eye(20)).max() < 0.45
+    assert np.abs(correlation - np.eye(20)).max() < 0.05
 
 
 def test_every_key_of_the_table_is_an_unknown_input_and_every_input_a_key_of_the_case():
@@ -344,7 +344,7 @@ def test_draws_of_a_loose_stack_draw_its_joints_and_its_floor_apart():
     assert 0.2 < static.min() < 0.21 and 0.76 < static.max() < 0.8
     assert 0.5 < share.min() < 0.52 and 0.98 < share.max() < 1.0
     floor = [one.contact.mu_kinetic for one in drawn]
-    assert abs(np.corrcoef(floor, share)[0, 1]) < 0.45
+    assert abs(np.corrcoef(floor, share)[0, 1]) < 0.2
     assert len({one.joint_friction["weakening_m"] / one.contact.weakening_m for one in drawn}) > 16
 
 

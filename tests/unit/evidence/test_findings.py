@@ -14,6 +14,7 @@ from fem.evidence.verification import suite
 from fem.evidence.verification.checks import check
 from fem.evidence.verification.page import convergence_plot, lines_of, page_of
 from fem.evidence.verification.suite import run_suite
+from fem.run.expected import expected_words
 
 
 def finding(value, *, tolerance=0.01, reference=2.0, relative=False, **optional):
@@ -123,6 +124,15 @@ def test_the_command_ends_with_3_if_a_finding_fails(small_suite, tmp_path, capsy
     assert document["passed"] is (code == 0)
     assert all(row["room"] == row["topic"] for row in document["rows"] + document["checks"])
     assert (tmp_path / "verify.html").stat().st_size > 1000
+
+
+@pytest.mark.parametrize(("options", "share"), [([], 1.0), (["--topic", "cellar"], 1 / 3)])
+def test_the_time_of_long_checks_is_told_by_the_share_of_them_that_is_chosen(
+    small_suite, tmp_path, capsys, monkeypatch, options, share
+):
+    monkeypatch.setattr("fem.cli.verify.ALL_S", 200.0)
+    main(["verify", *options, "--out", str(tmp_path)])
+    assert f": {expected_words(200.0 * share)}\n" in capsys.readouterr().err
 
 
 def test_an_unknown_topic_is_bad_input(small_suite, tmp_path, capsys):

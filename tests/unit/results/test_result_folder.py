@@ -106,6 +106,16 @@ def test_foreign_files_are_refused_and_survive_force(tmp_path, kind):
     assert "thesis.tex" in left
 
 
+def test_the_result_of_another_kind_is_refused_and_force_replaces_it_whole(tmp_path, kind):
+    other = SWEEP if kind is RUN else RUN
+    computed(tmp_path, other)
+    with pytest.raises(FolderError, match=rf"not empty and holds no {kind.name}.*--force"):
+        computed(tmp_path, kind)
+    with open_result_folder(tmp_path, kind, "ours", force=True) as folder:
+        folder.begin(mark(kind), TEXTS)
+    assert sorted(files_of(tmp_path)) == sorted([*TEXTS, kind.mark])
+
+
 @pytest.mark.parametrize("text", ["", "{", "[1]", '{"status": "completed"}', "\x00"])
 def test_a_damaged_mark_is_refused_by_name(tmp_path, kind, text):
     (tmp_path / kind.mark).write_text(text)

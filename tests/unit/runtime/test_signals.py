@@ -68,6 +68,17 @@ command_line.program()
     assert outcome("-m", script) == (4, "interrupted\n")
 
 
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_what_is_printed_of_finished_work_is_printed_whole(number):
+    script = f"""
+from fem.runtime.signals import ending_at_once, unheard
+with ending_at_once(), unheard():
+    os.kill(os.getpid(), {int(number)})
+print("whole", file=sys.stderr)
+"""
+    assert outcome("-c", script) == (0, "whole\n")
+
+
 def test_a_library_leaves_signals_alone():
     script = (
         "assert signal.getsignal(signal.SIGINT) is signal.default_int_handler\n"

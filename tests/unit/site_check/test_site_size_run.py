@@ -1,6 +1,9 @@
 """`size` from a site file to its folder, interrupted and resumed."""
 
+import io
 import json
+import re
+from contextlib import redirect_stderr
 
 import numpy as np
 import pytest
@@ -27,15 +30,27 @@ def place(tmp_path_factory):
 
     (place / "hall.toml").write_text(SURE, encoding="utf-8")
     command = ["size", str(place / "hall.toml"), "--over", "container.boxes", "--to", "4", *out(place)]
-    with pytest.MonkeyPatch.context() as patch:
+    told = io.StringIO()
+    with pytest.MonkeyPatch.context() as patch, redirect_stderr(told):
         patch.setattr("fem.site_check.size_run.confirmed", confirmed)
+        patch.setattr("fem.run.expected.LONG_S", 0.0)
         assert main(command) == 0
+    (place / "told.txt").write_text(told.getvalue(), encoding="utf-8")
     assert asked  # of the boxes that stand and move
     return place
 
 
 def out(place) -> list[str]:
-    return ["--out", str(place / "found"), "-j", "1", "-q"]
+    return ["--out", str(place / "found"), "-j", "1"]
+
+
+def test_the_time_of_its_runs_is_told_before_the_first(place):
+    told = (place / "told.txt").read_text(encoding="utf-8")
+    expected = re.search(r"4 values, up to (\d+) runs: roughly \d", told)
+    assert expected and int(expected[1]) > sum(
+        point["runs"] for point in result_in(place / "found")["points"]
+    )
+    assert told.index(expected[0]) == re.search(r"\d+ (values|runs)", told).start()
 
 
 def result_in(folder) -> dict:
