@@ -15,7 +15,8 @@ normal forces there balances the moment of friction across the gap. Forces are t
 are in equilibrium exactly, and their power is that of the point.
 
 Behind these may stand points of sides, which stops and ties hold (`contact.stepping.links`): like a point over the
-floor each belongs to one box, and is between two of its corners.
+floor each belongs to one box, and is between two of its corners. A tie between two boxes is a point too: its gap is
+its length less the distance of a point on a side of the one from a point on a side of the other.
 
 The weight of a point, a factor of its stiffness, falls from 1 to 0 where its corner leaves the face: linearly from
 `EDGE` of the face inside the end to as much outside. Two corners that face each other have a half each, and where the
@@ -37,6 +38,9 @@ CORNERS = 4  #: of a box
 BOTTOM_LEFT, BOTTOM_RIGHT, TOP_LEFT, TOP_RIGHT = range(CORNERS)
 #: corners of a contact point: the one on the face, and the left and right end of the face
 TOUCHING, LEFT, RIGHT = 0, 1, 2
+ENDS = (
+    4  #: corners of a tie between two boxes: foot and top of the side of the lower box, and of the upper one
+)
 LOWER, UPPER = 0, 1  #: boxes of a contact point
 ASIDE = (
     64.0  #: distance of the points of pairs from those on the floor and from each other, over a body's size
@@ -47,18 +51,20 @@ ASIDE = (
 class Faces(NamedTuple):
     """The contact points of N boxes, n, and scratch."""
 
-    corner: IntArray  #: (n, 3) TOUCHING, LEFT and RIGHT corner of a point; a point of one box is between the latter
+    #: (n, 4) TOUCHING, LEFT and RIGHT corner of a point; a point of one box is between the latter; or the `ENDS`
+    corner: IntArray
     bodies: IntArray  #: (n, 2) lower and upper box of a point; -1, and its box, of a point of one box
     parts: IntArray  #: (n,) how many of its corners move a point
-    owner: IntArray  #: (n, 3) which box of a point each of its corners belongs to, LOWER or UPPER
+    owner: IntArray  #: (n, 4) which box of a point each of its corners belongs to, LOWER or UPPER
     shared: (
         IntArray  #: (n, n, 2) which box of the second point the LOWER or UPPER one of the first is; -1: none
     )
     reach: IntArray  #: (n,) behind the last point that shares a box with it
-    place: FloatArray  #: (n,) of a point of one box, between its LEFT and RIGHT corner: 0 to 1
+    #: (n, 2) of a point of one box, between its LEFT and RIGHT corner: 0 to 1; of a tie on both sides, from the foot
+    place: FloatArray
     apart: FloatArray  #: (n,) how much further along x the frame of the corner is than that of the face [m]
     side: FloatArray  #: (n,) 1: a corner of the upper box on the face below; -1: of the lower box on the face above
-    length: FloatArray  #: (n,) of the face, undeformed [m]
+    length: FloatArray  #: (n,) of the face, undeformed, or of a tie with its slack [m]
     origin: (
         FloatArray  #: (n,) coordinate of its left end, so that corners that face each other have the same [m]
     )
@@ -68,7 +74,7 @@ class Faces(NamedTuple):
     weight: FloatArray  #: (n,) in this step
     #: scratch, of the linearisation about positions of the corners
     placed: FloatArray  #: (n, 2) the points at these positions
-    gradient: FloatArray  #: (n, 2, 3, 2) derivatives of x and gap by x and z of the point's three corners
+    gradient: FloatArray  #: (n, 2, 4, 2) derivatives of x and gap by x and z of the point's corners
     moved: (
         FloatArray  #: (2 n, 2, 8) displacement of the corners of lower and upper box under a unit force [m/N]
     )
@@ -82,6 +88,17 @@ class SidePoint(NamedTuple):
     place: float  #: from the foot of the side to its top: 0 to 1
 
 
+class Between(NamedTuple):
+    """What is between a point on a side of a box and one on a side of another: a tie."""
+
+    of: SidePoint
+    to: SidePoint
+    slack: float  #: what its ends may move apart before it holds [m]
+
+
+Held = SidePoint | Between
+
+
 def points_of_joint(joint: int) -> slice:
     """The contact points of a joint."""
     return slice(0, 2) if joint == 0 else slice(4 * joint - 2, 4 * joint + 2)
@@ -91,7 +108,7 @@ def make_faces(
     corner: FloatArray,
     normal_stiffness: FloatArray,
     tangential_stiffness: FloatArray,
-    held: Sequence[SidePoint] = (),
+    held: Sequence[Held] = (),
 ) -> Faces:
     """The contact points of boxes that stand on one another.
 
@@ -110,7 +127,7 @@ def make_faces(
         for upper in range(1, boxes)
     ]
     floor = [_on_floor(0, 0.0), _on_floor(0, 1.0)]
-    return _faces([*floor, *joints, *map(_on_side, held)], normal_stiffness, tangential_stiffness)
+    return _faces([*floor, *joints, *_links(held, {})], normal_stiffness, tangential_stiffness)
 
 
 def make_row(
@@ -120,7 +137,7 @@ def make_row(
     inset: FloatArray,
     normal_stiffness: FloatArray,
     tangential_stiffness: FloatArray,
-    held: Sequence[SidePoint] = (),
+    held: Sequence[Held] = (),
 ) -> Faces:
     """The contact points of bodies beside one another: two of each on the floor, then four of each pair.
 
@@ -130,7 +147,7 @@ def make_row(
         distance: (g,) how much further to the right the frame of the right one is [m].
         inset: (N,) of the points over the floor from the sides, over the width of the base.
         normal_stiffness, tangential_stiffness: (2 N + 4 g + k,) springs of the points at full weight [N/m].
-        held: the k points of sides that come last.
+        held: the k points of sides, or ties between bodies that face each other, that come last.
     """
     floor = [
         _on_floor(b, end + (1.0 - 2.0 * end) * inset[b]) for b in range(len(inset)) for end in (0.0, 1.0)
@@ -143,7 +160,8 @@ def make_row(
         # points across their faces are told from those on the floor and of other pairs by it
         own["origin"] = [one + number * ASIDE * float(np.abs(corner).max()) for one in own["origin"]]
         joints.append(own)
-    return _faces([*floor, *joints, *map(_on_side, held)], normal_stiffness, tangential_stiffness)
+    further = {(left, right): along for (left, right), along in zip(pairs, distance, strict=True)}
+    return _faces([*floor, *joints, *_links(held, further)], normal_stiffness, tangential_stiffness)
 
 
 def _on_floor(box: int, place: float) -> dict[str, Any]:
@@ -151,9 +169,37 @@ def _on_floor(box: int, place: float) -> dict[str, Any]:
     return _between(box, BOTTOM_LEFT, BOTTOM_RIGHT, place)
 
 
-def _on_side(point: SidePoint) -> dict[str, Any]:
+def _ends_of(point: SidePoint) -> tuple[int, int]:
+    """Foot and top of the side of a point, among the corners of its box."""
     foot, top = (BOTTOM_RIGHT, TOP_RIGHT) if point.right else (BOTTOM_LEFT, TOP_LEFT)
-    return _between(point.box, foot, top, point.place)
+    return foot, top
+
+
+def _links(held: Sequence[Held], further: dict[tuple[int, int], float]) -> list[dict[str, Any]]:
+    """Points of sides, and ties.
+
+    Args:
+        held: they.
+        further: how much further to the right the frame of the right one of two bodies is than that of the left [m].
+    """
+    return [
+        _between(one.box, *_ends_of(one), one.place)
+        if isinstance(one, SidePoint)
+        else _between_sides(one, further)
+        for one in held
+    ]
+
+
+def _between_sides(tie: Between, further: dict[tuple[int, int], float]) -> dict[str, Any]:
+    forth, back = (tie.of.box, tie.to.box), (tie.to.box, tie.of.box)
+    return _point(
+        corner=[CORNERS * end.box + corner for end in (tie.of, tie.to) for corner in _ends_of(end)],
+        bodies=forth,
+        parts=ENDS,
+        place=(tie.of.place, tie.to.place),
+        apart=further[forth] if forth in further else -further[back],
+        length=tie.slack,
+    )
 
 
 def _between(box: int, first: int, last: int, place: float) -> dict[str, Any]:
@@ -161,14 +207,32 @@ def _between(box: int, first: int, last: int, place: float) -> dict[str, Any]:
     at_corner = place in (0.0, 1.0)
     left, right = CORNERS * box + first, CORNERS * box + last
     nearest = left if place < 0.5 else right
+    return _point(
+        corner=[nearest] * ENDS if at_corner else [nearest, left, right, right],
+        bodies=(-1, box),
+        parts=1 if at_corner else 3,
+        place=(0.0 if at_corner else place, 0.0),
+    )
+
+
+def _point(
+    *,
+    corner: list[int],
+    bodies: tuple[int, int],
+    parts: int,
+    place: tuple[float, float],
+    apart: float = 0.0,
+    length: float = 1.0,
+) -> dict[str, Any]:
+    """A point that is on no face."""
     return {
-        "corner": [[nearest] * 3 if at_corner else [nearest, left, right]],
-        "bodies": [[-1, box]],
-        "parts": [1 if at_corner else 3],
-        "place": [0.0 if at_corner else place],
-        "apart": [0.0],
+        "corner": [corner],
+        "bodies": [bodies],
+        "parts": [parts],
+        "place": [place],
+        "apart": [apart],
         "side": [1.0],
-        "length": [1.0],
+        "length": [length],
         "origin": [0.0],
         "edge": [0.0],
     }
@@ -178,10 +242,12 @@ def _joint(corner: FloatArray, face: list[int], other: list[int], apart: float =
     """The four points of two faces: that of the lower box and that of the upper one, by their corners."""
     of_face, of_other = (float(np.linalg.norm(corner[b] - corner[a])) for a, b in (face, other))
     return {
-        "corner": [one for end in range(2) for one in ([other[end], *face], [face[end], *other])],
+        "corner": [
+            [*one, one[RIGHT]] for end in range(2) for one in ([other[end], *face], [face[end], *other])
+        ],
         "bodies": 4 * [[face[0] // CORNERS, other[0] // CORNERS]],
         "parts": 4 * [3],
-        "place": 4 * [0.0],
+        "place": 4 * [(0.0, 0.0)],
         "apart": 2 * [apart, -apart],
         "side": 2 * [1.0, -1.0],
         "length": 2 * [of_face, of_other],
@@ -205,7 +271,7 @@ def _faces(
         tangential_stiffness=np.array(tangential_stiffness, dtype=float),
         weight=np.ones(n),
         placed=np.zeros((n, 2)),
-        gradient=np.zeros((n, 2, 3, 2)),
+        gradient=np.zeros((n, 2, ENDS, 2)),
         moved=np.zeros((2 * n, 2, 2 * CORNERS)),
     )
 
@@ -214,6 +280,30 @@ def _faces(
 def is_of_one_box(faces: Faces, i: int) -> bool:
     """Whether a contact point is one over the floor or held by a link, and not a corner on the face of a box."""
     return bool(faces.bodies[i, LOWER] < 0)
+
+
+@inlined
+def is_on_face(faces: Faces, i: int) -> bool:
+    """Whether a contact point is a corner on the face of a box."""
+    return bool(faces.bodies[i, LOWER] >= 0 and faces.parts[i] < ENDS)
+
+
+@inlined
+def place_of_end(faces: Faces, i: int, end: int, corner: FloatArray, k: int) -> float:
+    """Coordinate x or z of the end of a tie, on its lower or upper box, in the frame of that [m]."""
+    foot, top = corner[faces.corner[i, 2 * end], k], corner[faces.corner[i, 2 * end + 1], k]
+    return float(foot + faces.place[i, end] * (top - foot))
+
+
+@compiled(inline=True)
+def stretch_of_tie(faces: Faces, i: int, corner: FloatArray) -> tuple[float, float, float]:
+    """Direction of a tie between two boxes from its lower to its upper one, x and z, and its length [m]."""
+    x = place_of_end(faces, i, UPPER, corner, 0) - place_of_end(faces, i, LOWER, corner, 0) + faces.apart[i]
+    z = place_of_end(faces, i, UPPER, corner, 1) - place_of_end(faces, i, LOWER, corner, 1)
+    length = np.sqrt(x * x + z * z)
+    if length == 0.0:  # slack, so that its direction does not matter
+        return 1.0, 0.0, 0.0
+    return x / length, z / length, length
 
 
 @compiled(inline=True)
@@ -232,6 +322,13 @@ def place_on_face(faces: Faces, i: int, corner: FloatArray) -> tuple[float, floa
     return share, faces.side[i] * (z * along_x - x * along_z), along_x, along_z, length
 
 
+def lengthen_ties(faces: Faces, corner: FloatArray) -> None:
+    """Give the ties between boxes with these corners (4 N, 2) the lengths at which they have their slack left [m]."""
+    for i in range(faces.weight.size):
+        if not is_of_one_box(faces, i) and not is_on_face(faces, i):
+            faces.length[i] += stretch_of_tie(faces, i, corner)[2]
+
+
 @compiled(inline=True)
 def place_points(faces: Faces, corner: FloatArray, point: FloatArray) -> None:
     """Contact points (n, 2) from the corners (4 N, 2), both relative to the floor [m]."""
@@ -241,7 +338,10 @@ def place_points(faces: Faces, corner: FloatArray, point: FloatArray) -> None:
             for k in range(2):
                 point[i, k] = corner[left, k]
                 if faces.parts[i] > 1:
-                    point[i, k] += faces.place[i] * (corner[right, k] - corner[left, k])
+                    point[i, k] += faces.place[i, 0] * (corner[right, k] - corner[left, k])
+            continue
+        if not is_on_face(faces, i):
+            point[i, 0], point[i, 1] = 0.0, faces.length[i] - stretch_of_tie(faces, i, corner)[2]
             continue
         share, gap, _, _, _ = place_on_face(faces, i, corner)
         point[i, 0] = faces.origin[i] + faces.side[i] * share * faces.length[i]
@@ -264,7 +364,7 @@ def weigh_points(faces: Faces, corner: FloatArray, point: FloatArray, contact: C
     from other springs where it is: were it taken for open, the energy of its spring would come from nowhere.
     """
     for i in range(faces.weight.size):
-        if is_of_one_box(faces, i):
+        if not is_on_face(faces, i):
             continue
         share, gap, _, _, _ = place_on_face(faces, i, corner)
         inside = min(share, 1.0 - share) * faces.length[i] / faces.edge[i]
@@ -290,8 +390,15 @@ def linearise_points(faces: Faces, corner: FloatArray, point: FloatArray) -> Non
                 if faces.parts[i] == 1:
                     faces.gradient[i, k, TOUCHING, k] = 1.0
                 else:
-                    faces.gradient[i, k, LEFT, k] = 1.0 - faces.place[i]
-                    faces.gradient[i, k, RIGHT, k] = faces.place[i]
+                    faces.gradient[i, k, LEFT, k] = 1.0 - faces.place[i, 0]
+                    faces.gradient[i, k, RIGHT, k] = faces.place[i, 0]
+            continue
+        if not is_on_face(faces, i):
+            along_x, along_z, _ = stretch_of_tie(faces, i, corner)
+            for k in range(ENDS):
+                place = faces.place[i, k // 2]
+                part = (1.0 if k < 2 else -1.0) * (place if k % 2 == 1 else 1.0 - place)
+                faces.gradient[i, 1, k, 0], faces.gradient[i, 1, k, 1] = part * along_x, part * along_z
             continue
         share, gap, along_x, along_z, length = place_on_face(faces, i, corner)
         stretch, leaning = faces.side[i] * faces.length[i] / length, gap * faces.side[i] / length

@@ -5,7 +5,7 @@ and a place across it. A stop is a wall that moves with the floor; its line is h
 A tie pulls down, so its line leads down: its gap is the slack that is left, and it holds the point from above as a wall
 would. All laws, the solver and the ledger are then those of the floor: spring and dashpot that never pull, and Coulomb
 friction across the line. The points of the links are the last of a body; of a loose stack or a row each is on a side
-of one box (`contact.interface.faces.SidePoint`).
+of one box (`contact.interface.faces.SidePoint`), or a tie between two (`Between`), which turns with its ends.
 
 The cap of a link is its strength. A link that reaches it breaks at the end of the step: its point gets the indentation
 `BROKEN`, and never touches again. What its springs held is part of the contact damping.
@@ -33,6 +33,7 @@ from contact.structs import struct
 #: box of a loose stack or the body of a row that has it
 ALONG_X, ALONG_Z, ACROSS, GAP, BOX = 0, 1, 2, 3, 4
 BROKEN = 1e6  #: indentation of the point of a broken link [m]
+OF_LENGTH = (0.0, 1.0)  #: direction of the line of a tie between two bodies
 APART = 64.0  #: distance of the points of links from those of the base and from each other, in widths of the container
 
 

@@ -9,7 +9,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from contact.arrays import FloatArray, IntArray
-from contact.interface.faces import CORNERS, SidePoint, linearise_points, make_faces, make_row, weigh_points
+from contact.interface.faces import (
+    CORNERS,
+    Held,
+    linearise_points,
+    make_faces,
+    make_row,
+    weigh_points,
+)
 from contact.interface.laws import ELASTIC_STICK
 from contact.interface.stacking import stacked
 from contact.interface.workspace import Contact, Workspace, make_workspace
@@ -51,7 +58,7 @@ def make_stack(
     normal_stiffness: FloatArray,
     tangential_stiffness: FloatArray,
     row: tuple[IntArray, FloatArray, FloatArray] | None = None,
-    held: Sequence[SidePoint] = (),
+    held: Sequence[Held] = (),
 ) -> LooseStack:
     """A loose stack of boxes, from the floor up; or bodies beside one another.
 
@@ -60,7 +67,7 @@ def make_stack(
             the undeformed stack. Monitored points are those of the uppermost box first, then downwards.
         normal_stiffness, tangential_stiffness: of the contact points at full weight [N/m].
         row: of bodies beside one another what `contact.interface.faces.make_row` says of them: pairs, distance, inset.
-        held: points of sides that come last.
+        held: points of sides that come last, or ties between bodies beside one another.
     """
     n, most = len(boxes), max(box.stiffness.size for box in boxes)
     # A mode without shape stays at rest.

@@ -3,6 +3,7 @@
 import math
 
 from fem.assessment.loose_boxes import leaning_in_words
+from fem.case.links import TieTable, faced_by, name_of
 from fem.model.links import heights_of_links
 from fem.model.model import Model
 from fem.results.outcome import SLIDING, Outcome
@@ -19,6 +20,8 @@ def link_results(model: Model) -> tuple[tuple[LinkResult, ...] | None, tuple[Lin
         LinkResult(
             side=link.side,
             height_m=height,
+            neighbour=link.neighbour if isinstance(link, TieTable) else None,
+            to=None if (other := faced_by(case, link)) is None else name_of(other),
             max_force_N=float(record.max_force),
             hits=int(record.hits),
             largest_closing_velocity_m_s=float(record.largest_closing_velocity),
@@ -95,7 +98,8 @@ def _of_stop(one: LinkResult) -> str:
 
 
 def _of_tie(one: LinkResult) -> str:
-    name = f"the tie on the {one.side} at {one.height_m:g} m"
+    of, to = f" of neighbour {one.neighbour}" if one.neighbour else "", f" to {one.to}" if one.to else ""
+    name = f"the tie{of} on the {one.side} at {one.height_m:g} m{to}"
     if one.max_force_N == 0.0:
         return f"{name} stayed slack"
     return f"{name} carried up to {_force(one)}{_broken(one)}"

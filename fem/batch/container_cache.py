@@ -6,6 +6,7 @@ from concurrent.futures import Future
 from weakref import WeakKeyDictionary
 
 from fem.case.case import Case
+from fem.case.links import holder_of
 from fem.case.neighbours import OWN
 from fem.model.container import Container, changed_container, discretise
 from fem.model.geometry import build_container
@@ -35,7 +36,7 @@ def container_key(case: Case, *, mass: bool = True, gaps: bool = True) -> Hashab
         solver.element_size_m,
         solver.order,
         case.output.stop_when_overturned,
-        tuple((link.side, link.height_m) for link in case.links),
+        tuple((link.side, link.height_m, holder_of(case, link)) for link in case.links),
         tuple(
             (
                 neighbour.side,

@@ -147,6 +147,20 @@ def outermost(case: Any, side: str) -> int:
     )
 
 
+def beside_of(case: Any, number: int, side: str) -> int | None:
+    """Number of the container of a row beside another one, on a side of that; None where there is none."""
+    row = [0]
+    for further, neighbour in enumerate(_neighbours(case), 1):
+        row.insert(len(row) if neighbour.side == "right" else 0, further)
+    place = row.index(number) + (1 if side == "right" else -1)
+    return row[place] if 0 <= place < len(row) else None
+
+
+def gap_beside(case: Any, number: int, other: int) -> float:
+    """Gap between two containers of a row that face each other [m]: that of the one further out."""
+    return float(case.neighbour[max(number, other) - 1].gap_m)
+
+
 def top_of(case: Any, number: int) -> float:
     """Height of a container of the row of a case above the floor, of 0 that of its own [m]."""
     own, one = case.container, case.neighbour[number - 1] if number else None

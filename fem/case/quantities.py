@@ -269,6 +269,7 @@ SAMPLING = Quantity(unit="s", least=1e-7, most=1e4)
 CONTENTS_FILTER = Quantity(unit="Hz", least=1.0, most=1000.0, advice="33 is usual")
 FRAME_INTERVAL = Quantity(unit="s", least=0.0, most=1e4, advice="0 writes no fields")
 
+NEIGHBOUR = Quantity(unit="", least=1, most=5)
 BOXES = Quantity(unit="", least=1, most=50)
 MODE_COUNT = Quantity(unit="", least=0, most=1000)
 ORDER = Quantity(unit="", least=1, most=2, advice="1 is bilinear, 2 quadratic")

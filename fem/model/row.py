@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from contact.interface.equilibrium import Stance
-from contact.interface.faces import place_points, weigh_points
+from contact.interface.faces import ASIDE, lengthen_ties, place_points, weigh_points
 from contact.interface.laws import ELASTIC_STICK
 from contact.interface.workspace import Contact
 from contact.stepping.body import State
@@ -27,7 +27,7 @@ from contact.stepping.state import make_joints
 from fem.case.case import Case, CaseError
 from fem.case.neighbours import places_of
 from fem.model.container import Container, facing
-from fem.model.links import OVERLAP, dashpot_of, side_points
+from fem.model.links import OVERLAP, dashpot_of, held_in_row
 from fem.model.loose_stack import make_stack_state
 from fem.runtime.arrays import FloatArray
 from fem.solid.nodal_body import rotation_matrix
@@ -87,7 +87,7 @@ def contact_of_row(case: Case, contacts: Sequence[Contact], masses: Sequence[flo
         name: np.concatenate([*(getattr(contact, name) for contact in contacts), of_sides])
         for name, of_sides in added.items()
     }
-    return contacts[0]._replace(resolution=contacts[0].resolution * (1.0 + 64.0 * len(sides)), **arrays)
+    return contacts[0]._replace(resolution=contacts[0].resolution * (1.0 + ASIDE * len(sides)), **arrays)
 
 
 def body_of_row(
@@ -117,7 +117,7 @@ def body_of_row(
         ),
     ]
     springs = contact.normal_stiffness.copy(), contact.tangential_stiffness.copy()
-    return make_stack(watched, *springs, (*facing(places), np.array(inset)), held=side_points(case))
+    return make_stack(watched, *springs, (*facing(places), np.array(inset)), held=held_in_row(case))
 
 
 def _with_corners(body: ModalBody, container: Container, struck: FloatArray, inset: float) -> ModalBody:
@@ -159,7 +159,9 @@ def corners_at_rest(
 
 
 def measure_gaps(body: LooseStack, standing: FloatArray, contact: Contact) -> None:
-    """Place the containers of a row so that its gaps are those at rest: shells bulge, and all lean on uneven springs.
+    """Place the containers of a row so that its gaps, and the lengths of its ties, are those at rest.
+
+    Shells bulge, and all lean on uneven springs.
 
     Args:
         body: of the row with undeformed containers at its gaps, which is changed.
@@ -169,8 +171,13 @@ def measure_gaps(body: LooseStack, standing: FloatArray, contact: Contact) -> No
     boxes, faces, floor = body.body.boxes, body.faces, 2 * len(standing)
     undeformed = boxes.rest[:, None] + boxes.point
     before, at_rest = (_least_gaps(body, corners, contact) for corners in (undeformed, standing))
-    sides = slice(floor, floor + POINTS_OF_GAP * before.size)
-    faces.apart[sides] += faces.side[sides] * np.repeat(before - at_rest, POINTS_OF_GAP)
+    pairs = faces.bodies[floor : floor + POINTS_OF_GAP * before.size : POINTS_OF_GAP]
+    for pair, change in zip(pairs, before - at_rest, strict=True):
+        forth, back = (np.all(faces.bodies == order, axis=1) for order in (pair, pair[::-1]))
+        faces.apart[:] += change * (
+            forth * faces.side - back
+        )  # back from the right to the left run only ties
+    lengthen_ties(faces, standing.reshape(-1, 2))
 
 
 def _least_gaps(body: LooseStack, corners: FloatArray, contact: Contact) -> FloatArray:

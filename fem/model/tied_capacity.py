@@ -8,7 +8,8 @@ import numpy as np
 
 from fem.case.boxes import Box
 from fem.case.case import Case, CaseError
-from fem.case.links import StopTable, TieTable, holder_of
+from fem.case.links import StopTable, TieTable, faced_by, holder_of
+from fem.case.neighbours import gap_beside
 from fem.model.floor import pivot_share
 from fem.runtime.arrays import FloatArray
 from mesh.container import ContainerMesh
@@ -66,6 +67,12 @@ def require_room(case: Case, mesh: ContainerMesh) -> None:
             )
             along_x, along_z = direction_of(link)
             left = link.slack + along_x * moved[0] + along_z * moved[1]
+            other = faced_by(case, link)
+            if isinstance(link, TieTable) and other is not None:
+                ahead = math.copysign(gap_beside(case, 0, other), -1.0 if link.side == "left" else 1.0)
+                up = link.other_height - link.height_m
+                length = math.hypot(ahead - moved[0], up - moved[1])
+                left = link.slack + math.hypot(ahead, up) - length
             if left < -SURELY:
                 raise overlapped(case, number, -left)
 
@@ -92,24 +99,26 @@ class TiedCapacity:
 
 
 def tied_capacities(case: Case, mesh: ContainerMesh) -> list[TiedCapacity]:
-    """The capacity toward each side; none where the case has no ties, or where they need not hold all loose boxes.
+    """The capacity toward each side; none where the case has no such ties, or they need not hold all loose boxes.
 
-    A tie whose point moves away by u carries k (u - slack), up to its strength, and then no more.
+    Ties to a neighbour are left out: it moves with the same floor, and what it can hold depends on how. A tie whose
+    point moves away by u carries k (u - slack), up to its strength, and then no more.
     """
     found = []
-    for side, sign in (("left", -1.0), ("right", 1.0)) if case.tie and not case.container.is_loose else ():
+    ties = [tie for tie in case.tie if tie.to != "neighbour" and not tie.neighbour]
+    for side, sign in (("left", -1.0), ("right", 1.0)) if ties and not case.container.is_loose else ():
         corner = 0.5 * pivot_share(case, mesh) * mesh.width
         arm = corner - sign * mesh.centroid[0]
         weight = mesh.mass * case.gravity_toward_floor
         downhill = sign * mesh.mass * case.gravity_downhill  # x falls toward +x
-        beside = [corner - sign * side_of(case, tie) for tie in case.tie]
+        beside = [corner - sign * side_of(case, tie) for tie in ties]
         rotation = np.linspace(0.0, MOST_TURNED, TURNS)
-        breaking = [_breaks_at(tie, side, one, rotation) for tie, one in zip(case.tie, beside, strict=True)]
+        breaking = [_breaks_at(tie, side, one, rotation) for tie, one in zip(ties, beside, strict=True)]
         rotation = np.sort(np.concatenate([rotation, *breaking]))
         moment = weight * (arm * np.cos(rotation) - mesh.centroid[1] * np.sin(rotation))
         moment -= downhill * (mesh.centroid[1] * np.cos(rotation) + arm * np.sin(rotation))
         breaks = np.zeros(rotation.size, dtype=bool)
-        for tie, one in zip(case.tie, beside, strict=True):
+        for tie, one in zip(ties, beside, strict=True):
             force, lever = _pull(tie, side, one, rotation)
             if tie.strength_N is not None:
                 broken = np.logical_or.accumulate(force > tie.strength_N)

@@ -234,8 +234,8 @@ def assumptions(case: Case, result: RunResult | None = None) -> list[str]:
         )
     if case.tie:
         lines.append(
-            "A tie pulls straight down, or level to its wall, however far its point has moved; it is elastic until it "
-            "breaks."
+            "A tie pulls straight down, or level to its wall, however far its point has moved, and from end to end "
+            "between containers; it is elastic until it breaks."
         )
     return lines
 

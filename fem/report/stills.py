@@ -143,12 +143,14 @@ def _drawing(
     """Floor, stops and ties, cells by colour (one path a colour) and edges."""
     hatch = "".join(f"M{x} 0l-4 4" for x in range(-96, 108, 12))
     parts = [_path("M-104 0H104", stroke=INK, width=1.2), _path(hatch, stroke=QUIET, width=0.6)]
-    for link, held in zip(animation.links, points[animation.held], strict=True):
+    for link, (node, other) in zip(animation.links, animation.held, strict=True):
         if frame.time < link.until:
             foot = np.array([(link.x, 0.0), (link.outer, 0.0)]) * [scale, 1.0]
             end = (foot - [0.0, scale * link.height])[::-1]
             if link.anchor is not None:
-                foot, end = scale * np.array([(link.outer, -link.anchor)]), np.array([held])
+                foot, end = scale * np.array([(link.outer, -link.anchor)]), points[[node]]
+                if link.joins:
+                    foot = points[[other]]
             parts.append(
                 _path("M" + _line(np.concatenate([foot, end])) + "Z", stroke=INK, width=1.0, fill=WALL)
             )

@@ -27,7 +27,7 @@ class LinkCells:
         links = drawn_links(self._case)
         square = SQUARE[: elements.cells.shape[1]]
         self._held, self._count = held_nodes(links, elements.nodes), len(square)
-        #: share of the motion of its point, of each node; the rest is that of the floor
+        #: share of the motion of its point, of each node; the rest is that of its other end
         self._share = np.array([square[:, 1] * link.is_tie for link in links]).reshape(-1, 1)
         behind = len(elements.nodes) + np.arange(self._share.size).reshape(-1, self._count)
         self.mesh: dict[str, Any] = {
@@ -44,14 +44,17 @@ class LinkCells:
         if not self._share.size:
             return frame
         links = drawn_links(self._case, _broken(run, len(self._case.links)))
-        held, nothing = np.repeat(self._held, self._count), np.zeros(self._share.size)
-        place = (frame.floor_displacement, frame.floor_lift)
+        (held, other), nothing = np.repeat(self._held, self._count, axis=0).T, np.zeros(self._share.size)
+        floor = np.array((frame.floor_displacement, frame.floor_lift))
+        place = np.where(other[:, None] < 0, floor, frame.displacement[other])
         moved = place + self._share * (frame.displacement[held] - place)
         first = len(frame.displacement)
         for k, link in enumerate(links):
             if link.until <= frame.time:
                 own = slice(k * self._count, (k + 1) * self._count)
-                moved[own] = place + ((link.outer, link.anchor or 0.0) - self.mesh["points"][first:][own])
+                moved[own] = place[own] + (
+                    (link.outer, link.anchor or 0.0) - self.mesh["points"][first:][own]
+                )
         return replace(
             frame,
             displacement=np.concatenate([frame.displacement, moved]),

@@ -131,6 +131,11 @@ class Preview:
                 static.own_motion.sliding.utilisation > 1.0 and self.peak == 0.0,
                 "the floor is steeper than static friction holds: the container slides from the beginning",
             ),
+            (
+                any(tie.to == "neighbour" for tie in case.tie),
+                "a tie to a neighbour has no static capacity: the floor moves the neighbour as well, and what it can "
+                "hold depends on how; the run shows it",
+            ),
             (static.by_code is not None, code_note(static.to_result())),
             *((True, note) for note in doubts(self.motion, case.gravity_m_s2)),
             (

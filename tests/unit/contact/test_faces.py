@@ -226,5 +226,5 @@ def test_corners_under_force_move_by_the_compliance_of_their_box():
 def test_points_are_in_the_order_of_the_joints():
     faces = faces_of(undeformed())
     assert [points_of_joint(j) for j in range(3)] == [slice(0, 2), slice(2, 6), slice(6, 10)]
-    assert faces.corner[2].tolist() == [4, 2, 3] and faces.corner[3].tolist() == [2, 4, 5]
+    assert faces.corner[2:4, :3].tolist() == [[4, 2, 3], [2, 4, 5]]
     assert faces.edge[2:6] == pytest.approx(EDGE * 0.9)

@@ -89,7 +89,7 @@ def test_a_side_that_is_struck_has_the_compliance_of_its_shell_there():
     )
     # over the floor they are those of the container alone
     alone = model.equilibrium.row[0].body.shape
-    share = faces.place[:2, None, None]
+    share = faces.place[:2, 0, None, None]
     assert (1.0 - share) * corner[0] + share * corner[1] == pytest.approx(alone, abs=1e-12)
 
 
