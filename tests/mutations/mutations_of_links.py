@@ -4,6 +4,7 @@ from mutation import Mutation
 
 LINKS = "verification/closed_forms/test_links.py"
 ON_BOXES = "verification/closed_forms/test_links_on_boxes.py"
+BETWEEN = "verification/closed_forms/test_ties_in_rows.py"
 
 LINK_FAULTS = (
     Mutation(
@@ -83,5 +84,41 @@ LINK_FAULTS = (
         old="run.joints.shape[0] == 1 and run.links.shape[0] == 0:",
         new="run.joints.shape[0] == 1:",
         tests=(ON_BOXES, "-k", "lean"),
+    ),
+    Mutation(
+        name="ties between containers that hold at the foot of their sides",
+        old="return float(foot + faces.place[i, end] * (top - foot))",
+        new="return float(foot)",
+        tests=(BETWEEN, "-k", "distance_of_its_ends"),
+    ),
+    Mutation(
+        name="a tie between containers that holds at one end alone",
+        old="part = (1.0 if k < 2 else -1.0) * (place",
+        new="part = (1.0 if k < 2 else 0.0) * (place",
+        tests=(BETWEEN, "-k", "keeps_its_momentum"),
+    ),
+    Mutation(
+        name="ties between containers that keep their direction",
+        old="return x / length, z / length, length",
+        new="return np.sign(x), 0.0, length",
+        tests=(BETWEEN, "-k", "distance_of_its_ends"),
+    ),
+    Mutation(
+        name="ends of ties in the frame of one container",
+        old="apart=further[forth] if forth in further else -further[back],",
+        new="apart=further[forth] if forth in further else further[back],",
+        tests=(BETWEEN, "-k", "distance_of_its_ends"),
+    ),
+    Mutation(
+        name="dashpot of a tie between containers for one mass",
+        old="return mass if other is None else mass * masses[other] / (mass + masses[other])",
+        new="return mass",
+        tests=(BETWEEN, "-k", "keeps_its_momentum"),
+    ),
+    Mutation(
+        name="a tie between containers that broke and is sought where it was",
+        old="work.trial[i, 1] += old.crushed[i]",
+        new="work.trial[i, 1] += 0.0",
+        tests=(BETWEEN, "-k", "breaks"),
     ),
 )
