@@ -150,9 +150,14 @@ def observe(body: Any, state: State, floor: float, lift: float) -> None:
     body.observe(state, floor, lift)
 
 
-def shift_velocity(body: Any, state: State, velocity: float, lift_velocity: float, spin: float) -> None:
-    """Subtract the velocities of a frame: at x = z = 0 along x and upward [m/s], and its angular velocity [rad/s]."""
-    body.shift_velocity(state, velocity, lift_velocity, spin)
+def shift_velocity(
+    body: Any, state: State, velocity: float, lift_velocity: float, spin: float, first: int, end: int
+) -> None:
+    """Subtract the velocities of a frame: at x = z = 0 along x and upward [m/s], and its angular velocity [rad/s].
+
+    Of a loose stack or a row, those of the boxes from `first` on, up to the one before `end`.
+    """
+    body.shift_velocity(state, velocity, lift_velocity, spin, first, end)
 
 
 def prepared(body: Any, step: float) -> bool:

@@ -28,7 +28,7 @@ from contact.stepping.control import (
     next_step,
     step_level,
 )
-from contact.stepping.impact import lose_at_impact
+from contact.stepping.impact import lose_at_impacts
 from contact.stepping.joints import (
     begin_friction,
     settle_friction,
@@ -40,7 +40,7 @@ from contact.stepping.joints import (
 from contact.stepping.ledger import FRICTION, IMBALANCE, dissipation, spring_energy
 from contact.stepping.ledger import ROWS as LEDGER_ROWS
 from contact.stepping.links import follow_links, links_of, reach_strength
-from contact.stepping.observables import FALLEN, IMPACT_GAP, NEVER, exchanges_pivot, update_observables
+from contact.stepping.observables import FALLEN, IMPACT_GAP, NEVER, update_observables
 from contact.stepping.sampling import keep_most_strained_step, sample
 from contact.stepping.state import RunState
 from contact.stepping.step import account, attempt, copy_state, indent
@@ -101,7 +101,7 @@ def enter_floor_frame(body: Any, run: RunState, floor_velocity: float, lift_velo
 
     The floor is at rest in this frame; the container gets no impulse.
     """
-    shift_velocity(body, run.old, floor_velocity, lift_velocity, 0.0)
+    shift_velocity(body, run.old, floor_velocity, lift_velocity, 0.0, 0, run.joints.shape[0])
     shift_contents(run.contents, (floor_velocity, lift_velocity))
     complete(body, run.old, run.floor[0, 0], run.lift[0, 0], 0.0)
     indent(run.problem.contact, run.old.point, run.old.crushed)
@@ -171,6 +171,7 @@ def advance(body: Any, run: RunState, until: float) -> int:
         follow_gaps(run, step, loose, counts)
         update_observables(
             track,
+            run.joints[0],
             control,
             run.problem.contact.camber,
             run.old,
@@ -186,10 +187,7 @@ def advance(body: Any, run: RunState, until: float) -> int:
         follow_contents(body, run, step)
         clock.samples = sample(run, run.buffers.history, clock.samples, clock.samples_drained, step, loose)
         clock.frames = sample(run, run.buffers.frames, clock.frames, clock.frames_drained, step, loose)
-        if control.impact_share != 1.0:
-            landed = exchanges_pivot(track, control, run.attempt.new)
-            if landed != 0:
-                lose_at_impact(body, run, landed, loose)
+        lose_at_impacts(body, run, loose)
         keep_most_strained_step(run, step)
         close_step(run, step, iterations)
         # The imbalance of one step may vanish by chance while it changes sign: remember the last steps.

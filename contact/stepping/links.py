@@ -214,10 +214,13 @@ def load_of_links(
 
 
 @inlined
-def shift_links(run: RunState, links: LinkedBody | None, turn: float, x: float, z: float) -> None:
+def shift_links(
+    run: RunState, links: LinkedBody | None, turn: float, x: float, z: float, begin: int, end: int
+) -> None:
     """Subtract the velocity of a turn [rad/s] about a place over the floor from the points, which have no indentation.
 
-    Called between `complete` and `indent`.
+    Of a loose stack or a row, from those of the boxes from `begin` on, up to the one before `end`. Called between
+    `complete` and `indent`.
     """
     if links is not None:
         line = links.line
@@ -225,6 +228,8 @@ def shift_links(run: RunState, links: LinkedBody | None, turn: float, x: float, 
         first = new.point.shape[0] - line.shape[0]
         for k in range(line.shape[0]):
             i, own = first + k, line[k]
+            if own[BOX] < begin or own[BOX] >= end:
+                continue
             place, gap = new.point[i, 0] - own[ACROSS], new.point[i, 1] - own[GAP]
             speed_x = turn * (own[ALONG_Z] * gap - own[ALONG_X] * place - z)
             speed_z = -turn * (own[ALONG_Z] * place + own[ALONG_X] * gap - x)

@@ -286,7 +286,15 @@ def observe(body: ModalBody, new: State, floor: float, lift: float) -> None:
 
 
 @implements(interface.shift_velocity, *MODAL, inline=True)
-def shift_velocity(body: ModalBody, state: State, velocity: float, lift_velocity: float, spin: float) -> None:
+def shift_velocity(
+    body: ModalBody,
+    state: State,
+    velocity: float,
+    lift_velocity: float,
+    spin: float,
+    first: int,
+    end: int,
+) -> None:
     """Subtract the velocities of a frame; the modes are orthogonal to them."""
     state.velocity[0] -= velocity + spin * state.position[1]
     state.velocity[1] -= lift_velocity - spin * state.position[0]

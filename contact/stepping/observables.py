@@ -73,10 +73,6 @@ OBSERVABLES = np.dtype(
         ("mode", "i8"),
         ("left_open", "i8"),  # 1 while the left side carries nothing
         ("right_open", "i8"),
-        ("left_gap", "f8"),  # largest gap of this corner since it opened with the other as pivot
-        ("right_gap", "f8"),
-        ("landed", "i8"),  # corner of an impact that may exchange the pivot: -1 left, 1 right, 0 none
-        ("landing_rate", "f8"),  # angular velocity with which it landed, > 0 onto this corner
         (
             "turning_energy",
             "f8",
@@ -143,6 +139,7 @@ def record_start(track: Any, control: Any, camber: FloatArray, state: State) -> 
 @inlined
 def update_observables(
     track: Any,
+    joint: Any,
     control: Any,
     camber: FloatArray,
     old: State,
@@ -157,7 +154,7 @@ def update_observables(
     """Update the observables with the accepted step from `old` to `new`.
 
     Args:
-        track: record of OBSERVABLES.
+        track: record of OBSERVABLES; joint: that of the base.
         control: the stepping's `Control`: constants of the container.
         camber: height of the points above the lowest one of an upright base, (n,) [m].
         old, new: states at both ends of the step.
@@ -217,52 +214,64 @@ def update_observables(
         track.mode = FALLEN
     track.modes |= 1 << track.mode
     track.left_open, track.right_open = left_open, right_open
-    if has_impact(track, control, old, new):
+    counts = IMPACT_GAP * control.width * control.slenderness_angle
+    rocks = not control.rolls and track.modes & (1 << ROCK | 1 << SLIDE_ROCK) != 0
+    were, are = (old.point[0, 1], old.point[n - 1, 1]), (new.point[0, 1], new.point[n - 1, 1])
+    if lands(joint, counts, were, are, before, rocks):
         track.impacts += 1
         track.first_impact = min(track.first_impact, time)
     follow_restitution(track, control, old, new, step, floor, lift, heat)
 
 
 @inlined
-def has_impact(track: Any, control: Any, old: State, new: State) -> bool:
-    """Whether an impact that counts falls in this step."""
-    if control.rolls:
-        return False
-    last = control.base_points - 1
-    counts = IMPACT_GAP * control.width * control.slenderness_angle
-    left, right = new.point[0, 1], new.point[last, 1]
-    if left > 0.0 and right <= 0.0:
-        track.left_gap = max(track.left_gap, left)
-    if right > 0.0 and left <= 0.0:
-        track.right_gap = max(track.right_gap, right)
+def lands(
+    joint: Any,
+    counts: float,
+    before: tuple[float, float],
+    after: tuple[float, float],
+    rate: float,
+    rocks: bool,
+) -> bool:
+    """Whether an impact that counts falls in this step; written to the record of the joint where it does.
+
+    Args:
+        joint: record of what the container or box stands on.
+        counts: gap whose closing counts as an impact [m].
+        before, after: gaps at its left and right side at both ends of the step [m].
+        rate: angular velocity of what is on it, before the step [rad/s].
+        rocks: it has rocked.
+    """
+    if after[0] > 0.0 and after[1] <= 0.0:
+        joint.left_gap = max(joint.left_gap, after[0])
+    if after[1] > 0.0 and after[0] <= 0.0:
+        joint.right_gap = max(joint.right_gap, after[1])
     struck = 0
-    if left <= 0.0 and old.point[0, 1] > 0.0:
-        struck = -1 if track.left_gap > counts else 0
-        track.left_gap = 0.0
-    if right <= 0.0 and old.point[last, 1] > 0.0:
-        struck = 1 if track.right_gap > counts else struck
-        track.right_gap = 0.0
-    if struck == 0 or track.modes & (1 << ROCK | 1 << SLIDE_ROCK) == 0:
+    if after[0] <= 0.0 < before[0]:
+        struck = -1 if joint.left_gap > counts else 0
+        joint.left_gap = 0.0
+    if after[1] <= 0.0 < before[1]:
+        struck = 1 if joint.right_gap > counts else struck
+        joint.right_gap = 0.0
+    if struck == 0 or not rocks:
         return False
-    track.landed, track.landing_rate = struck, struck * old.pose[ANGULAR_VELOCITY]
+    joint.landed, joint.landing_rate = struck, struck * rate
     return True
 
 
 @inlined
-def exchanges_pivot(track: Any, control: Any, new: State) -> int:
-    """The corner that becomes the pivot with this step: -1 left, 1 right, 0 none; called at every step.
+def exchanges_pivot(joint: Any, gaps: tuple[float, float], rate: float) -> int:
+    """The side that becomes the pivot with this step: -1 left, 1 right, 0 none; called at every step.
 
-    The last landing exchanges the pivot when the container, which still turns, has lifted its other corner.
+    The last landing exchanges the pivot when what landed, which still turns at a `rate`, has lifted its other side.
     """
-    landed = track.landed
+    landed = joint.landed
     if landed == 0:
         return 0
-    rate = landed * new.pose[ANGULAR_VELOCITY]
-    turns = track.landing_rate > 0.0 and rate > TURNING_ON * track.landing_rate
-    lifted = new.point[0 if landed == 1 else control.base_points - 1, 1] > 0.0
+    turns = joint.landing_rate > 0.0 and landed * rate > TURNING_ON * joint.landing_rate
+    lifted = gaps[0 if landed == 1 else 1] > 0.0
     if turns and not lifted:
         return 0
-    track.landed = 0
+    joint.landed = 0
     return landed if turns else 0
 
 

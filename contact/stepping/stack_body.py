@@ -255,11 +255,19 @@ def observe(stack: StackBody, state: State, floor: float, lift: float) -> None:
 
 @implements(interface.shift_velocity, StackBody, inline=True)
 def shift_velocity(
-    stack: StackBody, state: State, velocity: float, lift_velocity: float, spin: float
+    stack: StackBody,
+    state: State,
+    velocity: float,
+    lift_velocity: float,
+    spin: float,
+    first: int,
+    end: int,
 ) -> None:
     """Subtract the velocities of a frame."""
-    for b in range(stack.energy.shape[0]):
-        interface.shift_velocity(box_of(stack, b), state_of(stack, state, b), velocity, lift_velocity, spin)
+    for b in range(first, end):
+        interface.shift_velocity(
+            box_of(stack, b), state_of(stack, state, b), velocity, lift_velocity, spin, b, b + 1
+        )
 
 
 @implements(interface.prepared, StackBody, inline=True)

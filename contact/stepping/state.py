@@ -82,9 +82,6 @@ class Control(NamedTuple):
     contents_cutoff: float  #: of the filter of the acceleration of the contents [rad/s]
     top_monitors: int  #: number of monitored points at the top; they come first
     base_points: int  #: number of contact points of the base; they come first
-    impact_share: (
-        float  #: of the angular momentum that an exchange of the pivot leaves, see `stepping.impact` [-]
-    )
     rolls: bool  #: the base is cambered from edge to edge: it has no impacts
     eager: bool  #: steps grow as soon and as far as their imbalance allows: of a rigid container, for maps
 
@@ -154,6 +151,7 @@ JOINT_RECORD = np.dtype(
         ("end", "i8"),  # .. and the one behind its last
         ("below", "i8"),  # box on which the box stands; -1: the floor
         ("angle", "f8"),  # rotation beyond which the box does not come back by itself
+        ("impact_share", "f8"),  # of the angular momentum that an exchange of the pivot leaves, see `impact`
         # friction
         ("sliding", "i8"),  # 1 while every loaded point slides: kinetic friction
         ("slip_since_break", "f8"),  # path since the joint broke loose
@@ -171,6 +169,11 @@ JOINT_RECORD = np.dtype(
         ("max_opening", "f8"),
         ("max_rotation", "f8"),  # of the box
         ("fell_at", "f8"),  # when the box fell
+        # impacts, see `contact.stepping.observables.lands` and `contact.stepping.impact`
+        ("left_gap", "f8"),  # largest gap of this side since it opened with the other as pivot
+        ("right_gap", "f8"),
+        ("landed", "i8"),  # side of an impact that may exchange the pivot: -1 left, 1 right, 0 none
+        ("landing_rate", "f8"),  # angular velocity with which it landed, > 0 onto this side
         # the attempted step
         ("mu", "f8"),  # coefficient of friction at no velocity
         ("motion", "i8"),  # sliding of the loaded points, see `contact.stepping.joints`
@@ -211,18 +214,21 @@ def make_joints(
     width: npt.ArrayLike,
     angle: npt.ArrayLike,
     *,
+    impact_share: npt.ArrayLike = 1.0,
     in_a_row: bool = False,
 ) -> Any:
     """A record array (N,) of JOINT_RECORD at the start.
 
     Args:
-        mass, inertia, width, angle: of the boxes (N,), from the floor up, or of bodies in a row, see `JOINT_RECORD`.
+        mass, inertia, width, angle, impact_share: of the boxes (N,), from the floor up, or of bodies in a row, see
+            `JOINT_RECORD`.
         in_a_row: each stands on the floor with two points.
     """
     boxes = np.atleast_1d(mass)
     number = np.arange(boxes.size)
     joints = np.zeros(boxes.size, JOINT_RECORD).view(np.recarray)
     joints["mass"], joints["inertia"], joints["width"], joints["angle"] = boxes, inertia, width, angle
+    joints["impact_share"] = impact_share
     joints["begin"] = 2 * number if in_a_row else np.maximum(4 * number - 2, 0)
     joints["end"] = 2 * number + 2 if in_a_row else 4 * number + 2
     joints["below"] = -1 if in_a_row else number - 1

@@ -60,20 +60,9 @@ def sureness_in_words(result: RunResult) -> str:
     if verdict.sure == SURE and all(map(numerical, tried)):
         return f"No input was varied, all are held; {does} with steps ten times as accurate, too."
     in_all = f"in all {len(tried)} variations" if len(tried) > 1 else "in the one variation"
-    untried = (
-        " In a row, what an impact on the floor leaves is not varied." if _lands_in_a_row(verdict) else ""
-    )
     if verdict.sure == SURE:
-        return f"Sure: {does} {in_all}.{untried}"
-    return f"{does.capitalize()} {in_all}. {_other_regime(verdict, band)}.{untried}"
-
-
-def _lands_in_a_row(verdict: Verdict) -> bool:
-    """Whether containers of a row rocked: their restitution has no range, as that of one alone has."""
-    beside = verdict.neighbours or ()
-    return bool(beside) and any(
-        outcome in ROCKING for outcome in (verdict.outcome, *(neighbour.outcome for neighbour in beside))
-    )
+        return f"Sure: {does} {in_all}."
+    return f"{does.capitalize()} {in_all}. {_other_regime(verdict, band)}."
 
 
 def _doubts(verdict: Verdict, band: Band, tried: Sequence[ChangedRun]) -> Iterator[str]:

@@ -117,6 +117,13 @@ class Case(CaseHeading):
         return links_of_case(self)
 
     @property
+    def states_restitution(self) -> bool:
+        """Whether a factor is stated on what its impacts leave, or those of a case beside it."""
+        beside = (self._origin.beside.get(one.case or "") for one in self.neighbour)
+        cases = (self, *(one for one in beside if one is not None))
+        return any(one.contact.restitution_over_housner is not None for one in cases)
+
+    @property
     def bodies(self) -> int:
         """How many bodies move each for itself."""
         return self.container.bodies + len(self.neighbour)

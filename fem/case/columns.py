@@ -77,7 +77,7 @@ CRUSHING = ColumnGroup(
 )
 #: a restitution that was asked for: what the impacts lost by it, < 0 where they return energy
 IMPACTS = ColumnGroup(
-    lambda case: range(case.contact.restitution_over_housner is not None),
+    lambda case: range(case.states_restitution),
     (HistoryColumn("impact_J", "J", START),),
 )
 #: a floor that moves up and down; positive upward

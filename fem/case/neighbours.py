@@ -224,12 +224,6 @@ NEIGHBOUR_RULES = (
         "corners",
     ),
     _alone(
-        "contact.restitution_over_housner",
-        lambda case: case.contact.restitution_over_housner is not None,
-        "does not apply to [[neighbour]]: in a row an impact on the floor and one against a side may be one event; "
-        "take damping_ratio",
-    ),
-    _alone(
         "output.stop_when_overturned",
         lambda case: not case.output.stop_when_overturned,
         "must be true with [[neighbour]]: what a fallen container strikes is not modelled; leave it out",

@@ -292,20 +292,43 @@ def _block(case: Any) -> RigidBlock:
     return RigidBlock(half_width=0.5 * box.width_m, centroid_height=height, gravity=case.gravity_m_s2)
 
 
+def _blocks(case: Any) -> list[RigidBlock]:
+    """Those of all whose restitution is that of the case: not of a neighbour that has a case of its own."""
+    named = [False, *(one.case is not None for one in case.neighbour)]
+    beside = [_block(one) for one, own in zip(case.row or (case,), named, strict=True) if not own]
+    return beside + blocks_on_joints(case)
+
+
+def blocks_on_joints(case: Any) -> list[RigidBlock]:
+    """What stands on each joint of a loose stack, as blocks."""
+    blocks = []
+    for j in range(1, case.container.bodies):
+        above = case.stack[j:]
+        height = sum(box.mass * (box.bottom + box.centroid) for box in above) / sum(box.mass for box in above)
+        blocks.append(
+            RigidBlock(
+                half_width=0.5 * above[0].width,
+                centroid_height=height - above[0].bottom,
+                gravity=case.gravity_m_s2,
+            )
+        )
+    return blocks
+
+
 def _has_impacts(case: Any) -> bool:
     """Whether an impact exchanges the pivot as Housner's does, or leaves a restitution that is given.
 
     A block so squat that Housner's restitution is not positive stays on its base after an impact.
     """
     given = case.contact.restitution_over_housner is not None
-    sharp = case.support.kind == "corners" and not case.rolls and not getattr(case, "neighbour", ())
-    return (given or sharp) and _block(case).housner_restitution > 0.0
+    sharp = case.support.kind == "corners" and not case.rolls
+    return (given or sharp) and max(block.housner_restitution for block in _blocks(case)) > 0.0
 
 
 def _restitutions(case: Any, ratio: float) -> Ends:
     """By the loss at an impact of a homogeneous block where it is given; never more than was there before."""
-    block, limits = _block(case), q.RESTITUTION
-    housner, (low, high) = block.housner_restitution, RESTITUTIONS
+    block = max(_blocks(case), key=lambda one: one.housner_restitution)
+    limits, housner, (low, high) = q.RESTITUTION, block.housner_restitution, RESTITUTIONS
     if case.contact.restitution_over_housner is not None:
         low, high = ((1.0 - share * (1.0 - ratio * housner)) / housner for share in (LOSS[1], LOSS[0]))
     else:

@@ -25,9 +25,9 @@ WHOLE_DEPTH = 0.99  #: share of the depth of the container from which a patch is
 #: of the weight: a corner that lifts the other one carries all of it, and more at a landing
 LEAST_BEARING = 1.2
 #: weights that the floor under a corner carries: below the first its pivot is where the weight is carried, from the
-#: second on at the edge, and between the two in proportion, unless the range of the effective width does not cover that
+#: second on at the edge, and between the two in proportion, unless the pivot is `SEEN` inside the edge
 WEAK, FIRM = 4.0, 5.0
-COVERED = 0.015  #: of the width on either side, what that range covers (0.97 to 1)
+SEEN = 0.005  #: of the width: a block that turns half as far inside its edge rocks 1 to 2 % more
 #: least damping ratio of a slab for which the case gives none. Waves into the floor alone (0.004 for the edge of a wall
 #: on concrete) let a corner ring after each hit: ten times the steps of a rigid container and the same motion, because
 #: crushing takes the energy, not the dashpot (`rocking`: restitution 0.867 and 0.866, rotation ratio 0.385 and 0.391)
@@ -179,15 +179,15 @@ def pivot_inset(case: Case, mesh: ContainerMesh) -> float:
     of the patch c along x that bears F, and all of it where F is less than the weight W (refused elsewhere). The
     resultant is in the middle of it. Where the patch grows with the indentation, its strength a length stays. Gajan and
     Kutter, J. Geotech. Geoenviron. Eng. 134 (2008) 1129, of footings that rock: the moment is W B/2 (1 - A_c/A), A_c
-    the area that carries the weight. A firm floor turns the container about the edge itself: what that neglects, at
-    most a tenth of the length of the patch and `COVERED` of the width, is within the range of the effective width.
+    the area that carries the weight. A firm floor turns the container about the edge itself: what that neglects, less
+    than `SEEN` of the width, is a sixth of the range of the effective width.
     """
     if not case.floor.is_slab:
         return 0.0
     slab = slab_of(case, mesh.mass)
     times = slab.bearing_capacity / (mesh.mass * case.gravity_m_s2)
     inset = 0.5 * slab.patch[0] / max(times, 1.0)
-    share = max((FIRM - times) / (FIRM - WEAK), 2.0 * inset / (COVERED * mesh.width) - 1.0)
+    share = max((FIRM - times) / (FIRM - WEAK), 2.0 * inset / (SEEN * mesh.width) - 1.0)
     return inset * min(max(share, 0.0), 1.0)
 
 

@@ -7,7 +7,6 @@ its own. Each contact point has the spring of a corner; two corners that face ea
 import math
 from dataclasses import replace
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 
@@ -17,7 +16,6 @@ from contact.stepping.body import State, make_state
 from contact.stepping.loose_stack import LooseStack
 from contact.stepping.modal_body import ModalBody, make_modal_body
 from contact.stepping.stack_body import make_stack, settle_stack
-from contact.stepping.state import make_joints
 from fem.case.boxes import shared_face
 from fem.case.case import Case
 from fem.model.container import BoxModel, Container
@@ -165,17 +163,6 @@ def own_stiffness(contact: Contact) -> Contact:
     return contact._replace(
         normal_stiffness=contact.normal_stiffness.copy(),
         tangential_stiffness=contact.tangential_stiffness.copy(),
-    )
-
-
-def joints_of_stack(container: Container, angle: float) -> Any:
-    """Records of the joints of a loose stack of this slenderness angle, or of a row: `JOINT_RECORD`."""
-    meshes = [box.mesh for box in container.boxes]
-    return make_joints(
-        [mesh.mass for mesh in meshes],
-        [mesh.inertia for mesh in meshes],
-        [mesh.width for mesh in meshes],
-        angle,
     )
 
 

@@ -23,19 +23,27 @@ from contact.stepping.links import LinkedBody
 from contact.stepping.loose_stack import LooseStack
 from contact.stepping.modal_body import ModalBody
 from contact.stepping.observables import record_start
-from contact.stepping.state import NO_STRESSES, STRAIN_WINDOW, RunState, Stresses, make_run, make_samples
+from contact.stepping.state import (
+    NO_STRESSES,
+    STRAIN_WINDOW,
+    RunState,
+    Stresses,
+    make_joints,
+    make_run,
+    make_samples,
+)
 from fem.case.case import Case
 from fem.model.container import Container, discretise, modes_of_a_body
 from fem.model.equilibrium import Equilibrium, find_equilibrium
 from fem.model.floor import slab_of
 from fem.model.frames import frame_interval
 from fem.model.links import begin_links
-from fem.model.loose_stack import joints_of_stack, make_stack_state, own_stiffness, settle
+from fem.model.loose_stack import make_stack_state, own_stiffness, settle
 from fem.model.motion import build_motions, longest_run, peaks_in_run, rest_sought_from
 from fem.model.peaks import ROUNDING, stress_bounds, stressed_nodes
 from fem.model.resting import still_from
 from fem.model.restitution import require_loss
-from fem.model.row import begin_row, joints_of_row
+from fem.model.row import begin_row
 from fem.model.static_checks import StaticChecks, static_checks_of
 from fem.model.step_size import control_of, largest_step_of, scheme_of
 from fem.model.validity import require_stiff_corner
@@ -137,8 +145,9 @@ def build_model(
     own = body.body if isinstance(body, LinkedBody) else body
     duration = longest_run(case, motion, vertical)
     static = static_checks_of(case, mesh, *peaks_in_run(case, motion, vertical, duration))
-    require_loss(case, static)
     row = [static_checks_of(one, each.mesh, 0.0) for one, each in zip(case.row, container.row, strict=True)]
+    for one, own_static in zip(case.row or [case], row or [static], strict=True):
+        require_loss(one, own_static)
     fastest = max(one.frequency_parameter for one in (static, *row))
     largest, breaks = largest_step_of(case, fastest, duration, motion, vertical)
     control = control_of(case, container, static, largest, contact, row)
@@ -203,7 +212,7 @@ def build_model(
             position=coordinates if fields > 0.0 else 0,
             velocity=coordinates if fields > 0.0 else 0,
         ),
-        joints=_joints(container, static, row),
+        joints=_joints(case, container, static, row),
         links=len(case.links) + len(case.neighbour),
         strained=_strained_steps(case, duration),
         stress=_watched_stresses(case, container),
@@ -236,11 +245,18 @@ def _areas(case: Case, container: Container, equilibrium: Equilibrium) -> FloatA
     return areas
 
 
-def _joints(container: Container, static: StaticChecks, row: Sequence[StaticChecks]) -> Any:
-    """Records of the joints of a loose stack or a row; None of a container that moves as one."""
-    if container.row:
-        return joints_of_row([one.mesh for one in container.row], [one.slenderness_angle for one in row])
-    return joints_of_stack(container, static.slenderness_angle) if container.boxes else None
+def _joints(case: Case, container: Container, static: StaticChecks, row: Sequence[StaticChecks]) -> Any:
+    """Records of what stands on the floor, and of the joints of a loose stack: `JOINT_RECORD`."""
+    meshes = [each.mesh for each in container.row or container.boxes or [container]]
+    shares = [one.contact.restitution_over_housner or 1.0 for one in case.row or [case]]
+    return make_joints(
+        [mesh.mass for mesh in meshes],
+        [mesh.inertia for mesh in meshes],
+        [mesh.width for mesh in meshes] if container.row or container.boxes else static.width,
+        [one.slenderness_angle for one in row or [static]],
+        impact_share=shares,
+        in_a_row=bool(container.row),
+    )
 
 
 def _watched_stresses(case: Case, container: Container) -> Stresses:

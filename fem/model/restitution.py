@@ -15,6 +15,7 @@ from importlib import resources
 import numpy as np
 
 from fem.case.case import Case, CaseError
+from fem.case.unknown_inputs import blocks_on_joints
 from fem.model.static_checks import StaticChecks
 from fem.runtime.arrays import FloatArray
 
@@ -71,6 +72,7 @@ def require_loss(case: Case, static: StaticChecks) -> None:
     """
     factor = case.contact.restitution_over_housner or 1.0
     asked = contact_restitution(case, static) or factor * static.housner_restitution
+    asked = max([asked, *(factor * above.housner_restitution for above in blocks_on_joints(case))])
     if factor <= 1.0 or asked <= 1.0:
         return
     raise CaseError(

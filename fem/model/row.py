@@ -23,7 +23,6 @@ from contact.stepping.boxes import POINTS_OF_GAP
 from contact.stepping.loose_stack import LooseStack
 from contact.stepping.modal_body import ModalBody
 from contact.stepping.stack_body import make_stack, start_stack
-from contact.stepping.state import make_joints
 from fem.case.case import Case, CaseError
 from fem.case.neighbours import places_of
 from fem.model.container import Container, facing
@@ -227,14 +226,3 @@ def begin_row(
                 "start, as the containers stand; take a wider one, or another [initial]"
             )
     return state
-
-
-def joints_of_row(meshes: Sequence[ContainerMesh], angles: Sequence[float]) -> Any:
-    """Records of where the containers of a row stand on the floor; `angles`: of slenderness [rad]."""
-    return make_joints(
-        [mesh.mass for mesh in meshes],
-        [mesh.inertia for mesh in meshes],
-        [mesh.width for mesh in meshes],
-        angles,
-        in_a_row=True,
-    )

@@ -183,7 +183,6 @@ def control_of(
         contents_cutoff=2.0 * math.pi * case.output.contents_filter_Hz,
         top_monitors=2,
         base_points=base,
-        impact_share=case.contact.restitution_over_housner or 1.0,
         rolls=case.rolls,
         eager=eager,
     )

@@ -303,7 +303,7 @@ def _energies(view: RunView) -> list[tuple[str, str]]:
     error = f"{number(energy.closure_error, figures=3)} of the energy {to_overturn(row)}"
     absent = {
         "crushing_J": not view.case.floor.is_slab,
-        "impact_J": view.case.contact.restitution_over_housner is None,
+        "impact_J": not view.case.states_restitution,
     }
     rows = [
         (to_overturn(row) if key == "reference_J" else words, quantity(getattr(energy, key), "J"))

@@ -11,7 +11,7 @@ from fem.assessment.motion_words import doubts
 from fem.case.case import Case
 from fem.case.rules import ends_at_rest
 from fem.model.floor_numbers import floor_result
-from fem.model.geometry import node_count
+from fem.model.geometry import build_container, node_count
 from fem.model.restitution import contact_restitution, require_loss
 from fem.model.static_checks import StaticChecks, static_checks_of
 from fem.model.support import build_support, normal_penalty
@@ -76,6 +76,8 @@ class Preview:
         stiffness = float(springs.sum())
         require_stiff_contact(case, mesh, stiffness)
         require_loss(case, self.static)
+        for one in case.row[1:]:
+            require_loss(one, static_checks_of(one, build_container(one), 0.0))
         require_bearing(case, mesh)
         require_room(case, mesh)
         return {

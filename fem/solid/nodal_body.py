@@ -187,9 +187,11 @@ class FullBody:
         """See `contact.stepping.body.observe`."""
         nodal_kernels.observe(self.nodal, new, floor, lift)
 
-    def shift_velocity(self, state: State, velocity: float, lift_velocity: float, spin: float) -> None:
+    def shift_velocity(
+        self, state: State, velocity: float, lift_velocity: float, spin: float, first: int, end: int
+    ) -> None:
         """See `contact.stepping.body.shift_velocity`."""
-        nodal_kernels.shift_velocity(self.nodal, state, velocity, lift_velocity, spin)
+        nodal_kernels.shift_velocity(self.nodal, state, velocity, lift_velocity, spin, first, end)
 
     def memory(self) -> dict[str, FloatArray]:
         """Arrays of the last residual by name; everything else follows from the state."""

@@ -323,7 +323,15 @@ def observe(body: NodalBody, new: State, floor: float, lift: float) -> None:
 
 @compiled(sources=SOURCES)
 @implements(interface.shift_velocity, NodalBody)
-def shift_velocity(body: NodalBody, state: State, velocity: float, lift_velocity: float, spin: float) -> None:
+def shift_velocity(
+    body: NodalBody,
+    state: State,
+    velocity: float,
+    lift_velocity: float,
+    spin: float,
+    first: int,
+    end: int,
+) -> None:
     """Subtract the velocities of a frame."""
     for i in range(body.nodal_mass.size):
         state.velocity[2 * i] -= velocity + spin * state.position[2 * i + 1]

@@ -129,11 +129,19 @@ def observe(stack: NodalStack, new: State, floor: float, lift: float) -> None:
 @compiled(sources=SOURCES)
 @implements(interface.shift_velocity, NodalStack)
 def shift_velocity(
-    stack: NodalStack, state: State, velocity: float, lift_velocity: float, spin: float
+    stack: NodalStack,
+    state: State,
+    velocity: float,
+    lift_velocity: float,
+    spin: float,
+    first: int,
+    end: int,
 ) -> None:
     """Subtract the velocities of a frame."""
-    for b in range(len(stack.boxes)):
-        nodal_kernels.shift_velocity(stack.boxes[b], state_of(stack, state, b), velocity, lift_velocity, spin)
+    for b in range(first, end):
+        nodal_kernels.shift_velocity(
+            stack.boxes[b], state_of(stack, state, b), velocity, lift_velocity, spin, b, b + 1
+        )
 
 
 @compiled(sources=SOURCES)

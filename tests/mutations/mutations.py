@@ -228,8 +228,8 @@ MUTATIONS = (
     ),
     Mutation(
         name="impacts counted in a run that rests",
-        old="if struck == 0 or track.modes & (1 << ROCK | 1 << SLIDE_ROCK) == 0:",
-        new="if struck == 0:",
+        old="rocks = not control.rolls and track.modes & (1 << ROCK | 1 << SLIDE_ROCK) != 0",
+        new="rocks = not control.rolls",
         tests=("verification/against_block/test_first_impact.py", "-k", "rests or flutter"),
     ),
     Mutation(

@@ -4,12 +4,13 @@ from mutation import Mutation
 
 RESTITUTION = "verification/closed_forms/test_restitution.py"
 FEW = (RESTITUTION, "-k", "every_impact or carries or slip or mirrored")
+SEVERAL = (RESTITUTION, "-k", "every_container or on_one_that_stands or land_on_boxes")
 
 IMPACTS = (
     Mutation(
         name="a share of the energy in place of one of the angular momentum",
-        old="turn = (1.0 - control.impact_share) * momentum",
-        new="turn = (1.0 - control.impact_share**2) * momentum",
+        old="turn = (1.0 - share) * momentum",
+        new="turn = (1.0 - share**2) * momentum",
         tests=FEW,
     ),
     Mutation(
@@ -20,8 +21,8 @@ IMPACTS = (
     ),
     Mutation(
         name="the other corner as the one that landed",
-        old="corner = 0 if landed == -1 else control.base_points - 1\n    x = ",
-        new="corner = 0 if landed == 1 else control.base_points - 1\n    x = ",
+        old="corner = begin if landed == -1 else end - 1",
+        new="corner = begin if landed == 1 else end - 1",
         tests=FEW,
     ),
     Mutation(
@@ -44,13 +45,13 @@ IMPACTS = (
     ),
     Mutation(
         name="an impact that loses at every step",
-        old="    track.landed = 0\n    return landed if turns else 0",
+        old="    joint.landed = 0\n    return landed if turns else 0",
         new="    return landed if turns else 0",
         tests=FEW,
     ),
     Mutation(
         name="an impact that loses when the container lifts much later",
-        old="turns = track.landing_rate > 0.0 and rate > TURNING_ON * track.landing_rate",
+        old="turns = joint.landing_rate > 0.0 and landed * rate > TURNING_ON * joint.landing_rate",
         new="turns = True",
         tests=(RESTITUTION, "-k", "chatters"),
     ),
@@ -59,5 +60,23 @@ IMPACTS = (
         old="state.velocity[0] -= velocity + spin * state.position[1]",
         new="state.velocity[0] -= velocity",
         tests=FEW,
+    ),
+    Mutation(
+        name="impacts of the first container of a row, or of the lowest box, alone",
+        old="        if joint.impact_share == 1.0:",
+        new="        if joint.impact_share == 1.0 or j > 0:",
+        tests=SEVERAL,
+    ),
+    Mutation(
+        name="a row that turns as a whole where one of it lands",
+        old="boxes = j + 1 if in_a_row(run) else run.joints.shape[0]",
+        new="boxes = run.joints.shape[0]",
+        tests=SEVERAL,
+    ),
+    Mutation(
+        name="a box that loses where the floor does not take the reaction",
+        old="if landed != 0 and carrier_of(run, j) < 0:",
+        new="if landed != 0:",
+        tests=SEVERAL,
     ),
 )

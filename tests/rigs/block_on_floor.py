@@ -231,6 +231,7 @@ def rig(
         history=make_samples(sampled, 8000, 2, columns=True),
         frames=make_samples(math.inf, 4, 2),
     )
+    run.joints["impact_share"] = block.impact_share
     return Rig(block, body, run)
 
 
@@ -281,7 +282,6 @@ def limits_of(block: Block, largest_step: float, fixed_step: bool, energy_scale:
         contents_cutoff=200.0,
         top_monitors=0,
         base_points=2,
-        impact_share=block.impact_share,
         rolls=False,
         eager=False,
     )

@@ -14,7 +14,6 @@ from fem.results.run_result import (
     ActionResult,
     Band,
     ChangedRun,
-    NeighbourResult,
     RunResult,
     StaticResult,
     Verdict,
@@ -308,15 +307,3 @@ def test_where_rule_and_run_disagree_it_is_said_which_governs(own, members, word
     assert [words in one for one in said] == ([] if words is None else [True])
     over = replace(static, own_motion=ActionResult(utilisation_sliding=1.1, utilisation_overturning=1.1))
     assert governing(RunResult(status="completed", verdict=given, static=over)) == ()
-
-
-@pytest.mark.parametrize(("outcome", "beside", "said"), [("rest", "rest", False), ("rest", "rock", True)])
-def test_a_row_says_that_the_restitution_of_its_containers_is_not_varied(outcome, beside, said):
-    still = {"hits": 0, "max_force_N": 0.0, "largest_closing_velocity_m_s": 0.0, "gap_left_m": 1.0}
-    moved = {"max_rotation_rad": 0.0, "rotation_ratio": 0.0, "max_slip_m": 0.0, "residual_slip_m": 0.0}
-    other = NeighbourResult(side="left", outcome=beside, max_uplift_m=0.0, **moved, **still)
-    own = replace(verdict((HALF, {}), (STIFF, {}), outcome=outcome), neighbours=(other,))
-    assert own.sure == "sure"
-    words = sureness_in_words(RunResult(status="completed", verdict=own))
-    assert words.startswith("Sure: stands in all 2 variations.")
-    assert words.endswith("what an impact on the floor leaves is not varied.") == said

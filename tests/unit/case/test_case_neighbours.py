@@ -8,7 +8,9 @@ from fem.case.columns import history_columns
 from fem.case.neighbours import places_of
 from fem.case.template import case_template
 from fem.case.unknown_inputs import ranges_of
+from fem.cli.check import preview_of
 from fem.model.container import discretise
+from fem.model.model import build_model
 from mesh.errors import MeshError
 
 BESIDE = {"side": "right", "gap_m": 0.05, "stiffness_N_m": 1e8}
@@ -65,8 +67,19 @@ def test_a_key_of_a_neighbour_is_that_of_all_and_unknown_in_a_band():
     ranges = {one.key: one.ends for one in ranges_of(case, 1e9)}
     assert ranges["neighbour.gap_m"] == pytest.approx((0.16, 0.24))
     assert ranges["neighbour.stiffness_N_m"] == pytest.approx((5e7, 2e8))
-    # no base but on corners, and no restitution, in a row
-    assert not ranges.keys() & {"support.kind", "contact.restitution_over_housner"}
+    assert "support.kind" not in ranges  # no base but on corners in a row
+    assert ranges["contact.restitution_over_housner"] == pytest.approx((0.95, 1.06))
+
+
+def test_no_container_of_a_row_gains_at_an_impact_but_by_its_own_case():
+    slender, height = {**BESIDE, "width_m": 0.4}, RIGID.container.total_height
+    most = 0.999 / (1.0 - 1.5 / (1.0 + (height / 0.4) ** 2))
+    ranges = {one.key: one.ends for one in ranges_of(RIGID.with_values({"neighbour": [slender]}), 1e9)}
+    assert ranges["contact.restitution_over_housner"][1] == pytest.approx(most)
+    stated = RIGID.with_values({"neighbour": [slender], "contact.restitution_over_housner": 1.05})
+    for refuse in (build_model, lambda case: preview_of(case).numerics):
+        with pytest.raises(CaseError, match="more than there was"):
+            refuse(stated)
 
 
 @pytest.mark.parametrize(
@@ -90,7 +103,6 @@ def test_a_neighbour_that_cannot_be_is_refused(keys, reason):
         ({"solver.model": "full"}, r'model must be "rigid" or "reduced" .* no contact points on the sides'),
         ({"container.joints": "loose"}, 'joints must be "bolted"'),
         ({"support.kind": "flat"}, 'kind must be "corners"'),
-        ({"contact.restitution_over_housner": 0.95}, "one event"),
         ({"output.stop_when_overturned": False}, "what a fallen container strikes is not modelled"),
         (
             {"neighbour": [{**BESIDE, "boxes": 1}], "stop": [{**BESIDE, "height_m": 2.0}]},

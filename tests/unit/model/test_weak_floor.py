@@ -77,18 +77,19 @@ def turns_at(times):
     return 0.5 * bears
 
 
-@pytest.mark.parametrize("times", [1.25, 2.0, 3.9])
+@pytest.mark.parametrize("times", [1.25, 2.0, 3.9, 4.5, 5.5, 9.0])
 def test_it_turns_in_the_middle_of_what_carries_it(times):
     assert turns_at(times) == pytest.approx(EDGE - 0.5 * LENGTH / times, rel=1e-9)
 
 
 def test_it_turns_about_the_edge_of_a_firm_floor_and_nothing_jumps_between():
-    assert turns_at(6.1) == turns_at(6.5) == EDGE
-    near = [turns_at(times) for times in (4.0 - 1e-6, 4.0 + 1e-6, 4.5, 5.0)]
-    assert near[0] == pytest.approx(near[1], abs=1e-7)
-    assert near[2] == pytest.approx(EDGE - 0.5 * 0.5 * LENGTH / 4.5, rel=1e-9)
-    # 10 mm: up to 8.25 mm, 0.75 % of the width, nothing of it is taken, and from twice that on all
-    assert near[3] == pytest.approx(EDGE - 0.01 * (0.01 / 0.00825 - 1.0), rel=1e-9)
+    # up to 2.75 mm, a quarter of a per cent of the width, nothing of it is taken, and from twice that on all
+    assert turns_at(18.2) == turns_at(40.0) == EDGE
+    inside = [EDGE - turns_at(times) for times in (9.0, 9.1, 12.0, 18.1)]
+    assert inside[2] == pytest.approx(0.05 / 12.0 * (0.05 / 12.0 / 0.00275 - 1.0), rel=1e-9)
+    assert inside[0] == pytest.approx(0.05 / 9.0, rel=1e-9)
+    assert inside[1] == pytest.approx(inside[0], rel=0.03)
+    assert 0.0 < inside[3] < 1e-4
 
 
 def test_all_that_follows_from_the_width_follows_it():
@@ -110,8 +111,8 @@ def test_all_that_follows_from_the_width_follows_it():
 
 
 def test_a_weak_wall_on_a_firm_floor_turns_about_its_edge():
-    # the steel yields at 1.3 times the weight, the floor bears 6.5 times it
-    yields = on_asphalt(6.5, **{"container.corner_post_N": 0.65 * WEIGHT})
+    # the steel yields at 1.3 times the weight, the floor bears 40 times it
+    yields = on_asphalt(40.0, **{"container.corner_post_N": 0.65 * WEIGHT})
     assert build_model(yields).static.width == 2.0 * EDGE
 
 
@@ -177,6 +178,16 @@ def block(times):
         (3.0, "sine", 1.0, 3.8),
         (3.9, "sine", 1.0, 3.4),
         (3.9, "sine", 1.0, 3.8),
+        (4.2, "sine", 1.0, 3.4),
+        (4.2, "sine", 1.0, 3.8),
+        (4.5, "sine", 1.0, 3.4),
+        (4.5, "sine", 1.0, 3.8),
+        (4.9, "sine", 1.0, 3.4),
+        (4.9, "sine", 1.0, 3.8),
+        (5.5, "sine", 1.0, 3.4),
+        (5.5, "sine", 1.0, 3.8),
+        (12.0, "sine", 1.0, 3.8),
+        (20.0, "sine", 1.0, 3.8),
     ],
 )
 def test_it_rocks_as_an_event_driven_block_of_that_width(times, shape, seconds, peak):

@@ -53,7 +53,7 @@ def case_of(*, boxes=1, joints="bolted", vertical=False, crushing=False, restitu
     return SimpleNamespace(
         container=SimpleNamespace(boxes=boxes, joints=joints),
         floor=SimpleNamespace(kind="slab" if crushing else "rigid"),
-        contact=SimpleNamespace(restitution_over_housner=restitution),
+        states_restitution=restitution is not None,
         vertical=SimpleNamespace(kind="pulse" if vertical else "none"),
     )
 
