@@ -442,22 +442,24 @@ class UncertaintyTable(CaseTable):
         "of the container; default: half to twice", None, example=[0.01, 0.04]
     )
     stop_gap_m: Unknown = case_key(
-        "of all stops, where they have one; default: 0.8 to 1.2 times", None, example=[0.04, 0.06]
+        "of the stops, where they differ the largest, and all in proportion; default: 0.8 to 1.2 times",
+        None,
+        example=[0.04, 0.06],
     )
     stop_stiffness_N_m: Unknown = case_key(
-        "of all stops, likewise; default: half to twice", None, example=[5e7, 2e8]
+        "of the stops, likewise; default: half to twice", None, example=[5e7, 2e8]
     )
     stop_mu: Unknown = case_key(
-        "friction on all stops, likewise; default: half to twice", None, example=[0.1, 0.4]
+        "friction on the stops, likewise; default: half to twice", None, example=[0.1, 0.4]
     )
     tie_slack_m: Unknown = case_key(
-        "of all ties, where they have one; default: 0.8 to 1.2 times", None, example=[0.0, 0.01]
+        "of the ties, likewise; default: 0.8 to 1.2 times", None, example=[0.0, 0.01]
     )
     tie_stiffness_N_m: Unknown = case_key(
-        "of all ties, likewise; default: half to twice", None, example=[5e5, 2e6]
+        "of the ties, likewise; default: half to twice", None, example=[5e5, 2e6]
     )
     neighbour_gap_m: Unknown = case_key(
-        "between all neighbours, where they have one; default: 0.8 to 1.2 times", None, example=[0.08, 0.12]
+        "between the neighbours, likewise; default: 0.8 to 1.2 times", None, example=[0.08, 0.12]
     )
     neighbour_stiffness_N_m: Unknown = case_key(
         "of the sides, likewise; default: half to twice", None, example=[5e7, 2e8]

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from fem.case import quantities as q
 from fem.case.case import Case
+from fem.case.links import ROWS
 from fem.case.unknown_inputs import (
     CAMBER,
     JOINTS_MU_KINETIC,
@@ -162,9 +163,9 @@ def as_changed(case: Case, values: Mapping[str, Value]) -> dict[str, Any]:
 
     Where a static friction changes alone, the kinetic one keeps its share of it, and is never larger. Friction between
     loose boxes does not follow the floor's. A base that touches otherwise has another patch on a slab, and on a rigid
-    floor another penalty, which is chosen for it.
+    floor another penalty, which is chosen for it. Where stops, ties or neighbours differ, all change in proportion.
     """
-    changed: dict[str, Any] = dict(values)
+    changed: dict[str, Any] = _in_proportion(case, values)
     own = {f"contact.{key}": getattr(case.contact, key) for key in ("mu_static", "mu_kinetic")}
     if case.container.is_loose:
         joints = {f"joints.{key}": value for key, value in case.joint_friction.items()}
@@ -180,6 +181,22 @@ def as_changed(case: Case, values: Mapping[str, Value]) -> dict[str, Any]:
         changed["floor.corner_patch_m"] = other_patch(case, str(values[SUPPORT]))
     elif not values.keys().isdisjoint((SUPPORT, CAMBER)) and not case.floor.is_slab:
         changed.setdefault(PENALTY, "auto")
+    return changed
+
+
+def _in_proportion(case: Case, values: Mapping[str, Value]) -> dict[str, Any]:
+    """The values, but where one stands for the largest of several different rows, these rows in its place."""
+    changed: dict[str, Any] = {}
+    for key, value in values.items():
+        table, _, name = key.partition(".")
+        rows = getattr(case, table) if table in ROWS else ()
+        own = [getattr(row, name) for row in rows]
+        if len({*own}) <= 1:
+            changed[key] = value
+            continue
+        given = changed.get(table) or [row.model_dump(by_alias=True, exclude_unset=True) for row in rows]
+        scaled = (short(one * float(value) / max(own)) for one in own)
+        changed[table] = [row | {name: one} for row, one in zip(given, scaled, strict=True)]
     return changed
 
 

@@ -194,9 +194,8 @@ def short(value: float) -> float:
 def _own(case: Any, key: str, penalty: float | None) -> Any:
     """What a case has of an input, with what follows where the case itself says nothing; None: nothing."""
     table, _, name = key.partition(".")
-    if table in ROWS:  # of all its rows at once, where they agree
-        values = {getattr(one, name) for one in getattr(case, table)}
-        return values.pop() if len(values) == 1 else None
+    if table in ROWS:  # of the largest of its rows, which stands for all in proportion
+        return max((getattr(row, name) for row in getattr(case, table)), default=None)
     if key == PENALTY:
         return None if case.floor.is_slab else penalty
     if key == DASHPOT:  # that of a slab matters little where it crushes

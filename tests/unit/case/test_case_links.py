@@ -5,6 +5,7 @@ import pytest
 from fem.case.case import CaseError, case_hash, load_case, read_case, to_toml
 from fem.case.links import faced_by
 from fem.case.template import case_template
+from fem.case.uncertainty import as_changed
 from fem.case.unknown_inputs import ranges_of
 
 STOP = {"side": "right", "height_m": 0.1, "gap_m": 0.05, "stiffness_N_m": 1e8}
@@ -114,7 +115,7 @@ def test_what_is_no_row_of_tables_is_refused():
             RIGID.with_values({"stop": wrong})
 
 
-def test_gap_stiffness_and_friction_are_unknown_where_all_stops_have_one_value():
+def test_gap_stiffness_and_friction_are_unknown_of_different_stops_in_proportion():
     found = {one.key: one.ends for one in ranges_of(held(mu=0.3), 1e9)}
     assert found["stop.gap_m"] == (0.04, 0.06)
     assert found["stop.stiffness_N_m"] == (5e7, 2e8)
@@ -123,8 +124,13 @@ def test_gap_stiffness_and_friction_are_unknown_where_all_stops_have_one_value()
     assert found["tie.stiffness_N_m"] == (5e5, 2e6)
     unlike = RIGID.with_values({"stop": [STOP, {**STOP, "side": "left", "gap_m": 0.2}]})
     found = {one.key: one.ends for one in ranges_of(unlike, 1e9)}
-    assert "stop.gap_m" not in found
+    assert found["stop.gap_m"] == (0.16, 0.24)  # of the wider one
     assert "stop.stiffness_N_m" in found
+    narrow = unlike.with_values(as_changed(unlike, {"stop.gap_m": 0.16, "stop.stiffness_N_m": 5e7}))
+    assert [(one.side, one.gap_m, one.stiffness_N_m) for one in narrow.stop] == [
+        ("right", 0.04, 5e7),
+        ("left", 0.16, 5e7),
+    ]
     assert not {one.key for one in ranges_of(RIGID, 1e9)} & {"stop.gap_m", "tie.slack_m", "stop.mu"}
     stated = held().with_values({"uncertainty.stop_gap_m": [0.0, 0.1]})
     assert {one.key: one.ends for one in ranges_of(stated, 1e9)}["stop.gap_m"] == (0.0, 0.1)

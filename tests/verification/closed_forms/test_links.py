@@ -359,6 +359,21 @@ def test_elastic_containers_leave_a_soft_stop_as_the_rigid_one_does(model):
     assert found.model.run.links[0].hits == 1
 
 
+@pytest.mark.parametrize("model", ["reduced", pytest.param("full", marks=pytest.mark.slow)])
+def test_stiff_containers_hang_on_a_tie_to_a_wall_as_the_rigid_one_does(model):
+    tie = {"from": "left", "to": "wall", "height_m": 3.0, "slack_m": 0.02, "stiffness_N_m": 5e5}
+    start = {"initial.angular_velocity_rad_s": 0.4, "solver.duration_s": 0.6}
+    stiff = SOLID | {"container.youngs_modulus_Pa": 1e13, "solver.element_size_m": 0.5, "solver.order": 1}
+    case = with_links(HELD.with_values(start | stiff), tie=({**tie, "damping_ratio": 0.1},))
+    rigid, elastic = (run(case, {"solver.model": one}) for one in ("rigid", model))
+    first, other = (found.model.run.links[0] for found in (rigid, elastic))
+    assert first.max_force > 2e4
+    assert other.max_force == pytest.approx(first.max_force, rel=2e-3)
+    assert other.largest_closing_velocity == pytest.approx(first.largest_closing_velocity, rel=2e-3)
+    largest = rigid.history["rotation_rad"].max()
+    assert elastic.history["rotation_rad"] == pytest.approx(rigid.history["rotation_rad"], abs=0.01 * largest)
+
+
 def test_a_strap_of_great_stiffness_fixes_the_corner():
     moving = HELD.with_values({"initial.angular_velocity_rad_s": 0.3, "solver.duration_s": 0.5})
     free = run(moving).track.max_rotation
