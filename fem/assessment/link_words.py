@@ -8,7 +8,7 @@ from fem.model.links import heights_of_links
 from fem.model.model import Model
 from fem.results.outcome import SLIDING, Outcome
 from fem.results.run_result import LinkResult, NeighbourResult, RunResult, Verdict
-from fem.runtime.units import KILONEWTONS, MEGAPASCALS
+from fem.runtime.units import KILONEWTONS, MEGAPASCALS, SHORT_MILLIMETRES
 
 
 def link_results(model: Model) -> tuple[tuple[LinkResult, ...] | None, tuple[LinkResult, ...] | None]:
@@ -76,7 +76,7 @@ def _of_neighbour(number: int, one: NeighbourResult) -> str:
         stress = f", von Mises stress {MEGAPASCALS.text(one.max_von_mises_Pa, figures=3)} (reduced model)"
     moved = f"{_neighbour(number, one)} {_did(one)}{ratio}{slip}{stress}"
     if one.hits == 0:
-        return f"{moved}, not touched, {1e3 * one.gap_left_m:.3g} mm of the gap were left"
+        return f"{moved}, not touched{_left(one, 'gap')}"
     hits = "once" if one.hits == 1 else f"{one.hits} times"
     speed = f"{one.largest_closing_velocity_m_s:.2g} m/s"
     return (
@@ -91,7 +91,7 @@ def _did(one: NeighbourResult) -> str:
 def _of_stop(one: LinkResult) -> str:
     name = f"the stop on the {one.side} at {one.height_m:g} m"
     if one.max_force_N == 0.0:
-        return f"{name} was not touched"
+        return f"{name} was not touched{_left(one, 'gap')}"
     hits = "once" if one.hits == 1 else f"{one.hits} times"
     said = f"{name} was hit {hits}, at {one.largest_closing_velocity_m_s:.2g} m/s at most, with up to {_force(one)}"
     return said + _broken(one)
@@ -101,8 +101,16 @@ def _of_tie(one: LinkResult) -> str:
     of, to = f" of neighbour {one.neighbour}" if one.neighbour else "", f" to {one.to}" if one.to else ""
     name = f"the tie{of} on the {one.side} at {one.height_m:g} m{to}"
     if one.max_force_N == 0.0:
-        return f"{name} stayed slack"
+        return f"{name} stayed slack{_left(one, 'slack')}"
     return f"{name} carried up to {_force(one)}{_broken(one)}"
+
+
+def _left(one: LinkResult | NeighbourResult, what: str) -> str:
+    return (
+        ""
+        if one.gap_left_m is None
+        else f", {SHORT_MILLIMETRES.text(one.gap_left_m)} of the {what} were left"
+    )
 
 
 def _force(one: LinkResult) -> str:

@@ -145,7 +145,7 @@ class Figures(JsonBlock, Generic[ValueT]):
         Shown("tilt at the end", units.DEGREES, COLUMN | BAND | SUMMARY, lowest=True),
     ] = None
     impacts: Annotated[
-        int | None, Shown("impacts", units.COUNT, COLUMN | READ, "track.impacts", below="first_uplift_s")
+        int | None, Shown("impacts", units.WHOLE, COLUMN | READ, "track.impacts", below="first_uplift_s")
     ] = None
     #: a base gap opens
     first_opening_s: Annotated[
@@ -220,7 +220,7 @@ class LinkFigures(JsonBlock, Generic[ValueT]):
     ] = None
     #: how often a gap or slack was used up
     link_hits: Annotated[
-        ValueT | None, Shown("hits on stops, ties and neighbours", units.COUNT, OF_LINKS)
+        ValueT | None, Shown("hits on stops, ties and neighbours", units.WHOLE, OF_LINKS)
     ] = None
     #: with which one was used up
     link_velocity_m_s: Annotated[

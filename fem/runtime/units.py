@@ -22,6 +22,7 @@ class DisplayUnit:
     least: float = 0.0  #: sizes below it [SI] are shown as that limit
     figures: int = MANY  #: significant figures, without trailing zeros where they are four
     under: str = "<"  #: the word before that limit
+    whole: bool = False  #: it counts
 
     def text(
         self,
@@ -58,7 +59,9 @@ class DisplayUnit:
 
     def in_figures(self, value: float, figures: int) -> str:
         """A number [SI] with so many significant figures, or the limit that it is below."""
-        return in_figures(value, figures, self.factor, self.least, self.under)
+        return (
+            f"{value:.0f}" if self.whole else in_figures(value, figures, self.factor, self.least, self.under)
+        )
 
 
 def figures_of(reach: Reach | None, many: int = MANY) -> int:
@@ -100,7 +103,7 @@ def visible_number(value: float | None, factor: float = 1.0, form: str = ".4g") 
     return "0" if abs(shown) < INVISIBLE else format(shown, form)
 
 
-COUNT, SECONDS = DisplayUnit(), DisplayUnit(name="s")
+COUNT, WHOLE, SECONDS = DisplayUnit(), DisplayUnit(whole=True), DisplayUnit(name="s")
 MILLIMETRES = DisplayUnit(name="mm", factor=1e3, least=1e-5)
 SHORT_MILLIMETRES = replace(MILLIMETRES, figures=3)
 #: what loose boxes slip at impacts is less known than that: their joints' dashpots decide it
