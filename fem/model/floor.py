@@ -188,6 +188,8 @@ def pivot_inset(case: Case, mesh: ContainerMesh) -> float:
     times = slab.bearing_capacity / (mesh.mass * case.gravity_m_s2)
     inset = 0.5 * slab.patch[0] / max(times, 1.0)
     share = max((FIRM - times) / (FIRM - WEAK), 2.0 * inset / (SEEN * mesh.width) - 1.0)
+    if case.solver.model == "full" and share < 1.0:  # it bears where its nodes are
+        return 0.0
     return inset * min(max(share, 0.0), 1.0)
 
 

@@ -201,3 +201,22 @@ def test_it_rocks_as_an_event_driven_block_of_that_width(times, shape, seconds, 
     pulse = half_sine_pulse if shape == "half-sine" else one_sine_pulse
     expected = simulate_rocking(block(times), pulse(peak=peak, duration=seconds), duration=duration)
     assert verdict.max_rotation_rad == pytest.approx(expected.largest_rotation, rel=0.05)
+
+
+@pytest.mark.parametrize(("peak", "outcome"), [(3.6, "invalid"), (3.8, "overturned")])
+def test_a_fall_before_the_floor_is_destroyed_is_a_fall(peak, outcome):
+    # 6.5 mm deep as it passes its slenderness angle, and no deeper; where it stands it falls back on that floor, 24 mm.
+    # A block on 21 elastoplastic points a casting (`block_on_plates`) turns 0.63 of the angle under 3.6, and falls.
+    keys = {"kind": "pulse", "shape": "sine", "pulse_s": 1.0, "peak_acceleration_m_s2": peak}
+    case = on_asphalt(1.5, **{f"motion.{key}": value for key, value in keys.items()})
+    verdict, error = run_without_history(build_model(case), None)
+    assert error is None and verdict.outcome == outcome
+    expected = simulate_rocking(block(1.5), one_sine_pulse(peak=peak, duration=1.0), duration=20.0)
+    assert (expected.largest_rotation > 1.5) == (outcome == "overturned")
+
+
+def test_a_full_model_stands_on_its_edges_where_the_inset_is_small_and_is_refused_where_not():
+    full = {"solver.model": "full", "solver.element_size_m": 0.5}
+    assert preview_of(on_asphalt(12.0, **full)).floor.pivot_inset_m is None
+    with pytest.raises(CaseError, match=r"turns 5\.56 mm inside its edge"):
+        _ = preview_of(on_asphalt(9.0, **full)).numerics
