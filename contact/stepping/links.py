@@ -219,8 +219,8 @@ def shift_links(
 ) -> None:
     """Subtract the velocity of a turn [rad/s] about a place over the floor from the points, which have no indentation.
 
-    Of a loose stack or a row, from those of the boxes from `begin` on, up to the one before `end`. Called between
-    `complete` and `indent`.
+    Of a loose stack or a row, from those of the boxes from `begin` on, up to the one before `end`; the next step finds
+    the velocity of a tie between two of them. Called between `complete` and `indent`.
     """
     if links is not None:
         line = links.line
@@ -228,7 +228,7 @@ def shift_links(
         first = new.point.shape[0] - line.shape[0]
         for k in range(line.shape[0]):
             i, own = first + k, line[k]
-            if own[BOX] < begin or own[BOX] >= end:
+            if own[BOX] < begin or own[BOX] >= end or own[ALONG_Z] == OF_LENGTH[1]:
                 continue
             place, gap = new.point[i, 0] - own[ACROSS], new.point[i, 1] - own[GAP]
             speed_x = turn * (own[ALONG_Z] * gap - own[ALONG_X] * place - z)
