@@ -55,5 +55,5 @@ def page_of(result: "SizeResult", folder: Path) -> Iterator[str]:
         f"{keys}: {len(result.points)} values from {result.low:g} to {result.high:g} {result.unit}"
     ).rstrip()
     fulfilled = sum(bool(point.fulfilled) for point in result.points)
-    yield f"  fulfilled  at {fulfilled} of them, {sum(point.runs for point in result.points)} runs"
+    yield f"  fulfilled  at {fulfilled} of them, {sum(point.runs for point in result.points)} runs of their sets"
     yield f"  files      {folder}"
