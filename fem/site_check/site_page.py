@@ -275,8 +275,11 @@ def _headlines(result: SiteResult) -> list[html.Headline]:
         moves = f"a rigid body moves from {short(answer.factor_at_first_movement, figures=3)} on"
     else:
         moves = far
-    both = answer.two_directions
-    across = f"; in two directions {millimetres(both.slip_largest_m)}" if both else ""
+    slip, both = f"{_with_range('slip_m', answer, span)} mm", answer.two_directions
+    where = f"mean {millimetres(answer.slip_mean_m)}"
+    if both and both.slip_largest_m > (answer.slip_m or 0.0):  # of which the first sentence speaks
+        where = f"under both horizontal components; in the plane {slip}, {where}"
+        slip = f"{millimetres(both.slip_largest_m)} mm"
 
     def at(factor: float | None) -> str:
         if factor is None:
@@ -294,8 +297,8 @@ def _headlines(result: SiteResult) -> list[html.Headline]:
         ),
         html.Headline(
             "slip, largest",
-            f"{_with_range('slip_m', answer, span)} mm",
-            f"limit {quantity(inputs.slip_limit_m, 'mm', 1000, 3)}; mean {millimetres(answer.slip_mean_m)}{across}",
+            slip,
+            f"limit {quantity(inputs.slip_limit_m, 'mm', 1000, 3)}; {where}",
         ),
         html.Headline("the rule first fails at", at(answer.margin_factor), far),
         html.Headline("first overturned at", at(answer.factor_at_first_overturning), moves),
