@@ -34,7 +34,9 @@ from contact.structs import struct
 ALONG_X, ALONG_Z, ACROSS, GAP, BOX = 0, 1, 2, 3, 4
 BROKEN = 1e6  #: indentation of the point of a broken link [m]
 OF_LENGTH = (0.0, 1.0)  #: direction of the line of a tie between two bodies
-APART = 64.0  #: distance of the points of links from those of the base and from each other, in widths of the container
+#: distance of the points of links from those of the base, and from those before and behind, in widths of the container:
+#: near ones close as one (`contact.stepping.control`), further ones would be less precise
+APART = 4.0
 
 
 @struct
@@ -69,7 +71,7 @@ def make_lines(
     """
     across = direction[:, 1] * place[:, 0] - direction[:, 0] * place[:, 1]
     # a mirror image turns the sign
-    apart = APART * width * np.arange(1.0, 1.0 + len(place)) * np.where(direction[:, 0] > 0.0, -1.0, 1.0)
+    apart = APART * width * (1.0 + np.arange(len(place)) % 2) * np.where(direction[:, 0] > 0.0, -1.0, 1.0)
     along = np.einsum("kc,kc->k", direction, place)
     return np.column_stack(
         [direction, apart - across, gap - along, np.zeros(len(place)) if box is None else box]

@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from contact.interface.faces import ASIDE, Between, Held, SidePoint
+from contact.interface.faces import Between, Held, SidePoint
 from contact.interface.penalty import damping_ratio_of
 from contact.interface.workspace import Contact
 from contact.stepping.body import State
-from contact.stepping.links import APART, OF_LENGTH, make_lines, place_links
+from contact.stepping.links import OF_LENGTH, make_lines, place_links
 from fem.case.case import Case
 from fem.case.links import StopTable, TieTable, faced_by, holder_of
 from fem.case.neighbours import USUAL_DAMPING, StruckTable, top_of
@@ -122,13 +122,7 @@ def with_links(case: Case, contact: Contact, masses: Sequence[float]) -> Contact
         "weakening": nothing,
         "camber": nothing,
     }
-    # positions along the faces of the sides, and across the lines of links, are so much larger than a container
-    sides, across = (
-        1.0 + ASIDE * len(case.neighbour),
-        APART * sum(faced_by(case, link) is None for link in links),
-    )
     return contact._replace(
-        resolution=contact.resolution * ((sides + across) / sides),
         **{name: np.append(getattr(contact, name), given) for name, given in added.items()},  # type: ignore[arg-type]
     )
 

@@ -84,10 +84,10 @@ def test_points_of_links_stand_where_the_condensed_problem_put_them():
     assert new.point[4, 1] == pytest.approx(0.03 - place[4, 1], abs=1e-12)
 
 
-def test_points_of_links_are_far_from_all_others_along_their_faces():
+def test_points_of_links_are_far_from_the_base_and_from_those_beside_them_along_their_faces():
     body = make_body()
     point = POINT + np.array([0.0, 2.0])
     place_links(body.line, point)
-    places = np.sort(point[:, 0])
-    assert np.diff(places[np.abs(places) > 10.0]).min() > 10.0
-    assert np.abs(point[-LINKS:, 0]).min() > 10.0
+    links = point[-LINKS:, 0]
+    assert np.abs(np.diff(links)).min() > 4.0
+    assert np.abs(links).min() > 4.0 > 0.55 >= np.abs(point[:-LINKS, 0]).max()
