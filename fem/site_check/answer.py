@@ -20,7 +20,7 @@ from fem.site_check.reasons import (
     span,
 )
 from fem.site_check.rule import RuleFound, RunGroup, groups_of, rule_in_words
-from fem.site_check.runs import FURTHER, REFINED, REPEATED, SCAN, SET, RunKey
+from fem.site_check.runs import FURTHER, REFINED, REPEATED, SCAN, SET, RunKey, runs_by_factor
 
 FULFILLED = "fulfilled"
 EARTHQUAKE, WIND = "earthquake", "wind"
@@ -64,13 +64,13 @@ def answer_of(
             runs=0,
         )
     groups = groups_of(own)
-    found = RuleFound.of(groups)
+    tally = RuleFound.of(groups)
     span, failed = rule_range(groups, runs)
     evidence = Evidence(
         limits=limits,
         motions=motions.count,
         groups=groups,
-        rule=found,
+        rule=tally,
         range=span,
         repetitions_failed=failed,
         further=further_motions(request, runs, beside.slips_of_further),
@@ -86,12 +86,12 @@ def answer_of(
         against.append(Reason(NOT_SURE, NO_FURTHER))
     if beside.left_out:
         against.append(Reason(NOT_SURE, beside.left_out))
-    unknown = found.failed > 0 and not found.overturned + found.invalid
+    unknown = tally.failed > 0 and not tally.overturned + tally.invalid
     actions = [
         result.ActionAnswer(
             name=EARTHQUAKE,
             answer=None if unknown else gravest(against),
-            utilisation=_with_slip(found.utilisation(limits), slip, limits.slip_m),
+            utilisation=_with_slip(tally.utilisation(limits), slip, limits.slip_m),
         )
     ]
     if beside.wind is not None:
@@ -106,16 +106,16 @@ def answer_of(
         fulfilled={FULFILLED: True, NOT_FULFILLED: False}.get(answer or ""),
         reasons=tuple(reason.sentence for reason in against),
         rule=rule,
-        sentence=_sentence(request, answer, found, against, slip, runs=len(own)),
-        overturned=found.overturned,
-        invalid=found.invalid,
+        sentence=_sentence(request, answer, tally, against, slip, runs=len(own)),
+        overturned=tally.overturned,
+        invalid=tally.invalid,
         runs=len(own),
         still=beside.still,
-        **vars(found.by_rule),
+        **vars(tally.by_rule),
         exceeded=tuple(
             key
             for key in result.FIGURE_OF
-            if key in found.exceeded(limits)
+            if key in tally.exceeded(limits)
             or (key == "slip_m" and slip is not None and slip.slip_largest_m > limits.slip_m)
         ),
         governing=governing_run(request, own),
@@ -150,8 +150,8 @@ def two_directions_reasons(slip: result.TwoDirections, limit: float) -> Iterator
         yield Reason(NOT_FULFILLED, f"{words} {slid}, beyond {clearance} {where}")
     else:
         places = places_of("slip_m", limit, (low, high))
-        shown = span("slip_m", low, high, places)
-        yield Reason(NOT_SURE, f"{words} {shown} mm in repetitions {ALIKE}: {clearance} lies between {where}")
+        slips = span("slip_m", low, high, places)
+        yield Reason(NOT_SURE, f"{words} {slips} mm in repetitions {ALIKE}: {clearance} lies between {where}")
 
 
 def _least(*factors: float | None) -> float | None:
@@ -209,7 +209,7 @@ def governing_run(request: SiteRequest, runs: Sequence[result.SiteRun]) -> resul
             for group in known
             for name in result.LIMITED
         ),
-        key=lambda one: one[0],
+        key=lambda use: use[0],
     )
     return max(group.runs, key=lambda run: run[result.LIMITED[name]] or 0.0)
 
@@ -219,7 +219,7 @@ def rule_range(
 ) -> tuple[result.RuleRange | None, int]:
     """The rule over the set and its repetitions, and how many of their runs failed; None: there are no repetitions.
 
-    In each repetition the groups that were run again take the place of their own.
+    In each repetition the groups that were run again replace those of the set.
     """
     again: dict[float, list[result.SiteRun]] = {}
     for key, run in runs.items():
@@ -227,21 +227,21 @@ def rule_range(
             again.setdefault(key.factor, []).append(run)
     if not again:
         return None, 0
-    found = [RuleFound.of(groups)]
-    for some in again.values():
-        repeated = {group.key: group for group in groups_of(some)}
-        found.append(RuleFound.of([repeated.get(group.key, group) for group in groups]))
+    tallies = [RuleFound.of(groups)]
+    for rerun in again.values():
+        repeated = {group.key: group for group in groups_of(rerun)}
+        tallies.append(RuleFound.of([repeated.get(group.key, group) for group in groups]))
     ranges = {}
     for name in FIGURES:
-        known = [one.by_rule[name] for one in found if one.by_rule[name] is not None]
+        known = [tally.by_rule[name] for tally in tallies if tally.by_rule[name] is not None]
         ranges[name] = (min(known), max(known)) if known else ()
-    repetitions = found[1:]
+    repetitions = tallies[1:]
     span = result.RuleRange(
         **ranges,
         repetitions=len(repetitions),
         overturned=sum(repetition.overturned + repetition.invalid > 0 for repetition in repetitions),
     )
-    return span, sum(run.outcome is None for some in again.values() for run in some)
+    return span, sum(run.outcome is None for rerun in again.values() for run in rerun)
 
 
 def further_motions(
@@ -289,10 +289,7 @@ def further_motions(
 
 def margin_factor(request: SiteRequest, runs: Mapping[RunKey, result.SiteRun]) -> float | None:
     """The least factor on the motions, of those tried, at which the rule fails; None: it fails at none."""
-    by_factor: dict[float, list[result.SiteRun]] = {}
-    for key, run in runs.items():
-        if key.stage in (SET, SCAN, REFINED):
-            by_factor.setdefault(key.factor, []).append(run)
+    by_factor = runs_by_factor(runs, SET, SCAN, REFINED)
     whole = max((len(group.runs) for group in groups_of(by_factor.get(1.0, ()))), default=0)
 
     def fails(factor: float) -> bool:
@@ -316,21 +313,18 @@ def _first_overturning(runs: Mapping[RunKey, result.SiteRun]) -> float | None:
 
 
 def _scan(runs: Mapping[RunKey, result.SiteRun]) -> tuple[result.ScanPoint, ...]:
-    by_factor: dict[float, list[result.SiteRun]] = {}
-    for key, run in runs.items():
-        if key.stage in (SET, SCAN):
-            by_factor.setdefault(key.factor, []).append(run)
+    by_factor = runs_by_factor(runs, SET, SCAN)
     points = []
-    for factor in sorted(by_factor):
-        found = RuleFound.of(groups_of(by_factor[factor]))
+    for factor, own in by_factor.items():
+        tally = RuleFound.of(groups_of(own))
         points.append(
             result.ScanPoint(
                 factor=factor,
-                runs=len(by_factor[factor]),
-                overturned=found.overturned,
-                invalid=found.invalid,
-                failed=found.failed,
-                **vars(found.by_rule),
+                runs=len(own),
+                overturned=tally.overturned,
+                invalid=tally.invalid,
+                failed=tally.failed,
+                **vars(tally.by_rule),
             )
         )
     return tuple(points) if len(points) > 1 else ()
@@ -339,7 +333,7 @@ def _scan(runs: Mapping[RunKey, result.SiteRun]) -> tuple[result.ScanPoint, ...]
 def _sentence(
     request: SiteRequest,
     answer: str | None,
-    found: RuleFound,
+    tally: RuleFound,
     against: Sequence[Reason],
     slip: result.TwoDirections | None,
     *,
@@ -347,11 +341,11 @@ def _sentence(
 ) -> str:
     """The answer in words: what it rests on, or what speaks against it."""
     if answer is None:
-        return f"No answer: {found.failed} of {runs} runs failed."
+        return f"No answer: {tally.failed} of {runs} runs failed."
     if answer != FULFILLED:
         gravest_ones = [reason.sentence for reason in against if reason.answer == answer]
         return f"{answer.capitalize()}. {' '.join(gravest_ones)}"
-    limits, figures = request.limits, found.by_rule
+    limits, figures = request.limits, tally.by_rule
     furthest = max(figures.slip_m or 0.0, slip.slip_largest_m if slip else 0.0)
     return (
         f"Fulfilled under the rule below: none of {runs} runs overturned; rotation "

@@ -101,13 +101,13 @@ def size_asked(axis: SizeAxis, followers: tuple[str, ...] = (), command: str = "
 
 
 def size_result(
-    axis: SizeAxis, answers: Mapping[float, SiteAnswer], asked: SizeResult | None = None
+    axis: SizeAxis, answers: Mapping[float, SiteAnswer], begun: SizeResult | None = None
 ) -> SizeResult:
     """Which values fulfil the rule, from the answers by value."""
     points = tuple(_point(value, answers[value]) for value in sorted(answers))
     intervals, words = fulfilled_intervals(points), sentence(axis, points)
     return replace(
-        asked or size_asked(axis),
+        begun or size_asked(axis),
         status=COMPLETED,
         answer=words,
         value=wanted_value(axis, intervals),

@@ -25,7 +25,7 @@ def draw_spectra(
 ) -> str:
     """Target, mean and every motion, with the 90 % line in the band; horizontal and, where there is one, vertical.
 
-    Of motions of a floor that are taken as they are neither target nor 90 %: their mean would be the target.
+    Motions of a floor that are taken as they are have neither: their mean would be the target.
     """
     fitted, given = motions.source != "floor", floor is not None and floor.z_over_h is None
     rows = [(action.target_m_s2, action.mean_m_s2, "horizontal")]
@@ -45,7 +45,7 @@ def draw_spectra(
         periods, gap = np.array(action.periods_s), 0.65
         width = (style.WIDTH - style.LEFT - style.RIGHT - gap * (len(rows) - 1)) / len(rows)
         for k, (target, mean, name) in enumerate(rows):
-            place = (
+            box = (
                 (style.LEFT + k * (width + gap)) / style.WIDTH,
                 0.45 / tall,
                 width / style.WIDTH,
@@ -55,7 +55,7 @@ def draw_spectra(
                 motion.spectrum_m_s2 if k == 0 else motion.vertical_spectrum_m_s2
                 for motion in motions.motions
             ]
-            panel = figure.add_axes(place)
+            panel = figure.add_axes(box)
             _draw_spectrum(
                 panel, periods, target if fitted else (), mean, spectra, (low, last), f"{name} [m/s²]"
             )
@@ -68,7 +68,7 @@ def draw_floor(action: result.SiteActionResult, floor: result.FloorResult) -> st
     """Mean spectrum of the floor, with that of the ground and what formula (4.25) gives an element."""
     with style.house_style():
         figure, (axes,) = style.panels((2.0,), header=3)
-        period = floor.building_periods_s[len(floor.building_periods_s) // 2]
+        first = floor.building_periods_s[len(floor.building_periods_s) // 2]
         style.head(
             figure,
             f"Response spectra of the floor at z/H = {floor.z_over_h:g}, 5 % damping",
@@ -76,7 +76,7 @@ def draw_floor(action: result.SiteActionResult, floor: result.FloorResult) -> st
         )
         periods = np.array(action.periods_s)
         formula = action.ag_S_m_s2 * np.array(
-            [floor_factor(floor.z_over_h or 0.0, one / period) for one in action.periods_s]
+            [floor_factor(floor.z_over_h or 0.0, period / first) for period in action.periods_s]
         )
         axes.plot(periods, floor.mean_m_s2, color=style.BLUE, linewidth=1.8, label="floor, mean")
         axes.plot(periods, action.mean_m_s2, color=style.GREY, label="ground, mean")
@@ -215,7 +215,7 @@ def draw_methods(methods: Sequence[result.SiteMethod], answer: result.SiteAnswer
     """Capacity over strength by each method: the factor on the action at which it is used up."""
     drawn = sorted(
         (method for method in methods if method.factor is not None),
-        key=lambda one: list(COLOURS).index(one.quantity),
+        key=lambda method: list(COLOURS).index(method.quantity),
     )
     with style.house_style():
         figure, (axes,) = style.panels([0.17 * len(drawn) + 0.1], header=3, width=style.WIDTH)
@@ -234,14 +234,12 @@ def draw_methods(methods: Sequence[result.SiteMethod], answer: result.SiteAnswer
                 linestyle=":",
                 label="runs: first overturned",
             )
-        for row, one in enumerate(drawn):
-            factor = one.factor or 0.0
-            shown = min(max(factor, FACTORS[0]), FACTORS[1])
-            marker = "<" if factor < FACTORS[0] else ">" if factor > FACTORS[1] else MARKERS[one.quantity]
-            axes.plot([FACTORS[0], shown], [row, row], color="#DDDDDD", linewidth=0.8, zorder=1)
-            axes.plot(
-                shown, row, color=COLOURS[one.quantity], marker=marker, markersize=4.5, linestyle="none"
-            )
+        for row, method in enumerate(drawn):
+            factor = method.factor or 0.0
+            x = min(max(factor, FACTORS[0]), FACTORS[1])
+            marker = "<" if factor < FACTORS[0] else ">" if factor > FACTORS[1] else MARKERS[method.quantity]
+            axes.plot([FACTORS[0], x], [row, row], color="#DDDDDD", linewidth=0.8, zorder=1)
+            axes.plot(x, row, color=COLOURS[method.quantity], marker=marker, markersize=4.5, linestyle="none")
         for quantity, colour in COLOURS.items():
             axes.plot(
                 [],
@@ -252,7 +250,8 @@ def draw_methods(methods: Sequence[result.SiteMethod], answer: result.SiteAnswer
                 linestyle="none",
                 label=quantity,
             )
-        axes.set_yticks(range(len(drawn)), [f"{one.name}, {one.quantity}" for one in drawn], fontsize=7)
+        labels = [f"{method.name}, {method.quantity}" for method in drawn]
+        axes.set_yticks(range(len(drawn)), labels, fontsize=7)
         axes.set_ylim(len(drawn) - 0.4, -0.6)
         axes.set_xscale("log")
         axes.set_xlim(0.95 * FACTORS[0], 1.06 * FACTORS[1])

@@ -118,7 +118,7 @@ class SiteRequest:
     @property
     def portable(self) -> dict[str, Any]:
         """The tables, with records by their names alone: the same wherever these lie."""
-        files = [[Path(one).name for one in pair] for pair in self.motions.files or ()]
+        files = [[Path(name).name for name in pair] for pair in self.motions.files or ()]
         return {**self.data, **({"motions": {**self.data["motions"], "files": files}} if files else {})}
 
     @cached_property
@@ -204,13 +204,13 @@ class SiteRequest:
         """
         if self.hazard is None:
             return None
-        place = "file" if self.hazard.points is None else "points"
+        key = "file" if self.hazard.points is None else "points"
         try:
             if self.hazard.points is not None:
-                return HazardCurve.from_return_periods([(years, one) for years, one in self.hazard.points])
+                return HazardCurve.from_return_periods([(years, a) for years, a in self.hazard.points])
             return read_hazard(self._beside(self.hazard.file or ""))
         except ValueError as error:
-            raise CaseError(f"[hazard] {place}: {error}") from None
+            raise CaseError(f"[hazard] {key}: {error}") from None
 
     @property
     def wind_pressure(self) -> tuple[float, str] | None:
@@ -265,7 +265,7 @@ class SiteRequest:
             data["friction"] = {**data["friction"], "mu_static": [mu_static]}
         if self.motions.files:
             files = [
-                [str((self.origin.folder / one).absolute()) for one in pair] for pair in self.motions.files
+                [str((self.origin.folder / file).absolute()) for file in pair] for pair in self.motions.files
             ]
             data["motions"] = {**data["motions"], "files": files}
         text = toml_document(container.given())

@@ -53,21 +53,21 @@ def site_methods(
     )
     action = replace(floor_action(site, motions, periods_s, floor), second_component=second_component)
     rows = []
-    for one in bodies:
-        body = loose_body(one, inputs)
+    for body in bodies:
+        loose = loose_body(body, inputs)
         methods = methods_of(
-            body,
+            loose,
             limits,
             behaviour_factor=inputs.behaviour_factor,
             height_ratio=floor.z_over_h if floor else 0.0,
         )
         capacities = method_capacities(methods, action)
-        own = [run for run in runs if (run.mass, run.elevation) == (one.mass, one.elevation)]
+        own = [run for run in runs if (run.mass, run.elevation) == (body.mass, body.elevation)]
         rows += [
             _result(
                 row,
-                one,
-                found_by_runs(row, own, width=one.support_width_m, limits=by_rule),
+                body,
+                found_by_runs(row, own, width=body.support_width_m, limits=by_rule),
                 capacity.factor,
             )
             for row, capacity in zip(method_rows(methods, action), capacities, strict=True)
@@ -84,8 +84,8 @@ def site_methods(
 
 
 def lightest_of(bodies: Sequence[SiteBody]) -> SiteBody:
-    """The body that the wind is on."""
-    return min(bodies, key=lambda one: one.mass_kg * one.support_width_m)
+    """The body with the least restoring moment, for which the wind is checked."""
+    return min(bodies, key=lambda body: body.mass_kg * body.support_width_m)
 
 
 def wind_utilisation(bodies: Sequence[SiteBody], inputs: SiteInputs) -> float | None:
@@ -178,21 +178,21 @@ def found_by_runs(row: MethodRow, runs: Sequence[SiteRun], *, width: float, limi
     if not done:
         return Found(words="no runs")
     if row.quantity is MethodQuantity.OVERTURNING:
-        found = _overturning(row, done, limits)
+        comparison = _overturning(row, done, limits)
     else:
-        found = _sliding(row, done, width)
-    return replace(found, compared="") if row.median or row.beyond else found
+        comparison = _sliding(row, done, width)
+    return replace(comparison, compared="") if row.median or row.beyond else comparison
 
 
 def _overturning(row: MethodRow, done: Sequence[SiteRun], limits: LimitsTable) -> Found:
-    found = RuleFound.of(groups_of(done))
-    words = f"{found.overturned or 'none'} of {len(done)} overturned{destroyed(found.invalid)}"
-    turned, largest = found.by_rule.rotation_ratio, found.by_rule.rotation_ratio_largest
+    tally = RuleFound.of(groups_of(done))
+    words = f"{tally.overturned or 'none'} of {len(done)} overturned{destroyed(tally.invalid)}"
+    turned, largest = tally.by_rule.rotation_ratio, tally.by_rule.rotation_ratio_largest
     if turned is not None and largest is not None:
         words += f"; by the rule {turned:.2g} of the angle" if largest > ROCKING else "; none rocks"
         if largest > ROCKING and largest > turned:
             words += f", at most {largest:.2g}"
-    failed = found.overturned + found.invalid > 0 or bool({*found.exceeded(limits)} - {"slip_m"})
+    failed = tally.overturned + tally.invalid > 0 or bool({*tally.exceeded(limits)} - {"slip_m"})
     return Found(words=words, compared=_compared(refused=not row.fulfilled, failed=failed))
 
 
@@ -220,7 +220,7 @@ def _compared(*, refused: bool, failed: bool) -> str:
     return "conservative" if refused else "not conservative"
 
 
-def _result(row: MethodRow, body: SiteBody, found: Found, factor: float | None) -> SiteMethod:
+def _result(row: MethodRow, body: SiteBody, comparison: Found, factor: float | None) -> SiteMethod:
     return SiteMethod(
         **vars(row)
         | {"quantity": row.quantity.value, "demand": _finite(row.demand), "source": str(row.source)},
@@ -228,8 +228,8 @@ def _result(row: MethodRow, body: SiteBody, found: Found, factor: float | None) 
         elevation=body.elevation,
         utilisation=_finite(row.utilisation),
         checked=row.source.standing is not SourceStanding.UNCHECKED,
-        found=found.words,
-        compared=found.compared,
+        found=comparison.words,
+        compared=comparison.compared,
         factor=factor,
     )
 

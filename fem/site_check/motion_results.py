@@ -57,11 +57,11 @@ def set_result(
     described: Sequence[SiteMotion],
 ) -> MotionSet:
     """The set of motions and its checks."""
-    asked, vertical = request.motions, checked.vertical
+    table, vertical = request.motions, checked.vertical
     return MotionSet(
-        source=asked.source,
+        source=table.source,
         count=checked.count,
-        seed=asked.seed if asked.source == "artificial" else None,
+        seed=table.seed if table.source == "artificial" else None,
         stationary_s=checked.stationary,
         band_s=checked.band,
         mean_pga_m_s2=checked.mean_peak,
@@ -76,15 +76,15 @@ def set_result(
         checks=tuple(
             SetCheck(**{key.name: getattr(requirement, key.name) for key in fields(SetCheck)})
             for requirement in checked.requirements
-            if asked.source != "floor" or not requirement.fits  # motions of a floor fit no target
+            if table.source != "floor" or not requirement.fits  # motions of a floor fit no target
         ),
         motions=tuple(
             replace(
-                one,
+                motion,
                 spectrum_m_s2=_numbers(checked.horizontal.motions[k]),
                 vertical_spectrum_m_s2=_numbers(vertical.motions[k]) if vertical else (),
             )
-            for k, one in enumerate(described)
+            for k, motion in enumerate(described)
         ),
     )
 
@@ -141,7 +141,7 @@ def floor_result(
             peak_m_s2=float(np.mean([entry.peak for entry in given])),
             peak_velocity_m_s=float(np.mean([entry.intensities["h"].peak_velocity_m_s for entry in given])),
             mean_m_s2=_numbers(checked.horizontal.mean),
-            vertical_peak_m_s2=float(np.mean([np.abs(one).max() for one in upward])) if upward else None,
+            vertical_peak_m_s2=float(np.mean([np.abs(a).max() for a in upward])) if upward else None,
             vertical_mean_m_s2=_numbers(checked.vertical.mean) if checked.vertical else (),
         )
     if request.building is None or None in floors:

@@ -49,30 +49,30 @@ def ground_motions(
     Raises:
         CaseError: a record that is missing, outside the folder, no motion, or not independent of another.
     """
-    asked, target = request.motions, request.floor_target or request.action
-    if asked.source == "artificial":
+    table, target = request.motions, request.floor_target or request.action
+    if table.source == "artificial":
         try:
             return artificial_set(
                 target,
-                count=asked.count,
-                seed=asked.seed,
-                stationary=asked.stationary_s,
+                count=table.count,
+                seed=table.seed,
+                stationary=table.stationary_s,
                 longest=longest,
-                vertical=asked.vertical,
-                second=asked.second_component,
+                vertical=table.vertical,
+                second=table.second_component,
             )
         except ValueError as error:
             raise CaseError(f"[motions] {error}") from None
     records = [
         _record(request, number, names, allow_outside)
-        for number, names in enumerate(asked.files or [], start=1)
+        for number, names in enumerate(table.files or [], start=1)
     ]
     _require_independent(records)
-    if asked.source == "floor":
+    if table.source == "floor":
         return records
-    if asked.source == "records":
+    if table.source == "records":
         return scaled_records(records, target, longest=longest)
-    return matched_records(records, target, longest=longest, second=asked.second_component)
+    return matched_records(records, target, longest=longest, second=table.second_component)
 
 
 def motion_target(request: SiteRequest, motions: Sequence[GroundMotion], longest: float) -> MotionTarget:
@@ -167,20 +167,20 @@ def _baselines_in_words(
     Raises:
         CaseError: it changes a peak too much and is not allowed.
     """
-    asked, notes = request.motions, dict[str, None]()
-    if asked.source != "matched":
+    table, notes = request.motions, dict[str, None]()
+    if table.source != "matched":
         return ()
     for letter, record, component in zip(letters, records, components, strict=True):
-        if letter == "t" and asked.second_component == 0.0:
+        if letter == "t" and table.second_component == 0.0:
             continue
         try:
-            said = stated_baseline(
-                record.name, component, MATCHED, allowed=bool(asked.allow_baseline), way_out=BASELINE
+            change = stated_baseline(
+                record.name, component, MATCHED, allowed=bool(table.allow_baseline), way_out=BASELINE
             )
         except RecordError as error:
             raise CaseError(f"[motions] files: {error}") from None
-        if said:
-            notes[f"{record.name}: matching removes a baseline; {said}"] = None
+        if change:
+            notes[f"{record.name}: matching removes a baseline; {change}"] = None
     return tuple(notes)
 
 
@@ -192,8 +192,8 @@ def _read(request: SiteRequest, name: str, allow_outside: bool) -> tuple[Record,
         raise CaseError(
             f"[motions] files: {name!r} leads out of {real_path(request.origin.folder)}; allow it with --allow-outside"
         )
-    asked = request.motions
-    return read_record(path, unit=asked.unit, sample_interval=asked.sample_interval_s), channel
+    table = request.motions
+    return read_record(path, unit=table.unit, sample_interval=table.sample_interval_s), channel
 
 
 def _even(components: Sequence[Component]) -> tuple[float, list[FloatArray]]:

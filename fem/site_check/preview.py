@@ -155,8 +155,8 @@ def preview_lines(preview: SitePreview, request: SiteRequest) -> Iterator[str]:
             f"from {body.uplift_acceleration_m_s2:.3g} m/s2, slip from "
             f"{min(request.friction.mu_static) * body.gravity_m_s2:.3g} m/s2"
         )
-    said = "valid" if preview.set_valid else f"not valid: {'; '.join(preview.reasons)}"
-    yield f"  motions    {preview.motions}, {request.motions.source}: {said}"
+    validity = "valid" if preview.set_valid else f"not valid: {'; '.join(preview.reasons)}"
+    yield f"  motions    {preview.motions}, {request.motions.source}: {validity}"
     yield from (f"  note       {note}" for note in preview.notes)
     if preview.factor_at_first_movement is not None:
         yield f"  moves      first at {preview.factor_at_first_movement:.3g} times the set, as a rigid body"

@@ -60,8 +60,8 @@ class Evidence:
             for key in FIGURE_OF:
                 yield from self._limit(key)
             yield from self._repetitions()
-        for one in self.further:
-            yield from against(one)
+        for group in self.further:
+            yield from against(group)
         yield from self._confirmed()
 
     def _limit(self, key: str) -> Iterator[Reason]:
@@ -75,7 +75,7 @@ class Evidence:
             return
         words, bound = self._words(key)
         places = places_of(key, limit, (value, low, high))
-        shown = in_words(key, value, places)
+        amount = in_words(key, value, places)
         group = max(self.groups, key=lambda group: group.by_rule[figure] or 0.0)
         if low > limit:
             again = (
@@ -83,12 +83,12 @@ class Evidence:
             )
             single = "" if key == "rotation_ratio" else f"; {self._count(key, group)}"
             yield Reason(
-                NOT_FULFILLED, f"{words} is {shown}{again}, beyond {bound} ({where(group.first)}{single})."
+                NOT_FULFILLED, f"{words} is {amount}{again}, beyond {bound} ({where(group.first)}{single})."
             )
         else:
             yield Reason(
                 NOT_SURE,
-                f"{words} is {shown}, and {span(key, low, high, places)} in repetitions {ALIKE}: {bound} lies between "
+                f"{words} is {amount}, and {span(key, low, high, places)} in repetitions {ALIKE}: {bound} lies between "
                 f"({where(group.first)}).",
             )
 
@@ -146,41 +146,42 @@ class Evidence:
             )
 
 
-def against(one: FurtherMotions) -> Iterator[Reason]:
+def against(group: FurtherMotions) -> Iterator[Reason]:
     """What the further motions for one container and friction say against it."""
-    if one.failed:
-        yield Reason(
-            NOT_SURE, f"{one.failed} of {one.failed + one.motions} further motions failed ({where(one)})."
-        )
-    if not one.motions:
-        return
-    per_cent = f"{100.0 * MOST_OVERTURNING:g} %"
-    beyond = f"{one.beyond_limits} went beyond a limit of a single motion{both_ways(one)}"
-    least_beyond, _ = binomial_interval(one.beyond_limits, one.motions, CONFIDENCE)
-    if one.overturned + one.invalid and one.interval[1] > MOST_OVERTURNING:
-        low, high = (plain_number(100.0 * end, FIGURES) for end in one.interval)
+    if group.failed:
         yield Reason(
             NOT_SURE,
-            f"{one.overturned} of {one.motions} further motions overturned it{destroyed(one.invalid)} and {beyond} "
-            f"({where(one)}): under {low} to {high} % of such motions it does not stand, which may be more than "
-            f"{per_cent}.",
+            f"{group.failed} of {group.failed + group.motions} further motions failed ({where(group)}).",
+        )
+    if not group.motions:
+        return
+    per_cent = f"{100.0 * MOST_OVERTURNING:g} %"
+    beyond = f"{group.beyond_limits} went beyond a limit of a single motion{both_ways(group)}"
+    least_beyond, _ = binomial_interval(group.beyond_limits, group.motions, CONFIDENCE)
+    if group.overturned + group.invalid and group.interval[1] > MOST_OVERTURNING:
+        low, high = (plain_number(100.0 * end, FIGURES) for end in group.interval)
+        yield Reason(
+            NOT_SURE,
+            f"{group.overturned} of {group.motions} further motions overturned it{destroyed(group.invalid)} and "
+            f"{beyond} ({where(group)}): under {low} to {high} % of such motions it does not stand, which may be "
+            f"more than {per_cent}.",
         )
     elif least_beyond > MOST_OVERTURNING:
         yield Reason(
             NOT_SURE,
-            f"Of {one.motions} further motions {beyond} ({where(one)}): of such motions more than {per_cent} do.",
+            f"Of {group.motions} further motions {beyond} ({where(group)}): of such motions more than {per_cent} do.",
         )
-    elif one.interval[1] > MOST_OVERTURNING:
+    elif group.interval[1] > MOST_OVERTURNING:
         yield Reason(
             NOT_SURE,
-            f"{one.motions} further motions cannot show that at most {per_cent} overturn it: at least "
+            f"{group.motions} further motions cannot show that at most {per_cent} overturn it: at least "
             f"{least_draws(MOST_OVERTURNING, CONFIDENCE)} can.",
         )
 
 
-def both_ways(one: FurtherMotions) -> str:
+def both_ways(group: FurtherMotions) -> str:
     """How many of those beyond a limit slid too far under both horizontal components."""
-    return f", {one.slid_too_far} by slip under both horizontal components" if one.slid_too_far else ""
+    return f", {group.slid_too_far} by slip under both horizontal components" if group.slid_too_far else ""
 
 
 def destroyed(count: int) -> str:

@@ -114,13 +114,13 @@ class RuleFound:
     @classmethod
     def of(cls, groups: Sequence[RunGroup]) -> Self:
         """From the runs of groups."""
-        found = {field.name: [group.by_rule[field.name] for group in groups] for field in fields(ByRule)}
+        figures = {field.name: [group.by_rule[field.name] for group in groups] for field in fields(ByRule)}
         return cls(
             overturned=sum(group.overturned for group in groups),
             failed=sum(group.failed for group in groups),
             invalid=sum(group.invalid for group in groups),
             by_rule=ByRule(
-                **{name: None if None in some else max(some, default=None) for name, some in found.items()}
+                **{name: None if None in row else max(row, default=None) for name, row in figures.items()}
             ),
         )
 
@@ -189,7 +189,7 @@ def governing_groups(groups: Sequence[RunGroup]) -> list[RunGroup]:
     for mass in dict.fromkeys(group.first.mass for group in groups):
         own = [group for group in groups if group.first.mass == mass and not group.failed]
         standing = [group for group in own if group.overturned + group.invalid < len(group.runs)]
-        chosen |= {id(max(some, key=key)) for some, key in ((own, rotation), (standing, slip)) if some}
+        chosen |= {id(max(pool, key=key)) for pool, key in ((own, rotation), (standing, slip)) if pool}
     return [group for group in groups if id(group) in chosen]
 
 

@@ -84,7 +84,7 @@ def run_site(
     floors = floor_motions(request, ground)
     stages = Stages.of(request, floors, longest=longest, folder=folder)
     files = len(ground) * (1 + len(floors)) + request.motions.further + hazard_motions(request)
-    asked = hash_of([site_hash(request, ground), "quick"]) if quick else site_hash(request, ground)
+    digest = hash_of([site_hash(request, ground), "quick"]) if quick else site_hash(request, ground)
     work = _Verification(
         request=request,
         stages=stages,
@@ -92,14 +92,14 @@ def run_site(
         ground=ground,
         floors=floors,
         wind=wind_utilisation(bodies, inputs_of(request)),
-        asked=asked,
+        digest=digest,
         quick=quick,
         copy_records=copy_records,
         began=began,
     )
     study = Study(
         kind=SITE,
-        request=asked,
+        request=digest,
         result=SiteResult,
         compute=work.compute,
         texts=texts_of(request, SITE, records=copy_records),
@@ -139,7 +139,7 @@ class _Verification:
     ground: Sequence[GroundMotion]  #: motions of the set
     floors: Mapping[float | None, Sequence[GroundMotion]]  #: by building period
     wind: float | None  #: the largest utilisation under it
-    asked: str  #: its hash
+    digest: str  #: of the request
     quick: bool
     copy_records: bool
     began: float  #: when it was asked for [s]
@@ -237,7 +237,7 @@ class _Verification:
             ),
             provenance=SiteProvenance(
                 command=f"python -m fem assess {shlex.quote(request.origin.place)}{' --quick' if self.quick else ''}",
-                site_hash=self.asked,
+                site_hash=self.digest,
                 case_hash=case_hash(request.container),
                 versions=tuple(versions().items()),
                 system=f"{platform.system()} {platform.release()}, {platform.machine()}",

@@ -67,6 +67,15 @@ def motion_stem(number: int, period: float | None, stage: str = SET) -> str:
     return name if period is None else f"{name}_floor_{period:g}s"
 
 
+def runs_by_factor(runs: Mapping[RunKey, SiteRun], *stages: str) -> dict[float, list[SiteRun]]:
+    """The runs of these stages, by rising factor."""
+    by_factor: dict[float, list[SiteRun]] = {}
+    for key, run in runs.items():
+        if key.stage in stages:
+            by_factor.setdefault(key.factor, []).append(run)
+    return dict(sorted(by_factor.items()))
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class RunPlan:
     """The runs of a request, stage by stage."""
@@ -120,11 +129,11 @@ class RunPlan:
         return [key._replace(stage=SCAN, factor=factor) for key in self.of_set()]
 
     def refined(self, runs: Mapping[RunKey, SiteRun]) -> list[RunKey]:
-        """Runs between the first factor that overturns, or fails, and the one below: what overturned or failed there.
+        """Runs between the first factor at which a run overturns, or the rule fails, and the factor below.
 
-        Of the rule, which may count a mean, all runs of the groups that fail.
+        Where the rule fails, all runs of the groups that fail: it may count their mean.
         """
-        by_factor = self.by_factor(runs)
+        by_factor = runs_by_factor(runs, SET, SCAN)
         wanted: dict[RunKey, None] = {}
 
         def between(first: float, keys: Iterable[RunKey]) -> None:
@@ -134,26 +143,18 @@ class RunPlan:
 
         limits = self.request.limits
         failing = {
-            factor: [group for group in groups_of(found) if RuleFound.of([group]).fails(limits)]
-            for factor, found in by_factor.items()
+            factor: [group for group in groups_of(own) if RuleFound.of([group]).fails(limits)]
+            for factor, own in by_factor.items()
         }
         fell = {
-            factor: [run for run in found if run.outcome == Outcome.OVERTURNED]
-            for factor, found in by_factor.items()
+            factor: [run for run in own if run.outcome == Outcome.OVERTURNED]
+            for factor, own in by_factor.items()
         }
-        if (first := min((factor for factor, some in failing.items() if some), default=None)) is not None:
+        if (first := min((factor for factor, groups in failing.items() if groups), default=None)) is not None:
             between(first, [key_of(run) for group in failing[first] for run in group.runs])
-        if (first := min((factor for factor, some in fell.items() if some), default=None)) is not None:
+        if (first := min((factor for factor, own in fell.items() if own), default=None)) is not None:
             between(first, list(map(key_of, fell[first])))
         return list(wanted)
-
-    def by_factor(self, runs: Mapping[RunKey, SiteRun]) -> dict[float, list[SiteRun]]:
-        """The runs of the set and of the scan, by rising factor."""
-        found: dict[float, list[SiteRun]] = {}
-        for key, run in runs.items():
-            if key.stage in (SET, SCAN):
-                found.setdefault(key.factor, []).append(run)
-        return dict(sorted(found.items()))
 
     def of_further(self, groups: Iterable[RunGroup], count: int) -> list[RunKey]:
         """Further motions with both signs, for the containers and frictions of these groups."""

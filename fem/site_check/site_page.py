@@ -178,12 +178,12 @@ def beside_the_set(result: SiteResult) -> list[str]:
     if answer.two_directions:
         words.append(two_directions_in_words(answer.two_directions))
     if known := [group for group in answer.further if group.motions]:
-        worst = max(known, key=lambda one: (one.overturned + one.invalid, one.beyond_limits))
-        furthest = max(known, key=lambda one: one.beyond_limits)
-        slips = [one.slip_largest_m for one in known if one.slip_largest_m is not None]
+        worst = max(known, key=lambda group: (group.overturned + group.invalid, group.beyond_limits))
+        furthest = max(known, key=lambda group: group.beyond_limits)
+        slips = [group.slip_largest_m for group in known if group.slip_largest_m is not None]
         slid = f" (the largest in both directions is {millimetres(max(slips))} mm)" if slips else ""
         low, high = (short(end, 100, 2) for end in worst.interval)
-        place = "floor" if result.floor and result.floor.z_over_h is None else "site"
+        location = "floor" if result.floor and result.floor.z_over_h is None else "site"
         of_both = " of both" if worst.invalid else ""
         pairs, most = "", ""
         if len(known) > 1:
@@ -194,7 +194,7 @@ def beside_the_set(result: SiteResult) -> list[str]:
         words.append(
             f"Of {worst.motions} further motions{pairs} {overturned} overturned it{destroyed(worst.invalid)} "
             f"(95 % interval{of_both} {low} to {high} %) and {beyond} went beyond a limit of a single "
-            f"motion{both_ways(furthest)}{slid}. All these motions have the spectrum of the {place}; recorded ones "
+            f"motion{both_ways(furthest)}{slid}. All these motions have the spectrum of the {location}; recorded ones "
             "scatter more."
         )
     if repeated := confirmation(result):
@@ -223,12 +223,12 @@ def rates_in_words(rates: AnnualRates, slip_limit: float) -> list[str]:
     most = ""
     if rates.most_from is not None:
         begin = short(rates.most_from, figures=3)
-        place = (
+        strengths = (
             f"beyond {begin}"
             if rates.most_to is None
             else f"from {begin} to {short(rates.most_to, figures=3)}"
         )
-        most = f"; {short(rates.share, 100, 2)} % of it arises {place} {unit}"
+        most = f"; {short(rates.share, 100, 2)} % of it arises {strengths} {unit}"
     fitted = "no lognormal curve fits the counts"
     if rates.fit_per_year is not None:
         fitted = (
@@ -309,9 +309,9 @@ def _with_range(key: str, answer: SiteAnswer, span: RuleRange) -> str:
     """A figure of the rule, with the range that it has over the repetitions."""
     if answer[key] is None:
         return ABSENT
-    shown = unit_of(key).text(answer[key], figures=2, bare=True)
+    text = unit_of(key).text(answer[key], figures=2, bare=True)
     ends = span_in_words(key, span[key][0], span[key][-1]) if span[key] else ""
-    return typeset(f"{shown} ({ends})" if " to " in ends else shown)
+    return typeset(f"{text} ({ends})" if " to " in ends else text)
 
 
 def inputs_section(result: SiteResult) -> html.PageSection:
@@ -357,8 +357,8 @@ def set_section(result: SiteResult) -> html.PageSection:
 
 def spectra_section(result: SiteResult) -> html.PageSection:
     """The mean spectrum of the set, and those of its motions."""
-    shown = "mean and every motion" if result.set.source == "floor" else "target, mean and every motion"
-    drawn = site_sections.figure(draw_spectra(result.action, result.set, result.floor), "spectra", shown)
+    caption = "mean and every motion" if result.set.source == "floor" else "target, mean and every motion"
+    drawn = site_sections.figure(draw_spectra(result.action, result.set, result.floor), "spectra", caption)
     words = html.Note(site_sections.symbols(period_sentence(result.set)))
     return html.section("Spectra of the set", "spectra-of-the-set", drawn, words)
 
@@ -485,7 +485,7 @@ def bolts_in_words(confirmed: Sequence[ConfirmedRun]) -> str:
     loaded = [repeated for repeated in confirmed if repeated.bolt_tension_N is not None]
     if not loaded:
         return ""
-    most = max(loaded, key=lambda one: one.bolt_tension_N or 0.0)
+    most = max(loaded, key=lambda run: run.bolt_tension_N or 0.0)
     tension, used = FIGURES["bolt_tension_N"].unit.text(most.bolt_tension_N, figures=2), most.bolt_utilisation
     of_it = (
         "; no joints.bolt_capacity_N is given"

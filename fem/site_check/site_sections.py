@@ -217,14 +217,14 @@ def _governing_table(group: RunGroup) -> html.Table:
 
 def _confirmed_table(confirmed: Sequence[ConfirmedRun]) -> html.Table:
     columns: list[html.Column[ConfirmedRun]] = [
-        html.Column("motion", lambda one: str(one.run.motion), html.NUMBER),
-        html.Column("weight", lambda one: one.run.mass),
-        html.Column("friction", lambda one: friction(one.run), html.NUMBER),
-        html.Column("model", lambda one: one.model),
-        html.Column("outcome", lambda one: one.outcome or "failed"),
+        html.Column("motion", lambda repeat: str(repeat.run.motion), html.NUMBER),
+        html.Column("weight", lambda repeat: repeat.run.mass),
+        html.Column("friction", lambda repeat: friction(repeat.run), html.NUMBER),
+        html.Column("model", lambda repeat: repeat.model),
+        html.Column("outcome", lambda repeat: repeat.outcome or "failed"),
         *html.figure_columns(figures_of(Place.KEY), text=two_figures),
-        html.Column("how sure", lambda one: one.sure or ABSENT),
-        html.Column("outcomes over unknown inputs", lambda one: ", ".join(one.outcomes) or ABSENT),
+        html.Column("how sure", lambda repeat: repeat.sure or ABSENT),
+        html.Column("outcomes over unknown inputs", lambda repeat: ", ".join(repeat.outcomes) or ABSENT),
     ]
     return html.table_of("the deciding runs, repeated", columns, confirmed, look="runs")
 
@@ -269,10 +269,10 @@ def methods_section(view: SiteView) -> html.PageSection:
     if not checked:
         return html.section("", "methods")
     governing = result.result.governing
-    shown = governing.mass if governing else result.bodies[0].mass
-    drawn = [row for row in checked if row.mass == shown and not row.beyond]
+    mass = governing.mass if governing else result.bodies[0].mass
+    drawn = [row for row in checked if row.mass == mass and not row.beyond]
     capacities = (
-        draw_methods(drawn, result.result, shown) if any(row.factor is not None for row in drawn) else ""
+        draw_methods(drawn, result.result, mass) if any(row.factor is not None for row in drawn) else ""
     )
     action = "the same action as the runs"
     if result.floor and result.floor.z_over_h:
@@ -341,9 +341,9 @@ def _methods_table(caption: str, rows: Sequence[SiteMethod]) -> html.Table:
 def motions_section(motions: Sequence[DrawnMotion]) -> html.PageSection:
     """Appendix A: the motions in numbers and curves."""
     columns: list[html.Column[SiteMotion]] = [
-        html.Column("motion", lambda one: str(one.number), html.NUMBER),
-        html.Column("origin", lambda one: Markup.escape(one.origin)),
-        html.Column("scale", lambda one: short(one.scale), html.NUMBER),
+        html.Column("motion", lambda motion: str(motion.number), html.NUMBER),
+        html.Column("origin", lambda motion: Markup.escape(motion.origin)),
+        html.Column("scale", lambda motion: short(motion.scale), html.NUMBER),
         *html.figure_columns(declared_in(SiteMotion)),
     ]
     curves = [
@@ -353,7 +353,7 @@ def motions_section(motions: Sequence[DrawnMotion]) -> html.PageSection:
     return html.section(
         "Appendix A: the motions",
         "motions",
-        html.table_of("the motions", columns, [one.motion for one in motions], look="runs"),
+        html.table_of("the motions", columns, [motion for motion, _ in motions], look="runs"),
         html.Group("drawn", curves),
         *([html.Note(f"The curves of the other {more} motions are in their files.")] if more else []),
         look="break",
@@ -444,7 +444,7 @@ def repeat_section(view: SiteView, copies: Sequence[tuple[str, str]]) -> html.Pa
 
 def _hashes(motion: SiteMotion) -> Markup:
     files = zip(motion.files, motion.sha256, strict=False)
-    return Markup(" · ").join(html.joined(f"{file} ", html.code(one)) for file, one in files)
+    return Markup(" · ").join(html.joined(f"{file} ", html.code(digest)) for file, digest in files)
 
 
 def _elevation(elevation: str) -> str:
@@ -476,9 +476,9 @@ def pairs_of(group: RunGroup) -> list[RunPair]:
     ]
 
 
-def two_figures(shown: Shown, value: float | None) -> str:
+def two_figures(figure: Shown, value: float | None) -> str:
     """A figure as far as it is known."""
-    return ABSENT if value is None else typeset(shown.unit.text(value, figures=2, bare=True))
+    return ABSENT if value is None else typeset(figure.unit.text(value, figures=2, bare=True))
 
 
 def friction(run: SiteRun) -> str:
@@ -490,18 +490,18 @@ def merged_methods(methods: Sequence[SiteMethod]) -> list[SiteMethod]:
     """The methods side by side; weights of which a method says the same, to three figures, share a row."""
     merged: dict[tuple[str, ...], list[SiteMethod]] = {}
     for method in methods:
-        shown = (
+        key = (
             method.name,
             method.quantity,
             method.elevation,
             number(method.utilisation, figures=3),
             method.says,
         )
-        merged.setdefault((*shown, method.compared), []).append(method)
+        merged.setdefault((*key, method.compared), []).append(method)
     rows = []
     for same in merged.values():
-        found = {one.mass: one.found for one in same}
-        alike = len(set(found.values())) == 1
-        words = same[0].found if alike else "; ".join(f"{mass}: {found[mass]}" for mass in found)
-        rows.append(replace(same[0], mass=", ".join(one.mass for one in same), found=words))
+        findings = {method.mass: method.found for method in same}
+        alike = len(set(findings.values())) == 1
+        words = same[0].found if alike else "; ".join(f"{mass}: {findings[mass]}" for mass in findings)
+        rows.append(replace(same[0], mass=", ".join(method.mass for method in same), found=words))
     return rows

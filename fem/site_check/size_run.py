@@ -266,21 +266,20 @@ def written_motions(
     request: SiteRequest, floors: Mapping[float | None, Sequence[GroundMotion]], longest: float, working: Path
 ) -> Path:
     """The folder of these motions, and of the further ones that go with them; values of the container share it."""
-    asked = request.motions
+    table = request.motions
     # what the further motions depend on, which the set does not where it is one of records
     further = (
         request.floor_target or request.action,
         request.building,
         longest,
-        asked.seed,
-        asked.stationary_s,
-        asked.vertical,
-        asked.second_component,
+        table.seed,
+        table.stationary_s,
+        table.vertical,
+        table.second_component,
     )
     digest = sha256(repr(further).encode())
-    for motion in (one for floor in floors.values() for one in floor):
-        for component in motion.components:
-            digest.update(component.tobytes())
+    for component in (part for floor in floors.values() for motion in floor for part in motion.components):
+        digest.update(component.tobytes())
     folder = working / digest.hexdigest()[:16]
     if not folder.exists():
         folder.mkdir(parents=True)

@@ -140,23 +140,24 @@ class Stages:
     def of_the_margin(self) -> Iterator[Sequence[RunKey]]:
         """The set at other factors, up to the first at which a run overturns, and between.
 
-        Of a container that rests in the whole set, up to the first at which the rule fails: that is far enough.
+        For a container that rests in the whole set, up to the first at which the rule fails: that is far enough.
         """
-        before = 1.0
+        before = SET, 1.0
         for factor in self.plan.factors:
             if factor > 1.0:
-                found = RuleFound.of(groups_of(self.plan.by_factor(self.rows.runs)[before]))
-                if found.overturned + found.invalid or (self.rests and found.fails(self.request.limits)):
+                own = (run for key, run in self.rows.runs.items() if (key.stage, key.factor) == before)
+                tally = RuleFound.of(groups_of(own))
+                if tally.overturned + tally.invalid or (self.rests and tally.fails(self.request.limits)):
                     break
-                before = factor
+                before = SCAN, factor
             yield self._left(self.plan.scanned(factor))
         yield self._left(self.plan.refined(self.rows.runs))
 
     @property
     def first_movement(self) -> float | None:
         """Factor on the motions at which a rigid body first uplifts or slips; None where that is not known."""
-        first = [self.screening.moves_at(key) for key in self.plan.of_set()]
-        return None if None in first else min(one for one in first if one is not None)
+        factors = [self.screening.moves_at(key) for key in self.plan.of_set()]
+        return None if None in factors else min(factor for factor in factors if factor is not None)
 
     def of_the_hazard(self, runner: Runner, bodies: Sequence[SiteBody]) -> Iterator[Sequence[RunKey]]:
         """Motions at several levels, where a hazard was given."""
@@ -217,15 +218,15 @@ class Stages:
         if box.floor.slope_percent:
             return None
         gravity = box.gravity_m_s2
-        found = {
+        slips = {
             period: slip_in_two_directions(motions, pairs, gravity=gravity)
             for period, motions in self.floors.items()
         }
-        known = {period: one for period, one in found.items() if one is not None}
+        known = {period: slip for period, slip in slips.items() if slip is not None}
         if not known:
             return None
         worst = max(known, key=lambda period: known[period].largest)
-        longest, first = max(known.values(), key=lambda one: one.mean), known[worst]
+        longest, first = max(known.values(), key=lambda slip: slip.mean), known[worst]
         pair = first.mu_static, first.mu_kinetic
 
         def largest(factor: float) -> float:
@@ -305,16 +306,16 @@ def further_motions(
     numbers: Sequence[int],
 ) -> list[GroundMotion]:
     """Artificial motions beyond the set, on the floor of a building of this period or on the ground (None)."""
-    asked, made = request.motions, []
+    table, made = request.motions, []
     for number in numbers:
         (motion,) = artificial_motions(
             target,
             count=1,
-            seed=asked.seed,
-            stationary=asked.stationary_s,
+            seed=table.seed,
+            stationary=table.stationary_s,
             longest=longest,
             vertical=vertical,
-            second=asked.second_component,
+            second=table.second_component,
             first=first + number,
         )
         made.append(on_floor(request.building, motion, period))

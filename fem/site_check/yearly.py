@@ -164,8 +164,10 @@ def annual_rates(
         )
     motions = [made[key.stem] for key in own]
     acting = scattered(hazard, request.motions.scatter, [level.strength for level in levels])
-    falls = _rate(acting, levels, [one.overturned for one in levels], unit * rocks_from(body, motions))
-    slips = _rate(acting, levels, [one.slipped for one in levels], unit * slides_from(body, pair[0], motions))
+    falls = _rate(acting, levels, [level.overturned for level in levels], unit * rocks_from(body, motions))
+    slips = _rate(
+        acting, levels, [level.slipped for level in levels], unit * slides_from(body, pair[0], motions)
+    )
     parts = iter(falls.parts)  # of the levels that have counts
     levels = [
         replace(
@@ -241,6 +243,6 @@ def _rate(
             hazard, strengths, counts, motions, never_below=min(never_below, 0.99 * strengths[0])
         )
 
-    found = counted([0] * len(levels))
+    rate = counted([0] * len(levels))
     failed = [level.failed for level in levels]
-    return replace(found, high=counted(failed).high) if any(failed) else found
+    return replace(rate, high=counted(failed).high) if any(failed) else rate
