@@ -63,9 +63,9 @@ class SpectrumShape:
                 raise ValueError(f"the {name} must be positive and below 10, got {value:g}")
         for periods in (self.corner_periods, self.vertical_corner_periods):
             if not self.flat_to < periods[0] < periods[1] < periods[2] <= LAST_PERIOD_S:
-                shown = ", ".join(f"{period:g}" for period in periods)
+                values = ", ".join(f"{period:g}" for period in periods)
                 raise ValueError(
-                    f"corner periods T_B, T_C, T_D must rise from above {self.flat_to:g} s to at most 4 s, got {shown}"
+                    f"corner periods T_B, T_C, T_D must rise from above {self.flat_to:g} s to at most 4 s, got {values}"
                 )
 
 
@@ -257,16 +257,16 @@ class SiteAction:
         Where no T_E is known, the displacement stays constant beyond 4 s, which is not below Annex A.
         """
         corners, eta = self.shape.corner_periods, damping_correction(damping_ratio)
-        found = _elastic(
+        spectrum = _elastic(
             periods, self.surface_acceleration, self.shape.plateau, corners, eta, self.shape.flat_to
         )
         if self.shape.annex_a_corner is None:
-            return found
+            return spectrum
         displacement = self._annex_a(periods, self.shape.annex_a_corner, eta)
         begin = self.shape.annex_a_corner
         beyond = periods >= begin
-        found[beyond] = displacement[beyond] * (2.0 * math.pi / periods[beyond]) ** 2
-        return found
+        spectrum[beyond] = displacement[beyond] * (2.0 * math.pi / periods[beyond]) ** 2
+        return spectrum
 
     def vertical(self, periods: FloatArray, damping_ratio: float = DAMPING_RATIO) -> FloatArray:
         """Vertical elastic spectrum S_ve (3.8) to (3.11) at the periods (n,) [s], shape (n,) [m/s2]."""

@@ -169,13 +169,13 @@ def rounded_off(motion: FloatArray, peak: float) -> FloatArray:
 
 def raised(times: FloatArray, motion: FloatArray, peak: float) -> FloatArray:
     """The motion (n,) with a short wavelet on its largest value, where that does not reach the target's peak."""
-    place = int(np.argmax(np.abs(motion)))
-    missing = peak - abs(float(motion[place]))
+    index = int(np.argmax(np.abs(motion)))
+    missing = peak - abs(float(motion[index]))
     if missing <= 0.0:
         return motion
-    after = (times - times[place]) / WAVELET_S
+    after = (times - times[index]) / WAVELET_S
     wavelet = np.exp(-((3.0 * after) ** 2)) * np.cos(2.0 * np.pi * after)
-    return motion + math.copysign(missing, motion[place]) * wavelet
+    return motion + math.copysign(missing, motion[index]) * wavelet
 
 
 def artificial_motions(
@@ -251,7 +251,7 @@ def artificial_set(
     check = check_set(kept, action, longest=longest)
     needed = max(check.wanted_peak / check.mean_peak, LEAST_SHARE / check.least_ratio)
     upward = LEAST_SHARE / (check.vertical_least_ratio or LEAST_SHARE)
-    factors = [min(max(1.0, one), MOST_FACTOR) for one in (needed, upward)]
+    factors = [min(max(1.0, factor), MOST_FACTOR) for factor in (needed, upward)]
     return kept if factors == [1.0, 1.0] else [motion.scaled(*factors) for motion in kept]
 
 

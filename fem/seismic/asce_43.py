@@ -135,7 +135,7 @@ def sliding_row(body: LooseBody, limits: Limits, action: FloorAction) -> MethodR
     slipped = slide(body.mu_kinetic, body.block.gravity, action, second_component=both)
     vector = math.sqrt(1.0 + (VERTICAL_SHARE * both) ** 2)
     components = f"two horizontal components, F_H = {vector:.4g}" if both else "motion in a plane"
-    said = "does not slide" if slipped.period == 0.0 else f"slides {length_in_words(slipped.distance)}"
+    words = "does not slide" if slipped.period == 0.0 else f"slides {length_in_words(slipped.distance)}"
     return MethodRow(
         name="ASCE/SEI 43 approximate sliding",
         quantity=MethodQuantity.SLIP,
@@ -145,7 +145,7 @@ def sliding_row(body: LooseBody, limits: Limits, action: FloorAction) -> MethodR
         demand=slipped.distance,
         capacity=limits.slip,
         unit="m",
-        says=said if math.isfinite(slipped.distance) else "slides further than the spectrum shows",
+        says=words if math.isfinite(slipped.distance) else "slides further than the spectrum shows",
         source=SOURCE,
         validity=f"meant to be conservative; one friction coefficient, the kinetic one; {components}",
         beyond=ON_A_FLOOR if action.in_building else "",
@@ -158,10 +158,10 @@ def rocking_row(body: LooseBody, limits: Limits, action: FloorAction, *, vertica
     angle = oscillator.angle(action.spectrum, action.vertical_spectrum if vertical else None)
     starts = action.peak > body.block.uplift_acceleration
     if angle is None:
-        said, put_in = "overturns", "no angle below the slenderness angle at which they are equal"
+        words, put_in = "overturns", "no angle below the slenderness angle at which they are equal"
     else:
         share = f"{angle / alpha:.3g} of the slenderness angle"
-        said = f"rotates {share}" if starts else f"does not uplift; once it rocks, {share}"
+        words = f"rotates {share}" if starts else f"does not uplift; once it rocks, {share}"
         period = float(oscillator.period(np.array([max(angle, 1e-9)]))[0])
         held = float(oscillator.capacity(np.array([max(angle, 1e-9)]))[0])
         put_in = (
@@ -178,7 +178,7 @@ def rocking_row(body: LooseBody, limits: Limits, action: FloorAction, *, vertica
         demand=math.inf if angle is None else angle,
         capacity=limits.rotation * alpha,
         unit="rad",
-        says=said,
+        says=words,
         source=SOURCE,
         validity="a rocking body is no oscillator (Makris and Konstantinidis 2003); found not always conservative "
         "against time histories",

@@ -86,10 +86,7 @@ def storey_modes(*, storeys: int, kind: BuildingKind, height_ratio: float, perio
     shares = shapes.sum(axis=0) * shapes[floor - 1]
     kept = periods * HIGHEST_HZ >= 1.0
     kept[0] = True
-    return [
-        FloorMode(one, share)
-        for one, share in zip(periods[kept].tolist(), shares[kept].tolist(), strict=True)
-    ]
+    return [FloorMode(*mode) for mode in zip(periods[kept].tolist(), shares[kept].tolist(), strict=True)]
 
 
 def is_a_floor(storeys: int, height_ratio: float) -> bool:

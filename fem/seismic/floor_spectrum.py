@@ -67,10 +67,10 @@ class FloorSpectrum:
     def _at(self, periods: FloatArray, values: Sequence[float], damping_ratio: float) -> FloatArray:
         first, last = self.periods[0], self.periods[-1]
         inside = np.log(np.clip(periods, first, last))
-        found = np.exp(np.interp(inside, np.log(self.periods), np.log(values)))
+        spectrum = np.exp(np.interp(inside, np.log(self.periods), np.log(values)))
         slower = np.minimum(last / np.maximum(periods, first), 1.0) ** 2
         share = damping_correction(damping_ratio) / damping_correction(DAMPING_RATIO)
-        return np.asarray(share * found * slower)
+        return np.asarray(share * spectrum * slower)
 
 
 def read_spectrum(path: Path) -> dict[str, tuple[float, ...]]:

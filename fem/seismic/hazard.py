@@ -99,14 +99,14 @@ class HazardCurve:
         """
         inner = self.strengths[(self.strengths > low) & (self.strengths < high)].tolist()
         slope = (at_high - at_low) / math.log(high / low) if at_high != at_low else 0.0
-        found = 0.0
+        total = 0.0
         for begin, end in zip([low, *inner], [*inner, high], strict=True):
             first, last = self.rate(begin), self.rate(end) if math.isfinite(end) else 0.0
             p = at_low + slope * math.log(begin / low)
             q = at_low + slope * math.log(end / low) if slope else p
             k = self.exponents[self._piece(begin)]
-            found += p * first - q * last + slope * (first - last) / k
-        return float(found)
+            total += p * first - q * last + slope * (first - last) / k
+        return float(total)
 
     def _piece(self, strength: float) -> int:
         """Number of the piece that holds a strength, or goes on to it; at a point the piece above it."""
@@ -188,7 +188,7 @@ def counted_rate(
     """Annual rate of an event from counts of motions at several strengths.
 
     Between the strengths the share is straight over ln a. Beyond the last the counted share stays, at least its lower
-    end and at most all. Below the first it falls to none at `never_below`; at most it is the upper end there.
+    end and at most all. Below the first it falls to zero at `never_below`; its upper bound stays that of the first.
 
     Args:
         strengths: rising, (n,) [as the hazard's]; events: of motions, (n,).
@@ -206,17 +206,17 @@ def counted_rate(
 
     def parts(inner: Sequence[float], before: float, beyond: float) -> list[float]:
         starts, stops = [before, *inner[:-1], beyond], [*inner, beyond]
-        return [hazard.straight(*one) for one in zip(edges[:-1], edges[1:], starts, stops, strict=True)]
+        return [hazard.straight(*piece) for piece in zip(edges[:-1], edges[1:], starts, stops, strict=True)]
 
-    found = parts(shares, 0.0, shares[-1])
+    rates = parts(shares, 0.0, shares[-1])
     lows, highs = [low for low, _ in ends], [high for _, high in ends]
-    most = int(np.argmax(found))
-    total = sum(found)
+    most = int(np.argmax(rates))
+    total = sum(rates)
     return CountedRate(
         rate=total,
         low=sum(parts(lows, 0.0, lows[-1])[1:]),
         high=sum(parts(highs, highs[0], 1.0)),
         most_from=(edges[most], edges[most + 1]),
-        share=found[most] / total if total > 0.0 else 0.0,
-        parts=tuple(found),
+        share=rates[most] / total if total > 0.0 else 0.0,
+        parts=tuple(rates),
     )

@@ -137,12 +137,12 @@ def _matched(step: float, acceleration: FloatArray, target: Target, longest: flo
     best, least = present, math.inf
     for _ in range(PASSES):
         responses = np.array([lfilter(*recursion, present) for recursion in bank.recursions])
-        places, peaks = _peaks(responses)
+        samples, peaks = _peaks(responses)
         error = float(np.mean((np.abs(peaks) / wanted - 1.0) ** 2))
         if error < least:
             best, least = present, error
-        waves = _wavelets(bank.periods, times, places)
-        influence = _influence(bank, waves, places)
+        waves = _wavelets(bank.periods, times, samples)
+        influence = _influence(bank, waves, samples)
         own = np.diag(influence).copy()
         influence = SHARE_OF_OTHERS * influence / own
         np.fill_diagonal(influence, 1.0)
@@ -172,31 +172,31 @@ def _levelled(step: float, acceleration: FloatArray, wanted: FloatArray, periods
 
 def _peaks(responses: FloatArray) -> tuple[np.ndarray, FloatArray]:
     """Sample of the largest magnitude of each response (m, n), and the peak of the parabola through it, signed."""
-    places = np.argmax(np.abs(responses), axis=1)
+    samples = np.argmax(np.abs(responses), axis=1)
     rows, last = np.arange(len(responses)), responses.shape[1] - 1
-    before, at, after = (responses[rows, np.clip(places + k, 0, last)] for k in (-1, 0, 1))
+    before, at, after = (responses[rows, np.clip(samples + k, 0, last)] for k in (-1, 0, 1))
     curvature = before - 2.0 * at + after
     with np.errstate(divide="ignore", invalid="ignore"):
         rise = np.where(curvature * at < 0.0, -((after - before) ** 2) / (8.0 * curvature), 0.0)
-    return places, at + rise
+    return samples, at + rise
 
 
-def _wavelets(periods: FloatArray, times: FloatArray, places: np.ndarray) -> FloatArray:
+def _wavelets(periods: FloatArray, times: FloatArray, samples: np.ndarray) -> FloatArray:
     """A tapered cosine for each oscillator whose response to it peaks at its sample, shape (m, n) [-]."""
     damped = 2.0 * math.pi / periods * math.sqrt(1.0 - DAMPING_RATIO**2)
     lag = math.atan(math.sqrt(1.0 - DAMPING_RATIO**2) / DAMPING_RATIO) / damped
     width = 1.178 * periods**0.93
-    shifted = times[None, :] - (times[places] - lag)[:, None]
+    shifted = times[None, :] - (times[samples] - lag)[:, None]
     waves = np.zeros_like(shifted)
     near = np.abs(shifted) < 5.0 * width[:, None]
-    rates, widths = (np.broadcast_to(one[:, None], near.shape)[near] for one in (damped, width))
+    rates, widths = (np.broadcast_to(values[:, None], near.shape)[near] for values in (damped, width))
     waves[near] = np.cos(rates * shifted[near]) * np.exp(-((shifted[near] / widths) ** 2))
     return waves
 
 
-def _influence(bank: _Bank, waves: FloatArray, places: np.ndarray) -> FloatArray:
+def _influence(bank: _Bank, waves: FloatArray, samples: np.ndarray) -> FloatArray:
     """Response of oscillator i at its sample to wavelet j, shape (m, m)."""
     rows = []
-    for impulse, place in zip(bank.impulses, places.tolist(), strict=True):
-        rows.append(waves[:, : place + 1] @ impulse[place::-1])
+    for impulse, sample in zip(bank.impulses, samples.tolist(), strict=True):
+        rows.append(waves[:, : sample + 1] @ impulse[sample::-1])
     return np.array(rows)

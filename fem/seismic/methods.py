@@ -37,7 +37,7 @@ def methods_of(
         height_ratio: z/H of the floor in its building; 0: on the ground; None: the motion of the floor is given, which
             no formula for elements on floors may raise again, and to which the plateau of the ground says nothing.
     """
-    pairs = [partial(peak_rows, body, horizontal=one, vertical=other) for one, other in COMBINATIONS]
+    pairs = [partial(peak_rows, body, horizontal=h, vertical=v) for h, v in COMBINATIONS]
     elements = [
         partial(element_rows, body, height_ratio=height_ratio, period_ratio=period_ratio)
         for period_ratio in ((0.0, 1.0) if height_ratio else (0.0,))

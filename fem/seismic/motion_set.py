@@ -46,8 +46,8 @@ class ComponentSpectra:
     def least(self, within: np.ndarray) -> tuple[float, int]:
         """Least ratio of mean to target among the periods of a mask (k,), and its index."""
         ratios = np.where(within, self.mean / self.target, np.inf)
-        place = int(np.argmin(ratios))
-        return float(ratios[place]), place
+        index = int(np.argmin(ratios))
+        return float(ratios[index]), index
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -124,8 +124,8 @@ def check_set(
     )
     vertical = spectra(action.vertical, [motion.vertical for motion in motions])
     across = spectra(lambda periods: second * horizontal.target, [motion.second for motion in motions])
-    ratio, place = horizontal.least(inside)
-    upright, sideways = (None if one is None else one.least(inside) for one in (vertical, across))
+    ratio, index = horizontal.least(inside)
+    upright, sideways = (None if part is None else part.least(inside) for part in (vertical, across))
     peak, wanted = float(np.mean([motion.peak for motion in motions])), action.surface_acceleration
     correlation = largest_correlation(motions)
     stationary = [motion.stationary for motion in motions if motion.stationary is not None]
@@ -150,12 +150,12 @@ def check_set(
             reason=f"the mean peak, {peak:.3g} m/s², is below that of the target, {wanted:.3g} m/s² (3.2.3.1.2(4)b)",
         ),
         Requirement(
-            name=f"least mean over target, {FIRST_PERIOD_S:g} to {longest:.3g} s, at {periods[place]:.3g} s",
+            name=f"least mean over target, {FIRST_PERIOD_S:g} to {longest:.3g} s, at {periods[index]:.3g} s",
             found=ratio,
             demanded=f"at least {LEAST_SHARE:g}",
             fulfilled=_suffices(ratio),
             clause=f"{CLAUSE} (4) c)",
-            reason=f"the mean spectrum is {ratio:.2f} of the target at {periods[place]:.3g} s, at least "
+            reason=f"the mean spectrum is {ratio:.2f} of the target at {periods[index]:.3g} s, at least "
             f"{LEAST_SHARE:g} is needed (3.2.3.1.2(4)c)",
         ),
         Requirement(
@@ -174,16 +174,16 @@ def check_set(
     )
     requirements += [
         Requirement(
-            name=f"{name}: least mean over target, at {periods[found[1]]:.3g} s",
-            found=found[0],
+            name=f"{name}: least mean over target, at {periods[least[1]]:.3g} s",
+            found=least[0],
             demanded=f"at least {LEAST_SHARE:g}" if artificial else "shown only: recorded components",
-            fulfilled=_suffices(found[0]) or not artificial,
+            fulfilled=_suffices(least[0]) or not artificial,
             clause=clause if artificial else "",
-            reason=f"the mean {spectrum} is {found[0]:.2f} of its target at {periods[found[1]]:.3g} s, at least "
+            reason=f"the mean {spectrum} is {least[0]:.2f} of its target at {periods[least[1]]:.3g} s, at least "
             f"{LEAST_SHARE:g} is needed",
         )
-        for name, spectrum, found, clause in beside
-        if found is not None
+        for name, spectrum, least, clause in beside
+        if least is not None
     ]
     if artificial:
         requirements.append(
@@ -215,7 +215,7 @@ def check_set(
         mean_peak=peak,
         wanted_peak=wanted,
         least_ratio=ratio,
-        least_ratio_period=float(periods[place]),
+        least_ratio_period=float(periods[index]),
         vertical_least_ratio=upright[0] if upright else None,
         vertical_least_ratio_period=float(periods[upright[1]]) if upright else None,
         second_least_ratio=sideways[0] if sideways else None,
@@ -264,11 +264,11 @@ def copy_correlation(one: GroundMotion, other: GroundMotion) -> float:
 
 def _correlation(step: float, a: FloatArray, other_step: float, b: FloatArray) -> float:
     finest = min(step, other_step)
-    one, two = sampled_at(finest, step, a), sampled_at(finest, other_step, b)
-    length = min(one.size, two.size)
-    one, two = one[:length] - one[:length].mean(), two[:length] - two[:length].mean()
-    size = math.sqrt(float(one @ one) * float(two @ two))
-    return abs(float(one @ two)) / size if size > 0.0 else 0.0
+    first, second = sampled_at(finest, step, a), sampled_at(finest, other_step, b)
+    length = min(first.size, second.size)
+    first, second = first[:length] - first[:length].mean(), second[:length] - second[:length].mean()
+    size = math.sqrt(float(first @ first) * float(second @ second))
+    return abs(float(first @ second)) / size if size > 0.0 else 0.0
 
 
 def _spectra(

@@ -29,15 +29,15 @@ def read_points(path: Path, choices: Sequence[Sequence[str]]) -> dict[str, tuple
         choices: the columns that it may have, in their order.
 
     Raises:
-        ValueError: it cannot be read, has other columns, or a line that has not a number for each.
+        ValueError: it cannot be read, has other columns, or a line without a number for each.
     """
     text = text_of(path)
     first, *lines = [line for line in text.splitlines() if line.strip()] or [""]
     names = [name.strip() for name in first.split(",")]
     if names not in [[*choice] for choice in choices]:
-        found = f"got {first[:80]!r}" if first else "and the file is empty"
+        actual = f"got {first[:80]!r}" if first else "and the file is empty"
         raise ValueError(
-            f"{path.name}: the first line must be {' or '.join(map(','.join, choices))}, {found}"
+            f"{path.name}: the first line must be {' or '.join(map(','.join, choices))}, {actual}"
         )
     rows = [as_numbers([field.strip() for field in line.split(",")]) for line in lines]
     known = [row.tolist() for row in rows if row is not None and row.size == len(names)]

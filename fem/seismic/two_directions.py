@@ -82,15 +82,14 @@ def slip_in_two_directions(
     }
     longest = max(slips, key=lambda pair: float(slips[pair].mean()))
     worst = max(slips, key=lambda pair: float(slips[pair].max()))
+    in_plane = [replace(motion, second=None) for motion in motions]
     return SlipInTwoDirections(
         mean=float(slips[longest].mean()),
         largest=float(slips[worst].max()),
         mu_static=worst[0],
         mu_kinetic=worst[1],
         motion=1 + int(np.argmax(slips[worst])),
-        mean_in_plane=float(
-            np.mean([largest_slip(replace(one, second=None), longest, gravity=gravity) for one in motions])
-        ),
+        mean_in_plane=float(np.mean([largest_slip(motion, longest, gravity=gravity) for motion in in_plane])),
     )
 
 
@@ -124,7 +123,7 @@ def _slid(
 ) -> tuple[FloatArray, FloatArray]:
     """Displacements (n, 2) [m] and the last velocity (2,) [m/s] over the floor."""
     samples = np.array(times, dtype=np.float64)
-    rows = [np.array(one, dtype=np.float64) for one in (x, y, np.zeros_like(samples) if up is None else up)]
+    rows = [np.array(row, dtype=np.float64) for row in (x, y, np.zeros_like(samples) if up is None else up)]
     if samples.ndim != 1 or samples.size < 2 or any(row.shape != samples.shape for row in rows):
         shapes = ", ".join(str(row.shape) for row in (samples, *rows))
         raise ValueError(
