@@ -83,7 +83,7 @@ def _cells(row: AnswerRow) -> dict[str, Any]:
         f"stood_{SLIPPED}": answer.stood_slip,
         "overturned_from": answer.overturned_from,
         SLIPPED: answer.slip,
-        **{name: "; ".join(f"{low!r} to {high!r}" for low, high in some) for name, some in ranges.items()},
+        **{name: "; ".join(f"{low!r} to {high!r}" for low, high in spans) for name, spans in ranges.items()},
         "answer": row.sentence,
     }
 
@@ -98,32 +98,32 @@ def sweep_answer(table: SweepTable, folder: Path) -> SweepAnswer | None:
         folder: where the values are that a threshold tried between the cells.
     """
     wanted = (table.info.threshold or {}).get("axis")
-    axis = next((one for one in table.axes if one.key == wanted), None) or answer_axis(table.axes)
+    axis = next((axis for axis in table.axes if axis.key == wanted), None) or answer_axis(table.axes)
     if axis is None or not np.all(table["status"] != ""):
         return None
     lines = _lines_of(table, axis, folder / TRIED)
     rising = is_rising(axis, [trial for line in lines.values() for trial in line])
-    others = [one for one in table.axes if one is not axis and len(one.values) > 1]
+    others = [other for other in table.axes if other is not axis and len(other.values) > 1]
 
     def rows_of(kept: Sequence[Axis]) -> Iterator[AnswerRow]:
         """A row for each combination of values of some of the other axes."""
         groups: dict[tuple[Any, ...], list[Trial]] = defaultdict(list)
         for first, line in lines.items():
             point = point_of(table.axes, first)
-            groups[tuple(point[one.key] for one in kept)] += line
+            groups[tuple(point[other.key] for other in kept)] += line
         for values, trials in groups.items():
             answer = answer_of(trials, rising=rising, limit_slip=table.info.limit_slip_m)
             rest = [other for other in others if other not in kept]
             where = "" if answer.line is None else place_in_words(rest, point_of(table.axes, answer.line))
             yield AnswerRow(
-                point=dict(zip((one.key for one in kept), values, strict=True)),
+                point=dict(zip((other.key for other in kept), values, strict=True)),
                 answer=answer,
                 sentence=sentence_of(answer, axis, rising=rising, where=where),
             )
 
     motions = set_axis(others)
     kept = [other for other in others if motions is None or other not in sign_axes(others)]
-    outer = [one for one in kept if one is not motions]
+    outer = [other for other in kept if other is not motions]
     rows = [*rows_of(outer), *rows_of(kept)] if motions and outer else list(rows_of(kept))
     (together,) = rows_of(())
     return SweepAnswer(
@@ -137,8 +137,8 @@ def sweep_answer(table: SweepTable, folder: Path) -> SweepAnswer | None:
 
 def _lines_of(table: SweepTable, axis: Axis, tried: Path) -> dict[int, list[Trial]]:
     """What is known along the axis, by the first cell of each line."""
-    place = table.axes.index(axis)
-    cells = np.moveaxis(np.arange(len(table["cell"])).reshape(table.shape), place, -1)
+    dimension = table.axes.index(axis)
+    cells = np.moveaxis(np.arange(len(table["cell"])).reshape(table.shape), dimension, -1)
     slip, unsure = table.columns.get(SLIPPED), table.columns.get("unsure")
     fell = table.columns.get("fell_in_row")
     lines: dict[int, list[Trial]] = defaultdict(list)

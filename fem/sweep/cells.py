@@ -62,7 +62,7 @@ class CellRows:
     def __init__(self, sweep: Sweep) -> None:
         self.columns = row_columns(sweep.axes, (quantity.key for quantity in sweep.derived))
         self.lines: dict[int, str] = {}  #: row of each cell, as in the log
-        self.shown: dict[int, RunShown] = {}
+        self.runs: dict[int, RunShown] = {}
         self.kind: IntArray = np.full(sweep.count, Ending.UNKNOWN)  #: endings, (n_cells,)
         self.ratio: FloatArray = np.full(sweep.count, np.nan)  #: (n_cells,)
         self.outcomes = Counter[str]()  #: how often there is each; "failed" too
@@ -73,11 +73,11 @@ class CellRows:
         cell = row["cell"]
         if cell in self.lines:
             return
-        shown = shown_in(row)
-        self.lines[cell], self.shown[cell], self.kind[cell] = line, shown, shown.kind
+        run = shown_in(row)
+        self.lines[cell], self.runs[cell], self.kind[cell] = line, run, run.kind
         if row[TURNED] is not None:
             self.ratio[cell] = row[TURNED]
-        self.outcomes[shown.outcome or "failed"] += 1
+        self.outcomes[run.outcome or "failed"] += 1
 
     @property
     def decided(self) -> BoolArray:

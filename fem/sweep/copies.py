@@ -114,10 +114,12 @@ class CellCopies:
                 draws = round(SHARE_OF_DRAWS * case.uncertainty.draws)
             changes = (*changes, *pairs_of(case), *draws_of(case, penalty, draws))
         else:
-            changes = tuple(one for one in changes if one.share == 1.0 and TOLERANCE not in one.values)
+            changes = tuple(
+                change for change in changes if change.share == 1.0 and TOLERANCE not in change.values
+            )
         for change in changes:
             if SUPPORT in change.values:  # as a rule takes longer than all other copies together
                 continue
             kept = {key: value for key, value in change.values.items() if key not in self._axes}
-            places = zip(change.values, change.place, strict=False)
-            yield replace(change, values=kept, place=tuple(one for key, one in places if key in kept))
+            coordinates = zip(change.values, change.place, strict=False)
+            yield replace(change, values=kept, place=tuple(x for key, x in coordinates if key in kept))

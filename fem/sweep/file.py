@@ -90,7 +90,7 @@ def _derived(content: Mapping[str, Any], base: Case, axes: tuple[Axis, ...]) -> 
         field_of(name)
         if any(isinstance(value, str | bool) for value in values.get(name, ())):
             raise AxisError("has values that are no numbers")
-        first = {key: some[0] for key, some in values.items()}
+        first = {key: axis_values[0] for key, axis_values in values.items()}
         if name not in values and value_in(base, name, first) is None:
             raise AxisError(
                 f"has no number in the base case {base.name!r}; set it under [set], or refer to a key that is "
@@ -133,7 +133,7 @@ def _maps(content: Mapping[str, Any], axes: tuple[Axis, ...]) -> MapChoice:
             )
     for key, value in choice.fixed.items():
         if value not in known[key]:
-            listed = ", ".join(str(one) for one in known[key])
+            listed = ", ".join(map(str, known[key]))
             raise CaseError(f"[maps] {key!r} has no value {value!r} (values: {listed})")
         if key in (choice.x, choice.y):
             raise CaseError(f"[maps] {key!r} cannot span the map and be fixed as well")

@@ -126,7 +126,7 @@ def sweep_map(table: SweepTable, kind: str, choice: MapChoice) -> Figure:
 
 def rotation_curve(table: SweepTable) -> Figure:
     """Largest rotation along the one axis of a sweep, coloured by outcome; overturned cells at 1."""
-    axis = max(table.axes, key=lambda one: len(one.values))
+    axis = max(table.axes, key=lambda axis: len(axis.values))
     numeric = all(not isinstance(value, bool | str) for value in axis.values)
     places = np.array(axis.values, dtype=float) if numeric else np.arange(len(axis.values), dtype=float)
     ratio = np.where(table.outcome == Outcome.OVERTURNED, 1.0, table[TURNED])

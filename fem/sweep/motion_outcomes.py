@@ -41,10 +41,10 @@ class MotionOutcome(RunShown):
     motion: str
 
 
-def severity(one: RunShown) -> tuple[int, float]:
+def severity(run: RunShown) -> tuple[int, float]:
     """Larger for a worse outcome."""
     order = (Ending.STANDING, Ending.FAILED, Ending.INVALID, Ending.OVERTURNED)
-    return order.index(one.kind), one.turned
+    return order.index(run.kind), run.turned
 
 
 def sign_axes(axes: Sequence[Axis]) -> list[Axis]:
@@ -53,7 +53,7 @@ def sign_axes(axes: Sequence[Axis]) -> list[Axis]:
 
 
 def motions_at(
-    axes: Sequence[Axis], shown: Mapping[int, RunShown]
+    axes: Sequence[Axis], runs: Mapping[int, RunShown]
 ) -> Iterator[tuple[dict[str, Any], list[MotionOutcome]]]:
     """At each point on the axes that are neither motions nor signs: its values, and the outcome of each motion."""
     keys = [axis.key for axis in axes]
@@ -69,7 +69,7 @@ def motions_at(
         yield (
             values,
             [
-                _worst(str(name), [shown[int(cell)] for cell in row])
+                _worst(str(name), [runs[int(cell)] for cell in row])
                 for name, row in zip(names, block, strict=True)
             ],
         )
@@ -83,7 +83,7 @@ def set_row(outcomes: Sequence[MotionOutcome]) -> dict[str, Any]:
     computed = [outcome for outcome in outcomes if outcome.kind != Ending.FAILED]
     standing = [cell for cell in computed if cell.kind == Ending.STANDING]
     worst = max(computed, key=severity, default=None)
-    slipped = max(computed, key=lambda one: one.slipped, default=None)
+    slipped = max(computed, key=lambda outcome: outcome.slipped, default=None)
     return {
         "motions": len(outcomes),
         **counts_of(kinds),

@@ -51,21 +51,21 @@ def coarse_cells(axes: Sequence[Axis]) -> BoolArray:
     return chosen
 
 
-def band_width(axes: Sequence[Axis], unsure: BoolArray, place: int) -> FloatArray:
+def band_width(axes: Sequence[Axis], unsure: BoolArray, dimension: int) -> FloatArray:
     """Length along one axis of the stretch of unsure cells around a cell, in the unit of the axis; 0 for a sure cell.
 
     A cell extends half way to its neighbours (by ratio on a log scale), the outermost cells to their own value.
     """
-    axis = axes[place]
+    axis = axes[dimension]
     values = np.array(axis.values, dtype=float)
     middles = np.sqrt(values[:-1] * values[1:]) if axis.scale == "log" else 0.5 * (values[:-1] + values[1:])
     edges = np.concatenate([values[:1], middles, values[-1:]])
-    lines = np.moveaxis(unsure, place, -1).reshape(-1, values.size)
+    lines = np.moveaxis(unsure, dimension, -1).reshape(-1, values.size)
     widths = np.zeros(lines.shape)
     for line, width in zip(lines, widths, strict=True):
         labels, count = ndimage.label(line)
         for label in range(1, count + 1):
             inside = np.flatnonzero(labels == label)
             width[inside] = edges[inside[-1] + 1] - edges[inside[0]]
-    moved = np.moveaxis(unsure, place, -1).shape
-    return np.moveaxis(widths.reshape(moved), -1, place)
+    moved = np.moveaxis(unsure, dimension, -1).shape
+    return np.moveaxis(widths.reshape(moved), -1, dimension)

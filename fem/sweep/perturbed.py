@@ -48,7 +48,7 @@ class PerturbedRow:
 
     line: str  #: as in the log
     copy: Copy
-    shown: RunShown
+    run: RunShown
     level: int  #: how it differs from the cell, see `fem.assessment.sureness`; a failed one as if it ended otherwise
 
 
@@ -66,14 +66,14 @@ class PerturbedRows:
         """Add a line of the log."""
         row = row_of(COLUMNS, line)
         cell, number = row["cell"], row["member"]
-        copy, own = self.copies.of(cell)[number], self._cells.shown[cell]
-        shown = shown_in(row)
+        copy, own = self.copies.of(cell)[number], self._cells.runs[cell]
+        run = shown_in(row)
         level = OTHER_END
-        if shown.outcome is not None:
-            level = difference(own, shown, self.copies.width(cell))
-        self.rows.setdefault(cell, {})[number] = PerturbedRow(line=line, copy=copy, shown=shown, level=level)
+        if run.outcome is not None:
+            level = difference(own, run, self.copies.width(cell))
+        self.rows.setdefault(cell, {})[number] = PerturbedRow(line=line, copy=copy, run=run, level=level)
         # Draws are to find what overturns; half of them turn rest to sliding, by the start alone.
-        if level == OTHER_END or (shown.outcome != own.outcome and not copy.drawn):
+        if level == OTHER_END or (run.outcome != own.outcome and not copy.drawn):
             nowhere: BoolArray = np.zeros(self._cells.kind.size, dtype=bool)
             self.turned.setdefault(copy.name, (copy, nowhere))[1][cell] = True
 
@@ -98,13 +98,14 @@ class PerturbedRows:
         """
         if not self._cells.decided[cell]:
             return UNSURE, ()
-        copies = [one for _, one in sorted(self.rows.get(cell, {}).items())]
-        most = max((one.level for one in copies), default=SAME)
-        levels = [one.level if one.level == most else SAME for one in copies]
-        changes = [one.copy.change for one in copies]
+        rows = [row for _, row in sorted(self.rows.get(cell, {}).items())]
+        most = max((row.level for row in rows), default=SAME)
+        levels = [row.level if row.level == most else SAME for row in rows]
         alone = [
-            replace(change, values=dict([*change.values.items()][:1])) if copy.copy.small else change
-            for change, copy in zip(changes, copies, strict=True)
+            replace(copy.change, values=dict([*copy.change.values.items()][:1]))
+            if copy.small
+            else copy.change
+            for copy in (row.copy for row in rows)
         ]
         word = {SAME: SURE, OTHER_REGIME: REGIME_UNSURE, OTHER_END: UNSURE}[most]
         return word, tuple(deciding_inputs(levels, alone))
@@ -112,7 +113,7 @@ class PerturbedRows:
     def ratios(self, cell: int) -> tuple[float | None, float | None]:
         """Least and largest rotation ratio of a cell and its copies; None where there is none."""
         copies = self.rows.get(cell, {}).values()
-        ratios = [ratio for copy in copies if (ratio := copy.shown[TURNED]) is not None]
+        ratios = [ratio for copy in copies if (ratio := copy.run[TURNED]) is not None]
         own = float(self._cells.ratio[cell])
         return (min(own, *ratios), max(own, *ratios)) if ratios and np.isfinite(own) else (None, None)
 
@@ -125,7 +126,7 @@ class PerturbedRows:
         if self._cells.kind[cell] in (Ending.UNKNOWN, Ending.FAILED):
             return None
         own, tried = self._cells.kind[cell] == Ending.STANDING, self.rows.get(cell, {}).values()
-        known = [trial.shown.kind for trial in tried if trial.shown.kind != Ending.FAILED]
+        known = [trial.run.kind for trial in tried if trial.run.kind != Ending.FAILED]
         turned = sum((kind == Ending.STANDING) != own for kind in known)
         drawn = any(trial.copy.drawn for trial in tried)
         share = turned / (1 + sum(drawn or not copy.drawn for copy in self.copies.of(cell)))
@@ -254,7 +255,7 @@ def _items(
         for number, copy in enumerate(perturbed.copies.of(cell)):
             if number not in known and wants(cell, copy):
                 items.append((container, copy.name, CopyItem(cell, number, copy.values, copy.change.values)))
-    return [item for _, _, item in sorted(items, key=lambda one: (*one[:2], one[2].cell))]
+    return [item for _, _, item in sorted(items, key=lambda entry: (*entry[:2], entry[2].cell))]
 
 
 def _key(item: CopyItem) -> tuple[int, int, str]:

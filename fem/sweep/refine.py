@@ -60,9 +60,8 @@ def refine(runner: Runner, sweep: Sweep, cells: CellRows, log: Path) -> list[tup
 
 
 def table_of_changes(sweep: Sweep, changes: Sequence[tuple[int, Change]]) -> str:
-    """`thresholds.csv`: one row a change of outcome."""
-    found = ({name: getattr(change, name) for name in CHANGES} for _, change in changes)
-    rows = (sweep.point(first) | one for (first, _), one in zip(changes, found, strict=True))
+    """`thresholds.csv`: one row for each change of outcome."""
+    rows = (sweep.point(first) | {key: getattr(change, key) for key in CHANGES} for first, change in changes)
     return table_of_rows(change_columns(sweep.axes, sweep.threshold_axis.key), rows)
 
 
@@ -75,8 +74,8 @@ def change_columns(axes: Sequence[Axis], along: str) -> Columns:
 def _lines_of(sweep: Sweep, cells: CellRows) -> Lines:
     """What the cells themselves show."""
     values = sweep.threshold_axis.values
-    place = sweep.axes.index(sweep.threshold_axis)
-    numbers = np.moveaxis(np.arange(sweep.count).reshape(sweep.shape), place, -1)
+    dimension = sweep.axes.index(sweep.threshold_axis)
+    numbers = np.moveaxis(np.arange(sweep.count).reshape(sweep.shape), dimension, -1)
     return {
         int(line[0]): {
             float(value): Ending(cells.kind[cell]).word for value, cell in zip(values, line, strict=True)

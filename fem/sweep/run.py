@@ -69,21 +69,21 @@ def run_sweep(sweep: Sweep, folder: Path, **options: Unpack[StudyOptions]) -> Sw
     jobs = options.get("jobs") or cores()
     check_size(sweep, jobs, options.get("force", False))
     motions = read_motion_set(sweep.base, sweep.axes)
-    asked = asked_of(sweep, motions, jobs)
+    begun = asked_of(sweep, motions, jobs)
     study = Study(
         kind=SWEEP,
-        request=asked.sweep_hash,
+        request=begun.sweep_hash,
         result=SweepResult,
-        begun=replace(asked, band_hash=None),  # until the copies of another band are gone
+        begun=replace(begun, band_hash=None),  # until the copies of another band are gone
         cases=[sweep.base],
         motions=[motion.case for motion in motions],
-        compute=partial(_compute, sweep, motions, asked),
+        compute=partial(_compute, sweep, motions, begun),
         texts={"sweep.toml": sweep.text, "base.toml": toml_document(sweep.base.given())},
         size=table_bytes(sweep.count, OF_A_CELL) + BYTES_BESIDE,
         subject=f"the sweep ({sweep.count} cells)",
         way_out="take fewer values",
         progress=partial(_progress, sweep),
-        again=partial(_again, sweep, asked),
+        again=partial(_again, sweep, begun),
     )
     return run_study(study, folder, **options)
 
@@ -119,9 +119,9 @@ def check_size(sweep: Sweep, jobs: int, force: bool) -> None:
     if sweep.count <= MOST_CELLS or force:
         return
     axes = {axis.key: axis.values for axis in sweep.axes}
-    asked = axes.get("solver.duration_s", (sweep.base.solver.duration_s,))
-    durations = [longest_time(sweep.base) if one == "auto" else one for one in asked]
-    speeds = [SECONDS_PER_SECOND[one] for one in axes.get("solver.model", (sweep.base.solver.model,))]
+    stated = axes.get("solver.duration_s", (sweep.base.solver.duration_s,))
+    durations = [longest_time(sweep.base) if duration == "auto" else duration for duration in stated]
+    speeds = [SECONDS_PER_SECOND[model] for model in axes.get("solver.model", (sweep.base.solver.model,))]
     seconds = sweep.count * sum(durations) / len(durations) * sum(speeds) / len(speeds) / jobs
     sizes = " x ".join(str(size) for size in sweep.shape)
     room = table_bytes(sweep.count, OF_A_CELL) / 1e9
@@ -175,13 +175,13 @@ def _progress(sweep: Sweep, folder: Path) -> str:
 
 
 def _again(
-    sweep: Sweep, asked: SweepResult, place: ResultFolder, finished: SweepResult
+    sweep: Sweep, begun: SweepResult, place: ResultFolder, finished: SweepResult
 ) -> SweepResult | None:
     """A finished sweep, with maps over the axes that are asked for; None where its band is to be another."""
-    if finished.band_hash != asked.band_hash or not (place.path / TABLE).is_file():
+    if finished.band_hash != begun.band_hash or not (place.path / TABLE).is_file():
         return None
-    if finished.map_axes != asked.map_axes:
-        finished = replace(finished, map_axes=asked.map_axes, maps=_draw(place, sweep))
+    if finished.map_axes != begun.map_axes:
+        finished = replace(finished, map_axes=begun.map_axes, maps=_draw(place, sweep))
         place.write_result(finished.to_json())
     return finished
 
@@ -193,15 +193,15 @@ def _draw(place: ResultFolder, sweep: Sweep) -> tuple[str, ...]:
 def _compute(
     sweep: Sweep,
     motions: Sequence[FloorMotionPair],
-    asked: SweepResult,
+    begun: SweepResult,
     place: ResultFolder,
     runner: Runner,
 ) -> SweepResult:
     """Compute what is missing, and write tables and maps."""
     began, stop = time.perf_counter(), runner.stop
-    if (place.earlier or {}).get("band_hash") != asked.band_hash:
+    if (place.earlier or {}).get("band_hash") != begun.band_hash:
         place.remove(MEMBERS, MARGINS, TRIED, CHANGES, ANSWERS)
-    cells = _Cells(sweep=sweep, place=place, asked=asked)
+    cells = _Cells(sweep=sweep, place=place, begun=begun)
     cells.update()
     cells.compute(runner)
     rows = cells.rows
@@ -269,7 +269,7 @@ class _Cells:
 
     sweep: Sweep
     place: ResultFolder
-    asked: SweepResult
+    begun: SweepResult
     rows: CellRows = field(init=False)
     updated: float = field(default=0.0, init=False)
 
@@ -299,7 +299,7 @@ class _Cells:
     def counted(self) -> SweepResult:
         """The result so far."""
         outcomes = dict(sorted(self.rows.outcomes.items()))
-        return replace(self.asked, rows=len(self.rows.lines), outcomes=outcomes)
+        return replace(self.begun, rows=len(self.rows.lines), outcomes=outcomes)
 
     def update(self) -> None:
         """Write how many rows there are."""

@@ -26,7 +26,7 @@ def write_set(
     place: ResultFolder, sweep: Sweep, motions: Sequence[FloorMotionPair], cells: CellRows
 ) -> dict[str, Any]:
     """Write the files of the set; returns its part of `sweep.json`."""
-    points = list(motions_at(sweep.axes, cells.shown))
+    points = list(motions_at(sweep.axes, cells.runs))
     outcomes = by_motion([at_point for _, at_point in points])
     measures = [motion.numbers() | outcomes[motion.name] for motion in motions]
     rows = [values | set_row(at_point) for values, at_point in points]
@@ -50,11 +50,11 @@ def write_set(
 
 def _shares(axes: Sequence[Axis], rows: Sequence[Mapping[str, Any]]) -> tuple[Axis, list[ShareCurve]] | None:
     """A curve over the strength for each point of the other axes; None without a strength, or with too many."""
-    axis = next((one for one in axes if one.key in STRENGTHS and one.is_numeric and one.key in rows[0]), None)
+    axis = next((axis for axis in axes if axis.is_numeric and axis.key in rows[0].keys() & STRENGTHS), None)
     if axis is None:
         return None
     others = [key for key in rows[0] if key not in SET_COLUMNS and key != axis.key]
-    labels = {one.key: axis_label(one) for one in axes}
+    labels = {axis.key: axis_label(axis) for axis in axes}
     lines: dict[str, list[Mapping[str, Any]]] = {}
     for row in rows:
         label = ", ".join(f"{labels[key]} = {_shown(row[key])}" for key in others)
@@ -62,18 +62,18 @@ def _shares(axes: Sequence[Axis], rows: Sequence[Mapping[str, Any]]) -> tuple[Ax
     if len(lines) > MOST_CURVES:
         return None
 
-    def column(some: Sequence[Mapping[str, Any]], name: str) -> Any:
-        return np.array([row[name] for row in some], dtype=float)
+    def column(points: Sequence[Mapping[str, Any]], name: str) -> Any:
+        return np.array([row[name] for row in points], dtype=float)
 
     return axis, [
         ShareCurve(
             label=label.replace(" [-]", ""),
-            strengths=column(some, axis.key),
-            share=column(some, "overturned_share"),
-            low=column(some, "low"),
-            high=column(some, "high"),
+            strengths=column(points, axis.key),
+            share=column(points, "overturned_share"),
+            low=column(points, "low"),
+            high=column(points, "high"),
         )
-        for label, some in lines.items()
+        for label, points in lines.items()
     ]
 
 

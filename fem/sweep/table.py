@@ -89,7 +89,7 @@ def open_sweep(folder: Path | str) -> SweepTable:
     content = read_result(folder / SWEEP.mark, SWEEP)
     try:
         info = SweepResult.from_json(content)
-        axes = tuple(one.axis for one in info.axes)
+        axes = tuple(entry.axis for entry in info.axes)
         source = folder / "table.csv"
         if not source.is_file():
             source = folder / "rows.csv"
@@ -130,7 +130,7 @@ def _columns(
             column[cells] = text
         else:
             column = np.full(count, np.nan)
-            column[cells] = [_number(one) for one in text]
+            column[cells] = list(map(_number, text))
         columns[name] = column
     columns["cell"] = np.arange(count)
     for axis, grid in zip(axes, grids, strict=True):
