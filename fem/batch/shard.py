@@ -95,7 +95,7 @@ def read_shards(place: ResultFolder, request: str, folders: Sequence[Path]) -> l
         shard = Shard.from_json(mark["shard"]) if isinstance(mark.get("shard"), dict) else None
         if mark[place.kind.request] != request or shard is None:
             other = (
-                f"of another {place.kind.asked}"
+                f"of another {place.kind.subject}"
                 if shard
                 else f"of no shard of {place.kind.article} {place.kind.name}"
             )

@@ -54,7 +54,7 @@ def writing_into(folder: Path, way_on: str) -> Iterator[None]:
 
 
 def require_writable(folder: Path, elsewhere: str = OTHER_FOLDER, size: int = 1) -> None:
-    """Refuse a place for results before they are computed; nothing is left in it.
+    """Refuse a folder that cannot be written, before its results are computed; nothing is left in it.
 
     Args:
         folder: of the results; the nearest folder on the way to it that exists is tried.
@@ -64,7 +64,7 @@ def require_writable(folder: Path, elsewhere: str = OTHER_FOLDER, size: int = 1)
     Raises:
         OutputError: a read-only place, or a full disk.
     """
-    place = next((one for one in (folder, *folder.absolute().parents) if one.exists()), folder)
+    place = next((part for part in (folder, *folder.absolute().parents) if part.exists()), folder)
     if place.is_dir():  # what else it may be is said where it is used
         try:
             with TemporaryFile(dir=place) as file:

@@ -48,8 +48,8 @@ def write_atomically(path: Path, content: str | bytes) -> None:
 def remove_files(folder: Path, patterns: Sequence[str]) -> None:
     """Remove files that match these patterns, what a kill left of them, and subfolders that are empty then."""
     for place in {(folder / pattern).parent for pattern in patterns}:
-        for pattern in (Path(one).name for one in patterns if (folder / one).parent == place):
-            for file in (*place.glob(pattern), *place.glob(f".{pattern}.part")):
+        for name in (Path(pattern).name for pattern in patterns if (folder / pattern).parent == place):
+            for file in (*place.glob(name), *place.glob(f".{name}.part")):
                 file.unlink(missing_ok=True)
         if place != folder:
             with suppress(OSError):  # missing, or something else lies in it

@@ -216,7 +216,7 @@ def find_result(path: Path, kind: ResultKind, request: str, *, force: bool = Fal
     except FolderError as error:
         raise FolderError(f"{error}; {REMEDY}") from None
     if mark[kind.request] != request:
-        raise FolderError(f"{path} holds the results of another {kind.asked}; {REMEDY}")
+        raise FolderError(f"{path} holds the results of another {kind.subject}; {REMEDY}")
     return mark
 
 

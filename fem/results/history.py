@@ -190,13 +190,13 @@ def read_history(path: Path) -> History:
         raise ValueError(
             f"{path}: not a history; its first line must be {','.join(columns.ALWAYS.names((0,)))} .."
         )
-    place, numbers = names.index(columns.MODE), numbers_of(names)
+    column, numbers = names.index(columns.MODE), numbers_of(names)
     values, modes = np.empty((len(lines) - 1, len(numbers))), []
     for number, line in enumerate(lines[1:]):
         fields = line.split(",")
-        modes.append("".join(fields[place : place + 1]))
+        modes.append("".join(fields[column : column + 1]))
         try:
-            values[number] = [float(field) for field in fields[:place] + fields[place + 1 :]]
+            values[number] = [float(field) for field in fields[:column] + fields[column + 1 :]]
         except ValueError:
             raise ValueError(
                 f"{path}, line {number + 2}: {len(numbers)} numbers and a mode are needed"

@@ -22,7 +22,7 @@ class ResultKind:
 
     name: str
     article: str = "a"
-    asked: str  #: what two requests differ in, such as "case"
+    subject: str  #: what two requests differ in, such as "case"
     mark: str  #: name of the JSON file that marks the folder
     request: str  #: its key that holds the hash of what was asked
     results: str  #: where to look for the numbers
@@ -38,7 +38,7 @@ class ResultKind:
 
 RUN = ResultKind(
     name="run",
-    asked="case",
+    subject="case",
     mark="run.json",
     request="case_hash",
     results="history.csv",
@@ -63,7 +63,7 @@ RUN = ResultKind(
 )
 SWEEP = ResultKind(
     name="sweep",
-    asked="sweep",
+    subject="sweep",
     mark="sweep.json",
     request="sweep_hash",
     results="table.csv",
@@ -87,7 +87,7 @@ SWEEP = ResultKind(
 ENSEMBLE = ResultKind(
     name="ensemble",
     article="an",
-    asked="ensemble",
+    subject="ensemble",
     mark="ensemble.json",
     request="asked",
     results="points.csv, draws.csv",
@@ -105,7 +105,7 @@ ENSEMBLE = ResultKind(
 )
 RESPONSE = ResultKind(
     name="response curve",
-    asked="response curve",
+    subject="response curve",
     mark="response.json",
     request="asked",
     results="response.csv",
@@ -114,7 +114,7 @@ RESPONSE = ResultKind(
 )
 SITE = ResultKind(
     name="verification at a site",
-    asked="site",
+    subject="site",
     mark="assess.json",
     request="asked",
     results="assess.json",
@@ -130,7 +130,7 @@ SITE = ResultKind(
 )
 SIZE = ResultKind(
     name="size study",
-    asked="size",
+    subject="size",
     mark="size.json",
     request="asked",
     results="size.json",
@@ -138,7 +138,7 @@ SIZE = ResultKind(
 )
 HALL = ResultKind(
     name="hall",
-    asked="hall",
+    subject="hall",
     mark="hall.json",
     request="asked",
     results="hall.csv",
@@ -158,7 +158,7 @@ HALL = ResultKind(
 )
 PAPER = ResultKind(
     name="study",
-    asked="study",
+    subject="study",
     mark="study.json",
     request="study",
     results="study.json",
@@ -167,7 +167,7 @@ PAPER = ResultKind(
 VERIFICATION = ResultKind(
     name="verification",
     article="the",
-    asked="verification",
+    subject="verification",
     mark="verify.json",
     request="status",
     results="verify.json",
@@ -220,7 +220,7 @@ def _not_a_number(content: Any) -> str | None:
     for key, value in content.items():
         values = value if isinstance(value, list) else [value]
         if MEASURED.search(key) and not all(
-            one is None or isinstance(one, int | float | dict) for one in values
+            entry is None or isinstance(entry, int | float | dict) for entry in values
         ):
             return str(key)
         wrong = _not_a_number(value)

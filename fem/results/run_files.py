@@ -50,12 +50,12 @@ def require_free_names(case: Case, kind: ResultKind, texts: Iterable[str] = ()) 
         require_free_name(place_of("neighbour.case"), PurePath(name), kind, texts)
 
 
-def require_free_name(place: str, name: PurePath, kind: ResultKind, texts: Iterable[str] = ()) -> None:
-    """Refuse the file of one key, whose place is said in front of the reason; as `require_free_names`."""
+def require_free_name(prefix: str, name: PurePath, kind: ResultKind, texts: Iterable[str] = ()) -> None:
+    """Refuse the file of one key, which the reason begins with; as `require_free_names`."""
     if name.parts[0] in {own.partition("/")[0] for own in (kind.mark, *kind.own, *texts)}:
         raise CaseError(
-            f"{place}is named {str(name)!r}, like a result of the {kind.name}, which would replace it in the folder of "
-            "results; rename the file"
+            f"{prefix}is named {str(name)!r}, like a result of the {kind.name}, which would replace it in the folder "
+            "of results; rename the file"
         )
 
 

@@ -82,7 +82,7 @@ def test_another_request_is_refused_and_force_replaces_it(tmp_path, kind):
     computed(tmp_path, kind)
     before = files_of(tmp_path)
     for options in ({}, {"resume": True}):
-        with pytest.raises(FolderError, match=rf"another {kind.asked}.*--out.*--force"):
+        with pytest.raises(FolderError, match=rf"another {kind.subject}.*--out.*--force"):
             computed(tmp_path, kind, request="theirs", **options)
     assert files_of(tmp_path) == before
     computed(tmp_path, kind, "failed", request="theirs", force=True, resume=True)
