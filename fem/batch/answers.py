@@ -101,25 +101,25 @@ def answer_of(trials: Sequence[Trial], *, rising: bool, limit_slip: float | None
         limit_slip: beyond which a run does not stand [m]; None: none.
     """
 
-    def falls(one: Trial) -> bool:
-        beyond = limit_slip is not None and one.kind == Ending.STANDING and (one.slip or 0.0) > limit_slip
-        return beyond or one.kind in NOT_STANDING
+    def falls(trial: Trial) -> bool:
+        slid = limit_slip is not None and trial.kind == Ending.STANDING and (trial.slip or 0.0) > limit_slip
+        return slid or trial.kind in NOT_STANDING
 
     lines = len({trial.line for trial in trials})
     at: dict[float, list[Trial]] = defaultdict(list)
-    for one in trials:
-        at[one.value].append(one)
+    for trial in trials:
+        at[trial.value].append(trial)
     values = sorted(at, reverse=not rising)
-    kinds = {value: {one.kind for one in at[value]} for value in values}
+    kinds = {value: {trial.kind for trial in at[value]} for value in values}
     fallen = [value for value in values if any(map(falls, at[value]))]
     stands = [kinds[value] == {Ending.STANDING} and value not in fallen for value in values]
     first = values.index(fallen[0]) if fallen else len(values)
     upright = stands.index(False) if False in stands else len(values)
-    fell = [one for one in at[fallen[0]] if falls(one)] if fallen else []
-    overturned = [one for one in fell if one.kind == Ending.OVERTURNED]
-    invalid = [one for one in fell if one.kind == Ending.INVALID]
-    worst = max(overturned or invalid or fell, key=lambda one: (one.slip or 0.0, -one.line), default=None)
-    slips = [one.slip for value in values[:upright] for one in at[value] if one.slip is not None]
+    fell = [trial for trial in at[fallen[0]] if falls(trial)] if fallen else []
+    overturned = [trial for trial in fell if trial.kind == Ending.OVERTURNED]
+    invalid = [trial for trial in fell if trial.kind == Ending.INVALID]
+    worst = max(overturned or invalid or fell, key=lambda run: (run.slip or 0.0, -run.line), default=None)
+    slips = [trial.slip for value in values[:upright] for trial in at[value] if trial.slip is not None]
     # A value tried in some lines only is unknown for the others; where it did not stand, it ends a range.
     beyond = [
         (value, stood)
@@ -129,7 +129,7 @@ def answer_of(trials: Sequence[Trial], *, rising: bool, limit_slip: float | None
     sureness = [
         (value, marks)
         for value in values
-        if (marks := [one.unsure for one in at[value] if one.unsure is not None])
+        if (marks := [trial.unsure for trial in at[value] if trial.unsure is not None])
     ]
     return Answer(
         stood_to=values[upright - 1] if upright else None,
@@ -214,9 +214,9 @@ def ends_in_words(answer: Answer, axis: Axis, *, bare: bool = False) -> tuple[st
 
 def ranges_in_words(ranges: Sequence[Range], axis: Axis, *, bare: bool = False) -> str:
     """Ranges of values: "0.5 to 0.55 g, 0.61 g"; those after the fourth are counted."""
-    shown = [in_words(axis, sorted({*span}), bare=bare) for span in ranges[:MOST_RANGES]]
-    more = len(ranges) - len(shown)
-    return ", ".join(shown) + (f" and {more} more" if more else "")
+    texts = [in_words(axis, sorted({*span}), bare=bare) for span in ranges[:MOST_RANGES]]
+    more = len(ranges) - len(texts)
+    return ", ".join(texts) + (f" and {more} more" if more else "")
 
 
 def table_lines(rows: Iterable[tuple[str, str]], file: str = "") -> Iterator[str]:

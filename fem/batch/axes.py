@@ -76,7 +76,7 @@ class AxisResult(JsonBlock):
     @property
     def axis(self) -> Axis:
         """To name places on it."""
-        following = {key: tuple(some) for key, some in (self.following or {}).items()}
+        following = {key: tuple(values) for key, values in (self.following or {}).items()}
         return Axis(
             key=self.key,
             values=self.values,
@@ -102,8 +102,8 @@ def with_following(axes: Iterable[Axis], point: Mapping[str, Any]) -> dict[str, 
     values = dict(point)
     for axis in axes:
         if axis.following:
-            place = axis.values.index(point[axis.key])
-            values |= {key: some[place] for key, some in axis.following.items() if some[place] is not None}
+            k = axis.values.index(point[axis.key])
+            values |= {key: column[k] for key, column in axis.following.items() if column[k] is not None}
     return values
 
 
@@ -118,8 +118,8 @@ def first_motion(axes: Iterable[Axis]) -> dict[str, Any]:
     if axis is None:
         return {}
     verticals = axis.following.get(VERTICAL_FILE, ())
-    place = next((k for k, name in enumerate(verticals) if name), 0)
-    return with_following([axis], {axis.key: axis.values[place]})
+    first = next((k for k, name in enumerate(verticals) if name), 0)
+    return with_following([axis], {axis.key: axis.values[first]})
 
 
 class AxisError(ValueError):
@@ -157,7 +157,7 @@ def field_of(key: str) -> FieldInfo:
         if owners:
             wanted = " or ".join(f"{owner}.{name}" for owner in owners)
             raise AxisError(f"is no key before the first table; write {wanted!r}")
-        keys = [f"{known}.{one}" for known, model in NAMED.items() for one in known_keys(model)]
+        keys = [f"{known}.{field}" for known, model in NAMED.items() for field in known_keys(model)]
         raise AxisError(f"is no key of a case file{hint(name, [*TOP, *keys])}")
     if table not in NAMED:
         raise AxisError(f"names no table of a case file{hint(table, NAMED)} (known: {', '.join(NAMED)})")

@@ -78,16 +78,16 @@ def compute_many(
         ValueError: jobs is less than 1.
         WorkersLostError: a process died, perhaps for want of memory.
     """
-    asked = list(cases)
-    for case in asked:
+    all_cases = list(cases)
+    for case in all_cases:
         require_case(case)
     jobs = cores() if jobs is None else jobs
     if jobs < 1:
         raise ValueError(f"compute_many: jobs must be at least 1, got {jobs}")
-    runs: dict[int, Run | ValueError] = _objections(asked)
+    runs: dict[int, Run | ValueError] = _objections(all_cases)
     if runs and errors == "raise":
         raise next(error for error in runs.values() if isinstance(error, ValueError))
-    script = unguarded_script() if min(jobs, len(asked)) > 1 else None
+    script = unguarded_script() if min(jobs, len(all_cases)) > 1 else None
     if script is not None:
         unfit, fit = (
             ("is no file that a process can load", "run it from a file")
@@ -100,25 +100,25 @@ def compute_many(
             stacklevel=2,
         )
     first: dict[Hashable, int] = {}
-    for number, case in enumerate(asked):
+    for number, case in enumerate(all_cases):
         first.setdefault(container_key(case), number)
-    order = sorted(range(len(asked)), key=lambda number: first[container_key(asked[number])])
+    order = sorted(range(len(all_cases)), key=lambda number: first[container_key(all_cases[number])])
     wanted = WantedChecks(check_rigid=check_rigid, band=band, margin=margin, inner_forces=inner_forces)
-    work = partial(_compute, wanted, len(asked))
+    work = partial(_compute, wanted, len(all_cases))
     with LocalWorkers(jobs, WORTH_PROCESSES if script is None else IN_THREADS) as workers_of:
         for model in WORTH_PROCESSES:
-            items = [(n, asked[n]) for n in order if asked[n].solver.model == model and n not in runs]
+            items = [(n, all_cases[n]) for n in order if all_cases[n].solver.model == model and n not in runs]
             chunks = hand_out(
                 items, work, workers_of(model, len(items)), at_a_time=1, stop=stop_requested, finish=False
             )
-            for chunk, found in chunks:
-                runs |= dict(zip((number for number, _ in chunk), found, strict=True))
+            for chunk, results in chunks:
+                runs |= dict(zip((number for number, _ in chunk), results, strict=True))
                 if errors == "raise":
-                    for error in (one for one in found if isinstance(one, ValueError)):
+                    for error in (result for result in results if isinstance(result, ValueError)):
                         raise error
     if stop_requested():
         raise KeyboardInterrupt
-    return [runs[number] for number in range(len(asked))]
+    return [runs[number] for number in range(len(all_cases))]
 
 
 def _objections(cases: Sequence[Case]) -> dict[int, Run | ValueError]:

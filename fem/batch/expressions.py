@@ -115,13 +115,13 @@ class _Reader:
         other = WORD.sub(lambda word: word[0].swapcase() if iskeyword(word[0]) else word[0], text)
         begin = len(text) - len(text.lstrip())
         pieces = ["**" if sign == "^" else " " if sign.isspace() else sign for sign in other[begin:]]
-        #: place in the text of each character that Python reads
+        #: position in the text of each character that Python reads
         self._places = [begin + k for k, piece in enumerate(pieces) for _ in piece] + [len(text)]
         try:
             return self._tree(ast.parse("".join(pieces), mode="eval").body)
         except SyntaxError as error:
-            place = min(error.offset or len(self._places), len(self._places)) - 1  # 0: the end
-            raise self._refused(re.split("[.;]", error.msg)[0], self._places[place]) from None
+            position = min(error.offset or len(self._places), len(self._places)) - 1  # 0: the end
+            raise self._refused(re.split("[.;]", error.msg)[0], self._places[position]) from None
         except (RecursionError, MemoryError):
             raise ExpressionError("is nested too deeply") from None
 
@@ -156,9 +156,9 @@ class _Reader:
     def _source(self, node: ast.expr) -> str:
         return self._text[self._begin(node) : self._places[node.end_col_offset or 0]]
 
-    def _refused(self, reason: str, place: int) -> ExpressionError:
+    def _refused(self, reason: str, position: int) -> ExpressionError:
         return ExpressionError(
-            f"= {self._text!r}: {reason} at character {place + 1}; it may hold numbers, keys such as "
+            f"= {self._text!r}: {reason} at character {position + 1}; it may hold numbers, keys such as "
             "contact.mu_static, + - * / ^ ( ) and functions"
         )
 

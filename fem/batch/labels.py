@@ -29,9 +29,9 @@ def axis_name(axis: Axis) -> str:
 
 def axis_label(axis: Axis) -> str:
     """The name of a key with its unit: "peak acceleration [m/s²]"."""
-    shown = axis.unit.replace("s2", "s²").replace("m3", "m³") or "-"
+    unit = axis.unit.replace("s2", "s²").replace("m3", "m³") or "-"
     words = all(isinstance(value, bool | str) for value in axis.values)
-    return axis_name(axis) + ("" if words else f" [{shown}]")
+    return axis_name(axis) + ("" if words else f" [{unit}]")
 
 
 def in_words(axis: Axis, values: Sequence[Any], figures: int = 3, *, bare: bool = False) -> str:

@@ -77,7 +77,7 @@ class LoggedRuns(Generic[ItemT]):
     #: values of the first columns; the others are of the row of an item
     key: Callable[[ItemT], Iterable[Any]]
     note: Callable[[str], None]  #: called with every line of the log, old and new
-    shown: Callable[[Row], Row] = lambda row: row  #: a row as the log holds it
+    logged: Callable[[Row], Row] = lambda row: row  #: a row as the log holds it
     work: ChunkWork | None = None  #: what is done with some items in place of their runs
     number: Callable[[ItemT], int] = number_of  #: of an item, by which it has its shard
 
@@ -113,5 +113,5 @@ class LoggedRuns(Generic[ItemT]):
             log.sync()
 
     def _line(self, item: ItemT, row: Row) -> str:
-        key, shown = tuple(self.key(item)), self.shown(row)
-        return line_of((*key, *(shown[name] for name in [*self.columns][len(key) :])))
+        key, cells = tuple(self.key(item)), self.logged(row)
+        return line_of((*key, *(cells[name] for name in [*self.columns][len(key) :])))

@@ -119,9 +119,9 @@ def read_motion_set(
     pairs: list[FloorMotionPair] = []
     contents: dict[str, str] = {}
     owners: dict[Path, str] = {}
-    for some, facts in zip(keys, _each(runner, "motions read", keys, partial(_read, make)), strict=True):
-        pair = _pair_of(make(some), some, facts)
-        for path in {real_path(pair.case.data_files[f"{one.table}.file"]) for one in pair.components}:
+    for names, facts in zip(keys, _each(runner, "motions read", keys, partial(_read, make)), strict=True):
+        pair = _pair_of(make(names), names, facts)
+        for path in {real_path(pair.case.data_files[f"{part.table}.file"]) for part in pair.components}:
             if path in owners:
                 raise CaseError(
                     f"{MOTION_FILE!r}: {owners[path]!r} and {pair.name!r} are motions of one file, {path.name}; those "
@@ -181,7 +181,7 @@ def spectra_of(
     step = max(component.step_s for motion in motions for component in motion.components)
     periods = log_spaced_periods(step, longest_s=max(LONGEST_PERIOD_S, 10.0 * step))
     work = partial(_spectra, CaseMaker(motions[0].case), periods)
-    by_motion = _each(runner, "spectra", [one.keys for one in motions], work)
+    by_motion = _each(runner, "spectra", [motion.keys for motion in motions], work)
     return periods, {
         component.name: values
         for motion, spectra in zip(motions, by_motion, strict=True)

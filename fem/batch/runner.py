@@ -90,13 +90,13 @@ class Runner:
         def progress() -> str:
             return _progress(what, done, total, failed, time.perf_counter() - began)
 
-        for model, some in sorted(by_model.items(), key=lambda pair: list(CASES_AT_A_TIME).index(pair[0])):
-            pools = self.workers_of(model, len(some))
+        for model, group in sorted(by_model.items(), key=lambda pair: list(CASES_AT_A_TIME).index(pair[0])):
+            pools = self.workers_of(model, len(group))
             chunks = hand_out(
-                some,
+                group,
                 partial(work or run_chunk, make),
                 pools,
-                at_a_time=1 if work else _chunk_size(model, len(some), pools),
+                at_a_time=1 if work else _chunk_size(model, len(group), pools),
                 stop=self.stop,
                 finish=model != "full" and work is None,  # one of these may take an hour
             )
@@ -119,9 +119,9 @@ class Runner:
     ) -> None:
         """How long the cases take, by the first of each model."""
         seconds = 0.0
-        for some in by_model.values():
+        for group in by_model.values():
             with suppress(ValueError):  # a case that cannot be computed is told in its row
-                seconds += len(some) * cost(make(some[0]))
+                seconds += len(group) * cost(make(group[0]))
         if any(by_model.values()):
             self.approve(what, seconds)
         say_expected(self.reporter, what, seconds / self.jobs, self.jobs)
@@ -137,7 +137,7 @@ class Runner:
             KeyboardInterrupt: `stop` ended the work.
         """
         self.reporter.start(0.0)
-        began, place, done = time.perf_counter(), 0, 0
+        began, done = time.perf_counter(), 0
         ready: dict[int, list[FoundT | ValueError]] = {}
         numbered = list(enumerate(items))
         pools = self.workers_of("rigid", len(numbered))
@@ -149,14 +149,13 @@ class Runner:
             stop=self.stop,
         )
         results: list[FoundT] = []
-        for chunk, some in chunks:
-            ready[chunk[0][0]] = some
-            while place in ready:  # in order, so that the first error does not depend on the workers
-                for one in ready.pop(place):
-                    if isinstance(one, ValueError):
-                        raise one
-                    results.append(one)
-                place = len(results)
+        for chunk, outcomes in chunks:
+            ready[chunk[0][0]] = outcomes
+            while len(results) in ready:  # in order, so that the first error does not depend on the workers
+                for outcome in ready.pop(len(results)):
+                    if isinstance(outcome, ValueError):
+                        raise outcome
+                    results.append(outcome)
             done += len(chunk)
             if done < len(numbered):
                 self.reporter.tell(

@@ -43,7 +43,7 @@ class SlurmTable(CaseTable):
 class SlurmWorkers:
     """The pools of a study: jobs once they are approved, before that the cores of this machine."""
 
-    asked: SlurmTable
+    table: SlurmTable
     place: str
     held: ExitStack
     yes: bool  #: approved beforehand
@@ -66,10 +66,10 @@ class SlurmWorkers:
         """
         if self._workers_of is not None:
             return
-        jobs, each = self.asked.jobs, self.asked.cores
+        jobs, each = self.table.jobs, self.table.cores
         told = (
             f"{what}: roughly {seconds / 3600.0:.2g} CPU hours, and what follows from their results; {jobs} jobs of "
-            f"{each} cores for at most {self.asked.walltime} each"
+            f"{each} cores for at most {self.table.walltime} each"
         )
         print(told, file=sys.stderr)
         if not self.yes:
@@ -77,7 +77,7 @@ class SlurmWorkers:
                 raise CaseError(f"--slurm {self.place}: nothing was submitted; --yes submits without asking")
             if self.ask("submit? [y/N] ").strip().lower() not in ("y", "yes"):
                 raise CaseError(f"--slurm {self.place}: nothing was submitted")
-        options = self.asked.model_dump(exclude={"jobs"}, exclude_none=True)
+        options = self.table.model_dump(exclude={"jobs"}, exclude_none=True)
         queue = self.held.enter_context(SLURMCluster(processes=each, n_workers=0, **options))
         queue.scale(jobs=jobs)
         self._workers_of = self.held.enter_context(
@@ -97,8 +97,8 @@ def slurm(path: Path, *, yes: bool) -> Iterator[SlurmWorkers]:
     except (ValueError, RecursionError) as error:
         raise CaseError(f"--slurm {path}: cannot be read as TOML ({error})") from None
     try:
-        asked = read_as("", SlurmTable, content)
+        table = read_as("", SlurmTable, content)
     except CaseError as error:
         raise CaseError("\n".join(f"{path}: {line}" for line in str(error).splitlines())) from None
     with ExitStack() as held:
-        yield SlurmWorkers(asked=asked, place=str(path), held=held, yes=yes)
+        yield SlurmWorkers(table=table, place=str(path), held=held, yes=yes)

@@ -192,6 +192,6 @@ def runner_of(**options: Unpack[StudyOptions]) -> Iterator[Runner]:
         )
 
 
-def hash_of(asked: Any) -> str:
+def hash_of(request: Any) -> str:
     """A hash of what is asked: equal for requests that are equal as JSON."""
-    return hashlib.sha256(json.dumps(asked, sort_keys=True, default=repr).encode()).hexdigest()
+    return hashlib.sha256(json.dumps(request, sort_keys=True, default=repr).encode()).hexdigest()

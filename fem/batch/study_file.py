@@ -77,7 +77,7 @@ def flat(name: str, content: Mapping[str, Any]) -> dict[str, Any]:
             {"from", "to", "count"} & value.keys() or isinstance(value.get("scale"), str)
         )
         if isinstance(value, dict) and not is_range:
-            inner = {f"{key}.{one}": what for one, what in value.items()}
+            inner = {f"{key}.{part}": what for part, what in value.items()}
         else:
             inner = {key: value}
         for dotted, what in inner.items():

@@ -198,7 +198,7 @@ def _signals_held() -> Iterator[None]:
 def unguarded_script() -> str | None:
     """The script that is calling outside an `if` on `__name__`: a process would load it, and start it again.
 
-    None where a process may be started; also of a notebook, whose processes load nothing. A script that Python reads
+    None where a process may be started; also for a notebook, whose processes load nothing. A script that Python reads
     from its standard input, which no process can load, is "<stdin>".
     """
     frame = sys._getframe()
@@ -214,7 +214,7 @@ def unguarded_script() -> str | None:
         node
         for node in ast.walk(ast.parse(source))
         if isinstance(node, ast.If | ast.IfExp)
-        and any(isinstance(one, ast.Name) and one.id == "__name__" for one in ast.walk(node.test))
+        and any(isinstance(name, ast.Name) and name.id == "__name__" for name in ast.walk(node.test))
     ]
     inside = any(node.lineno <= frame.f_lineno <= (node.end_lineno or 0) for node in guards)
     return None if inside else os.path.basename(path)

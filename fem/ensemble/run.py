@@ -149,7 +149,7 @@ def _compute(
         model_of=lambda draw: ensemble.base.solver.model,
         key=draws.key,
         note=draws.note,
-        shown=draw_row,
+        logged=draw_row,
         number=lambda draw: draw.cell * ensemble.draws + draw.number,
     ).run(runner, iter(draws.missing, []))
     complete = (draws.codes != Ending.UNKNOWN).all(axis=1)
