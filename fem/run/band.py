@@ -34,14 +34,14 @@ class Plan:
     left_out: tuple[InputChange, ...]  #: for which there is no time
 
 
-def wants_band(asked: bool | None, case: Case, result: RunResult) -> bool:
-    """Whether a finished run is to have a band: as asked, else unless it rests far below the static limits.
+def wants_band(choice: bool | None, case: Case, result: RunResult) -> bool:
+    """Whether a finished run gets a band: as chosen, else unless it rests far below the static limits.
 
-    A run of the `full` model has one only when asked: it would take several times as long. One that is not valid has
-    none otherwise either.
+    A run of the `full` model, whose band would take several times as long as the run, and a run that is not valid get
+    one only on request.
     """
-    if asked is not None:
-        return asked
+    if choice is not None:
+        return choice
     outcome = (result.verdict or Verdict()).outcome
     if outcome in (None, Outcome.INVALID):
         return False
@@ -74,8 +74,8 @@ def plan_of(model: Model, result: RunResult) -> Plan:
     bears = case.support.kind != "corners" or case.foot is not None
     soft = bears and low <= (own.utilisation_overturning or 0.0) <= high
     floor = (stiff_floor(case, penalty),) if soft else ()
-    one, pairs, draws = changes_of(case, penalty), pairs_of(case), draws_of(case, penalty)
-    ordered = (*floor, *largest_first(one), *pairs, *draws)
+    singles, pairs, draws = changes_of(case, penalty), pairs_of(case), draws_of(case, penalty)
+    ordered = (*floor, *largest_first(singles), *pairs, *draws)
     cost = cost_of(result.numerics or Numerics())
     most = LEAST_MEMBERS if case.solver.model == "full" else max(LEAST_MEMBERS, int(BUDGET_S / cost))
     return Plan(changes=ordered[:most], left_out=ordered[most:])

@@ -120,8 +120,8 @@ def run_changes(
         built=[(case, model.container)],
         one_at_a_time=Lock(),
     )
-    kept = {key_of(one.values): one for one in (kept_in.read() if kept_in else ())}
-    by_key = {key_of(one.values): one for one in known} | kept
+    kept = {key_of(run.values): run for run in (kept_in.read() if kept_in else ())}
+    by_key = {key_of(run.values): run for run in known} | kept
     one_at_a_time, broken = Lock(), Event()
     stored, unstored = time.monotonic(), False
 
@@ -136,10 +136,10 @@ def run_changes(
         if halted():
             return _without_outcome(change, "interrupted")
         try:
-            one = _run_changed(model, change, shared, halted)
+            run = _run_changed(model, change, shared, halted)
             with one_at_a_time:
-                if one.status != "interrupted":
-                    by_key[key] = kept[key] = one
+                if run.status != "interrupted":
+                    by_key[key] = kept[key] = run
                     unstored = True
                     if kept_in and (not short or time.monotonic() - stored > STORED_S):
                         kept_in.store(list(kept.values()))
@@ -147,7 +147,7 @@ def run_changes(
         except BaseException:
             broken.set()  # stops the others
             raise
-        return one
+        return run
 
     with ThreadPoolExecutor(max_workers=workers_for(model, len(changes))) as pool:
         runs = list(pool.map(run_of, changes))

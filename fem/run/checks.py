@@ -106,9 +106,9 @@ def lacks_band(result: RunResult, case: Case, wanted: WantedChecks) -> bool:
     return verdict is not None and wants_band(wanted.band, case, result) and verdict.band is None
 
 
-def wants_rigid_check(asked: bool, case: Case) -> bool:
-    """Free rocking always has the check, other runs where asked."""
-    return asked or (case.motion.kind == "none" and case.initial.rotation_rad != 0.0)
+def wants_rigid_check(choice: bool, case: Case) -> bool:
+    """Free rocking always has the check, other runs on request."""
+    return choice or (case.motion.kind == "none" and case.initial.rotation_rad != 0.0)
 
 
 def _lacks_rigid_check(result: RunResult, case: Case, wanted: WantedChecks) -> bool:

@@ -35,15 +35,15 @@ def of_a_record_s(case: Case) -> float:
     return OF_A_RUN[case.solver.model] + of_a_second(case) * USUAL_RECORD_S
 
 
-def of_its_band_s(one: float) -> float:
-    """Processor time of band and margin of a run that takes `one` [s]."""
-    return min(BAND_RUNS * one, MOST_OF_BAND_S)
+def of_its_band_s(run_s: float) -> float:
+    """Processor time of band and margin of a run that takes `run_s` [s]."""
+    return min(BAND_RUNS * run_s, MOST_OF_BAND_S)
 
 
 def with_band_s(case: Case, cores: int = 1) -> float:
     """Wall time of a run with its band and margin, which are shared by the cores [s]."""
-    one = expected_s(case)
-    return one + of_its_band_s(one) / cores
+    run_s = expected_s(case)
+    return run_s + of_its_band_s(run_s) / cores
 
 
 def expected_words(seconds: float, cores: int = 1) -> str:

@@ -46,13 +46,13 @@ class LinkCells:
         links = drawn_links(self._case, _broken(run, len(self._case.links)))
         (held, other), nothing = np.repeat(self._held, self._count, axis=0).T, np.zeros(self._share.size)
         floor = np.array((frame.floor_displacement, frame.floor_lift))
-        place = np.where(other[:, None] < 0, floor, frame.displacement[other])
-        moved = place + self._share * (frame.displacement[held] - place)
+        far_end = np.where(other[:, None] < 0, floor, frame.displacement[other])
+        moved = far_end + self._share * (frame.displacement[held] - far_end)
         first = len(frame.displacement)
         for k, link in enumerate(links):
             if link.until <= frame.time:
                 own = slice(k * self._count, (k + 1) * self._count)
-                moved[own] = place[own] + (
+                moved[own] = far_end[own] + (
                     (link.outer, link.anchor or 0.0) - self.mesh["points"][first:][own]
                 )
         return replace(

@@ -54,20 +54,20 @@ class StoppedError(Exception):
     """A request to stop was heard."""
 
 
-def wants_margin(asked: bool | None, case: Case, result: RunResult) -> bool:
-    """Whether a finished run is to have a margin: as asked, else where a scan takes seconds; never without a motion.
+def wants_margin(choice: bool | None, case: Case, result: RunResult) -> bool:
+    """Whether a finished run gets a margin: as chosen, else where a scan takes seconds; never without a motion.
 
     A run that is not valid has none.
     """
     outcome = (result.verdict or Verdict()).outcome
-    if asked is False or outcome in (None, Outcome.INVALID) or not scaled_motion(case, 1.0):
+    if choice is False or outcome in (None, Outcome.INVALID) or not scaled_motion(case, 1.0):
         return False
     cost = MOST_RUNS * cost_of(result.numerics or Numerics())
-    return bool(asked) or (case.solver.model != "full" and cost <= SCAN_S)
+    return bool(choice) or (case.solver.model != "full" and cost <= SCAN_S)
 
 
 def margin_of(model: Model, result: RunResult, *, drawn: bool, stop: Callable[[], bool]) -> Margin | None:
-    """Find the least factor on the motion at which a container overturns, and what is not known of it.
+    """Find the least factor on the motion at which a container overturns, and how uncertain it is.
 
     Args:
         model: of the run; all trials have its container.
@@ -87,7 +87,7 @@ def margin_of(model: Model, result: RunResult, *, drawn: bool, stop: Callable[[]
         with ThreadPoolExecutor(max_workers=workers_for(model, MOST_SCANNED)) as pool:
             known = _searched(own, least, most, trial, pool)
             least = min(known)
-            first, ended = _first(known), [one for one in known if known[one] in SAID]
+            first, ended = _first(known), [factor for factor in known if known[factor] in SAID]
             bare = _bare(model, least, most, pool, stop)
             ends: list[float | None] = []
             lowest = None
@@ -95,8 +95,8 @@ def margin_of(model: Model, result: RunResult, *, drawn: bool, stop: Callable[[]
                 start = first.high if first else max(ended)
                 changes = draws_of(model.case, model.penalty, _draws(model.case, result))
                 trials = [_trial(model, change.values, stop) for change in changes]
-                near = [pool.submit(_near, one, start, least, most) for one in trials]
-                ends = [one.result() for one in near]
+                near = [pool.submit(_near, trial, start, least, most) for trial in trials]
+                ends = [future.result() for future in near]
                 by_band = 1.0 if own == Ending.STANDING and _overturns_in_band(verdict) else None
                 lowest = _lowest(pool, trials, [*ends, first.high if first else None, by_band], least)
     except StoppedError:
@@ -116,7 +116,7 @@ def margin_of(model: Model, result: RunResult, *, drawn: bool, stop: Callable[[]
         least_tried=min(ended),
         largest_tried=max(ended),
         runs=len(ended) - 1,
-        destroyed_from=min((one for one in known if known[one] == Ending.INVALID), default=None),
+        destroyed_from=min((factor for factor in known if known[factor] == Ending.INVALID), default=None),
         factor_without_links=None if bare is None else bare[0],
         without_links_tried_to=None if bare is None else bare[1],
     )
@@ -144,7 +144,7 @@ def _bare(
         return None
     trial = _trial(bare, {}, stop)
     known = _searched(trial(1.0), least, most, trial, pool)
-    first, ended = _first(known), [one for one in known if known[one] in SAID]
+    first, ended = _first(known), [factor for factor in known if known[factor] in SAID]
     return (None if first is None else first.high, max(ended)) if ended else None
 
 
@@ -154,7 +154,7 @@ def _least(model: Model) -> float:
     if case.initial.is_pushed:
         return LEAST
     row = zip(case.row, model.container.row, strict=True)
-    rules = [model.static.ruling, *(static_checks_of(one, alone.mesh, *peaks).ruling for one, alone in row)]
+    rules = [model.static.ruling, *(static_checks_of(case, alone.mesh, *peaks).ruling for case, alone in row)]
     uses = [rule.overturning.utilisation for rule in rules]
     if [
         *case.stop,
@@ -162,7 +162,7 @@ def _least(model: Model) -> float:
         *(tie for tie in case.tie if tie.to == "wall"),
     ]:  # what slides may fall over it
         uses += [rule.sliding.utilisation or math.inf for rule in rules]
-    use = max((one for one in uses if one is not None), default=0.0)
+    use = max((use for use in uses if use is not None), default=0.0)
     return LEAST if use <= 0.0 else min(LARGEST, max(LEAST, SURELY_AT_REST / use))
 
 
@@ -240,8 +240,8 @@ def _narrow(known: dict[float, Ending], trial: Trial) -> None:
 
 def _changes(known: dict[float, Ending]) -> list[Change]:
     """Neighbouring factors of which one stands and the other overturns; others say nothing."""
-    said = {factor: ending.word for factor, ending in known.items() if ending in SAID}
-    return changes_of(said)
+    words = {factor: ending.word for factor, ending in known.items() if ending in SAID}
+    return changes_of(words)
 
 
 def _first(known: dict[float, Ending]) -> Change | None:
@@ -299,7 +299,7 @@ def _lowest(
     low = min(known, default=None)
     while trials and low is not None and low > least:
         below = max(least, low / DRAWN_STEP)
-        if Ending.OVERTURNED not in pool.map(lambda one, factor=below: one(factor), trials):
+        if Ending.OVERTURNED not in pool.map(lambda trial, factor=below: trial(factor), trials):
             break
         low = below
     return low

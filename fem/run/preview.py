@@ -76,8 +76,8 @@ class Preview:
         stiffness = float(springs.sum())
         require_stiff_contact(case, mesh, stiffness)
         require_loss(case, self.static)
-        for one in case.row[1:]:
-            require_loss(one, static_checks_of(one, build_container(one), 0.0))
+        for neighbour in case.row[1:]:
+            require_loss(neighbour, static_checks_of(neighbour, build_container(neighbour), 0.0))
         require_bearing(case, mesh)
         require_room(case, mesh)
         return {
@@ -114,8 +114,8 @@ class Preview:
         """What to keep in mind when the run is read."""
         case, static = self.case, self.static
         kicks = [
-            one.amplitude * one.angular_frequency * abs(math.cos(one.phase_rad))
-            for one in (case.motion, case.vertical)
+            motion.amplitude * motion.angular_frequency * abs(math.cos(motion.phase_rad))
+            for motion in (case.motion, case.vertical)
         ]
         upward = f" along x and {kicks[1]:.3g} m/s vertically" if case.vertical.kind == "harmonic" else ""
         notes = [
@@ -168,7 +168,7 @@ class Preview:
             "motion": self.motion.to_json(),
             "floor": self.floor.to_json(),
             "static": self.static.to_result().to_json(),
-            **({"tied": [one.to_json() for one in self.tied]} if self.case.tie else {}),
+            **({"tied": [tie.to_json() for tie in self.tied]} if self.case.tie else {}),
             "contact_restitution": contact_restitution(self.case, self.static),
             "numerics": self.numerics,
             "notes": self.notes,

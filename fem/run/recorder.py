@@ -155,15 +155,15 @@ class Recorder:
     def _columns_of_row(self, columns: Mapping[str, FloatArray], force: FloatArray) -> dict[str, FloatArray]:
         """The columns of neighbours, of which the stepper has those of further boxes in frames of their own."""
         container, case = self._model.container, self._model.case
-        x = places_of(case, [one.mesh.width for one in container.row]).x if container.row else ()
-        found: dict[str, FloatArray] = {}
+        x = places_of(case, [neighbour.mesh.width for neighbour in container.row]).x if container.row else ()
+        row_columns: dict[str, FloatArray] = {}
         for number in NEIGHBOURS.numbers(case):
             begin = 2 * len(x) + POINTS_OF_GAP * (number - 1)
             values = [columns[name] for name in BOXES.names((number + 1,))]
             values[3] = values[3] + x[number]
             side = force[:, begin : begin + POINTS_OF_GAP, 1].sum(axis=1)
-            found |= zip(NEIGHBOURS.names((number,)), [*values, side], strict=True)
-        return found
+            row_columns |= zip(NEIGHBOURS.names((number,)), [*values, side], strict=True)
+        return row_columns
 
     def _forces_in_joints(self, samples: Samples, first: int, count: int) -> FloatArray:
         """Of new samples (count, 3 J): means since the sample before; the first of a run has its own acceleration."""

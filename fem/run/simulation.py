@@ -209,8 +209,8 @@ def crushing_failure(model: Model) -> str | None:
     body = model.body
     bodies = body.boxes if isinstance(body, FullStack) else (body,) if isinstance(body, FullBody) else ()
     ratio, first = math.inf, 0
-    for one in bodies:
-        elements = one.elements
+    for box in bodies:
+        elements = box.elements
         displacement = positions[first : first + len(elements.nodes)] - elements.nodes
         ratio = min(ratio, least_volume_ratio(elements.displacement_gradient(displacement)))
         first += len(elements.nodes)
@@ -233,20 +233,20 @@ def stepping_failure(model: Model, residual: float) -> str:
             f"{int(clock.rejected)} rejected, the smallest of {smallest:.1g} s; try {softer}, "
             "contact.weakening_m > 0, or a larger solver.energy_tolerance"
         )
-    place = f"step {int(clock.steps) + 1}, t = {float(clock.time):.6g} s: "
+    prefix = f"step {int(clock.steps) + 1}, t = {float(clock.time):.6g} s: "
     smallest_tried = f"at the smallest step ({control.smallest_step:.1g} s)"
     if not math.isfinite(residual):
         return (
-            f"{place}the trial solution is not finite, even {smallest_tried}; try a smaller solver.step_s, "
+            f"{prefix}the trial solution is not finite, even {smallest_tried}; try a smaller solver.step_s, "
             "a larger container.youngs_modulus_Pa, or a weaker motion"
         )
     if residual <= BALANCED * control.mass * control.gravity:
         return (
-            f"{place}the iteration between container and floor did not converge {smallest_tried}, although "
+            f"{prefix}the iteration between container and floor did not converge {smallest_tried}, although "
             f"the contact forces balance within {residual:.2g} N; try a smaller solver.step_s, a larger "
             f"container.youngs_modulus_Pa, or {softer}"
         )
     return (
-        f"{place}the contact forces are out of balance by {residual:.2g} N after the last iteration {smallest_tried}; "
+        f"{prefix}the contact forces are out of balance by {residual:.2g} N after the last iteration {smallest_tried}; "
         f"try {softer}, contact.weakening_m > 0, or a smaller solver.step_s"
     )

@@ -58,8 +58,8 @@ def chosen_values(case: Case, mesh: ContainerMesh, motions: tuple[BaseMotion, Ba
         chosen["solver.duration_s"] = longest_time(case)
     if case.solver.step_s == "auto":
         row = case.row or (case,)
-        meshes = [mesh, *(build_container(one) for one in row[1:])]
-        each = (static_checks_of(one, own, 0.0) for one, own in zip(row, meshes, strict=True))
+        meshes = [mesh, *(build_container(container) for container in row[1:])]
+        each = (static_checks_of(container, own, 0.0) for container, own in zip(row, meshes, strict=True))
         fastest = max(static.frequency_parameter for static in each)
         chosen["solver.step_s"], _ = largest_step_of(case, fastest, longest, *motions)
     if case.output.fields_s == "auto":
