@@ -50,21 +50,21 @@ def hall_report(
         folder: of the hall.
         signature: author, checker, revision.
         result: what its marking file is to hold; default: what it holds.
-        brief: the answer, the plan, the tags and the weakest alone.
+        brief: only the answer, the plan, the tags and the weakest.
 
     Raises:
-        FolderError: it is no folder of a hall, it is damaged, or it is not finished.
+        FolderError: it is not the folder of a hall, it is damaged, or it is not finished.
         CaseError: the base case in it cannot be read.
     """
     info = result or read_study(folder, HALL, HallResult)
     case = load_case(str(folder / "base.toml"), allow_outside=True)
     ranked, refused = info.ranked, info.not_computed
-    shown = weakest_table(ranked, BRIEFLY if brief else html.MOST_ROWS, linked=not brief)
+    table = weakest_table(ranked, BRIEFLY if brief else html.MOST_ROWS, linked=not brief)
     sections = [
         found_section(info),
         html.section("In plan", "plan", *studies.drawings(folder, [PICTURE], "batch")),
         html.section("By tag", "tags", *([tags_table(info)] if info.tags else [])),
-        html.section("The weakest first", "weakest", shown, html.Note(AT_SITE if info.site else MARGIN)),
+        html.section("The weakest first", "weakest", table, html.Note(AT_SITE if info.site else MARGIN)),
         html.section("Refused rows", "refused", *([refused_table(refused)] if refused else [])),
     ]
     if not brief:

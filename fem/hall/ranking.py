@@ -115,8 +115,8 @@ class HallRuns:
         for number in self.by_container:
             case = self.hall.cases(self.hall.item(number, self.governing(number)))
             peaks = peaks_in_run(case, *build_motions(case))
-            found = static_checks_of(case, build_container(case), *peaks).ruling.to_result()
-            self.static[number] = {name: getattr(found, name) for name in STATIC}
+            ruling = static_checks_of(case, build_container(case), *peaks).ruling.to_result()
+            self.static[number] = {name: getattr(ruling, name) for name in STATIC}
 
     def weakest_first(self, *, margins: bool = True) -> list[int]:
         """The containers in the order of their weakness.

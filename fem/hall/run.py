@@ -142,12 +142,12 @@ def _compute(hall: Hall, begun: HallResult, results: ResultFolder, runner: Runne
     results.write_text(RUNS, table_of_lines(RUN_COLUMNS, runs.lines()))
     checked = sorted(runs.checked.items())
     results.write_text(CHECKS, table_text(CHECK_COLUMNS, ([k, *check.values()] for k, check in checked)))
-    found = {number: runs.found(number) for number in runs.by_container}
+    by_container = {number: runs.found(number) for number in runs.by_container}
 
     def command(row: HallRow, number: int) -> str:
         return hall.command(row, runs.governing(number))
 
-    return written(results, with_table(begun, hall.inventory, found, runs.weakest_first(), command))
+    return written(results, with_table(begun, hall.inventory, by_container, runs.weakest_first(), command))
 
 
 def written(results: ResultFolder, result: HallResult) -> HallResult:

@@ -166,7 +166,7 @@ class _AtSite:
         rows = [self.rows[number] for number in numbers]
         results.write_text(SITES, table_of_rows(COLUMNS, rows))
         pages = [folder / "report.html" for folder in folders]
-        found = {
+        by_container = {
             number: {**row, "page": page.as_posix() if (results.path / page).is_file() else None}
             for number, row, page in zip(numbers, rows, pages, strict=True)
         }
@@ -175,9 +175,9 @@ class _AtSite:
         def command(row: HallRow, number: int) -> str:
             return shlex.join([*ASSESS, str(results.path / folders[number] / "site.toml"), *flags])
 
-        order = sorted(numbers, key=lambda number: _weakness(found[number]))
+        order = sorted(numbers, key=lambda number: _weakness(by_container[number]))
         begun = replace(begun, runs=len(numbers))
-        return written(results, with_table(begun, inventory, found, order, command))
+        return written(results, with_table(begun, inventory, by_container, order, command))
 
     def _note(self, line: str) -> None:
         """Add a line of the log."""

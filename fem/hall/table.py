@@ -18,7 +18,7 @@ WORDS = {ending: word for word, ending in COUNTED.items()}
 def with_table(
     begun: HallResult,
     inventory: Inventory,
-    found: Mapping[int, Mapping[str, Any]],
+    by_container: Mapping[int, Mapping[str, Any]],
     order: Sequence[int],
     command: Callable[[HallRow, int], str],
 ) -> HallResult:
@@ -27,18 +27,18 @@ def with_table(
     Args:
         begun: without these.
         inventory: the rows, checked.
-        found: results of each container, by column.
+        by_container: results of each container, by column.
         order: of the containers, the weakest first.
         command: of a row, whose container this is.
     """
-    table = tuple(_rows(inventory, found, order, command))
+    table = tuple(_rows(inventory, by_container, order, command))
     outcomes, tags = Counter[str](), defaultdict[str, list[dict[str, Any]]](list)
     for row in table:
         outcomes[_counted(row, begun)[0]] += row["count"]
         tags[row["tag"]].append(row)
     result = replace(
         begun,
-        status=FAILED if {one["status"] for one in found.values()} == {FAILED} else COMPLETED,
+        status=FAILED if {result["status"] for result in by_container.values()} == {FAILED} else COMPLETED,
         outcomes=dict(sorted(outcomes.items())),
         tags=tuple(_tag(tag, rows, begun) for tag, rows in sorted(tags.items())) if {*tags} != {""} else (),
         table=table,
@@ -48,7 +48,7 @@ def with_table(
 
 def _rows(
     inventory: Inventory,
-    found: Mapping[int, Mapping[str, Any]],
+    by_container: Mapping[int, Mapping[str, Any]],
     order: Sequence[int],
     command: Callable[[HallRow, int], str],
 ) -> Iterator[dict[str, Any]]:
@@ -56,7 +56,7 @@ def _rows(
     for number, row in enumerate(inventory.rows, start=1):
         results: Mapping[str, Any] = {"status": REFUSED, "reason": row.reason}
         if row.container is not None:
-            results = {**found[row.container], "rank": ranks[row.container]}
+            results = {**by_container[row.container], "rank": ranks[row.container]}
         yield {
             "row": number,
             "line": row.line,
