@@ -177,10 +177,10 @@ def figure_columns(
         value: that of an item by the key.
     """
 
-    def column(key: str, shown: Shown) -> Column[Any]:
-        return Column(figure_head(shown), lambda item: text(shown, value(item, key)), NUMBER)
+    def column(key: str, figure: Shown) -> Column[Any]:
+        return Column(figure_head(figure), lambda item: text(figure, value(item, key)), NUMBER)
 
-    return [column(key, shown) for key, shown in figures.items()]
+    return [column(key, figure) for key, figure in figures.items()]
 
 
 def table_of(

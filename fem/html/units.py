@@ -48,14 +48,14 @@ def millimetres(value: float | None) -> str:
     return _in_unit(value, MILLIMETRES)
 
 
-def figure_cell(shown: Shown, value: float | None) -> str:
+def figure_cell(figure: Shown, value: float | None) -> str:
     """A figure of a run in a column with its `figure_head`."""
-    return ratio(value) if shown.unit is RATIO else _in_unit(value, shown.unit)
+    return ratio(value) if figure.unit is RATIO else _in_unit(value, figure.unit)
 
 
-def figure_head(shown: Shown) -> str:
+def figure_head(figure: Shown) -> str:
     """Over a column of figures of runs."""
-    return typeset(f"{shown.head or shown.words} [{shown.unit.name}]").removesuffix(" []")
+    return typeset(f"{figure.head or figure.words} [{figure.unit.name}]").removesuffix(" []")
 
 
 def _in_unit(value: float | None, unit: DisplayUnit) -> str:

@@ -44,8 +44,8 @@ class DisplayUnit:
             return ""
         kept = figures_of(reach, figures or self.figures)
         low, high = (self.in_figures(end, kept) for end in reach or (value, value))
-        shown = self.in_figures(value, kept)
-        words = shown if low == high else f"{shown} ({low} to {high})"
+        number = self.in_figures(value, kept)
+        words = number if low == high else f"{number} ({low} to {high})"
         return words if bare else f"{words} {self.name}".rstrip()
 
     def range_text(self, reach: Reach | None) -> str:
@@ -80,13 +80,13 @@ def in_figures(value: float, figures: int, factor: float = 1.0, least: float = 0
     """A number with so many significant figures, without an exponent where it has at most six digits."""
     if 0.0 < abs(value) < least:
         return f"{under} {factor * least:g}"
-    shown = in_unit(value, factor)
-    if shown == 0.0:
+    number = in_unit(value, factor)
+    if number == 0.0:
         return "0"
-    digits = figures - 1 - math.floor(math.log10(abs(float(f"{shown:.{figures - 1}e}"))))
-    if not -4 <= digits - figures + 1 <= 5 and abs(shown) < 1e-4:
-        return f"{shown:.{figures - 1}e}"
-    words = f"{round(shown, digits):.{max(digits, 0)}f}"
+    digits = figures - 1 - math.floor(math.log10(abs(float(f"{number:.{figures - 1}e}"))))
+    if not -4 <= digits - figures + 1 <= 5 and abs(number) < 1e-4:
+        return f"{number:.{figures - 1}e}"
+    words = f"{round(number, digits):.{max(digits, 0)}f}"
     return words.rstrip("0").rstrip(".") if figures == MANY and "." in words else words
 
 
@@ -99,8 +99,8 @@ def visible_number(value: float | None, factor: float = 1.0, form: str = ".4g") 
     """A number in a table on a screen; 0 where it is rounding, a hyphen where there is none."""
     if value is None:
         return "-"
-    shown = in_unit(value, factor)
-    return "0" if abs(shown) < INVISIBLE else format(shown, form)
+    number = in_unit(value, factor)
+    return "0" if abs(number) < INVISIBLE else format(number, form)
 
 
 COUNT, WHOLE, SECONDS = DisplayUnit(), DisplayUnit(whole=True), DisplayUnit(name="s")
