@@ -87,11 +87,11 @@ class ValidationResult:
             off = [finding for finding in stated if finding.telling]
             parts.append(f"{len(stated)} are stated and not judged")
             if off:
-                some = "; ".join(
+                gaps = "; ".join(
                     f"{finding.what}: measured {finding.reference}, predicted {finding.value}"
                     for finding in off
                 )
-                parts[-1] += f", of which {len(off)} tell most ({some})"
+                parts[-1] += f", of which {len(off)} tell most ({gaps})"
         if skipped := [experiment.title for experiment in self.experiments if experiment.not_computed]:
             parts.append(
                 f"{len(skipped)} of {len(self.experiments)} experiments not computed ({', '.join(skipped)})"

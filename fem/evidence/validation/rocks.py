@@ -75,32 +75,32 @@ def compute(folder: Path | None) -> Experiment:
         runner = Runner(workers_of=workers_of)
         count = len(series.tests)
         pairs = [(block, number) for block in tried for number in range(count)]
-        found = runner.each("runs of blocks on the table", pairs, partial(falls, series))
-    rows = [found[first : first + count] for first in range(0, len(found), count)]
+        outcomes = runner.each("runs of blocks on the table", pairs, partial(falls, series))
+    rows = [outcomes[first : first + count] for first in range(0, len(outcomes), count)]
     possible = [block for block, row in zip(tried, rows, strict=True) if None not in row]
-    said = with_neighbours(possible, np.array([row for row in rows if None not in row], dtype=bool))
+    shares = with_neighbours(possible, np.array([row for row in rows if None not in row], dtype=bool))
     sharp = np.array([block.uplift == 0.0 for block in possible])
     records = np.unique([test.record for test in series.tests], return_inverse=True)[1]
     every = np.ones(len(series.tests), dtype=bool)
     fitted = np.array([test.fitted for test in series.tests])
-    asked = ~fitted if series.set_apart else every
+    targets = ~fitted if series.set_apart else every
     fits, findings, figures, measures = [], [], [], _measures(series.tests)
     others = []
     for number, name in enumerate(series.specimens):
         overturned = np.array([test.overturned[number] for test in series.tests])
-        vote = Vote(falls={SHARP: said[sharp], CAMBERED: said}, overturned=overturned, records=records)
-        votes = vote.predicted(fitted, asked) if series.set_apart else vote.by_record(every, vote.predicted)
-        fits.append(f"{name}: {_described(vote, possible, sharp, fitted)}")
-        findings += _findings(name, votes, overturned[asked], judged=not series.own)
-        tests = [test for test, one in zip(series.tests, asked, strict=True) if one]
-        figures.append(drawings.shaken(name, tests, probabilities(votes), overturned[asked]))
-        others.append(_scores(series, number, fitted, asked, vote, measures))
+        vote = Vote(falls={SHARP: shares[sharp], CAMBERED: shares}, overturned=overturned, records=records)
+        votes = vote.predicted(fitted, targets) if series.set_apart else vote.by_record(every, vote.predicted)
+        fits.append(f"{name}: {_described(vote, possible, fitted)}")
+        findings += _findings(name, votes, overturned[targets], judged=not series.own)
+        tests = [test for test, target in zip(series.tests, targets, strict=True) if target]
+        figures.append(drawings.shaken(name, tests, probabilities(votes), overturned[targets]))
+        others.append(_scores(series, number, fitted, targets, vote, measures))
     return Experiment(
         name=DESCRIBED.name,
         title=series.title,
         source=series.source,
         licence=series.licence,
-        tests=int(asked.sum()),
+        tests=int(targets.sum()),
         fitted=f"{DESCRIBED.fitted}, on {'the tests set apart' if series.set_apart else 'all other records'}; on "
         f"all that may be used: {'; '.join(fits)}",
         findings=tuple(findings),
@@ -176,14 +176,14 @@ def _block(body: shake_tests.Body, block: Block) -> tuple[Case, Container]:
     return case, container
 
 
-def _described(vote: Vote, tried: Sequence[Block], sharp: BoolArray, fitted: BoolArray) -> str:
+def _described(vote: Vote, tried: Sequence[Block], fitted: BoolArray) -> str:
     """The family that was chosen, and means of its blocks by their weights."""
     family = vote.family(fitted)
-    some = [block for block, one in zip(tried, sharp, strict=True) if one or family == CAMBERED]
+    members = [block for block in tried if family == CAMBERED or block.uplift == 0.0]
     weights = vote.weights(family, fitted)
 
     def mean(value: Callable[[Block], float]) -> float:
-        return float(weights @ np.array([value(block) for block in some]))
+        return float(weights @ np.array([value(block) for block in members]))
 
     angle = mean(lambda block: block.angle)
     scatter = math.sqrt(mean(lambda block: (block.angle - angle) ** 2))
@@ -211,8 +211,8 @@ def _findings(name: str, votes: FloatArray, overturned: BoolArray, *, judged: bo
         met: bool = True,
         note: str = "",
     ) -> Finding:
-        one = prediction(f"{name}: {what}", value, reference=reference, note=note)
-        return replace(one, criterion=criterion, met=met) if criterion and judged else one
+        finding = prediction(f"{name}: {what}", value, reference=reference, note=note)
+        return replace(finding, criterion=criterion, met=met) if criterion and judged else finding
 
     return [
         stated(
@@ -246,12 +246,12 @@ def _findings(name: str, votes: FloatArray, overturned: BoolArray, *, judged: bo
         ),
         *(
             stated(
-                f"overturned of {int(some.sum())} with a probability from {low:g} to {high:g}",
-                round(float(chances[some].sum()), 1),
-                int(overturned[some].sum()),
+                f"overturned of {int(band.sum())} with a probability from {low:g} to {high:g}",
+                round(float(chances[band].sum()), 1),
+                int(overturned[band].sum()),
             )
             for low, high in ((0.0, 0.25), (0.25, 0.5), (0.5, 0.75), (0.75, 1.0))
-            if (some := (chances >= low) & ((chances < high) | (high == 1.0))).any()
+            if (band := (chances >= low) & ((chances < high) | (high == 1.0))).any()
         ),
     ]
 
@@ -275,27 +275,27 @@ def _scores(
     series: shake_tests.Series,
     number: int,
     fitted: BoolArray,
-    asked: BoolArray,
+    targets: BoolArray,
     vote: Vote,
     measures: dict[str, list[FloatArray]],
 ) -> dict[str, float]:
     """Share of the outcomes of a specimen that other predictors say, each fitted as the blocks are."""
     overturned = vote.overturned
 
-    def by_measures(some: list[FloatArray], fit: BoolArray, wanted: BoolArray) -> FloatArray:
-        return np.asarray(by_threshold(some, overturned, fit)[wanted], dtype=np.float64)
+    def by_measures(values: list[FloatArray], fit: BoolArray, wanted: BoolArray) -> FloatArray:
+        return np.asarray(by_threshold(values, overturned, fit)[wanted], dtype=np.float64)
 
-    scores = {"always stands": np.zeros(int(asked.sum()))}
-    for name, some in measures.items():
-        says = partial(by_measures, some)
-        scores[name] = says(fitted, asked) if series.set_apart else vote.by_record(asked, says)
-    every = np.array([test.overturned for test in series.tests])[asked]
+    scores = {"always stands": np.zeros(int(targets.sum()))}
+    for name, values in measures.items():
+        says = partial(by_measures, values)
+        scores[name] = says(fitted, targets) if series.set_apart else vote.by_record(targets, says)
+    every = np.array([test.overturned for test in series.tests])[targets]
     if every.shape[1] == 2:
         scores["the twin on the same table"] = every[:, 1 - number].astype(np.float64)
     if all(test.simulated for test in series.tests):
-        simulated = np.array([test.simulated[number] for test in series.tests])[asked]
+        simulated = np.array([test.simulated[number] for test in series.tests])[targets]
         scores["discrete elements in three dimensions, contact stiffness tuned on these tests"] = simulated
-    return {name: float(np.mean(says == overturned[asked])) for name, says in scores.items()}
+    return {name: float(np.mean(says == overturned[targets])) for name, says in scores.items()}
 
 
 SOURCES = {

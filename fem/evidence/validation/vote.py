@@ -86,14 +86,14 @@ def with_neighbours(blocks: Sequence[Block], falling: BoolArray) -> FloatArray:
         blocks: rising in angle among those that are alike otherwise.
         falling: which overturn, (blocks, tests).
     """
-    said = np.empty(falling.shape)
+    predictions = np.empty(falling.shape)
     alike: dict[Block, list[int]] = {}
     for number, block in enumerate(blocks):
         alike.setdefault(replace(block, angle=0.0), []).append(number)
     for row in alike.values():
-        for place, number in enumerate(row):
-            said[number] = falling[row[max(0, place - NEAR) : place + NEAR + 1]].mean(axis=0)
-    return said
+        for index, number in enumerate(row):
+            predictions[number] = falling[row[max(0, index - NEAR) : index + NEAR + 1]].mean(axis=0)
+    return predictions
 
 
 def probabilities(votes: FloatArray) -> FloatArray:
