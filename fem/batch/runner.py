@@ -10,7 +10,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
 from operator import itemgetter
-from typing import Any
+from typing import Any, NamedTuple
 
 from fem.assessment.motion_words import covered_in_words, is_cut, missing_peak
 from fem.assessment.verdict import verdict_of
@@ -18,7 +18,8 @@ from fem.batch.container_cache import ContainerCache, container_key
 from fem.batch.shard import Share
 from fem.batch.workers import FoundT, ItemT, LocalWorkers, Pool, WorkersOf, hand_out, never
 from fem.case.case import Case, CaseError
-from fem.model.equilibrium import same_equilibrium
+from fem.model.container import Container
+from fem.model.equilibrium import Equilibrium, same_equilibrium
 from fem.model.model import Model, build_model
 from fem.model.motion import build_motions, motion_result
 from fem.model.recovery import recovery_of
@@ -37,9 +38,19 @@ CASES_AT_A_TIME = {"rigid": 16, "reduced": 4, "full": 1}
 #: worker has fewer chunks than that
 MANY_WORKERS, LEAST_CHUNKS = 64, 4
 
+AT_HAND = 8  #: equilibria of a chunk that are kept: its cases may differ by turns in friction and weight
 TOLD_S = 5.0  #: work that has taken so long ends with a line of what was done
 
 _CONTAINERS = ContainerCache()
+
+
+class Settled(NamedTuple):
+    """A container at rest on its floor."""
+
+    case: Case
+    container: Container
+    equilibrium: Equilibrium
+
 
 Row = dict[str, Any]
 #: from what makes the case of an item, and some items, to a row each
@@ -242,9 +253,10 @@ def motion_left_out(case: Case) -> str | None:
 
 
 def run_chunk(make: Callable[[ItemT], Case], items: Sequence[ItemT]) -> list[Row]:
-    """Run the cases of some items, one after the other."""
+    """Run the cases of some items, one after the other; they share what is the same in them."""
     rows = []
     before: Model | None = None
+    settled: list[Settled] = []
     for item in items:
         began = time.perf_counter()
         try:
@@ -252,7 +264,7 @@ def run_chunk(make: Callable[[ItemT], Case], items: Sequence[ItemT]) -> list[Row
             if case.solver.model == "full":
                 row = _run_full(case)
             else:
-                before = _model_of(case, before)
+                before = _model_of(case, before, settled)
                 row = run_model(before)
         except (ValueError, ArithmeticError, RuntimeError) as error:  # bad input, no equilibrium, singular
             row = _row_without_outcome("failed", str(error))
@@ -260,18 +272,22 @@ def run_chunk(make: Callable[[ItemT], Case], items: Sequence[ItemT]) -> list[Row
     return rows
 
 
-def _model_of(case: Case, before: Model | None) -> Model:
-    """The model of a case; it takes over the equilibrium and the motions of the one before where they are the same."""
+def _model_of(case: Case, before: Model | None, settled: list[Settled]) -> Model:
+    """The model of a case; it takes over the motions of the one before, and an equilibrium that is known.
+
+    The last `AT_HAND` equilibria are kept.
+    """
     container = _CONTAINERS.container_of(case)
-    if before is None:
-        return build_model(case, container)
-    alike = before.container is container and same_equilibrium(case, before.case)
-    return build_model(
-        case,
-        container,
-        before.equilibrium if alike else None,
-        build_motions(case, (before.case, before.motion, before.vertical)),
+    known = next(
+        (place for place in settled if place.container is container and same_equilibrium(case, place.case)),
+        None,
     )
+    motions = (before.case, before.motion, before.vertical) if before else None
+    model = build_model(case, container, known and known.equilibrium, build_motions(case, motions))
+    if known is None or known.equilibrium is not model.equilibrium:
+        settled.insert(0, Settled(case, container, model.equilibrium))
+        del settled[AT_HAND:]
+    return model
 
 
 def run_model(model: Model) -> Row:
