@@ -77,7 +77,7 @@ CRUSHING = ColumnGroup(
 )
 #: a restitution that was asked for: what the impacts lost by it, < 0 where they return energy
 IMPACTS = ColumnGroup(
-    lambda case: range(case.states_restitution),
+    lambda case: range(_states_restitution(case)),
     (HistoryColumn("impact_J", "J", START),),
 )
 #: a floor that moves up and down; positive upward
@@ -131,6 +131,13 @@ NEIGHBOURS = ColumnGroup(
 #: a run that was compared with the rigid block (`fem.assessment.rigid_check`): nan where that is not followed
 ANALYTIC = ColumnGroup(lambda case: (), (HistoryColumn("analytic_rotation_rad", "rad", GROUND),))
 GROUPS = (ALWAYS, CRUSHING, IMPACTS, VERTICAL, JOINTS, BOXES, STOPS, TIES, NEIGHBOURS, ANALYTIC)
+
+
+def _states_restitution(case: Any) -> bool:
+    """`Case.states_restitution`; of a case that is read in part, whether it does itself."""
+    if hasattr(case, "states_restitution"):
+        return bool(case.states_restitution)
+    return case.contact.restitution_over_housner is not None
 
 
 def history_width(case: Any) -> int:
