@@ -38,9 +38,8 @@ CORNERS = 4  #: of a box
 BOTTOM_LEFT, BOTTOM_RIGHT, TOP_LEFT, TOP_RIGHT = range(CORNERS)
 #: corners of a contact point: the one on the face, and the left and right end of the face
 TOUCHING, LEFT, RIGHT = 0, 1, 2
-ENDS = (
-    4  #: corners of a tie between two boxes: foot and top of the side of the lower box, and of the upper one
-)
+#: how many corners a tie between two boxes has: foot and top of a side of the one, and of the other
+ENDS = 4
 LOWER, UPPER = 0, 1  #: boxes of a contact point
 ASIDE = (
     64.0  #: distance of the points of pairs from those on the floor and from each other, over a body's size

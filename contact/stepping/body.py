@@ -65,6 +65,11 @@ class State(NamedTuple):
     numbers: FloatArray  #: all but the monitored points; the fields above are views of it
 
 
+#: velocities of a frame: at x = z = 0 along x and upward [m/s], and its angular velocity [rad/s]
+Frame = tuple[float, float, float]
+Boxes = tuple[int, int]  #: the first of some boxes, and the one behind their last
+
+
 class Ground(NamedTuple):
     """The floor at one instant: displacement [m] and velocity [m/s], along x and upward."""
 
@@ -150,14 +155,9 @@ def observe(body: Any, state: State, floor: float, lift: float) -> None:
     body.observe(state, floor, lift)
 
 
-def shift_velocity(
-    body: Any, state: State, velocity: float, lift_velocity: float, spin: float, first: int, end: int
-) -> None:
-    """Subtract the velocities of a frame: at x = z = 0 along x and upward [m/s], and its angular velocity [rad/s].
-
-    Of a loose stack or a row, those of the boxes from `first` on, up to the one before `end`.
-    """
-    body.shift_velocity(state, velocity, lift_velocity, spin, first, end)
+def shift_velocity(body: Any, state: State, frame: Frame, boxes: Boxes) -> None:
+    """Subtract the velocities of a frame from all that moves; of a loose stack or a row, from some boxes."""
+    body.shift_velocity(state, frame, boxes)
 
 
 def prepared(body: Any, step: float) -> bool:

@@ -113,7 +113,7 @@ def lose_at_impact(body: Any, run: RunState, j: int, landed: int, loose: bool | 
         point_x, point_z = place_of(run, j, i)
         new.drift[i, 0] -= turn * (point_z - up)
         new.descent[i, 0] -= turn * (point_x - left)
-    shift_velocity(body, new, -turn * z, turn * x, turn, j, boxes)
+    shift_velocity(body, new, (-turn * z, turn * x, turn), (j, boxes))
     complete(body, new, run.floor[1, 0], run.lift[1, 0], run.lift[1, 1])
     shift_links(run, links_of(body), turn, left, up, j, boxes)
     indent(run.problem.contact, new.point, new.crushed)  # behind the arms, which are of heights, not of gaps

@@ -101,7 +101,7 @@ def enter_floor_frame(body: Any, run: RunState, floor_velocity: float, lift_velo
 
     The floor is at rest in this frame; the container gets no impulse.
     """
-    shift_velocity(body, run.old, floor_velocity, lift_velocity, 0.0, 0, run.joints.shape[0])
+    shift_velocity(body, run.old, (floor_velocity, lift_velocity, 0.0), (0, run.joints.shape[0]))
     shift_contents(run.contents, (floor_velocity, lift_velocity))
     complete(body, run.old, run.floor[0, 0], run.lift[0, 0], 0.0)
     indent(run.problem.contact, run.old.point, run.old.crushed)

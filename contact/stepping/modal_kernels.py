@@ -26,6 +26,8 @@ from contact.stepping.body import (
     STRAIN,
     VELOCITY_X,
     VELOCITY_Z,
+    Boxes,
+    Frame,
     Ground,
     State,
     implements,
@@ -286,16 +288,9 @@ def observe(body: ModalBody, new: State, floor: float, lift: float) -> None:
 
 
 @implements(interface.shift_velocity, *MODAL, inline=True)
-def shift_velocity(
-    body: ModalBody,
-    state: State,
-    velocity: float,
-    lift_velocity: float,
-    spin: float,
-    first: int,
-    end: int,
-) -> None:
+def shift_velocity(body: ModalBody, state: State, frame: Frame, boxes: Boxes) -> None:
     """Subtract the velocities of a frame; the modes are orthogonal to them."""
+    velocity, lift_velocity, spin = frame
     state.velocity[0] -= velocity + spin * state.position[1]
     state.velocity[1] -= lift_velocity - spin * state.position[0]
     state.velocity[2] -= spin

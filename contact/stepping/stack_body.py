@@ -24,7 +24,7 @@ from contact.jit import compiled, inlined
 from contact.layout import exchanging, row_of, shapes_of
 from contact.stepping import body as interface
 from contact.stepping import modal_kernels  # noqa: F401 - registers the operations of a modal body
-from contact.stepping.body import Ground, State, implements
+from contact.stepping.body import Boxes, Frame, Ground, State, implements
 from contact.stepping.loose_stack import LooseStack
 from contact.stepping.modal_body import STEP_SLOTS, ModalBody, by_modes
 from contact.stepping.scheme import Scheme
@@ -254,20 +254,10 @@ def observe(stack: StackBody, state: State, floor: float, lift: float) -> None:
 
 
 @implements(interface.shift_velocity, StackBody, inline=True)
-def shift_velocity(
-    stack: StackBody,
-    state: State,
-    velocity: float,
-    lift_velocity: float,
-    spin: float,
-    first: int,
-    end: int,
-) -> None:
+def shift_velocity(stack: StackBody, state: State, frame: Frame, boxes: Boxes) -> None:
     """Subtract the velocities of a frame."""
-    for b in range(first, end):
-        interface.shift_velocity(
-            box_of(stack, b), state_of(stack, state, b), velocity, lift_velocity, spin, b, b + 1
-        )
+    for b in range(*boxes):
+        interface.shift_velocity(box_of(stack, b), state_of(stack, state, b), frame, (b, b + 1))
 
 
 @implements(interface.prepared, StackBody, inline=True)

@@ -15,7 +15,7 @@ from scipy.sparse import bsr_array, csr_array
 
 from contact.interface.equilibrium import Stance
 from contact.interface.workspace import Contact, Workspace
-from contact.stepping.body import Ground, State
+from contact.stepping.body import Boxes, Frame, Ground, State
 from contact.stepping.integrator import UNPREPARED, advance, enter_floor_frame_compiled
 from contact.stepping.links import LinkedBody
 from contact.stepping.loose_stack import LooseStack
@@ -187,11 +187,9 @@ class FullBody:
         """See `contact.stepping.body.observe`."""
         nodal_kernels.observe(self.nodal, new, floor, lift)
 
-    def shift_velocity(
-        self, state: State, velocity: float, lift_velocity: float, spin: float, first: int, end: int
-    ) -> None:
+    def shift_velocity(self, state: State, frame: Frame, boxes: Boxes) -> None:
         """See `contact.stepping.body.shift_velocity`."""
-        nodal_kernels.shift_velocity(self.nodal, state, velocity, lift_velocity, spin, first, end)
+        nodal_kernels.shift_velocity(self.nodal, state, frame, boxes)
 
     def memory(self) -> dict[str, FloatArray]:
         """Arrays of the last residual by name; everything else follows from the state."""

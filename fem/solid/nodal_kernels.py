@@ -26,6 +26,8 @@ from contact.stepping.body import (
     STRAIN,
     VELOCITY_X,
     VELOCITY_Z,
+    Boxes,
+    Frame,
     Ground,
     State,
     implements,
@@ -323,16 +325,9 @@ def observe(body: NodalBody, new: State, floor: float, lift: float) -> None:
 
 @compiled(sources=SOURCES)
 @implements(interface.shift_velocity, NodalBody)
-def shift_velocity(
-    body: NodalBody,
-    state: State,
-    velocity: float,
-    lift_velocity: float,
-    spin: float,
-    first: int,
-    end: int,
-) -> None:
+def shift_velocity(body: NodalBody, state: State, frame: Frame, boxes: Boxes) -> None:
     """Subtract the velocities of a frame."""
+    velocity, lift_velocity, spin = frame
     for i in range(body.nodal_mass.size):
         state.velocity[2 * i] -= velocity + spin * state.position[2 * i + 1]
         state.velocity[2 * i + 1] -= lift_velocity - spin * state.position[2 * i]

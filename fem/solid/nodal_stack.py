@@ -16,7 +16,7 @@ from contact.interface.stacking import stacked
 from contact.interface.workspace import Contact, Workspace, make_workspace
 from contact.jit import compiled
 from contact.stepping import body as interface
-from contact.stepping.body import Ground, State, implements
+from contact.stepping.body import Boxes, Frame, Ground, State, implements
 from contact.stepping.integrator import advance, enter_floor_frame
 from contact.stepping.links import LinkedBody
 from contact.stepping.loose_stack import LooseStack
@@ -128,20 +128,10 @@ def observe(stack: NodalStack, new: State, floor: float, lift: float) -> None:
 
 @compiled(sources=SOURCES)
 @implements(interface.shift_velocity, NodalStack)
-def shift_velocity(
-    stack: NodalStack,
-    state: State,
-    velocity: float,
-    lift_velocity: float,
-    spin: float,
-    first: int,
-    end: int,
-) -> None:
+def shift_velocity(stack: NodalStack, state: State, frame: Frame, boxes: Boxes) -> None:
     """Subtract the velocities of a frame."""
-    for b in range(first, end):
-        nodal_kernels.shift_velocity(
-            stack.boxes[b], state_of(stack, state, b), velocity, lift_velocity, spin, b, b + 1
-        )
+    for b in range(*boxes):
+        nodal_kernels.shift_velocity(stack.boxes[b], state_of(stack, state, b), frame, (b, b + 1))
 
 
 @compiled(sources=SOURCES)

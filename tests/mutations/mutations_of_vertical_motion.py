@@ -73,8 +73,8 @@ VERTICAL_MOTION = (
     ),
     Mutation(
         name="the frame of the floor entered without its vertical velocity",
-        old="shift_velocity(body, run.old, floor_velocity, lift_velocity, 0.0, 0",
-        new="shift_velocity(body, run.old, floor_velocity, 0.0, 0.0, 0",
+        old="shift_velocity(body, run.old, (floor_velocity, lift_velocity, 0.0)",
+        new="shift_velocity(body, run.old, (floor_velocity, 0.0, 0.0)",
         tests=(VERTICAL, "-k", "steadily"),
     ),
     Mutation(
