@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from fem.figures import style
 from fem.html.units import rounded
-from fem.results.figures import BOX_FIGURES, BoxResult
+from fem.results.figures import BOX_FIGURES, SLIPPED, BoxResult
 from fem.results.reader import RunData
 
 #: of up to six boxes; more take theirs from a colour map
@@ -46,7 +46,7 @@ ROTATION = BoxQuantity(
     *("rotation_rad", "box_{}_rotation_rad"),
 )
 SLIP = BoxQuantity(
-    *("Slip of each box over what is below", "slip [mm]", " mm", "max_slip_m"),
+    *("Slip of each box over what is below", "slip [mm]", " mm", SLIPPED),
     *("slip_m", "box_{}_slip_m"),
 )
 OPENING = BoxQuantity(

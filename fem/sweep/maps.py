@@ -22,7 +22,7 @@ from fem.batch.labels import axis_label, axis_name
 from fem.figures import style
 from fem.figures.heat_map import Look, MapAxis, Panel, draw_heat_map, value_label
 from fem.html.units import rounded
-from fem.results.figures import TURNED
+from fem.results.figures import SLIPPED, TURNED
 from fem.results.files import write_atomically
 from fem.results.outcome import ENDINGS, Outcome
 from fem.sweep.plan import MapChoice
@@ -68,7 +68,7 @@ MOST_PANELS = 12
 LEAST_SLIP_MM = 1e-2  #: less is no slip
 JOINT_SLIP = "max_joint_slip_m"
 SLIPS = {
-    "slip": ("Largest slip, where it stands", "max_slip_m"),
+    "slip": ("Largest slip, where it stands", SLIPPED),
     "joint_slip": ("Largest slip between loose boxes, where they stand", JOINT_SLIP),
 }
 
