@@ -66,27 +66,29 @@ class RowLog:
 
 
 @dataclass(frozen=True, kw_only=True)
-class LoggedRuns(Generic[ItemT]):
-    """Runs of one kind whose rows are kept in a log: none is computed twice, whatever interrupts the study."""
+class LoggedRows(Generic[ItemT]):
+    """Rows that are kept in a log: none is computed twice, whatever interrupts the study."""
 
-    what: str  #: they are, for the line of progress
     path: Path  #: of the log
     columns: Columns  #: of the log
-    make: Callable[[ItemT], Case]  #: the case of an item; picklable
-    model_of: Callable[[ItemT], str]
     #: values of the first columns; the others are of the row of an item
     key: Callable[[ItemT], Iterable[Any]]
     note: Callable[[str], None]  #: called with every line of the log, old and new
     logged: Callable[[Row], Row] = lambda row: row  #: a row as the log holds it
-    work: ChunkWork | None = None  #: what is done with some items in place of their runs
     number: Callable[[ItemT], int] = number_of  #: of an item, by which it has its shard
 
-    def run(self, runner: Runner, batches: Iterable[Sequence[ItemT]]) -> None:
-        """Note the rows of earlier attempts, then run the items that are missing.
+    def compute(
+        self,
+        runner: Runner,
+        batches: Iterable[Sequence[ItemT]],
+        rows_of: Callable[[Sequence[ItemT]], Iterable[tuple[Sequence[ItemT], Sequence[Row]]]],
+    ) -> None:
+        """Note the rows of earlier attempts, then compute the items that are missing.
 
         Args:
-            runner: runs the cases.
+            runner: says what is shared, and when to stop.
             batches: of missing items; each is asked for when all rows before are noted.
+            rows_of: items and their rows, as they are ready.
 
         Raises:
             FolderError: the log holds a row of another study.
@@ -103,7 +105,7 @@ class LoggedRuns(Generic[ItemT]):
                 if runner.stop():
                     break
                 mine = runner.share.of(items, map(self.number, items)) if runner.share else items
-                for chunk, rows in runner.rows(self.what, mine, self.make, self.model_of, self.work):
+                for chunk, rows in rows_of(mine):
                     lines = [self._line(item, row) for item, row in zip(chunk, rows, strict=True)]
                     log.append(lines)
                     for line in lines:
@@ -115,3 +117,21 @@ class LoggedRuns(Generic[ItemT]):
     def _line(self, item: ItemT, row: Row) -> str:
         key, cells = tuple(self.key(item)), self.logged(row)
         return line_of((*key, *(cells[name] for name in [*self.columns][len(key) :])))
+
+
+@dataclass(frozen=True, kw_only=True)
+class LoggedRuns(LoggedRows[ItemT]):
+    """Runs of one kind whose rows are kept in a log."""
+
+    what: str  #: they are, for the line of progress
+    make: Callable[[ItemT], Case]  #: the case of an item; picklable
+    model_of: Callable[[ItemT], str]
+    work: ChunkWork | None = None  #: what is done with some items in place of their runs
+
+    def run(self, runner: Runner, batches: Iterable[Sequence[ItemT]]) -> None:
+        """Note the rows of earlier attempts, then run the items that are missing; see `compute`."""
+        self.compute(
+            runner,
+            batches,
+            lambda items: runner.rows(self.what, items, self.make, self.model_of, self.work),
+        )

@@ -14,7 +14,7 @@ from typing import Any, Self, TypeVar
 
 from fem.case.validation import CaseError
 from fem.results.errors import FolderError
-from fem.results.folder import ResultFolder
+from fem.results.folder import ResultFolder, require_same_program
 from fem.results.json_block import JsonBlock
 from fem.results.kinds import ResultKind, read_result
 
@@ -100,9 +100,7 @@ def read_shards(place: ResultFolder, request: str, folders: Sequence[Path]) -> l
                 else f"of no shard of {place.kind.article} {place.kind.name}"
             )
             raise FolderError(f"--merge {folder}: it holds the results {other}")
-        ResultFolder(
-            path=folder, kind=place.kind, lock=place.lock, earlier=mark, resume=True
-        ).require_same_program()
+        require_same_program(folder, mark)
         if not shard.done:
             raise FolderError(
                 f"--merge {folder}: shard {shard} is not finished; --shard {shard} --resume continues it"

@@ -37,13 +37,12 @@ from fem.results.disk import BYTES_BESIDE, table_bytes
 from fem.results.figures import FELL_FIRST, RUN_COLUMNS, SLIPPED, TURNED, Place, columns_of
 from fem.results.folder import ResultFolder
 from fem.results.kinds import ENSEMBLE
-from fem.results.outcome import COUNTED, Ending, counts_of, ending_of
+from fem.results.outcome import COUNTED, COUNTED_AS, Ending, counts_of, ending_of
 
 DRAWS = "draws.csv"
 #: numbers in a row of draws.csv besides what is drawn, of a point in its files, of a motion: spectrum and measures
 OF_A_DRAW, OF_A_POINT, OF_A_MOTION = 3, 50, 200
 MOST_COPIED = 100  #: motions of a set that is copied into the results unless the file says otherwise
-WORDS = {ending: word for word, ending in COUNTED.items()}
 #: columns of a draw behind what is drawn
 SHOWN: Columns = {"outcome": str} | columns_of(Place.KEY) | {key: RUN_COLUMNS[key] for key in FELL_FIRST}
 
@@ -101,7 +100,7 @@ def draw_row(row: Row) -> Row:
     known = {
         key: None if value is None or not np.isfinite(value) else value for key, value in figures.items()
     }
-    outcome = {"outcome": WORDS[ending_of(row["status"], row["outcome"])]}
+    outcome = {"outcome": COUNTED_AS[ending_of(row["status"], row["outcome"])]}
     return outcome | known | {key: row[key] for key in FELL_FIRST}
 
 

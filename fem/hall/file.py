@@ -37,6 +37,8 @@ UNIT = re.compile(r"[ _]*[\[(]?\b(mm|cm|m|kg|t|g|kn|n|mpa|gpa|pa|rad|deg|s|hz)\b
 DECIMAL_COMMA = re.compile(r"[-+]?\d+,\d+(e[-+]?\d+)?", re.ASCII | re.IGNORECASE)
 LIKE = 0.8  #: likeness from which an unknown name is taken for a slip
 LARGEST_COUNT = 10**9
+#: of a row, what the result says of it
+LISTED = ("line", "name", "count", "tag", "place_m", "lon_lat", "given")
 A_HEADER = "the first line must name the columns, such as name;width_m;height_m;mass_kg;mu_static"
 
 
@@ -45,12 +47,12 @@ class HallRow:
     """A row of the list."""
 
     line: int  #: of the file, where it ends
-    given: tuple[str, ...]  #: its fields, as many as there are columns
     name: str
     count: int = 1
     tag: str = ""
-    place: tuple[float, ...] | None = None  #: x, y [m]
-    geographic: tuple[float, ...] | None = None  #: longitude, latitude [degrees]
+    place_m: tuple[float, ...] | None = None  #: x, y
+    lon_lat: tuple[float, ...] | None = None  #: [degrees]
+    given: Mapping[str, str]  #: its fields by column
     values: Mapping[str, Any]  #: of the dotted keys that it sets
     reason: str = ""  #: why it cannot be used
     container: int | None = None  #: its number among those that differ, once the row is checked
@@ -126,8 +128,8 @@ class HallFile:
             )
 
     def _row(self, number: int, line: int, fields: list[str]) -> HallRow:
-        given = tuple(fields[k] if k < len(fields) else "" for k in self.places.values())
-        texts = dict(zip(self.meanings.values(), given, strict=True))
+        given = {name: fields[k] if k < len(fields) else "" for name, k in self.places.items()}
+        texts = dict(zip(self.meanings.values(), given.values(), strict=True))
         problems: list[str] = []
 
         def place(largest: Mapping[str, float]) -> tuple[float, ...] | None:
@@ -153,8 +155,8 @@ class HallFile:
             name=plain_text(texts.get(NAME, "")) or str(number),
             count=int(count),
             tag=plain_text(texts.get(TAG, "")),
-            place=where,
-            geographic=geographic,
+            place_m=where,
+            lon_lat=geographic,
             values={key: _value(key, texts[key]) for key in self.keys if texts[key]},
             reason="; ".join(problems),
         )

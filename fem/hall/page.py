@@ -12,7 +12,7 @@ from fem.batch.study import read_study
 from fem.case.case import Case, load_case
 from fem.case.unknown_inputs import WORDS
 from fem.hall.places import PICTURE
-from fem.hall.result import HallResult, TagCount
+from fem.hall.result import HallResult
 from fem.hall.table import NO_ANSWER
 from fem.html import sections as html
 from fem.html.page import Signature
@@ -139,15 +139,15 @@ def found_section(info: HallResult) -> html.PageSection:
 def tags_table(info: HallResult) -> html.Table:
     """What the containers of each tag did."""
 
-    def count(word: str, tag: TagCount) -> str:
-        return str(tag.counts.get(word, ""))
+    def count(word: str, tag: A_ROW) -> str:
+        return str(tag["counts"].get(word, ""))
 
-    words = dict.fromkeys(word for tag in info.tags for word in sorted(tag.counts))
-    columns: list[html.Column[TagCount]] = [
-        html.Column("tag", lambda tag: tag.tag or ABSENT),
-        html.Column("containers", lambda tag: str(tag.containers), html.NUMBER),
+    words = dict.fromkeys(word for tag in info.tags for word in sorted(tag["counts"]))
+    columns: list[html.Column[A_ROW]] = [
+        html.Column("tag", lambda tag: tag["tag"] or ABSENT),
+        html.Column("containers", lambda tag: str(tag["containers"]), html.NUMBER),
         *(html.Column(word, partial(count, word), html.NUMBER) for word in words),
-        html.Column("least margin", lambda tag: number(tag.margin, figures=3), html.NUMBER),
+        html.Column("least margin", lambda tag: number(tag["margin"], figures=3), html.NUMBER),
     ]
     return html.table_of("tags", columns, info.tags, file="hall.csv")
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Self
 
 from fem.batch.axes import MOTION_FILE, VERTICAL_FILE, Axis, AxisError, read_motion_files
 from fem.batch.case_maker import CaseMaker
@@ -36,86 +36,114 @@ class HallItem(NamedTuple):
     values: Mapping[str, Any]  #: of the keys that its row sets
 
 
-@dataclass(frozen=True, kw_only=True)
-class HallCases:
-    """Makes the case of a run; picklable."""
-
-    base: Case
-    motions: Sequence[Mapping[str, Any]] = (
-        {},
-    )  #: keys that set each; one without keys: that of the base case
-
-    def __call__(self, item: HallItem) -> Case:
-        """The case of a run.
-
-        Raises:
-            CaseError: it cannot be used.
-        """
-        return self._make({**self.motions[item.motion], **item.values})
-
-    @cached_property
-    def _make(self) -> CaseMaker:
-        return CaseMaker(self.base.without_fields())
-
-
-@dataclass(frozen=True, kw_only=True)
-class Inventory:
-    """The rows of a list, checked."""
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Hall:
+    """A list of containers, and the motions that they undergo."""
 
     file: HallFile
     base: Case  #: that the rows change
-    rows: tuple[HallRow, ...]  #: each with its container, or why it is refused
-    containers: tuple[Mapping[str, Any], ...]  #: values of the keys that each sets; no two alike
-    hashes: tuple[str, ...]  #: of these
+    motions: tuple[FloorMotionPair, ...] = ()  #: in place of that of the base case
+    named: tuple[str, ...] = ()  #: these, as they were named on the command line
+    rows: tuple[HallRow, ...] = ()  #: each with its container, or why it is refused
+    containers: Mapping[str, Mapping[str, Any]]  #: values of the keys that each sets, by hash
+
+    @cached_property
+    def keys(self) -> list[Mapping[str, Any]]:
+        """Those that set each motion; of the motion of the base case none."""
+        return [pair.keys for pair in self.motions] or [{}]
+
+    @cached_property
+    def values(self) -> list[Mapping[str, Any]]:
+        """Of the keys that each container sets, by its number."""
+        return [*self.containers.values()]
+
+    @cached_property
+    def make(self) -> Callable[[HallItem], Case]:
+        """Makes the case of a run; picklable."""
+        base = with_files_of_the_command_line(self.base) if self.motions else self.base
+        return partial(_case_of, CaseMaker(base.without_fields()), self.keys)
 
     @property
-    def base_place(self) -> str:
-        """How the command line named the base case."""
-        return self.base.origin_with({}).place
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Hall:
-    """A list of containers with the motions that they undergo."""
-
-    inventory: Inventory
-    motions: tuple[FloorMotionPair, ...]
-    cases: HallCases
-    named: tuple[str, ...]  #: motions as they were named on the command line
-
     def items(self) -> list[HallItem]:
         """All runs; those of a container follow one another."""
-        return [
-            self.item(number, motion)
-            for number in range(len(self.inventory.containers))
-            for motion in range(len(self.cases.motions))
-        ]
+        motions = range(len(self.keys))
+        return [self.item(number, motion) for number in range(len(self.values)) for motion in motions]
 
     def item(self, container: int, motion: int) -> HallItem:
         """One run."""
-        return HallItem(container, motion, self.inventory.containers[container])
+        return HallItem(container, motion, self.values[container])
 
     def model_of(self, item: HallItem) -> str:
         """The model of a run."""
-        return str(item.values.get("solver.model", self.cases.base.solver.model))
+        return str(item.values.get("solver.model", self.base.solver.model))
 
     def command(self, row: HallRow, motion: int) -> str:
         """The command that computes a row under a motion by itself."""
-        words = ["python", "-m", "fem", "run", self.inventory.base_place]
-        words += ["--allow-outside"] * self.inventory.base.origin_with({}).allow_outside
+        origin = self.base.origin_with({})
+        words = ["python", "-m", "fem", "run", origin.place, *["--allow-outside"] * origin.allow_outside]
         if self.named:
             words += ["--motion", self.named[motion].partition(",")[0].strip()]
         # with a vertical file of a pair, or that a motion among pairs has none
-        set_by_motion = {k: v for k, v in self.cases.motions[motion].items() if k != MOTION_FILE}
+        set_by_motion = {k: v for k, v in self.keys[motion].items() if k != MOTION_FILE}
         for key, value in {**set_by_motion, **row.values}.items():
             words += ["--set", f"{key}={value if isinstance(value, str) else toml_value(value)}"]
         return shlex.join(words)
+
+    def hash_of(self, values: Mapping[str, Any]) -> str:
+        """The hash of a container's case under the first motion, once its mesh and motions can be built.
+
+        Raises:
+            CaseError, MeshError, RecordError: what a run would be refused for.
+        """
+        mesh = values.get("container.mesh_file")
+        # motions alone may lie anywhere
+        if self.motions and isinstance(mesh, str) and not stays_in_the_folder(mesh):
+            raise CaseError(f"[container] mesh_file {outside_the_folder(mesh)}")
+        moved = any(key.startswith(("motion.", "vertical.")) for key in values)
+        first = self.make(HallItem(0, 0, values))
+        if reasons := excluded_values(first):
+            raise CaseError("\n".join(reasons))
+        build_container(first)
+        for motion in range(len(self.keys) if moved else 1):
+            build_motions(self.make(HallItem(0, motion, values)))
+        return case_hash(first)
+
+    def checked(self, hash_of: Callable[[Mapping[str, Any]], str], *, strict: bool) -> Self:
+        """With every row checked before any is computed; equal rows are one container.
+
+        Args:
+            hash_of: a hash of a container from the values of a row; raises a ValueError where it cannot be used.
+            strict: refuse the whole list for one bad row.
+
+        Raises:
+            CaseError: no good row; with `strict` any bad row.
+        """
+        containers: dict[str, Mapping[str, Any]] = {}
+        numbers: dict[str, int] = {}  #: of the containers, by hash
+        seen: dict[str, dict[str, Any]] = {}  #: by what a row sets: its container, or why it is refused
+        rows = []
+        for row in self.file.rows:
+            values = repr(sorted(row.values.items()))
+            if not row.reason and values not in seen:
+                try:
+                    digest = hash_of(row.values)
+                    containers.setdefault(digest, row.values)
+                    seen[values] = {"container": numbers.setdefault(digest, len(numbers))}
+                except ValueError as error:
+                    seen[values] = {"reason": _in_words_of_list(str(error), self.base)}
+            rows.append(row if row.reason else replace(row, **seen[values]))
+        bad = [f"{self.file.name}, line {row.line} ({row.name}): {row.reason}" for row in rows if row.reason]
+        if not containers or (strict and bad):
+            more = [f"and {len(bad) - MOST_NAMED} more rows"] * (len(bad) > MOST_NAMED)
+            none = ["no row can be computed"] * (not containers)
+            raise CaseError("\n".join([*bad[:MOST_NAMED], *more, *none]))
+        return replace(self, rows=tuple(rows), containers=containers)
 
 
 def plan_hall(
     file: HallFile, base: Case, motions: tuple[str, ...], runner: Runner, *, strict: bool, force: bool
 ) -> Hall:
-    """Check every row before any is computed.
+    """Read the motions, and check every row, before any is computed.
 
     Args:
         file: the list.
@@ -132,16 +160,22 @@ def plan_hall(
     named = [key for key in file.keys if key in (MOTION_FILE, VERTICAL_FILE)]
     if motions and named:
         raise CaseError(f"{file.name}: column {named[0]!r} and --motion both name the motion; use one")
-    pairs: tuple[FloorMotionPair, ...] = ()
-    cases = HallCases(base=base)
+    hall = Hall(file=file, base=base, named=motions, containers={})
     if motions:
-        origin = replace(base.origin_with({}), trusted=frozenset(FILE_KEYS), allow_outside=True)
-        base_of_set = base.from_origin(origin)
-        pairs = read_motion_set(base_of_set, [_axis(base, motions)], runner)
-        cases = HallCases(base=base_of_set, motions=[pair.keys for pair in pairs])
-    look = partial(_hash_of, cases, outside=bool(motions))
-    inventory = take_inventory(file, base, look, strict=strict)
-    return Hall(inventory=inventory, motions=pairs, cases=cases, named=motions)
+        axis = _axis(base, motions)
+        pairs = read_motion_set(with_files_of_the_command_line(base), [axis], runner)
+        hall = replace(hall, motions=pairs)
+    return hall.checked(hall.hash_of, strict=strict)
+
+
+def with_files_of_the_command_line(base: Case) -> Case:
+    """The base case with motions from anywhere."""
+    origin = replace(base.origin_with({}), trusted=frozenset(FILE_KEYS), allow_outside=True)
+    return base.from_origin(origin)
+
+
+def _case_of(make: CaseMaker, keys: Sequence[Mapping[str, Any]], item: HallItem) -> Case:
+    return make({**keys[item.motion], **item.values})
 
 
 def _say_expected(file: HallFile, base: Case, motions: int, runner: Runner, *, force: bool) -> None:
@@ -171,67 +205,6 @@ def _axis(base: Case, motions: Sequence[str]) -> Axis:
     except AxisError as error:
         raise CaseError(f"--motion {error}") from None
     return Axis(key=MOTION_FILE, values=names, following=following)
-
-
-def take_inventory(
-    file: HallFile, base: Case, look: Callable[[Mapping[str, Any]], str], *, strict: bool
-) -> Inventory:
-    """Check every row before any is computed; equal rows are one container.
-
-    Args:
-        file: the list.
-        base: that rows change.
-        look: gives a hash of a container from the values of a row, or raises a ValueError.
-        strict: refuse the whole list for one bad row.
-
-    Raises:
-        CaseError: no good row; with `strict` any bad row.
-    """
-    rows: list[HallRow] = []
-    containers: dict[str, Mapping[str, Any]] = {}
-    numbers: dict[str, int] = {}  #: of the containers, by hash
-    seen: dict[str, dict[str, Any]] = {}  #: by what a row sets: its container, or why it is refused
-    for row in file.rows:
-        values = repr(sorted(row.values.items()))
-        if not row.reason and values not in seen:
-            try:
-                digest = look(row.values)
-                containers.setdefault(digest, row.values)
-                seen[values] = {"container": numbers.setdefault(digest, len(numbers))}
-            except ValueError as error:
-                seen[values] = {"reason": _in_words_of_list(str(error), base)}
-        rows.append(row if row.reason else replace(row, **seen[values]))
-    bad = [f"{file.name}, line {row.line} ({row.name}): {row.reason}" for row in rows if row.reason]
-    if not containers or (strict and bad):
-        more = [f"and {len(bad) - MOST_NAMED} more rows"] * (len(bad) > MOST_NAMED)
-        none = ["no row can be computed"] * (not containers)
-        raise CaseError("\n".join([*bad[:MOST_NAMED], *more, *none]))
-    return Inventory(
-        file=file,
-        base=base,
-        rows=tuple(rows),
-        containers=tuple(containers.values()),
-        hashes=tuple(containers),
-    )
-
-
-def _hash_of(cases: HallCases, values: Mapping[str, Any], *, outside: bool) -> str:
-    """The hash of a container's case under the first motion, once its mesh and motions can be built.
-
-    Raises:
-        CaseError, MeshError, RecordError: what a run would be refused for.
-    """
-    mesh = values.get("container.mesh_file")
-    if outside and isinstance(mesh, str) and not stays_in_the_folder(mesh):  # motions alone may lie anywhere
-        raise CaseError(f"[container] mesh_file {outside_the_folder(mesh)}")
-    moved = any(key.startswith(("motion.", "vertical.")) for key in values)
-    first = cases(HallItem(0, 0, values))
-    if reasons := excluded_values(first):
-        raise CaseError("\n".join(reasons))
-    build_container(first)
-    for motion in range(len(cases.motions) if moved else 1):
-        build_motions(cases(HallItem(0, motion, values)))
-    return case_hash(first)
 
 
 def _in_words_of_list(reason: str, base: Case) -> str:

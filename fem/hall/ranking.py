@@ -3,13 +3,14 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import NamedTuple
 
 from fem.batch.checked import CHECKED
 from fem.batch.runner import Row
 from fem.batch.table import row_of
 from fem.hall.plan import Hall, HallItem
 from fem.hall.result import OF_A_RUN, OF_MOTIONS, STATIC
+from fem.hall.table import weakness
 from fem.model.geometry import build_container
 from fem.model.motion import build_motions, peaks_in_run
 from fem.model.static_checks import static_checks_of
@@ -26,20 +27,18 @@ SHARE, LEAST = 0.1, 30
 WORST_FIRST = (Ending.OVERTURNED, Ending.INVALID, Ending.FAILED, Ending.STANDING)
 
 
-@dataclass(frozen=True, kw_only=True)
-class ContainerRun:
+class ContainerRun(NamedTuple):
     """A run of the log."""
 
-    line: str
     ending: Ending
-    ratio: float
+    turned: float  #: rotation ratio of what stands; how far the others turned does not count
     slip: float
+    line: str
 
     @property
     def weakness(self) -> tuple[float, ...]:
         """Smaller for the worse: overturned, not valid, without an outcome, the larger rotation, the larger slip."""
-        turned = -self.ratio if self.ending == Ending.STANDING else 0.0
-        return WORST_FIRST.index(self.ending), turned, -self.slip
+        return WORST_FIRST.index(self.ending), -self.turned, -self.slip
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -50,18 +49,17 @@ class HallRuns:
     by_container: dict[int, dict[int, ContainerRun]] = field(default_factory=dict)  #: and by motion
     checked: dict[int, Row] = field(default_factory=dict)  #: what the repetition showed, by container
     #: of each container, utilisations by `STATIC` under the peak of its governing motion
-    static: dict[int, dict[str, float | None]] = field(default_factory=dict)
+    static: dict[int, Row] = field(default_factory=dict)
 
     def note(self, line: str) -> None:
         """Add a line of the log of the runs; IndexError: of a container that is not in the list."""
         row = row_of(RUN_COLUMNS, line)
-        item = self.hall.item(row["container"], row["motion"])
-        run = ContainerRun(
-            line=line,
-            ending=ending_of(row["status"], row["outcome"]),
-            ratio=row[TURNED] or 0.0,
-            slip=row[SLIPPED] or 0.0,
+        item, ending = (
+            self.hall.item(row["container"], row["motion"]),
+            ending_of(row["status"], row["outcome"]),
         )
+        turned = row[TURNED] if ending == Ending.STANDING else None
+        run = ContainerRun(ending, turned or 0.0, row[SLIPPED] or 0.0, line)
         self.by_container.setdefault(item.container, {})[item.motion] = run
 
     def note_check(self, line: str) -> None:
@@ -71,9 +69,8 @@ class HallRuns:
 
     def missing(self) -> list[HallItem]:
         """Runs that have no line."""
-        return [
-            item for item in self.hall.items() if item.motion not in self.by_container.get(item.container, {})
-        ]
+        known = self.by_container
+        return [item for item in self.hall.items if item.motion not in known.get(item.container, {})]
 
     def lines(self) -> list[str]:
         """`runs.csv`, in the order of containers and motions."""
@@ -95,7 +92,7 @@ class HallRuns:
     def counts(self, container: int) -> tuple[int, ...]:
         """How many motions overturn a container, destroy a corner of it, have no outcome."""
         endings = [run.ending for run in self.by_container[container].values()]
-        return tuple(map(endings.count, (Ending.OVERTURNED, Ending.INVALID, Ending.FAILED)))
+        return tuple(map(endings.count, WORST_FIRST[:3]))
 
     def to_check(self, checks: str, order: Sequence[int]) -> list[HallItem]:
         """The governing runs that are still to be repeated.
@@ -113,35 +110,26 @@ class HallRuns:
     def find_static(self) -> None:
         """Note the utilisations of the containers, once all are run."""
         for number in self.by_container:
-            case = self.hall.cases(self.hall.item(number, self.governing(number)))
+            case = self.hall.make(self.hall.item(number, self.governing(number)))
             peaks = peaks_in_run(case, *build_motions(case))
             ruling = static_checks_of(case, build_container(case), *peaks).ruling.to_result()
             self.static[number] = {name: getattr(ruling, name) for name in STATIC}
 
-    def weakest_first(self, *, margins: bool = True) -> list[int]:
-        """The containers in the order of their weakness.
+    def weakest_first(self) -> list[int]:
+        """The containers in the order of their weakness: what overturned comes first, then as `WORST_FIRST`."""
 
-        What overturned comes first, then what destroyed a corner, then what has no outcome, then what stood; within
-        these what has a margin before what has none, by the margin; then by rotation or, where nothing rocks, by the
-        static rule; then by slip.
-        """
-
-        def weakness(number: int) -> tuple[float, ...]:
+        def weakness_of(number: int) -> tuple[float, ...]:
             run = self.worst(number)
-            order, turned, slip = run.weakness
-            check = self.checked.get(number, {}) if margins else {}
-            margin = check.get("margin") or check.get("margin_tried_to")
-            rocked = turned if run.ratio > ROCKS else 0.0
-            static = -(self.static[number]["utilisation_overturning"] or 0.0)
-            return order, margin is None, margin or 0.0, rocked, static, slip, number
+            row = self.static[number] | self.checked.get(number, {}) | {SLIPPED: run.slip}
+            return weakness(WORST_FIRST.index(run.ending), row, run.turned if run.turned > ROCKS else 0.0)
 
-        return sorted(self.by_container, key=weakness)
+        return sorted(sorted(self.by_container), key=weakness_of)
 
-    def found(self, container: int) -> dict[str, Any]:
+    def of(self, container: int) -> Row:
         """Results of a container, by column."""
         by_motion, row = self.by_container[container], row_of(RUN_COLUMNS, self.worst(container).line)
-        values: dict[str, Any] = {name: row[name] for name in OF_A_RUN}
-        values |= self.static[container] | self.checked.get(container, {})
+        values = {name: row[name] for name in OF_A_RUN} | self.static[container]
+        values |= self.checked.get(container, {})
         if names := [pair.name for pair in self.hall.motions]:
             slipped = max(sorted(by_motion), key=lambda number: by_motion[number].slip)
             most = by_motion[slipped].slip, names[slipped]

@@ -7,7 +7,6 @@ from fem.batch.checked import CHECKED
 from fem.batch.study import StudyResult
 from fem.batch.table import Columns
 from fem.results.figures import RUN_COLUMNS, SLIPPED, TURNED
-from fem.results.json_block import JsonBlock
 
 REFUSED = "refused"  #: status of a row that cannot be computed
 #: columns of a run, as in its log
@@ -23,16 +22,6 @@ COLUMNS = OF_A_RUN | CHECKED | STATIC | OF_MOTIONS | AT_SITE | {"page": str, "ra
 FIRST = ("status", "reason", "outcome", *[*CHECKED][:3], TURNED, SLIPPED, "tilt_rad")
 #: behind the columns of the list
 RESULT_COLUMNS = {name: COLUMNS[name] for name in (*FIRST, *STATIC, *OF_MOTIONS, *CHECKED, *COLUMNS)}
-
-
-@dataclass(frozen=True, kw_only=True)
-class TagCount(JsonBlock):
-    """What the containers of one tag did."""
-
-    tag: str
-    containers: int  #: rows times their counts
-    counts: dict[str, int]  #: stood, overturned, invalid, failed, refused; at a site by answer
-    margin: float | None = None  #: the least that was found
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,7 +46,8 @@ class HallResult(StudyResult):
     checked: int = 0  #: containers whose run was repeated
     #: of containers, by count; at a site their answers
     outcomes: dict[str, int] = field(default_factory=dict)
-    tags: tuple[TagCount, ...] = ()
+    #: what the containers of each tag did: stood, overturned, invalid, failed, refused; at a site by answer
+    tags: tuple[dict[str, Any], ...] = ()
     kept: tuple[str, ...] = ()  #: columns of the list that set nothing
     columns: tuple[str, ...] = ()  #: of the list
     allow_outside: bool | None = None  #: files of the case or the site may lie outside its folder

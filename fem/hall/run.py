@@ -4,6 +4,7 @@ The runs are logged as they are ready, so an interrupted hall continues where it
 nor on the number of cores. A hall of which names, tags or places alone have changed is written again, not computed.
 """
 
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -12,7 +13,7 @@ from typing import Any, Literal, Unpack
 from fem.batch.checked import check_chunk
 from fem.batch.log import LoggedRuns
 from fem.batch.motion_set import motions_left_out
-from fem.batch.runner import Runner
+from fem.batch.runner import Row, Runner
 from fem.batch.study import INTERRUPTED, Study, StudyOptions, hash_of, run_study, runner_of
 from fem.batch.table import table_of_lines, table_text
 from fem.case.case import Case
@@ -20,7 +21,7 @@ from fem.case.toml import toml_document
 from fem.hall.file import HallFile, HallRow
 from fem.hall.page import hall_report
 from fem.hall.places import PICTURE, draw_places, geojson
-from fem.hall.plan import Hall, Inventory, plan_hall
+from fem.hall.plan import Hall, plan_hall
 from fem.hall.ranking import CHECK_COLUMNS, RUN_COLUMNS, HallRuns
 from fem.hall.result import RESULT_COLUMNS, HallResult
 from fem.hall.table import with_table
@@ -56,30 +57,53 @@ def run_hall(
     with runner_of(**options) as runner:
         hall = plan_hall(file, base, motions, runner, strict=strict, force=options.get("force", False))
         options["workers_of"] = runner.workers_of
-        begun = begun_result(
-            hall.inventory,
-            asked=hash_of([hall.inventory.hashes, [pair.case_hash for pair in hall.motions]]),
+        study = study_of(
+            hall,
+            _compute,
+            asked=hash_of([[*hall.containers], [pair.case_hash for pair in hall.motions]]),
             listed=hash_of([file.text, checks]),
             motions=hall.named,
             motion_covered=motions_left_out(base, hall.motions),
             checks=checks,
         )
-        size = 2.0 * table_bytes(len(hall.items()), len(RUN_COLUMNS))
-        study = study_of(hall.inventory, begun, partial(_compute, hall, begun), size)
         copied = [pair.case for pair in hall.motions]
-        return run_study(replace(study, cases=[] if copied else [base], motions=copied), folder, **options)
+        size = study.size + 2.0 * table_bytes(len(hall.items), len(RUN_COLUMNS))
+        return run_study(
+            replace(study, size=size, cases=[] if copied else [base], motions=copied), folder, **options
+        )
 
 
-def study_of(inventory: Inventory, begun: HallResult, compute: Any, size: float) -> Study[HallResult]:
-    """The study of a list; `size` is that of its tables [bytes]."""
+def study_of(
+    hall: Hall, compute: Callable[[Hall, HallResult, ResultFolder, Runner], HallResult], **fields: Any
+) -> Study[HallResult]:
+    """The study of a list.
+
+    Args:
+        hall: the list, checked.
+        compute: what is missing of it.
+        fields: of the result before any run, in one way of computing.
+    """
+    rows, file, origin = hall.rows, hall.file, hall.base.origin_with({})
+    known = {"model": hall.base.solver.model, "allow_outside": origin.allow_outside or None}
+    begun = HallResult(
+        hall=file.name,
+        case=origin.place,
+        rows=len(rows),
+        containers=sum(row.count for row in rows),
+        distinct=len(hall.containers),
+        refused=sum(row.container is None for row in rows),
+        kept=file.kept,
+        columns=file.columns,
+        **(known | fields),
+    )
     return Study(
         kind=HALL,
         request=begun.asked,
         result=HallResult,
         begun=begun,
-        compute=compute,
-        texts={"list.csv": inventory.file.text, "base.toml": toml_document(inventory.base.given())},
-        size=size + BYTES_BESIDE,
+        compute=partial(compute, hall, begun),
+        texts={"list.csv": file.text, "base.toml": toml_document(hall.base.given())},
+        size=BYTES_BESIDE,
         subject=f"the hall ({begun.distinct} containers)",
         way_out="take fewer rows",
         progress=lambda results: "what was computed so far",
@@ -87,49 +111,29 @@ def study_of(inventory: Inventory, begun: HallResult, compute: Any, size: float)
     )
 
 
-def begun_result(inventory: Inventory, **fields: Any) -> HallResult:
-    """The result before any run; `fields` are those of its way of computing."""
-    rows, file, origin = inventory.rows, inventory.file, inventory.base.origin_with({})
-    known: dict[str, Any] = {
-        "model": inventory.base.solver.model,
-        "allow_outside": origin.allow_outside or None,
-    }
-    return HallResult(
-        hall=file.name,
-        case=origin.place,
-        rows=len(rows),
-        containers=sum(row.count for row in rows),
-        distinct=len(inventory.containers),
-        refused=sum(row.container is None for row in rows),
-        kept=file.kept,
-        columns=file.columns,
-        **(known | fields),
-    )
-
-
 def _compute(hall: Hall, begun: HallResult, results: ResultFolder, runner: Runner) -> HallResult:
     """Compute what is missing, and write the list with its results, and its page."""
-    runs, total = HallRuns(hall=hall), len(hall.items())
+    runs, total = HallRuns(hall=hall), len(hall.items)
     LoggedRuns(
         what="runs",
         path=results.path / RUNS,
         columns=RUN_COLUMNS,
-        make=hall.cases,
+        make=hall.make,
         model_of=hall.model_of,
         key=lambda item: item[:2],
         note=runs.note,
-        number=lambda item: item.container * len(hall.cases.motions) + item.motion,
+        number=lambda item: item.container * len(hall.keys) + item.motion,
     ).run(runner, iter(runs.missing, []))
     if missing := len(runs.missing()):
         words = f"{total - missing} of {total} runs are computed"
         return replace(begun, status=INTERRUPTED, runs=total - missing, missing=words)
     runs.find_static()
-    to_check = partial(runs.to_check, begun.checks, runs.weakest_first(margins=False))
+    to_check = partial(runs.to_check, begun.checks, runs.weakest_first())
     LoggedRuns(
         what="containers repeated with other inputs and stronger motions",
         path=results.path / CHECKS,
         columns=CHECK_COLUMNS,
-        make=hall.cases,
+        make=hall.make,
         model_of=hall.model_of,
         key=lambda item: item[:1],
         note=runs.note_check,
@@ -142,16 +146,24 @@ def _compute(hall: Hall, begun: HallResult, results: ResultFolder, runner: Runne
     results.write_text(RUNS, table_of_lines(RUN_COLUMNS, runs.lines()))
     checked = sorted(runs.checked.items())
     results.write_text(CHECKS, table_text(CHECK_COLUMNS, ([k, *check.values()] for k, check in checked)))
-    by_container = {number: runs.found(number) for number in runs.by_container}
 
     def command(row: HallRow, number: int) -> str:
         return hall.command(row, runs.governing(number))
 
-    return written(results, with_table(begun, hall.inventory, by_container, runs.weakest_first(), command))
+    by_container = {number: runs.of(number) for number in runs.by_container}
+    return written(results, begun, hall, by_container, runs.weakest_first(), command)
 
 
-def written(results: ResultFolder, result: HallResult) -> HallResult:
-    """Write the list with its results, its plan and its page."""
+def written(
+    results: ResultFolder,
+    begun: HallResult,
+    hall: Hall,
+    by_container: Mapping[int, Row],
+    order: Sequence[int],
+    command: Callable[[HallRow, int], str],
+) -> HallResult:
+    """The finished result, with the list, its plan and its page written; arguments as of `with_table`."""
+    result = with_table(begun, hall, by_container, order, command)
     rows = ([*row["given"].values(), *(row[name] for name in RESULT_COLUMNS)] for row in result.table)
     results.write_text(TABLE, table_text((*result.columns, *RESULT_COLUMNS), rows))
     for name, text in ((PICTURE, draw_places(result)), (GEOJSON, geojson(result))):

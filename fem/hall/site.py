@@ -3,29 +3,28 @@
 The verifications follow one another, each on all cores. What is kept of a finished one is a line of a log.
 """
 
-import math
 import shlex
-from collections.abc import Mapping, Sequence
-from contextlib import closing, suppress
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import Any, Unpack
 
-from fem.batch.log import RowLog
+from fem.batch.log import LoggedRows
 from fem.batch.runner import Row, Runner
 from fem.batch.study import FAILED, INTERRUPTED, StudyOptions, hash_of, run_study
-from fem.batch.table import line_of, row_of, table_of_rows
+from fem.batch.table import row_of, table_of_rows
 from fem.case.case import Case
 from fem.case.validation import CaseError
 from fem.hall.file import HallFile, HallRow
-from fem.hall.plan import Inventory, take_inventory
+from fem.hall.plan import Hall
 from fem.hall.result import AT_SITE, RESULT_COLUMNS, HallResult
-from fem.hall.run import begun_result, study_of, written
-from fem.hall.table import NO_ANSWER, with_table
+from fem.hall.run import study_of, written
+from fem.hall.table import NO_ANSWER, weakness
 from fem.results.errors import FolderError
 from fem.results.figures import SLIPPED, TURNED
-from fem.results.folder import ResultFolder, program_of_results
+from fem.results.folder import ResultFolder, require_same_program
 from fem.results.kinds import SITE, read_result
 from fem.results.run_files import copy_data_files
 from fem.run.expected import expected_words
@@ -42,7 +41,6 @@ from fem.site_check.run import run_site, site_hash
 from mesh.errors import MeshError
 
 SITES, FOLDERS = "sites.csv", "sites"
-ASSESS = ("python", "-m", "fem", "assess")
 #: tables of a case that a verification takes from its site file
 OF_THE_SITE = ("motion", "vertical", "initial", "static", "solver", "output", "uncertainty", "joints")
 FIGURES = ("outcome", "margin", TURNED, SLIPPED, "motions_overturned", "motions_failed")
@@ -86,16 +84,16 @@ def run_hall_at_site(
         outside=allow_outside or bool(site.motions.files),
         force=options.get("force", False),
     )
-    inventory = take_inventory(file, work.start, work.look, strict=strict)
-    begun = begun_result(
-        inventory,
+    hall = Hall(file=file, base=work.start, containers={}).checked(work.hash_of, strict=strict)
+    study = study_of(
+        hall,
+        work.compute,
         site=site.origin.place,
         model=site.heading.model,
-        asked=hash_of(inventory.hashes),
+        asked=hash_of([*hall.containers]),
         listed=hash_of(file.text),
         allow_outside=allow_outside or None,
     )
-    study = study_of(inventory, begun, partial(work.compute, inventory, begun), 0.0)
     return run_study(study, folder, **options)
 
 
@@ -123,7 +121,7 @@ class _AtSite:
             )
         return self.site.of_container(name, self.start.with_values(values) if values else self.start, mu)
 
-    def look(self, values: Mapping[str, Any]) -> str:
+    def hash_of(self, values: Mapping[str, Any]) -> str:
         """The hash of a verification, once its bodies can be built and the wind on them is known.
 
         Raises:
@@ -133,33 +131,17 @@ class _AtSite:
         wind_utilisation([body_of(variant) for variant in request.variants], inputs_of(request))
         return hash_of([request.portable, site_hash(request, self.ground)])
 
-    def compute(
-        self, inventory: Inventory, begun: HallResult, results: ResultFolder, runner: Runner
-    ) -> HallResult:
+    def compute(self, hall: Hall, begun: HallResult, results: ResultFolder, runner: Runner) -> HallResult:
         """Verify what is missing, and write the list with the answers, and its page."""
-        numbers = range(len(inventory.containers))
-        mine = runner.share.of(numbers, numbers) if runner.share else [*numbers]
-        names = {row.container: row.name for row in reversed(inventory.rows)}
-        folders = [Path(FOLDERS) / f"{k + 1:03d}-{inventory.hashes[k][:8]}" for k in numbers]
-        with closing(RowLog(results.path / SITES, COLUMNS, runner.reporter.warning)) as log:
-            for line in log.lines:
-                self._note(line)
-            missing = [number for number in mine if number not in self.rows]
-            requests = (self.request(inventory.containers[k], names[k]) for k in missing)
-            for done, (number, request) in enumerate(zip(missing, requests, strict=True)):
-                if runner.stop():
-                    break
-                if done == 0 and len(missing) > 1:
-                    self._say_expected(len(missing), request, runner)
-                runner.reporter.message(f"container {number + 1} of {len(numbers)} at the site")
-                if (row := self._verified(request, results.path / folders[number], runner)) is None:
-                    break
-                line = line_of((number, *(row.get(name) for name in [*COLUMNS][1:])))
-                log.append([line])
-                self._note(line)
+        numbers = range(len(hall.containers))
+        folders = [Path(FOLDERS) / f"{k + 1:03d}-{digest[:8]}" for k, digest in enumerate(hall.containers)]
+        log = LoggedRows[int](
+            path=results.path / SITES, columns=COLUMNS, key=lambda number: (number,), note=self.note
+        )
+        missing = ([k for k in numbers if k not in self.rows] for _ in range(1))
+        places = [results.path / folder for folder in folders]
+        log.compute(runner, missing, partial(self.verified, hall, places, runner))
         if len(self.rows) < len(numbers):
-            if runner.share and not {*mine} - self.rows.keys():
-                runner.share.waits = True
             words = f"{len(self.rows)} of {len(numbers)} containers are verified"
             return replace(begun, status=INTERRUPTED, missing=words)
         results.check()
@@ -170,30 +152,36 @@ class _AtSite:
             number: {**row, "page": page.as_posix() if (results.path / page).is_file() else None}
             for number, row, page in zip(numbers, rows, pages, strict=True)
         }
-        flags = ["--allow-outside"] * self.outside
 
         def command(row: HallRow, number: int) -> str:
-            return shlex.join([*ASSESS, str(results.path / folders[number] / "site.toml"), *flags])
+            words = ["python", "-m", "fem", "assess", str(places[number] / "site.toml")]
+            return shlex.join([*words, *["--allow-outside"] * self.outside])
 
-        order = sorted(numbers, key=lambda number: _weakness(by_container[number]))
-        begun = replace(begun, runs=len(numbers))
-        return written(results, with_table(begun, inventory, by_container, order, command))
+        order = sorted(numbers, key=lambda number: _weakness(self.rows[number]))
+        return written(results, replace(begun, runs=len(numbers)), hall, by_container, order, command)
 
-    def _note(self, line: str) -> None:
+    def note(self, line: str) -> None:
         """Add a line of the log."""
         row = row_of(COLUMNS, line)
         self.rows[row["container"]] = row
 
-    def _say_expected(self, count: int, request: SiteRequest, runner: Runner) -> None:
-        """How long so many containers take at most, by the first of them."""
-        with suppress(CaseError, MeshError):  # its row says why it cannot be verified
-            each = forecast_of(request, runner.jobs, allow_outside=bool(request.motions.files))
-            runner.reporter.message(
-                f"{count} containers with up to {each.most} runs each: at most "
-                f"{expected_words(each.seconds * count, runner.jobs)}, and the deciding runs with their bands"
-            )
+    def verified(
+        self, hall: Hall, folders: Sequence[Path], runner: Runner, missing: Sequence[int]
+    ) -> Iterator[tuple[list[int], list[Row]]]:
+        """The rows of these containers, one after another, until it is interrupted."""
+        names = {row.container: row.name for row in reversed(hall.rows)}
+        for done, number in enumerate(missing):
+            if runner.stop():
+                return
+            request = self.request(hall.values[number], names[number])
+            if done == 0 and len(missing) > 1:
+                _say_expected(len(missing), request, runner)
+            runner.reporter.message(f"container {number + 1} of {len(hall.containers)} at the site")
+            if (row := self._row_of(request, folders[number], runner)) is None:
+                return
+            yield [number], [dict.fromkeys(COLUMNS) | row]
 
-    def _verified(self, request: SiteRequest, folder: Path, runner: Runner) -> Row | None:
+    def _row_of(self, request: SiteRequest, folder: Path, runner: Runner) -> Row | None:
         """The row of a container; None where it was interrupted."""
         try:
             result = run_site(
@@ -229,18 +217,26 @@ class _AtSite:
         }
 
 
+def _say_expected(count: int, request: SiteRequest, runner: Runner) -> None:
+    """How long so many containers take at most, by the first of them."""
+    with suppress(CaseError, MeshError):  # its row says why it cannot be verified
+        each = forecast_of(request, runner.jobs, allow_outside=bool(request.motions.files))
+        runner.reporter.message(
+            f"{count} containers with up to {each.most} runs each: at most "
+            f"{expected_words(each.seconds * count, runner.jobs)}, and the deciding runs with their bands"
+        )
+
+
 def _is_of_another_program(folder: Path) -> bool:
     """Whether the folder holds a verification by another version of the program."""
-    if not (folder / SITE.mark).exists():
-        return False
-    try:
-        mark = read_result(folder / SITE.mark, SITE)
-    except FolderError:  # damaged
-        return True
-    return any(mark.get(name) != value for name, value in program_of_results().items())
+    if (folder / SITE.mark).exists():
+        try:
+            require_same_program(folder, read_result(folder / SITE.mark, SITE))
+        except FolderError:  # damaged, too
+            return True
+    return False
 
 
-def _weakness(row: Mapping[str, Any]) -> tuple[float, ...]:
-    """Smaller for the worse: by the answer, then by the margin, then by rotation and slip."""
-    order, margin = WORST_FIRST.index(row["answer"] or NO_ANSWER), row["margin"]
-    return order, math.inf if margin is None else margin, -(row[TURNED] or 0.0), -(row[SLIPPED] or 0.0)
+def _weakness(row: Row) -> tuple[float, ...]:
+    """Smaller for the worse, the answer first."""
+    return weakness(WORST_FIRST.index(row["answer"] or NO_ANSWER), row, row[TURNED] or 0.0)

@@ -1,24 +1,38 @@
 """The list with its results: the rows, counts and answer of `hall.json`."""
 
-from collections import Counter, defaultdict
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
+from fem.batch.runner import Row
 from fem.batch.study import COMPLETED, FAILED
-from fem.hall.file import HallRow
-from fem.hall.plan import Inventory
-from fem.hall.result import REFUSED, RESULT_COLUMNS, HallResult, TagCount
-from fem.results.outcome import COUNTED, ending_of
+from fem.hall.file import LISTED, HallRow
+from fem.hall.plan import Hall
+from fem.hall.result import REFUSED, RESULT_COLUMNS, HallResult
+from fem.results.figures import SLIPPED
+from fem.results.outcome import COUNTED_AS, ending_of
 
 NO_ANSWER = "no answer"  #: of a container at a site
-WORDS = {ending: word for word, ending in COUNTED.items()}
+
+
+def weakness(order: int, row: Row, turned: float) -> tuple[float, ...]:
+    """Smaller for the worse: by the order of what happened, by margin, by rotation, by the static rule, by slip.
+
+    Args:
+        order: less for the worse.
+        row: of the container; one with a margin comes before one without.
+        turned: the rotation that counts.
+    """
+    margin = row.get("margin") or row.get("margin_tried_to")
+    static, slip = row.get("utilisation_overturning"), row.get(SLIPPED)
+    return order, margin is None, margin or 0.0, -turned, -(static or 0.0), -(slip or 0.0)
 
 
 def with_table(
     begun: HallResult,
-    inventory: Inventory,
-    by_container: Mapping[int, Mapping[str, Any]],
+    hall: Hall,
+    by_container: Mapping[int, Row],
     order: Sequence[int],
     command: Callable[[HallRow, int], str],
 ) -> HallResult:
@@ -26,69 +40,47 @@ def with_table(
 
     Args:
         begun: without these.
-        inventory: the rows, checked.
+        hall: the list, checked.
         by_container: results of each container, by column.
         order: of the containers, the weakest first.
         command: of a row, whose container this is.
     """
-    table = tuple(_rows(inventory, by_container, order, command))
-    outcomes, tags = Counter[str](), defaultdict[str, list[dict[str, Any]]](list)
-    for row in table:
-        outcomes[_counted(row, begun)[0]] += row["count"]
-        tags[row["tag"]].append(row)
+    ranks = {number: rank for rank, number in enumerate(order, start=1)}
+    table, outcomes, tags = [], Counter[str](), dict[str, dict[str, Any]]()
+    for number, row in enumerate(hall.rows, start=1):
+        k = row.container
+        results: Row = {"status": REFUSED, "reason": row.reason}
+        if k is not None:
+            results = {**by_container[k], "rank": ranks[k]}
+        given = {"row": number} | {name: getattr(row, name) for name in LISTED}
+        values = {name: results.get(name) for name in RESULT_COLUMNS}
+        table.append(given | values | {"command": None if k is None else command(row, k)})
+        outcome, ending = _counted(values, begun)
+        outcomes[outcome] += row.count
+        empty = {"tag": row.tag, "containers": 0, "counts": Counter[str](), "margin": None}
+        tag = tags.setdefault(row.tag, empty)
+        tag["containers"] += row.count
+        tag["counts"][ending] += row.count
+        tag["margin"] = min(filter(None, (tag["margin"], values["margin"])), default=None)
+    failed = {result["status"] for result in by_container.values()} == {FAILED}
     result = replace(
         begun,
-        status=FAILED if {result["status"] for result in by_container.values()} == {FAILED} else COMPLETED,
+        status=FAILED if failed else COMPLETED,
         outcomes=dict(sorted(outcomes.items())),
-        tags=tuple(_tag(tag, rows, begun) for tag, rows in sorted(tags.items())) if {*tags} != {""} else (),
-        table=table,
+        tags=tuple(tag for _, tag in sorted(tags.items())) if {*tags} != {""} else (),
+        table=tuple(table),
     )
     return replace(result, answer=answer_of(result))
 
 
-def _rows(
-    inventory: Inventory,
-    by_container: Mapping[int, Mapping[str, Any]],
-    order: Sequence[int],
-    command: Callable[[HallRow, int], str],
-) -> Iterator[dict[str, Any]]:
-    ranks = {number: rank for rank, number in enumerate(order, start=1)}
-    for number, row in enumerate(inventory.rows, start=1):
-        results: Mapping[str, Any] = {"status": REFUSED, "reason": row.reason}
-        if row.container is not None:
-            results = {**by_container[row.container], "rank": ranks[row.container]}
-        yield {
-            "row": number,
-            "line": row.line,
-            "name": row.name,
-            "count": row.count,
-            "tag": row.tag,
-            "place_m": row.place,
-            "lon_lat": row.geographic,
-            "given": dict(zip(inventory.file.columns, row.given, strict=True)),
-            **{name: results.get(name) for name in RESULT_COLUMNS},
-            "command": None if row.container is None else command(row, row.container),
-        }
-
-
-def _counted(row: Mapping[str, Any], result: HallResult) -> tuple[str, str]:
+def _counted(row: Row, result: HallResult) -> tuple[str, str]:
     """What the outcomes count a row as, and what its tag does."""
     if row["status"] == REFUSED:
         return REFUSED, REFUSED
     if result.site:
         return row["answer"] or NO_ANSWER, row["answer"] or NO_ANSWER
-    ending = WORDS[ending_of(row["status"], row["outcome"])]
+    ending = COUNTED_AS[ending_of(row["status"], row["outcome"])]
     return row["outcome"] or ending, ending
-
-
-def _tag(tag: str, rows: Sequence[Mapping[str, Any]], result: HallResult) -> TagCount:
-    counts = Counter[str]()
-    for row in rows:
-        counts[_counted(row, result)[1]] += row["count"]
-    margins = [row["margin"] for row in rows if row["margin"] is not None]
-    return TagCount(
-        tag=tag, containers=counts.total(), counts=dict(counts), margin=min(margins, default=None)
-    )
 
 
 def answer_of(result: HallResult) -> str:
@@ -108,7 +100,6 @@ def answer_of(result: HallResult) -> str:
     weakest = result.ranked[0]
     words += f"; the weakest is {weakest['name']}"
     if (margin := weakest["margin"]) is not None:
-        does = "fails the rule" if result.site else "overturns"
-        what = "the motions" if result.site else "its motion"
+        does, what = ("fails the rule", "the motions") if result.site else ("overturns", "its motion")
         words += f", which {does} from {margin:.3g} times {what} on"
     return words

@@ -70,6 +70,7 @@ COUNTED = {
     "invalid": Ending.INVALID,
     "failed": Ending.FAILED,
 }
+COUNTED_AS = {ending: word for word, ending in COUNTED.items()}
 #: of these, what does not stand: it overturned, or destroyed the corner on which it stood
 NOT_STANDING = (Ending.OVERTURNED, Ending.INVALID)
 #: of the outcomes of what does not stand
