@@ -14,9 +14,8 @@ import scipy.sparse.linalg
 from scipy.sparse import bsr_array, csr_array
 
 from contact.interface.equilibrium import Stance
-from contact.interface.workspace import Contact, Workspace
-from contact.stepping.body import Boxes, Frame, Ground, State
-from contact.stepping.integrator import UNPREPARED, advance, enter_floor_frame_compiled
+from contact.stepping.body import State
+from contact.stepping.integrator import UNPREPARED, enter_floor_frame_compiled
 from contact.stepping.links import LinkedBody
 from contact.stepping.loose_stack import LooseStack
 from contact.stepping.modal_body import ModalBody
@@ -48,7 +47,7 @@ def rotation_matrix(rotation: float) -> FloatArray:
 
 
 class FullBody:
-    """What `contact.stepping.body` asks of a body, for a finite-element container.
+    """A finite-element container, stepped by `fem.solid.nodal_kernels`.
 
     Args:
         elements: the container, discretised.
@@ -58,8 +57,6 @@ class FullBody:
         damping: a of the stiffness-proportional damping C = a K in the turned frame [s].
         line: (k, 4) lines of the links at its last supporting nodes, see `contact.stepping.links`.
     """
-
-    compiled = True  #: stepped by machine code; a subclass with other methods is stepped by the interpreter
 
     def __init__(
         self,
@@ -113,7 +110,7 @@ class FullBody:
 
     def start(self, state: State, floor: float, lift: float = 0.0, lift_velocity: float = 0.0) -> None:
         """Complete a state with given coordinates and contact forces: forces, energies and acceleration."""
-        self.complete(state, floor, lift, lift_velocity)
+        nodal_kernels.complete(self.nodal, state, floor, lift, lift_velocity)
         force = (state.external - state.internal).reshape(-1, 2)
         factor = scipy.sparse.linalg.splu(self.elements.mass.tocsc())
         state.acceleration[:] = factor.solve(force).ravel()
@@ -147,7 +144,7 @@ class FullBody:
 
     def advance(self, run: RunState, until: float) -> int:
         """`contact.stepping.integrator.advance` with the factors there are."""
-        return int(advance_nodal(self._linked, run, until) if self.compiled else advance(self, run, until))
+        return int(advance_nodal(self._linked, run, until))
 
     def leave_alone(self, run: RunState, floor_velocity: float, lift_velocity: float) -> None:
         """`contact.stepping.integrator.enter_floor_frame`."""
@@ -157,39 +154,6 @@ class FullBody:
     def _linked(self) -> NodalBody | LinkedBody:
         """What is stepped."""
         return self.nodal if self.line is None else LinkedBody(body=self.nodal, line=self.line)
-
-    def prepared(self, step: float) -> bool:
-        """See `contact.stepping.body.prepared`."""
-        return bool(nodal_kernels.prepared(self.nodal, step))
-
-    def weigh(self, contact: Contact, old: State) -> None:
-        """See `contact.stepping.body.weigh`."""
-
-    def predict(self, scheme: Scheme, step: float, old: State, new: State) -> None:
-        """See `contact.stepping.body.predict`."""
-        nodal_kernels.predict(self.nodal, scheme, step, old, new)
-
-    def release(
-        self, scheme: Scheme, step: float, old: State, new: State, work: Workspace, ground: Ground
-    ) -> None:
-        """See `contact.stepping.body.release`."""
-        nodal_kernels.release(self.nodal, scheme, step, old, new, work, ground)
-
-    def respond(self, scheme: Scheme, step: float, old: State, new: State, work: Workspace) -> float:
-        """See `contact.stepping.body.respond`; the error is the residual over its tolerance."""
-        return float(nodal_kernels.respond(self.nodal, scheme, step, old, new, work))
-
-    def complete(self, new: State, floor: float, lift: float, lift_velocity: float) -> None:
-        """See `contact.stepping.body.complete`; internal forces and strain energy are those of the last residual."""
-        nodal_kernels.complete(self.nodal, new, floor, lift, lift_velocity)
-
-    def observe(self, new: State, floor: float, lift: float) -> None:
-        """See `contact.stepping.body.observe`."""
-        nodal_kernels.observe(self.nodal, new, floor, lift)
-
-    def shift_velocity(self, state: State, frame: Frame, boxes: Boxes) -> None:
-        """See `contact.stepping.body.shift_velocity`."""
-        nodal_kernels.shift_velocity(self.nodal, state, frame, boxes)
 
     def memory(self) -> dict[str, FloatArray]:
         """Arrays of the last residual by name; everything else follows from the state."""

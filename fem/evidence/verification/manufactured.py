@@ -7,17 +7,21 @@ error is that of the time stepping alone.
 """
 
 import math
+from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 import numpy as np
 from scipy.sparse.linalg import spsolve
 
 from contact.stepping.body import State
+from contact.stepping.integrator import advance
 from contact.stepping.scheme import Scheme, generalised_alpha
+from contact.stepping.state import RunState
 from fem.evidence.verification.bodies import Flight, free_run
 from fem.evidence.verification.meshes import PlainMesh, mapped_mesh
 from fem.runtime.arrays import BoolArray, FloatArray
-from fem.solid import nodal_kernels as nodal_body
+from fem.solid import nodal_kernels
 from fem.solid.assembly import FiniteElements, assemble
 from fem.solid.nodal_body import FullBody
 
@@ -109,8 +113,6 @@ class DrivenBody(FullBody):
     The source is part of its internal forces, which the stepper averages over a step like all forces.
     """
 
-    compiled = False
-
     def __init__(self, elements: FiniteElements, *, damping: float = 0.0) -> None:
         ends, no_monitors = elements.base_nodes[[0, -1]], elements.base_nodes[:0]
         super().__init__(elements, ends, no_monitors, gravity=1e-3, damping=damping)
@@ -121,16 +123,24 @@ class DrivenBody(FullBody):
         state = flight.state
         position, velocity, acceleration = self.motion(0.0)
         state.position[:], state.velocity[:] = position.ravel(), velocity.ravel()
-        self.nodal.turn[:] = nodal_body.fit(self.nodal, state.position)[2:]
+        self.nodal.turn[:] = nodal_kernels.fit(self.nodal, state.position)[2:]
         self.nodal.source[:] = self.source(0.0)
         self.evaluate(state)
         self.start(state, 0.0)
         state.acceleration[:] = acceleration.ravel()
         return flight.advance(end)
 
+    def advance(self, run: RunState, until: float) -> int:
+        """`contact.stepping.integrator.advance`, by the interpreter."""
+        return advance(self, run, until)
+
+    def __getattr__(self, operation: str) -> Callable[..., Any]:
+        """What `contact.stepping.body` asks of a body, as its nodes do it."""
+        return partial(getattr(nodal_kernels, operation), self.nodal)
+
     def predict(self, scheme: Scheme, step: float, old: State, new: State) -> None:
         """See `contact.stepping.body.predict`; the source is then that of the step's end."""
-        super().predict(scheme, step, old, new)
+        nodal_kernels.predict(self.nodal, scheme, step, old, new)
         self.nodal.source[:] = self.source(self._flight.time + step)
 
     def motion(self, time: float) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -66,15 +66,15 @@ def test_substitution_solves_with_the_newmark_matrix(model):
 def test_the_oldest_factors_make_room():
     model = build_model(load_case("seed_stack_plateau", COARSE))
     body, scheme = model.body, model.run.problem.scheme
-    assert not body.prepared(STEP)
+    assert not nodal_kernels.prepared(body.nodal, STEP)
     body.prepare(scheme, STEP)
-    assert body.prepared(STEP)
+    assert nodal_kernels.prepared(body.nodal, STEP)
     slots = body.nodal.cached_step.size - 1
     steps = STEP * (1.0 + 0.01 * np.arange(1, slots + 1))
     for step in steps:
         body.prepare(scheme, float(step))
-    assert not body.prepared(STEP)
-    assert all(body.prepared(float(step)) for step in steps)
+    assert not nodal_kernels.prepared(body.nodal, STEP)
+    assert all(nodal_kernels.prepared(body.nodal, float(step)) for step in steps)
 
 
 def test_forces_and_energy_are_those_of_the_elements_less_the_source(model):
@@ -97,12 +97,13 @@ def test_forces_and_energy_are_those_of_the_elements_less_the_source(model):
 
 def test_an_iterate_that_has_run_away_is_never_taken_for_converged():
     model = build_model(load_case("seed_stack_plateau", COARSE))
-    body, run = model.body, model.run
-    body.prepare(run.problem.scheme, STEP)
-    body.predict(run.problem.scheme, STEP, run.old, run.attempt.new)
-    run.attempt.new.position[::3] = math.nan
-    body.release(run.problem.scheme, STEP, run.old, run.attempt.new, run.work, Ground(0.0, 0.0, 0.0, 0.0))
-    assert body.respond(run.problem.scheme, STEP, run.old, run.attempt.new, run.work) == math.inf
+    run, scheme = model.run, model.run.problem.scheme
+    model.body.prepare(scheme, STEP)
+    nodal, old, new, still = model.body.nodal, run.old, run.attempt.new, Ground(0.0, 0.0, 0.0, 0.0)
+    nodal_kernels.predict(nodal, scheme, STEP, old, new)
+    new.position[::3] = math.nan
+    nodal_kernels.release(nodal, scheme, STEP, old, new, run.work, still)
+    assert nodal_kernels.respond(nodal, scheme, STEP, old, new, run.work) == math.inf
 
 
 def test_walls_thin_as_a_hair_do_not_keep_the_iterations_waiting_for_rounding():
