@@ -89,8 +89,8 @@ if not hasattr(CPUTargetOptions, "_nrt"):  # numba does not promise it: all is s
 def options_of_piece(inline: bool) -> Any:
     """numba's options for a function as kernels call it, see `contact.pieces`."""
     unused = {"nopython": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-    asked = {"forceinline": inline} if hasattr(CPUTargetOptions, "forceinline") else {}
-    return OPTIONS | unused | asked | {"pipeline_class": PieceCompiler}
+    hint = {"forceinline": inline} if hasattr(CPUTargetOptions, "forceinline") else {}
+    return OPTIONS | unused | hint | {"pipeline_class": PieceCompiler}
 
 
 class Kernel(CPUDispatcher):

@@ -153,12 +153,12 @@ def linearise_in_old_states(
     `work.force` holds the forces from before the step. The laws of one state are linear: where the points stay in their
     states, the first Newton step solves the problem wherever it begins. Returns whether there is such a point.
     """
-    found = False
+    closed = False
     for i in range(work.force.shape[0]):
         tangential, normal = work.force[i, 0], work.force[i, 1]
         if not (normal > 0.0 and start[i, 1] < 0.0):
             continue
-        found = True
+        closed = True
         stiffness = contact.normal_stiffness[i]
         damping = stiffness * contact.relaxation_time[i]
         if normal < SLIDING * work.cap[i]:
@@ -179,7 +179,7 @@ def linearise_in_old_states(
             work.law[i, 0] = limit * work.law[i, 1]
             work.slope[i, 0], work.slope[i, 1] = 0.0, limit * work.slope[i, 2]
             work.excess[i, 0] = tangential  # only its sign is used
-    return found
+    return closed
 
 
 @compiled(inline=True)

@@ -5,8 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from contact.arrays import FloatArray
+from contact.interface.contact_points import points_of_joint
 from contact.interface.equilibrium import ROUNDING, SettlingError
-from contact.interface.faces import CORNERS, Faces, linearise_points, points_of_joint
+from contact.interface.faces import CORNERS, Faces, linearise_points
 
 MOST_ROUNDS = 50
 ROUNDING_OF_PLACES = 1e-14  #: of a corner, over its distance from the origin

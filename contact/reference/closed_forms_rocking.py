@@ -48,35 +48,6 @@ def peak_after_impacts(block: RigidBlock, rotation: float, impacts: int, restitu
     return 2.0 * math.atan(2.0 * share / (sine + root))
 
 
-def cambered_moment(block: RigidBlock, rotation: float, camber: float, inner: float = 0.0) -> float:
-    """Restoring moment of a block on a cambered base over its weight, under slow rotation [m].
-
-    M/W = x cos theta - z_c sin theta about the place x that touches, where the slope of the base, 2 d x/b^2, is that of
-    the floor: x = b^2 sin theta/(2 d), at most b. On feet x is at least that of their inner ends. Geometry: the base is
-    raised by d (x/b)^2 from the level, normal to the floor.
-
-    Args:
-        rotation: theta > 0 [rad].
-        camber: d, of the edges above the middle [m].
-        inner: of the part without a support, half its width [m].
-    """
-    place = 0.5 * block.half_width**2 * math.sin(rotation) / camber
-    place = min(max(place, inner), block.half_width)
-    return place * math.cos(rotation) - block.centroid_height * math.sin(rotation)
-
-
-def cambered_frequency(block: RigidBlock, camber: float) -> float:
-    """Angular frequency of small rocking on a base that is cambered from edge to edge [rad/s].
-
-    I theta'' + M g (R - z_c) theta = 0, R = b^2/(2 d) the radius of the base, I = I_c + M z_c^2 about the place that
-    touches, I_c = I_O - M (b^2 + z_c^2).
-    """
-    radius = 0.5 * block.half_width**2 / camber
-    about_corner = block.gravity * block.radius / block.frequency_parameter**2  # I_O/M
-    inertia = about_corner - block.half_width**2
-    return math.sqrt(block.gravity * (radius - block.centroid_height) / inertia)
-
-
 def impact_friction_need(block: RigidBlock) -> float:
     """Least friction coefficient with which the plastic impact of a rocking block does not slide [-].
 

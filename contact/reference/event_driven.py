@@ -252,7 +252,7 @@ def _bracket(
 
 def _dips(sampled: FloatArray) -> set[int]:
     """Sub-intervals in which the parabola through three samples has a minimum near or below zero."""
-    found: set[int] = set()
+    dips: set[int] = set()
     for k in range(1, sampled.size - 1):
         before, here, after = sampled[k - 1 : k + 2]
         bend = before - 2.0 * here + after
@@ -261,10 +261,10 @@ def _dips(sampled: FloatArray) -> set[int]:
         vertex = -0.5 * (after - before) / bend
         lowest = here - (after - before) ** 2 / (8.0 * bend)
         if abs(vertex) <= 1.0 and lowest < 0.1 * bend:
-            found.add(k if vertex < 0.0 else k + 1)
+            dips.add(k if vertex < 0.0 else k + 1)
     if sampled[0] <= 0.0:  # a margin that starts from zero and rises has no dip there
-        found.discard(1)
-    return found
+        dips.discard(1)
+    return dips
 
 
 def _after_start(value: Callable[[float], float], start: float, end: float) -> tuple[float, float]:

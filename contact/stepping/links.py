@@ -5,7 +5,7 @@ and a place across it. A stop is a wall that moves with the floor; its line is h
 A tie pulls down, so its line leads down: its gap is the slack that is left, and it holds the point from above as a wall
 would. All laws, the solver and the ledger are then those of the floor: spring and dashpot that never pull, and Coulomb
 friction across the line. The points of the links are the last of a body; of a loose stack or a row each is on a side
-of one box (`contact.interface.faces.SidePoint`), or a tie between two (`Between`), which turns with its ends.
+of one box (`contact.interface.contact_points.SidePoint`), or a tie between two (`Between`), which turns with its ends.
 
 The cap of a link is its strength. A link that reaches it breaks at the end of the step: its point gets the indentation
 `BROKEN`, and never touches again. What its springs held is part of the contact damping.

@@ -126,7 +126,7 @@ def advance_compiled(body: FloatingBody, run: RunState, until: float) -> int:
 
 def on_resting_floor(run: RunState, since: float, place: Sequence[float]) -> RunState:
     """The run on a floor that stands still from `since` on [s], at this place along x and upward [m]."""
-    still, level = (as_floor_motion(UNIFORM, (since, one, 0.0)) for one in place)
+    still, level = (as_floor_motion(UNIFORM, (since, coordinate, 0.0)) for coordinate in place)
     return run.with_problem(motion=still, vertical=level, breaks=np.full(1, np.inf))
 
 

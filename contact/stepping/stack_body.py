@@ -9,16 +9,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from contact.arrays import FloatArray, IntArray
-from contact.interface.faces import (
-    CORNERS,
-    Held,
-    linearise_points,
-    make_faces,
-    make_row,
-    weigh_points,
-)
+from contact.interface.contact_points import Held, make_faces, make_row
+from contact.interface.faces import CORNERS, Faces, linearise_points, weigh_points
 from contact.interface.laws import ELASTIC_STICK
-from contact.interface.stacking import stacked
+from contact.interface.stacking import StackedStances, stacked
 from contact.interface.workspace import Contact, Workspace, make_workspace
 from contact.jit import compiled, inlined
 from contact.layout import exchanging, row_of, shapes_of
@@ -38,6 +32,7 @@ class StackBody(NamedTuple):
     #: a `ModalBody` whose fields have an axis of boxes in front, but for gravity, downhill, tolerance, and monitored
     #: points, which are of all boxes
     boxes: Any
+    starts: IntArray  #: (N + 1,) first coordinate of a box
     monitors: IntArray  #: (N, 2) first monitored point of a box, and the one behind its last
     energy: FloatArray  #: (N, 3) scratch
 
@@ -66,7 +61,7 @@ def make_stack(
         boxes: each with its four corners as base points, see `contact.interface.faces`, and `rest` its mass centre in
             the undeformed stack. Monitored points are those of the uppermost box first, then downwards.
         normal_stiffness, tangential_stiffness: of the contact points at full weight [N/m].
-        row: of bodies beside one another what `contact.interface.faces.make_row` says of them: pairs, distance, inset.
+        row: of bodies beside one another what `make_row` says of them: pairs, distance, inset.
         held: points of sides that come last, or ties between bodies beside one another.
     """
     n, most = len(boxes), max(box.stiffness.size for box in boxes)
@@ -107,6 +102,7 @@ def make_stack(
     )
     body = StackBody(
         boxes=together,
+        starts=(3 + most) * np.arange(n + 1),
         monitors=np.column_stack([ends[:-1], ends[1:]])[::-1].copy(),
         energy=np.zeros((n, 3)),
     )
@@ -146,8 +142,13 @@ def stack_with_own_scratch(stack: LooseStack) -> LooseStack:
     )
 
 
-@inlined
-def box_of(stack: StackBody, b: int) -> ModalBody:
+def box_of(stack: Any, b: int) -> Any:
+    """One of the boxes of a stack, a body of its own; of a `StackBody` it is `modal_box`."""
+    return stack.boxes[b]
+
+
+@implements(box_of, StackBody, inline=True)
+def modal_box(stack: StackBody, b: int) -> ModalBody:
     """One of the boxes."""
     begin, end = stack.monitors[b, 0], stack.monitors[b, 1]
     boxes = stack.boxes
@@ -163,10 +164,10 @@ def box_of(stack: StackBody, b: int) -> ModalBody:
 
 
 @inlined
-def state_of(stack: StackBody, state: State, b: int) -> State:
+def state_of(stack: Any, state: State, b: int) -> State:
     """What a state holds of one of the boxes; its points are the corners."""
-    size, k, m = 3 + stack.boxes.stiffness.shape[1], CORNERS * b, CORNERS * (b + 1)
-    i, j, begin, end = size * b, size * (b + 1), stack.monitors[b, 0], stack.monitors[b, 1]
+    i, j, k, m = stack.starts[b], stack.starts[b + 1], CORNERS * b, CORNERS * (b + 1)
+    begin, end = stack.monitors[b, 0], stack.monitors[b, 1]
     return state_of_box(
         state,
         position=state.position[i:j],
@@ -177,7 +178,7 @@ def state_of(stack: StackBody, state: State, b: int) -> State:
         damping=state.damping[i:j],
         external=state.external[i:j],
         point=state.corner[k:m],
-        force=state.corner[k:m],
+        force=state.force[k:m],
         pose=state.boxes[b],
         energy=stack.energy[b],
         monitor=state.monitor[begin:end],
@@ -200,7 +201,7 @@ def work_of(work: Workspace, b: int) -> Workspace:
 
 
 @implements(interface.predict, StackBody, inline=True)
-def predict(stack: StackBody, scheme: Scheme, step: float, old: State, new: State) -> None:
+def predict(stack: Any, scheme: Scheme, step: float, old: State, new: State) -> None:
     """Coordinates after `step`, for the last acceleration."""
     for b in range(stack.energy.shape[0]):
         interface.predict(box_of(stack, b), scheme, step, state_of(stack, old, b), state_of(stack, new, b))
@@ -208,7 +209,7 @@ def predict(stack: StackBody, scheme: Scheme, step: float, old: State, new: Stat
 
 @implements(interface.release, StackBody, inline=True)
 def release(
-    stack: StackBody, scheme: Scheme, step: float, old: State, new: State, work: Workspace, ground: Ground
+    stack: Any, scheme: Scheme, step: float, old: State, new: State, work: Workspace, ground: Ground
 ) -> None:
     """Corners at the end of the step without contact force, and their compliance."""
     for b in range(stack.energy.shape[0]):
@@ -224,7 +225,7 @@ def release(
 
 
 @implements(interface.respond, StackBody, inline=True)
-def respond(stack: StackBody, scheme: Scheme, step: float, old: State, new: State, work: Workspace) -> float:
+def respond(stack: Any, scheme: Scheme, step: float, old: State, new: State, work: Workspace) -> float:
     """Apply the forces on the corners to the iterate; returns the remaining error over its tolerance."""
     largest = 0.0
     for b in range(stack.energy.shape[0]):
@@ -236,7 +237,7 @@ def respond(stack: StackBody, scheme: Scheme, step: float, old: State, new: Stat
 
 
 @implements(interface.complete, StackBody, inline=True)
-def complete(stack: StackBody, new: State, floor: float, lift: float, lift_velocity: float) -> None:
+def complete(stack: Any, new: State, floor: float, lift: float, lift_velocity: float) -> None:
     """Internal forces, corners, poses and energy at the converged coordinates."""
     for row in range(new.energy.size):
         new.energy[row] = 0.0
@@ -247,14 +248,14 @@ def complete(stack: StackBody, new: State, floor: float, lift: float, lift_veloc
 
 
 @implements(interface.observe, StackBody, inline=True)
-def observe(stack: StackBody, state: State, floor: float, lift: float) -> None:
+def observe(stack: Any, state: State, floor: float, lift: float) -> None:
     """Displacement and velocity of the monitored points."""
     for b in range(stack.energy.shape[0]):
         interface.observe(box_of(stack, b), state_of(stack, state, b), floor, lift)
 
 
 @implements(interface.shift_velocity, StackBody, inline=True)
-def shift_velocity(stack: StackBody, state: State, frame: Frame, boxes: Boxes) -> None:
+def shift_velocity(stack: Any, state: State, frame: Frame, boxes: Boxes) -> None:
     """Subtract the velocities of a frame."""
     for b in range(*boxes):
         interface.shift_velocity(box_of(stack, b), state_of(stack, state, b), frame, (b, b + 1))
@@ -264,6 +265,18 @@ def shift_velocity(stack: StackBody, state: State, frame: Frame, boxes: Boxes) -
 def prepared(stack: StackBody, step: float) -> bool:
     """Boxes in floating frames can take a step of any size."""
     return True
+
+
+def stand(
+    contact: Contact, state: State, faces: Faces, centre: FloatArray, point: FloatArray, **given: FloatArray
+) -> StackedStances:
+    """`contact.interface.stacking.stacked`; writes the stiffness of the points, and their forces and springs."""
+    weigh_points(faces, (centre[:, None] + point).reshape(-1, 2), state.point, contact)
+    rest = stacked(faces=faces, centre=centre, point=point, **given)
+    state.force[:] = rest.force
+    if contact.friction == ELASTIC_STICK:  # friction regularised in velocity has no springs
+        state.stick[:] = -rest.force[:, 0] / np.maximum(contact.tangential_stiffness, 1e-300)
+    return rest
 
 
 def settle_stack(
@@ -292,17 +305,15 @@ def settle_stack(
     body, modes = stack.body.boxes, stack.body.modes
     n, size = len(body.mass), 3 + modes
     flat = body.shape.reshape(n, 2 * CORNERS, modes)
-    weigh_points(stack.faces, (body.rest[:, None] + body.point).reshape(-1, 2), state.point, contact)
-    rest = stacked(
+    rest = stand(
+        contact,
+        state,
         faces=stack.faces,
         centre=body.rest,
         point=body.point,
         compliance=np.einsum("bim,bm,bjm->bij", flat, 1.0 / body.stiffness, flat),
         load=body.mass[:, None] * np.array([body.downhill, -gravity]),
     )
-    state.force[:] = rest.force
-    if contact.friction == ELASTIC_STICK:  # friction regularised in velocity has no springs
-        state.stick[:] = -rest.force[:, 0] / np.maximum(contact.tangential_stiffness, 1e-300)
     coordinates, rates = state.position.reshape(n, size), state.velocity.reshape(n, size)
     coordinates[:, :2], coordinates[:, 2] = rest.centre + place, rest.rotation
     cosine, sine = np.cos(rest.rotation), np.sin(rest.rotation)

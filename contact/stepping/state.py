@@ -355,13 +355,13 @@ class RunState(NamedTuple):
 
     def progress(self) -> dict[str, NDArray[Any]]:
         """Every array of the progress, by name; the arrays themselves, not copies."""
-        found: dict[str, NDArray[Any]] = {}
+        arrays: dict[str, NDArray[Any]] = {}
         for name, part in self._asdict().items():
             if isinstance(part, State | Workspace):
-                found |= {f"{name}.{field}": array for field, array in part._asdict().items()}
+                arrays |= {f"{name}.{field}": array for field, array in part._asdict().items()}
             elif not isinstance(part, RunProblem | AttemptedStep | Buffers):
-                found[name] = part
-        return found
+                arrays[name] = part
+        return arrays
 
 
 def make_run(

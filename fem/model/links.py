@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from contact.interface.faces import Between, Held, SidePoint
+from contact.interface.contact_points import Between, Held, SidePoint
 from contact.interface.penalty import damping_ratio_of
 from contact.interface.workspace import Contact
 from contact.stepping.body import State

@@ -14,8 +14,9 @@ from typing import Any
 
 import numpy as np
 
+from contact.interface.contact_points import ASIDE
 from contact.interface.equilibrium import Stance
-from contact.interface.faces import ASIDE, lengthen_ties, place_points, weigh_points
+from contact.interface.faces import lengthen_ties, place_points, weigh_points
 from contact.interface.laws import ELASTIC_STICK
 from contact.interface.workspace import Contact
 from contact.stepping.body import State

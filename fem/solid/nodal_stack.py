@@ -10,18 +10,18 @@ from typing import NamedTuple
 import numpy as np
 import scipy.sparse.linalg
 
-from contact.interface.faces import CORNERS, SidePoint, linearise_points, make_faces, weigh_points
-from contact.interface.laws import ELASTIC_STICK
-from contact.interface.stacking import stacked
-from contact.interface.workspace import Contact, Workspace, make_workspace
+from contact.interface.contact_points import SidePoint, make_faces
+from contact.interface.faces import CORNERS
+from contact.interface.workspace import Contact, make_workspace
 from contact.jit import compiled
 from contact.stepping import body as interface
-from contact.stepping.body import Boxes, Frame, Ground, State, implements
+from contact.stepping import stack_body
+from contact.stepping.body import State, implements
 from contact.stepping.integrator import advance, enter_floor_frame
 from contact.stepping.links import LinkedBody
 from contact.stepping.loose_stack import LooseStack
 from contact.stepping.scheme import Scheme
-from contact.stepping.stack_body import state_of_box, work_of
+from contact.stepping.stack_body import complete_compiled, stand, state_of
 from contact.stepping.state import RunState
 from contact.structs import struct
 from fem.runtime.arrays import FloatArray, IntArray
@@ -44,94 +44,14 @@ class NodalStack(NamedTuple):
     energy: FloatArray  #: (N, 3) scratch
 
 
-@compiled(sources=SOURCES)
-def state_of(stack: NodalStack, state: State, b: int) -> State:
-    """What a state holds of one of the boxes; its points are the corners."""
-    i, j = stack.starts[b], stack.starts[b + 1]
-    k, m = CORNERS * b, CORNERS * (b + 1)
-    begin, end = stack.monitors[b, 0], stack.monitors[b, 1]
-    return state_of_box(
-        state,
-        position=state.position[i:j],
-        velocity=state.velocity[i:j],
-        acceleration=state.acceleration[i:j],
-        jerk=state.jerk[i:j],
-        internal=state.internal[i:j],
-        damping=state.damping[i:j],
-        external=state.external[i:j],
-        point=state.corner[k:m],
-        force=state.force[k:m],
-        pose=state.boxes[b],
-        energy=stack.energy[b],
-        monitor=state.monitor[begin:end],
-    )
+@implements(stack_body.box_of, NodalStack, inline=True)
+def box_of(stack: NodalStack, b: int) -> NodalBody:
+    """One of the boxes."""
+    return stack.boxes[b]
 
 
-@compiled(sources=SOURCES)
-@implements(interface.predict, NodalStack)
-def predict(stack: NodalStack, scheme: Scheme, step: float, old: State, new: State) -> None:
-    """Coordinates after `step`, for the last acceleration."""
-    for b in range(len(stack.boxes)):
-        nodal_kernels.predict(stack.boxes[b], scheme, step, state_of(stack, old, b), state_of(stack, new, b))
-
-
-@compiled(sources=SOURCES)
-@implements(interface.release, NodalStack)
-def release(
-    stack: NodalStack, scheme: Scheme, step: float, old: State, new: State, work: Workspace, ground: Ground
-) -> None:
-    """Corners at the end of the step without contact force, and their compliance."""
-    for b in range(len(stack.boxes)):
-        nodal_kernels.release(
-            stack.boxes[b],
-            scheme,
-            step,
-            state_of(stack, old, b),
-            state_of(stack, new, b),
-            work_of(work, b),
-            ground,
-        )
-
-
-@compiled(sources=SOURCES)
-@implements(interface.respond, NodalStack)
-def respond(stack: NodalStack, scheme: Scheme, step: float, old: State, new: State, work: Workspace) -> float:
-    """Apply the forces on the corners to the iterate; returns the remaining error over its tolerance."""
-    largest = 0.0
-    for b in range(len(stack.boxes)):
-        error = nodal_kernels.respond(
-            stack.boxes[b], scheme, step, state_of(stack, old, b), state_of(stack, new, b), work_of(work, b)
-        )
-        largest = max(largest, error)
-    return largest
-
-
-@compiled(sources=SOURCES)
-@implements(interface.complete, NodalStack)
-def complete(stack: NodalStack, new: State, floor: float, lift: float, lift_velocity: float) -> None:
-    """Internal forces, corners, poses and energy at the converged coordinates."""
-    for row in range(new.energy.size):
-        new.energy[row] = 0.0
-    for b in range(len(stack.boxes)):
-        nodal_kernels.complete(stack.boxes[b], state_of(stack, new, b), floor, lift, lift_velocity)
-        for row in range(new.energy.size):
-            new.energy[row] += stack.energy[b, row]
-
-
-@compiled(sources=SOURCES)
-@implements(interface.observe, NodalStack)
-def observe(stack: NodalStack, new: State, floor: float, lift: float) -> None:
-    """Displacement and velocity of the monitored points."""
-    for b in range(len(stack.boxes)):
-        nodal_kernels.observe(stack.boxes[b], state_of(stack, new, b), floor, lift)
-
-
-@compiled(sources=SOURCES)
-@implements(interface.shift_velocity, NodalStack)
-def shift_velocity(stack: NodalStack, state: State, frame: Frame, boxes: Boxes) -> None:
-    """Subtract the velocities of a frame."""
-    for b in range(*boxes):
-        nodal_kernels.shift_velocity(stack.boxes[b], state_of(stack, state, b), frame, (b, b + 1))
+for operation in ("predict", "release", "respond", "complete", "observe", "shift_velocity"):
+    implements(getattr(interface, operation), NodalStack)(getattr(stack_body, operation))
 
 
 @compiled(sources=SOURCES)
@@ -146,6 +66,7 @@ def prepared(stack: NodalStack, step: float) -> bool:
 
 advance_nodal_stack = compiled(advance, sources=SOURCES)
 enter_floor_frame_nodal_stack = compiled(enter_floor_frame, sources=SOURCES)
+complete_nodal_stack = compiled(complete_compiled.py_func, sources=SOURCES)
 
 
 class FullStack:
@@ -231,30 +152,28 @@ class FullStack:
         """
         centre = np.array([box.centroid for box in self.boxes])
         point = np.array([box.elements.nodes[box.base] - box.centroid for box in self.boxes])
-        weigh_points(self._faces, (centre[:, None] + point).reshape(-1, 2), state.point, contact)
         downhill = self.boxes[0].downhill
-        rest = stacked(
+        rest = stand(
+            contact,
+            state,
             faces=self._faces,
             centre=centre,
             point=point,
             compliance=np.array([response.compliance for response in self._responses]),
             load=np.array([[box.mass * downhill, -box.mass * gravity] for box in self.boxes]),
         )
-        state.force[:] = rest.force
-        if contact.friction == ELASTIC_STICK:  # friction regularised in velocity has no springs
-            state.stick[:] = -rest.force[:, 0] / np.maximum(contact.tangential_stiffness, 1e-300)
         force = rest.corner_force.reshape(-1, CORNERS, 2)
         for b, (box, response) in enumerate(zip(self.boxes, self._responses, strict=True)):
-            own = state_of.py_func(self.stack.body, state, b)
+            own = state_of(self.stack.body, state, b)
             turn = rotation_matrix(float(rest.rotation[b]))
             elastic = np.tensordot((force[b] @ turn).ravel(), response.displacement, axes=1)
             arm = (box.elements.nodes - box.centroid + elastic) @ turn.T
             own.position[:] = (rest.centre[b] + place + arm).ravel()
             own.velocity.reshape(-1, 2)[:] = velocity
             box.evaluate(own)
-        interface_complete(self.stack, state, place[0], place[1], lift_velocity)
+        complete_nodal_stack(self.stack, state, place[0], place[1], lift_velocity)
         for b, box in enumerate(self.boxes):
-            own = state_of.py_func(self.stack.body, state, b)
+            own = state_of(self.stack.body, state, b)
             factor = scipy.sparse.linalg.splu(box.elements.mass.tocsc())
             own.acceleration[:] = factor.solve((own.external - own.internal).reshape(-1, 2)).ravel()
 
@@ -292,13 +211,3 @@ class FullStack:
             in_a_row=False,
             corners=self._corners,
         )
-
-
-@compiled(sources=SOURCES)
-def interface_complete(
-    stack: LooseStack, state: State, floor: float, lift: float, lift_velocity: float
-) -> None:
-    """Linearise the contact at the corners of the state, and complete it."""
-    interface.complete(stack, state, floor, lift, lift_velocity)
-    linearise_points(stack.faces, state.corner, stack.faces.placed)
-    interface.complete(stack, state, floor, lift, lift_velocity)

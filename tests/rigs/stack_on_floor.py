@@ -9,7 +9,7 @@ import numpy as np
 from block_on_floor import GRAVITY, Block, Motion, limits_of
 
 from contact.arrays import FloatArray
-from contact.interface.faces import points_of_joint
+from contact.interface.contact_points import points_of_joint
 from contact.motion.base_motion import NoMotion
 from contact.motion.kernel import FloorMotion, floor_motion
 from contact.stepping.body import make_state

@@ -4,15 +4,13 @@ import numpy as np
 import pytest
 
 from contact.arrays import FloatArray
+from contact.interface.contact_points import EDGE, make_faces, points_of_joint
 from contact.interface.faces import (
-    EDGE,
     Faces,
     condense_points,
     linearise_points,
-    make_faces,
     move_corners,
     place_points,
-    points_of_joint,
     share_forces,
     weigh_points,
 )

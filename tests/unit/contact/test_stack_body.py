@@ -5,8 +5,8 @@ import pytest
 from block_on_floor import GRAVITY, Block, rig
 from stack_on_floor import Box, joint_force, stack_rig
 
+from contact.interface.contact_points import points_of_joint
 from contact.interface.equilibrium import SettlingError
-from contact.interface.faces import points_of_joint
 from contact.motion.base_motion import HarmonicMotion
 from contact.stepping.ledger import BASE_WORK, IMBALANCE, dissipation, spring_energy
 from contact.stepping.outcome import run_to_end

@@ -12,7 +12,6 @@ from scipy.integrate import solve_ivp
 
 import fem
 from contact.interface.equilibrium import pressed
-from contact.reference.closed_forms_rocking import cambered_frequency, cambered_moment
 from contact.reference.rigid_block import RigidBlock
 from fem.case.case import Case, CaseError
 from fem.model.model import Model, build_model
@@ -20,6 +19,35 @@ from fem.model.model import Model, build_model
 MASS, WIDTH, HEIGHT, GRAVITY = 1e4, 1.1, 4.0, 9.81
 BLOCK = RigidBlock.homogeneous(width=WIDTH, height=HEIGHT, gravity=GRAVITY)
 EDGE = 0.5 * WIDTH
+
+
+def cambered_moment(block: RigidBlock, rotation: float, camber: float, inner: float = 0.0) -> float:
+    """Restoring moment of a block on a cambered base over its weight, under slow rotation [m].
+
+    M/W = x cos theta - z_c sin theta about the place x that touches, where the slope of the base, 2 d x/b^2, is that of
+    the floor: x = b^2 sin theta/(2 d), at most b. On feet x is at least that of their inner ends. Geometry: the base is
+    raised by d (x/b)^2 from the level, normal to the floor.
+
+    Args:
+        rotation: theta > 0 [rad].
+        camber: d, of the edges above the middle [m].
+        inner: of the part without a support, half its width [m].
+    """
+    place = 0.5 * block.half_width**2 * math.sin(rotation) / camber
+    place = min(max(place, inner), block.half_width)
+    return place * math.cos(rotation) - block.centroid_height * math.sin(rotation)
+
+
+def cambered_frequency(block: RigidBlock, camber: float) -> float:
+    """Angular frequency of small rocking on a base that is cambered from edge to edge [rad/s].
+
+    I theta'' + M g (R - z_c) theta = 0, R = b^2/(2 d) the radius of the base, I = I_c + M z_c^2 about the place that
+    touches, I_c = I_O - M (b^2 + z_c^2).
+    """
+    radius = 0.5 * block.half_width**2 / camber
+    about_corner = block.gravity * block.radius / block.frequency_parameter**2  # I_O/M
+    inertia = about_corner - block.half_width**2
+    return math.sqrt(block.gravity * (radius - block.centroid_height) / inertia)
 
 
 def cambered(camber: float, *more: str) -> Case:
