@@ -184,7 +184,7 @@ def _say_expected(file: HallFile, base: Case, motions: int, runner: Runner, *, f
     Raises:
         CaseError: with the number, the time and the way out.
     """
-    rows, each, jobs = file.count, 1.0, runner.jobs
+    rows, each, jobs = file.table.count, 1.0, runner.jobs
     with suppress(ValueError):
         each = expected_s(base)
     seconds = rows * (motions * each / jobs + OF_A_ROW)

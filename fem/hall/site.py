@@ -91,7 +91,7 @@ def run_hall_at_site(
         site=site.origin.place,
         model=site.heading.model,
         asked=hash_of([*hall.containers]),
-        listed=hash_of(file.text),
+        listed=hash_of(file.table.text),
         allow_outside=allow_outside or None,
     )
     return run_study(study, folder, **options)

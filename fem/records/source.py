@@ -61,8 +61,7 @@ def read_source(path: Path) -> MotionText:
     del content  # a file may be large
     if text is None or CONTROL.search(text):
         raise RecordError(f"{path.name}: not a text file; a motion file holds numbers as text")
-    text = text.replace("\r\n", "\n").replace("\r", "\n").rstrip("\x1a \n")
-    return MotionText(path.name, text.split("\n"))
+    return MotionText(path.name, text.rstrip("\x1a \n").split("\n"))
 
 
 def _has_long_line(content: bytes) -> bool:
@@ -75,11 +74,11 @@ def _has_long_line(content: bytes) -> bool:
 
 
 def decoded(content: bytes) -> str | None:
-    """UTF-16 with a byte order mark, UTF-8, else Latin-1, which any bytes can be."""
+    """UTF-16 with a byte order mark, UTF-8, else Latin-1, which any bytes can be; with the ends of lines of Python."""
     encodings = [TWO_BYTES[content[:2]]] if content[:2] in TWO_BYTES else ["utf-8-sig", "latin-1"]
     for encoding in encodings:
         try:
-            return content.decode(encoding)
+            return content.decode(encoding).replace("\r\n", "\n").replace("\r", "\n")
         except UnicodeDecodeError:
             continue
     return None

@@ -1,9 +1,10 @@
-"""Files of points: a line that names the columns, and lines of numbers between commas."""
+"""Files of points: a line that names the columns, and lines of a number in each."""
 
 from collections.abc import Sequence
 from pathlib import Path
 
-from fem.records.source import as_numbers, decoded
+from fem.records.source import decoded
+from fem.records.table import UserTable
 from fem.runtime.user_files import read_regular
 
 LARGEST_FILE = 1_000_000  #: [bytes]; a curve has some tens of points
@@ -22,7 +23,7 @@ def text_of(path: Path) -> str:
 
 
 def read_points(path: Path, choices: Sequence[Sequence[str]]) -> dict[str, tuple[float, ...]]:
-    """The columns by name; blanks, empty lines and a byte order mark are passed over.
+    """The columns by name, as any spreadsheet writes them.
 
     Args:
         path: of the file.
@@ -31,16 +32,15 @@ def read_points(path: Path, choices: Sequence[Sequence[str]]) -> dict[str, tuple
     Raises:
         ValueError: it cannot be read, has other columns, or a line without a number for each.
     """
-    text = text_of(path)
-    first, *lines = [line for line in text.splitlines() if line.strip()] or [""]
-    names = [name.strip() for name in first.split(",")]
+    table = UserTable(path.name, text_of(path))
+    names = table.header
     if names not in [[*choice] for choice in choices]:
-        actual = f"got {first[:80]!r}" if first else "and the file is empty"
+        actual = f"got {','.join(names)[:80]!r}" if names else "and the file is empty"
         raise ValueError(
             f"{path.name}: the first line must be {' or '.join(map(','.join, choices))}, {actual}"
         )
-    rows = [as_numbers([field.strip() for field in line.split(",")]) for line in lines]
-    known = [row.tolist() for row in rows if row is not None and row.size == len(names)]
-    if not known or len(known) < len(rows):
+    table.require_one_decimal_mark(range(len(names)))
+    rows = [line.numbers() for line in table.lines if len(line.fields) == len(names)]
+    if not rows or [len(row) for row in rows] != [len(names)] * len(table.lines):
         raise ValueError(f"{path.name}: every further line must hold {len(names)} numbers")
-    return dict(zip(names, zip(*known, strict=True), strict=True))
+    return dict(zip(names, zip(*rows, strict=True), strict=True))

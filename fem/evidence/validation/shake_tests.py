@@ -23,6 +23,7 @@ from fem.records import source as records
 from fem.records.files import read_record
 from fem.records.intensity import intensity
 from fem.records.record import RecordError
+from fem.records.table import UserTable
 from fem.records.units import STANDARD_GRAVITY
 from fem.runtime.arrays import FloatArray
 from fem.runtime.user_files import read_regular, real_path
@@ -157,13 +158,13 @@ def _own(folder: Path) -> Series:
     body, unit = _body(folder / BODY)
     path = folder / OUTCOMES
     try:
-        text = io.StringIO(read_regular(path, LARGEST_FILE).decode("utf-8-sig"), newline="")
-        rows = list(csv.DictReader(line for line in text if not line.startswith("#")))
-    except (ValueError, csv.Error) as error:
+        lines = (records.decoded(read_regular(path, LARGEST_FILE)) or "").splitlines(keepends=True)
+        table = UserTable(path.name, "".join(line for line in lines if not line.startswith("#")))
+        columns, rows = table.header, table.rows
+    except ValueError as error:
         raise ShakeTestError(f"{path}: cannot be read ({error})") from None
-    columns = tuple(rows[0]) if rows else ()
     specimens = tuple(name for name in columns if name.startswith("overturned"))
-    if "motion" not in columns or not specimens:
+    if not rows or "motion" not in columns or not specimens:
         raise ShakeTestError(f"{path}: its header needs the columns motion and overturned")
     tests = tuple(_own_test(path, number, row, specimens, unit) for number, row in enumerate(rows, start=2))
     titles = tuple(name.removeprefix("overturned").strip(" _") or "specimen" for name in specimens)
@@ -187,7 +188,7 @@ def _own_test(
     def refused(what: str) -> ShakeTestError:
         return ShakeTestError(f"{path}, row {number}: {what}")
 
-    text = {name: (row.get(name) or "").strip() for name in ("motion", "scale", "record", "set", *specimens)}
+    text = {name: row.get(name, "") for name in ("motion", "scale", "record", "set", *specimens)}
     if any(text[name] not in OVERTURNED for name in specimens):
         raise refused("overturned must be 0 or 1")
     if (chosen := text["set"] or "fit") not in SETS:

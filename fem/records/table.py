@@ -1,0 +1,104 @@
+"""A table that a user has written, in a spreadsheet or by hand: a header of names, and lines of fields.
+
+Columns are separated by semicolons, tabs or commas, or as a first line "sep=|" says; decimals by points or, where all
+are, by commas.
+"""
+
+import csv
+import io
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+from fem.records.source import as_numbers
+
+DECIMAL_COMMA = re.compile(r"[-+]?\d+,\d+(e[-+]?\d+)?", re.ASCII | re.IGNORECASE)
+STATED = re.compile(r"sep=(.)\n", re.IGNORECASE)  #: by Excel, what separates columns
+
+
+class TableLine(NamedTuple):
+    """A line with something in it."""
+
+    number: int  #: in the file, where it ends
+    fields: list[str]  #: without the blanks around them
+
+    def field(self, place: int) -> str:
+        """That of a column; empty behind the end."""
+        return self.fields[place] if place < len(self.fields) else ""
+
+    def numbers(self) -> list[float]:
+        """Its fields; fewer where some are no numbers."""
+        return [number for field in self.fields if (number := number_in(field)) is not None]
+
+
+def number_in(text: str) -> float | None:
+    """The number in a field, with a decimal point or comma; None where it is none."""
+    numbers = as_numbers([text.replace(",", ".") if DECIMAL_COMMA.fullmatch(text) else text])
+    return None if numbers is None else float(numbers[0])
+
+
+@dataclass(frozen=True)
+class UserTable:
+    """A table whose lines are split on first use; a ValueError that says why it cannot be begins with its name."""
+
+    name: str
+    text: str
+
+    @cached_property
+    def header(self) -> list[str]:
+        """Names of the columns; empty for a column without; no columns where there is nothing in the table."""
+        return next((line.fields for line in self._lines()), [])
+
+    @cached_property
+    def lines(self) -> list[TableLine]:
+        """Those below the header."""
+        return [*self._lines()][1:]
+
+    @property
+    def rows(self) -> list[dict[str, str]]:
+        """Their fields by column."""
+        return [{name: line.field(k) for k, name in enumerate(self.header)} for line in self.lines]
+
+    @property
+    def count(self) -> int:
+        """Of these, before they are split; a line break within a field counts."""
+        return sum(map(bool, map(str.strip, self.text.split("\n")))) - 1
+
+    def require_names(self) -> None:
+        """Refuse values below no name."""
+        nameless = [k for k, name in enumerate(self.header) if not name]
+        for line in self.lines if nameless else ():
+            if filled := [k for k in nameless if line.field(k)]:
+                raise ValueError(
+                    f"{self.name}, line {line.number}: column {filled[0] + 1} has values and no name; name it in line 1"
+                )
+
+    def require_one_decimal_mark(self, columns: Iterable[int]) -> None:
+        """Refuse decimal commas and points in these columns, which hold numbers."""
+        numeric, comma, point = [*columns], 0, 0
+        for line in self.lines:
+            for field in map(line.field, numeric):
+                if "," in field and DECIMAL_COMMA.fullmatch(field):
+                    comma = comma or line.number
+                elif "." in field and not point and as_numbers([field]) is not None:
+                    point = line.number
+        if comma and point:
+            raise ValueError(
+                f"{self.name}: decimal commas (line {comma}) and decimal points (line {point}) in one list; use one of "
+                "them, and no sign between thousands"
+            )
+
+    def _lines(self) -> Iterator[TableLine]:
+        stated = STATED.match(self.text)
+        table = self.text[stated.end() :] if stated else self.text
+        first = next(filter(str.strip, table.split("\n", 99)), "")
+        separator = stated[1] if stated else next((mark for mark in ";\t" if mark in first), ",")
+        reader = csv.reader(io.StringIO(table, newline=""), delimiter=separator)
+        try:
+            for fields in ([field.strip() for field in line] for line in reader):
+                if any(fields):
+                    yield TableLine(reader.line_num + bool(stated), fields)
+        except csv.Error as error:
+            raise ValueError(f"{self.name}: no table in CSV ({error})") from None
