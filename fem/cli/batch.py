@@ -88,12 +88,8 @@ def batch(
 def page_of(result: "HallResult", folder: Path) -> Iterator[str]:
     """The lines of a hall, for people."""
     yield result.hall
-    motions = f" under {len(result.motions)} motions" if len(result.motions) > 1 else ""
-    extent = f"verified at {result.site}" if result.site else f"{result.runs} runs, model {result.model}"
-    yield (
-        f"  {result.rows} rows, {result.containers} containers, {result.distinct} that differ{motions}: {extent}, "
-        f"{result.status}"
-    )
+    model = "" if result.site else f", model {result.model}"
+    yield f"  {result.extent}{model}, {result.status}"
     if result.kept:
         yield f"  kept       {', '.join(result.kept)}"
     for outcome, count in result.outcomes.items():

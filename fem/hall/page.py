@@ -2,14 +2,13 @@
 
 import shlex
 from collections.abc import Mapping, Sequence
-from functools import partial
 from pathlib import Path
 from typing import Any
 
 from markupsafe import Markup
 
 from fem.batch.study import read_study
-from fem.case.case import Case, load_case
+from fem.case.case import load_case
 from fem.case.unknown_inputs import WORDS
 from fem.hall.places import PICTURE
 from fem.hall.result import HallResult
@@ -18,7 +17,7 @@ from fem.html import sections as html
 from fem.html.page import Signature
 from fem.html.units import ABSENT, number
 from fem.report import studies
-from fem.report.comparison import case_rows, limits_section
+from fem.report.comparison import case_rows
 from fem.results.figures import TURNED, Place, figures_of
 from fem.results.kinds import HALL
 from fem.results.outcome import Outcome
@@ -58,22 +57,21 @@ def hall_report(
     """
     info = result or read_study(folder, HALL, HallResult)
     case = load_case(str(folder / "base.toml"), allow_outside=True)
-    ranked, refused = info.ranked, info.not_computed
-    table = weakest_table(ranked, BRIEFLY if brief else html.MOST_ROWS, linked=not brief)
-    sections = [
-        found_section(info),
-        html.section("In plan", "plan", *studies.drawings(folder, [PICTURE], "batch")),
-        html.section("By tag", "tags", *([tags_table(info)] if info.tags else [])),
-        html.section("The weakest first", "weakest", table, html.Note(AT_SITE if info.site else MARGIN)),
-        html.section("Refused rows", "refused", *([refused_table(refused)] if refused else [])),
+    weakest = weakest_table(info.ranked, BRIEFLY if brief else html.MOST_ROWS, linked=not brief)
+    refused = ([row["name"], str(row["line"]), row["reason"]] for row in info.not_computed)
+    refused_table = html.table_of("refused rows", html.in_order("container", "line", "reason"), refused)
+    base_case = html.Pairs(case_rows(case), caption="Base case, where a row changes nothing", look="asked")
+    motions = html.Group("", [html.Heading("Motions of every container"), html.Bullets(info.motions)])
+    start = html.columns(base_case, *([motions] if info.motions else []))
+    whole = [
+        html.section("What the rows start from", "asked", start),
+        html.section("One container by itself", "commands", commands_table(info.ranked)),
     ]
-    if not brief:
-        sections += [
-            start_section(info, case),
-            html.section("One container by itself", "commands", commands_table(ranked)),
-            limits_section(case),
-            repeat_section(info, folder),
-        ]
+    again = studies.Again(
+        words="With the two files of this folder, and the motions or the site:",
+        command=command_again(info),
+        files=[("base.toml", studies.text_of(folder / "base.toml"))],
+    )
     return studies.study_html(
         "a hall",
         info=info,
@@ -82,32 +80,22 @@ def hall_report(
         case=case,
         signature=signature,
         hash=info.asked,
-        sections=sections,
+        sections=[
+            found_section(info),
+            html.section("In plan", "plan", *studies.drawings(folder, [PICTURE], "batch")),
+            html.section("By tag", "tags", *([tags_table(info)] if info.tags else [])),
+            html.section(
+                "The weakest first", "weakest", weakest, html.Note(AT_SITE if info.site else MARGIN)
+            ),
+            html.section("Refused rows", "refused", *([refused_table] if info.not_computed else [])),
+            *([] if brief else whole),
+        ],
+        provenance=[("hall", f"{info.hall}, {info.status}, model {info.model}"), ("hash", info.asked)],
+        again=None if brief else again,
     )
 
 
-def start_section(info: HallResult, case: Case) -> html.PageSection:
-    """The base case, and the motions of all containers."""
-    base_case = html.Pairs(case_rows(case), caption="Base case, where a row changes nothing", look="asked")
-    motions = html.Group("", [html.Heading("Motions of every container"), html.Bullets(info.motions)])
-    both = html.columns(base_case, *([motions] if info.motions else []))
-    return html.section("What the rows start from", "asked", both)
-
-
-def repeat_section(info: HallResult, folder: Path) -> html.PageSection:
-    """From what the hall was computed, and how to compute it again."""
-    return studies.repeat_section(
-        [("hall", f"{info.hall}, {info.status}, model {info.model}"), ("hash", info.asked)],
-        info,
-        studies.Again(
-            words="With the two files of this folder, and the motions or the site:",
-            command=again(info),
-            files=[("base.toml", studies.text_of(folder / "base.toml"))],
-        ),
-    )
-
-
-def again(info: HallResult) -> str:
+def command_again(info: HallResult) -> str:
     """The command that computes the hall."""
     words = ["python", "-m", "fem", "batch", "list.csv", "--case", "base.toml"]
     words += ["--motion", *info.motions] if info.motions else ["--site", info.site] if info.site else []
@@ -117,10 +105,7 @@ def again(info: HallResult) -> str:
 
 def found_section(info: HallResult) -> html.PageSection:
     """The answer, and what was computed."""
-    under = f" under {len(info.motions)} motions" if len(info.motions) > 1 else ""
-    extent = f"verified at {info.site}" if info.site else f"{info.runs} runs"
-    count = f"{info.rows} rows, {info.containers} containers, {info.distinct} that differ{under}: "
-    count += f"{extent}{studies.unfinished(info)}."
+    count = f"{info.extent}{studies.unfinished(info)}."
     if info.checked:
         which = "all" if info.checked == info.distinct else f"the weakest {info.checked}"
         count += f" Sure, deciding inputs and margin are those of {which}, each under its governing motion."
@@ -132,34 +117,28 @@ def found_section(info: HallResult) -> html.PageSection:
         info.answer,
         count,
         *([f"{outcomes[0].upper()}{outcomes[1:]}."] if outcomes else []),
-        note=OF_SEVERAL if under else "Each container by itself, without neighbours.",
+        note=OF_SEVERAL if len(info.motions) > 1 else "Each container by itself, without neighbours.",
     )
 
 
 def tags_table(info: HallResult) -> html.Table:
     """What the containers of each tag did."""
-
-    def count(word: str, tag: A_ROW) -> str:
-        return str(tag["counts"].get(word, ""))
-
     words = dict.fromkeys(word for tag in info.tags for word in sorted(tag["counts"]))
-    columns: list[html.Column[A_ROW]] = [
-        html.Column("tag", lambda tag: tag["tag"] or ABSENT),
-        html.Column("containers", lambda tag: str(tag["containers"]), html.NUMBER),
-        *(html.Column(word, partial(count, word), html.NUMBER) for word in words),
-        html.Column("least margin", lambda tag: number(tag["margin"], figures=3), html.NUMBER),
-    ]
-    return html.table_of("tags", columns, info.tags, file="hall.csv")
+    rows = (
+        [
+            tag["tag"] or ABSENT,
+            str(tag["containers"]),
+            *(str(tag["counts"].get(word, "")) for word in words),
+            number(tag["margin"], figures=3),
+        ]
+        for tag in info.tags
+    )
+    heads = html.in_order("tag", "containers", *words, "least margin", look=html.NUMBER)
+    return html.table_of("tags", heads, rows, file="hall.csv")
 
 
 def weakest_table(rows: Sequence[A_ROW], most: int, *, linked: bool) -> html.Table:
     """A row a container, the weakest first; its name leads to its command."""
-
-    def column(head: str, key: str, empty: object = None, look: str = "") -> html.Column[A_ROW]:
-        """A column of a field, which is left out where it is empty in every row."""
-        return html.Column(
-            head, lambda row: "" if row[key] in (None, empty) else str(row[key]), look, optional=True
-        )
 
     def figure(row: A_ROW, name: str) -> Any:
         fallen = name == TURNED and row["outcome"] == Outcome.OVERTURNED  # how far it fell says nothing
@@ -168,21 +147,33 @@ def weakest_table(rows: Sequence[A_ROW], most: int, *, linked: bool) -> html.Tab
     def name(row: A_ROW) -> html.Cell:
         return html.Cell(html.link(row["name"], f"row-{row['row']}") if linked else row["name"])
 
+    def outcome(row: A_ROW) -> str:
+        return row["outcome"] or (f"none: {row['reason']}" if row["reason"] else ABSENT)
+
+    def answer(row: A_ROW) -> html.Cell:
+        words = row["answer"] or (NO_ANSWER if row["reasons"] else "")
+        page = Markup('<a href="{}">{}</a>')
+        return html.Cell(page.format(row["page"], words) if row["page"] else words)
+
+    def utilisation(row: A_ROW) -> str:
+        use = row["utilisation_overturning"]
+        return "" if use is None else number(use, figures=3)
+
     columns: list[html.Column[A_ROW]] = [
         html.Column("container", name),
-        column("line", "line", look=html.NUMBER),
-        column("count", "count", 1, html.NUMBER),
-        column("tag", "tag"),
-        html.Column("answer", _answer, optional=True),
-        html.Column("outcome", _outcome),
+        html.key_column("line", "line", html.NUMBER),
+        html.key_column("count", "count", html.NUMBER, empty=1),
+        html.key_column("tag", "tag"),
+        html.Column("answer", answer, optional=True),
+        html.Column("outcome", outcome),
         html.Column("margin", margin_words, html.NUMBER),
-        column("sure", "sure"),
+        html.key_column("sure", "sure"),
         html.Column("decided by", _deciding, optional=True),
         *html.figure_columns(figures_of(Place.KEY), value=figure),
-        html.Column("utilisation", _utilisation, html.NUMBER, optional=True),
-        column("motion", "motion"),
-        column("runs overturned", "motions_overturned", look=html.NUMBER),
-        column("runs not valid", "motions_invalid", 0, html.NUMBER),
+        html.Column("utilisation", utilisation, html.NUMBER, optional=True),
+        html.key_column("motion", "motion"),
+        html.key_column("runs overturned", "motions_overturned", html.NUMBER),
+        html.key_column("runs not valid", "motions_invalid", html.NUMBER, empty=0),
     ]
     return html.table_of(
         "containers",
@@ -207,12 +198,6 @@ def margin_words(row: A_ROW) -> str:
     return f"{words} (from {least})" if high is None else f"{words} ({least} to {number(high, figures=2)})"
 
 
-def refused_table(rows: Sequence[A_ROW]) -> html.Table:
-    """The rows that were not computed, and why."""
-    texts = ([row["name"], str(row["line"]), row["reason"]] for row in rows)
-    return html.table_of("refused rows", html.in_order("container", "line", "reason"), texts)
-
-
 def commands_table(rows: Sequence[A_ROW]) -> html.Table:
     """The command that computes each container by itself, under its governing motion."""
     target = Markup('<span id="row-{}">{}</span>')
@@ -227,17 +212,3 @@ def _deciding(row: A_ROW) -> str:
     named = [WORDS.get(key, key) for key in (row["decided_by"] or "").split()]
     more = len(named) - MOST_INPUTS
     return ", ".join(named[:MOST_INPUTS]) + (f" and {more} more" if more > 0 else "")
-
-
-def _outcome(row: A_ROW) -> str:
-    return row["outcome"] or (f"none: {row['reason']}" if row["reason"] else ABSENT)
-
-
-def _answer(row: A_ROW) -> html.Cell:
-    words = row["answer"] or (NO_ANSWER if row["reasons"] else "")
-    return html.Cell(Markup('<a href="{}">{}</a>').format(row["page"], words) if row["page"] else words)
-
-
-def _utilisation(row: A_ROW) -> str:
-    use = row["utilisation_overturning"]
-    return "" if use is None else number(use, figures=3)

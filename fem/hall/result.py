@@ -54,6 +54,15 @@ class HallResult(StudyResult):
     table: tuple[dict[str, Any], ...] = ()  #: rows of `hall.csv`, with `row`, `name`, `count`, `command`
 
     @property
+    def extent(self) -> str:
+        """How much there is of it, in words."""
+        under = f" under {len(self.motions)} motions" if len(self.motions) > 1 else ""
+        computed = f"verified at {self.site}" if self.site else f"{self.runs} runs"
+        return (
+            f"{self.rows} rows, {self.containers} containers, {self.distinct} that differ{under}: {computed}"
+        )
+
+    @property
     def ranked(self) -> list[dict[str, Any]]:
         """The rows that were computed, the weakest first."""
         return sorted((row for row in self.table if row["rank"]), key=lambda row: (row["rank"], row["row"]))

@@ -163,6 +163,11 @@ def in_order(*heads: str, look: str = "") -> list[Column[Sequence[str]]]:
     return [Column(head, itemgetter(k), look if k else "") for k, head in enumerate(heads)]
 
 
+def key_column(head: str, key: str, look: str = "", *, empty: object = None) -> Column[Mapping[str, Any]]:
+    """A column of a key of rows, left out where it says nothing: where each is None, or `empty`."""
+    return Column(head, lambda row: "" if row[key] in (None, empty) else str(row[key]), look, optional=True)
+
+
 def figure_columns(
     figures: Mapping[str, Shown],
     *,

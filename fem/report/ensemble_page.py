@@ -16,7 +16,7 @@ from fem.html import sections as html
 from fem.html.page import Signature
 from fem.html.units import ABSENT, number, short, typeset
 from fem.report import studies
-from fem.report.comparison import case_rows, limits_section
+from fem.report.comparison import case_rows
 from fem.report.motion_part import motions_of_ensemble
 from fem.results.figures import SLIPPED, Shown
 from fem.results.kinds import ENSEMBLE
@@ -62,17 +62,13 @@ def ensemble_report(folder: Path, *, signature: Signature | None = None) -> str:
             motions_of_ensemble(folder, info),
             html.section("The ensemble", "asked", html.columns(varied, base_case)),
             html.section("Points", "points", points_table(info)),
-            limits_section(case),
-            studies.repeat_section(
-                [
-                    ("ensemble", f"{name}, {info.status}, model {info.model}"),
-                    ("draws", f"{info.draws} at each point, {info.sampling}, seed {info.seed}"),
-                    ("hash", info.asked),
-                ],
-                info,
-                studies.again_from_files(folder, study="ensemble", name=name, case=case),
-            ),
         ],
+        provenance=[
+            ("ensemble", f"{name}, {info.status}, model {info.model}"),
+            ("draws", f"{info.draws} at each point, {info.sampling}, seed {info.seed}"),
+            ("hash", info.asked),
+        ],
+        again=studies.again_from_files(folder, study="ensemble", name=name, case=case),
     )
 
 

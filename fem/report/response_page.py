@@ -12,7 +12,7 @@ from fem.html import sections as html
 from fem.html.page import Signature
 from fem.html.units import ABSENT, short
 from fem.report import studies
-from fem.report.comparison import case_rows, limits_section
+from fem.report.comparison import case_rows
 from fem.response.answer import branches_in_words, response_answer
 from fem.response.records import POINT_FIGURES, PointRow
 from fem.response.result import ResponseResult
@@ -71,22 +71,16 @@ def response_report(folder: Path, *, signature: Signature | None = None) -> str:
                 ),
             ),
             html.section("Points", "points", points_table(info)),
-            limits_section(case),
-            studies.repeat_section(
-                [
-                    ("response curve", f"{name}, {info.status}, model {case.solver.model}"),
-                    ("hash", info.asked),
-                ],
-                info,
-                studies.Again(
-                    words="Save the file below as case.toml:",
-                    command=shlex.join(
-                        ["python", "-m", "fem", "response", "case.toml", *_options(info.request)]
-                    ),
-                    files=[("case.toml", studies.text_of(folder / "case.toml"))],
-                ),
-            ),
         ],
+        provenance=[
+            ("response curve", f"{name}, {info.status}, model {case.solver.model}"),
+            ("hash", info.asked),
+        ],
+        again=studies.Again(
+            words="Save the file below as case.toml:",
+            command=shlex.join(["python", "-m", "fem", "response", "case.toml", *_options(info.request)]),
+            files=[("case.toml", studies.text_of(folder / "case.toml"))],
+        ),
     )
 
 

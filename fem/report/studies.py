@@ -14,6 +14,7 @@ from fem.case.case import Case
 from fem.html import sections as html
 from fem.html.page import Page, Signature, html_of, svg_element
 from fem.html.units import short, typeset
+from fem.report.comparison import limits_section
 from fem.results.errors import FolderError
 
 MOST_DRAWING_BYTES = 400_000  #: of a drawing, as SVG
@@ -37,9 +38,11 @@ def study_html(
     case: Case,
     signature: Signature | None,
     sections: Sequence[html.Block],
+    provenance: Sequence[tuple[str, str]],
+    again: Again | None,
     **content: Any,
 ) -> str:
-    """The page of a study, as the text of an HTML file.
+    """The page of a study, as the text of an HTML file; it ends with the limits of the case, and how to repeat it.
 
     Args:
         kind: of study.
@@ -48,15 +51,18 @@ def study_html(
         case: that it starts from.
         signature: author, checker, revision.
         sections: what it shows.
+        provenance: names and values of what it was computed from.
+        again: how to repeat it; None: a short page, without its end.
         content: further fields of the page.
     """
+    end = [] if again is None else [limits_section(case), repeat_section(provenance, info, again)]
     return html_of(
         Page(
             kind=f"Report of {kind}",
             title=title or name,
             name=name,
             signature=None if info.no_answer_yet else (signature or Signature()).completed(case.named),
-            sections=sections,
+            sections=[*sections, *end],
             **content,
         )
     )

@@ -26,7 +26,7 @@ from fem.html.page import Signature
 from fem.html.units import ABSENT, millimetres, number, short, typeset
 from fem.report import studies
 from fem.report.animation import colour_scale, packed
-from fem.report.comparison import case_rows, limits_section
+from fem.report.comparison import case_rows
 from fem.report.motion_part import motions_of_sweep
 from fem.results.errors import FolderError
 from fem.results.figures import Place, Shown, figures_of
@@ -94,17 +94,13 @@ def sweep_report(folder: Path, *, signature: Signature | None = None) -> str:
             html.section(
                 "The sweep", "asked", html.columns(studies.axes_table(table.axes, info.derived), base_case)
             ),
-            limits_section(case),
-            studies.repeat_section(
-                [
-                    ("sweep", f"{name}, {info.status}, model {info.model}"),
-                    ("sweep hash", info.sweep_hash),
-                    ("base hash", info.base_hash),
-                ],
-                info,
-                studies.again_from_files(folder, study="sweep", name=name, case=case),
-            ),
         ],
+        provenance=[
+            ("sweep", f"{name}, {info.status}, model {info.model}"),
+            ("sweep hash", info.sweep_hash),
+            ("base hash", info.base_hash),
+        ],
+        again=studies.again_from_files(folder, study="sweep", name=name, case=case),
     )
 
 
