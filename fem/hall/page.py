@@ -11,8 +11,7 @@ from fem.batch.study import read_study
 from fem.case.case import load_case
 from fem.case.unknown_inputs import WORDS
 from fem.hall.places import PICTURE
-from fem.hall.result import HallResult
-from fem.hall.table import NO_ANSWER
+from fem.hall.result import NO_ANSWER, HallResult
 from fem.html import sections as html
 from fem.html.page import Signature
 from fem.html.units import ABSENT, number

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import Any, NamedTuple, Self
 
-from fem.batch.axes import MOTION_FILE, VERTICAL_FILE, Axis, AxisError, read_motion_files
+from fem.batch.axes import MOTION_FILE, Axis, AxisError, read_motion_files
 from fem.batch.case_maker import CaseMaker
 from fem.batch.motion_set import FloorMotionPair, read_motion_set
 from fem.batch.runner import Runner
@@ -140,32 +140,19 @@ class Hall:
         return replace(self, rows=tuple(rows), containers=containers)
 
 
-def plan_hall(
-    file: HallFile, base: Case, motions: tuple[str, ...], runner: Runner, *, strict: bool, force: bool
-) -> Hall:
-    """Read the motions, and check every row, before any is computed.
-
-    Args:
-        file: the list.
-        base: that rows change.
-        motions: files named on the command line, "H" or "H,V"; none: the motion of the base case.
-        runner: its workers read a large set of motions.
-        strict: refuse the whole list for one bad row.
-        force: allow more than `MOST_RUNS` runs.
+def read_motions(base: Case, named: Sequence[str], runner: Runner) -> tuple[FloorMotionPair, ...]:
+    """Motions named on the command line, from anywhere: files "H" or "H,V"; a large set is read by the workers.
 
     Raises:
-        CaseError: too many runs, motions that cannot be used, no good row; with `strict` any bad row.
+        CaseError: one cannot be used, or is named twice.
     """
-    _say_expected(file, base, max(len(motions), 1), runner, force=force)
-    named = [key for key in file.keys if key in (MOTION_FILE, VERTICAL_FILE)]
-    if motions and named:
-        raise CaseError(f"{file.name}: column {named[0]!r} and --motion both name the motion; use one")
-    hall = Hall(file=file, base=base, named=motions, containers={})
-    if motions:
-        axis = _axis(base, motions)
-        pairs = read_motion_set(with_files_of_the_command_line(base), [axis], runner)
-        hall = replace(hall, motions=pairs)
-    return hall.checked(hall.hash_of, strict=strict)
+    pairs = [[as_named_from(base.folder, name.strip()) for name in pair.split(",")] for pair in named]
+    try:
+        names, following = read_motion_files([pair if len(pair) > 1 else pair[0] for pair in pairs])
+    except AxisError as error:
+        raise CaseError(f"--motion {error}") from None
+    axis = Axis(key=MOTION_FILE, values=names, following=following)
+    return read_motion_set(with_files_of_the_command_line(base), [axis], runner)
 
 
 def with_files_of_the_command_line(base: Case) -> Case:
@@ -178,7 +165,7 @@ def _case_of(make: CaseMaker, keys: Sequence[Mapping[str, Any]], item: HallItem)
     return make({**keys[item.motion], **item.values})
 
 
-def _say_expected(file: HallFile, base: Case, motions: int, runner: Runner, *, force: bool) -> None:
+def say_time(file: HallFile, base: Case, motions: int, runner: Runner, *, force: bool) -> None:
     """Say how long a long list takes, before its rows are read; refuse more than `MOST_RUNS` runs.
 
     Raises:
@@ -195,16 +182,6 @@ def _say_expected(file: HallFile, base: Case, motions: int, runner: Runner, *, f
             "--shard, or use --force"
         )
     say_expected(runner.reporter, words, seconds, jobs)
-
-
-def _axis(base: Case, motions: Sequence[str]) -> Axis:
-    """Motions named on the command line, as the values of a study."""
-    pairs = [[as_named_from(base.folder, name.strip()) for name in pair.split(",")] for pair in motions]
-    try:
-        names, following = read_motion_files([pair if len(pair) > 1 else pair[0] for pair in pairs])
-    except AxisError as error:
-        raise CaseError(f"--motion {error}") from None
-    return Axis(key=MOTION_FILE, values=names, following=following)
 
 
 def _in_words_of_list(reason: str, base: Case) -> str:

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from typing import NamedTuple
 
 from fem.batch.checked import CHECKED
@@ -10,7 +11,7 @@ from fem.batch.runner import Row
 from fem.batch.table import row_of
 from fem.hall.plan import Hall, HallItem
 from fem.hall.result import OF_A_RUN, OF_MOTIONS, STATIC
-from fem.hall.table import weakness
+from fem.hall.table import Found, weakness
 from fem.model.geometry import build_container
 from fem.model.motion import build_motions, peaks_in_run
 from fem.model.static_checks import static_checks_of
@@ -117,22 +118,22 @@ class HallRuns:
 
     def weakest_first(self) -> list[int]:
         """The containers in the order of their weakness: what overturned comes first, then as `WORST_FIRST`."""
+        return sorted(sorted(self.by_container), key=self.weakness)
 
-        def weakness_of(number: int) -> tuple[float, ...]:
-            run = self.worst(number)
-            row = self.static[number] | self.checked.get(number, {}) | {SLIPPED: run.slip}
-            return weakness(WORST_FIRST.index(run.ending), row, run.turned if run.turned > ROCKS else 0.0)
+    def weakness(self, container: int) -> tuple[float, ...]:
+        """Smaller for the worse."""
+        run = self.worst(container)
+        row = self.static[container] | self.checked.get(container, {}) | {SLIPPED: run.slip}
+        return weakness(WORST_FIRST.index(run.ending), row, run.turned if run.turned > ROCKS else 0.0)
 
-        return sorted(sorted(self.by_container), key=weakness_of)
-
-    def of(self, container: int) -> Row:
-        """Results of a container, by column."""
-        by_motion, row = self.by_container[container], row_of(RUN_COLUMNS, self.worst(container).line)
+    def found(self, container: int) -> Found:
+        """What is known of a container."""
+        by_motion, governing = self.by_container[container], self.governing(container)
+        row = row_of(RUN_COLUMNS, by_motion[governing].line)
         values = {name: row[name] for name in OF_A_RUN} | self.static[container]
         values |= self.checked.get(container, {})
         if names := [pair.name for pair in self.hall.motions]:
             slipped = max(sorted(by_motion), key=lambda number: by_motion[number].slip)
-            most = by_motion[slipped].slip, names[slipped]
-            under = names[self.governing(container)], *self.counts(container), *most
+            under = names[governing], *self.counts(container), by_motion[slipped].slip, names[slipped]
             values |= zip(OF_MOTIONS, under, strict=True)
-        return values
+        return Found(values, self.weakness(container), partial(self.hall.command, motion=governing))

@@ -9,6 +9,7 @@ from fem.batch.table import Columns
 from fem.results.figures import RUN_COLUMNS, SLIPPED, TURNED
 
 REFUSED = "refused"  #: status of a row that cannot be computed
+NO_ANSWER = "no answer"  #: of a container at a site
 #: columns of a run, as in its log
 OF_A_RUN = {"status": str} | RUN_COLUMNS | {"reason": str}
 STATIC = dict.fromkeys(("utilisation_sliding", "utilisation_overturning"), float)

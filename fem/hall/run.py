@@ -4,32 +4,32 @@ The runs are logged as they are ready, so an interrupted hall continues where it
 nor on the number of cores. A hall of which names, tags or places alone have changed is written again, not computed.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any, Literal, Unpack
 
+from fem.batch.axes import MOTION_FILE, VERTICAL_FILE
 from fem.batch.checked import check_chunk
 from fem.batch.log import LoggedRuns
 from fem.batch.motion_set import motions_left_out
-from fem.batch.runner import Row, Runner
+from fem.batch.runner import Runner
 from fem.batch.study import INTERRUPTED, Study, StudyOptions, hash_of, run_study, runner_of
 from fem.batch.table import table_of_lines, table_text
 from fem.case.case import Case
 from fem.case.toml import toml_document
-from fem.hall.file import HallFile, HallRow
-from fem.hall.page import hall_report
-from fem.hall.places import PICTURE, draw_places, geojson
-from fem.hall.plan import Hall, plan_hall
+from fem.case.validation import CaseError
+from fem.hall.file import HallFile
+from fem.hall.plan import Hall, read_motions, say_time
 from fem.hall.ranking import CHECK_COLUMNS, RUN_COLUMNS, HallRuns
-from fem.hall.result import RESULT_COLUMNS, HallResult
-from fem.hall.table import with_table
+from fem.hall.result import HallResult
+from fem.hall.table import written
 from fem.results.disk import BYTES_BESIDE, table_bytes
 from fem.results.folder import ResultFolder
 from fem.results.kinds import HALL
 
-RUNS, CHECKS, TABLE, PAGE, GEOJSON = "runs.csv", "checks.csv", "hall.csv", "report.html", "hall.geojson"
+RUNS, CHECKS = "runs.csv", "checks.csv"
 Checks = Literal["weakest", "all", "none"]
 
 
@@ -55,22 +55,25 @@ def run_hall(
         options: of every study.
     """
     with runner_of(**options) as runner:
-        hall = plan_hall(file, base, motions, runner, strict=strict, force=options.get("force", False))
+        say_time(file, base, max(len(motions), 1), runner, force=options.get("force", False))
+        if motions and (named := [key for key in file.keys if key in (MOTION_FILE, VERTICAL_FILE)]):
+            raise CaseError(f"{file.name}: column {named[0]!r} and --motion both name the motion; use one")
+        pairs = read_motions(base, motions, runner) if motions else ()
+        hall = Hall(file=file, base=base, motions=pairs, named=motions, containers={})
+        hall = hall.checked(hall.hash_of, strict=strict)
         options["workers_of"] = runner.workers_of
         study = study_of(
             hall,
             _compute,
-            asked=hash_of([[*hall.containers], [pair.case_hash for pair in hall.motions]]),
+            asked=hash_of([[*hall.containers], [pair.case_hash for pair in pairs]]),
             listed=hash_of([file.table.text, checks]),
-            motions=hall.named,
-            motion_covered=motions_left_out(base, hall.motions),
+            motions=motions,
+            motion_covered=motions_left_out(base, pairs),
             checks=checks,
         )
-        copied = [pair.case for pair in hall.motions]
         size = study.size + 2.0 * table_bytes(len(hall.items), len(RUN_COLUMNS))
-        return run_study(
-            replace(study, size=size, cases=[] if copied else [base], motions=copied), folder, **options
-        )
+        study = replace(study, size=size, cases=[] if pairs else [base], motions=[one.case for one in pairs])
+        return run_study(study, folder, **options)
 
 
 def study_of(
@@ -147,29 +150,4 @@ def _compute(hall: Hall, begun: HallResult, results: ResultFolder, runner: Runne
     checked = sorted(runs.checked.items())
     results.write_text(CHECKS, table_text(CHECK_COLUMNS, ([k, *check.values()] for k, check in checked)))
 
-    def command(row: HallRow, number: int) -> str:
-        return hall.command(row, runs.governing(number))
-
-    by_container = {number: runs.of(number) for number in runs.by_container}
-    return written(results, begun, hall, by_container, runs.weakest_first(), command)
-
-
-def written(
-    results: ResultFolder,
-    begun: HallResult,
-    hall: Hall,
-    by_container: Mapping[int, Row],
-    order: Sequence[int],
-    command: Callable[[HallRow, int], str],
-) -> HallResult:
-    """The finished result, with the list, its plan and its page written; arguments as of `with_table`."""
-    result = with_table(begun, hall, by_container, order, command)
-    rows = ([*row["given"].values(), *(row[name] for name in RESULT_COLUMNS)] for row in result.table)
-    results.write_text(TABLE, table_text((*result.columns, *RESULT_COLUMNS), rows))
-    for name, text in ((PICTURE, draw_places(result)), (GEOJSON, geojson(result))):
-        if text:
-            results.write_text(name, text)
-        else:
-            results.remove(name)
-    results.write_text(PAGE, hall_report(results.path, result=result))
-    return result
+    return written(results, begun, hall, [runs.found(number) for number in range(len(hall.values))])

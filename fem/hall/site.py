@@ -17,11 +17,11 @@ from fem.batch.study import FAILED, INTERRUPTED, StudyOptions, hash_of, run_stud
 from fem.batch.table import row_of, table_of_rows
 from fem.case.case import Case
 from fem.case.validation import CaseError
-from fem.hall.file import HallFile, HallRow
+from fem.hall.file import HallFile
 from fem.hall.plan import Hall
-from fem.hall.result import AT_SITE, RESULT_COLUMNS, HallResult
-from fem.hall.run import study_of, written
-from fem.hall.table import NO_ANSWER, weakness
+from fem.hall.result import AT_SITE, NO_ANSWER, RESULT_COLUMNS, HallResult
+from fem.hall.run import study_of
+from fem.hall.table import Found, weakness, written
 from fem.results.errors import FolderError
 from fem.results.figures import SLIPPED, TURNED
 from fem.results.folder import ResultFolder, require_same_program
@@ -44,6 +44,10 @@ SITES, FOLDERS = "sites.csv", "sites"
 #: tables of a case that a verification takes from its site file
 OF_THE_SITE = ("motion", "vertical", "initial", "static", "solver", "output", "uncertainty", "joints")
 FIGURES = ("outcome", "margin", TURNED, SLIPPED, "motions_overturned", "motions_failed")
+#: by column, the key of the answer
+OF_THE_ANSWER = {"margin": "margin_factor", TURNED: "rotation_ratio", SLIPPED: "slip_m"}
+OF_THE_ANSWER |= {"motions_overturned": "overturned", "answer": "answer"}
+OF_THE_ANSWER |= {"factor_at_first_overturning": "factor_at_first_overturning"}
 COLUMNS = {"container": int} | {
     name: RESULT_COLUMNS[name] for name in ("status", "reason", *FIGURES, *AT_SITE)
 }
@@ -147,18 +151,16 @@ class _AtSite:
         results.check()
         rows = [self.rows[number] for number in numbers]
         results.write_text(SITES, table_of_rows(COLUMNS, rows))
-        pages = [folder / "report.html" for folder in folders]
-        by_container = {
-            number: {**row, "page": page.as_posix() if (results.path / page).is_file() else None}
-            for number, row, page in zip(numbers, rows, pages, strict=True)
-        }
+        found = [self.found(row, results.path, folder) for row, folder in zip(rows, folders, strict=True)]
+        return written(results, replace(begun, runs=len(numbers)), hall, found)
 
-        def command(row: HallRow, number: int) -> str:
-            words = ["python", "-m", "fem", "assess", str(places[number] / "site.toml")]
-            return shlex.join([*words, *["--allow-outside"] * self.outside])
-
-        order = sorted(numbers, key=lambda number: _weakness(self.rows[number]))
-        return written(results, replace(begun, runs=len(numbers)), hall, by_container, order, command)
+    def found(self, row: Row, results: Path, folder: Path) -> Found:
+        """What is known of a container; the folder is that of its verification, within that of the results."""
+        page, site = folder / "report.html", results / folder / "site.toml"
+        words = ["python", "-m", "fem", "assess", str(site), *["--allow-outside"] * self.outside]
+        where = {"page": page.as_posix() if (results / page).is_file() else None}
+        order = WORST_FIRST.index(row["answer"] or NO_ANSWER)
+        return Found(row | where, weakness(order, row, row[TURNED] or 0.0), lambda _: shlex.join(words))
 
     def note(self, line: str) -> None:
         """Add a line of the log."""
@@ -207,13 +209,8 @@ class _AtSite:
             "status": result.status,
             "reason": None if answer.answer else answer.sentence,
             "outcome": answer.governing.outcome if answer.governing else None,
-            "margin": answer.margin_factor,
-            TURNED: answer.rotation_ratio,
-            SLIPPED: answer.slip_m,
-            "motions_overturned": answer.overturned,
-            "answer": answer.answer,
             "reasons": " ".join(answer.reasons or ([] if answer.answer else [answer.sentence])),
-            "factor_at_first_overturning": answer.factor_at_first_overturning,
+            **{name: getattr(answer, key) for name, key in OF_THE_ANSWER.items()},
         }
 
 
@@ -235,8 +232,3 @@ def _is_of_another_program(folder: Path) -> bool:
         except FolderError:  # damaged, too
             return True
     return False
-
-
-def _weakness(row: Row) -> tuple[float, ...]:
-    """Smaller for the worse, the answer first."""
-    return weakness(WORST_FIRST.index(row["answer"] or NO_ANSWER), row, row[TURNED] or 0.0)

@@ -1,19 +1,31 @@
-"""The list with its results: the rows, counts and answer of `hall.json`."""
+"""The list with its results: what is written of a hall once everything in it is computed."""
 
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 from fem.batch.runner import Row
 from fem.batch.study import COMPLETED, FAILED
+from fem.batch.table import table_text
 from fem.hall.file import LISTED, HallRow
+from fem.hall.page import hall_report
+from fem.hall.places import PICTURE, draw_places, geojson
 from fem.hall.plan import Hall
-from fem.hall.result import REFUSED, RESULT_COLUMNS, HallResult
+from fem.hall.result import NO_ANSWER, REFUSED, RESULT_COLUMNS, HallResult
 from fem.results.figures import SLIPPED
+from fem.results.folder import ResultFolder
 from fem.results.outcome import COUNTED_AS, ending_of
 
-NO_ANSWER = "no answer"  #: of a container at a site
+TABLE, PAGE, GEOJSON = "hall.csv", "report.html", "hall.geojson"
+
+
+class Found(NamedTuple):
+    """What is known of a container in the end."""
+
+    row: Row  #: its results, by column
+    weakness: tuple[float, ...]  #: smaller for the worse
+    command: Callable[[HallRow], str]  #: that computes a row by itself, whose container it is
 
 
 def weakness(order: int, row: Row, turned: float) -> tuple[float, ...]:
@@ -29,48 +41,56 @@ def weakness(order: int, row: Row, turned: float) -> tuple[float, ...]:
     return order, margin is None, margin or 0.0, -turned, -(static or 0.0), -(slip or 0.0)
 
 
-def with_table(
-    begun: HallResult,
-    hall: Hall,
-    by_container: Mapping[int, Row],
-    order: Sequence[int],
-    command: Callable[[HallRow, int], str],
-) -> HallResult:
-    """The finished result: rows, counts by outcome and tag, the answer.
+def written(results: ResultFolder, begun: HallResult, hall: Hall, found: Sequence[Found]) -> HallResult:
+    """The finished result, with the list, its plan and its page written.
 
     Args:
-        begun: without these.
+        begun: without rows, counts and answer.
         hall: the list, checked.
-        by_container: results of each container, by column.
-        order: of the containers, the weakest first.
-        command: of a row, whose container this is.
+        found: of each container.
     """
-    ranks = {number: rank for rank, number in enumerate(order, start=1)}
-    table, outcomes, tags = [], Counter[str](), dict[str, dict[str, Any]]()
-    for number, row in enumerate(hall.rows, start=1):
-        k = row.container
-        results: Row = {"status": REFUSED, "reason": row.reason}
-        if k is not None:
-            results = {**by_container[k], "rank": ranks[k]}
-        given = {"row": number} | {name: getattr(row, name) for name in LISTED}
-        values = {name: results.get(name) for name in RESULT_COLUMNS}
-        table.append(given | values | {"command": None if k is None else command(row, k)})
-        outcome, ending = _counted(values, begun)
-        outcomes[outcome] += row.count
-        empty = {"tag": row.tag, "containers": 0, "counts": Counter[str](), "margin": None}
-        tag = tags.setdefault(row.tag, empty)
-        tag["containers"] += row.count
-        tag["counts"][ending] += row.count
-        tag["margin"] = min(filter(None, (tag["margin"], values["margin"])), default=None)
-    failed = {result["status"] for result in by_container.values()} == {FAILED}
+    order = sorted(range(len(found)), key=lambda number: found[number].weakness)
+    table = tuple(_rows(hall, found, {number: rank for rank, number in enumerate(order, start=1)}))
+    outcomes, tags = Counter[str](), dict[str, dict[str, Any]]()
+    for row in table:
+        outcome, ending = _counted(row, begun)
+        outcomes[outcome] += row["count"]
+        empty = {"tag": row["tag"], "containers": 0, "counts": Counter[str](), "margin": None}
+        tag = tags.setdefault(row["tag"], empty)
+        tag["containers"] += row["count"]
+        tag["counts"][ending] += row["count"]
+        tag["margin"] = min(filter(None, (tag["margin"], row["margin"])), default=None)
     result = replace(
         begun,
-        status=FAILED if failed else COMPLETED,
+        status=FAILED if {one.row["status"] for one in found} == {FAILED} else COMPLETED,
         outcomes=dict(sorted(outcomes.items())),
         tags=tuple(tag for _, tag in sorted(tags.items())) if {*tags} != {""} else (),
-        table=tuple(table),
+        table=table,
     )
-    return replace(result, answer=answer_of(result))
+    result = replace(result, answer=answer_of(result))
+    fields = ([*row["given"].values(), *(row[name] for name in RESULT_COLUMNS)] for row in table)
+    results.write_text(TABLE, table_text((*result.columns, *RESULT_COLUMNS), fields))
+    for name, text in ((PICTURE, draw_places(result)), (GEOJSON, geojson(result))):
+        if text:
+            results.write_text(name, text)
+        else:
+            results.remove(name)
+    results.write_text(PAGE, hall_report(results.path, result=result))
+    return result
+
+
+def _rows(hall: Hall, found: Sequence[Found], ranks: Mapping[int, int]) -> Iterator[Row]:
+    """The rows of the list with their results."""
+    for number, row in enumerate(hall.rows, start=1):
+        results, command = {"status": REFUSED, "reason": row.reason}, None
+        if (k := row.container) is not None:
+            results, command = found[k].row | {"rank": ranks[k]}, found[k].command(row)
+        yield {
+            "row": number,
+            **{name: getattr(row, name) for name in LISTED},
+            **{name: results.get(name) for name in RESULT_COLUMNS},
+            "command": command,
+        }
 
 
 def _counted(row: Row, result: HallResult) -> tuple[str, str]:
