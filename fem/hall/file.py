@@ -63,6 +63,7 @@ class HallFile:
 
     path: Path
     table: UserTable
+    header: Sequence[str]  #: names of all columns; empty for a column without
     meanings: Mapping[
         str, str
     ]  #: of the columns that are read: a dotted key, a name of `OWN`; empty: it is kept
@@ -83,11 +84,6 @@ class HallFile:
         return [meaning for meaning in self.meanings.values() if meaning and meaning not in OWN]
 
     @cached_property
-    def header(self) -> list[str]:
-        """Names of all columns; empty for a column without."""
-        return [*map(plain_text, self.table.header)]
-
-    @cached_property
     def rows(self) -> tuple[HallRow, ...]:
         """A row for each line.
 
@@ -95,13 +91,10 @@ class HallFile:
             CaseError: there are none, values below no name, decimal commas and points.
         """
         numeric = [column for column, meaning in self.meanings.items() if meaning not in ("", NAME, TAG)]
-        try:
-            if not self.table.lines:
-                raise ValueError(f"{self.path}: the list has a header and no rows; give one row a container")
-            self.table.require_names()
-            self.table.require_one_decimal_mark(map(self.header.index, numeric))
-        except ValueError as error:
-            raise CaseError(str(error)) from None
+        if not self.table.lines:
+            raise CaseError(f"{self.path}: the list has a header and no rows; give one row a container")
+        self.table.require_names()
+        self.table.require_one_decimal_mark(map(self.header.index, numeric))
         return tuple(self._row(number, line) for number, line in enumerate(self.table.lines, start=1))
 
     def _row(self, number: int, line: TableLine) -> HallRow:
@@ -152,18 +145,15 @@ def read_hall(path: Path) -> HallFile:
         raise CaseError(f"{path} {error}; a list of containers is needed") from None
     if text is None or "\0" in text:
         raise CaseError(f"{path}: not a text file; save the list as CSV")
-    table = UserTable(str(path), text)
-    try:
-        names = [*map(plain_text, table.header)]
-    except ValueError as error:
-        raise CaseError(str(error)) from None
+    table = UserTable(str(path), text, CaseError)
+    names = [*map(plain_text, table.header)]
     if not names:
         raise CaseError(f"{path}: the list is empty; {A_HEADER}")
     if not any(name.lower() in _plain_names() or name.partition(".")[0] in NAMED for name in names):
         raise CaseError(f"{path}: line 1 names no key of a case, so there is no header; {A_HEADER}")
     is_result = {"status", "outcome", TURNED} <= {*names}  # an earlier one, given as a list again
     read = [name for name in names if name and not (is_result and name in RESULT_COLUMNS)]
-    return HallFile(path=path, table=table, meanings=_meanings_of(path, read))
+    return HallFile(path=path, table=table, header=names, meanings=_meanings_of(path, read))
 
 
 def _meanings_of(path: Path, columns: Sequence[str]) -> dict[str, str]:

@@ -2,6 +2,7 @@
 
 import shlex
 from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -146,17 +147,10 @@ def weakest_table(rows: Sequence[A_ROW], most: int, *, linked: bool) -> html.Tab
     def name(row: A_ROW) -> html.Cell:
         return html.Cell(html.link(row["name"], f"row-{row['row']}") if linked else row["name"])
 
-    def outcome(row: A_ROW) -> str:
-        return row["outcome"] or (f"none: {row['reason']}" if row["reason"] else ABSENT)
-
     def answer(row: A_ROW) -> html.Cell:
         words = row["answer"] or (NO_ANSWER if row["reasons"] else "")
         page = Markup('<a href="{}">{}</a>')
         return html.Cell(page.format(row["page"], words) if row["page"] else words)
-
-    def utilisation(row: A_ROW) -> str:
-        use = row["utilisation_overturning"]
-        return "" if use is None else number(use, figures=3)
 
     columns: list[html.Column[A_ROW]] = [
         html.Column("container", name),
@@ -164,12 +158,16 @@ def weakest_table(rows: Sequence[A_ROW], most: int, *, linked: bool) -> html.Tab
         html.key_column("count", "count", html.NUMBER, empty=1),
         html.key_column("tag", "tag"),
         html.Column("answer", answer, optional=True),
-        html.Column("outcome", outcome),
+        html.Column(
+            "outcome", lambda row: row["outcome"] or (f"none: {row['reason']}" if row["reason"] else ABSENT)
+        ),
         html.Column("margin", margin_words, html.NUMBER),
         html.key_column("sure", "sure"),
         html.Column("decided by", _deciding, optional=True),
         *html.figure_columns(figures_of(Place.KEY), value=figure),
-        html.Column("utilisation", utilisation, html.NUMBER, optional=True),
+        html.key_column(
+            "utilisation", "utilisation_overturning", html.NUMBER, text=partial(number, figures=3)
+        ),
         html.key_column("motion", "motion"),
         html.key_column("runs overturned", "motions_overturned", html.NUMBER),
         html.key_column("runs not valid", "motions_invalid", html.NUMBER, empty=0),

@@ -13,13 +13,8 @@ PICTURE = "figures/hall.svg"
 EARTH_RADIUS_M = 6.371e6
 MOST_NAMED = 8  #: of the weakest, in the picture
 #: classes from the weakest, what they are called, colour and mark; margins up to the number, above the one before
-OVERTURNED, INVALID, NONE, UNKNOWN, BEYOND = (
-    "overturned",
-    "corner destroyed, not valid",
-    "no outcome",
-    "stood, margin not sought",
-    "stood, margin above 3",
-)
+OVERTURNED, INVALID, NONE = "overturned", "corner destroyed, not valid", "no outcome"
+UNKNOWN, BEYOND = "stood, margin not sought", "stood, margin above 3"
 MARGINS = ((1.5, style.VERMILLION, "s"), (2.0, style.ORANGE, "s"), (3.0, style.SKY, "o"))
 LOOKS = {
     OVERTURNED: (style.BLACK, "s"),
@@ -33,13 +28,10 @@ LOOKS = {
 
 def plan_of(result: HallResult) -> list[tuple[float, float, Mapping[str, Any]]]:
     """The rows that have a place: east or x, north or y [m], and the row; places on the globe from their middle."""
-    placed = [(*row["place_m"], row) for row in result.table if row["place_m"]]
-    if placed:
+    if placed := [(*row["place_m"], row) for row in result.table if row["place_m"]]:
         return placed
     located = [(*row["lon_lat"], row) for row in result.table if row["lon_lat"]]
-    if not located:
-        return []
-    middle = [sum(point[k] for point in located) / len(located) for k in (0, 1)]
+    middle = [sum(point[k] for point in located) / max(len(located), 1) for k in (0, 1)]
     a_degree = math.radians(1.0) * EARTH_RADIUS_M
     shrink = math.cos(math.radians(middle[1]))
     return [

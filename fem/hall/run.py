@@ -21,7 +21,7 @@ from fem.case.case import Case
 from fem.case.toml import toml_document
 from fem.case.validation import CaseError
 from fem.hall.file import HallFile
-from fem.hall.plan import Hall, read_motions, say_time
+from fem.hall.plan import Hall, HallItem, read_motions, say_time
 from fem.hall.ranking import CHECK_COLUMNS, RUN_COLUMNS, HallRuns
 from fem.hall.result import HallResult
 from fem.hall.table import written
@@ -117,12 +117,11 @@ def study_of(
 def _compute(hall: Hall, begun: HallResult, results: ResultFolder, runner: Runner) -> HallResult:
     """Compute what is missing, and write the list with its results, and its page."""
     runs, total = HallRuns(hall=hall), len(hall.items)
-    LoggedRuns(
+    logged = partial(LoggedRuns[HallItem], make=hall.make, model_of=hall.model_of)
+    logged(
         what="runs",
         path=results.path / RUNS,
         columns=RUN_COLUMNS,
-        make=hall.make,
-        model_of=hall.model_of,
         key=lambda item: item[:2],
         note=runs.note,
         number=lambda item: item.container * len(hall.keys) + item.motion,
@@ -132,12 +131,10 @@ def _compute(hall: Hall, begun: HallResult, results: ResultFolder, runner: Runne
         return replace(begun, status=INTERRUPTED, runs=total - missing, missing=words)
     runs.find_static()
     to_check = partial(runs.to_check, begun.checks, runs.weakest_first())
-    LoggedRuns(
+    logged(
         what="containers repeated with other inputs and stronger motions",
         path=results.path / CHECKS,
         columns=CHECK_COLUMNS,
-        make=hall.make,
-        model_of=hall.model_of,
         key=lambda item: item[:1],
         note=runs.note_check,
         work=check_chunk,

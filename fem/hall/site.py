@@ -7,7 +7,6 @@ import shlex
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from functools import partial
 from pathlib import Path
 from typing import Any, Unpack
 
@@ -139,12 +138,27 @@ class _AtSite:
         """Verify what is missing, and write the list with the answers, and its page."""
         numbers = range(len(hall.containers))
         folders = [Path(FOLDERS) / f"{k + 1:03d}-{digest[:8]}" for k, digest in enumerate(hall.containers)]
-        log = LoggedRows[int](
-            path=results.path / SITES, columns=COLUMNS, key=lambda number: (number,), note=self.note
-        )
-        missing = ([k for k in numbers if k not in self.rows] for _ in range(1))
-        places = [results.path / folder for folder in folders]
-        log.compute(runner, missing, partial(self.verified, hall, places, runner))
+        names = {row.container: row.name for row in reversed(hall.rows)}
+
+        def note(line: str) -> None:
+            row = row_of(COLUMNS, line)
+            self.rows[row["container"]] = row
+
+        def verified(missing: Sequence[int]) -> Iterator[tuple[list[int], list[Row]]]:
+            """The rows of these containers, one after another, until it is interrupted."""
+            for done, k in enumerate(missing):
+                if runner.stop():
+                    return
+                request = self.request(hall.values[k], names[k])
+                if done == 0 and len(missing) > 1:
+                    _say_expected(len(missing), request, runner)
+                runner.reporter.message(f"container {k + 1} of {len(numbers)} at the site")
+                if (row := self._row_of(request, results.path / folders[k], runner)) is None:
+                    return
+                yield [k], [dict.fromkeys(COLUMNS) | row]
+
+        log = LoggedRows[int](path=results.path / SITES, columns=COLUMNS, key=lambda k: (k,), note=note)
+        log.compute(runner, ([k for k in numbers if k not in self.rows] for _ in range(1)), verified)
         if len(self.rows) < len(numbers):
             words = f"{len(self.rows)} of {len(numbers)} containers are verified"
             return replace(begun, status=INTERRUPTED, missing=words)
@@ -161,27 +175,6 @@ class _AtSite:
         where = {"page": page.as_posix() if (results / page).is_file() else None}
         order = WORST_FIRST.index(row["answer"] or NO_ANSWER)
         return Found(row | where, weakness(order, row, row[TURNED] or 0.0), lambda _: shlex.join(words))
-
-    def note(self, line: str) -> None:
-        """Add a line of the log."""
-        row = row_of(COLUMNS, line)
-        self.rows[row["container"]] = row
-
-    def verified(
-        self, hall: Hall, folders: Sequence[Path], runner: Runner, missing: Sequence[int]
-    ) -> Iterator[tuple[list[int], list[Row]]]:
-        """The rows of these containers, one after another, until it is interrupted."""
-        names = {row.container: row.name for row in reversed(hall.rows)}
-        for done, number in enumerate(missing):
-            if runner.stop():
-                return
-            request = self.request(hall.values[number], names[number])
-            if done == 0 and len(missing) > 1:
-                _say_expected(len(missing), request, runner)
-            runner.reporter.message(f"container {number + 1} of {len(hall.containers)} at the site")
-            if (row := self._row_of(request, folders[number], runner)) is None:
-                return
-            yield [number], [dict.fromkeys(COLUMNS) | row]
 
     def _row_of(self, request: SiteRequest, folder: Path, runner: Runner) -> Row | None:
         """The row of a container; None where it was interrupted."""

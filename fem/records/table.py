@@ -41,10 +41,11 @@ def number_in(text: str) -> float | None:
 
 @dataclass(frozen=True)
 class UserTable:
-    """A table whose lines are split on first use; a ValueError that says why it cannot be begins with its name."""
+    """A table whose lines are split on first use."""
 
     name: str
     text: str
+    refused: type[ValueError] = ValueError  #: what is raised where it cannot be used
 
     @cached_property
     def header(self) -> list[str]:
@@ -71,7 +72,7 @@ class UserTable:
         nameless = [k for k, name in enumerate(self.header) if not name]
         for line in self.lines if nameless else ():
             if filled := [k for k in nameless if line.field(k)]:
-                raise ValueError(
+                raise self.refused(
                     f"{self.name}, line {line.number}: column {filled[0] + 1} has values and no name; name it in line 1"
                 )
 
@@ -85,7 +86,7 @@ class UserTable:
                 elif "." in field and not point and as_numbers([field]) is not None:
                     point = line.number
         if comma and point:
-            raise ValueError(
+            raise self.refused(
                 f"{self.name}: decimal commas (line {comma}) and decimal points (line {point}) in one list; use one of "
                 "them, and no sign between thousands"
             )
@@ -101,4 +102,4 @@ class UserTable:
                 if any(fields):
                     yield TableLine(reader.line_num + bool(stated), fields)
         except csv.Error as error:
-            raise ValueError(f"{self.name}: no table in CSV ({error})") from None
+            raise self.refused(f"{self.name}: no table in CSV ({error})") from None
