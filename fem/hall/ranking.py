@@ -11,7 +11,7 @@ from fem.batch.runner import Row
 from fem.batch.table import row_of
 from fem.hall.plan import Hall, HallItem
 from fem.hall.result import OF_A_RUN, OF_MOTIONS, STATIC
-from fem.hall.table import Found, weakness
+from fem.hall.table import ContainerResult, weakness
 from fem.model.geometry import build_container
 from fem.model.motion import build_motions, peaks_in_run
 from fem.model.static_checks import static_checks_of
@@ -126,7 +126,7 @@ class HallRuns:
         row = self.static[container] | self.checked.get(container, {}) | {SLIPPED: run.slip}
         return weakness(WORST_FIRST.index(run.ending), row, run.turned if run.turned > ROCKS else 0.0)
 
-    def found(self, container: int) -> Found:
+    def found(self, container: int) -> ContainerResult:
         """What is known of a container."""
         by_motion, governing = self.by_container[container], self.governing(container)
         row = row_of(RUN_COLUMNS, by_motion[governing].line)
@@ -136,4 +136,4 @@ class HallRuns:
             slipped = max(sorted(by_motion), key=lambda number: by_motion[number].slip)
             under = names[governing], *self.counts(container), by_motion[slipped].slip, names[slipped]
             values |= zip(OF_MOTIONS, under, strict=True)
-        return Found(values, self.weakness(container), partial(self.hall.command, motion=governing))
+        return ContainerResult(values, self.weakness(container), partial(self.hall.command, motion=governing))

@@ -20,7 +20,7 @@ from fem.hall.file import HallFile
 from fem.hall.plan import Hall
 from fem.hall.result import AT_SITE, NO_ANSWER, RESULT_COLUMNS, HallResult
 from fem.hall.run import study_of
-from fem.hall.table import Found, weakness, written
+from fem.hall.table import ContainerResult, weakness, written
 from fem.results.errors import FolderError
 from fem.results.figures import SLIPPED, TURNED
 from fem.results.folder import ResultFolder, require_same_program
@@ -168,13 +168,15 @@ class _AtSite:
         found = [self.found(row, results.path, folder) for row, folder in zip(rows, folders, strict=True)]
         return written(results, replace(begun, runs=len(numbers)), hall, found)
 
-    def found(self, row: Row, results: Path, folder: Path) -> Found:
+    def found(self, row: Row, results: Path, folder: Path) -> ContainerResult:
         """What is known of a container; the folder is that of its verification, within that of the results."""
         page, site = folder / "report.html", results / folder / "site.toml"
         words = ["python", "-m", "fem", "assess", str(site), *["--allow-outside"] * self.outside]
         where = {"page": page.as_posix() if (results / page).is_file() else None}
         order = WORST_FIRST.index(row["answer"] or NO_ANSWER)
-        return Found(row | where, weakness(order, row, row[TURNED] or 0.0), lambda _: shlex.join(words))
+        return ContainerResult(
+            row | where, weakness(order, row, row[TURNED] or 0.0), lambda _: shlex.join(words)
+        )
 
     def _row_of(self, request: SiteRequest, folder: Path, runner: Runner) -> Row | None:
         """The row of a container; None where it was interrupted."""

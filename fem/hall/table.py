@@ -20,7 +20,7 @@ from fem.results.outcome import COUNTED_AS, ending_of
 TABLE, PAGE, GEOJSON = "hall.csv", "report.html", "hall.geojson"
 
 
-class Found(NamedTuple):
+class ContainerResult(NamedTuple):
     """What is known of a container in the end."""
 
     row: Row  #: its results, by column
@@ -41,7 +41,9 @@ def weakness(order: int, row: Row, turned: float) -> tuple[float, ...]:
     return order, margin is None, margin or 0.0, -turned, -(static or 0.0), -(slip or 0.0)
 
 
-def written(results: ResultFolder, begun: HallResult, hall: Hall, found: Sequence[Found]) -> HallResult:
+def written(
+    results: ResultFolder, begun: HallResult, hall: Hall, found: Sequence[ContainerResult]
+) -> HallResult:
     """The finished result, with the list, its plan and its page written.
 
     Args:
@@ -79,7 +81,7 @@ def written(results: ResultFolder, begun: HallResult, hall: Hall, found: Sequenc
     return result
 
 
-def _rows(hall: Hall, found: Sequence[Found], ranks: Mapping[int, int]) -> Iterator[Row]:
+def _rows(hall: Hall, found: Sequence[ContainerResult], ranks: Mapping[int, int]) -> Iterator[Row]:
     """The rows of the list with their results."""
     for number, row in enumerate(hall.rows, start=1):
         results, command = {"status": REFUSED, "reason": row.reason}, None
