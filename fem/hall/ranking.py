@@ -4,7 +4,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import partial
-from typing import NamedTuple
 
 from fem.batch.checked import CHECKED
 from fem.batch.runner import Row
@@ -15,8 +14,9 @@ from fem.hall.table import ContainerResult, weakness
 from fem.model.geometry import build_container
 from fem.model.motion import build_motions, peaks_in_run
 from fem.model.static_checks import static_checks_of
-from fem.results.figures import SLIPPED, TURNED
-from fem.results.outcome import Ending, ending_of
+from fem.results.figures import SLIPPED
+from fem.results.outcome import Ending
+from fem.sweep.cells import RunShown, shown_in
 
 RUN_COLUMNS = {"container": int, "motion": int} | OF_A_RUN
 CHECK_COLUMNS = {"container": int} | CHECKED
@@ -28,26 +28,14 @@ SHARE, LEAST = 0.1, 30
 WORST_FIRST = (Ending.OVERTURNED, Ending.INVALID, Ending.FAILED, Ending.STANDING)
 
 
-class ContainerRun(NamedTuple):
-    """A run of the log."""
-
-    ending: Ending
-    turned: float  #: rotation ratio of what stands; how far the others turned does not count
-    slip: float
-    line: str
-
-    @property
-    def weakness(self) -> tuple[float, ...]:
-        """Smaller for the worse: overturned, not valid, without an outcome, the larger rotation, the larger slip."""
-        return WORST_FIRST.index(self.ending), -self.turned, -self.slip
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class HallRuns:
     """The runs so far, and what their repetition showed."""
 
     hall: Hall
-    by_container: dict[int, dict[int, ContainerRun]] = field(default_factory=dict)  #: and by motion
+    lines: dict[tuple[int, int], str] = field(default_factory=dict)  #: of the log, by container and motion
+    #: what they show, by container and by motion
+    by_container: dict[int, dict[int, RunShown]] = field(default_factory=dict)
     checked: dict[int, Row] = field(default_factory=dict)  #: what the repetition showed, by container
     #: of each container, utilisations by `STATIC` under the peak of its governing motion
     static: dict[int, Row] = field(default_factory=dict)
@@ -55,13 +43,9 @@ class HallRuns:
     def note(self, line: str) -> None:
         """Add a line of the log of the runs; IndexError: of a container that is not in the list."""
         row = row_of(RUN_COLUMNS, line)
-        item, ending = (
-            self.hall.item(row["container"], row["motion"]),
-            ending_of(row["status"], row["outcome"]),
-        )
-        turned = row[TURNED] if ending == Ending.STANDING else None
-        run = ContainerRun(ending, turned or 0.0, row[SLIPPED] or 0.0, line)
-        self.by_container.setdefault(item.container, {})[item.motion] = run
+        item = self.hall.item(row["container"], row["motion"])
+        self.lines[item.container, item.motion] = line
+        self.by_container.setdefault(item.container, {})[item.motion] = shown_in(row)
 
     def note_check(self, line: str) -> None:
         """Add a line of the log of the repetitions."""
@@ -70,29 +54,16 @@ class HallRuns:
 
     def missing(self) -> list[HallItem]:
         """Runs that have no line."""
-        known = self.by_container
-        return [item for item in self.hall.items if item.motion not in known.get(item.container, {})]
-
-    def lines(self) -> list[str]:
-        """`runs.csv`, in the order of containers and motions."""
-        return [
-            run.line
-            for _, by_motion in sorted(self.by_container.items())
-            for _, run in sorted(by_motion.items())
-        ]
+        return [item for item in self.hall.items if item[:2] not in self.lines]
 
     def governing(self, container: int) -> int:
         """The motion under which a container does worst, the first of equals."""
         runs = self.by_container[container]
-        return min(sorted(runs), key=lambda motion: runs[motion].weakness)
-
-    def worst(self, container: int) -> ContainerRun:
-        """The run under that motion."""
-        return self.by_container[container][self.governing(container)]
+        return min(sorted(runs), key=lambda motion: _weakness(runs[motion], {}))
 
     def counts(self, container: int) -> tuple[int, ...]:
         """How many motions overturn a container, destroy a corner of it, have no outcome."""
-        endings = [run.ending for run in self.by_container[container].values()]
+        endings = [run.kind for run in self.by_container[container].values()]
         return tuple(map(endings.count, WORST_FIRST[:3]))
 
     def to_check(self, checks: str, order: Sequence[int]) -> list[HallItem]:
@@ -103,9 +74,9 @@ class HallRuns:
             order: of the containers, the weakest first, before any is repeated.
         """
         count = {"none": 0, "all": len(order)}.get(checks, max(math.ceil(SHARE * len(order)), LEAST))
-        ended = [number for number in order if self.worst(number).ending != Ending.FAILED]
-        items = [self.hall.item(number, self.governing(number)) for number in ended]
-        able = [item for item in items if self.hall.model_of(item) != "full"]
+        worst = [self.hall.item(number, self.governing(number)) for number in order]
+        ended = [item for item in worst if self.by_container[item[0]][item[1]].kind != Ending.FAILED]
+        able = [item for item in ended if self.hall.model_of(item) != "full"]
         return [item for item in able[:count] if item.container not in self.checked]
 
     def find_static(self) -> None:
@@ -122,18 +93,23 @@ class HallRuns:
 
     def weakness(self, container: int) -> tuple[float, ...]:
         """Smaller for the worse."""
-        run = self.worst(container)
-        row = self.static[container] | self.checked.get(container, {}) | {SLIPPED: run.slip}
-        return weakness(WORST_FIRST.index(run.ending), row, run.turned if run.turned > ROCKS else 0.0)
+        run = self.by_container[container][self.governing(container)]
+        return _weakness(run, self.static[container] | self.checked.get(container, {}), ROCKS)
 
     def found(self, container: int) -> ContainerResult:
         """What is known of a container."""
         by_motion, governing = self.by_container[container], self.governing(container)
-        row = row_of(RUN_COLUMNS, by_motion[governing].line)
+        row = row_of(RUN_COLUMNS, self.lines[container, governing])
         values = {name: row[name] for name in OF_A_RUN} | self.static[container]
         values |= self.checked.get(container, {})
         if names := [pair.name for pair in self.hall.motions]:
-            slipped = max(sorted(by_motion), key=lambda number: by_motion[number].slip)
-            under = names[governing], *self.counts(container), by_motion[slipped].slip, names[slipped]
+            slipped = max(sorted(by_motion), key=lambda number: by_motion[number].slipped)
+            under = names[governing], *self.counts(container), by_motion[slipped].slipped, names[slipped]
             values |= zip(OF_MOTIONS, under, strict=True)
         return ContainerResult(values, self.weakness(container), partial(self.hall.command, motion=governing))
+
+
+def _weakness(run: RunShown, row: Row, rocks: float = 0.0) -> tuple[float, ...]:
+    """Smaller for the worse; only what stands counts as far as it turned, and that from `rocks` on."""
+    turned = run.turned if run.kind == Ending.STANDING and run.turned > rocks else 0.0
+    return weakness(WORST_FIRST.index(run.kind), row | {SLIPPED: run.slipped}, turned)

@@ -143,7 +143,7 @@ def _compute(hall: Hall, begun: HallResult, results: ResultFolder, runner: Runne
     if left := len(to_check()):
         return replace(begun, status=INTERRUPTED, missing=f"{left} of the weakest are still to be repeated")
     results.check()
-    results.write_text(RUNS, table_of_lines(RUN_COLUMNS, runs.lines()))
+    results.write_text(RUNS, table_of_lines(RUN_COLUMNS, (line for _, line in sorted(runs.lines.items()))))
     checked = sorted(runs.checked.items())
     results.write_text(CHECKS, table_text(CHECK_COLUMNS, ([k, *check.values()] for k, check in checked)))
 
