@@ -64,9 +64,8 @@ class HallFile:
     path: Path
     table: UserTable
     header: Sequence[str]  #: names of all columns; empty for a column without
-    meanings: Mapping[
-        str, str
-    ]  #: of the columns that are read: a dotted key, a name of `OWN`; empty: it is kept
+    #: of the columns that are read: a dotted key, a name of `OWN`; empty: it is kept
+    meanings: Mapping[str, str]
 
     @property
     def name(self) -> str:
