@@ -4,32 +4,44 @@ The runs are logged as they are ready, so an interrupted hall continues where it
 nor on the number of cores. A hall of which names, tags or places alone have changed is written again, not computed.
 """
 
-from collections.abc import Callable
-from dataclasses import replace
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import Any, Literal, Unpack
+from typing import Literal, Unpack
 
 from fem.batch.axes import MOTION_FILE, VERTICAL_FILE
-from fem.batch.checked import check_chunk
+from fem.batch.checked import CHECKED, check_chunk
 from fem.batch.log import LoggedRuns
 from fem.batch.motion_set import motions_left_out
-from fem.batch.runner import Runner
-from fem.batch.study import INTERRUPTED, Study, StudyOptions, hash_of, run_study, runner_of
-from fem.batch.table import table_of_lines, table_text
+from fem.batch.runner import Row, Runner
+from fem.batch.study import INTERRUPTED, StudyOptions, hash_of, run_study, runner_of
+from fem.batch.table import row_of, table_of_lines, table_text
 from fem.case.case import Case
-from fem.case.toml import toml_document
 from fem.case.validation import CaseError
 from fem.hall.file import HallFile
 from fem.hall.plan import Hall, HallItem, read_motions, say_time
-from fem.hall.ranking import CHECK_COLUMNS, RUN_COLUMNS, HallRuns
-from fem.hall.result import HallResult
-from fem.hall.table import written
-from fem.results.disk import BYTES_BESIDE, table_bytes
+from fem.hall.result import OF_A_RUN, OF_MOTIONS, STATIC, HallResult
+from fem.hall.study import ContainerResult, study_of, weakness, written
+from fem.model.geometry import build_container
+from fem.model.motion import build_motions, peaks_in_run
+from fem.model.static_checks import static_checks_of
+from fem.results.disk import table_bytes
+from fem.results.figures import SLIPPED
 from fem.results.folder import ResultFolder
-from fem.results.kinds import HALL
+from fem.results.outcome import Ending
+from fem.sweep.cells import RunShown, shown_in
 
 RUNS, CHECKS = "runs.csv", "checks.csv"
+RUN_COLUMNS = {"container": int, "motion": int} | OF_A_RUN
+CHECK_COLUMNS = {"container": int} | CHECKED
+#: rotation ratio below which containers are ranked by the static rule: nothing rocks
+ROCKS = 0.01
+#: share of the containers, the weakest first, whose run is repeated under stronger motions and with other inputs; at
+#: least so many
+SHARE, LEAST = 0.1, 30
+WORST_FIRST = (Ending.OVERTURNED, Ending.INVALID, Ending.FAILED, Ending.STANDING)
 Checks = Literal["weakest", "all", "none"]
 
 
@@ -64,7 +76,7 @@ def run_hall(
         options["workers_of"] = runner.workers_of
         study = study_of(
             hall,
-            _compute,
+            HallRuns(hall=hall).compute,
             asked=hash_of([[*hall.containers], [pair.case_hash for pair in pairs]]),
             listed=hash_of([file.table.text, checks]),
             motions=motions,
@@ -76,75 +88,126 @@ def run_hall(
         return run_study(study, folder, **options)
 
 
-def study_of(
-    hall: Hall, compute: Callable[[Hall, HallResult, ResultFolder, Runner], HallResult], **fields: Any
-) -> Study[HallResult]:
-    """The study of a list.
+@dataclass(frozen=True, kw_only=True, eq=False)
+class HallRuns:
+    """The runs so far, and what their repetition showed."""
 
-    Args:
-        hall: the list, checked.
-        compute: what is missing of it.
-        fields: of the result before any run, in one way of computing.
-    """
-    rows, file, origin = hall.rows, hall.file, hall.base.origin_with({})
-    known = {"model": hall.base.solver.model, "allow_outside": origin.allow_outside or None}
-    begun = HallResult(
-        hall=file.name,
-        case=origin.place,
-        rows=len(rows),
-        containers=sum(row.count for row in rows),
-        distinct=len(hall.containers),
-        refused=sum(row.container is None for row in rows),
-        kept=tuple(column for column, meaning in file.meanings.items() if not meaning),
-        columns=file.columns,
-        **(known | fields),
-    )
-    return Study(
-        kind=HALL,
-        request=begun.asked,
-        result=HallResult,
-        begun=begun,
-        compute=partial(compute, hall, begun),
-        texts={"list.csv": file.table.text, "base.toml": toml_document(hall.base.given())},
-        size=BYTES_BESIDE,
-        subject=f"the hall ({begun.distinct} containers)",
-        way_out="take fewer rows",
-        progress=lambda results: "what was computed so far",
-        again=lambda results, finished: finished if finished.listed == begun.listed else None,
-    )
+    hall: Hall
+    lines: dict[tuple[int, int], str] = field(default_factory=dict)  #: of the log, by container and motion
+    #: what they show, by container and by motion
+    by_container: dict[int, dict[int, RunShown]] = field(default_factory=dict)
+    checked: dict[int, Row] = field(default_factory=dict)  #: what the repetition showed, by container
+    #: of each container, utilisations by `STATIC` under the peak of its governing motion
+    static: dict[int, Row] = field(default_factory=dict)
+
+    def note(self, line: str) -> None:
+        """Add a line of the log of the runs; IndexError: of a container that is not in the list."""
+        row = row_of(RUN_COLUMNS, line)
+        item = self.hall.item(row["container"], row["motion"])
+        self.lines[item.container, item.motion] = line
+        self.by_container.setdefault(item.container, {})[item.motion] = shown_in(row)
+
+    def note_check(self, line: str) -> None:
+        """Add a line of the log of the repetitions."""
+        row = row_of(CHECK_COLUMNS, line)
+        self.checked[row.pop("container")] = row
+
+    def missing(self) -> list[HallItem]:
+        """Runs that have no line."""
+        return [item for item in self.hall.items if item[:2] not in self.lines]
+
+    def governing(self, container: int) -> int:
+        """The motion under which a container does worst, the first of equals."""
+        runs = self.by_container[container]
+        return min(sorted(runs), key=lambda motion: _weakness(runs[motion], {}))
+
+    def counts(self, container: int) -> tuple[int, ...]:
+        """How many motions overturn a container, destroy a corner of it, have no outcome."""
+        endings = [run.kind for run in self.by_container[container].values()]
+        return tuple(map(endings.count, WORST_FIRST[:3]))
+
+    def to_check(self, checks: str, order: Sequence[int]) -> list[HallItem]:
+        """The governing runs that are still to be repeated.
+
+        Args:
+            checks: weakest | all | none.
+            order: of the containers, the weakest first, before any is repeated.
+        """
+        count = {"none": 0, "all": len(order)}.get(checks, max(math.ceil(SHARE * len(order)), LEAST))
+        worst = [self.hall.item(number, self.governing(number)) for number in order]
+        ended = [item for item in worst if self.by_container[item[0]][item[1]].kind != Ending.FAILED]
+        able = [item for item in ended if self.hall.model_of(item) != "full"]
+        return [item for item in able[:count] if item.container not in self.checked]
+
+    def find_static(self) -> None:
+        """Note the utilisations of the containers, once all are run."""
+        for number in self.by_container:
+            case = self.hall.make(self.hall.item(number, self.governing(number)))
+            peaks = peaks_in_run(case, *build_motions(case))
+            ruling = static_checks_of(case, build_container(case), *peaks).ruling.to_result()
+            self.static[number] = {name: getattr(ruling, name) for name in STATIC}
+
+    def weakest_first(self) -> list[int]:
+        """The containers in the order of their weakness: what overturned comes first, then as `WORST_FIRST`."""
+        return sorted(sorted(self.by_container), key=self.weakness)
+
+    def weakness(self, container: int) -> tuple[float, ...]:
+        """Smaller for the worse."""
+        run = self.by_container[container][self.governing(container)]
+        return _weakness(run, self.static[container] | self.checked.get(container, {}), ROCKS)
+
+    def found(self, container: int) -> ContainerResult:
+        """What is known of a container."""
+        by_motion, governing = self.by_container[container], self.governing(container)
+        row = row_of(RUN_COLUMNS, self.lines[container, governing])
+        values = {name: row[name] for name in OF_A_RUN} | self.static[container]
+        values |= self.checked.get(container, {})
+        if names := [pair.name for pair in self.hall.motions]:
+            slipped = max(sorted(by_motion), key=lambda number: by_motion[number].slipped)
+            under = names[governing], *self.counts(container), by_motion[slipped].slipped, names[slipped]
+            values |= zip(OF_MOTIONS, under, strict=True)
+        return ContainerResult(values, self.weakness(container), partial(self.hall.command, motion=governing))
+
+    def compute(self, begun: HallResult, results: ResultFolder, runner: Runner) -> HallResult:
+        """Compute what is missing, and write the list with its results, and its page."""
+        hall, total = self.hall, len(self.hall.items)
+        logged = partial(LoggedRuns[HallItem], make=hall.make, model_of=hall.model_of)
+        logged(
+            what="runs",
+            path=results.path / RUNS,
+            columns=RUN_COLUMNS,
+            key=lambda item: item[:2],
+            note=self.note,
+            number=lambda item: item.container * len(hall.keys) + item.motion,
+        ).run(runner, iter(self.missing, []))
+        if missing := len(self.missing()):
+            words = f"{total - missing} of {total} runs are computed"
+            return replace(begun, status=INTERRUPTED, runs=total - missing, missing=words)
+        self.find_static()
+        to_check = partial(self.to_check, begun.checks, self.weakest_first())
+        logged(
+            what="containers repeated with other inputs and stronger motions",
+            path=results.path / CHECKS,
+            columns=CHECK_COLUMNS,
+            key=lambda item: item[:1],
+            note=self.note_check,
+            work=check_chunk,
+        ).run(runner, iter(to_check, []))
+        begun = replace(begun, runs=total, checked=len(self.checked))
+        if left := len(to_check()):
+            return replace(
+                begun, status=INTERRUPTED, missing=f"{left} of the weakest are still to be repeated"
+            )
+        results.check()
+        results.write_text(
+            RUNS, table_of_lines(RUN_COLUMNS, (line for _, line in sorted(self.lines.items())))
+        )
+        checked = sorted(self.checked.items())
+        results.write_text(CHECKS, table_text(CHECK_COLUMNS, ([k, *check.values()] for k, check in checked)))
+        return written(results, begun, hall, [self.found(number) for number in range(len(hall.values))])
 
 
-def _compute(hall: Hall, begun: HallResult, results: ResultFolder, runner: Runner) -> HallResult:
-    """Compute what is missing, and write the list with its results, and its page."""
-    runs, total = HallRuns(hall=hall), len(hall.items)
-    logged = partial(LoggedRuns[HallItem], make=hall.make, model_of=hall.model_of)
-    logged(
-        what="runs",
-        path=results.path / RUNS,
-        columns=RUN_COLUMNS,
-        key=lambda item: item[:2],
-        note=runs.note,
-        number=lambda item: item.container * len(hall.keys) + item.motion,
-    ).run(runner, iter(runs.missing, []))
-    if missing := len(runs.missing()):
-        words = f"{total - missing} of {total} runs are computed"
-        return replace(begun, status=INTERRUPTED, runs=total - missing, missing=words)
-    runs.find_static()
-    to_check = partial(runs.to_check, begun.checks, runs.weakest_first())
-    logged(
-        what="containers repeated with other inputs and stronger motions",
-        path=results.path / CHECKS,
-        columns=CHECK_COLUMNS,
-        key=lambda item: item[:1],
-        note=runs.note_check,
-        work=check_chunk,
-    ).run(runner, iter(to_check, []))
-    begun = replace(begun, runs=total, checked=len(runs.checked))
-    if left := len(to_check()):
-        return replace(begun, status=INTERRUPTED, missing=f"{left} of the weakest are still to be repeated")
-    results.check()
-    results.write_text(RUNS, table_of_lines(RUN_COLUMNS, (line for _, line in sorted(runs.lines.items()))))
-    checked = sorted(runs.checked.items())
-    results.write_text(CHECKS, table_text(CHECK_COLUMNS, ([k, *check.values()] for k, check in checked)))
-
-    return written(results, begun, hall, [runs.found(number) for number in range(len(hall.values))])
+def _weakness(run: RunShown, row: Row, rocks: float = 0.0) -> tuple[float, ...]:
+    """Smaller for the worse; only what stands counts as far as it turned, and that from `rocks` on."""
+    turned = run.turned if run.kind == Ending.STANDING and run.turned > rocks else 0.0
+    return weakness(WORST_FIRST.index(run.kind), row | {SLIPPED: run.slipped}, turned)

@@ -7,6 +7,7 @@ import shlex
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import Any, Unpack
 
@@ -19,8 +20,7 @@ from fem.case.validation import CaseError
 from fem.hall.file import HallFile
 from fem.hall.plan import Hall
 from fem.hall.result import AT_SITE, NO_ANSWER, RESULT_COLUMNS, HallResult
-from fem.hall.run import study_of
-from fem.hall.table import ContainerResult, weakness, written
+from fem.hall.study import ContainerResult, study_of, weakness, written
 from fem.results.errors import FolderError
 from fem.results.figures import SLIPPED, TURNED
 from fem.results.folder import ResultFolder, require_same_program
@@ -90,7 +90,7 @@ def run_hall_at_site(
     hall = Hall(file=file, base=work.start, containers={}).checked(work.hash_of, strict=strict)
     study = study_of(
         hall,
-        work.compute,
+        partial(work.compute, hall),
         site=site.origin.place,
         model=site.heading.model,
         asked=hash_of([*hall.containers]),

@@ -21,9 +21,8 @@ from fem.cli.batch import page_of
 from fem.hall.file import read_hall
 from fem.hall.places import INVALID, UNKNOWN, class_of, draw_places, plan_of
 from fem.hall.plan import HallItem
-from fem.hall.ranking import RUN_COLUMNS, HallRuns
 from fem.hall.result import HallResult
-from fem.hall.run import run_hall
+from fem.hall.run import RUN_COLUMNS, HallRuns, run_hall
 from fem.hall.site import run_hall_at_site
 from fem.results.figures import SCALARS
 from fem.run.compute import compute

@@ -1,20 +1,24 @@
-"""The list with its results: what is written of a hall once everything in it is computed."""
+"""What every hall has, whatever computes it: its study, the order of its containers, the list with its results."""
 
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Any, NamedTuple
 
-from fem.batch.runner import Row
-from fem.batch.study import COMPLETED, FAILED
+from fem.batch.runner import Row, Runner
+from fem.batch.study import COMPLETED, FAILED, Study
 from fem.batch.table import table_text
+from fem.case.toml import toml_document
 from fem.hall.file import LISTED, HallRow
 from fem.hall.page import hall_report
 from fem.hall.places import PICTURE, draw_places, geojson
 from fem.hall.plan import Hall
 from fem.hall.result import NO_ANSWER, REFUSED, RESULT_COLUMNS, HallResult
+from fem.results.disk import BYTES_BESIDE
 from fem.results.figures import SLIPPED
 from fem.results.folder import ResultFolder
+from fem.results.kinds import HALL
 from fem.results.outcome import COUNTED_AS, ending_of
 
 TABLE, PAGE, GEOJSON = "hall.csv", "report.html", "hall.geojson"
@@ -39,6 +43,44 @@ def weakness(order: int, row: Row, turned: float) -> tuple[float, ...]:
     margin = row.get("margin") or row.get("margin_tried_to")
     static, slip = row.get("utilisation_overturning"), row.get(SLIPPED)
     return order, margin is None, margin or 0.0, -turned, -(static or 0.0), -(slip or 0.0)
+
+
+def study_of(
+    hall: Hall, compute: Callable[[HallResult, ResultFolder, Runner], HallResult], **fields: Any
+) -> Study[HallResult]:
+    """The study of a list.
+
+    Args:
+        hall: the list, checked.
+        compute: what is missing of it.
+        fields: of the result before any run, in one way of computing.
+    """
+    rows, file, origin = hall.rows, hall.file, hall.base.origin_with({})
+    known = {"model": hall.base.solver.model, "allow_outside": origin.allow_outside or None}
+    begun = HallResult(
+        hall=file.name,
+        case=origin.place,
+        rows=len(rows),
+        containers=sum(row.count for row in rows),
+        distinct=len(hall.containers),
+        refused=sum(row.container is None for row in rows),
+        kept=tuple(column for column, meaning in file.meanings.items() if not meaning),
+        columns=file.columns,
+        **(known | fields),
+    )
+    return Study(
+        kind=HALL,
+        request=begun.asked,
+        result=HallResult,
+        begun=begun,
+        compute=partial(compute, begun),
+        texts={"list.csv": file.table.text, "base.toml": toml_document(hall.base.given())},
+        size=BYTES_BESIDE,
+        subject=f"the hall ({begun.distinct} containers)",
+        way_out="take fewer rows",
+        progress=lambda results: "what was computed so far",
+        again=lambda results, finished: finished if finished.listed == begun.listed else None,
+    )
 
 
 def written(
