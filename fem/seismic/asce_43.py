@@ -19,6 +19,7 @@ from fem.seismic.method import MethodQuantity, MethodRow, MethodSource, SourceSt
 SLIDING_DAMPING = 0.10
 VERTICAL_SHARE = 0.4  #: of the vertical peak that reduces friction, and of a second horizontal component
 ANGLES = 1000  #: tried between upright and the slenderness angle
+DIVIDED, DIVISIONS = 60, 7  #: then the interval that holds the angle, again and again
 ON_A_FLOOR = (
     "on a floor, whose nearly harmonic motion does not follow the η of Eq. (3.6) at other damping ratios"
 )
@@ -187,11 +188,9 @@ def rocking_row(body: LooseBody, limits: Limits, action: FloorAction, *, vertica
 
 
 def _crossing(excess: Callable[[FloatArray], FloatArray], low: float, high: float) -> float:
-    """Where a function falls through zero between two arguments, by bisection."""
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        if float(excess(np.array([middle]))[0]) > 0.0:
-            low = middle
-        else:
-            high = middle
+    """The first argument between two at which a function falls through zero; each pass divides what is left."""
+    for _ in range(DIVISIONS):
+        arguments = np.linspace(low, high, DIVIDED)
+        first = int(np.argmax(excess(arguments) <= 0.0))
+        low, high = float(arguments[first - 1]), float(arguments[first])
     return 0.5 * (low + high)

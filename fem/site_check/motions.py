@@ -1,5 +1,6 @@
 """The motions of a site: made or read, on the ground and on the floor of a building."""
 
+import importlib
 import math
 from collections.abc import Iterable, Sequence
 from itertools import combinations
@@ -20,7 +21,6 @@ from fem.seismic.artificial import artificial_set
 from fem.seismic.floor import PERIOD_FACTORS, floor_motion, one_mode, storey_modes
 from fem.seismic.floor_spectrum import FloorSpectrum
 from fem.seismic.ground_motion import GroundMotion
-from fem.seismic.matched import matched_records, scaled_records
 from fem.seismic.motion_set import periods_of_check
 from fem.site_check.file import SiteRequest
 from fem.site_check.tables import BuildingTable
@@ -70,9 +70,14 @@ def ground_motions(
     _require_independent(records)
     if table.source == "floor":
         return records
-    if table.source == "records":
-        return scaled_records(records, target, longest=longest)
-    return matched_records(records, target, longest=longest, second=table.second_component)
+    # loaded where it is used: its import of scipy.signal takes as long as fifty runs
+    matched = importlib.import_module("fem.seismic.matched")
+    fitted: list[GroundMotion] = (
+        matched.scaled_records(records, target, longest=longest)
+        if table.source == "records"
+        else matched.matched_records(records, target, longest=longest, second=table.second_component)
+    )
+    return fitted
 
 
 def motion_target(request: SiteRequest, motions: Sequence[GroundMotion], longest: float) -> MotionTarget:
