@@ -102,6 +102,7 @@ LOADING_LATE = {
     "fem/results/history.py",
     "fem/results/reader.py",
     "fem/run/checks.py",
+    "fem/site_check/motions.py",
     "mesh/files.py",
 }
 
