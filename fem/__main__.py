@@ -170,7 +170,7 @@ def _in_words(error: CycloptsError) -> str:
         return f"{name} needs a value" if name.startswith("-") else f"{name} is missing"
     return re.sub(
         r'unable to convert (".*") into (\w+)\.',
-        lambda found: f"{WORDS[found[2]]} is needed, not {found[1]}",
+        lambda match: f"{WORDS[match[2]]} is needed, not {match[1]}",
         str(error),
     )
 
@@ -178,8 +178,8 @@ def _in_words(error: CycloptsError) -> str:
 def _jobs_of(tokens: Sequence[str]) -> int | None:
     """The cores that `-j` asks for; None where it does not."""
     for token, following in zip(tokens, [*tokens[1:], ""], strict=True):
-        if (asked := re.fullmatch(r"(?:-j|--jobs)=?(\d*)", token)) and (asked[1] or following).isdigit():
-            return int(asked[1] or following)
+        if (jobs := re.fullmatch(r"(?:-j|--jobs)=?(\d*)", token)) and (jobs[1] or following).isdigit():
+            return int(jobs[1] or following)
     return None
 
 

@@ -44,8 +44,8 @@ def drawn_links(case: Case, broken_s: Sequence[float] = ()) -> tuple[DrawnLink, 
         broken_s: when each broke; empty: none did [s].
     """
     row, tallest = case.row, case.stack[-1].top
-    axes = places_of(case, [one.stack[0].width for one in row]).x if row else (0.0,)
-    found = []
+    axes = places_of(case, [alone.stack[0].width for alone in row]).x if row else (0.0,)
+    drawn = []
     for link, until in zip(case.links, broken_s or [math.inf] * len(case.links), strict=True):
         side = axes[holder_of(case, link)] + side_of(case, link)
         outward = -1.0 if link.side == "left" else 1.0
@@ -56,7 +56,7 @@ def drawn_links(case: Case, broken_s: Sequence[float] = ()) -> tuple[DrawnLink, 
                 anchor = link.other_height
             elif link.to == "wall":
                 outer, anchor = side + outward * TO_WALL * tallest, link.height_m
-            found.append(
+            drawn.append(
                 DrawnLink(
                     x=side,
                     outer=outer,
@@ -70,8 +70,8 @@ def drawn_links(case: Case, broken_s: Sequence[float] = ()) -> tuple[DrawnLink, 
         elif link.gap_m <= REACH * tallest:
             x, thick = side + outward * link.gap_m, outward * WALL * tallest
             height = max(link.height_m, abs(thick))
-            found.append(DrawnLink(x=x, outer=x + thick, height=height, outward=outward, until=until))
-    return tuple(found)
+            drawn.append(DrawnLink(x=x, outer=x + thick, height=height, outward=outward, until=until))
+    return tuple(drawn)
 
 
 def held_nodes(links: Sequence[DrawnLink], nodes: FloatArray) -> IntArray:

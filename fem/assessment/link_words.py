@@ -44,7 +44,7 @@ def links_in_words(result: RunResult) -> str:
         [
             *(_of_stop(stop) for stop in stops),
             *(_of_tie(tie) for tie in ties),
-            *(_of_neighbour(number, one) for number, one in beside),
+            *(_of_neighbour(number, neighbour) for number, neighbour in beside),
         ]
     )
 
@@ -58,64 +58,64 @@ def fall_in_row(verdict: Verdict) -> str:
     ]
     if not fallen:
         return ""
-    at, number, one = min(fallen)
+    at, number, neighbour = min(fallen)
     if verdict.leans:
-        return leaning_in_words(_neighbour(number, one), verdict)
-    return f"{_neighbour(number, one)} overturned at t = {at:.3f} s, where the run ends"
+        return leaning_in_words(_neighbour(number, neighbour), verdict)
+    return f"{_neighbour(number, neighbour)} overturned at t = {at:.3f} s, where the run ends"
 
 
-def _neighbour(number: int, one: NeighbourResult) -> str:
-    return f"neighbour {number} on the {one.side}"
+def _neighbour(number: int, neighbour: NeighbourResult) -> str:
+    return f"neighbour {number} on the {neighbour.side}"
 
 
-def _of_neighbour(number: int, one: NeighbourResult) -> str:
-    ratio = f", rotation ratio {one.rotation_ratio:.3f}" if one.overturned_at_s is None else ""
-    slip = f", slip {1e3 * one.max_slip_m:.3g} mm" if Outcome(one.outcome) in SLIDING else ""
+def _of_neighbour(number: int, neighbour: NeighbourResult) -> str:
+    ratio = f", rotation ratio {neighbour.rotation_ratio:.3f}" if neighbour.overturned_at_s is None else ""
+    slip = f", slip {1e3 * neighbour.max_slip_m:.3g} mm" if Outcome(neighbour.outcome) in SLIDING else ""
     stress = ""
-    if one.max_von_mises_Pa is not None:
-        stress = f", von Mises stress {MEGAPASCALS.text(one.max_von_mises_Pa, figures=3)} (reduced model)"
-    moved = f"{_neighbour(number, one)} {_did(one)}{ratio}{slip}{stress}"
-    if one.hits == 0:
-        return f"{moved}, not touched{_left(one, 'gap')}"
-    hits = "once" if one.hits == 1 else f"{one.hits} times"
-    speed = f"{one.largest_closing_velocity_m_s:.2g} m/s"
-    return (
-        f"{moved}, hit {hits}, at {speed} at most, with up to {KILONEWTONS.text(one.max_force_N, figures=3)}"
-    )
+    if neighbour.max_von_mises_Pa is not None:
+        stress = (
+            f", von Mises stress {MEGAPASCALS.text(neighbour.max_von_mises_Pa, figures=3)} (reduced model)"
+        )
+    moved = f"{_neighbour(number, neighbour)} {_did(neighbour)}{ratio}{slip}{stress}"
+    if neighbour.hits == 0:
+        return f"{moved}, not touched{_left(neighbour, 'gap')}"
+    hits = "once" if neighbour.hits == 1 else f"{neighbour.hits} times"
+    speed = f"{neighbour.largest_closing_velocity_m_s:.2g} m/s"
+    return f"{moved}, hit {hits}, at {speed} at most, with up to {KILONEWTONS.text(neighbour.max_force_N, figures=3)}"
 
 
-def _did(one: NeighbourResult) -> str:
-    return Outcome(one.outcome).verb.replace(", ", " and ")
+def _did(neighbour: NeighbourResult) -> str:
+    return Outcome(neighbour.outcome).verb.replace(", ", " and ")
 
 
-def _of_stop(one: LinkResult) -> str:
-    name = f"the stop on the {one.side} at {one.height_m:g} m"
-    if one.max_force_N == 0.0:
-        return f"{name} was not touched{_left(one, 'gap')}"
-    hits = "once" if one.hits == 1 else f"{one.hits} times"
-    said = f"{name} was hit {hits}, at {one.largest_closing_velocity_m_s:.2g} m/s at most, with up to {_force(one)}"
-    return said + _broken(one)
+def _of_stop(stop: LinkResult) -> str:
+    name = f"the stop on the {stop.side} at {stop.height_m:g} m"
+    if stop.max_force_N == 0.0:
+        return f"{name} was not touched{_left(stop, 'gap')}"
+    hits = "once" if stop.hits == 1 else f"{stop.hits} times"
+    words = f"{name} was hit {hits}, at {stop.largest_closing_velocity_m_s:.2g} m/s at most, with up to {_force(stop)}"
+    return words + _broken(stop)
 
 
-def _of_tie(one: LinkResult) -> str:
-    of, to = f" of neighbour {one.neighbour}" if one.neighbour else "", f" to {one.to}" if one.to else ""
-    name = f"the tie{of} on the {one.side} at {one.height_m:g} m{to}"
-    if one.max_force_N == 0.0:
-        return f"{name} stayed slack{_left(one, 'slack')}"
-    return f"{name} carried up to {_force(one)}{_broken(one)}"
+def _of_tie(tie: LinkResult) -> str:
+    of, to = f" of neighbour {tie.neighbour}" if tie.neighbour else "", f" to {tie.to}" if tie.to else ""
+    name = f"the tie{of} on the {tie.side} at {tie.height_m:g} m{to}"
+    if tie.max_force_N == 0.0:
+        return f"{name} stayed slack{_left(tie, 'slack')}"
+    return f"{name} carried up to {_force(tie)}{_broken(tie)}"
 
 
-def _left(one: LinkResult | NeighbourResult, what: str) -> str:
+def _left(link: LinkResult | NeighbourResult, what: str) -> str:
     return (
         ""
-        if one.gap_left_m is None
-        else f", {SHORT_MILLIMETRES.text(one.gap_left_m)} of the {what} were left"
+        if link.gap_left_m is None
+        else f", {SHORT_MILLIMETRES.text(link.gap_left_m)} of the {what} were left"
     )
 
 
-def _force(one: LinkResult) -> str:
-    return KILONEWTONS.text(one.max_force_N, figures=3)
+def _force(link: LinkResult) -> str:
+    return KILONEWTONS.text(link.max_force_N, figures=3)
 
 
-def _broken(one: LinkResult) -> str:
-    return "" if one.broken_at_s is None else f", and broke at t = {one.broken_at_s:.3f} s"
+def _broken(link: LinkResult) -> str:
+    return "" if link.broken_at_s is None else f", and broke at t = {link.broken_at_s:.3f} s"

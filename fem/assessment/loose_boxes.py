@@ -111,13 +111,13 @@ def box_table(result: RunResult) -> Iterator[RenderableType]:
     rows = box_rows(result)
     if not rows:
         return
-    shown = _shown((result.verdict or Verdict()).boxes or ())
+    indices = _shown((result.verdict or Verdict()).boxes or ())
     heads = (f">{figure.words} {figure.unit.name}" for figure in BOX_FIGURES.values())
     table = titled_table("Boxes, from the floor up", "box", *heads, "")
-    for k in shown:
+    for k in indices:
         table.add_row(*(cell.replace(" (", "\n(").replace(", ", ",\n") for cell in rows[k]))
     yield table
-    left_out = len(rows) - len(shown)
+    left_out = len(rows) - len(indices)
     yield Text(BOXES_NOTE + (f" {left_out} more boxes are in run.json." if left_out else "") + "\n")
 
 

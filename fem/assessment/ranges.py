@@ -14,7 +14,7 @@ UNTRIED = "impact; the band tries other floors (--band)"
 
 def in_words(result: RunResult, key: str) -> str:
     """A figure of the verdict for the summary; empty where there is none."""
-    verdict, shown = result.verdict or Verdict(), FIGURES[key]
+    verdict, figure = result.verdict or Verdict(), FIGURES[key]
     match key:
         case "max_rotation_rad":
             return rotation_in_words(verdict)
@@ -24,8 +24,8 @@ def in_words(result: RunResult, key: str) -> str:
             return largest_stress(verdict)
     if not (words := of_band(verdict, key)):
         return ""
-    struck = f"; {STRUCK}" if shown.struck and getattr(verdict, key) else ""
-    return f"{words}{_filtered(result, key)}{impact_note(verdict) if shown.impact else ''}{struck}"
+    struck = f"; {STRUCK}" if figure.struck and getattr(verdict, key) else ""
+    return f"{words}{_filtered(result, key)}{impact_note(verdict) if figure.impact else ''}{struck}"
 
 
 def of_band(verdict: Verdict, key: str) -> str:
@@ -41,9 +41,9 @@ def reach_of(verdict: Verdict, key: str) -> Reach | None:
 
 def _filtered(result: RunResult, key: str) -> str:
     """How a figure is filtered, or averaged: its instantaneous value in an impact means nothing."""
-    numerics, shown = result.numerics or Numerics(), FIGURES[key]
-    cutoff = numerics[shown.cutoff] if shown.cutoff else None
-    window = numerics[shown.window] if shown.window else None
+    numerics, figure = result.numerics or Numerics(), FIGURES[key]
+    cutoff = numerics[figure.cutoff] if figure.cutoff else None
+    window = numerics[figure.window] if figure.window else None
     if cutoff is not None:
         return f", low-pass {cutoff:g} Hz"
     return "" if window is None else f", mean over {1e3 * window:.2g} ms"
@@ -73,9 +73,9 @@ def largest_ratio(verdict: Verdict) -> str:
 
 def largest_rotation(verdict: Verdict) -> str:
     """The largest rotation alone, with the figures that the range of its ratio leaves."""
-    shown = FIGURES["max_rotation_rad"]
-    figures = figures_of(reach_of(verdict, TURNED), shown.unit.figures)
-    return shown.unit.text(verdict.max_rotation_rad, figures=figures)
+    figure = FIGURES["max_rotation_rad"]
+    figures = figures_of(reach_of(verdict, TURNED), figure.unit.figures)
+    return figure.unit.text(verdict.max_rotation_rad, figures=figures)
 
 
 def rotation_in_words(verdict: Verdict) -> str:

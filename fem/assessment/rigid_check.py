@@ -89,7 +89,7 @@ def check_against_rigid_block(model: Model, history: History, verdict: Verdict) 
     impact = reference.impact
     impacts = RunAndBlock(run=verdict.first_impact_s, block=impact.time if impact else None)
     ratio = impact.velocity_after / impact.velocity_before if impact else None
-    first = min((one for one in (impacts.run, impacts.block) if one is not None), default=math.inf)
+    first = min((time_s for time_s in (impacts.run, impacts.block) if time_s is not None), default=math.inf)
     difference = np.abs(history["rotation_rad"] - rotation)[(time < first) & np.isfinite(rotation)]
     result = RigidCheckResult(
         reference=reference.name,
@@ -155,14 +155,14 @@ def follow_block(model: Model, end: float) -> Reference:
         return Reference(
             name="rigid block with friction",
             at=at,
-            impact=next((one for one in sliding.impacts if had_tilted(at, one)), None),
+            impact=next((impact for impact in sliding.impacts if had_tilted(at, impact)), None),
             left_model_at=sliding.end if sliding.outcome is PlanarMode.OUTSIDE else None,
         )
     rocking = simulate_rocking(block, floor, duration=end, rotation=rotation, angular_velocity=rate)
     return Reference(
         name="rigid block that does not slide",
         at=rocking.at,
-        impact=next((one for one in rocking.impacts if had_tilted(rocking.at, one)), None),
+        impact=next((impact for impact in rocking.impacts if had_tilted(rocking.at, impact)), None),
     )
 
 

@@ -122,10 +122,10 @@ def outcome_sentence(result: run_result.RunResult) -> str:
     """The first line of the verdict: what happened, and how sure that is."""
     if result.status == "failed":
         return f"No verdict: {result.error or 'the solution failed'}. Results up to there are kept."
-    found = _found(result)
+    outcome = _found(result)
     if result.status in ("interrupted", "running"):
-        return f"Not finished ({result.status}). So far: {found}."
-    parts = (margin_in_words(result.verdict), f"Result: {found}.", sureness_in_words(result))
+        return f"Not finished ({result.status}). So far: {outcome}."
+    parts = (margin_in_words(result.verdict), f"Result: {outcome}.", sureness_in_words(result))
     return " ".join(part for part in parts if part)
 
 
@@ -150,8 +150,8 @@ def _found(result: run_result.RunResult) -> str:
     under = f" under {covered_in_words(motion)}{missing_peak(motion)}"
     if motion.kind == "none" and motion.vertical is None:  # it was pushed, or stood tilted
         under = ""
-    found = f"{Outcome(verdict.outcome).verb}{restored} and did not overturn{under}"
-    return "; ".join(filter(None, (found, joints_in_words(verdict, result.static), links_in_words(result))))
+    outcome = f"{Outcome(verdict.outcome).verb}{restored} and did not overturn{under}"
+    return "; ".join(filter(None, (outcome, joints_in_words(verdict, result.static), links_in_words(result))))
 
 
 def _leaning(verdict: run_result.Verdict, static: run_result.StaticResult | None) -> str:
@@ -188,9 +188,9 @@ def _static_table(static: run_result.StaticResult, verdict: run_result.Verdict) 
             use, check = action.utilisation_overturning, "overturning"
             table.add_row("", check, demand, visible_number(use, 1.0, ".3f"), rule_says(check, use), tilted)
             if (use := action.utilisation_lifting) is not None and use > 1.0:
-                found, weight = run_lifted(verdict), visible_number(static.weight_N, 1e-3)
+                lifted, weight = run_lifted(verdict), visible_number(static.weight_N, 1e-3)
                 demand = f"{visible_number(static.weight_N, 1e-3 * use)} / {weight} kN"
-                table.add_row("", "lifting", demand, f"{use:.3f}", rule_says("lifting", use), found)
+                table.add_row("", "lifting", demand, f"{use:.3f}", rule_says("lifting", use), lifted)
     return table
 
 
@@ -359,8 +359,8 @@ def _rigid_rows(check: run_result.RigidCheckResult | None, angle: float | None) 
     ):
         if pair != run_result.RunAndBlock():
             run, block = (
-                none if one is None else visible_number(one, 1.0, ".4f") + unit
-                for one in (pair.run, pair.block)
+                none if value is None else visible_number(value, 1.0, ".4f") + unit
+                for value in (pair.run, pair.block)
             )
             rows.append((f"rigid check, {name}", f"{run} (block {block})"))
     if check.peaks and angle:

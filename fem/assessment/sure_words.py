@@ -182,7 +182,7 @@ def _may(own: Outcome, others: Set[Outcome]) -> str:
         Outcome.HOP: "hop",
         Outcome.REST: "rest",
     }
-    return " or ".join(further or [words for one, words in less.items() if one in others])
+    return " or ".join(further or [words for kind, words in less.items() if kind in others])
 
 
 def _depending(verdict: Verdict) -> str:

@@ -48,8 +48,9 @@ def judged(
     """
     own, others = members[0], members[1:]
     levels = [difference(own, other, width) for other in others]
-    numerically = OTHER_END in (level for level, one in zip(levels, changes, strict=True) if numerical(one))
-    missing = [one for one in left_out if one.kind != "draw"]
+    pairs = zip(levels, changes, strict=True)
+    numerically = OTHER_END in (level for level, change in pairs if numerical(change))
+    missing = [run for run in left_out if run.kind != "draw"]
     no_outcome = any(other.outcome is None for other in others)
     destroyed = own.outcome == Outcome.INVALID
     if no_outcome or missing or OTHER_END in levels or below_uplift(members) or destroyed:
@@ -66,7 +67,7 @@ def judged(
         draws=len(draws),
         draws_overturned=sum(draw.outcome == Outcome.OVERTURNED for draw in draws),
         draws_invalid=sum(draw.outcome == Outcome.INVALID for draw in draws),
-        left_out=tuple(one.label for one in missing),
+        left_out=tuple(run.label for run in missing),
         draws_left_out=len(left_out) - len(missing),
         members=tuple(members),
         boxes=_reach_of_boxes(alike, members),
@@ -104,19 +105,19 @@ def static_use(result: RunResult) -> float | None:
     return max(own.utilisation_sliding, own.utilisation_overturning)
 
 
-def ending(one: RunFigures) -> Ending:
+def ending(run: RunFigures) -> Ending:
     """What a run that did not fail counts as."""
-    return ENDINGS.get(one.outcome or "", Ending.STANDING)
+    return ENDINGS.get(run.outcome or "", Ending.STANDING)
 
 
-def stands(one: RunFigures) -> bool:
+def stands(run: RunFigures) -> bool:
     """True if it neither overturned nor destroyed a corner."""
-    return ending(one) == Ending.STANDING
+    return ending(run) == Ending.STANDING
 
 
-def numerical(one: ChangedRun | InputChange) -> bool:
+def numerical(change: ChangedRun | InputChange) -> bool:
     """True if it changes how the run is computed, and no input."""
-    return TOLERANCE in (one.values or {})
+    return TOLERANCE in (change.values or {})
 
 
 def difference(own: RunFigures, other: RunFigures, width: float) -> int:
@@ -137,10 +138,10 @@ def difference(own: RunFigures, other: RunFigures, width: float) -> int:
     return OTHER_REGIME if own.outcome != other.outcome or another else SAME
 
 
-def _sizes(one: RunFigures, width: float) -> Iterator[float]:
+def _sizes(run: RunFigures, width: float) -> Iterator[float]:
     """Slips, rotations and openings, each over the size from which it is large."""
-    ratio, boxes = one.turned, one.boxes or ()
-    yield one.slipped / (LARGE_SLIP * width)
+    ratio, boxes = run.turned, run.boxes or ()
+    yield run.slipped / (LARGE_SLIP * width)
     yield ratio / LARGE_ROTATION
     most = max((box.max_rotation_rad for box in boxes), default=0.0)
     large = LARGE_ROTATION * most / ratio if ratio else math.inf  #: rotation [rad]
@@ -163,7 +164,7 @@ def _reach_of_boxes(
     ranges = []
     for number, same in enumerate(zip(*(member.boxes for member in alike if member.boxes), strict=True), 1):
         values = {name: [box[name] for box in same] for name in BOX_FIGURES}
-        reach = {name: (min(some), max(some)) for name, some in values.items()}
+        reach = {name: (min(numbers), max(numbers)) for name, numbers in values.items()}
         ranges.append(BoxReach(fell=fell[number], **reach))
     return tuple(ranges) or None
 
@@ -183,7 +184,7 @@ def deciding_inputs(levels: Sequence[int], changes: Sequence[InputChange]) -> It
                 if change.kind in kind:
                     smallest |= {key: min(change.share, smallest.get(key, 1.0)) for key in change.inputs}
         keys = sorted(smallest, key=lambda key: (smallest[key], ORDER.get(key, -1)))
-        named += keys or _drawn_together(changes, [one == level for one in levels])
+        named += keys or _drawn_together(changes, [own == level for own in levels])
     yield from dict.fromkeys(named)
 
 
@@ -192,7 +193,7 @@ def _drawn_together(changes: Sequence[InputChange], differs: Sequence[bool]) -> 
     draws = [(change, other) for change, other in zip(changes, differs, strict=True) if change.kind == "draw"]
     if not any(differ for _, differ in draws):
         return []
-    places = np.array([one.place for one, _ in draws])
+    places = np.array([draw.place for draw, _ in draws])
     differ = np.array([other for _, other in draws])
     rest = places[~differ].mean(axis=0) if not differ.all() else 0.5
     apart = np.abs(places[differ].mean(axis=0) - rest)

@@ -184,10 +184,10 @@ def neighbour_results(model: Model, stresses: Sequence[float]) -> tuple[Neighbou
 
     `stresses`: the largest of each, of a reduced model [Pa].
     """
-    found = []
+    neighbours = []
     for number, neighbour in enumerate(model.case.neighbour, 1):
         joint, gap = _numbers(model.run.joints[number:]), _numbers(model.run.links[number - 1 :])
-        found.append(
+        neighbours.append(
             NeighbourResult(
                 side=neighbour.side,
                 outcome=_outcome_in_row(joint),
@@ -204,7 +204,7 @@ def neighbour_results(model: Model, stresses: Sequence[float]) -> tuple[Neighbou
                 max_von_mises_Pa=stresses[number - 1] if stresses else None,
             )
         )
-    return tuple(found)
+    return tuple(neighbours)
 
 
 def _outcome_in_row(joint: SimpleNamespace) -> Outcome:

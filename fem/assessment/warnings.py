@@ -165,7 +165,7 @@ def _largest_stress(verdict: run_result.Verdict) -> tuple[float | None, str]:
     every = [(verdict.max_von_mises_Pa, "")]
     for number, neighbour in enumerate(verdict.neighbours or (), 1):
         every.append((neighbour.max_von_mises_Pa, f" in neighbour {number}"))
-    return max(every, key=lambda one: one[0] or 0.0)
+    return max(every, key=lambda stress: stress[0] or 0.0)
 
 
 def stress_is_beyond_yield(result: run_result.RunResult, case: Case) -> str | None:

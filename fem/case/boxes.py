@@ -116,7 +116,7 @@ def _each(says: Callable[[Any, Box], str]) -> Rule:
         if case.container.box is None:
             return ""
         boxes = enumerate(boxes_of(case.container, case.gravity_m_s2), 1)
-        return "; box ".join(f"{number}: {said}" for number, box in boxes if (said := says(case, box)))
+        return "; box ".join(f"{number}: {reason}" for number, box in boxes if (reason := says(case, box)))
 
     return refused("container.box", reason)
 

@@ -119,9 +119,9 @@ class Case(CaseHeading):
     @property
     def states_restitution(self) -> bool:
         """Whether a factor is stated on what its impacts leave, or those of a case beside it."""
-        beside = (self._origin.beside.get(one.case or "") for one in self.neighbour)
-        cases = (self, *(one for one in beside if one is not None))
-        return any(one.contact.restitution_over_housner is not None for one in cases)
+        beside = (self._origin.beside.get(neighbour.case or "") for neighbour in self.neighbour)
+        cases = (self, *(case for case in beside if case is not None))
+        return any(case.contact.restitution_over_housner is not None for case in cases)
 
     @property
     def bodies(self) -> int:
@@ -135,14 +135,14 @@ class Case(CaseHeading):
         Raises:
             CaseError: a neighbour that cannot be.
         """
-        found = []
-        for number, one in enumerate((None, *self.neighbour) if self.neighbour else ()):
+        row = []
+        for number, neighbour in enumerate((None, *self.neighbour) if self.neighbour else ()):
             try:
-                own = self if one is None or one.case is None else self._beside(one.case)
-                found.append(own.with_values(case_of(own, one)))
+                own = self if neighbour is None or neighbour.case is None else self._beside(neighbour.case)
+                row.append(own.with_values(case_of(own, neighbour)))
             except CaseError as error:
                 raise CaseError(f"[[neighbour]] {number}, as a container: {error}") from error
-        return tuple(found)
+        return tuple(row)
 
     def _beside(self, name: str) -> "Case":
         """This case with the container of the case that a neighbour names."""
@@ -159,16 +159,16 @@ class Case(CaseHeading):
         Raises:
             CaseError: two have one name there.
         """
-        found: dict[str, Case] = {}
+        copies: dict[str, Case] = {}
         names = {neighbour.case for neighbour in self.neighbour} - {None}
         for name in sorted(map(str, names)):
             own = self._beside(name)
-            found[data_files.copied_name(self.folder, name)] = own.with_values(case_of(own, None))
-        if len(found) < len(names):
+            copies[data_files.copied_name(self.folder, name)] = own.with_values(case_of(own, None))
+        if len(copies) < len(names):
             raise CaseError(
                 "[neighbour] case names two files of one name from different folders; rename one of them"
             )
-        return found
+        return copies
 
     @property
     def texts(self) -> dict[str, str]:
@@ -360,7 +360,7 @@ class Case(CaseHeading):
         if vertical_m_s2 is not None:
             values["vertical"] = vertical_m_s2
         try:
-            record = given_record(np.asarray(time_s), {name: np.asarray(one) for name, one in values.items()})
+            record = given_record(np.asarray(time_s), {name: np.asarray(a) for name, a in values.items()})
         except ValueError as error:
             raise CaseError(f"with_motion: {error}") from None
         data = {key: value for key, value in self.given().items() if key not in ("motion", "vertical")}
@@ -543,8 +543,8 @@ def _neighbour_case(name: str, case: Case, origin: Origin, overrides: Mapping[st
             "file without them, and give what holds the row in this one"
         )
     floors = [
-        (one.gravity_m_s2, one.floor.model_copy(update={CORNER_PATCH: None, "preset": None}))
-        for one in (case, own)
+        (given.gravity_m_s2, given.floor.model_copy(update={CORNER_PATCH: None, "preset": None}))
+        for given in (case, own)
     ]
     changed = any(
         key == "gravity_m_s2" or key.startswith("floor.") for key in overrides

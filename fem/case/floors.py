@@ -222,8 +222,10 @@ def _patch_does_not_fit(case: Any) -> str:
     for value, (name, of, most) in zip(patch, limits, strict=True):
         if value > most * (1.0 + 1e-9):
             guess = q.PATCH.guess(value) if value > 10.0 * most else ""
-            said = f"= {patch} does not fit under the base: {name} at most {of} = {most:g} m, got {value:g} m"
-            return f"{said}; {guess}" if guess else said
+            fault = (
+                f"= {patch} does not fit under the base: {name} at most {of} = {most:g} m, got {value:g} m"
+            )
+            return f"{fault}; {guess}" if guess else fault
     return ""
 
 

@@ -95,7 +95,7 @@ def beside(row: Mapping[str, Any], own: Mapping[str, Any]) -> dict[str, Any]:
     contact = {key: value for key, value in own["contact"].items() if key not in LAW}
     floor = {key: value for key, value in row.get("floor", {}).items() if key != CORNER_PATCH}
     patch = {key: value for key, value in own.get("floor", {}).items() if key == CORNER_PATCH}
-    others = [{key: value for key, value in one.items() if key != "case"} for one in row["neighbour"]]
+    others = [{key: value for key, value in table.items() if key != "case"} for table in row["neighbour"]]
     its = {name: own.get(name, {}) for name in ITS_TABLES}
     return kept | its | {"contact": contact | laws, "floor": floor | patch, "neighbour": others}
 
@@ -163,18 +163,18 @@ def gap_beside(case: Any, number: int, other: int) -> float:
 
 def top_of(case: Any, number: int) -> float:
     """Height of a container of the row of a case above the floor, of 0 that of its own [m]."""
-    own, one = case.container, case.neighbour[number - 1] if number else None
-    if one is not None and one.case is not None:
+    own, neighbour = case.container, case.neighbour[number - 1] if number else None
+    if neighbour is not None and neighbour.case is not None:
         return float(case.row[number].stack[-1].top)
-    if one is None or (one.boxes is None and one.height_m is None):
+    if neighbour is None or (neighbour.boxes is None and neighbour.height_m is None):
         return boxes_of(own, case.gravity_m_s2)[-1].top
-    return float((one.boxes or own.boxes) * (one.height_m or own.height_m))
+    return float((neighbour.boxes or own.boxes) * (neighbour.height_m or own.height_m))
 
 
 def _neighbours(case: Any) -> Sequence[NeighbourTable]:
     """Those that could be read."""
-    found: Sequence[NeighbourTable] = getattr(case, "neighbour", ())
-    return found
+    neighbours: Sequence[NeighbourTable] = getattr(case, "neighbour", ())
+    return neighbours
 
 
 def _uneven(case: Any) -> bool:

@@ -175,7 +175,7 @@ def _keep_patch_under_wall(data: dict[str, Any], former: Mapping[str, Any]) -> N
         and isinstance(patch, list)
     ):
         return
-    sides = [(one.get("wall_m"), one.get("depth_m", one.get("width_m"))) for one in (old, box)]
+    sides = [(sizes.get("wall_m"), sizes.get("depth_m", sizes.get("width_m"))) for sizes in (old, box)]
     floor["corner_patch_m"] = [
         new if side is not None and side == was else side
         for side, was, new in zip(patch, *sides, strict=False)
@@ -234,5 +234,5 @@ def naming_overrides(lines: list[str], overrides: Mapping[str, Any]) -> list[str
 
 
 def _as_override(dotted: str, value: object) -> str:
-    shown = str(value)[:80]
-    return f"--set {dotted}={shown if shown.isprintable() else repr(shown)}"
+    text = str(value)[:80]
+    return f"--set {dotted}={text if text.isprintable() else repr(text)}"

@@ -85,7 +85,7 @@ def broken(rules: Iterable[Rule], subject: Any) -> list[Problem]:
         try:
             if rule.holds(subject):
                 continue
-            said = (
+            reason = (
                 rule.reason.format_map(vars(subject))
                 if isinstance(rule.reason, str)
                 else rule.reason(subject)
@@ -93,7 +93,7 @@ def broken(rules: Iterable[Rule], subject: Any) -> list[Problem]:
         except AttributeError:  # it reads a key that is refused already
             continue
         table, _, key = rule.place.partition(".")
-        problems.append(Problem(table=table, key=key, reason=said))
+        problems.append(Problem(table=table, key=key, reason=reason))
     return problems
 
 

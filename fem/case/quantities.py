@@ -103,9 +103,9 @@ class Quantity:
 
 def with_unit(value: object, unit: str) -> str:
     """A value for a message: numbers short, text in quotes, with its unit."""
-    shown = f"{value:.7g}" if isinstance(value, float) else repr(value)
-    shown = shown if len(shown) <= 80 else f"{shown[:76]} ..."
-    return f"{shown} {unit}" if unit else shown
+    text = f"{value:.7g}" if isinstance(value, float) else repr(value)
+    text = text if len(text) <= 80 else f"{text[:76]} ..."
+    return f"{text} {unit}" if unit else text
 
 
 MILLI_AND_CENTI = {"millimetres": 1e-3, "centimetres": 1e-2}

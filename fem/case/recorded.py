@@ -39,10 +39,10 @@ def recorded_motion(case: Case, table: MotionKey) -> RecordedMotion:
         CaseError: its file is missing, or no motion, or its components do not belong together, or the keys do not fit.
     """
     try:
-        found = _recorded(case, table)
+        recorded = _recorded(case, table)
         if table == "vertical" and case.motion.kind == "table":
-            _require_pair(_component(case, "motion"), (found.record, found.component))
-        return found
+            _require_pair(_component(case, "motion"), (recorded.record, recorded.component))
+        return recorded
     except RecordError as error:
         raise CaseError(f"[{table}] {error}") from None
 
@@ -85,15 +85,15 @@ def _recorded(case: Case, table: MotionKey) -> RecordedMotion:
     )
     made = processed(component, processing)
     notes = record.notes
-    said = stated_baseline(
+    baseline = stated_baseline(
         record.name,
         component,
         processing,
         allowed=bool(keys.allow_baseline),
         way_out="take another baseline, or set allow_baseline = true (--allow-baseline)",
     )
-    if said:
-        notes += (f"{table}.baseline: {said}",)
+    if baseline:
+        notes += (f"{table}.baseline: {baseline}",)
     if keys.scale_to_m_s2 is None:
         peak = float(np.abs(motion_of(made)[2]).max())
         _require_plausible(record, component, peak, scale)
@@ -158,13 +158,12 @@ def _other_units(component: Component, peak: float) -> str:
 
 def _require_pair(horizontal: tuple[Record, Component], vertical: tuple[Record, Component]) -> None:
     """Refuse one component for both directions, and two that were not sampled together."""
-    (of_one, one), (of_two, two) = horizontal, vertical
-    if one is two:
+    (of_first, first), (of_second, second) = horizontal, vertical
+    if first is second:
         raise RecordError(
-            f"{of_two.name}: the file has one motion, which moves the floor along x already; name the file of "
+            f"{of_second.name}: the file has one motion, which moves the floor along x already; name the file of "
             "the vertical component"
         )
-    require_together(
-        (one, two),
-        (of_one.name, of_two.name) if of_one.name != of_two.name else (f"{of_one.name} {one.name}", two.name),
-    )
+    in_one_file = of_first.name == of_second.name
+    names = (f"{of_first.name} {first.name}", second.name) if in_one_file else (of_first.name, of_second.name)
+    require_together((first, second), names)

@@ -38,7 +38,7 @@ def _masses(box: Any) -> dict[str, float]:
 
 def _needs_mass(box: Any) -> bool:
     """Whether a box takes its mass from [container]."""
-    return box.box is None or any(one.mass_kg is None for one in box.box)
+    return box.box is None or any(own.mass_kg is None for own in box.box)
 
 
 def _not_one_mass(box: Any) -> str:
@@ -124,9 +124,11 @@ def _plausible_density(key: str) -> Rule:
         return float(value / (per_kilogram(case) * (box.width_m * box.height_m * box.depth_m)))
 
     def reason(case: Any) -> str:
-        box, value, one = case.container, getattr(case.container, key), per_kilogram(case)
-        slips = {"tonnes": 1e3 * one} | ({"kilonewtons": 1e3, "kilograms": one} if key == "weight_N" else {})
-        typical = 1e3 * one * (box.width_m * box.height_m * box.depth_m)
+        box, value, mass = case.container, getattr(case.container, key), per_kilogram(case)
+        slips = {"tonnes": 1e3 * mass} | (
+            {"kilonewtons": 1e3, "kilograms": mass} if key == "weight_N" else {}
+        )
+        typical = 1e3 * mass * (box.width_m * box.height_m * box.depth_m)
         guess = q.Quantity(unit=MASSES[key].unit, typical=typical, slips=slips).guess(
             value, lambda meant: q.DENSITY.allows(density(case, meant))
         )
@@ -168,7 +170,7 @@ def longest_time(case: Any) -> float:
         return float(case.solver.duration_s)
     if not ends_at_rest(case):
         return USUAL_DURATION
-    pulses = [one for one in (case.motion, case.vertical) if one.kind == "pulse"]
+    pulses = [motion for motion in (case.motion, case.vertical) if motion.kind == "pulse"]
     return max([0.0, *(pulse.delay_s + (pulse.pulse_s or 0.0) for pulse in pulses)]) + MOST_FREE_MOTION
 
 

@@ -52,7 +52,7 @@ def toml_document(tables: Mapping[str, Any]) -> str:
             rows = {key: value for key, value in content.items() if _are_tables(value)}
             own = {key: value for key, value in content.items() if key not in rows}
             blocks.append(_block(f"[{name}]", own))
-            blocks += [_block(f"[[{name}.{key}]]", one) for key, value in rows.items() for one in value]
+            blocks += [_block(f"[[{name}.{key}]]", row) for key, value in rows.items() for row in value]
         elif name not in scalars:
             blocks += [_block(f"[[{name}]]", table) for table in content]
     return "\n\n".join(blocks) + "\n"

@@ -195,8 +195,8 @@ def _in_proportion(case: Case, values: Mapping[str, Value]) -> dict[str, Any]:
             changed[key] = value
             continue
         given = changed.get(table) or [row.model_dump(by_alias=True, exclude_unset=True) for row in rows]
-        scaled = (short(one * float(value) / max(own)) for one in own)
-        changed[table] = [row | {name: one} for row, one in zip(given, scaled, strict=True)]
+        scaled = (short(number * float(value) / max(own)) for number in own)
+        changed[table] = [row | {name: number} for row, number in zip(given, scaled, strict=True)]
     return changed
 
 

@@ -272,15 +272,16 @@ def _may_be_cambered(case: Any) -> bool:
         return True
     fine = case.solver.element_size_m <= 0.25 * case.stack[0].width
     given = case.contact.restitution_over_housner is not None
-    one = not case.container.is_loose and case.container.mesh_file is None and case.solver.model != "full"
-    return one and not given and (case.support.kind == "feet" or (case.support.kind == "flat" and fine))
+    box = case.container
+    whole = not box.is_loose and box.mesh_file is None and case.solver.model != "full"
+    return whole and not given and (case.support.kind == "feet" or (case.support.kind == "flat" and fine))
 
 
 def _cambers(case: Any, own: float) -> Ends:
     """At most a base of a radius twice as high as the mass centre."""
     box, low, high = case.stack[0], CAMBERS[0] * own, CAMBERS[1] * own if own > 0.0 else LEVEL_CAMBER_M
     high = min(high, q.CAMBER.most or math.inf)
-    height = sum(one.mass * (one.bottom + one.centroid) for one in case.stack) / case.mass
+    height = sum(stacked.mass * (stacked.bottom + stacked.centroid) for stacked in case.stack) / case.mass
     return low, max(own, min(high, short((case.support.effective_width * box.width) ** 2 / (16.0 * height))))
 
 
@@ -293,8 +294,8 @@ def _block(case: Any) -> RigidBlock:
 
 def _blocks(case: Any) -> list[RigidBlock]:
     """Those of all whose restitution is that of the case: not of a neighbour that has a case of its own."""
-    named = [False, *(one.case is not None for one in case.neighbour)]
-    beside = [_block(one) for one, own in zip(case.row or (case,), named, strict=True) if not own]
+    named = [False, *(neighbour.case is not None for neighbour in case.neighbour)]
+    beside = [_block(alone) for alone, own in zip(case.row or (case,), named, strict=True) if not own]
     return beside + blocks_on_joints(case)
 
 
@@ -326,7 +327,7 @@ def _has_impacts(case: Any) -> bool:
 
 def _restitutions(case: Any, ratio: float) -> Ends:
     """By the loss at an impact of a homogeneous block where it is given; never more than was there before."""
-    block = max(_blocks(case), key=lambda one: one.housner_restitution)
+    block = max(_blocks(case), key=lambda block: block.housner_restitution)
     limits, housner, (low, high) = q.RESTITUTION, block.housner_restitution, RESTITUTIONS
     if case.contact.restitution_over_housner is not None:
         low, high = ((1.0 - share * (1.0 - ratio * housner)) / housner for share in (LOSS[1], LOSS[0]))
@@ -354,7 +355,8 @@ def _slopes(case: Any, own: float) -> Ends:
 def _has_columns(case: Any) -> bool:
     """Whether every box has two columns of elements, which a mass centre beside the axis needs."""
     widest = case.solver.element_size_m
-    return all(box.wall is not None or widest < box.width for one in case.row or (case,) for box in one.stack)
+    stacks = (alone.stack for alone in case.row or (case,))
+    return all(box.wall is not None or widest < box.width for stack in stacks for box in stack)
 
 
 def other_patch(case: Any, kind: str) -> list[float] | None:

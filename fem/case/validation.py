@@ -179,12 +179,12 @@ def _read_rows(
     table, _, key = name.rpartition(".")
     tables = isinstance(content, list | tuple) and all(isinstance(row, Mapping) for row in content)
     if not tables or len(content) not in count:
-        one = f", one a {key} {order}" if order else ""
-        reason = f"must be {count[0]} to {count[-1]} tables [[{name}]]{one}, got {_shown(content)}"
+        ordered = f", one a {key} {order}" if order else ""
+        reason = f"must be {count[0]} to {count[-1]} tables [[{name}]]{ordered}, got {_shown(content)}"
         return None, [Problem(table=table, key=key, reason=reason)]
     rows, problems = [], []
-    for number, one in enumerate(content, 1):
-        given, part, faults = read_table(name, model, one)
+    for number, row in enumerate(content, 1):
+        given, part, faults = read_table(name, model, row)
         rows.append(model.model_construct(**part) if faults else model.model_validate(given))
         problems += [
             Problem(table=table, key=f"{key} {number}: {problem.key}".rstrip(), reason=problem.reason)

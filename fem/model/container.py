@@ -69,8 +69,8 @@ class Container:
     @property
     def corners(self) -> IntArray:
         """Nodes at the corners of all boxes of a loose stack, in the order of `contact.interface.faces`, (4 N,)."""
-        found = [nodes[box.corners] for box, nodes in zip(self.boxes, self.box_nodes, strict=True)]
-        return np.concatenate(found)
+        corners = [nodes[box.corners] for box, nodes in zip(self.boxes, self.box_nodes, strict=True)]
+        return np.concatenate(corners)
 
     def damping(self, ratio: float) -> float:
         """a of C = a K [s], with this damping ratio of the first elastic mode."""
@@ -94,10 +94,10 @@ class Container:
         frequencies, shapes = [], []
         distinct = {id(box): (box, nodes) for box, nodes in zip(self.boxes, self.box_nodes, strict=True)}
         for box, nodes in distinct.values():
-            found = elastic_modes(box.elements, count)
-            frequencies.append(found.frequencies_Hz)
+            modes = elastic_modes(box.elements, count)
+            frequencies.append(modes.frequencies_Hz)
             shapes.append(np.zeros((count, *self.elements.nodes.shape)))
-            shapes[-1][:, nodes] = found.shapes
+            shapes[-1][:, nodes] = modes.shapes
         rising = np.argsort(np.concatenate(frequencies), kind="stable")[:count]
         return ElasticModes(
             frequencies_Hz=np.concatenate(frequencies)[rising], shapes=np.concatenate(shapes)[rising]
@@ -174,10 +174,10 @@ def adapted_container(case: Case, container: Container, own: Case) -> Container 
     """
     given, there = case.container, own.container
     if case.neighbour:
-        if all(getattr(case, one) == getattr(own, one) for one in ("container", "support", "neighbour")):
+        if all(getattr(case, key) == getattr(own, key) for key in ("container", "support", "neighbour")):
             return container
         row = zip(case.row, container.row, own.row, strict=True)
-        return _beside_one_another(case, [changed_container(*one) for one in row])
+        return _beside_one_another(case, [changed_container(*standing) for standing in row])
     if (given.centroid_m, given.eccentricity_m) != (there.centroid_m, there.eccentricity_m):
         mesh = build_container(case)
         boxes = tuple(replace(box, mesh=box_mesh(mesh, number)) for number, box in enumerate(container.boxes))
@@ -291,27 +291,27 @@ def _in_a_row(case: Case, mesh: ContainerMesh | None) -> Container:
 
 def _beside_one_another(case: Case, row: Sequence[Container]) -> Container:
     """Containers as a row; the elements and boxes are those of all."""
-    meshes = [one.mesh for one in row]
+    meshes = [alone.mesh for alone in row]
     places = places_of(case, [mesh.width for mesh in meshes])
     struck = np.array(places.struck([(mesh.width, mesh.height) for mesh in meshes]))
     elements = _assembled(case, mesh_of_row(meshes, places.x))
     first, nodes = 0, []
-    for one in row:
-        behind = first + len(one.elements.cells)
-        nodes.append(np.empty(len(one.elements.nodes), dtype=np.int64))
-        nodes[-1][one.elements.cells] = elements.cells[first:behind]
+    for alone in row:
+        behind = first + len(alone.elements.cells)
+        nodes.append(np.empty(len(alone.elements.nodes), dtype=np.int64))
+        nodes[-1][alone.elements.cells] = elements.cells[first:behind]
         first = behind
     boxes = tuple(
         BoxModel(
-            mesh=one.mesh,
-            elements=one.elements,
-            corners=np.concatenate([one.elements.base_nodes[[0, -1]], nodes_at(at, one.elements.nodes)]),
-            monitors=one.monitors,
-            response=one.response,
-            basis=one.basis,
-            first=one.first,
+            mesh=alone.mesh,
+            elements=alone.elements,
+            corners=np.concatenate([alone.elements.base_nodes[[0, -1]], nodes_at(at, alone.elements.nodes)]),
+            monitors=alone.monitors,
+            response=alone.response,
+            basis=alone.basis,
+            first=alone.first,
         )
-        for one, at in zip(row, struck, strict=True)
+        for alone, at in zip(row, struck, strict=True)
     )
     container = Container(
         mesh=meshes[0],
@@ -322,7 +322,7 @@ def _beside_one_another(case: Case, row: Sequence[Container]) -> Container:
         response=_no_response(elements),
         basis=_no_modes(elements),
         free_modes=0,
-        first=min(one.first for one in row),
+        first=min(alone.first for alone in row),
         boxes=boxes,
         row=tuple(row),
         box_nodes=tuple(nodes),
@@ -348,7 +348,7 @@ def facing(places: Places) -> tuple[IntArray, FloatArray]:
 
 def _struck(case: Case, row: Sequence[Case]) -> FloatArray:
     """Where the sides of each container of a row are struck, left and right, (N, 2, 2) [m]; `row`: `Case.row`."""
-    size = [(one.stack[0].width, one.stack[-1].top) for one in row]
+    size = [(alone.stack[0].width, alone.stack[-1].top) for alone in row]
     return np.array(places_of(case, [width for width, _ in size]).struck(size))
 
 

@@ -111,7 +111,7 @@ def _of_row(case: Case, container: Container, gravity: float) -> Equilibrium:
         CaseError: one that does not stand, or jams.
     """
     penalty = None if case.floor.is_slab else normal_penalty(case, container.mesh)
-    row = [find_equilibrium(*one, gravity, penalty) for one in zip(case.row, container.row, strict=True)]
+    row = [find_equilibrium(*alone, gravity, penalty) for alone in zip(case.row, container.row, strict=True)]
     meshes = [settled.mesh for settled in container.row]
     require_no_jam(case, meshes)
     masses = [mesh.mass for mesh in meshes]

@@ -63,6 +63,6 @@ class HalfSpace:
         return density * 3.4 * shear_velocity / (math.pi * (1.0 - self.poisson_ratio)) * area
 
 
-def _halves(one: float, other: float) -> tuple[float, float]:
+def _halves(along: float, across: float) -> tuple[float, float]:
     """Half the longer and half the shorter side [m]."""
-    return 0.5 * max(one, other), 0.5 * min(one, other)
+    return 0.5 * max(along, across), 0.5 * min(along, across)

@@ -31,7 +31,7 @@ def places_of_links(case: Case) -> FloatArray:
 
 def side_points(case: Case) -> tuple[SidePoint, ...]:
     """The points of links on the sides of loose boxes, or of the containers of a row, one for each link."""
-    found = []
+    places = []
     for link in case.links:
         if case.container.is_loose:
             box = box_at(case, link.height_m)
@@ -40,8 +40,8 @@ def side_points(case: Case) -> tuple[SidePoint, ...]:
             number = holder_of(case, link)
             bottom, height = 0.0, top_of(case, number)
         place = min((link.height_m - bottom) / height, 1.0)
-        found.append(SidePoint(box=number, right=link.side == "right", place=place))
-    return tuple(found)
+        places.append(SidePoint(box=number, right=link.side == "right", place=place))
+    return tuple(places)
 
 
 def held_in_row(case: Case) -> tuple[Held, ...]:
@@ -65,13 +65,13 @@ def nodes_of_links(case: Case, nodes: FloatArray) -> IntArray:
 
 def nodes_on_sides(points: Sequence[SidePoint], boxes: Sequence[FloatArray]) -> list[int]:
     """For each point the nearest node of its box; `boxes`: the nodes (n, 2) of each."""
-    found = []
+    nodes = []
     for point in points:
         x, z = boxes[point.box].T
         on_side = np.abs(x - (x.max() if point.right else x.min())) <= 1e-9 * np.ptp(x)
         away = np.where(on_side, np.abs(z - z.min() - point.place * np.ptp(z)), math.inf)
-        found.append(int(np.argmin(away)))
-    return found
+        nodes.append(int(np.argmin(away)))
+    return nodes
 
 
 def shapes_at_links(case: Case, nodes: FloatArray, shapes: FloatArray) -> FloatArray:

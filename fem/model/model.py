@@ -99,7 +99,7 @@ class Model:
         """What contact points bear on, shape (n_c,) [m2]: on a slab shares of a patch, else of the face."""
         if self.equilibrium.row:  # the sides carry forces, but no pressure that is shown
             row = zip(self.case.row, self.container.row, self.equilibrium.row, strict=True)
-            return np.concatenate([_areas(*one) for one in row])
+            return np.concatenate([_areas(*alone) for alone in row])
         return _areas(self.case, self.container, self.equilibrium)
 
     @property
@@ -145,10 +145,11 @@ def build_model(
     own = body.body if isinstance(body, LinkedBody) else body
     duration = longest_run(case, motion, vertical)
     static = static_checks_of(case, mesh, *peaks_in_run(case, motion, vertical, duration))
-    row = [static_checks_of(one, each.mesh, 0.0) for one, each in zip(case.row, container.row, strict=True)]
-    for one, own_static in zip(case.row or [case], row or [static], strict=True):
-        require_loss(one, own_static)
-    fastest = max(one.frequency_parameter for one in (static, *row))
+    meshes = [alone.mesh for alone in container.row]
+    row = [static_checks_of(alone, own, 0.0) for alone, own in zip(case.row, meshes, strict=True)]
+    for case_alone, checks in zip(case.row or [case], row or [static], strict=True):
+        require_loss(case_alone, checks)
+    fastest = max(checks.frequency_parameter for checks in (static, *row))
     largest, breaks = largest_step_of(case, fastest, duration, motion, vertical)
     control = control_of(case, container, static, largest, contact, row)
     scheme = scheme_of(case, container, equilibrium.penalty, control, contact)
@@ -160,8 +161,8 @@ def build_model(
         assert isinstance(own, LooseStack)
         contact = own_stiffness(contact)
         alone = [
-            _begun(*one, (x, z, velocity_z), velocity)
-            for one in zip(case.row, container.row, equilibrium.row, strict=True)
+            _begun(*standing, (x, z, velocity_z), velocity)
+            for standing in zip(case.row, container.row, equilibrium.row, strict=True)
         ]
         tilted = equilibrium.row[0].contact, alone[0]
         old = begin_row(case, own, contact, alone, place=(x, z), lift_velocity=velocity_z)
@@ -248,12 +249,12 @@ def _areas(case: Case, container: Container, equilibrium: Equilibrium) -> FloatA
 def _joints(case: Case, container: Container, static: StaticChecks, row: Sequence[StaticChecks]) -> Any:
     """Records of what stands on the floor, and of the joints of a loose stack: `JOINT_RECORD`."""
     meshes = [each.mesh for each in container.row or container.boxes or [container]]
-    shares = [one.contact.restitution_over_housner or 1.0 for one in case.row or [case]]
+    shares = [alone.contact.restitution_over_housner or 1.0 for alone in case.row or [case]]
     return make_joints(
         [mesh.mass for mesh in meshes],
         [mesh.inertia for mesh in meshes],
         [mesh.width for mesh in meshes] if container.row or container.boxes else static.width,
-        [one.slenderness_angle for one in row or [static]],
+        [checks.slenderness_angle for checks in row or [static]],
         impact_share=shares,
         in_a_row=bool(container.row),
     )

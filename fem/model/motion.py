@@ -107,10 +107,10 @@ def motion_result(case: Case, motion: BaseMotion, vertical: BaseMotion) -> Motio
     """The numbers of both motions, and doubts about them."""
     duration = longest_run(case, motion, vertical)
 
-    def numbers(keys: FloorMotionTable, one: BaseMotion, table: MotionKey) -> MotionResult:
-        found = numbers_from_keys(keys, longest_time(case)) or _evaluated(one, duration)
+    def numbers(keys: FloorMotionTable, motion: BaseMotion, table: MotionKey) -> MotionResult:
+        result = numbers_from_keys(keys, longest_time(case)) or _evaluated(motion, duration)
         of_record = recorded_motion(case, table).notes if keys.kind == "table" else ()
-        return replace(found, kind=keys.kind, notes=(*of_record, *motion_notes(one, table)))
+        return replace(result, kind=keys.kind, notes=(*of_record, *motion_notes(motion, table)))
 
     upward = numbers(case.vertical, vertical, "vertical") if case.has_vertical else None
     return replace(numbers(case.motion, motion, "motion"), vertical=upward)

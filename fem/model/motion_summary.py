@@ -23,11 +23,11 @@ PULSE_ENDS = {
 
 def summary_from_keys(case: Case) -> MotionResult | None:
     """The numbers of both motions where the keys alone determine them; else None."""
-    found = numbers_from_keys(case.motion, longest_time(case))
-    if found is None or not case.has_vertical:
-        return found
+    result = numbers_from_keys(case.motion, longest_time(case))
+    if result is None or not case.has_vertical:
+        return result
     vertical = numbers_from_keys(case.vertical, longest_time(case))
-    return None if vertical is None else replace(found, vertical=vertical)
+    return None if vertical is None else replace(result, vertical=vertical)
 
 
 def numbers_from_keys(motion: FloorMotionTable, duration: float) -> MotionResult | None:

@@ -68,14 +68,14 @@ class BodyRecovery:
             return 0.0
         modal = position[:, 3:]
         energies = np.linalg.norm(modal * self.angular_frequencies, axis=1)
-        falling, found = np.argsort(-energies, kind="stable"), 0.0
+        falling, largest = np.argsort(-energies, kind="stable"), 0.0
         for rows in np.split(falling, range(1, len(falling), ROWS_AT_ONCE)):
-            reaching = self._bounds * energies[rows[0]] >= found * (1.0 - ROUNDING)
+            reaching = self._bounds * energies[rows[0]] >= largest * (1.0 - ROUNDING)
             if not reaching.any():
                 break
             stress = modal[rows] @ self._counted_stress[:, :, reaching]
-            found = max(found, float(von_mises(stress).max()))
-        return found
+            largest = max(largest, float(von_mises(stress).max()))
+        return largest
 
     @cached_property
     def _counted_stress(self) -> FloatArray:
@@ -118,10 +118,10 @@ class Recovery:
             return parts[0][1]
         displacement, speed = np.empty_like(self.elements.nodes), np.empty_like(self.elements.nodes)
         stress = np.zeros(len(displacement))
-        for one, part in parts:
-            displacement[one.nodes], speed[one.nodes] = part.displacement - one.place, part.velocity
+        for body, part in parts:
+            displacement[body.nodes], speed[body.nodes] = part.displacement - body.place, part.velocity
             if part.von_mises is not None:
-                stress[one.nodes] = part.von_mises
+                stress[body.nodes] = part.von_mises
         stressed = any(part.von_mises is not None for _, part in parts)
         return NodalFields(displacement=displacement, velocity=speed, von_mises=stress if stressed else None)
 
@@ -137,8 +137,8 @@ class Recovery:
         rows = strained[strained[:, :, 0] >= 0.0, 1:] if strained.size else strained
         if not rows.size:
             return None
-        found = tuple(body.body.largest_von_mises(rows[:, body.coordinates]) for body in self.bodies)
-        return found if self.in_a_row else (max(found),)
+        largest = tuple(body.body.largest_von_mises(rows[:, body.coordinates]) for body in self.bodies)
+        return largest if self.in_a_row else (max(largest),)
 
 
 def recovery_of(model: Model) -> Recovery:

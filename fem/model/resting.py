@@ -93,5 +93,5 @@ def still_from(
         upward = vertical.accelerations
         if not np.array_equal(times, vertical.times):
             times = np.union1d(times, vertical.times)
-            horizontal, upward = (one.evaluate(times)[2] for one in (motion, vertical))
+            horizontal, upward = (component.evaluate(times)[2] for component in (motion, vertical))
     return body.quiet_from(times, horizontal, upward, case.contact.mu_static)

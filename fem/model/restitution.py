@@ -71,14 +71,14 @@ def require_loss(case: Case, static: StaticChecks) -> None:
         CaseError: with the largest factor.
     """
     factor = case.contact.restitution_over_housner or 1.0
-    asked = contact_restitution(case, static) or factor * static.housner_restitution
-    asked = max([asked, *(factor * above.housner_restitution for above in blocks_on_joints(case))])
-    if factor <= 1.0 or asked <= 1.0:
+    left = contact_restitution(case, static) or factor * static.housner_restitution
+    left = max([left, *(factor * above.housner_restitution for above in blocks_on_joints(case))])
+    if factor <= 1.0 or left <= 1.0:
         return
     raise CaseError(
-        f"[contact] restitution_over_housner = {factor:g}: impacts that leave {asked / factor:.4g} of the angular "
-        f"velocity by themselves would leave {asked:.4g} of it, more than there was; take at most "
-        f"{math.floor(1e4 * factor / asked) / 1e4:g}"
+        f"[contact] restitution_over_housner = {factor:g}: impacts that leave {left / factor:.4g} of the angular "
+        f"velocity by themselves would leave {left:.4g} of it, more than there was; take at most "
+        f"{math.floor(1e4 * factor / left) / 1e4:g}"
     )
 
 

@@ -70,7 +70,7 @@ def contact_of_row(case: Case, contacts: Sequence[Contact], masses: Sequence[flo
     for neighbour, (left, right) in zip(case.neighbour, places.pairs, strict=True):
         mass = masses[left] * masses[right] / (masses[left] + masses[right])
         sides.append((0.5 * neighbour.stiffness_N_m, dashpot_of(neighbour, mass), neighbour.mu))
-    stiffness, relaxation, mu = (np.repeat(one, POINTS_OF_GAP) for one in zip(*sides, strict=True))
+    stiffness, relaxation, mu = (np.repeat(column, POINTS_OF_GAP) for column in zip(*sides, strict=True))
     nothing = np.zeros_like(mu)
     added = {
         "normal_stiffness": stiffness,
@@ -101,13 +101,13 @@ def body_of_row(
         contact: of all points at full weight.
     """
     meshes = [container.mesh for container in containers]
-    places = places_of(case, [one.width for one in meshes])
-    struck = np.array(places.struck([(one.width, one.height) for one in meshes]))
+    places = places_of(case, [mesh.width for mesh in meshes])
+    struck = np.array(places.struck([(mesh.width, mesh.height) for mesh in meshes]))
     inset = [
         max(round(0.5 * (1.0 - float(np.ptp(body.point[:, 0])) / mesh.width), 12), 0.0)
         for body, mesh in zip(bodies, meshes, strict=True)
     ]
-    corners = [_with_corners(*one) for one in zip(bodies, containers, struck, inset, strict=True)]
+    corners = [_with_corners(*standing) for standing in zip(bodies, containers, struck, inset, strict=True)]
     # of the neighbours no point is watched
     watched = [
         corners[0],
@@ -149,10 +149,10 @@ def corners_at_rest(
     """
     boxes = body.body.boxes
     standing: FloatArray = boxes.rest[:, None] + boxes.point
-    for b, (one, stance) in enumerate(zip(bodies, stances, strict=True)):
+    for b, (alone, stance) in enumerate(zip(bodies, stances, strict=True)):
         if stance is not None:
             turn = rotation_matrix(stance.rotation)
-            amplitude = np.einsum("ij,ijk->k", stance.force @ turn, one.shape) / one.stiffness
+            amplitude = np.einsum("ij,ijk->k", stance.force @ turn, alone.shape) / alone.stiffness
             strained = boxes.point[b] + boxes.shape[b, :, :, : amplitude.size] @ amplitude
             standing[b] = np.asarray(stance.centre) + strained @ turn.T
     return standing

@@ -115,10 +115,10 @@ class CodeChecks:
     q1: ActionCheck  #: under the code's base shear with behaviour factor 1
     applicability: CheckResult  #: of the method: period against min(4 T_C, 2.0 s) [s]
 
-    def added_to(self, found: StaticResult) -> StaticResult:
+    def added_to(self, result: StaticResult) -> StaticResult:
         """The checks of a container with these."""
         return replace(
-            found,
+            result,
             code=self.as_given.to_result(),
             code_q1=self.q1.to_result(),
             method_applicable=self.applicability.passed,
@@ -189,7 +189,7 @@ class StaticChecks:
     def to_result(self) -> StaticResult:
         """The checks as the result of a run holds them."""
         upward, peak = self.own_motion_vertical, self.peak_vertical_acceleration or 0.0
-        found = StaticResult(
+        result = StaticResult(
             weight_N=self.weight,
             centroid_m=self.centroid,
             inertia_kg_m2=self.inertia,
@@ -211,7 +211,7 @@ class StaticChecks:
             ),
             downhill_m_s2=self.downhill or None,
         )
-        return found if self.by_code is None else self.by_code.added_to(found)
+        return result if self.by_code is None else self.by_code.added_to(result)
 
 
 def static_checks(

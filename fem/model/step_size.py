@@ -138,9 +138,9 @@ def control_of(
             that rocks most slowly how long nothing may move at rest.
     """
     mesh, base = container.mesh, container.support.index.size
-    bodies = [one.mesh for one in container.row] or [mesh]
+    bodies = [alone.mesh for alone in container.row] or [mesh]
     mass = sum(body.mass for body in bodies)
-    energies = [one.overturning_energy for one in row or [static]]
+    energies = [checks.overturning_energy for checks in row or [static]]
     reference = min(energies)
     softest = min(SOFT_CLOSING * energy / body.mass for energy, body in zip(energies, bodies, strict=True))
     rate = static.frequency_parameter
@@ -175,10 +175,10 @@ def control_of(
         downhill=case.gravity_downhill,
         frequency_parameter=rate,
         resting_energy=sum(body.mass * case.gravity_toward_floor * body.centroid[1] for body in bodies),
-        slowest_rocking=min(one.frequency_parameter for one in (static, *row)),
+        slowest_rocking=min(checks.frequency_parameter for checks in (static, *row)),
         slenderness_angle=static.slenderness_angle,
         width=static.width,
-        near=NEAR * min([static.width, *(one.width for one in row)]),
+        near=NEAR * min([static.width, *(checks.width for checks in row)]),
         stop_when_overturned=case.output.stop_when_overturned,
         contents_cutoff=2.0 * math.pi * case.output.contents_filter_Hz,
         top_monitors=2,

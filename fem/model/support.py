@@ -132,7 +132,7 @@ def normal_penalty(case: Case, mesh: ContainerMesh) -> float:
         softest = slab_penalty(case, mesh)
         return min(softest, _rolling_penalty(case, mesh)) if case.support.camber_m > 0.0 else softest
     if case.neighbour and case.contact.normal_penalty_Pa_m == "auto":
-        return max(steel_penalty(one, build_container(one)) for one in case.row)
+        return max(steel_penalty(alone, build_container(alone)) for alone in case.row)
     return steel_penalty(case, mesh)
 
 

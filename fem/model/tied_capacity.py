@@ -104,7 +104,7 @@ def tied_capacities(case: Case, mesh: ContainerMesh) -> list[TiedCapacity]:
     Ties to a neighbour are left out: it moves with the same floor, and what it can hold depends on how. A tie whose
     point moves away by u carries k (u - slack), up to its strength, and then no more.
     """
-    found = []
+    capacities = []
     ties = [tie for tie in case.tie if tie.to != "neighbour" and not tie.neighbour]
     for side, sign in (("left", -1.0), ("right", 1.0)) if ties and not case.container.is_loose else ():
         corner = 0.5 * pivot_share(case, mesh) * mesh.width
@@ -113,20 +113,20 @@ def tied_capacities(case: Case, mesh: ContainerMesh) -> list[TiedCapacity]:
         downhill = sign * mesh.mass * case.gravity_downhill  # x falls toward +x
         beside = [corner - sign * side_of(case, tie) for tie in ties]
         rotation = np.linspace(0.0, MOST_TURNED, TURNS)
-        breaking = [_breaks_at(tie, side, one, rotation) for tie, one in zip(ties, beside, strict=True)]
+        breaking = [_breaks_at(tie, side, at, rotation) for tie, at in zip(ties, beside, strict=True)]
         rotation = np.sort(np.concatenate([rotation, *breaking]))
         moment = weight * (arm * np.cos(rotation) - mesh.centroid[1] * np.sin(rotation))
         moment -= downhill * (mesh.centroid[1] * np.cos(rotation) + arm * np.sin(rotation))
         breaks = np.zeros(rotation.size, dtype=bool)
-        for tie, one in zip(ties, beside, strict=True):
-            force, lever = _pull(tie, side, one, rotation)
+        for tie, distance in zip(ties, beside, strict=True):
+            force, lever = _pull(tie, side, distance, rotation)
             if tie.strength_N is not None:
                 broken = np.logical_or.accumulate(force > tie.strength_N)
                 breaks |= np.append(broken[1:] & ~broken[:-1], False)
                 force[broken] = 0.0
             moment += force * lever
         most = int(np.argmax(moment))
-        found.append(
+        capacities.append(
             TiedCapacity(
                 side=side,
                 moment=float(moment[most]),
@@ -135,7 +135,7 @@ def tied_capacities(case: Case, mesh: ContainerMesh) -> list[TiedCapacity]:
                 broken=bool(breaks[most]),
             )
         )
-    return found
+    return capacities
 
 
 def _pull(tie: TieTable, side: str, beside: float, rotation: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -94,7 +94,9 @@ def run_report(
         run=run,
         model=model,
         history=_history(run, message),
-        shown=animation_of(model, _fields(run, message), drawn_links(run.case, _broken(run.typed_result))),
+        animation=animation_of(
+            model, _fields(run, message), drawn_links(run.case, _broken(run.typed_result))
+        ),
         drawn=drawings_of(run, model.container),
         brief=brief,
     )

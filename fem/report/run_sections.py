@@ -52,7 +52,7 @@ class RunView:
     run: OpenedRun
     model: Model
     history: History
-    shown: Animation
+    animation: Animation
     drawn: Mapping[str, Drawing]
     brief: bool  #: of three printed sheets at most
 
@@ -86,7 +86,7 @@ class RunView:
         """What the animation plays; empty where there is none."""
         if len(self.history) < 2 or self.brief:
             return {}
-        return player_data(self.shown, self.history, model=self.model)
+        return player_data(self.animation, self.history, model=self.model)
 
     @property
     def note_on_level(self) -> str:
@@ -119,7 +119,7 @@ def motion_section(view: RunView) -> html.PageSection:
 
 
 def _player(view: RunView) -> html.Player:
-    animation, height = view.shown, view.model.container.mesh.height
+    animation, height = view.animation, view.model.container.mesh.height
     chosen = exaggeration(animation, height)
     return html.Player(
         f"{_what_is_played(view)} Red: normal force, blue: friction, on the container; dashed: where it first stood on "
@@ -136,7 +136,7 @@ def _player(view: RunView) -> html.Player:
 
 
 def _what_is_played(view: RunView) -> str:
-    animation, every = view.shown, f"every {short(view.played['step'], 1000)} ms"
+    animation, every = view.animation, f"every {short(view.played['step'], 1000)} ms"
     if animation.stress_scale:
         largest = quantity(animation.largest_stress, "MPa", 1e-6, 3)
         return (
@@ -153,20 +153,20 @@ def _what_is_played(view: RunView) -> str:
 
 def _legend(view: RunView, more: str = "") -> html.Legend | None:
     """The colours of the stress, where there is any."""
-    if not view.shown.stress_scale:
+    if not view.animation.stress_scale:
         return None
-    most = quantity(view.shown.stress_scale, "MPa", 1e-6, 3)
+    most = quantity(view.animation.stress_scale, "MPa", 1e-6, 3)
     return html.Legend("von Mises stress 0", f"{most} and more{more}", colour_scale("YlGnBu", COLOURS))
 
 
 def _stills(view: RunView) -> list[html.Block]:
     mesh, angle = view.model.container.mesh, view.model.static.slenderness_angle
     pictures = stills(
-        view.shown, view.history, view.verdict, angle=angle, width=mesh.width, height=mesh.height
+        view.animation, view.history, view.verdict, angle=angle, width=mesh.width, height=mesh.height
     )
     if not pictures:
         return []
-    legend = _legend(view, f"; elastic part × {short(exaggeration(view.shown, mesh.height))}")
+    legend = _legend(view, f"; elastic part × {short(exaggeration(view.animation, mesh.height))}")
     level = view.note_on_level
     return [
         html.Group(

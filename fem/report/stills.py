@@ -37,7 +37,7 @@ def stills(
     """Start, first uplift, the extremes and the end, where frames show them and there was such a motion.
 
     Args:
-        shown: the animation.
+        animation: of the run.
         history, verdict: of the run.
         angle: slenderness angle [rad].
         width, height: of the container [m].

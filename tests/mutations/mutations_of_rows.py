@@ -80,7 +80,7 @@ ROW_FAULTS = (
     ),
     Mutation(
         name="steps for the first container of a row",
-        old="fastest = max(one.frequency_parameter for one in (static, *row))",
+        old="fastest = max(checks.frequency_parameter for checks in (static, *row))",
         new="fastest = static.frequency_parameter",
         tests=(ROWS, "-k", "short_enough"),
     ),
