@@ -76,16 +76,13 @@ def _of_neighbour(number: int, neighbour: NeighbourResult) -> str:
         stress = (
             f", von Mises stress {MEGAPASCALS.text(neighbour.max_von_mises_Pa, figures=3)} (reduced model)"
         )
-    moved = f"{_neighbour(number, neighbour)} {_did(neighbour)}{ratio}{slip}{stress}"
+    did = Outcome(neighbour.outcome).verb.replace(", ", " and ")
+    moved = f"{_neighbour(number, neighbour)} {did}{ratio}{slip}{stress}"
     if neighbour.hits == 0:
         return f"{moved}, not touched{_left(neighbour, 'gap')}"
     hits = "once" if neighbour.hits == 1 else f"{neighbour.hits} times"
     speed = f"{neighbour.largest_closing_velocity_m_s:.2g} m/s"
     return f"{moved}, hit {hits}, at {speed} at most, with up to {KILONEWTONS.text(neighbour.max_force_N, figures=3)}"
-
-
-def _did(neighbour: NeighbourResult) -> str:
-    return Outcome(neighbour.outcome).verb.replace(", ", " and ")
 
 
 def _of_stop(stop: LinkResult) -> str:

@@ -266,11 +266,6 @@ def _table_of_pairs(title: str, rows: Sequence[tuple[str, str]]) -> Iterator[Tab
         yield table
 
 
-def _states(verdict: run_result.Verdict) -> list[str]:
-    """The states that the container itself passed through."""
-    return [mode for mode in verdict.modes if mode != Outcome.OVERTURNED or not fall_in_row(verdict)]
-
-
 def result_rows(result: run_result.RunResult) -> list[tuple[str, str]]:
     """Name and value of each result in reading order; results that were not reached are left out."""
     verdict, motion = result.verdict or run_result.Verdict(), result.motion or run_result.MotionResult()
@@ -281,11 +276,12 @@ def result_rows(result: run_result.RunResult) -> list[tuple[str, str]]:
         ],
         "max_corner_force_N": [*floor_rows(result.floor), ("crushing", _crushing(verdict))],
     }
+    states = [mode for mode in verdict.modes if mode != Outcome.OVERTURNED or not fall_in_row(verdict)]
     rows = [
         ("floor motion", motion_in_words(motion)),
         ("vertical motion", motion_in_words(motion.vertical or run_result.MotionResult())),
         ("simulated time", _simulated(verdict, result.numerics or run_result.Numerics())),
-        ("states seen", ", ".join(_states(verdict))),
+        ("states seen", ", ".join(states)),
     ]
     rows += _figure_rows(result, SUMMARY, behind)
     rows += [

@@ -111,7 +111,8 @@ def run_ensemble(ensemble: Ensemble, *, folder: Path, **options: Unpack[StudyOpt
         options["workers_of"] = reader.workers_of
         request = ensemble_hash(ensemble, [motion.case_hash for motion in motions])
         unknown = UnknownInputs(ensemble)
-        copied = motions if _is_copied(ensemble) else ()
+        chosen = ensemble.copy_motions
+        copied = motions if (ensemble.replicates <= MOST_COPIED if chosen is None else chosen) else ()
         begun = begun_result(ensemble, unknown, motions, request)
         study = Study(
             kind=ENSEMBLE,
@@ -179,11 +180,6 @@ def _compute(
         result = replace(result, motions=tuple(measures), motion_figures=tuple(figures))
     answer = ensemble_answer(result)
     return replace(result, answer=answer.sentence if answer else None)
-
-
-def _is_copied(ensemble: Ensemble) -> bool:
-    """Whether the motions of the set are copied into the results."""
-    return ensemble.replicates <= MOST_COPIED if ensemble.copy_motions is None else ensemble.copy_motions
 
 
 def required_disk(

@@ -64,7 +64,8 @@ def sweep_report(folder: Path, *, signature: Signature | None = None) -> str:
     """
     table = open_sweep(folder)
     info, case = table.info, load_case(str(folder / "base.toml"))
-    data, drawn = map_data(table, folder), studies.drawings(folder, on_screen(table), "sweep")
+    on_screen = (name for name in table.info.maps if not name.endswith("_print.svg"))
+    data, drawn = map_data(table, folder), studies.drawings(folder, on_screen, "sweep")
     answer, name = sweep_answer(table, folder), info.sweep or folder.name
     base_case = html.Pairs(case_rows(case), caption="Base case, where no axis changes it", look="asked")
     return studies.study_html(
@@ -102,11 +103,6 @@ def sweep_report(folder: Path, *, signature: Signature | None = None) -> str:
         ],
         again=studies.again_from_files(folder, study="sweep", name=name, case=case),
     )
-
-
-def on_screen(table: SweepTable) -> list[str]:
-    """The maps but for those without colours, which are for print."""
-    return [name for name in table.info.maps if not name.endswith("_print.svg")]
 
 
 def found_section(table: SweepTable, answer: str | None) -> html.PageSection:

@@ -86,16 +86,15 @@ def answer_of(
         against.append(Reason(NOT_SURE, NO_FURTHER))
     if beside.left_out:
         against.append(Reason(NOT_SURE, beside.left_out))
+    used = tally.utilisation(limits)
+    if used is not None and slip is not None:
+        used = max(used, slip.slip_largest_m / limits.slip_m)
     unknown = tally.failed > 0 and not tally.overturned + tally.invalid
-    actions = [
-        result.ActionAnswer(
-            name=EARTHQUAKE,
-            answer=None if unknown else gravest(against),
-            utilisation=_with_slip(tally.utilisation(limits), slip, limits.slip_m),
-        )
-    ]
+    judged = None if unknown else gravest(against)
+    actions = [result.ActionAnswer(name=EARTHQUAKE, answer=judged, utilisation=used)]
     if beside.wind is not None:
-        actions.append(wind_answer(beside.wind))
+        withstood = NOT_FULFILLED if beside.wind > 1.0 else FULFILLED
+        actions.append(result.ActionAnswer(name=WIND, answer=withstood, utilisation=beside.wind))
         if beside.wind > 1.0:
             words = f"Wind uses {beside.wind:.2f} of the resistance of the lightest container."
             against.append(Reason(NOT_FULFILLED, words))
@@ -158,22 +157,10 @@ def _least(*factors: float | None) -> float | None:
     return min((factor for factor in factors if factor is not None), default=None)
 
 
-def _with_slip(used: float | None, slip: result.TwoDirections | None, limit: float) -> float | None:
-    """The utilisation of the limits with the slip in two directions; None stays: a run overturned."""
-    return used if used is None or slip is None else max(used, slip.slip_largest_m / limit)
-
-
 def gravest(reasons: Iterable[Reason]) -> str:
     """The answer that some reasons leave."""
     answers = {reason.answer for reason in reasons}
     return next((answer for answer in (NOT_FULFILLED, NOT_SURE) if answer in answers), FULFILLED)
-
-
-def wind_answer(utilisation: float) -> result.ActionAnswer:
-    """The answer for the wind, a static check."""
-    return result.ActionAnswer(
-        name=WIND, answer=NOT_FULFILLED if utilisation > 1.0 else FULFILLED, utilisation=utilisation
-    )
 
 
 def no_answer_yet(

@@ -40,14 +40,8 @@ def rocks_from(body: SiteBody, motions: Sequence[GroundMotion]) -> float:
     """The factor on some motions below which none of them lets a body rock."""
     slenderness = math.tan(body.slenderness_angle_rad)
     resting = BodyAtRest(gravity=body.gravity_m_s2, slenderness=slenderness, slope=0.0)
-    return kept_of(body) * min(
-        moves_at(resting, motion, sign, math.inf) for motion in motions for sign in (1, -1)
-    )
-
-
-def kept_of(body: SiteBody) -> float:
-    """Share of the motion that lifts a side of the body on a rigid floor, below which it does not rock."""
-    return KEPT_ON_SOFT if body.gives_way else KEPT
+    kept = KEPT_ON_SOFT if body.gives_way else KEPT
+    return kept * min(moves_at(resting, motion, sign, math.inf) for motion in motions for sign in (1, -1))
 
 
 def slides_from(body: SiteBody, mu_static: float, motions: Sequence[GroundMotion]) -> float:
