@@ -67,9 +67,8 @@ def _require_own(*folders: Path) -> None:
     for folder in folders if hasattr(os, "getuid") else ():
         state = folder.stat()
         ours = state.st_uid in (os.getuid(), 0)
-        sticky = (
-            state.st_mode & stat.S_ISVTX and folder is folders[-1]
-        )  # as /tmp: nobody replaces what is another's
+        # as /tmp: nobody replaces what is another's
+        sticky = state.st_mode & stat.S_ISVTX and folder is folders[-1]
         shared = stat.S_IWOTH | (stat.S_IWGRP if state.st_gid != os.getgid() else 0)
         if not ours or (state.st_mode & shared and not sticky):
             raise CacheFolderError(

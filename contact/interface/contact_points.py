@@ -13,9 +13,8 @@ from contact.interface.faces import CORNERS, ENDS, LOWER, RIGHT, UPPER, Faces
 
 BOTTOM_LEFT, BOTTOM_RIGHT, TOP_LEFT, TOP_RIGHT = range(CORNERS)
 EDGE = 1e-3  #: half of the length over which a corner leaves a face, over the shorter of the two faces of the joint
-ASIDE = (
-    64.0  #: distance of the points of pairs from those on the floor and from each other, over a body's size
-)
+#: distance of the points of pairs from those on the floor and from each other, over a body's size
+ASIDE = 64.0
 
 
 class SidePoint(NamedTuple):

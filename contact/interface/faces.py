@@ -49,18 +49,16 @@ class Faces(NamedTuple):
     bodies: IntArray  #: (n, 2) lower and upper box of a point; -1, and its box, of a point of one box
     parts: IntArray  #: (n,) how many of its corners move a point
     owner: IntArray  #: (n, 4) which box of a point each of its corners belongs to, LOWER or UPPER
-    shared: (
-        IntArray  #: (n, n, 2) which box of the second point the LOWER or UPPER one of the first is; -1: none
-    )
+    #: (n, n, 2) which box of the second point the LOWER or UPPER one of the first is; -1: none
+    shared: IntArray
     reach: IntArray  #: (n,) behind the last point that shares a box with it
     #: (n, 2) of a point of one box, between its LEFT and RIGHT corner: 0 to 1; of a tie on both sides, from the foot
     place: FloatArray
     apart: FloatArray  #: (n,) how much further along x the frame of the corner is than that of the face [m]
     side: FloatArray  #: (n,) 1: a corner of the upper box on the face below; -1: of the lower box on the face above
     length: FloatArray  #: (n,) of the face, undeformed, or of a tie with its slack [m]
-    origin: (
-        FloatArray  #: (n,) coordinate of its left end, so that corners that face each other have the same [m]
-    )
+    #: (n,) coordinate of its left end, so that corners that face each other have the same [m]
+    origin: FloatArray
     edge: FloatArray  #: (n,) half of the length over which the weight falls [m]
     normal_stiffness: FloatArray  #: (n,) at full weight [N/m]
     tangential_stiffness: FloatArray  #: (n,)
@@ -68,9 +66,8 @@ class Faces(NamedTuple):
     #: scratch, of the linearisation about positions of the corners
     placed: FloatArray  #: (n, 2) the points at these positions
     gradient: FloatArray  #: (n, 2, 4, 2) derivatives of x and gap by x and z of the point's corners
-    moved: (
-        FloatArray  #: (2 n, 2, 8) displacement of the corners of lower and upper box under a unit force [m/N]
-    )
+    #: (2 n, 2, 8) displacement of the corners of lower and upper box under a unit force [m/N]
+    moved: FloatArray
 
 
 @inlined

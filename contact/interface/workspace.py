@@ -17,9 +17,8 @@ class Contact(NamedTuple):
     tangential_stiffness: FloatArray  #: [N/m]
     #: (n,) largest normal force, dashpot included, at which the intact floor crushes [N]; infinite: it does not
     cap: FloatArray
-    cap_growth: (
-        FloatArray  #: (n,) by which it grows with the indentation, over that of the intact floor [1/m]
-    )
+    #: (n,) by which it grows with the indentation, over that of the intact floor [1/m]
+    cap_growth: FloatArray
     #: (n,) dashpot over spring, of the normal and of the stuck tangential direction [s]
     relaxation_time: FloatArray
     mu_static: FloatArray  #: (n,) the same for all points of a joint, as the next two
@@ -52,9 +51,8 @@ class Workspace(NamedTuple):
     velocity: Annotated[FloatArray, "n", 2]  #: [m/s]
     force: Annotated[FloatArray, "n", 2]  #: [N]
     law: Annotated[FloatArray, "n", 2]  #: force of the laws at `point` [N]
-    slope: Annotated[
-        FloatArray, "n", 3
-    ]  #: minus its derivatives: tangential by x, tangential by z, normal by z [N/m]
+    #: minus its derivatives: tangential by x, tangential by z, normal by z [N/m]
+    slope: Annotated[FloatArray, "n", 3]
     cap: Annotated[FloatArray, "n"]  #: largest normal force in this step [N]
     matrix: Annotated[FloatArray, "2n", "2n"]  #: factors of the tangent over the active points
     change: Annotated[FloatArray, "2n"]
@@ -62,9 +60,8 @@ class Workspace(NamedTuple):
     excess: Annotated[FloatArray, "n", 2]  #: what friction cuts off [N]; minus d/dx of the uncut force [N/m]
     mu: Annotated[FloatArray, "n"]  #: coefficients of friction in this step
     side: Annotated[IntArray, "n"]  #: limit of friction reached in the last iteration: -1, 1; 0: none
-    level: Annotated[
-        IntArray, "n"
-    ]  #: of the normal force in the last iteration: -1 open, 1 at the cap; 0: elastic
+    #: of the normal force in the last iteration: -1 open, 1 at the cap; 0: elastic
+    level: Annotated[IntArray, "n"]
     pivot: Annotated[IntArray, "2n"]  #: pivots of `matrix`
     factored_slope: Annotated[FloatArray, "n", 3]  #: tangents for which `matrix` was factored
     factored_step: Annotated[FloatArray, 1]  #: and step size; < 0: none [s]

@@ -41,14 +41,12 @@ class State(NamedTuple):
     internal: Annotated[FloatArray, "d"]  #: internal forces with gravity and damping
     damping: Annotated[FloatArray, "d"]  #: material damping only
     external: Annotated[FloatArray, "d"]  #: contact forces
-    point: Annotated[
-        FloatArray, "n", 2
-    ]  #: base points over the floor, indented where it has been crushed [m]
+    #: base points over the floor, indented where it has been crushed [m]
+    point: Annotated[FloatArray, "n", 2]
     force: Annotated[FloatArray, "n", 2]  #: contact forces on the container, tangential and normal [N]
     descent: Annotated[FloatArray, "n", 2]  #: downward velocity of the base points [m/s] and its rate [m/s2]
-    drift: Annotated[
-        FloatArray, "n", 2
-    ]  #: tangential velocity of the base points over the floor and its rate
+    #: tangential velocity of the base points over the floor and its rate
+    drift: Annotated[FloatArray, "n", 2]
     stick: Annotated[FloatArray, "n"]  #: elongation of the stuck tangential springs [m]
     #: permanent indentation; a base point is above the floor by its height and this [m]
     crushed: Annotated[FloatArray, "n"]
@@ -57,9 +55,8 @@ class State(NamedTuple):
     pose: Annotated[FloatArray, 6]
     #: kinetic, strain, gravity potential [J], of positions and vertical velocities relative to the floor
     energy: Annotated[FloatArray, 3]
-    boxes: Annotated[
-        FloatArray, "N", 6
-    ]  #: poses of the boxes of a loose stack, from the floor up; none for one body
+    #: poses of the boxes of a loose stack, from the floor up; none for one body
+    boxes: Annotated[FloatArray, "N", 6]
     corner: Annotated[FloatArray, "4N", 2]  #: corners of its boxes relative to the floor [m]
     monitor: FloatArray  #: (k, 4) monitored points: displacement relative to the floor [m], velocity [m/s]
     numbers: FloatArray  #: all but the monitored points; the fields above are views of it

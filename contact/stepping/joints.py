@@ -15,9 +15,8 @@ from contact.stepping.observables import SLIDING
 from contact.stepping.state import RunState
 
 NO_POINT, SOME, ALL, AIRBORNE = 0, 1, 2, 3  #: sliding of the loaded points of a joint
-WEAKENING_TOLERANCE = (
-    1e-9  #: change of a coefficient that weakens with the slip of a step at which it is known
-)
+#: change of a coefficient that weakens with the slip of a step at which it is known
+WEAKENING_TOLERANCE = 1e-9
 SLIDES_ON = math.inf  #: no force that holds a joint, see `slide`
 IMPACT_LOAD = 2.0  #: normal force over the weight from which there is an impact
 

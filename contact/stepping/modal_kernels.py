@@ -5,13 +5,7 @@ import math
 import numpy as np
 
 from contact.arrays import FloatArray
-from contact.interface.compliance import (
-    FEW_POINTS,
-    add_modes,
-    add_turned,
-    condense_modes,
-    turned_compliance,
-)
+from contact.interface.compliance import FEW_POINTS, add_modes, add_turned, condense_modes, turned_compliance
 from contact.interface.equilibrium import Stance
 from contact.interface.workspace import Contact, Workspace
 from contact.jit import compiled, inlined

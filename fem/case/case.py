@@ -147,9 +147,8 @@ class Case(CaseHeading):
     def _beside(self, name: str) -> "Case":
         """This case with the container of the case that a neighbour names."""
         if name not in self._origin.beside:
-            raise AttributeError(
-                name
-            )  # it is read once the keys are: until then no rule asks for it (`broken`)
+            # it is read once the keys are: until then no rule asks for it (`broken`)
+            raise AttributeError(name)
         return _read(beside(self.given(), self._origin.beside[name].given()), self._origin, {})
 
     @property
@@ -301,9 +300,8 @@ class Case(CaseHeading):
         for table, motion in (("motion", self.motion), ("vertical", self.vertical)):
             named[f"{table}.file"] = motion.file if motion.kind == "table" else None
         if self.vertical.kind == "table" and self.vertical.file is None:
-            named["vertical.file"] = data_files.without_channel(
-                self.folder, self.motion.file
-            )  # another component of it
+            # another component of it
+            named["vertical.file"] = data_files.without_channel(self.folder, self.motion.file)
         return named
 
     def given(self) -> dict[str, Any]:
@@ -546,9 +544,8 @@ def _neighbour_case(name: str, case: Case, origin: Origin, overrides: Mapping[st
         (given.gravity_m_s2, given.floor.model_copy(update={CORNER_PATCH: None, "preset": None}))
         for given in (case, own)
     ]
-    changed = any(
-        key == "gravity_m_s2" or key.startswith("floor.") for key in overrides
-    )  # for all of the row
+    # for all of the row
+    changed = any(key == "gravity_m_s2" or key.startswith("floor.") for key in overrides)
     if floors[0] != floors[1] and not changed:
         raise CaseError(
             f"{place}case = {name!r} stands on another floor: [floor] (without {CORNER_PATCH}) and gravity_m_s2 must "

@@ -28,9 +28,8 @@ def verify(
     """Compute the verification checks; writes verify.json and verify.html; ends with 3 if one row fails."""
     suite = importlib.import_module("fem.evidence.verification.suite")
     pages = importlib.import_module("fem.evidence.verification.page")
-    chosen = suite.chosen_checks(
-        quick=quick, topics=topic
-    )  # refuses an unknown topic before a folder is made
+    # refuses an unknown topic before a folder is made
+    chosen = suite.chosen_checks(quick=quick, topics=topic)
 
     def report(number: int, count: int, check: Any) -> None:
         if not quiet:

@@ -60,9 +60,8 @@ class Container:
     basis: ReducedBasis  #: elastic modes of a reduced model; none of the others
     free_modes: int  #: of the basis, the lowest so many are those of the free container
     first: float  #: lowest elastic angular frequency; infinite for a rigid container [rad/s]
-    boxes: tuple[
-        BoxModel, ...
-    ] = ()  #: of a loose stack, from the floor up; or each container of a row as one
+    #: of a loose stack, from the floor up; or each container of a row as one
+    boxes: tuple[BoxModel, ...] = ()
     row: tuple["Container", ...] = ()  #: the containers of a row alone, that of the case first
     box_nodes: tuple[IntArray, ...] = ()  #: the node of the container for each node of each box
 

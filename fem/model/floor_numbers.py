@@ -35,9 +35,8 @@ def hit_from(ratio: float, static: StaticChecks, slab: Slab) -> Hit:
     work = plastic_work(math.sqrt(2.0 * slab.normal_stiffness * lost), slab.cap, slab.normal_stiffness)
     speed = static.width * math.sqrt(2.0 * energy / inertia)
     share = work / slab.cap
-    crushing = (
-        2.0 * share / (1.0 + math.sqrt(1.0 + 2.0 * slab.cap_growth * share))
-    )  # work = cap d (1 + growth d/2)
+    # work = cap d (1 + growth d/2)
+    crushing = 2.0 * share / (1.0 + math.sqrt(1.0 + 2.0 * slab.cap_growth * share))
     return Hit(closing_speed=speed, plastic_work=work, crushing=crushing)
 
 

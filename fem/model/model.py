@@ -70,9 +70,8 @@ class Model:
     static: StaticChecks
     run: RunState
     duration: float  #: simulated time, at most [s]
-    rest_from: (
-        float  #: from here on the run ends when the container is at rest or has fallen [s]; or infinite
-    )
+    #: from here on the run ends when the container is at rest or has fallen [s]; or infinite
+    rest_from: float
 
     @property
     def penalty(self) -> float:

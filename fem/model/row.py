@@ -174,9 +174,8 @@ def measure_gaps(body: LooseStack, standing: FloatArray, contact: Contact) -> No
     pairs = faces.bodies[floor : floor + POINTS_OF_GAP * before.size : POINTS_OF_GAP]
     for pair, change in zip(pairs, before - at_rest, strict=True):
         forth, back = (np.all(faces.bodies == order, axis=1) for order in (pair, pair[::-1]))
-        faces.apart[:] += change * (
-            forth * faces.side - back
-        )  # back from the right to the left run only ties
+        # back from the right to the left run only ties
+        faces.apart[:] += change * (forth * faces.side - back)
     lengthen_ties(faces, standing.reshape(-1, 2))
 
 

@@ -78,9 +78,8 @@ def _instants(
         return {}
     times = np.array([frame.time for frame in animation.frames])
     rotation = np.array([frame.rotation[_most_turned(frame.rotation[:judged])] for frame in animation.frames])
-    slips = [np.abs(history[name]) for name in history.numbers if name.endswith("slip_m")][
-        :judged
-    ]  # a loose box each
+    # a loose box each
+    slips = [np.abs(history[name]) for name in history.numbers if name.endswith("slip_m")][:judged]
     slip = np.interp(times, history["time_s"], np.max(slips, axis=0))
     candidates = [(0, "start")]
     if verdict.first_uplift_s is not None:

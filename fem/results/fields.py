@@ -42,9 +42,8 @@ class FrameFields:
     """Fields at one time, of n nodes."""
 
     time: float  #: [s]
-    displacement: (
-        FloatArray  #: position minus reference position, the floor's motion included, shape (n, 2) [m]
-    )
+    #: position minus reference position, the floor's motion included, shape (n, 2) [m]
+    displacement: FloatArray
     velocity: FloatArray  #: absolute, shape (n, 2) [m/s]
     von_mises: FloatArray | None  #: shape (n,) [Pa]; None for a rigid container
     contact_pressure: FloatArray  #: compression positive, zero off the base, shape (n,) [Pa]

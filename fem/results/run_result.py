@@ -235,9 +235,8 @@ class Verdict(RunFigures):
     modes: tuple[str, ...] = ()  #: states passed through
     at_rest_s: float | None = None  #: since when it is at rest, of a run that ended for it
     yield_strength_Pa: float | None = None  #: that of S235 of a steel shell; None of another container
-    stress_from_corner_m: float | None = (
-        None  #: where posts stand on castings, no stress counts nearer to a corner
-    )
+    #: where posts stand on castings, no stress counts nearer to a corner
+    stress_from_corner_m: float | None = None
     #: at which the wall over a corner yields, and the work that a rigid-plastic corner would take (`fem.model.floor`)
     corner_capacity_N: float | None = None
     plastic_work_J: float | None = None

@@ -171,9 +171,8 @@ class CountedRate:
     #: the strengths between which most of `rate` arises; the last end is inf where that is beyond all counts
     most_from: tuple[float, float]
     share: float  #: of `rate` that arises there; 0 where nothing happened
-    parts: tuple[
-        float, ...
-    ]  #: of `rate`, up to each strength from the one before, and beyond the last [1/year]
+    #: of `rate`, up to each strength from the one before, and beyond the last [1/year]
+    parts: tuple[float, ...]
 
 
 def counted_rate(

@@ -66,9 +66,8 @@ class SizeResult(StudyResult):
     high: float
     #: the least or the largest; None where there is none in the range, or a window is asked
     value: float | None = None
-    intervals: tuple[
-        tuple[float, ...], ...
-    ] = ()  #: of the values that fulfil it, by their outermost values tried
+    #: of the values that fulfil it, by their outermost values tried
+    intervals: tuple[tuple[float, ...], ...] = ()
     sentence: str = ""
     points: tuple[SizePoint, ...] = ()  #: by rising value
 

@@ -294,9 +294,8 @@ class HazardLevel(JsonBlock):
     failed: int = 0  #: motions without an outcome, which are none of `motions`
     rate_per_year: float = 0.0  #: at which the hazard exceeds it
     interval: tuple[float, ...] = ()  #: of the probability that it does not stand, 95 %, two-sided
-    overturning_per_year: float = (
-        0.0  #: what arises from the level before, or the first movement, up to this one
-    )
+    #: what arises from the level before, or the first movement, up to this one
+    overturning_per_year: float = 0.0
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -109,9 +109,8 @@ class CellBlocks(NamedTuple):
 
     number: int  #: m, of cells
     cells: IntArray  #: (m / LANES, k, LANES) their nodes
-    gradient: (
-        FloatArray  #: (m / LANES, q, k, 2, LANES) derivatives of the shape functions along x and z [1/m]
-    )
+    #: (m / LANES, q, k, 2, LANES) derivatives of the shape functions along x and z [1/m]
+    gradient: FloatArray
     weights: FloatArray  #: (m / LANES, q, LANES) volumes [m3]
     nodal: FloatArray  #: (4 k, LANES) scratch: displacements and forces of the nodes
     local: FloatArray  #: (5 LANES,) scratch: gradient, then stress and energy at a point

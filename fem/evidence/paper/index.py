@@ -4,9 +4,8 @@ from fem.evidence.paper import counting, example, overturning, quasi_static, roc
 from fem.evidence.paper.claims import Claim
 
 TOPICS = {
-    title: tuple(
-        claim for claim in vars(module).values() if isinstance(claim, Claim)
-    )  # in the order of its file
+    # in the order of its file
+    title: tuple(claim for claim in vars(module).values() if isinstance(claim, Claim))
     for title, module in {
         "The central claim, counted": counting,
         "The example of section 7": example,

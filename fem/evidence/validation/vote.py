@@ -38,9 +38,8 @@ class Block:
 class Vote:
     """Votes of families of blocks on a series of tests of one specimen."""
 
-    falls: dict[
-        str, FloatArray
-    ]  #: by family, (blocks, tests): what each predicts, from 0 (stands) to 1 (overturns)
+    #: by family, (blocks, tests): what each predicts, from 0 (stands) to 1 (overturns)
+    falls: dict[str, FloatArray]
     overturned: BoolArray  #: (tests,) measured
     records: NDArray[np.int64]  #: (tests,) number of the record of each
 
