@@ -22,42 +22,38 @@ from fem.seismic.floor import (
 from fem.seismic.motion_set import LEAST_MOTIONS
 
 IMPORTANCE = Quantity(
-    unit="",
-    least=0.5,
-    most=2.0,
-    advice="EN 1998-1:2004, 4.2.5 has 0.8 to 1.4; 4.3.5.3 has 1.5 for toxic content",
+    least=0.5, most=2.0, advice="EN 1998-1:2004, 4.2.5 has 0.8 to 1.4; 4.3.5.3 has 1.5 for toxic content"
 )
 REFERENCE = Quantity(unit="m/s2", above=0.0, below=30.0, typical=1.6, slips={"g": 9.81, "cm/s2": 0.01})
-VERTICAL_RATIO = Quantity(unit="", above=0.0, below=10.0, advice="EN 1998-1:2004, table 3.4 has 0.45 and 0.9")
+VERTICAL_RATIO = Quantity(above=0.0, below=10.0, advice="EN 1998-1:2004, table 3.4 has 0.45 and 0.9")
 TOPOGRAPHY = Quantity(
-    unit="",
     least=1.0,
     most=2.0,
     advice="as remembered, not checked against its text: 1 below 15 degrees or 30 m of height; at least 1.2 near the "
     "top of cliffs, slopes and ridges, 1.4 on narrow ridges steeper than 30 degrees, 20 % more on loose ground",
 )
 SPECTRAL = Quantity(unit="m/s2", above=0.0, below=100.0, slips={"g": 9.81})
-SPECTRUM_POINT = Quantity(unit="", above=0.0, below=1000.0)
+SPECTRUM_POINT = Quantity(above=0.0, below=1000.0)
 SPECTRUM_PERIOD = Quantity(unit="s", above=0.0, most=4.0, advice="T_B, T_C, T_D are 0.05 to 2 s")
-LEVEL = Quantity(unit="", least=0.0, most=1.0, advice="0 is the foundation, 1 the roof")
+LEVEL = Quantity(least=0.0, most=1.0, advice="0 is the foundation, 1 the roof")
 BUILDING_PERIOD = Quantity(
     unit="s", least=0.02, most=10.0, advice="T_1 of the building in this direction; about 0.1 s a storey"
 )
-DAMPING = Quantity(unit="", least=LEAST_DAMPING, most=MOST_DAMPING, typical=0.05, slips={"per cent": 0.01})
+DAMPING = Quantity(least=LEAST_DAMPING, most=MOST_DAMPING, typical=0.05, slips={"per cent": 0.01})
 STATIONARY = Quantity(
     unit="s",
     least=LEAST_STATIONARY_S,
     most=MOST_STATIONARY_S,
     advice="EN 1998-1:2004, 3.2.3.1.2 (3) asks for 10 s at least",
 )
-SHARE = Quantity(unit="", above=0.0, most=1.0, advice="0.5 to 1 is usual")
-SCATTER = Quantity(unit="", least=0.0, most=1.0, advice="0.4 is a common value for records")
-RATED = Quantity(unit="", above=0.0, below=1e9)
-SECOND = Quantity(unit="", least=0.0, most=1.5, advice="1 is the same spectrum in both directions")
-ROTATION_RATIO = Quantity(unit="", above=0.0, most=1.0, advice="0.5 is usual; 1 is on the point of falling")
+SHARE = Quantity(above=0.0, most=1.0, advice="0.5 to 1 is usual")
+SCATTER = Quantity(least=0.0, most=1.0, advice="0.4 is a common value for records")
+RATED = Quantity(above=0.0, below=1e9)
+SECOND = Quantity(least=0.0, most=1.5, advice="1 is the same spectrum in both directions")
+ROTATION_RATIO = Quantity(above=0.0, most=1.0, advice="0.5 is usual; 1 is on the point of falling")
 SLIP = Quantity(unit="m", above=0.0, most=100.0, typical=0.1, slips={"millimetres": 1e-3})
 WIND = Quantity(unit="Pa", above=0.0, most=1e4, typical=650.0, slips={"kN/m2": 1e3})
-GAMMA_MU = Quantity(unit="", least=1.0, most=3.0, advice="1.3 is usual for scaffolds")
+GAMMA_MU = Quantity(least=1.0, most=3.0, advice="1.3 is usual for scaffolds")
 MOST_MOTIONS = 100
 #: the rules of thumb divide by it, so there is no container without friction
 SOME_FRICTION = replace(q.FRICTION, least=None, above=0.0)
@@ -125,13 +121,13 @@ class SiteTable(CaseTable):
         '| "second-generation": of the form of EN 1998-1-1:2024, S_alpha and S_beta given below',
         "EN1998-1",
     )
-    type: Annotated[int, Strict(), Quantity(unit="", least=1, most=2)] | None = case_key(
+    type: Annotated[int, Strict(), Quantity(least=1, most=2)] | None = case_key(
         "of the spectrum, EN1998-1 only: 1, or 2 where the hazard is from magnitudes up to 5.5 (default 1)",
         None,
         example=1,
     )
     ground: str | None = case_key('"A" to "E"; DIN-NA-2011: "C-R" and the like', None, example="D")
-    zone: Annotated[int, Strict(), Quantity(unit="", least=1, most=3)] | None = case_key(
+    zone: Annotated[int, Strict(), Quantity(least=1, most=3)] | None = case_key(
         "DIN-NA-2011 only: 1, 2, 3", None, example=3
     )
     reference_acceleration_m_s2: Annotated[float, REFERENCE] | None = case_key(
@@ -162,7 +158,7 @@ class SiteTable(CaseTable):
     end_periods_s: Corners = case_key(
         "[T_A, T_B, T_D], second-generation only", None, example=[0.02, 0.1, 2.0]
     )
-    plateau_over_peak: Annotated[float, Quantity(unit="", above=1.0, below=10.0)] = case_key(
+    plateau_over_peak: Annotated[float, Quantity(above=1.0, below=10.0)] = case_key(
         "F_A, second-generation", 2.5
     )
 
@@ -205,7 +201,7 @@ class BuildingTable(CaseTable):
     building_period_s: Annotated[float, BUILDING_PERIOD] = case_key(
         "T_1 in the direction of the motion; it is varied by plus and minus 15 %", example=0.5
     )
-    storeys: Annotated[int, Strict(), Quantity(unit="", least=1, most=200)] | None = case_key(
+    storeys: Annotated[int, Strict(), Quantity(least=1, most=200)] | None = case_key(
         "equal masses at equal heights, all modes up to 33 Hz; left out: one mode, good for low, stiff buildings "
         f"up to T_1 = {ONE_MODE_TO_S:g} s",
         None,
@@ -284,10 +280,10 @@ class MotionsTable(CaseTable):
         "which the container stands, recorded or computed, taken as they are",
         "artificial",
     )
-    count: Annotated[int, Strict(), Quantity(unit="", least=3, most=MOST_MOTIONS)] = case_key(
+    count: Annotated[int, Strict(), Quantity(least=3, most=MOST_MOTIONS)] = case_key(
         "artificial motions; the mean counts from 7", 7
     )
-    seed: Annotated[int, Strict(), Quantity(unit="", least=0, most=2**31 - 1)] = case_key(
+    seed: Annotated[int, Strict(), Quantity(least=0, most=2**31 - 1)] = case_key(
         "of the artificial motions", 1
     )
     stationary_s: Annotated[float, STATIONARY] = case_key("stationary part of the artificial motions", 12.0)
@@ -317,7 +313,7 @@ class MotionsTable(CaseTable):
         "of motions about one strength in [hazard], of the logarithm: that of records, which artificial ones lack",
         0.4,
     )
-    further: Annotated[int, Strict(), Quantity(unit="", least=0, most=10_000)] = case_key(
+    further: Annotated[int, Strict(), Quantity(least=0, most=10_000)] = case_key(
         "further artificial motions, for the share that overturns; 0: none", 100
     )
 
@@ -399,7 +395,7 @@ class HazardTable(CaseTable):
         None,
         example="hazard.csv",
     )
-    motions: Annotated[int, Strict(), Quantity(unit="", least=10, most=1000)] = case_key(
+    motions: Annotated[int, Strict(), Quantity(least=10, most=1000)] = case_key(
         "artificial motions at each of seven levels", 40
     )
 
@@ -412,7 +408,7 @@ class WindTable(CaseTable):
     peak_velocity_pressure_Pa: Annotated[float, WIND] | None = case_key(
         "q_p at the top of the container", None, example=650.0
     )
-    german_zone: Annotated[int, Strict(), Quantity(unit="", least=1, most=4)] | None = case_key(
+    german_zone: Annotated[int, Strict(), Quantity(least=1, most=4)] | None = case_key(
         "wind zone, in place of q_p: simplified pressure", None, example=2
     )
     german_place: Literal["inland", "coast", "North Sea islands"] = case_key(

@@ -16,10 +16,10 @@ from fem.case.tables import CaseTable
 from fem.case.uncertainty import InputChange
 from fem.case.unknown_inputs import DASHPOT, HELD, WORDS
 
-SHARE = Quantity(unit="", least=0.0, most=0.5, advice="0.02 is two per cent")
-FRICTION_STEP = Quantity(unit="", least=0.0, most=1.0, advice="0.02 is usual")
+SHARE = Quantity(least=0.0, most=0.5, advice="0.02 is two per cent")
+FRICTION_STEP = Quantity(least=0.0, most=1.0, advice="0.02 is usual")
 PHASE_STEP = Quantity(unit="rad", least=0.0, most=math.pi, advice="one turn is 2 pi")
-CLOSE = Quantity(unit="", least=0.0, advice="rotation over the slenderness angle")
+CLOSE = Quantity(least=0.0, advice="rotation over the slenderness angle")
 TURN = 2.0 * math.pi
 SMALL = 0.0  #: of a range
 

@@ -45,7 +45,7 @@ class MapChoice(CaseTable):
     )
 
 
-RESOLUTION = Quantity(unit="", above=0.0, most=1.0, advice="0.01 is one per cent")
+RESOLUTION = Quantity(above=0.0, most=1.0, advice="0.01 is one per cent")
 
 
 class Threshold(CaseTable):
@@ -55,7 +55,7 @@ class Threshold(CaseTable):
     resolution: Annotated[float, RESOLUTION] = Field(
         default=0.01, description="largest width of a bracket, relative to the value"
     )
-    inner: Annotated[int, Quantity(unit="", least=1, most=100)] = Field(
+    inner: Annotated[int, Quantity(least=1, most=100)] = Field(
         default=3, description="values tried within a bracket at a time"
     )
 
