@@ -14,7 +14,7 @@ from pydantic import Field
 from fem.case import quantities as q
 from fem.case.boxes import boxes_of
 from fem.case.problem import Rule, refused
-from fem.case.table import CaseTable, case_key
+from fem.case.table import CaseTable, case_key, optional_key
 
 Reach = tuple[float, float]
 
@@ -151,11 +151,8 @@ class FloorTable(CaseTable):
     """The floor: rigid (the numerical penalty of [contact]), or a slab that gives way and crushes; its slope."""
 
     kind: Literal["rigid", "slab"] = case_key('"rigid" | "slab"', "rigid")
-    preset: PresetName | None = case_key(
-        f"of a slab, which it implies: {' | '.join(PRESETS)}",
-        None,
-        example="concrete C25/30",
-        only=("kind", "slab"),
+    preset: PresetName | None = optional_key(
+        f"of a slab, which it implies: {' | '.join(PRESETS)}", "concrete C25/30", only=("kind", "slab")
     )
     youngs_modulus_Pa: Annotated[float, q.FLOOR_STIFFNESS] | None = case_key(
         "of a slab; default: that of the preset",
@@ -176,11 +173,10 @@ class FloorTable(CaseTable):
         only=("kind", "slab"),
     )
     corner_patch_m: Annotated[list[Annotated[float, q.PATCH]], Field(min_length=2, max_length=2)] | None = (
-        case_key(
+        optional_key(
             "of a slab: [along x, out of plane], all that bears under one corner of the elevation; default: "
             "wall x depth, of feet and flat their own",
-            None,
-            example=[0.1, 0.2],
+            [0.1, 0.2],
             only=("kind", "slab"),
         )
     )

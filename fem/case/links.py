@@ -14,7 +14,7 @@ from pydantic import Field, Strict
 from fem.case import quantities as q
 from fem.case.neighbours import NeighbourTable, StruckTable, beside_of, gap_beside, outermost, top_of
 from fem.case.problem import Rule, either, refused
-from fem.case.table import CaseTable, case_key
+from fem.case.table import CaseTable, case_key, optional_key
 
 
 class StopTable(StruckTable):
@@ -23,8 +23,8 @@ class StopTable(StruckTable):
     height_m: Annotated[float, q.LINK_HEIGHT] = case_key(
         "of the point that meets it; at a joint of loose boxes that of the lower box", example=0.1
     )
-    strength_N: Annotated[float, q.LINK_FORCE] | None = case_key(
-        "force at which it breaks, for good; default: it does not", None, example=5e5
+    strength_N: Annotated[float, q.LINK_FORCE] | None = optional_key(
+        "force at which it breaks, for good; default: it does not", 5e5
     )
 
     rules = (either("stop.restitution", "damping_ratio"),)
@@ -48,8 +48,8 @@ class TieTable(CaseTable):
     from_: Literal["left", "right"] = Field(
         alias="from", description="side of the container from which it runs", examples=["left"]
     )
-    neighbour: Annotated[int, Strict(), q.NEIGHBOUR] | None = case_key(
-        "number of the [[neighbour]] that it holds; default: the container", None, example=1
+    neighbour: Annotated[int, Strict(), q.NEIGHBOUR] | None = optional_key(
+        "number of the [[neighbour]] that it holds; default: the container", 1
     )
     height_m: Annotated[float, q.LINK_HEIGHT] = case_key(
         "of its point; at a joint of loose boxes that of the lower box", example=0.5
@@ -58,16 +58,16 @@ class TieTable(CaseTable):
         '"floor": straight down | "wall": level, on that side | "neighbour": to what faces that side in a row',
         "floor",
     )
-    to_height_m: Annotated[float, q.LINK_HEIGHT] | None = case_key(
-        'of its point on what faces that side, with to = "neighbour"; default: height_m', None, example=0.5
+    to_height_m: Annotated[float, q.LINK_HEIGHT] | None = optional_key(
+        'of its point on what faces that side, with to = "neighbour"; default: height_m', 0.5
     )
     slack_m: Annotated[float, q.GAP] = case_key("how far its point moves away before it holds", 0.0)
     stiffness_N_m: Annotated[float, q.LINK_STIFFNESS] = case_key("of the strap", example=1e6)
     damping_ratio: Annotated[float, q.CONTACT_DAMPING] = case_key(
         "c/(2 sqrt(k m)), m the mass that it holds, of two containers the reduced one", 0.0
     )
-    strength_N: Annotated[float, q.LINK_FORCE] | None = case_key(
-        "force at which it breaks, for good; default: it does not", None, example=5e4
+    strength_N: Annotated[float, q.LINK_FORCE] | None = optional_key(
+        "force at which it breaks, for good; default: it does not", 5e4
     )
 
     rules = (

@@ -9,7 +9,7 @@ from typing import Annotated, Literal, assert_never
 
 from fem.case import quantities as q
 from fem.case.motion_rules import MOTION_RULES, VERTICAL_RULES, harmonic_amplitude, harmonic_angular_frequency
-from fem.case.table import CaseTable, case_key
+from fem.case.table import CaseTable, case_key, optional_key
 
 
 class HarmonicKeys(CaseTable):
@@ -18,26 +18,19 @@ class HarmonicKeys(CaseTable):
     kind: Literal["none", "harmonic", "pulse", "table"] = case_key(
         '"none" | "harmonic" | "pulse" | "table"', example="harmonic"
     )
-    amplitude_m: Annotated[float, q.AMPLITUDE] | None = case_key(
-        "harmonic: exactly two of amplitude, peak acceleration and frequency",
-        None,
-        example=0.05,
-        only=("kind", "harmonic"),
+    amplitude_m: Annotated[float, q.AMPLITUDE] | None = optional_key(
+        "harmonic: exactly two of amplitude, peak acceleration and frequency", 0.05, only=("kind", "harmonic")
     )
-    peak_acceleration_m_s2: Annotated[float, q.PEAK_ACCELERATION] | None = case_key(
+    peak_acceleration_m_s2: Annotated[float, q.PEAK_ACCELERATION] | None = optional_key(
         "harmonic: A Omega^2; pulse: its peak, > 0 toward +x or upward",
-        None,
-        example=4.0,
+        4.0,
         only=("kind", "harmonic", "pulse"),
     )
-    angular_frequency_rad_s: Annotated[float, q.ANGULAR_FREQUENCY] | None = case_key(
-        "harmonic: Omega", None, example=6.928, only=("kind", "harmonic")
+    angular_frequency_rad_s: Annotated[float, q.ANGULAR_FREQUENCY] | None = optional_key(
+        "harmonic: Omega", 6.928, only=("kind", "harmonic")
     )
-    frequency_Hz: Annotated[float, q.FREQUENCY] | None = case_key(
-        "harmonic: Omega/2 pi, in place of angular_frequency_rad_s",
-        None,
-        example=1.1026,
-        only=("kind", "harmonic"),
+    frequency_Hz: Annotated[float, q.FREQUENCY] | None = optional_key(
+        "harmonic: Omega/2 pi, in place of angular_frequency_rad_s", 1.1026, only=("kind", "harmonic")
     )
     phase_rad: Annotated[float, q.PHASE] = case_key(
         "harmonic: x = A sin(Omega t + phase)", 0.0, only=("kind", "harmonic")
@@ -45,10 +38,9 @@ class HarmonicKeys(CaseTable):
     ramp_cycles: Annotated[float, q.RAMP_CYCLES] = case_key(
         "harmonic: cycles over which the beginning and the end are tapered", 0.0, only=("kind", "harmonic")
     )
-    cycles: Annotated[float, q.CYCLES] | None = case_key(
+    cycles: Annotated[float, q.CYCLES] | None = optional_key(
         "harmonic: the floor stops when it next comes to rest after this number of cycles; default: never",
-        None,
-        example=10.0,
+        10.0,
         only=("kind", "harmonic"),
     )
 
@@ -66,48 +58,44 @@ class StartKey(HarmonicKeys):
 class PulseAndTableKeys(CaseTable):
     """The keys of a pulse and of a table."""
 
-    shape: Literal["rectangular", "half-sine", "sine"] | None = case_key(
-        'pulse: "rectangular" | "half-sine" | "sine"', None, example="half-sine", only=("kind", "pulse")
+    shape: Literal["rectangular", "half-sine", "sine"] | None = optional_key(
+        'pulse: "rectangular" | "half-sine" | "sine"', "half-sine", only=("kind", "pulse")
     )
-    pulse_s: Annotated[float, q.PULSE_DURATION] | None = case_key(
-        "pulse: its length", None, example=0.5, only=("kind", "pulse")
+    pulse_s: Annotated[float, q.PULSE_DURATION] | None = optional_key(
+        "pulse: its length", 0.5, only=("kind", "pulse")
     )
     delay_s: Annotated[float, q.DELAY] = case_key("pulse: when it begins", 0.0, only=("kind", "pulse"))
-    file: str | None = case_key(
+    file: str | None = optional_key(
         "table: a record of any known format, beside the case file; FILE#CHANNEL chooses one of several",
-        None,
-        example="floor.csv",
+        "floor.csv",
         only=("kind", "table"),
     )
     quantity: Literal["acceleration", "displacement"] = case_key(
         'table: "acceleration" | "displacement"', "acceleration", only=("kind", "table")
     )
-    unit: Literal["g", "m/s2", "cm/s2", "gal", "mm/s2", "m"] | None = case_key(
+    unit: Literal["g", "m/s2", "cm/s2", "gal", "mm/s2", "m"] | None = optional_key(
         'table: unit of its values, where the file does not state it; "g" is 9.80665 m/s2',
-        None,
-        example="g",
+        "g",
         only=("kind", "table"),
     )
-    sample_interval_s: Annotated[float, q.SAMPLE_INTERVAL] | None = case_key(
-        "table: of a file of one column, without times", None, example=0.005, only=("kind", "table")
+    sample_interval_s: Annotated[float, q.SAMPLE_INTERVAL] | None = optional_key(
+        "table: of a file of one column, without times", 0.005, only=("kind", "table")
     )
-    gaps: Literal["bridge"] | None = case_key(
+    gaps: Literal["bridge"] | None = optional_key(
         'table: "bridge" takes a file in which samples are missing, or far apart in places',
-        None,
-        example="bridge",
+        "bridge",
         only=("kind", "table"),
     )
-    start_s: Annotated[float, q.RECORD_TIME] | None = case_key(
-        "table: start of the part taken, which becomes t = 0", None, example=5.0, only=("kind", "table")
+    start_s: Annotated[float, q.RECORD_TIME] | None = optional_key(
+        "table: start of the part taken, which becomes t = 0", 5.0, only=("kind", "table")
     )
-    end_s: Annotated[float, q.RECORD_TIME] | None = case_key(
-        "table: end of the part taken, in the times of the file", None, example=30.0, only=("kind", "table")
+    end_s: Annotated[float, q.RECORD_TIME] | None = optional_key(
+        "table: end of the part taken, in the times of the file", 30.0, only=("kind", "table")
     )
     scale: Annotated[float, q.SCALE] = case_key("table: factor on its values", 1.0, only=("kind", "table"))
-    scale_to_m_s2: Annotated[float, q.PEAK_ACCELERATION] | None = case_key(
+    scale_to_m_s2: Annotated[float, q.PEAK_ACCELERATION] | None = optional_key(
         "table: peak acceleration that it is scaled to, in place of scale; < 0: the other sign",
-        None,
-        example=2.4,
+        2.4,
         only=("kind", "table"),
     )
     baseline: Literal["none", "mean", "linear", "zero-end"] = case_key(
@@ -115,11 +103,8 @@ class PulseAndTableKeys(CaseTable):
         "none",
         only=("kind", "table"),
     )
-    allow_baseline: Literal[True] | None = case_key(
-        "table: true takes a baseline that changes a peak by more than 20 %",
-        None,
-        example=True,
-        only=("kind", "table"),
+    allow_baseline: Literal[True] | None = optional_key(
+        "table: true takes a baseline that changes a peak by more than 20 %", True, only=("kind", "table")
     )
 
 

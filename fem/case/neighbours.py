@@ -13,7 +13,7 @@ from pydantic import Strict
 from fem.case import quantities as q
 from fem.case.boxes import boxes_of, centroid_at
 from fem.case.problem import Rule, either
-from fem.case.table import CaseTable, case_key
+from fem.case.table import CaseTable, case_key, optional_key
 
 MOST_NEIGHBOURS = 5
 USUAL_DAMPING = 2.0  #: damping ratio of what is struck, where nothing is said: it does not bounce
@@ -32,13 +32,12 @@ class StruckTable(CaseTable):
     side: Literal["left", "right"] = case_key("of the container at which it stands", example="right")
     gap_m: Annotated[float, q.GAP] = case_key("between it and what it stands beside, at rest", example=0.05)
     stiffness_N_m: Annotated[float, q.LINK_STIFFNESS] = case_key("where it is struck", example=1e8)
-    damping_ratio: Annotated[float, q.CONTACT_DAMPING] | None = case_key(
+    damping_ratio: Annotated[float, q.CONTACT_DAMPING] | None = optional_key(
         "c/(2 sqrt(k m)), m the mass that strikes, of two containers the reduced one, on this stiffness k; default: 2",
-        None,
-        example=0.5,
+        0.5,
     )
-    restitution: Annotated[float, q.STOP_RESTITUTION] | None = case_key(
-        "in place of damping_ratio: of what strikes it without turning", None, example=0.5
+    restitution: Annotated[float, q.STOP_RESTITUTION] | None = optional_key(
+        "in place of damping_ratio: of what strikes it without turning", 0.5
     )
     mu: Annotated[float, q.FRICTION] = case_key("of friction along its face", 0.0)
 
@@ -49,21 +48,17 @@ class NeighbourTable(StruckTable):
     The stiffness is that of the two sides, over all their height: half of it at their top, half at their foot.
     """
 
-    case: str | None = case_key(
-        "file beside this one, or shipped case, whose container it is; default: as [container]",
-        None,
-        example="other.toml",
+    case: str | None = optional_key(
+        "file beside this one, or shipped case, whose container it is; default: as [container]", "other.toml"
     )
-    boxes: Annotated[int, Strict(), q.BOXES] | None = case_key(
-        "as all below by default as the container", None, example=4
+    boxes: Annotated[int, Strict(), q.BOXES] | None = optional_key(
+        "as all below by default as the container", 4
     )
-    width_m: Annotated[float, q.LENGTH] | None = case_key("of one box", None, example=1.1)
-    height_m: Annotated[float, q.LENGTH] | None = case_key("of one box", None, example=1.0)
-    mass_kg: Annotated[float, q.MASS] | None = case_key("of one box with its fill", None, example=2500.0)
-    centroid_m: Annotated[float, q.LENGTH] | None = case_key(
-        "height of the mass centre in its box", None, example=0.5
-    )
-    wall_m: Annotated[float, q.WALL] | None = case_key("of the shell", None, example=0.008)
+    width_m: Annotated[float, q.LENGTH] | None = optional_key("of one box", 1.1)
+    height_m: Annotated[float, q.LENGTH] | None = optional_key("of one box", 1.0)
+    mass_kg: Annotated[float, q.MASS] | None = optional_key("of one box with its fill", 2500.0)
+    centroid_m: Annotated[float, q.LENGTH] | None = optional_key("height of the mass centre in its box", 0.5)
+    wall_m: Annotated[float, q.WALL] | None = optional_key("of the shell", 0.008)
 
     rules = (either("neighbour.restitution", "damping_ratio"),)
 

@@ -68,3 +68,8 @@ def case_key(
     if only is not None:
         given["json_schema_extra"] = {"x-only-for": {only[0]: list(only[1:])}}
     return Field(description=description, **given)
+
+
+def optional_key(description: str, example: Any, *, only: Any = None) -> Any:
+    """A key that may be left out; arguments as for `case_key`."""
+    return case_key(description, None, example=example, only=only)

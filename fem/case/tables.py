@@ -14,7 +14,7 @@ from fem.case import quantities as q
 from fem.case.floors import FloorTable
 from fem.case.motion_tables import MotionTable, VerticalTable
 from fem.case.rules import CONTACT_RULES, CONTAINER_RULES, SOLVER_RULES
-from fem.case.table import CaseTable, case_key
+from fem.case.table import CaseTable, case_key, optional_key
 from fem.case.uncertainty_table import UncertaintyTable
 
 USUAL_DASHPOT = 2.0  #: damping ratio of a stiff contact that does not bounce
@@ -35,13 +35,11 @@ class OrRange:
 class BoxTable(CaseTable):
     """One box of a stack whose boxes differ, from the floor up, in place of boxes."""
 
-    width_m: Annotated[float, q.LENGTH] | None = case_key("outer width", None, example=1.1)
-    height_m: Annotated[float, q.LENGTH] | None = case_key("outer height", None, example=1.0)
-    mass_kg: Annotated[float, q.MASS] | None = case_key("with its fill", None, example=2500.0)
-    centroid_m: Annotated[float, q.LENGTH] | None = case_key(
-        "height of the mass centre in the box", None, example=0.5
-    )
-    wall_m: Annotated[float, q.WALL] | None = case_key("wall thickness, shell only", None, example=0.008)
+    width_m: Annotated[float, q.LENGTH] | None = optional_key("outer width", 1.1)
+    height_m: Annotated[float, q.LENGTH] | None = optional_key("outer height", 1.0)
+    mass_kg: Annotated[float, q.MASS] | None = optional_key("with its fill", 2500.0)
+    centroid_m: Annotated[float, q.LENGTH] | None = optional_key("height of the mass centre in the box", 0.5)
+    wall_m: Annotated[float, q.WALL] | None = optional_key("wall thickness, shell only", 0.008)
     offset_m: Annotated[float, q.OFFSET] = case_key("along x, from the axis of the box below", 0.0)
 
 
@@ -69,14 +67,14 @@ class ContainerTable(CaseTable):
     joints: Literal["bolted", "loose"] = case_key(
         '"bolted" | "loose": boxes that stand on one another without bolts', "bolted"
     )
-    weight_N: Annotated[float, q.WEIGHT] | None = case_key(
-        "of one box with its fill; or mass_kg, or density_kg_m3", None, example=24525.0
+    weight_N: Annotated[float, q.WEIGHT] | None = optional_key(
+        "of one box with its fill; or mass_kg, or density_kg_m3", 24525.0
     )
-    mass_kg: Annotated[float, q.MASS] | None = case_key(
-        "of one box with its fill, in place of weight_N", None, example=2500.0
+    mass_kg: Annotated[float, q.MASS] | None = optional_key(
+        "of one box with its fill, in place of weight_N", 2500.0
     )
-    density_kg_m3: Annotated[float, q.DENSITY] | None = case_key(
-        "mean density of one box with its fill, in place of weight_N", None, example=2066.0
+    density_kg_m3: Annotated[float, q.DENSITY] | None = optional_key(
+        "mean density of one box with its fill, in place of weight_N", 2066.0
     )
     centroid_m: Annotated[float, q.LENGTH] = case_key(
         "height of the mass centre in the box; default: half the height",
@@ -85,8 +83,8 @@ class ContainerTable(CaseTable):
     eccentricity_m: Annotated[float, q.OFFSET] = case_key(
         "of the mass centre of every box from its axis, > 0: toward +x", 0.0
     )
-    wall_m: Annotated[float, q.WALL] | None = case_key(
-        "wall thickness, shell only", None, example=0.008, only=("section", "shell")
+    wall_m: Annotated[float, q.WALL] | None = optional_key(
+        "wall thickness, shell only", 0.008, only=("section", "shell")
     )
     wall_density_kg_m3: Annotated[float, q.WALL_DENSITY] = case_key(
         "density of the walls, shell only", 7850.0, only=("section", "shell")
@@ -102,21 +100,17 @@ class ContainerTable(CaseTable):
     )
     post_m: Annotated[
         tuple[Annotated[float, q.POST], Annotated[float, q.POST]] | None, BeforeValidator(_as_tuple)
-    ] = case_key(
+    ] = optional_key(
         "[width, wall] of the square hollow section at each of the four edges of a box, shell only",
-        None,
-        example=[0.12, 0.008],
+        [0.12, 0.008],
         only=("section", "shell"),
     )
-    corner_post_N: Annotated[float, q.CORNER_FORCE] | None = case_key(
+    corner_post_N: Annotated[float, q.CORNER_FORCE] | None = optional_key(
         "strength of the post above each bottom corner, of which two stand behind each other; default: on "
         "castings that of post_m, S355; else the wall yields",
-        None,
-        example=848e3,
+        848e3,
     )
-    mesh_file: str | None = case_key(
-        "a mesh to use in place of the structured one", None, example="container.msh"
-    )
+    mesh_file: str | None = optional_key("a mesh to use in place of the structured one", "container.msh")
 
     rules = CONTAINER_RULES
 
@@ -178,17 +172,15 @@ class SupportTable(CaseTable):
     )
 
     casting_m: Annotated[list[Annotated[float, q.CASTING]], Field(min_length=3, max_length=3)] | None = (
-        case_key(
+        optional_key(
             "[width, depth, inset from the side] of a corner casting, two behind each other; corners only",
-            None,
-            example=[0.162, 0.178, 0.0],
+            [0.162, 0.178, 0.0],
             only=("kind", "corners"),
         )
     )
-    casting_bears: Literal["plate", "edge"] | None = case_key(
+    casting_bears: Literal["plate", "edge"] | None = optional_key(
         '"plate" | "edge": over all its length, or at its outer edge; default: edge, plate where it is tilted',
-        None,
-        example="plate",
+        "plate",
         only=("kind", "corners"),
     )
     casting_tilt_m: Annotated[float, q.TILT] = case_key(
@@ -237,10 +229,8 @@ class ContactTable(CaseTable):
         0.0,
         only=("friction", "elastic-stick"),
     )
-    restitution_over_housner: Annotated[float, q.RESTITUTION] | None = case_key(
-        "factor on the angular velocity that an impact leaves, which on corners is Housner's",
-        None,
-        example=0.95,
+    restitution_over_housner: Annotated[float, q.RESTITUTION] | None = optional_key(
+        "factor on the angular velocity that an impact leaves, which on corners is Housner's", 0.95
     )
     damping_ratio: Annotated[float, q.CONTACT_DAMPING] = case_key(
         "c/(2 sqrt(k m)), the whole mass m on the spring k of one corner", USUAL_DASHPOT
@@ -268,23 +258,22 @@ class ContactTable(CaseTable):
 class JointsTable(CaseTable):
     """Contact between boxes that stand on one another without bolts; friction left out is as on the floor."""
 
-    mu_static: Annotated[float, q.FRICTION] | None = case_key(
-        "loose joints: of static friction; default: that of the floor", None, example=0.4
+    mu_static: Annotated[float, q.FRICTION] | None = optional_key(
+        "loose joints: of static friction; default: that of the floor", 0.4
     )
-    mu_kinetic: Annotated[float, q.FRICTION] | None = case_key(
-        "loose joints: of kinetic friction; default: that of the floor, at most mu_static", None, example=0.4
+    mu_kinetic: Annotated[float, q.FRICTION] | None = optional_key(
+        "loose joints: of kinetic friction; default: that of the floor, at most mu_static", 0.4
     )
-    weakening_m: Annotated[float, q.WEAKENING] | None = case_key(
-        "loose joints: slip over which mu_static falls; default: that of the floor", None, example=0.0
+    weakening_m: Annotated[float, q.WEAKENING] | None = optional_key(
+        "loose joints: slip over which mu_static falls; default: that of the floor", 0.0
     )
-    damping_ratio: Annotated[float, q.CONTACT_DAMPING] | None = case_key(
+    damping_ratio: Annotated[float, q.CONTACT_DAMPING] | None = optional_key(
         "loose joints: c/(2 sqrt(k m)), all boxes' mass m on the spring k of a corner on a rigid floor; default: 2",
-        None,
-        example=0.5,
+        0.5,
     )
 
-    bolt_capacity_N: Annotated[float, q.CORNER_FORCE] | None = case_key(
-        "bolted joints: tension that all bolts along one edge carry, as two twistlocks", None, example=500e3
+    bolt_capacity_N: Annotated[float, q.CORNER_FORCE] | None = optional_key(
+        "bolted joints: tension that all bolts along one edge carry, as two twistlocks", 500e3
     )
 
     @property
@@ -390,12 +379,12 @@ Mark = Annotated[Text, BeforeValidator(_as_text)]
 class DocumentTable(CaseTable):
     """What identifies the pages of a case; it is no part of the hash."""
 
-    project: Text = case_key("for every page", None, example="Store of chemicals, hall 3")
-    company: Text = case_key("for every page", None, example="Example Ltd")
-    number: Mark = case_key("of the document", None, example="2417-ST-03")
-    revision: Mark = case_key("of the document", None, example="A")
-    author: Text = case_key("who made it", None, example="A. Author")
-    checker: Text = case_key("who checked it", None, example="C. Checker")
+    project: Text = optional_key("for every page", "Store of chemicals, hall 3")
+    company: Text = optional_key("for every page", "Example Ltd")
+    number: Mark = optional_key("of the document", "2417-ST-03")
+    revision: Mark = optional_key("of the document", "A")
+    author: Text = optional_key("who made it", "A. Author")
+    checker: Text = optional_key("who checked it", "C. Checker")
 
 
 TABLES: dict[str, type[CaseTable]] = {

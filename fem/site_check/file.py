@@ -14,7 +14,7 @@ from fem.case import quantities as q
 from fem.case.case import Case
 from fem.case.data_files import as_named_from
 from fem.case.files import SITES, Origin
-from fem.case.table import CaseTable, case_key
+from fem.case.table import CaseTable, case_key, optional_key
 from fem.case.tables import DocumentTable
 from fem.case.toml import toml_document
 from fem.case.validation import CaseError
@@ -71,11 +71,11 @@ class SiteHeading(CaseTable):
     )
     title: Annotated[str, Field(max_length=500)] = case_key("for people", "")
     container: str = case_key("a case file beside this one, or a shipped case; its motion is not used")
-    empty_mass_kg: Annotated[float, q.MASS] | None = case_key(
-        "of one empty box; left out: full only", None, example=400.0
+    empty_mass_kg: Annotated[float, q.MASS] | None = optional_key(
+        "of one empty box; left out: full only", 400.0
     )
-    empty_centroid_m: Annotated[float, q.LENGTH] | None = case_key(
-        "height of the mass centre of an empty box; default: half its height", None, example=0.5
+    empty_centroid_m: Annotated[float, q.LENGTH] | None = optional_key(
+        "height of the mass centre of an empty box; default: half its height", 0.5
     )
     model: Literal["rigid", "reduced"] = case_key(
         '"rigid" | "reduced", of all runs; the deciding ones are repeated with "reduced"', "rigid"

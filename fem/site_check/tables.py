@@ -9,7 +9,7 @@ from pydantic import Field, Strict
 from fem.case import quantities as q
 from fem.case.problem import Rule, file_beside, one_of
 from fem.case.quantities import Quantity
-from fem.case.table import CaseTable, case_key
+from fem.case.table import CaseTable, case_key, optional_key
 from fem.seismic.artificial import LEAST_STATIONARY_S, MOST_STATIONARY_S
 from fem.seismic.floor import (
     LEAST_DAMPING,
@@ -121,17 +121,15 @@ class SiteTable(CaseTable):
         '| "second-generation": of the form of EN 1998-1-1:2024, S_alpha and S_beta given below',
         "EN1998-1",
     )
-    type: Annotated[int, Strict(), Quantity(least=1, most=2)] | None = case_key(
-        "of the spectrum, EN1998-1 only: 1, or 2 where the hazard is from magnitudes up to 5.5 (default 1)",
-        None,
-        example=1,
+    type: Annotated[int, Strict(), Quantity(least=1, most=2)] | None = optional_key(
+        "of the spectrum, EN1998-1 only: 1, or 2 where the hazard is from magnitudes up to 5.5 (default 1)", 1
     )
-    ground: str | None = case_key('"A" to "E"; DIN-NA-2011: "C-R" and the like', None, example="D")
-    zone: Annotated[int, Strict(), Quantity(least=1, most=3)] | None = case_key(
-        "DIN-NA-2011 only: 1, 2, 3", None, example=3
+    ground: str | None = optional_key('"A" to "E"; DIN-NA-2011: "C-R" and the like', "D")
+    zone: Annotated[int, Strict(), Quantity(least=1, most=3)] | None = optional_key(
+        "DIN-NA-2011 only: 1, 2, 3", 3
     )
-    reference_acceleration_m_s2: Annotated[float, REFERENCE] | None = case_key(
-        "a_gR on rock; DIN-NA-2011: from the zone", None, example=1.6
+    reference_acceleration_m_s2: Annotated[float, REFERENCE] | None = optional_key(
+        "a_gR on rock; DIN-NA-2011: from the zone", 1.6
     )
     importance_factor: Annotated[float, IMPORTANCE] = case_key("gamma_I (4.2.5)", 1.0)
     element_importance_factor: Annotated[float, IMPORTANCE] = case_key(
@@ -140,24 +138,20 @@ class SiteTable(CaseTable):
     topographic_factor: Annotated[float, TOPOGRAPHY] = case_key(
         "S_T near cliffs and on ridges (EN 1998-5:2004, Annex A)", 1.0
     )
-    soil_factor: Annotated[float, q.SOIL_FACTOR] | None = case_key("S, custom only", None, example=1.35)
-    corner_periods_s: Corners = case_key("[T_B, T_C, T_D], custom only", None, example=[0.2, 0.8, 2.0])
-    vertical_ratio: Annotated[float, VERTICAL_RATIO] | None = case_key(
-        "a_vg/a_g, custom and DIN-NA-2011; f_vh, second-generation", None, example=0.9
+    soil_factor: Annotated[float, q.SOIL_FACTOR] | None = optional_key("S, custom only", 1.35)
+    corner_periods_s: Corners = optional_key("[T_B, T_C, T_D], custom only", [0.2, 0.8, 2.0])
+    vertical_ratio: Annotated[float, VERTICAL_RATIO] | None = optional_key(
+        "a_vg/a_g, custom and DIN-NA-2011; f_vh, second-generation", 0.9
     )
-    vertical_corner_periods_s: Corners = case_key(
-        "of the vertical, custom only", None, example=[0.05, 0.15, 1.0]
-    )
+    vertical_corner_periods_s: Corners = optional_key("of the vertical, custom only", [0.05, 0.15, 1.0])
 
-    plateau_m_s2: Annotated[float, SPECTRAL] | None = case_key(
-        "S_alpha at the surface, site factors in it, second-generation only", None, example=6.32
+    plateau_m_s2: Annotated[float, SPECTRAL] | None = optional_key(
+        "S_alpha at the surface, site factors in it, second-generation only", 6.32
     )
-    one_second_m_s2: Annotated[float, SPECTRAL] | None = case_key(
-        "S_beta at the surface, second-generation only; T_C is S_beta/S_alpha", None, example=3.37
+    one_second_m_s2: Annotated[float, SPECTRAL] | None = optional_key(
+        "S_beta at the surface, second-generation only; T_C is S_beta/S_alpha", 3.37
     )
-    end_periods_s: Corners = case_key(
-        "[T_A, T_B, T_D], second-generation only", None, example=[0.02, 0.1, 2.0]
-    )
+    end_periods_s: Corners = optional_key("[T_A, T_B, T_D], second-generation only", [0.02, 0.1, 2.0])
     plateau_over_peak: Annotated[float, Quantity(above=1.0, below=10.0)] = case_key(
         "F_A, second-generation", 2.5
     )
@@ -201,11 +195,10 @@ class BuildingTable(CaseTable):
     building_period_s: Annotated[float, BUILDING_PERIOD] = case_key(
         "T_1 in the direction of the motion; it is varied by plus and minus 15 %", example=0.5
     )
-    storeys: Annotated[int, Strict(), Quantity(least=1, most=200)] | None = case_key(
+    storeys: Annotated[int, Strict(), Quantity(least=1, most=200)] | None = optional_key(
         "equal masses at equal heights, all modes up to 33 Hz; left out: one mode, good for low, stiff buildings "
         f"up to T_1 = {ONE_MODE_TO_S:g} s",
-        None,
-        example=5,
+        5,
     )
     kind: Literal["shear", "cantilever"] = case_key(
         '"shear": equal storeys | "cantilever": bending of one stiffness; with storeys', "shear"
@@ -243,19 +236,17 @@ class BuildingTable(CaseTable):
 class FloorSpectrumTable(CaseTable):
     """The spectrum of the floor on which the container stands, for the action of [site]; in place of [building]."""
 
-    period_s: SpectrumPoints = case_key("rising, from 0.05 s or less", None, example=[0.03, 0.2, 0.5, 4.0])
-    acceleration_m_s2: SpectrumPoints = case_key(
+    period_s: SpectrumPoints = optional_key("rising, from 0.05 s or less", [0.03, 0.2, 0.5, 4.0])
+    acceleration_m_s2: SpectrumPoints = optional_key(
         "pseudo-acceleration at 5 % damping at these periods; at the first the peak of the floor",
-        None,
-        example=[3.0, 9.0, 9.0, 0.4],
+        [3.0, 9.0, 9.0, 0.4],
     )
-    vertical_acceleration_m_s2: SpectrumPoints = case_key(
-        "vertical, at the same periods; left out: that of the ground", None, example=[2.0, 5.0, 1.5, 0.1]
+    vertical_acceleration_m_s2: SpectrumPoints = optional_key(
+        "vertical, at the same periods; left out: that of the ground", [2.0, 5.0, 1.5, 0.1]
     )
-    file: str | None = case_key(
+    file: str | None = optional_key(
         "in their place, columns period_s, acceleration_m_s2 and perhaps vertical_acceleration_m_s2",
-        None,
-        example="floor.csv",
+        "floor.csv",
     )
 
     rules = (
@@ -293,21 +284,18 @@ class MotionsTable(CaseTable):
         "0: none",
         1.0,
     )
-    files: list[list[str]] | None = case_key(
+    files: list[list[str]] | None = optional_key(
         "records: a list of horizontal, vertical and, for slip in two directions, second horizontal component",
-        None,
-        example=[["h1.at2", "v1.at2"]],
+        [["h1.at2", "v1.at2"]],
     )
-    unit: Literal["g", "m/s2", "cm/s2", "gal", "mm/s2"] | None = case_key(
-        "of records whose files do not state it", None, example="g"
+    unit: Literal["g", "m/s2", "cm/s2", "gal", "mm/s2"] | None = optional_key(
+        "of records whose files do not state it", "g"
     )
-    sample_interval_s: Annotated[float, Quantity(unit="s", above=0.0, most=1.0)] | None = case_key(
-        "of records of one column", None, example=0.01
+    sample_interval_s: Annotated[float, Quantity(unit="s", above=0.0, most=1.0)] | None = optional_key(
+        "of records of one column", 0.01
     )
-    allow_baseline: Literal[True] | None = case_key(
-        "true takes matched records of which the baseline changes a peak by more than 20 %",
-        None,
-        example=True,
+    allow_baseline: Literal[True] | None = optional_key(
+        "true takes matched records of which the baseline changes a peak by more than 20 %", True
     )
     scatter: Annotated[float, SCATTER] = case_key(
         "of motions about one strength in [hazard], of the logarithm: that of records, which artificial ones lack",
@@ -388,12 +376,11 @@ class HazardTable(CaseTable):
     """The hazard of the site, for the rate per year of overturning and of slip beyond the limit."""
 
     points: list[Annotated[list[Annotated[float, RATED]], Field(min_length=2, max_length=2)]] | None = (
-        case_key("return periods in years and a_gR in m/s2", None, example=[[475, 1.6], [2475, 3.0]])
+        optional_key("return periods in years and a_gR in m/s2", [[475, 1.6], [2475, 3.0]])
     )
-    file: str | None = case_key(
+    file: str | None = optional_key(
         "in their place, columns acceleration_m_s2 (a_gR) or velocity_m_s (peak, of the ground) and rate_per_year",
-        None,
-        example="hazard.csv",
+        "hazard.csv",
     )
     motions: Annotated[int, Strict(), Quantity(least=10, most=1000)] = case_key(
         "artificial motions at each of seven levels", 40
@@ -405,20 +392,20 @@ class HazardTable(CaseTable):
 class WindTable(CaseTable):
     """The wind, on the lightest container; not combined with the earthquake."""
 
-    peak_velocity_pressure_Pa: Annotated[float, WIND] | None = case_key(
-        "q_p at the top of the container", None, example=650.0
+    peak_velocity_pressure_Pa: Annotated[float, WIND] | None = optional_key(
+        "q_p at the top of the container", 650.0
     )
-    german_zone: Annotated[int, Strict(), Quantity(least=1, most=4)] | None = case_key(
-        "wind zone, in place of q_p: simplified pressure", None, example=2
+    german_zone: Annotated[int, Strict(), Quantity(least=1, most=4)] | None = optional_key(
+        "wind zone, in place of q_p: simplified pressure", 2
     )
     german_place: Literal["inland", "coast", "North Sea islands"] = case_key(
         '"inland" | "coast" | "North Sea islands"', "inland"
     )
-    terrain: Literal["0", "I", "II", "III", "IV"] | None = case_key(
-        "category of EN 1991-1-4, in place of q_p: with basic_velocity_m_s", None, example="II"
+    terrain: Literal["0", "I", "II", "III", "IV"] | None = optional_key(
+        "category of EN 1991-1-4, in place of q_p: with basic_velocity_m_s", "II"
     )
-    basic_velocity_m_s: Annotated[float, Quantity(unit="m/s", above=0.0, most=60.0)] | None = case_key(
-        "v_b, with terrain", None, example=25.0
+    basic_velocity_m_s: Annotated[float, Quantity(unit="m/s", above=0.0, most=60.0)] | None = optional_key(
+        "v_b, with terrain", 25.0
     )
     gamma_mu: Annotated[float, GAMMA_MU] = case_key("partial factor on friction under wind", 1.0)
 
