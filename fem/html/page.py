@@ -21,12 +21,13 @@ from markupsafe import Markup, escape
 
 from fem.html.drawing import require_drawing
 from fem.html.sections import Block
+from fem.results.json_block import JsonBlock
 
 TEMPLATES = "templates"
 
 
 @dataclass(frozen=True, kw_only=True)
-class Signature:
+class Signature(JsonBlock):
     """Project and persons of a page; may be filled in later."""
 
     project: str = ""

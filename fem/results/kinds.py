@@ -24,7 +24,7 @@ class ResultKind:
     article: str = "a"
     subject: str  #: what two requests differ in, such as "case"
     mark: str  #: name of the JSON file that marks the folder
-    request: str  #: its key that holds the hash of what was asked
+    request: str = "asked"  #: its key that holds the hash of what was asked
     results: str  #: where to look for the numbers
     #: patterns of the files that are removed before a new result is computed; nothing else ever is
     own: tuple[str, ...]
@@ -89,7 +89,6 @@ ENSEMBLE = ResultKind(
     article="an",
     subject="ensemble",
     mark="ensemble.json",
-    request="asked",
     results="points.csv, draws.csv",
     own=(
         "points.csv",
@@ -107,7 +106,6 @@ RESPONSE = ResultKind(
     name="response curve",
     subject="response curve",
     mark="response.json",
-    request="asked",
     results="response.csv",
     own=("response.csv", "sections.csv", "portraits.csv", "case.toml", "state.npz", "figures/*.svg"),
     temporary=("state.npz",),
@@ -116,7 +114,6 @@ SITE = ResultKind(
     name="verification at a site",
     subject="site",
     mark="assess.json",
-    request="asked",
     results="assess.json",
     own=(
         "runs.csv",
@@ -132,7 +129,6 @@ SIZE = ResultKind(
     name="size study",
     subject="size",
     mark="size.json",
-    request="asked",
     results="size.json",
     own=("runs.csv", "site.toml", "container.toml", "figures/size.svg"),
 )
@@ -140,7 +136,6 @@ HALL = ResultKind(
     name="hall",
     subject="hall",
     mark="hall.json",
-    request="asked",
     results="hall.csv",
     own=(
         "hall.csv",

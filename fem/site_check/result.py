@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from fem.batch.study import StudyResult
+from fem.html.page import Signature
 from fem.results import figures
 from fem.results.json_block import JsonBlock
 from fem.runtime import units
@@ -409,18 +410,6 @@ class SiteInputs(JsonBlock):
 
 
 @dataclass(frozen=True, kw_only=True)
-class SiteDocument(JsonBlock):
-    """The identification of the page, as [document] of a case."""
-
-    project: str = ""
-    company: str = ""
-    number: str = ""
-    revision: str = ""
-    author: str = ""
-    checker: str = ""
-
-
-@dataclass(frozen=True, kw_only=True)
 class SiteProvenance(JsonBlock):
     """What is needed to compute it again."""
 
@@ -447,4 +436,4 @@ class SiteResult(StudyResult):
     result: SiteAnswer
     methods: tuple[SiteMethod, ...] = ()
     provenance: SiteProvenance
-    document: SiteDocument | None = None
+    document: Signature | None = None  #: [document] of the site file

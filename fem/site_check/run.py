@@ -17,6 +17,7 @@ from fem.batch.log import LoggedRuns
 from fem.batch.runner import Runner
 from fem.batch.study import COMPLETED, INTERRUPTED, Study, StudyOptions, hash_of, run_study
 from fem.case.case import case_hash
+from fem.html.page import Signature
 from fem.results.disk import BYTES_BESIDE, table_bytes
 from fem.results.folder import ResultFolder
 from fem.results.kinds import SITE
@@ -43,7 +44,6 @@ from fem.site_check.result import (
     MotionSet,
     SiteAnswer,
     SiteBody,
-    SiteDocument,
     SiteProvenance,
     SiteResult,
     SiteRun,
@@ -243,7 +243,7 @@ class _Verification:
                 system=f"{platform.system()} {platform.release()}, {platform.machine()}",
                 wall_s=time.perf_counter() - self.began,
             ),
-            document=None if document is None else SiteDocument(**document),
+            document=None if document is None else Signature(**document),
         )
 
     def _missing(self) -> str:

@@ -30,7 +30,6 @@ from fem.site_check.result import (
     SetCheck,
     SiteAnswer,
     SiteBody,
-    SiteDocument,
     SiteMotion,
     SiteResult,
 )
@@ -75,7 +74,7 @@ def site_report(
     """
     result = result or read_study(folder, SITE, SiteResult)
     signing = SIGNING if result.state == "finished" else ()
-    view, document = site_sections.SiteView(result=result), asdict(result.document or SiteDocument())
+    view, document = site_sections.SiteView(result=result), asdict(result.document or Signature())
     motions = [
         site_sections.DrawnMotion(
             motion, motion_figure(folder, motion, result) if motion.number <= MOST_DRAWN else None
