@@ -12,14 +12,14 @@ from typing import Annotated, Any
 from pydantic import Field, Strict
 
 from fem.batch import study_file
-from fem.batch.axes import MOTION_FILE, Axis, AxisError, check_varied, first_motion, read_axis
+from fem.batch.axes import Axis, AxisError, check_varied, first_motion, read_axis
 from fem.batch.derived import FREE, Derived, read_derived
 from fem.case.files import DEFAULT_CASE, ENSEMBLES, Origin
 from fem.case.quantities import SLIP_LIMIT
 from fem.case.tables import CaseTable
 from fem.case.validation import CaseError
 from fem.ensemble.distributions import RandomChoice, RandomQuantity, Sampling, read_random
-from fem.ensemble.plan import Ensemble, Unknown
+from fem.ensemble.plan import Ensemble, Unknown, sets_among
 from fem.runtime.intervals import least_draws
 
 TABLES = ("set", "axes", "random", "derived")
@@ -71,11 +71,7 @@ def _read(data: Mapping[str, Any], origin: Origin) -> Ensemble:
     heading = study_file.read_as("", EnsembleHeading, heading_keys)
     axes = study_file.read_axes(tables.get("axes", {}), MOST_AXES, EXAMPLE, _axis)
     random = _random(tables.get("random", {}), axes)
-    sets = [
-        quantity.axis
-        for quantity in random
-        if isinstance(quantity, RandomChoice) and quantity.key == MOTION_FILE
-    ]
+    sets = sets_among(random)
     base = study_file.base_case(
         heading.case, tables.get("set", {}), origin, first_motion(sets), [axis.key for axis in axes]
     )

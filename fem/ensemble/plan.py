@@ -1,7 +1,7 @@
 """An ensemble: points on one to three axes, and at each the draws of what is random."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Literal, NamedTuple, Self
@@ -28,6 +28,12 @@ class Draw(NamedTuple):
     values: tuple[Any, ...]  #: of the random quantities, relative ones as factors
     unknown: Mapping[str, Value] = {}  #: of the unknown inputs, by key
     following: Mapping[str, str | None] = {}  #: keys that its motion sets, of a set
+
+
+def sets_among(random: Iterable[RandomQuantity | RandomChoice]) -> list[Axis]:
+    """The set of motions among what is random, as a list of one or none."""
+    choices = (quantity for quantity in random if isinstance(quantity, RandomChoice))
+    return [choice.axis for choice in choices if choice.key == MOTION_FILE]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -63,12 +69,7 @@ class Ensemble:
     @property
     def motions(self) -> Axis | None:
         """The set of motions that are drawn; None where there is one motion."""
-        sets = (
-            quantity.axis
-            for quantity in self.random
-            if isinstance(quantity, RandomChoice) and quantity.key == MOTION_FILE
-        )
-        return next(sets, None)
+        return next(iter(sets_among(self.random)), None)
 
     def draws_at(self, cell: int) -> list[Draw]:
         """The draws of a point; each motion of a set is drawn equally often, and is a replicate."""

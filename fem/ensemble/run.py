@@ -12,7 +12,7 @@ from typing import Any, Unpack
 
 import numpy as np
 
-from fem.batch.axes import Axis, AxisResult
+from fem.batch.axes import AxisResult
 from fem.batch.log import LoggedRuns
 from fem.batch.motion_set import (
     FloorMotionPair,
@@ -29,7 +29,7 @@ from fem.case.rules import ends_at_rest, longest_time
 from fem.ensemble.answers import ensemble_answer
 from fem.ensemble.distributions import RandomChoice
 from fem.ensemble.figures import ensemble_figures
-from fem.ensemble.plan import Draw, Ensemble
+from fem.ensemble.plan import Draw, Ensemble, sets_among
 from fem.ensemble.result import EnsembleResult
 from fem.ensemble.statistics import POINT_COLUMNS, PointRow, count_point, fragility_of
 from fem.ensemble.unknown import UnknownInputs
@@ -53,7 +53,7 @@ class DrawRows:
     def __init__(self, ensemble: Ensemble, unknown: UnknownInputs) -> None:
         self._ensemble, self._unknown = ensemble, unknown
         #: keys that follow the motion of a draw
-        self._following = [key for axis in sets_of(ensemble) for key in axis.following]
+        self._following = [key for axis in sets_among(ensemble.random) for key in axis.following]
         keys = [f"{quantity.key}{' factor' if quantity.relative else ''}" for quantity in ensemble.random]
         keys += self._following
         numbers: Columns = dict.fromkeys(("point", "draw", "replicate"), int)
@@ -107,7 +107,7 @@ def draw_row(row: Row) -> Row:
 def run_ensemble(ensemble: Ensemble, *, folder: Path, **options: Unpack[StudyOptions]) -> EnsembleResult:
     """Compute an ensemble into a folder; raises as `run_study`, and CaseError for bad input."""
     with runner_of(**options) as reader:
-        motions = read_motion_set(ensemble.base, sets_of(ensemble), reader)
+        motions = read_motion_set(ensemble.base, sets_among(ensemble.random), reader)
         options["workers_of"] = reader.workers_of
         request = ensemble_hash(ensemble, [motion.case_hash for motion in motions])
         unknown = UnknownInputs(ensemble)
@@ -212,17 +212,12 @@ def ensemble_hash(ensemble: Ensemble, motions: Sequence[str] | None = None) -> s
         "derived": [[derived.key, derived.expression.text] for derived in ensemble.derived],
     }
     if motions is None:
-        motions = [case_hash(case) for case in motion_cases(ensemble.base, sets_of(ensemble))]
+        motions = [case_hash(case) for case in motion_cases(ensemble.base, sets_among(ensemble.random))]
     if motions:
         request["motions"] = list(motions)
     if ensemble.limit_slip_m is None:
         return hash_of(request | _counted(ensemble))
     return hash_of(request | _counted(ensemble) | {"limit_slip_m": ensemble.limit_slip_m})
-
-
-def sets_of(ensemble: Ensemble) -> list[Axis]:
-    """The set of motions that is drawn, as a list of one or none."""
-    return [] if ensemble.motions is None else [ensemble.motions]
 
 
 def _counted(ensemble: Ensemble) -> dict[str, Any]:

@@ -153,40 +153,33 @@ def _rows(
 ) -> list[MethodRow]:
     """Overturning and sliding under a static acceleration [m/s2], `lift` reducing gravity."""
     block = body.block
-    gravity = max(block.gravity - lift, 0.0)
-    less, less_put_in = (
-        ("(g − m a_v)", f"({block.gravity:g} − {lift_put_in})")
-        if lift_put_in
-        else (
-            "g",
-            f"{block.gravity:g}",
-        )
-    )
+    gravity, less, less_put_in = max(block.gravity - lift, 0.0), "g", f"{block.gravity:g}"
+    if lift_put_in:
+        less, less_put_in = "(g − m a_v)", f"({block.gravity:g} − {lift_put_in})"
+    sides = f"{block.half_width:.4g} / {block.centroid_height:.4g}"
     return [
         MethodRow(
             name=name,
-            quantity=MethodQuantity.OVERTURNING,
-            formula=f"{symbol} ≤ {less} b/h",
-            numbers=f"{put_in} ≤ {less_put_in} × {block.half_width:.4g} / {block.centroid_height:.4g}",
+            quantity=quantity,
+            formula=f"{symbol} ≤ {less} {resistance}",
+            numbers=f"{put_in} ≤ {less_put_in} × {numbers}",
             demand=acceleration,
-            capacity=gravity * body.slenderness,
+            capacity=gravity * share,
             unit="m/s²",
-            says=_says(acceleration, gravity * body.slenderness, "stands", "uplifts"),
+            says=_says(acceleration, gravity * share, *words),
             source=source,
             validity=validity,
-        ),
-        MethodRow(
-            name=name,
-            quantity=MethodQuantity.SLIDING,
-            formula=f"{symbol} ≤ {less} μ_s",
-            numbers=f"{put_in} ≤ {less_put_in} × {body.mu_static:.4g}",
-            demand=acceleration,
-            capacity=gravity * body.mu_static,
-            unit="m/s²",
-            says=_says(acceleration, gravity * body.mu_static, "does not slide", "slides"),
-            source=source,
-            validity=validity,
-        ),
+        )
+        for quantity, resistance, numbers, share, words in (
+            (MethodQuantity.OVERTURNING, "b/h", sides, body.slenderness, ("stands", "uplifts")),
+            (
+                MethodQuantity.SLIDING,
+                "μ_s",
+                f"{body.mu_static:.4g}",
+                body.mu_static,
+                ("does not slide", "slides"),
+            ),
+        )
     ]
 
 

@@ -90,7 +90,6 @@ def run_site(
         stages=stages,
         bodies=bodies,
         ground=ground,
-        floors=floors,
         wind=wind_utilisation(bodies, inputs_of(request)),
         digest=digest,
         quick=quick,
@@ -137,7 +136,6 @@ class _Verification:
     stages: Stages
     bodies: tuple[SiteBody, ...]
     ground: Sequence[GroundMotion]  #: motions of the set
-    floors: Mapping[float | None, Sequence[GroundMotion]]  #: by building period
     wind: float | None  #: the largest utilisation under it
     digest: str  #: of the request
     quick: bool
@@ -157,7 +155,7 @@ class _Verification:
         if self.copy_records:
             copy_files(self.request, place.path)
             motions = replace(motions, notes=(*motions.notes, *left_elsewhere(self.request)))
-        for period, moved in self.floors.items():
+        for period, moved in self.stages.floors.items():
             for number, motion in enumerate(moved, start=1):
                 if period is not None:
                     write_csv_files(place.path, motion, motion_stem(number, period))
@@ -209,7 +207,7 @@ class _Verification:
         own = rows.of(self.stages.plan.of_set())
         missing = None if answer else self._missing()
         action = action_result(request.action, checked)
-        floor = floor_result(request, self.floors, checked)
+        floor = floor_result(request, self.stages.floors, checked)
         document = request.document.model_dump(exclude_none=True) if request.document else None
         return SiteResult(
             status=COMPLETED if answer else INTERRUPTED,

@@ -176,12 +176,12 @@ class SiteTable(CaseTable):
         Rule(
             "site.corner_periods_s",
             lambda site: _rising(site.corner_periods_s),
-            lambda site: f"must rise, got {site.corner_periods_s}",
+            "must rise, got {corner_periods_s}",
         ),
         Rule(
             "site.vertical_corner_periods_s",
             lambda site: _rising(site.vertical_corner_periods_s),
-            lambda site: f"must rise, got {site.vertical_corner_periods_s}",
+            "must rise, got {vertical_corner_periods_s}",
         ),
     )
 
