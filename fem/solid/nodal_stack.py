@@ -17,7 +17,6 @@ from contact.jit import compiled
 from contact.stepping import body as interface
 from contact.stepping import stack_body
 from contact.stepping.body import State, implements
-from contact.stepping.integrator import advance, enter_floor_frame
 from contact.stepping.links import LinkedBody
 from contact.stepping.loose_stack import LooseStack
 from contact.stepping.scheme import Scheme
@@ -27,7 +26,7 @@ from contact.structs import struct
 from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid import nodal_kernels
 from fem.solid.nodal_body import FullBody, rotation_matrix
-from fem.solid.nodal_kernels import SOURCES, NodalBody
+from fem.solid.nodal_kernels import SOURCES, NodalBody, advance_nodal, enter_floor_frame_nodal
 from fem.solid.reduction import StaticResponse
 
 #: factors of a box, the same for equal boxes
@@ -64,8 +63,6 @@ def prepared(stack: NodalStack, step: float) -> bool:
     return ready
 
 
-advance_nodal_stack = compiled(advance, sources=SOURCES)
-enter_floor_frame_nodal_stack = compiled(enter_floor_frame, sources=SOURCES)
 complete_nodal_stack = compiled(complete_compiled.py_func, sources=SOURCES)
 
 
@@ -117,11 +114,11 @@ class FullStack:
 
     def advance(self, run: RunState, until: float) -> int:
         """`contact.stepping.integrator.advance` with the factors there are."""
-        return int(advance_nodal_stack(self._linked, run, until))
+        return int(advance_nodal(self._linked, run, until))
 
     def leave_alone(self, run: RunState, floor_velocity: float, lift_velocity: float) -> None:
         """`contact.stepping.integrator.enter_floor_frame`."""
-        enter_floor_frame_nodal_stack(self._linked, run, floor_velocity, lift_velocity)
+        enter_floor_frame_nodal(self._linked, run, floor_velocity, lift_velocity)
 
     @property
     def _linked(self) -> LooseStack | LinkedBody:
