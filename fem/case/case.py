@@ -39,10 +39,10 @@ from fem.case.tables import (
     SolverTable,
     StaticTable,
     SupportTable,
+    UncertaintyTable,
     VerticalTable,
 )
 from fem.case.toml import toml_document
-from fem.case.uncertainty_table import UncertaintyTable
 from fem.case.unknown_inputs import excluded_values
 from fem.case.validation import CaseError, problem_lines, read_case_tables
 from fem.records.columns import given_record, written

@@ -22,8 +22,8 @@ from fem.batch.study import COMPLETED, FAILED, INTERRUPTED, Study, StudyOptions,
 from fem.batch.table import fields_of, line_of, read_lines, table_of_lines
 from fem.case.case import case_hash
 from fem.case.rules import ends_at_rest, longest_time
+from fem.case.tables import UncertaintyTable
 from fem.case.toml import toml_document
-from fem.case.uncertainty_table import UncertaintyTable
 from fem.case.validation import CaseError
 from fem.results.disk import BYTES_BESIDE, table_bytes
 from fem.results.folder import ResultFolder

@@ -16,9 +16,15 @@ from fem.html.page import Page, html_of
 from fem.html.sections import PageSection
 from fem.results.errors import FolderError
 from fem.results.files import to_json
-from fem.site_check.answer_words import bolts_in_words, confirmation
 from fem.site_check.result import RESULT_FILE, FloorResult, SiteResult
-from fem.site_check.site_page import answer_section, site_report, site_rows, spectra_section
+from fem.site_check.site_page import (
+    answer_section,
+    bolts_in_words,
+    confirmation,
+    site_report,
+    site_rows,
+    spectra_section,
+)
 from fem.site_check.site_sections import SiteView, runs_section
 
 ANSWERS = {
