@@ -88,6 +88,7 @@ def simulate(
     stop: Callable[[], bool] = lambda: False,
     save: Callable[[Progress, bool], None] | None = None,
     progress: Progress = BEGINNING,
+    slice_s: float | None = None,
 ) -> SimulationEnd:
     """Step a model to its end; the recorder takes the samples.
 
@@ -98,6 +99,8 @@ def simulate(
         save: called there, too, and may save the state; its second argument is true where the simulation ends
             unfinished.
         progress: of the simulation that is resumed.
+        slice_s: length of a slice of a modal model [s]; default: `SLICE_REDUCED`. What fills the arrays of samples ends
+            it, too.
     """
     reporter = reporter or SilentReporter()
     full = model.case.solver.model == "full"
@@ -121,7 +124,8 @@ def simulate(
             return ended("interrupted")
         if progress.slice is None:
             part, until = _part_of(model)
-            ahead = AFTERMATH_SLICE if part != DRIVEN else SLICE_FULL if full else SLICE_REDUCED
+            usual = SLICE_FULL if full else slice_s or SLICE_REDUCED
+            ahead = usual if part == DRIVEN else AFTERMATH_SLICE
             target = float(clock.next_look) if part == FREE else float(clock.time) + ahead
             if part == UNDECIDED and progress.undriven is None:
                 undriven = _leave_alone(model, run, recorder)
