@@ -44,12 +44,13 @@ class ChangedRunsFile:
             return []
 
     def store(self, runs: Sequence[ChangedRun]) -> None:
-        """Store the finished runs.
+        """Store the finished runs, in an order that does not depend on which were finished first.
 
         Raises:
             OSError: the file cannot be written, or the folder was lost.
         """
-        self._write(to_json(self._owner | {"members": [run.to_json() for run in runs]}))
+        ordered = sorted(runs, key=lambda run: repr(key_of(run.values)))
+        self._write(to_json(self._owner | {"members": [run.to_json() for run in ordered]}))
 
 
 def key_of(values: Mapping[str, Value] | None) -> tuple[tuple[str, Value], ...]:

@@ -15,6 +15,7 @@ import fem.run.simulation
 from fem.__main__ import main
 from fem.case.case import case_hash
 from fem.results.kinds import read_result
+from fem.results.run_result import ChangedRun
 from fem.run import changed_runs
 from fem.run.changed_runs_file import ChangedRunsFile
 
@@ -135,3 +136,17 @@ def test_a_band_that_cannot_be_stored_ends_at_once(tmp_path, monkeypatch):
     assert main(command(tmp_path / "r", "solver.model=rigid")) == 3
     assert len(begun) == 1
     assert read_result(tmp_path / "r" / "run.json")["status"] == "completed"
+
+
+def test_the_file_of_members_does_not_depend_on_which_were_finished_first(tmp_path):
+    members = [
+        ChangedRun(kind="one", values=values, status="completed", outcome="rock")
+        for values in ({"contact.mu_static": 0.3}, {"support.kind": "flat"}, {"contact.mu_static": 0.44})
+    ]
+    texts = []
+    for order in (members, members[::-1]):
+        file = ChangedRunsFile(tmp_path / "m.json", case_hash="h", write=texts.append, message=print)
+        file.store(order)
+    assert texts[0] == texts[1]
+    (tmp_path / "m.json").write_text(texts[0], encoding="utf-8")
+    assert sorted(map(repr, file.read())) == sorted(map(repr, members))
