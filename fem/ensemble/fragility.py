@@ -102,7 +102,7 @@ def misses(curve: Lognormal, strengths: FloatArray, low: FloatArray, high: Float
 
 def misses_by_chance(levels: int, confidence: float) -> int:
     """Levels that miss a true curve, at most, in nineteen of twenty such studies."""
-    # not from `scipy.stats`, whose import takes as long as fifty runs of a site
+    # not from `scipy.stats`, whose import takes as long as twenty runs of a site
     return int(np.argmax(bdtr(np.arange(levels + 1), levels, 1.0 - confidence) >= 0.95))
 
 

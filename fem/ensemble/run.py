@@ -111,8 +111,8 @@ def run_ensemble(ensemble: Ensemble, *, folder: Path, **options: Unpack[StudyOpt
         options["workers_of"] = reader.workers_of
         request = ensemble_hash(ensemble, [motion.case_hash for motion in motions])
         unknown = UnknownInputs(ensemble)
-        chosen = ensemble.copy_motions
-        copied = motions if (ensemble.replicates <= MOST_COPIED if chosen is None else chosen) else ()
+        few = ensemble.replicates <= MOST_COPIED
+        copied = motions if ensemble.copy_motions or (ensemble.copy_motions is None and few) else ()
         begun = begun_result(ensemble, unknown, motions, request)
         study = Study(
             kind=ENSEMBLE,

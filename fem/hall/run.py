@@ -84,7 +84,9 @@ def run_hall(
             checks=checks,
         )
         size = study.size + 2.0 * table_bytes(len(hall.items), len(RUN_COLUMNS))
-        study = replace(study, size=size, cases=[] if pairs else [base], motions=[one.case for one in pairs])
+        study = replace(
+            study, size=size, cases=[] if pairs else [base], motions=[pair.case for pair in pairs]
+        )
         return run_study(study, folder, **options)
 
 

@@ -144,21 +144,24 @@ class _AtSite:
             row = row_of(COLUMNS, line)
             self.rows[row["container"]] = row
 
-        def verified(missing: Sequence[int]) -> Iterator[tuple[list[int], list[Row]]]:
+        def missing() -> Iterator[list[int]]:
+            yield [k for k in numbers if k not in self.rows]
+
+        def verified(left: Sequence[int]) -> Iterator[tuple[list[int], list[Row]]]:
             """The rows of these containers, one after another, until it is interrupted."""
-            for done, k in enumerate(missing):
+            for done, k in enumerate(left):
                 if runner.stop():
                     return
                 request = self.request(hall.values[k], names[k])
-                if done == 0 and len(missing) > 1:
-                    _say_expected(len(missing), request, runner)
+                if done == 0 and len(left) > 1:
+                    _say_expected(len(left), request, runner)
                 runner.reporter.message(f"container {k + 1} of {len(numbers)} at the site")
                 if (row := self._row_of(request, results.path / folders[k], runner)) is None:
                     return
                 yield [k], [dict.fromkeys(COLUMNS) | row]
 
         log = LoggedRows[int](path=results.path / SITES, columns=COLUMNS, key=lambda k: (k,), note=note)
-        log.compute(runner, ([k for k in numbers if k not in self.rows] for _ in range(1)), verified)
+        log.compute(runner, missing(), verified)
         if len(self.rows) < len(numbers):
             words = f"{len(self.rows)} of {len(numbers)} containers are verified"
             return replace(begun, status=INTERRUPTED, missing=words)

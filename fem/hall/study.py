@@ -106,7 +106,7 @@ def written(
         tag["margin"] = min(filter(None, (tag["margin"], row["margin"])), default=None)
     result = replace(
         begun,
-        status=FAILED if {one.row["status"] for one in found} == {FAILED} else COMPLETED,
+        status=FAILED if {container.row["status"] for container in found} == {FAILED} else COMPLETED,
         outcomes=dict(sorted(outcomes.items())),
         tags=tuple(tag for _, tag in sorted(tags.items())) if {*tags} != {""} else (),
         table=table,

@@ -71,8 +71,11 @@ def caption(run: OpenedRun, frame: Frame) -> tuple[str, str]:
 
 def symbols(frame: Frame) -> str:
     """Meaning of the symbols on the floor."""
-    pressure = rounded(1e-6 * float(frame.contact_pressure.max()))
-    return f"▲ initial middle of the base    ↑ contact pressure, up to {pressure} MPa"
+    highest = 1e-6 * float(frame.contact_pressure.max())
+    arrows = (
+        f"↑ contact pressure, up to {rounded(highest)} MPa" if highest > 0.0 else "no contact at this instant"
+    )
+    return f"▲ initial middle of the base    {arrows}"
 
 
 class Captions:

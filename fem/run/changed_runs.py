@@ -176,6 +176,7 @@ def _run_changed(run: Model, change: InputChange, shared: Shared, stop: Callable
         same_load = model.container is run.container and case.floor.slope == run.case.floor.slope
         joints = shared.joints if same_load or shared.joints is None else joints_of(model)
         recorder = Recorder(model, recovery, joints=joints)
+        # to drain a rigid run every second takes longer than to step it
         ending = simulate(model, recorder, stop=stop, slice_s=model.duration if shared.short else None)
     # bad input, no equilibrium, a singular matrix
     except (ValueError, ArithmeticError, RuntimeError) as problem:

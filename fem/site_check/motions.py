@@ -70,7 +70,7 @@ def ground_motions(
     _require_independent(records)
     if table.source == "floor":
         return records
-    # loaded where it is used: its import of scipy.signal takes as long as fifty runs
+    # loaded where it is used: its import of scipy.signal takes as long as thirty runs
     matched = importlib.import_module("fem.seismic.matched")
     fitted: list[GroundMotion] = (
         matched.scaled_records(records, target, longest=longest)

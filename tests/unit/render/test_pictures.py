@@ -13,7 +13,7 @@ import fem.render.movie
 from fem import __main__ as command_line
 from fem.case.case import load_case
 from fem.render import opengl as rendering
-from fem.render.caption import caption
+from fem.render.caption import caption, symbols
 from fem.render.movie import Cut, write_movie
 from fem.render.picture import Scene, time_of_largest_rotation, write_picture
 from fem.render.scene import BOTTOM, View, summarise_frames
@@ -137,6 +137,7 @@ class TestScene:
         free = dataclasses.replace(frame, contact_pressure=np.zeros(len(frame.points)))
         grey = colour_of(scene.image(free), below)
         assert np.ptp(grey) < 30.0
+        assert "up to" in symbols(frame) and "no contact at this instant" in symbols(free)
 
     def test_the_same_frame_gives_the_same_picture(self, run, scene):
         first, other = run.fields.frame(3), run.fields.frame(9)
