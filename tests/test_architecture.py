@@ -23,6 +23,7 @@ LAYERS = (
     ("fem.runtime",),
     ("fem.records",),
     ("fem.seismic",),
+    ("fem.case.tables",),
     ("fem.case",),
     ("fem.results",),
     ("fem.solid",),

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from fem.case.case import Case
-from fem.case.links import StopTable, faced_by, holder_of
-from fem.case.neighbours import gap_beside, places_of
+from fem.case.tables.links import StopTable, faced_by, holder_of
+from fem.case.tables.neighbours import gap_beside, places_of
 from fem.model.tied_capacity import side_of
 from fem.runtime.arrays import FloatArray, IntArray
 

@@ -7,8 +7,8 @@ The bolts along an edge must carry its tension all together, and more where they
 import numpy as np
 from numpy.typing import NDArray
 
-from fem.case.boxes import shared_face
 from fem.case.columns import JOINTS
+from fem.case.tables.boxes import shared_face
 from fem.model.model import Model
 from fem.results.history import History
 from fem.results.run_result import JointDemand

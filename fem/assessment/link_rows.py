@@ -1,8 +1,8 @@
 """Stops, ties and neighbours of a case in words, without a model."""
 
 from fem.case.case import Case
-from fem.case.links import StopTable, TieTable, faced_by, name_of
-from fem.case.neighbours import NeighbourTable
+from fem.case.tables.links import StopTable, TieTable, faced_by, name_of
+from fem.case.tables.neighbours import NeighbourTable
 
 
 def link_rows(case: Case) -> list[tuple[str, str]]:

@@ -3,7 +3,7 @@
 import math
 
 from fem.assessment.loose_boxes import leaning_in_words
-from fem.case.links import TieTable, faced_by, name_of
+from fem.case.tables.links import TieTable, faced_by, name_of
 from fem.model.links import heights_of_links
 from fem.model.model import Model
 from fem.results.outcome import SLIDING, Outcome

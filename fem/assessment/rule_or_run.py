@@ -9,7 +9,8 @@ from collections.abc import Sequence
 from fem.assessment.link_words import fall_in_row
 from fem.assessment.loose_boxes import largest_joint_slip, limits
 from fem.assessment.sureness import below_uplift, rests_on_stiff_floor
-from fem.case.unknown_inputs import MU_KINETIC, STRIBECK, WEAKENING, WORDS, in_words
+from fem.case.tables.input_keys import MU_KINETIC, STRIBECK, WEAKENING
+from fem.case.tables.unknown_inputs import WORDS, in_words
 from fem.results.outcome import ROCKING, SLIDING, Outcome
 from fem.results.run_result import ChangedRun, RunResult, StaticResult, Verdict
 

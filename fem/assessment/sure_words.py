@@ -17,7 +17,7 @@ from fem.assessment.sureness import (
     stands,
     static_use,
 )
-from fem.case.unknown_inputs import WORDS, in_words, value_in_words
+from fem.case.tables.unknown_inputs import WORDS, in_words, value_in_words
 from fem.results.figures import FIGURES, SLIPPED, TURNED
 from fem.results.outcome import ROCKING, SLIDING, Ending, Outcome
 from fem.results.run_result import Band, ChangedRun, RunResult, Verdict

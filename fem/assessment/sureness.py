@@ -13,8 +13,9 @@ from typing import Any
 
 import numpy as np
 
+from fem.case.tables.input_keys import TOLERANCE
+from fem.case.tables.unknown_inputs import INPUTS
 from fem.case.uncertainty import InputChange
-from fem.case.unknown_inputs import INPUTS, TOLERANCE
 from fem.results.figures import BOX_FIGURES, FELL_FIRST, Place, RunFigures, keys_of
 from fem.results.outcome import ENDINGS, ROCKING, Ending, Outcome
 from fem.results.run_result import Band, BoxReach, ChangedRun, RunResult, StaticResult, Verdict

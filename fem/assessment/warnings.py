@@ -13,8 +13,8 @@ from fem.assessment.sure_words import sureness_in_words
 from fem.assessment.sureness import UNSURE
 from fem.assessment.verdict import GAIN_LIMIT, LOSS_LIMIT, LOSS_SHARE_LIMIT
 from fem.case.case import Case
-from fem.case.rules import MOST_FREE_MOTION, ends_at_rest, longest_time
-from fem.case.unknown_inputs import in_words
+from fem.case.tables.duration import MOST_FREE_MOTION, ends_at_rest, longest_time
+from fem.case.tables.unknown_inputs import in_words
 from fem.results import run_result
 from fem.results.outcome import Outcome
 

@@ -6,9 +6,9 @@ from typing import Any
 from pydantic import ValidationError
 
 from fem.case.case import Case
-from fem.case.links import ROWS
 from fem.case.overrides import keys_in_effect, with_overrides
-from fem.case.tables import TABLES
+from fem.case.tables.all_tables import TABLES
+from fem.case.tables.links import ROWS
 
 
 class CaseMaker:

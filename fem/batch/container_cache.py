@@ -6,8 +6,8 @@ from concurrent.futures import Future
 from weakref import WeakKeyDictionary
 
 from fem.case.case import Case
-from fem.case.links import holder_of
-from fem.case.neighbours import OWN
+from fem.case.tables.links import holder_of
+from fem.case.tables.neighbours import OWN
 from fem.model.container import Container, changed_container, discretise
 from fem.model.geometry import build_container
 from fem.model.model import Model

@@ -8,7 +8,7 @@ from fem.batch.axes import AxisError
 from fem.batch.expressions import Expression, ExpressionError, parse_expression
 from fem.case.case import Case
 from fem.case.overrides import keys_in_effect
-from fem.case.tables import TABLES
+from fem.case.tables.all_tables import TABLES
 from fem.case.validation import CaseError, known_keys
 
 FREE = "free."  #: begins the name of a variable that is no key of a case; derived keys refer to it

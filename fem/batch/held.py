@@ -4,7 +4,7 @@ import math
 from collections.abc import Collection, Iterator, Sequence
 
 from fem.case.case import Case
-from fem.case.unknown_inputs import MU_KINETIC, RAMP, START, STRIBECK, WEAKENING
+from fem.case.tables.input_keys import MU_KINETIC, RAMP, START, STRIBECK, WEAKENING
 
 
 def held_inputs(cases: Sequence[Case], varied: Collection[str]) -> str:

@@ -19,7 +19,7 @@ from fem.batch.cluster import cluster
 from fem.batch.study_file import read_as
 from fem.batch.workers import LocalWorkers, Pool, WorkersOf
 from fem.case.files import LARGEST_FILE
-from fem.case.table import CaseTable, case_key
+from fem.case.tables.table import CaseTable, case_key
 from fem.case.validation import CaseError
 from fem.runtime.threads import cores
 from fem.runtime.user_files import read_regular

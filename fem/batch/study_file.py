@@ -10,7 +10,7 @@ from fem.batch.axes import VERTICAL_FILE, Axis, AxisError, hint, set_axis
 from fem.case.case import Case, load_case
 from fem.case.files import CASES, Origin, is_there, parse_case
 from fem.case.overrides import keys_in_effect
-from fem.case.tables import CaseTable
+from fem.case.tables.table import CaseTable
 from fem.case.validation import CaseError, problem_lines, read_table
 
 TableT = TypeVar("TableT", bound=CaseTable)

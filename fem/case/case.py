@@ -1,11 +1,10 @@
 """The case: one container, one base motion and the settings of the run, read once and frozen.
 
 `load_case` reads a file or a shipped case into a `Case`; all other modules work with its attributes. All values are SI,
-the unit is part of every key. Defaults are in `fem.case.tables`; what follows from several keys is a property here.
+the unit is part of every key. Defaults are in `fem.case.tables`, what follows from several keys in `fem.case.content`.
 """
 
 import hashlib
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -13,37 +12,19 @@ from typing import Any, Self
 
 import numpy as np
 import numpy.typing as npt
-from pydantic import ConfigDict, Field, PrivateAttr
+from pydantic import ConfigDict, PrivateAttr
 
 from fem.case import data_files
-from fem.case.boxes import Box, boxes_of, joint_friction
+from fem.case.case_rules import CASE_RULES
+from fem.case.content import CaseContent
 from fem.case.files import CASES, DEFAULT_CASE, Origin, parse_case
-from fem.case.links import LINK_RULES, ROWS, StopTable, TieTable, links_of_case
-from fem.case.neighbours import CORNER_PATCH, NeighbourTable, beside, case_of
 from fem.case.overrides import kinds_of, naming_overrides, parse_override, with_overrides
-from fem.case.problem import broken
 from fem.case.resolved import resolved_tables
-from fem.case.rules import CASE_RULES, bear_as_plates
-from fem.case.tables import (
-    OPTIONAL,
-    TABLES,
-    CaseHeading,
-    ContactTable,
-    ContainerTable,
-    DocumentTable,
-    FloorTable,
-    InitialTable,
-    JointsTable,
-    MotionTable,
-    OutputTable,
-    SolverTable,
-    StaticTable,
-    SupportTable,
-    UncertaintyTable,
-    VerticalTable,
-)
+from fem.case.tables.links import LINK_RULES, ROWS
+from fem.case.tables.neighbours import CORNER_PATCH, beside, case_of
+from fem.case.tables.problem import broken
+from fem.case.tables.unknown_inputs import excluded_values
 from fem.case.toml import toml_document
-from fem.case.unknown_inputs import excluded_values
 from fem.case.validation import CaseError, problem_lines, read_case_tables
 from fem.records.columns import given_record, written
 from fem.records.record import Direction, Record
@@ -52,30 +33,13 @@ from fem.records.record import Direction, Record
 LABELS = ("title", "document")
 
 
-class Case(CaseHeading):
+class Case(CaseContent):
     """A whole case; the attributes are the tables of the case file.
 
     Contradicting tables raise pydantic's ValidationError; `load_case`, `read_case`, `with_values` a `CaseError`.
     """
 
     model_config = ConfigDict(json_schema_extra={"description": "Tables of a case, and keys before them."})
-
-    container: ContainerTable
-    support: SupportTable = Field(default_factory=SupportTable)
-    contact: ContactTable
-    floor: FloorTable = Field(default_factory=FloorTable)
-    joints: JointsTable = Field(default_factory=JointsTable)
-    motion: MotionTable
-    vertical: VerticalTable = Field(default_factory=VerticalTable)
-    initial: InitialTable = Field(default_factory=InitialTable)
-    static: StaticTable | None = None  #: None: no rows of the code
-    solver: SolverTable = Field(default_factory=SolverTable)
-    output: OutputTable = Field(default_factory=OutputTable)
-    uncertainty: UncertaintyTable = Field(default_factory=UncertaintyTable)
-    document: DocumentTable | None = None  #: None: the pages bear no names
-    stop: tuple[StopTable, ...] = ()
-    tie: tuple[TieTable, ...] = ()
-    neighbour: tuple[NeighbourTable, ...] = ()
 
     _origin: Origin = PrivateAttr(default_factory=Origin)
 
@@ -102,31 +66,11 @@ class Case(CaseHeading):
         return self._origin.overrides
 
     @property
-    def named(self) -> dict[str, str | None]:
-        """What stands on its pages, by key of [document]."""
-        return {} if self.document is None else self.document.model_dump()
-
-    @property
-    def stack(self) -> tuple[Box, ...]:
-        """All boxes, from the floor up."""
-        return boxes_of(self.container, self.gravity_m_s2)
-
-    @property
-    def links(self) -> tuple[StopTable | TieTable, ...]:
-        """Stops and ties, the stops first."""
-        return links_of_case(self)
-
-    @property
     def states_restitution(self) -> bool:
         """Whether a factor is stated on what its impacts leave, or those of a case beside it."""
         beside = (self._origin.beside.get(neighbour.case or "") for neighbour in self.neighbour)
         cases = (self, *(case for case in beside if case is not None))
         return any(case.contact.restitution_over_housner is not None for case in cases)
-
-    @property
-    def bodies(self) -> int:
-        """How many bodies move each for itself."""
-        return self.container.bodies + len(self.neighbour)
 
     @property
     def row(self) -> tuple["Case", ...]:
@@ -175,103 +119,6 @@ class Case(CaseHeading):
         return {name: to_toml(own) for name, own in self._beside_alone.items()}
 
     @property
-    def effective_width(self) -> float:
-        """Width between the points about which it rocks, over that of the base: castings may stand inside its sides."""
-        return self.support.effective_width * (1.0 - 2.0 * self.support.inset / self.stack[0].width)
-
-    @property
-    def foot(self) -> float | None:
-        """Length along x of what bears at each end of the base: a foot, or a casting that bears as a plate [m]."""
-        if self.support.kind == "feet":
-            return self.support.foot_m
-        return self.casting_length if bear_as_plates(self.support) else None
-
-    @property
-    def casting_length(self) -> float | None:
-        """Length along x with which a casting presses the floor [m]; None of a base without castings.
-
-        Where a post stands on it, the length of the post: beyond it a plate bends (EN 1993-1-8, 6.2.5, adds one to two
-        thicknesses of the plate, and nobody knows that).
-        """
-        support, post = self.support, self.container.post_section
-        if support.kind != "corners" or support.casting_m is None:
-            return None
-        return support.casting_m[0] if post is None else min(support.casting_m[0], post[0])
-
-    @property
-    def rolls(self) -> bool:
-        """Whether the base is cambered from edge to edge: it touches wherever it has rolled to."""
-        return self.support.camber_m > 0.0 and self.foot is None
-
-    @property
-    def joint_friction(self) -> dict[str, float]:
-        """mu_static, mu_kinetic and weakening_m between loose boxes."""
-        return joint_friction(self.joints, self.contact)
-
-    @property
-    def box_mass(self) -> float:
-        """Mass of one box with its fill, the mean where boxes differ [kg]."""
-        return self.stack[0].mass if self.container.box is None else self.mass / self.container.boxes
-
-    @property
-    def mass(self) -> float:
-        """Mass of all boxes with their fill [kg]."""
-        if self.container.box is not None:
-            return sum(box.mass for box in self.stack)
-        return self.container.boxes * self.box_mass
-
-    @property
-    def weight(self) -> float:
-        """Weight of all boxes with their fill [N]."""
-        return self.mass * self.gravity_m_s2
-
-    @property
-    def gravity_toward_floor(self) -> float:
-        """g cos(slope) [m/s2]."""
-        return self.gravity_m_s2 * math.cos(self.floor.slope)
-
-    @property
-    def gravity_downhill(self) -> float:
-        """g sin(slope), > 0 toward +x [m/s2]."""
-        return self.gravity_m_s2 * math.sin(self.floor.slope)
-
-    @property
-    def kinds(self) -> dict[str, object]:
-        """The kinds of its motions, by table."""
-        return {"motion": self.motion.kind, "vertical": self.vertical.kind}
-
-    @property
-    def has_vertical(self) -> bool:
-        """Whether the floor moves up and down."""
-        return self.vertical.kind != "none"
-
-    @property
-    def contact_damping_ratio(self) -> float | None:
-        """c/(2 sqrt(k m)), the whole mass m on the spring k of one corner; None: the slab's own damping."""
-        own = self.floor.is_slab and "damping_ratio" not in self.contact.model_fields_set
-        return None if own else self.contact.damping_ratio
-
-    @property
-    def starts_moving(self) -> bool:
-        """Whether the container has the velocity of the floor at t = 0, along x and vertically."""
-        return self.motion.kind == "none" or self.motion.start == "moving"
-
-    @property
-    def amplitude(self) -> float:
-        """A of a harmonic floor x = A sin(Omega t + phase) [m]; 0 for every other kind."""
-        return self.motion.amplitude
-
-    @property
-    def angular_frequency(self) -> float:
-        """Omega of a harmonic floor [rad/s]; 0 for every other kind."""
-        return self.motion.angular_frequency
-
-    @property
-    def nominal_peak_acceleration(self) -> float | None:
-        """Of the floor along x: A Omega^2, the peak of a pulse, 0 at rest [m/s2]; None for a table."""
-        return self.motion.nominal_peak
-
-    @property
     def files(self) -> dict[str, data_files.DataFile]:
         """Mesh and motion files, as far as the case has them, by dotted key.
 
@@ -303,13 +150,6 @@ class Case(CaseHeading):
             # another component of it
             named["vertical.file"] = data_files.without_channel(self.folder, self.motion.file)
         return named
-
-    def given(self) -> dict[str, Any]:
-        """The keys that were set, by table, as a case file would hold them."""
-        keys = self.model_dump(by_alias=True, exclude_unset=True, exclude=set(TABLES))
-        tables = {name: getattr(self, name) for name in TABLES}
-        content = {name: table.model_dump(exclude_unset=True) for name, table in tables.items() if table}
-        return keys | {name: given for name, given in content.items() if given or name in OPTIONAL}
 
     def resolved(self) -> dict[str, Any]:
         """Every key that is used, defaults included, by table; files are named as their copies in the results are."""

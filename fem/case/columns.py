@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
 
-from fem.case.links import held_above
+from fem.case.tables.links import held_above
 
 MODE = "mode"  #: the column of the word; all others are numbers
 GROUND, FLOOR, BELOW, START = "ground", "floor", "what is below", "start of the run"

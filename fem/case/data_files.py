@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import Any
 
-from fem.case.problem import Problem, outside_the_folder, stays_in_the_folder
+from fem.case.tables.problem import Problem, outside_the_folder, stays_in_the_folder
 from fem.case.validation import CaseError
 from fem.runtime.user_files import leads_out, real_path
 

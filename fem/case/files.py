@@ -13,7 +13,7 @@ from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fem.case.problem import outside_the_folder, stays_in_the_folder
+from fem.case.tables.problem import outside_the_folder, stays_in_the_folder
 from fem.case.validation import CaseError, did_you_mean
 from fem.runtime.user_files import leads_out, read_regular, real_path
 

@@ -10,9 +10,9 @@ from collections.abc import Mapping
 from copy import deepcopy
 from typing import Any
 
-from fem.case.floors import PENALTY_KEYS, PRESET_KEYS, SLAB_KEYS
-from fem.case.links import ROWS
-from fem.case.tables import TABLES
+from fem.case.tables.all_tables import TABLES
+from fem.case.tables.floors import PENALTY_KEYS, PRESET_KEYS, SLAB_KEYS
+from fem.case.tables.links import ROWS
 from fem.case.validation import CaseError, did_you_mean
 
 DOTTED_KEY = re.compile(r"[A-Za-z0-9_-]+(\.[A-Za-z0-9_-]+)?")

@@ -5,9 +5,9 @@ from typing import Literal
 
 import numpy as np
 
-from fem.case import quantities as q
 from fem.case.case import Case
-from fem.case.motion_tables import FloorMotionTable
+from fem.case.tables import quantities as q
+from fem.case.tables.motion_tables import FloorMotionTable
 from fem.case.validation import CaseError
 from fem.records.files import read_record
 from fem.records.processing import Processing, motion_of, processed, stated_baseline

@@ -8,9 +8,9 @@ What [joints] leaves out stays out: the floor's friction stands in its place, an
 from typing import Any
 
 from fem.case.data_files import FILE_KEYS, copied_name
-from fem.case.floors import PENALTY_KEYS
-from fem.case.links import ROWS
-from fem.case.tables import TABLES
+from fem.case.tables.all_tables import TABLES
+from fem.case.tables.floors import PENALTY_KEYS
+from fem.case.tables.links import ROWS
 
 
 def resolved_tables(case: Any) -> dict[str, Any]:

@@ -3,7 +3,7 @@
 from typing import assert_never
 
 from fem.case.case import Case
-from fem.case.motion_tables import FloorMotionTable
+from fem.case.tables.motion_tables import FloorMotionTable
 
 
 def scaled_motion(case: Case, factor: float) -> dict[str, float]:

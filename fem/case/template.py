@@ -9,9 +9,10 @@ from typing import Any
 from pydantic.fields import FieldInfo
 
 from fem.case.case import Case
-from fem.case.links import ROWS
-from fem.case.table import CaseTable
-from fem.case.tables import TABLES, BoxTable, CaseHeading
+from fem.case.tables.all_tables import TABLES, CaseHeading
+from fem.case.tables.container_tables import BoxTable
+from fem.case.tables.links import ROWS
+from fem.case.tables.table import CaseTable
 from fem.case.toml import toml_value
 from fem.case.validation import known_keys, quantity_of
 

@@ -15,10 +15,9 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from fem.case import quantities as q
 from fem.case.case import Case
-from fem.case.links import ROWS
-from fem.case.unknown_inputs import (
+from fem.case.tables import quantities as q
+from fem.case.tables.input_keys import (
     CAMBER,
     JOINTS_MU_KINETIC,
     JOINTS_MU_STATIC,
@@ -26,19 +25,14 @@ from fem.case.unknown_inputs import (
     MU_KINETIC,
     MU_STATIC,
     PENALTY,
-    QUANTITIES,
     STRIBECK,
     SUPPORT,
     TOLERANCE,
     WEAKENING,
-    WORDS,
-    InputRange,
-    Value,
-    other_patch,
-    ranges_of,
-    short,
-    value_in_words,
 )
+from fem.case.tables.input_ranges import InputRange, Value, short
+from fem.case.tables.links import ROWS
+from fem.case.tables.unknown_inputs import QUANTITIES, WORDS, other_patch, ranges_of, value_in_words
 
 #: static and kinetic friction of the same surfaces
 FRICTIONS = ((MU_STATIC, MU_KINETIC), (JOINTS_MU_STATIC, JOINTS_MU_KINETIC))

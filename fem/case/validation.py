@@ -14,12 +14,14 @@ from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails, PydanticUndefined
 
-from fem.case.links import MOST_ROWS, ROWS
-from fem.case.problem import Problem, broken
-from fem.case.quantities import Quantity, with_unit
-from fem.case.rules import CASE_RULES
-from fem.case.tables import OPTIONAL, TABLES, BoxTable, CaseHeading, CaseTable
-from fem.case.unknown_inputs import short
+from fem.case.case_rules import CASE_RULES
+from fem.case.tables.all_tables import OPTIONAL, TABLES, CaseHeading
+from fem.case.tables.container_tables import BoxTable
+from fem.case.tables.input_ranges import short
+from fem.case.tables.links import MOST_ROWS, ROWS
+from fem.case.tables.problem import Problem, broken
+from fem.case.tables.quantities import Quantity, with_unit
+from fem.case.tables.table import CaseTable
 
 
 class CaseError(ValueError):

@@ -12,8 +12,8 @@ from fem.assessment.link_rows import link_rows
 from fem.assessment.motion_words import covered_in_words, is_cut, missing_peak, motion_in_words
 from fem.case.case import Case, case_hash, load_case
 from fem.case.files import is_site
-from fem.case.motion_tables import FloorMotionTable
-from fem.case.rules import longest_time
+from fem.case.tables.duration import longest_time
+from fem.case.tables.motion_tables import FloorMotionTable
 from fem.case.validation import CaseError
 from fem.cli.console import WIDTH, AllowBaseline, AllowOutside, AsJson, CaseName, Motion, Overrides
 from fem.model.geometry import build_container

@@ -5,7 +5,7 @@ from typing import Any
 from pydantic import Field
 
 from fem.batch.axes import Range
-from fem.case.tables import DocumentTable
+from fem.case.tables.run_tables import DocumentTable
 from fem.ensemble.distributions import Distribution
 from fem.ensemble.file import EnsembleHeading
 from fem.site_check import tables

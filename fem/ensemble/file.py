@@ -15,8 +15,8 @@ from fem.batch import study_file
 from fem.batch.axes import Axis, AxisError, check_varied, first_motion, read_axis
 from fem.batch.derived import FREE, Derived, read_derived
 from fem.case.files import DEFAULT_CASE, ENSEMBLES, Origin
-from fem.case.quantities import SLIP_LIMIT
-from fem.case.tables import CaseTable
+from fem.case.tables.quantities import SLIP_LIMIT
+from fem.case.tables.table import CaseTable
 from fem.case.validation import CaseError
 from fem.ensemble.distributions import RandomChoice, RandomQuantity, Sampling, read_random
 from fem.ensemble.plan import Ensemble, Unknown, sets_among

@@ -12,8 +12,8 @@ from fem.batch.axes import MOTION_FILE, Axis, point_of, shape_of, with_following
 from fem.batch.case_maker import CaseMaker
 from fem.batch.derived import FREE, Derived, number_of, with_derived
 from fem.case.case import Case
+from fem.case.tables.input_ranges import Value
 from fem.case.uncertainty import as_changed
-from fem.case.unknown_inputs import Value
 from fem.ensemble.distributions import RandomChoice, RandomQuantity, Sampling, draw_shares
 
 #: unknown inputs that the file does not vary: drawn over [uncertainty] of the case, or held

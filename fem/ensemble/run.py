@@ -25,7 +25,7 @@ from fem.batch.runner import Row, Runner
 from fem.batch.study import COMPLETED, FAILED, INTERRUPTED, Study, StudyOptions, hash_of, run_study, runner_of
 from fem.batch.table import Columns, row_of, table_of_lines, table_of_rows
 from fem.case.case import case_hash, to_toml
-from fem.case.rules import ends_at_rest, longest_time
+from fem.case.tables.duration import ends_at_rest, longest_time
 from fem.ensemble.answers import ensemble_answer
 from fem.ensemble.distributions import RandomChoice
 from fem.ensemble.figures import ensemble_figures

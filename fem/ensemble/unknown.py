@@ -13,8 +13,9 @@ import numpy as np
 from fem.batch.container_cache import PenaltyCache
 from fem.batch.held import held_inputs
 from fem.case.case import Case
+from fem.case.tables.input_ranges import Value
+from fem.case.tables.unknown_inputs import INPUTS, ranges_of
 from fem.case.uncertainty import drawn_values
-from fem.case.unknown_inputs import INPUTS, Value, ranges_of
 from fem.case.validation import CaseError
 from fem.ensemble.distributions import draw_shares
 from fem.ensemble.plan import Draw, Ensemble

@@ -6,7 +6,7 @@ import textwrap
 import numpy as np
 from matplotlib.figure import Figure
 
-from fem.case.unknown_inputs import WORDS
+from fem.case.tables.unknown_inputs import WORDS
 from fem.figures import style
 from fem.results.figures import TURNED
 from fem.results.outcome import ENDINGS

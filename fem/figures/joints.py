@@ -12,8 +12,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fem.assessment.joint_demands import edge_forces
-from fem.case.boxes import shared_face
 from fem.case.columns import JOINTS
+from fem.case.tables.boxes import shared_face
 from fem.figures import style
 from fem.html.units import rounded
 from fem.results.reader import RunData

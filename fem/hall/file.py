@@ -16,7 +16,7 @@ from typing import Any, get_args
 
 from fem.batch.axes import NAMED, NO_AXIS, AxisError, field_of
 from fem.batch.table import plain_text
-from fem.case.tables import TABLES
+from fem.case.tables.all_tables import TABLES
 from fem.case.validation import CaseError, known_keys, quantity_of
 from fem.hall.result import RESULT_COLUMNS
 from fem.records.source import decoded

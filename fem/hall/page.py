@@ -10,7 +10,7 @@ from markupsafe import Markup
 
 from fem.batch.study import read_study
 from fem.case.case import load_case
-from fem.case.unknown_inputs import WORDS
+from fem.case.tables.unknown_inputs import WORDS
 from fem.hall.places import PICTURE
 from fem.hall.result import NO_ANSWER, HallResult
 from fem.html import sections as html

@@ -14,9 +14,9 @@ from fem.batch.motion_set import FloorMotionPair, read_motion_set
 from fem.batch.runner import Runner
 from fem.case.case import Case, case_hash
 from fem.case.data_files import FILE_KEYS, as_named_from
-from fem.case.problem import outside_the_folder, stays_in_the_folder
+from fem.case.tables.problem import outside_the_folder, stays_in_the_folder
+from fem.case.tables.unknown_inputs import excluded_values
 from fem.case.toml import toml_value
-from fem.case.unknown_inputs import excluded_values
 from fem.case.validation import CaseError
 from fem.hall.file import HallFile, HallRow
 from fem.model.geometry import build_container

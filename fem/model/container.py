@@ -10,7 +10,7 @@ from contact.interface.contact_points import make_faces, make_row
 from contact.interface.faces import TOUCHING
 from contact.interface.support import Support
 from fem.case.case import Case
-from fem.case.neighbours import Places, places_of
+from fem.case.tables.neighbours import Places, places_of
 from fem.model.geometry import build_container, node_count
 from fem.model.links import nodes_of_links, nodes_on_sides, side_points
 from fem.model.support import build_support

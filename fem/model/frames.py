@@ -4,7 +4,7 @@ Measured on shells and blocks of 600 to 9000 nodes: a frame takes 21 (at rest) t
 """
 
 from fem.case.case import Case
-from fem.case.rules import MOST_FREE_MOTION, ends_at_rest
+from fem.case.tables.duration import MOST_FREE_MOTION, ends_at_rest
 
 BYTES_OF_A_NODE, BYTES_OF_A_FRAME = 28.0, 2e3
 MOST_BYTES = 16e6  #: that the frames of a run take where nobody asks for more

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from fem.case.boxes import Box
 from fem.case.case import Case
+from fem.case.tables.boxes import Box
 from fem.runtime.arrays import FloatArray
 from mesh.container import ContainerMesh, build_container_mesh, with_mass_beside
 from mesh.files import read_container_mesh, read_stack_mesh

@@ -14,7 +14,7 @@ from scipy.sparse import csr_array
 
 from contact.stepping.body import ANGULAR_VELOCITY, ROTATION, State
 from fem.case.case import Case
-from fem.case.links import held_above
+from fem.case.tables.links import held_above
 from fem.model.model import Model
 from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid.assembly import FiniteElements

@@ -12,8 +12,8 @@ from contact.interface.workspace import Contact
 from contact.stepping.body import State
 from contact.stepping.links import OF_LENGTH, make_lines, place_links
 from fem.case.case import Case
-from fem.case.links import StopTable, TieTable, faced_by, holder_of
-from fem.case.neighbours import USUAL_DAMPING, StruckTable, top_of
+from fem.case.tables.links import StopTable, TieTable, faced_by, holder_of
+from fem.case.tables.neighbours import USUAL_DAMPING, StruckTable, top_of
 from fem.model.tied_capacity import box_at, direction_of, overlapped, side_of
 from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid.sides import nodes_at, shapes_at

@@ -16,8 +16,8 @@ from contact.stepping.body import State, make_state
 from contact.stepping.loose_stack import LooseStack
 from contact.stepping.modal_body import ModalBody, make_modal_body
 from contact.stepping.stack_body import make_stack, settle_stack
-from fem.case.boxes import shared_face
 from fem.case.case import Case
+from fem.case.tables.boxes import shared_face
 from fem.model.container import BoxModel, Container
 from fem.model.links import side_points
 from fem.model.support import base_points

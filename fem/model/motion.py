@@ -7,12 +7,13 @@ from typing import Any, assert_never
 import numpy as np
 
 from contact.motion.base_motion import BaseMotion, HarmonicMotion, NoMotion, PulseMotion, TableMotion
-from fem.case import quantities as q
 from fem.case.case import Case, CaseError
-from fem.case.motion_tables import FloorMotionTable
-from fem.case.problem import broken
+from fem.case.case_rules import CASE_RULES
 from fem.case.recorded import MotionKey, recorded_motion
-from fem.case.rules import CASE_RULES, MOST_FREE_MOTION, ends_at_rest, longest_time
+from fem.case.tables import quantities as q
+from fem.case.tables.duration import MOST_FREE_MOTION, ends_at_rest, longest_time
+from fem.case.tables.motion_tables import FloorMotionTable
+from fem.case.tables.problem import broken
 from fem.case.validation import problem_lines
 from fem.model.motion_summary import numbers_from_keys
 from fem.results.run_result import MotionResult

@@ -9,8 +9,8 @@ from dataclasses import replace
 from typing import assert_never
 
 from fem.case.case import Case
-from fem.case.motion_tables import FloorMotionTable
-from fem.case.rules import longest_time
+from fem.case.tables.duration import longest_time
+from fem.case.tables.motion_tables import FloorMotionTable
 from fem.results.run_result import MotionResult
 
 #: velocity and displacement at the end of a pulse, over peak x length and peak x length^2

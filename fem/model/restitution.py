@@ -15,7 +15,7 @@ from importlib import resources
 import numpy as np
 
 from fem.case.case import Case, CaseError
-from fem.case.unknown_inputs import blocks_on_joints
+from fem.case.tables.unknown_inputs import blocks_on_joints
 from fem.model.static_checks import StaticChecks
 from fem.runtime.arrays import FloatArray
 

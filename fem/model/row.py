@@ -25,7 +25,7 @@ from contact.stepping.loose_stack import LooseStack
 from contact.stepping.modal_body import ModalBody
 from contact.stepping.stack_body import make_stack, start_stack
 from fem.case.case import Case, CaseError
-from fem.case.neighbours import places_of
+from fem.case.tables.neighbours import places_of
 from fem.model.container import Container, facing
 from fem.model.links import OVERLAP, dashpot_of, held_in_row
 from fem.model.loose_stack import make_stack_state

@@ -16,7 +16,7 @@ import math
 from dataclasses import dataclass, replace
 
 from fem.case.case import Case
-from fem.case.tables import StaticTable
+from fem.case.tables.run_tables import StaticTable
 from fem.model.floor import pivot_share
 from fem.results.run_result import ActionResult, CodeValues, StaticResult
 from fem.seismic.method import utilisation

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from fem.case.boxes import Box
 from fem.case.case import Case, CaseError
-from fem.case.links import StopTable, TieTable, faced_by, holder_of
-from fem.case.neighbours import gap_beside
+from fem.case.tables.boxes import Box
+from fem.case.tables.links import StopTable, TieTable, faced_by, holder_of
+from fem.case.tables.neighbours import gap_beside
 from fem.model.floor import pivot_share
 from fem.runtime.arrays import FloatArray
 from mesh.container import ContainerMesh

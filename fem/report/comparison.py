@@ -8,9 +8,9 @@ from markupsafe import Markup
 
 from fem.assessment.link_rows import link_rows
 from fem.assessment.summary import own_motion_name, rule_says, run_lifted, run_slid, run_tilted
-from fem.case.boxes import Box
 from fem.case.case import Case
-from fem.case.motion_tables import FloorMotionTable
+from fem.case.tables.boxes import Box
+from fem.case.tables.motion_tables import FloorMotionTable
 from fem.html import sections as html
 from fem.html.units import degrees, number, quantity, short, typeset
 from fem.model.container import modes_of_a_body

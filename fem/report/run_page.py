@@ -15,7 +15,7 @@ from fem.assessment.rule_or_run import governing
 from fem.assessment.summary import MARGIN_NOTE, lacks_margin, outcome_sentence, result_rows
 from fem.assessment.sureness import ending
 from fem.case.case import Case
-from fem.case.unknown_inputs import WORDS
+from fem.case.tables.unknown_inputs import WORDS
 from fem.figures.cache import drawings_of
 from fem.html import sections as html
 from fem.html.page import Page, Signature, html_of

@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 
 from fem.case.case import Case, CaseError, case_hash
-from fem.case.quantities import SLIP_LIMIT
+from fem.case.tables.quantities import SLIP_LIMIT
 from fem.response.stability import LARGEST_PERIOD, TOLERANCE
 
 Hold = Literal["displacement", "acceleration"]

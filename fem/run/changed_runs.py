@@ -16,8 +16,8 @@ from fem.assessment.joint_demands import joint_demands
 from fem.assessment.ranges import largest_bolt_forces
 from fem.assessment.verdict import verdict_of
 from fem.case.case import Case
+from fem.case.tables.input_keys import SUPPORT, TOLERANCE
 from fem.case.uncertainty import InputChange, as_changed
-from fem.case.unknown_inputs import SUPPORT, TOLERANCE
 from fem.model.container import Container, adapted_container, discretise
 from fem.model.joints import Joints, joints_of
 from fem.model.model import Model, build_model

@@ -8,7 +8,7 @@ import json
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
-from fem.case.unknown_inputs import Value
+from fem.case.tables.input_ranges import Value
 from fem.results.files import to_json
 from fem.results.run_result import ChangedRun
 from fem.runtime.identity import program_identity

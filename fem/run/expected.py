@@ -1,7 +1,7 @@
 """How long a computation will take, roughly, said before it begins where that is long."""
 
 from fem.case.case import Case
-from fem.case.rules import ends_at_rest, longest_time
+from fem.case.tables.duration import ends_at_rest, longest_time
 from fem.runtime.progress import Reporter, clock_time
 
 LONG_S = 20.0  #: from which it is said

@@ -15,10 +15,11 @@ from itertools import pairwise
 from fem.assessment.sureness import ending, numerical
 from fem.assessment.verdict import outcome_of
 from fem.case.case import Case, CaseError
-from fem.case.links import ROWS
 from fem.case.strength import scaled_motion
+from fem.case.tables.input_keys import TOLERANCE
+from fem.case.tables.input_ranges import Value
+from fem.case.tables.links import ROWS
 from fem.case.uncertainty import as_changed, draws_of
-from fem.case.unknown_inputs import TOLERANCE, Value
 from fem.model.container import Container, changed_container, without_links
 from fem.model.equilibrium import same_equilibrium
 from fem.model.model import Model, build_model

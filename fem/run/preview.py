@@ -9,7 +9,7 @@ from contact.interface.penalty import contact_frequency
 from fem.assessment.code_note import code_note
 from fem.assessment.motion_words import doubts
 from fem.case.case import Case
-from fem.case.rules import ends_at_rest
+from fem.case.tables.duration import ends_at_rest
 from fem.model.floor_numbers import floor_result
 from fem.model.geometry import build_container, node_count
 from fem.model.restitution import contact_restitution, require_loss

@@ -13,7 +13,7 @@ from contact.stepping.body import ROTATION, State
 from contact.stepping.boxes import POINTS_OF_GAP
 from contact.stepping.state import ROW_ROTATION, RunState, Samples, row_names
 from fem.case.columns import BOXES, JOINTS, NEIGHBOURS, STOPS, TIES, VERTICAL, history_columns
-from fem.case.neighbours import places_of
+from fem.case.tables.neighbours import places_of
 from fem.model.joints import Joints, joints_of
 from fem.model.model import Model
 from fem.model.recovery import Recovery

@@ -14,7 +14,7 @@ from fem.assessment.summary import outcome_sentence
 from fem.assessment.verdict import energy_of, numerics_of, verdict_of
 from fem.assessment.warnings import warnings_for
 from fem.case.case import Case
-from fem.case.rules import ends_at_rest, longest_time
+from fem.case.tables.duration import ends_at_rest, longest_time
 from fem.model.floor_numbers import floor_result
 from fem.model.frames import frame_interval
 from fem.model.geometry import build_container, node_count

@@ -10,12 +10,12 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, Strict
 
 from fem.batch.study_file import base_case, read_as, read_study, split_tables
-from fem.case import quantities as q
 from fem.case.case import Case
 from fem.case.data_files import as_named_from
 from fem.case.files import SITES, Origin
-from fem.case.table import CaseTable, case_key, optional_key
-from fem.case.tables import DocumentTable
+from fem.case.tables import quantities as q
+from fem.case.tables.run_tables import DocumentTable
+from fem.case.tables.table import CaseTable, case_key, optional_key
 from fem.case.toml import toml_document
 from fem.case.validation import CaseError
 from fem.runtime.user_files import leads_out, real_path

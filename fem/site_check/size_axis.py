@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from fem.batch.axes import AxisError, field_of
 from fem.batch.derived import value_in
-from fem.case.quantities import Quantity
+from fem.case.tables.quantities import Quantity
 from fem.case.validation import CaseError, did_you_mean, known_keys, quantity_of
 from fem.site_check.bodies import body_of
 from fem.site_check.bracket import SizeAxis, Wanted, spaced

@@ -6,10 +6,10 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, Strict
 
-from fem.case import quantities as q
-from fem.case.problem import Rule, file_beside, one_of
-from fem.case.quantities import Quantity
-from fem.case.table import CaseTable, case_key, optional_key
+from fem.case.tables import quantities as q
+from fem.case.tables.problem import Rule, file_beside, one_of
+from fem.case.tables.quantities import Quantity
+from fem.case.tables.table import CaseTable, case_key, optional_key
 from fem.seismic.artificial import LEAST_STATIONARY_S, MOST_STATIONARY_S
 from fem.seismic.floor import (
     LEAST_DAMPING,

@@ -11,8 +11,8 @@ from typing import Any
 
 from fem.batch.container_cache import container_key
 from fem.case.case import Case
+from fem.case.tables.input_keys import SUPPORT, TOLERANCE
 from fem.case.uncertainty import InputChange, as_changed, changes_of, draws_of, pairs_of
-from fem.case.unknown_inputs import SUPPORT, TOLERANCE
 from fem.model.geometry import build_container
 from fem.model.motion import build_motions
 from fem.model.support import normal_penalty

@@ -12,10 +12,10 @@ from fem.batch.axes import Axis, AxisError, check_varied, field_of, first_motion
 from fem.batch.derived import Derived, read_derived, value_in
 from fem.case.case import Case
 from fem.case.files import DEFAULT_CASE, SWEEPS, Origin
-from fem.case.links import ROWS
 from fem.case.overrides import keys_in_effect
-from fem.case.quantities import SLIP_LIMIT
-from fem.case.tables import CaseTable
+from fem.case.tables.links import ROWS
+from fem.case.tables.quantities import SLIP_LIMIT
+from fem.case.tables.table import CaseTable
 from fem.case.validation import CaseError
 from fem.sweep.perturbation import Perturbation
 from fem.sweep.plan import MapChoice, Sweep, Threshold

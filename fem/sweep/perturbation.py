@@ -10,11 +10,13 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, Strict
 
 from fem.case.case import Case
-from fem.case.quantities import CONTACT_DAMPING, DRAWS, Quantity
 from fem.case.strength import scaled_motion
-from fem.case.tables import CaseTable
+from fem.case.tables.input_keys import DASHPOT
+from fem.case.tables.input_ranges import HELD
+from fem.case.tables.quantities import CONTACT_DAMPING, DRAWS, Quantity
+from fem.case.tables.table import CaseTable
+from fem.case.tables.unknown_inputs import WORDS
 from fem.case.uncertainty import InputChange
-from fem.case.unknown_inputs import DASHPOT, HELD, WORDS
 
 SHARE = Quantity(least=0.0, most=0.5, advice="0.02 is two per cent")
 FRICTION_STEP = Quantity(least=0.0, most=1.0, advice="0.02 is usual")

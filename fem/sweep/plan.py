@@ -17,8 +17,8 @@ from fem.batch.axes import Axis, point_of, shape_of, with_following
 from fem.batch.case_maker import CaseMaker
 from fem.batch.derived import Derived, with_derived
 from fem.case.case import Case
-from fem.case.quantities import Quantity
-from fem.case.tables import CaseTable
+from fem.case.tables.quantities import Quantity
+from fem.case.tables.table import CaseTable
 from fem.case.validation import CaseError
 from fem.sweep.perturbation import Perturbation
 

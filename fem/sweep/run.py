@@ -21,8 +21,8 @@ from fem.batch.runner import Runner
 from fem.batch.study import COMPLETED, FAILED, INTERRUPTED, Study, StudyOptions, hash_of, run_study
 from fem.batch.table import fields_of, line_of, read_lines, table_of_lines
 from fem.case.case import case_hash
-from fem.case.rules import ends_at_rest, longest_time
-from fem.case.tables import UncertaintyTable
+from fem.case.tables.duration import ends_at_rest, longest_time
+from fem.case.tables.uncertainty_table import UncertaintyTable
 from fem.case.toml import toml_document
 from fem.case.validation import CaseError
 from fem.results.disk import BYTES_BESIDE, table_bytes

@@ -18,11 +18,12 @@ from pydantic.fields import FieldInfo
 
 from fem.case.files import CASES
 from fem.case.overrides import with_overrides
-from fem.case.quantities import Quantity
-from fem.case.table import CaseTable
-from fem.case.tables import TABLES, CaseHeading
+from fem.case.tables.all_tables import TABLES, CaseHeading
+from fem.case.tables.input_ranges import UnknownNumber
+from fem.case.tables.quantities import Quantity
+from fem.case.tables.table import CaseTable
+from fem.case.tables.unknown_inputs import UNKNOWN
 from fem.case.toml import toml_value
-from fem.case.unknown_inputs import UNKNOWN, UnknownNumber
 from fem.case.validation import known_keys, quantity_of
 
 Tables = dict[str, Any]

@@ -11,7 +11,7 @@ from inputs import FIELDS, values_of
 from random_cases import random_case
 from soak import EXTREMES, end_of, extreme
 
-from fem.case.tables import TABLES
+from fem.case.tables.all_tables import TABLES
 from fem.case.validation import known_keys
 from fem.results.outcome import Outcome
 

@@ -4,7 +4,7 @@ Homogeneous containers of 1.1 x 1.0 m, 2500 kg each. The paper takes g = 10 and 
 tolerance is half a unit of the last one. With g = 9.81 the mass is kept; those values are closed forms.
 """
 
-from fem.case.tables import StaticTable
+from fem.case.tables.run_tables import StaticTable
 from fem.evidence.findings import analytic, printed
 from fem.evidence.verification.checks import Findings, check
 from fem.model.static_checks import StaticChecks, static_checks

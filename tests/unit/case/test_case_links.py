@@ -3,10 +3,10 @@
 import pytest
 
 from fem.case.case import CaseError, case_hash, load_case, read_case, to_toml
-from fem.case.links import faced_by
+from fem.case.tables.links import faced_by
+from fem.case.tables.unknown_inputs import ranges_of
 from fem.case.template import case_template
 from fem.case.uncertainty import as_changed
-from fem.case.unknown_inputs import ranges_of
 
 STOP = {"side": "right", "height_m": 0.1, "gap_m": 0.05, "stiffness_N_m": 1e8}
 TIE = {"from": "left", "height_m": 0.5, "slack_m": 0.01, "stiffness_N_m": 1e6}

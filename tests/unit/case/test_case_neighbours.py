@@ -5,9 +5,9 @@ import pytest
 from fem.batch.container_cache import container_key
 from fem.case.case import CaseError, case_hash, load_case, read_case, to_toml
 from fem.case.columns import history_columns
-from fem.case.neighbours import places_of
+from fem.case.tables.neighbours import places_of
+from fem.case.tables.unknown_inputs import ranges_of
 from fem.case.template import case_template
-from fem.case.unknown_inputs import ranges_of
 from fem.cli.check import preview_of
 from fem.model.container import discretise
 from fem.model.model import build_model

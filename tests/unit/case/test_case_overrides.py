@@ -3,7 +3,7 @@
 import pytest
 
 from fem.case.case import CaseError, load_case
-from fem.case.floors import PRESETS
+from fem.case.tables.floors import PRESETS
 
 BASE = "seed_stack"  # amplitude and angular frequency, weight
 

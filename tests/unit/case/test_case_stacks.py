@@ -4,8 +4,8 @@ import pytest
 from cases import LEAST
 
 from fem.case.case import Case, CaseError, case_hash, read_case, to_toml
+from fem.case.tables.unknown_inputs import ranges_of
 from fem.case.template import case_template
-from fem.case.unknown_inputs import ranges_of
 
 LOOSE = "joints = 'loose'"
 BOX = "[[container.box]]\n"

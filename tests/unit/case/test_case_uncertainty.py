@@ -7,10 +7,11 @@ import pytest
 from cases import named_case
 
 from fem.case.case import CaseError, load_case, read_case, to_toml
-from fem.case.links import ROWS
-from fem.case.tables import TABLES
+from fem.case.tables.all_tables import TABLES
+from fem.case.tables.input_ranges import UnknownNumber
+from fem.case.tables.links import ROWS
+from fem.case.tables.unknown_inputs import INPUTS, UNKNOWN, ranges_of
 from fem.case.uncertainty import as_changed, changes_of, draws_of, latin_hypercube, pairs_of, stiff_floor
-from fem.case.unknown_inputs import INPUTS, UNKNOWN, UnknownNumber, ranges_of
 
 PENALTY = 1e9
 FRICTION = {"contact.mu_kinetic": 0.2}

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from fem.case.case import CaseError, case_hash, load_case, read_case, to_toml
 from fem.case.files import CASES, DEFAULT_CASE
-from fem.case.tables import TABLES
+from fem.case.tables.all_tables import TABLES
 from fem.case.template import case_template
 from fem.case.toml import toml_document, toml_value
 from fem.case.validation import known_keys, quantity_of

@@ -4,7 +4,7 @@ import pytest
 from cases import LEAST
 
 from fem.case.case import case_from, case_hash, load_case, read_case, to_toml
-from fem.case.floors import PRESETS
+from fem.case.tables.floors import PRESETS
 
 
 @pytest.mark.parametrize("name", PRESETS)

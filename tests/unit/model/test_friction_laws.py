@@ -5,7 +5,7 @@ from typing import get_args
 import pytest
 
 from contact.interface.laws import FRICTION_LAWS
-from fem.case.tables import ContactTable
+from fem.case.tables.contact_tables import ContactTable
 
 LAWS = get_args(ContactTable.model_fields["friction"].annotation)
 CONTACT = ContactTable(mu_static=0.4, mu_kinetic=0.4, damping_ratio=2.0)

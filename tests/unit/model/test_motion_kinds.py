@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from cases import named_case
 
-from fem.case.motion_tables import MotionTable, VerticalTable
 from fem.case.strength import scaled_motion
+from fem.case.tables.motion_tables import MotionTable, VerticalTable
 from fem.model.motion import build_motion, build_motions, motion_result
 from fem.model.motion_summary import summary_from_keys
 from fem.report.comparison import motion_in_words

@@ -11,7 +11,7 @@ from cases import named_case
 import fem
 from contact.reference.rigid_block import RigidBlock
 from fem.case.case import CaseError
-from fem.case.unknown_inputs import ranges_of
+from fem.case.tables.unknown_inputs import ranges_of
 from fem.model.container import changed_container, discretise
 from fem.model.floor import slab_of
 from fem.model.model import build_model

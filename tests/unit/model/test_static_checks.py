@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fem.case.tables import StaticTable
+from fem.case.tables.run_tables import StaticTable
 from fem.model.static_checks import CheckResult, static_checks
 
 CODE = StaticTable(ground_acceleration_m_s2=1.6, soil_factor=1.5, corner_period_s=0.8, behaviour_factor=1.5)

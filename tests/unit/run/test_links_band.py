@@ -5,7 +5,8 @@ import pytest
 import fem
 from fem.assessment.sure_words import sureness_in_words
 from fem.case.case import Case, load_case
-from fem.case.unknown_inputs import UNKNOWN, UnknownChoice
+from fem.case.tables.input_ranges import UnknownChoice
+from fem.case.tables.unknown_inputs import UNKNOWN
 
 BESIDE = {"side": "right", "gap_m": 0.03, "stiffness_N_m": 1e8, "mu": 0.2}
 KERBS = [
@@ -77,5 +78,5 @@ def test_the_ranges_of_links_can_be_stated(name):
     links = {"stop": KERBS, "tie": TIES, "neighbour": [BESIDE]}
     largest = max(row[key] for row in links[table])
     case = unsure_of(name, **links, **{f"uncertainty.{name}": [0.9 * largest, 1.5 * largest]})
-    (span,) = fem.case.unknown_inputs.ranges_of(case, 1e9)
+    (span,) = fem.case.tables.unknown_inputs.ranges_of(case, 1e9)
     assert (span.key, span.ends) == (f"{table}.{key}", pytest.approx((0.9 * largest, 1.5 * largest)))

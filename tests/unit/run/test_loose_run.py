@@ -11,7 +11,7 @@ import fem
 from fem.assessment.summary import plain_summary
 from fem.case.case import CaseError, read_case, to_toml
 from fem.case.columns import BOXES
-from fem.case.unknown_inputs import ranges_of
+from fem.case.tables.unknown_inputs import ranges_of
 from fem.response.request import ResponseRequest
 from fem.results.history import read_history
 from fem.results.reader import open_run

@@ -15,7 +15,7 @@ from contact.stepping.ledger import CONTACT_DAMPING, FRICTION
 from contact.stepping.links import links_of
 from fem.assessment.verdict import verdict_of
 from fem.case.case import Case, CaseError, load_case
-from fem.case.neighbours import case_of
+from fem.case.tables.neighbours import case_of
 from fem.evidence.verification.runs import STACK, Finished, harmonic, pulse, run
 from fem.model.geometry import build_container
 from fem.model.model import build_model

@@ -1,116 +1,24 @@
-"""What ties several keys of a case together, for every table but [motion], and for the whole case."""
+"""What ties the tables of a case together."""
 
 import math
 from typing import Any
 
-from fem.case import quantities as q
-from fem.case.boxes import BOX_RULES, JOINT_RULES, boxes_of
 from fem.case.columns import history_width
-from fem.case.floors import FLOOR_CASE_RULES
-from fem.case.links import LINK_RULES
-from fem.case.motion_rules import harmonic_angular_frequency
-from fem.case.neighbours import NEIGHBOUR_RULES
-from fem.case.problem import Rule, file_beside, refused
+from fem.case.tables import quantities as q
+from fem.case.tables.boxes import BOX_RULES, JOINT_RULES, base_width, boxes_of
+from fem.case.tables.castings import CASTING_RULES
+from fem.case.tables.duration import duration_in_words, longest_time
+from fem.case.tables.floors import FLOOR_CASE_RULES
+from fem.case.tables.links import LINK_RULES
+from fem.case.tables.motion_rules import harmonic_angular_frequency
+from fem.case.tables.neighbours import NEIGHBOUR_RULES
+from fem.case.tables.problem import Rule, refused
+from fem.case.tables.rules import MASSES
 
 MOST_SAMPLES = 2e7
 MOST_HISTORY = 3.4e9  # bytes in memory: so many samples of a single box
 MOST_FRAMES = 1e6
 MOST_STEPS = 1e9
-#: simulated time of duration_s = "auto" where the floor stands or moves harmonically [s]
-USUAL_DURATION = 20.0
-#: time after the end of a pulse or a table in which the container comes to rest or falls, at most [s]
-MOST_FREE_MOTION = 60.0
-
-
-def _smallest(box: Any) -> float:
-    """Smallest outer dimension of a box [m]."""
-    return float(min(box.width_m, box.height_m, box.depth_m))
-
-
-#: keys of which one gives the mass of a box, and their quantities
-MASSES = {"weight_N": q.WEIGHT, "mass_kg": q.MASS, "density_kg_m3": q.DENSITY}
-
-
-def _masses(box: Any) -> dict[str, float]:
-    """The keys of `MASSES` that are given."""
-    return {key: value for key in MASSES if (value := getattr(box, key)) is not None}
-
-
-def _needs_mass(box: Any) -> bool:
-    """Whether a box takes its mass from [container]."""
-    return box.box is None or any(own.mass_kg is None for own in box.box)
-
-
-def _not_one_mass(box: Any) -> str:
-    given = [f"{key} = {value:g} {MASSES[key].unit}" for key, value in _masses(box).items()]
-    rule = ", mass_kg, density_kg_m3: exactly one of the three must be given, "
-    return rule + (f"got {', '.join(given)}; keep one of them" if given else "none is given")
-
-
-CONTAINER_RULES = (
-    Rule(
-        "container.weight_N",
-        lambda box: len(_masses(box)) == 1 or not (_masses(box) or _needs_mass(box)),
-        _not_one_mass,
-    ),
-    Rule(
-        "container.wall_m",
-        lambda box: box.section == "solid" or box.wall_m is not None or box.box is not None,
-        'is missing: section = "shell" needs the wall thickness, in m',
-    ),
-    Rule(
-        "container.wall_m",
-        lambda box: box.section == "solid" or box.wall_m is None or 2.0 * box.wall_m < _smallest(box),
-        lambda box: (
-            f"must be less than half the smallest outer dimension, {_smallest(box):g} m, got {box.wall_m:g} m; "
-            + (
-                q.WALL.guess(box.wall_m, lambda meant: 2.0 * meant < _smallest(box))
-                or 'for a full block take section = "solid"'
-            )
-        ),
-    ),
-    # The range that the program has been tried on: neither a needle nor a plate.
-    Rule(
-        "container.width_m",
-        lambda box: 0.02 * (1.0 - 1e-9) <= box.width_m / box.height_m <= 20.0 * (1.0 + 1e-9),
-        lambda box: (
-            f"over height_m must lie between 0.02 and 20, got {box.width_m:g} m / {box.height_m:g} m = "
-            f"{box.width_m / box.height_m:g}; are both in metres?"
-        ),
-    ),
-    Rule(
-        "container.centroid_m",
-        lambda box: box.centroid_m < box.height_m,
-        lambda box: (
-            f"must be less than height_m = {box.height_m:g} m, got {box.centroid_m:g} m; "
-            + (
-                q.LENGTH.guess(box.centroid_m, lambda meant: 0.1 * box.height_m < meant < box.height_m)
-                or "it is measured from the bottom of one box"
-            )
-        ),
-    ),
-    file_beside("container.mesh_file", below=False),
-)
-
-CONTACT_RULES = (
-    Rule(
-        "contact.mu_kinetic",
-        lambda contact: contact.mu_kinetic <= contact.mu_static,
-        "must be at most mu_static = {mu_static:g}, got {mu_kinetic:g}; leave it out where the two are equal",
-    ),
-)
-
-SOLVER_RULES = (
-    # 2 beta >= gamma >= 1/2: stable for every step (Hughes, The Finite Element Method, 1987, 9.1.2).
-    Rule(
-        "solver.newmark_beta",
-        lambda solver: solver.scheme != "newmark" or 2.0 * solver.newmark_beta >= solver.newmark_gamma,
-        lambda solver: (
-            f"must be at least newmark_gamma/2 = {solver.newmark_gamma / 2.0:g} to be stable at every step, "
-            f"got {solver.newmark_beta:g}; 1/4 and 1/2 are usual"
-        ),
-    ),
-)
 
 
 def _plausible_density(key: str) -> Rule:
@@ -151,35 +59,6 @@ def _largest(case: Any) -> float:
         return float(max(case.container.width_m, case.container.boxes * case.container.height_m))
     boxes = boxes_of(case.container, case.gravity_m_s2)
     return max(boxes[-1].top, *(box.width for box in boxes))
-
-
-def _base_width(case: Any) -> float:
-    """Width of the lowest box [m]."""
-    return boxes_of(case.container, case.gravity_m_s2)[0].width
-
-
-def ends_at_rest(case: Any) -> bool:
-    """Whether a run ends where the container comes to rest after its motions, and not at a given time."""
-    kinds = {case.motion.kind, case.vertical.kind} - {"none"}
-    return case.solver.duration_s == "auto" and bool(kinds) and kinds <= {"pulse", "table"}
-
-
-def longest_time(case: Any) -> float:
-    """Simulated time of a case, at most [s]; of a table without duration, the free motion after it alone."""
-    if case.solver.duration_s != "auto":
-        return float(case.solver.duration_s)
-    if not ends_at_rest(case):
-        return USUAL_DURATION
-    pulses = [motion for motion in (case.motion, case.vertical) if motion.kind == "pulse"]
-    return max([0.0, *(pulse.delay_s + (pulse.pulse_s or 0.0) for pulse in pulses)]) + MOST_FREE_MOTION
-
-
-def duration_in_words(case: Any) -> str:
-    """The simulated time as a case file has it, with its upper bound."""
-    time = f"{longest_time(case):g} s"
-    return (
-        f"duration_s = {time}" if case.solver.duration_s != "auto" else f'duration_s = "auto", up to {time}'
-    )
 
 
 def _tapered(case: Any, motion: Any) -> float:
@@ -239,39 +118,6 @@ def _frames(case: Any) -> float:
     return longest_time(case) / float(interval) + 1.0 if interval not in (0.0, "auto") else 0.0
 
 
-def bear_as_plates(support: Any) -> bool:
-    """Whether castings bear over all their length; those that are tilted do unless the case says otherwise."""
-    return support.casting_bears == "plate" or (
-        support.casting_bears is None and support.casting_tilt_m != 0.0
-    )
-
-
-def may_bear_as_plates(case: Any) -> bool:
-    """Whether the castings of a case could bear over all their length."""
-    alone = case.container.joints != "loose" and not getattr(case, "neighbour", ())
-    return bool(alone and case.floor.kind == "slab" and case.support.camber_m == 0.0)
-
-
-def _casting_does_not_fit(case: Any) -> str:
-    """Why castings do not fit below the base, empty where they do."""
-    if case.support.casting_m is None:
-        return ""
-    width, depth, inset = case.support.casting_m
-    if case.support.kind != "corners":
-        return f'belongs to support.kind = "corners", got "{case.support.kind}"; leave it out'
-    if width <= 0.0 or depth <= 0.0:
-        return f"must be [width, depth, inset] with a positive width and depth, got {case.support.casting_m}"
-    if case.floor.corner_patch_m is not None:
-        return "and floor.corner_patch_m both say what bears under a corner; keep one of them"
-    half = 0.5 * _base_width(case)
-    if inset + width > half or 2.0 * depth > case.container.depth_m:
-        return (
-            f"= {case.support.casting_m} does not fit under the base: inset and width at most half of width_m = "
-            f"{half:g} m, two depths at most depth_m = {case.container.depth_m:g} m"
-        )
-    return ""
-
-
 def _posts_do_not_fit(case: Any) -> str:
     """Why posts do not fit into the boxes, empty where they do."""
     if case.container.post_m is None or case.container.section != "shell":
@@ -300,13 +146,7 @@ CASE_RULES = (
         "does not apply to support.camber_m > 0: a cambered base rolls, and its feet do not strike at their corners; "
         "leave it out",
     ),
-    refused("support.casting_m", _casting_does_not_fit),
-    Rule(
-        "support.casting_bears",
-        lambda case: not bear_as_plates(case.support) or may_bear_as_plates(case),
-        '= "plate" and casting_tilt_m need floor.kind = "slab", one body and no camber_m: on a rigid floor, in a '
-        "loose stack and in a row castings touch with their outer edges; leave it out",
-    ),
+    *CASTING_RULES,
     refused("container.post_m", _posts_do_not_fit),
     Rule(
         "container.corner_post_N",
@@ -315,11 +155,11 @@ CASE_RULES = (
     ),
     Rule(
         "support.foot_m",
-        lambda case: case.support.kind != "feet" or case.support.foot_m < 0.5 * _base_width(case),
+        lambda case: case.support.kind != "feet" or case.support.foot_m < 0.5 * base_width(case),
         lambda case: (
-            f"must be less than half of width_m = {_base_width(case):g} m, got {case.support.foot_m:g} m; "
+            f"must be less than half of width_m = {base_width(case):g} m, got {case.support.foot_m:g} m; "
             + (
-                q.FOOT.guess(case.support.foot_m, lambda meant: meant < 0.5 * _base_width(case))
+                q.FOOT.guess(case.support.foot_m, lambda meant: meant < 0.5 * base_width(case))
                 or 'for a base that bears all along take kind = "flat"'
             )
         ),

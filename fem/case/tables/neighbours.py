@@ -10,10 +10,10 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Strict
 
-from fem.case import quantities as q
-from fem.case.boxes import boxes_of, centroid_at
-from fem.case.problem import Rule, either
-from fem.case.table import CaseTable, case_key, optional_key
+from fem.case.tables import quantities as q
+from fem.case.tables.boxes import boxes_of, centroid_at
+from fem.case.tables.problem import Rule, either
+from fem.case.tables.table import CaseTable, case_key, optional_key
 
 MOST_NEIGHBOURS = 5
 USUAL_DAMPING = 2.0  #: damping ratio of what is struck, where nothing is said: it does not bounce
@@ -27,7 +27,7 @@ OWN = ("boxes", "width_m", "height_m", "mass_kg", "centroid_m", "wall_m")
 
 
 class StruckTable(CaseTable):
-    """What stands beside the container and may be struck: another container, or a stop (`fem.case.links`)."""
+    """What stands beside the container and may be struck: another container, or a stop (`fem.case.tables.links`)."""
 
     side: Literal["left", "right"] = case_key("of the container at which it stands", example="right")
     gap_m: Annotated[float, q.GAP] = case_key("between it and what it stands beside, at rest", example=0.05)

@@ -7,9 +7,14 @@ case, on which its hash depends.
 import math
 from typing import Annotated, Literal, assert_never
 
-from fem.case import quantities as q
-from fem.case.motion_rules import MOTION_RULES, VERTICAL_RULES, harmonic_amplitude, harmonic_angular_frequency
-from fem.case.table import CaseTable, case_key, optional_key
+from fem.case.tables import quantities as q
+from fem.case.tables.motion_rules import (
+    MOTION_RULES,
+    VERTICAL_RULES,
+    harmonic_amplitude,
+    harmonic_angular_frequency,
+)
+from fem.case.tables.table import CaseTable, case_key, optional_key
 
 
 class HarmonicKeys(CaseTable):

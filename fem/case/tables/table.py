@@ -6,7 +6,7 @@ from typing import Any, ClassVar, Self
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 from pydantic_core import PydanticUndefined
 
-from fem.case.problem import BrokenRulesError, Rule, broken
+from fem.case.tables.problem import BrokenRulesError, Rule, broken
 
 
 class CaseTable(BaseModel):

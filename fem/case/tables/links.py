@@ -11,10 +11,10 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, Strict
 
-from fem.case import quantities as q
-from fem.case.neighbours import NeighbourTable, StruckTable, beside_of, gap_beside, outermost, top_of
-from fem.case.problem import Rule, either, refused
-from fem.case.table import CaseTable, case_key, optional_key
+from fem.case.tables import quantities as q
+from fem.case.tables.neighbours import NeighbourTable, StruckTable, beside_of, gap_beside, outermost, top_of
+from fem.case.tables.problem import Rule, either, refused
+from fem.case.tables.table import CaseTable, case_key, optional_key
 
 
 class StopTable(StruckTable):

@@ -4,7 +4,7 @@ Where the case says nothing in its table [uncertainty], a range follows the case
 which way friction falls from it; the mass centre, the width on which the base bears, the slope of the floor; the
 stiffness of a rigid floor within a factor of nine downwards (the point of a corner) and three upwards (a casting),
 stiffness and strength of a slab and damping within a factor of two either way; what of a base touches, where nobody
-said that it has feet or castings; and a harmonic motion begins in one of several ways. `README.md` has the sources.
+said that it has feet or castings; and a harmonic motion begins in one of several ways. `../README.md` has the sources.
 
 Friction between loose boxes is not that of the floor: other surfaces meet there. Where [joints] does not give it, a
 case takes the floor's, and the joints have ranges of their own: `mu_static` within a factor of two unless it is given,
@@ -13,16 +13,25 @@ its fall as on the floor.
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from functools import partial
-from typing import Any, NamedTuple
+from typing import Any
 
 from contact.reference.rigid_block import RigidBlock
-from fem.case import quantities as q
-from fem.case.links import ROWS
-from fem.case.motion_rules import LEAST_RAMP
-from fem.case.problem import refused
-from fem.case.rules import longest_time, may_bear_as_plates
+from fem.case.tables import input_keys as keys
+from fem.case.tables import quantities as q
+from fem.case.tables.castings import may_bear_as_plates
+from fem.case.tables.duration import longest_time
+from fem.case.tables.input_ranges import (
+    HELD,
+    Ends,
+    InputRange,
+    UnknownChoice,
+    UnknownNumber,
+    Value,
+    own_value,
+    short,
+)
+from fem.case.tables.motion_rules import LEAST_RAMP
+from fem.case.tables.problem import refused
 
 SOFTEST, STIFFEST = 1.0 / 9.0, 3.0  #: contact stiffness over that of the case
 DAMPING = (0.5, 2.0)  #: contact and material damping over those of the case
@@ -53,158 +62,7 @@ GAPS, LINK_STIFFNESS, LINK_FRICTION = (
     (0.5, 2.0),
 )
 MOVES = 1e-9  #: cosine of the phase of a floor that starts at rest
-
-MU_KINETIC, WEAKENING, STRIBECK = "contact.mu_kinetic", "contact.weakening_m", "contact.stribeck_velocity_m_s"
-#: between loose boxes
-JOINTS_MU_STATIC, JOINTS_MU_KINETIC = "joints.mu_static", "joints.mu_kinetic"
-JOINTS_WEAKENING, JOINTS_DASHPOT = "joints.weakening_m", "joints.damping_ratio"
-MU_STATIC, SUPPORT = "contact.mu_static", "support.kind"
-CENTROID_KEY, ECCENTRICITY = "container.centroid_m", "container.eccentricity_m"
-EFFECTIVE, SLOPE, VERTICAL_PHASE = "support.effective_width", "floor.slope_percent", "vertical.phase_rad"
-START, RAMP, TOLERANCE = "motion.start", "motion.ramp_cycles", "solver.energy_tolerance"
-PENALTY, DASHPOT, RESTITUTION, MATERIAL = (
-    "contact.normal_penalty_Pa_m",
-    "contact.damping_ratio",
-    "contact.restitution_over_housner",
-    "container.damping_ratio",
-)
-CAMBER, ROCKING = "support.camber_m", "support.rocking_damping_ratio"
-CASTING_TILT = "support.casting_tilt_m"
-STOP_GAP, STOP_STIFFNESS, STOP_FRICTION = "stop.gap_m", "stop.stiffness_N_m", "stop.mu"
-TIE_SLACK, TIE_STIFFNESS = "tie.slack_m", "tie.stiffness_N_m"
-SIDE_GAP, SIDE_STIFFNESS, SIDE_FRICTION = "neighbour.gap_m", "neighbour.stiffness_N_m", "neighbour.mu"
-STRENGTH, MODULUS = "floor.bearing_strength_Pa", "floor.youngs_modulus_Pa"
-
-Value = float | str
-Ends = tuple[float, float]
-HELD = ("held", "known")  #: in place of a range
 SHORT_LENGTH_M = 0.1  #: told in mm
-
-
-@dataclass(frozen=True, kw_only=True)
-class InputRange:
-    """The values that an input of a case may have."""
-
-    key: str  #: dotted
-    own: Value  #: of the case
-    ends: tuple[Value, ...]  #: that differ from the case's own; one after the other, lowest first
-    between: tuple[float, ...] = ()  #: tried one at a time, too
-    drawn: Callable[[float], Value] | None  #: value at a place from 0 to 1; None: it is not drawn
-    alone: bool = True  #: it makes a difference where nothing else is changed
-
-    def share(self, value: float) -> float:
-        """How far a value lies on the way from the case's own to the end of the range."""
-        assert isinstance(self.own, float)
-        ahead = [
-            end for end in self.ends if isinstance(end, float) and (end - self.own) * (value - self.own) > 0.0
-        ]
-        return abs(value - self.own) / abs(ahead[0] - self.own) if ahead else 1.0
-
-
-class UnknownNumber(NamedTuple):
-    """A number that a case may not know: [low, high] in [uncertainty], or "held"."""
-
-    key: str  #: dotted
-    name: str  #: in [uncertainty]
-    words: str  #: for people
-    quantity: q.Quantity  #: what both ends are
-    #: unless stated: factors on the case's own value, or both ends from the case and that value
-    ends: Ends | Callable[[Any, float], Ends]
-    matters: Callable[[Any], bool] = lambda case: True  #: where the case has a value at all
-    #: of the draws: with a power above 1 most lie near the lower end; None: logarithmic, unless it begins at zero
-    power: float | None = None
-    #: values tried between the ends
-    between: Callable[[float, float], tuple[float, ...]] = lambda low, high: ()
-    alone: Callable[[Any], bool] = lambda case: True  #: where a change of it alone makes a difference
-    same: Callable[[float], float] = lambda value: value  #: the value that means the same, of an angle
-    varies: Callable[[Any], bool] = lambda case: True  #: where it is drawn with all others
-
-    def range_in(self, case: Any, penalty: float | None) -> InputRange | None:
-        """The range in a case; None where it makes no difference."""
-        own, stated = _own(case, self.key, penalty), getattr(case.uncertainty, self.name)
-        if own is None or not self.matters(case):
-            return None
-        low, high = self._default(case, own) if stated is None else (own, own) if stated in HELD else stated
-        ends = {self.same(end) for end in (low, high)}
-        between = (value for value in self.between(low, high) if low < value < high and value != own)
-        return InputRange(
-            key=self.key,
-            own=own,
-            ends=tuple(end for end in sorted(ends) if not math.isclose(end, own, rel_tol=1e-12)),
-            between=tuple(map(self.same, between)),
-            drawn=partial(self._drawn, low, high) if self.varies(case) else None,
-            alone=self.alone(case),
-        )
-
-    def _default(self, case: Any, own: float) -> Ends:
-        if not isinstance(self.ends, tuple):
-            return self.ends(case, own)
-        least, most = self.quantity.least or 0.0, (self.quantity.below or math.inf) * (1.0 - 1e-9)
-        low, high = self.ends
-        return short(max(least, low * own)), short(min(most, self.quantity.most or math.inf, high * own))
-
-    def _drawn(self, low: float, high: float, place: float) -> float:
-        if self.power is not None:
-            return self.same(short(low + (high - low) * place**self.power))
-        return short(low * (high / low) ** place if low > 0.0 else high * place)
-
-    def refusal(self, table: Any) -> str:
-        """What is wrong with the stated range, "" if nothing: it rises between values that the input may have."""
-        ends = getattr(table, self.name)
-        if not isinstance(ends, list):
-            return ""
-        for end in ends:
-            try:
-                self.quantity.check(end)
-            except ValueError as error:
-                return str(error)
-        if ends[0] <= ends[1]:
-            return ""
-        return (
-            f"must be [low, high] with low at most high, got {ends}; write {ends[::-1]}, "
-            'or "held" for the value of the case alone'
-        )
-
-
-class UnknownChoice(NamedTuple):
-    """An input that may be otherwise than the case says: true in [uncertainty]; false or "held"."""
-
-    key: str  #: dotted
-    name: str  #: in [uncertainty]
-    words: str  #: for people
-    other: Callable[[Any], Value | None]  #: None where it makes no difference
-    unless_stated: bool = True  #: tried where the case does not say
-    drawn: bool = True
-
-    def range_in(self, case: Any, penalty: float | None) -> InputRange | None:
-        """The range in a case; None where it makes no difference."""
-        own, other = _own(case, self.key, penalty), self.other(case)
-        stated = getattr(case.uncertainty, self.name)
-        if other is None or stated in (*HELD, False) or (stated is None and not self.unless_stated):
-            return None
-        drawn = (lambda place: own if place < 0.5 else other) if self.drawn else None
-        return InputRange(key=self.key, own=own, ends=(other,), drawn=drawn)
-
-
-def short(value: float) -> float:
-    """Twelve digits: a third of 0.3 is 0.1."""
-    return float(f"{value:.12g}")
-
-
-def _own(case: Any, key: str, penalty: float | None) -> Any:
-    """What a case has of an input, with what follows where the case itself says nothing; None: nothing."""
-    table, _, name = key.partition(".")
-    if table in ROWS:  # of the largest of its rows, which stands for all in proportion
-        return max((getattr(row, name) for row in getattr(case, table)), default=None)
-    if key == PENALTY:
-        return None if case.floor.is_slab else penalty
-    if key == DASHPOT:  # that of a slab matters little where it crushes
-        return case.contact_damping_ratio
-    if key == JOINTS_DASHPOT:
-        return case.joints.dashpot
-    if key == RESTITUTION:
-        return case.contact.restitution_over_housner or 1.0
-    return case.joint_friction[name] if table == "joints" else getattr(getattr(case, table), name)
 
 
 def _falls(case: Any) -> bool:
@@ -406,65 +264,67 @@ Number, Choice = UnknownNumber, UnknownChoice
 #: every input that may vary, those first that decide most often
 # fmt: off
 UNKNOWN: tuple[UnknownNumber | UnknownChoice, ...] = (
-    Number(MU_KINETIC, "mu_kinetic", "kinetic friction", q.FRICTION,
+    Number(keys.MU_KINETIC, "mu_kinetic", "kinetic friction", q.FRICTION,
            lambda case, own: _kinetic(own, case.contact.mu_static), power=1.0, between=_shares(0.5)),
-    Number(MU_STATIC, "mu_static", "static friction", q.FRICTION, STATIC, power=1.0),
-    Number(WEAKENING, "weakening_m", "fall of friction with slip", q.WEAKENING,
+    Number(keys.MU_STATIC, "mu_static", "static friction", q.FRICTION, STATIC, power=1.0),
+    Number(keys.WEAKENING, "weakening_m", "fall of friction with slip", q.WEAKENING,
            _reaching(0.0, WEAKENING_M), matters=_may_fall, power=3.0, between=lambda low, high: WEAKENINGS_BETWEEN_M,
            alone=_falls),
-    Number(STRIBECK, "stribeck_velocity_m_s", "fall of friction with velocity", q.STRIBECK_VELOCITY,
+    Number(keys.STRIBECK, "stribeck_velocity_m_s", "fall of friction with velocity", q.STRIBECK_VELOCITY,
            _reaching(0.0, STRIBECK_M_S), matters=_any_may_fall, power=2.0, alone=_any_falls),
-    Number(JOINTS_MU_STATIC, "joints_mu_static", "static friction of the joints", q.FRICTION, _joints_mu_static,
+    Number(keys.JOINTS_MU_STATIC, "joints_mu_static", "static friction of the joints", q.FRICTION, _joints_mu_static,
            matters=lambda case: case.container.is_loose),
-    Number(JOINTS_MU_KINETIC, "joints_mu_kinetic", "kinetic friction of the joints", q.FRICTION,
+    Number(keys.JOINTS_MU_KINETIC, "joints_mu_kinetic", "kinetic friction of the joints", q.FRICTION,
            lambda case, own: _kinetic(own, case.joint_friction["mu_static"]),
            matters=lambda case: case.container.is_loose, power=1.0, between=_shares(0.5)),
-    Number(JOINTS_WEAKENING, "joints_weakening_m", "fall of friction of the joints with slip", q.WEAKENING,
+    Number(keys.JOINTS_WEAKENING, "joints_weakening_m", "fall of friction of the joints with slip", q.WEAKENING,
            _reaching(0.0, WEAKENING_M), matters=_joints_may_fall, power=3.0,
            between=lambda low, high: WEAKENINGS_BETWEEN_M, alone=_joints_fall),
-    Number(JOINTS_DASHPOT, "joints_damping_ratio", "damping of the joints", q.CONTACT_DAMPING,
+    Number(keys.JOINTS_DASHPOT, "joints_damping_ratio", "damping of the joints", q.CONTACT_DAMPING,
            _reaching(*JOINTS_DASHPOTS), matters=lambda case: case.container.is_loose),
-    Number(CASTING_TILT, "casting_tilt_m", "tilt of the castings", q.TILT,
+    Number(keys.CASTING_TILT, "casting_tilt_m", "tilt of the castings", q.TILT,
            lambda case, own: (short(own - CASTING_TILT_M), short(own + CASTING_TILT_M)), matters=_may_stand_on_plates,
            varies=_on_plates, power=1.0),
-    Number(CAMBER, "camber_m", "camber of the base", q.CAMBER, _cambers, matters=_may_be_cambered,
+    Number(keys.CAMBER, "camber_m", "camber of the base", q.CAMBER, _cambers, matters=_may_be_cambered,
            between=lambda low, high: () if low > 0.0 else (short(BETWEEN_CAMBERS * high),), varies=_is_cambered),
-    Number(ROCKING, "rocking_damping_ratio", "damping of rocking", q.ROCKING_DAMPING,
+    Number(keys.ROCKING, "rocking_damping_ratio", "damping of rocking", q.ROCKING_DAMPING,
            _reaching(*ROCKING_DAMPING), matters=lambda case: case.rolls),
-    Choice(SUPPORT, "support", "contact of the base", _other_support, drawn=False),
-    Number(CENTROID_KEY, "centroid_m", "height of the mass centre", q.LENGTH, CENTROID,
+    Choice(keys.SUPPORT, "support", "contact of the base", _other_support, drawn=False),
+    Number(keys.CENTROID, "centroid_m", "height of the mass centre", q.LENGTH, CENTROID,
            matters=lambda case: case.container.box is None and case.container.mesh_file is None, power=1.0),
-    Number(ECCENTRICITY, "eccentricity_m", "eccentricity of the mass centre", q.OFFSET, _beside,
+    Number(keys.ECCENTRICITY, "eccentricity_m", "eccentricity of the mass centre", q.OFFSET, _beside,
            matters=_has_columns, power=1.0),
-    Number(EFFECTIVE, "effective_width", "effective width of the base", q.EFFECTIVE_WIDTH, (EFFECTIVE_WIDTH, 1.0),
+    Number(keys.EFFECTIVE, "effective_width", "effective width of the base", q.EFFECTIVE_WIDTH, (EFFECTIVE_WIDTH, 1.0),
            matters=lambda case: case.solver.model != "full", power=1.0),
-    Number(SLOPE, "slope_percent", "slope of the floor", q.SLOPE, _slopes, power=1.0),
-    Number(VERTICAL_PHASE, "vertical_phase_rad", "phase of the vertical motion", q.PHASE,
+    Number(keys.SLOPE, "slope_percent", "slope of the floor", q.SLOPE, _slopes, power=1.0),
+    Number(keys.VERTICAL_PHASE, "vertical_phase_rad", "phase of the vertical motion", q.PHASE,
            lambda case, own: (short(own - math.pi), short(own + math.pi)),
            matters=lambda case: case.motion.kind == case.vertical.kind == "harmonic", power=1.0,
            between=_shares(0.25, 0.75), same=lambda value: short(math.pi - (math.pi - value) % (2.0 * math.pi))),
-    Choice(START, "start", "start", _other_start, unless_stated=False),
-    Choice(RAMP, "ramp", "cycles of the ramp", _other_ramp),
-    Number(STOP_GAP, "stop_gap_m", "gap of the stops", q.GAP, GAPS, power=1.0),
-    Number(STOP_STIFFNESS, "stop_stiffness_N_m", "stiffness of the stops", q.LINK_STIFFNESS, LINK_STIFFNESS),
-    Number(STOP_FRICTION, "stop_mu", "friction on the stops", q.FRICTION, LINK_FRICTION, power=1.0),
-    Number(TIE_SLACK, "tie_slack_m", "slack of the ties", q.GAP, GAPS, power=1.0),
-    Number(TIE_STIFFNESS, "tie_stiffness_N_m", "stiffness of the ties", q.LINK_STIFFNESS, LINK_STIFFNESS),
-    Number(SIDE_GAP, "neighbour_gap_m", "gap to the neighbours", q.GAP, GAPS, power=1.0),
-    Number(SIDE_STIFFNESS, "neighbour_stiffness_N_m", "stiffness of the sides", q.LINK_STIFFNESS, LINK_STIFFNESS),
-    Number(SIDE_FRICTION, "neighbour_mu", "friction between the sides", q.FRICTION, LINK_FRICTION, power=1.0),
-    Number(PENALTY, "normal_penalty_Pa_m", "stiffness of the contact", q.PENALTY, (SOFTEST, STIFFEST)),
-    Number(STRENGTH, "bearing_strength_Pa", "strength of the floor", q.BEARING_STRENGTH, SLAB),
-    Number(MODULUS, "floor_youngs_modulus_Pa", "stiffness of the floor", q.FLOOR_STIFFNESS, SLAB),
-    Number(DASHPOT, "damping_ratio", "damping of the contact", q.CONTACT_DAMPING, DAMPING),
-    Number(RESTITUTION, "restitution_over_housner", "restitution over Housner's", q.RESTITUTION, _restitutions,
+    Choice(keys.START, "start", "start", _other_start, unless_stated=False),
+    Choice(keys.RAMP, "ramp", "cycles of the ramp", _other_ramp),
+    Number(keys.STOP_GAP, "stop_gap_m", "gap of the stops", q.GAP, GAPS, power=1.0),
+    Number(keys.STOP_STIFFNESS, "stop_stiffness_N_m", "stiffness of the stops", q.LINK_STIFFNESS, LINK_STIFFNESS),
+    Number(keys.STOP_FRICTION, "stop_mu", "friction on the stops", q.FRICTION, LINK_FRICTION, power=1.0),
+    Number(keys.TIE_SLACK, "tie_slack_m", "slack of the ties", q.GAP, GAPS, power=1.0),
+    Number(keys.TIE_STIFFNESS, "tie_stiffness_N_m", "stiffness of the ties", q.LINK_STIFFNESS, LINK_STIFFNESS),
+    Number(keys.SIDE_GAP, "neighbour_gap_m", "gap to the neighbours", q.GAP, GAPS, power=1.0),
+    Number(keys.SIDE_STIFFNESS, "neighbour_stiffness_N_m", "stiffness of the sides", q.LINK_STIFFNESS, LINK_STIFFNESS),
+    Number(keys.SIDE_FRICTION, "neighbour_mu", "friction between the sides", q.FRICTION, LINK_FRICTION, power=1.0),
+    Number(keys.PENALTY, "normal_penalty_Pa_m", "stiffness of the contact", q.PENALTY, (SOFTEST, STIFFEST)),
+    Number(keys.STRENGTH, "bearing_strength_Pa", "strength of the floor", q.BEARING_STRENGTH, SLAB),
+    Number(keys.MODULUS, "floor_youngs_modulus_Pa", "stiffness of the floor", q.FLOOR_STIFFNESS, SLAB),
+    Number(keys.DASHPOT, "damping_ratio", "damping of the contact", q.CONTACT_DAMPING, DAMPING),
+    Number(keys.RESTITUTION, "restitution_over_housner", "restitution over Housner's", q.RESTITUTION, _restitutions,
            matters=_has_impacts, power=1.0),
-    Number(MATERIAL, "material_damping_ratio", "damping of the container", q.MATERIAL_DAMPING, DAMPING,
+    Number(keys.MATERIAL, "material_damping_ratio", "damping of the container", q.MATERIAL_DAMPING, DAMPING,
            matters=lambda case: case.solver.model != "rigid"),
 )
 # fmt: on
-INPUTS = (*(unknown.key for unknown in UNKNOWN), TOLERANCE)
-WORDS = {unknown.key: unknown.words for unknown in UNKNOWN} | {TOLERANCE: "energy tolerance of the steps"}
+INPUTS = (*(unknown.key for unknown in UNKNOWN), keys.TOLERANCE)
+WORDS = {unknown.key: unknown.words for unknown in UNKNOWN} | {
+    keys.TOLERANCE: "energy tolerance of the steps"
+}
 QUANTITIES = {unknown.key: unknown.quantity for unknown in UNKNOWN if isinstance(unknown, UnknownNumber)}
 
 
@@ -496,7 +356,7 @@ def excluded_values(case: Any) -> list[str]:
     reasons = []
     for unknown in UNKNOWN:
         stated = getattr(case.uncertainty, unknown.name)
-        own = _own(case, unknown.key, None) if isinstance(stated, list) else None
+        own = own_value(case, unknown.key, None) if isinstance(stated, list) else None
         if isinstance(own, float) and not stated[0] - 1e-9 <= own <= stated[1] * (1.0 + 1e-9) + 1e-9:
             reasons.append(
                 f"[uncertainty] {unknown.name} = {stated} excludes the value of the case, {unknown.key} = {own:g}; "

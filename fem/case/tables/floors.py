@@ -11,10 +11,10 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from fem.case import quantities as q
-from fem.case.boxes import boxes_of
-from fem.case.problem import Rule, refused
-from fem.case.table import CaseTable, case_key, optional_key
+from fem.case.tables import quantities as q
+from fem.case.tables.boxes import boxes_of
+from fem.case.tables.problem import Rule, refused
+from fem.case.tables.table import CaseTable, case_key, optional_key
 
 Reach = tuple[float, float]
 

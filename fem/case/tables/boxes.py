@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
-from fem.case import quantities as q
-from fem.case.problem import Rule, refused
+from fem.case.tables import quantities as q
+from fem.case.tables.problem import Rule, refused
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -84,6 +84,11 @@ def boxes_of(container: Any, gravity: float) -> tuple[Box, ...]:
         )
         bottom += height
     return tuple(boxes)
+
+
+def base_width(case: Any) -> float:
+    """Width of the lowest box [m]."""
+    return boxes_of(case.container, case.gravity_m_s2)[0].width
 
 
 def shared_face(lower: Box, upper: Box) -> tuple[float, float]:

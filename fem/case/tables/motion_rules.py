@@ -7,8 +7,8 @@ import math
 from dataclasses import replace
 from typing import Any
 
-from fem.case import quantities as q
-from fem.case.problem import Rule, file_beside, refused
+from fem.case.tables import quantities as q
+from fem.case.tables.problem import Rule, file_beside, refused
 
 #: peak acceleration of a harmonic floor given by amplitude and frequency [m/s2]: a hundred times gravity, which a
 #: vibration test at 100 Hz may reach; ten times that is a slip, and steps of nanoseconds

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import PurePosixPath, PureWindowsPath
 from typing import Any
 
-from fem.case.quantities import with_unit
+from fem.case.tables.quantities import with_unit
 
 
 @dataclass(frozen=True, kw_only=True)

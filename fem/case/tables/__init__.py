@@ -1,0 +1,1 @@
+"""The tables of a case file: keys, quantities and the rules between them."""

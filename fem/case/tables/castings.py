@@ -1,0 +1,50 @@
+"""Corner castings below the base: how they bear, and the rules of [support] for them."""
+
+from typing import Any
+
+from fem.case.tables.boxes import base_width
+from fem.case.tables.problem import Rule, refused
+
+
+def bear_as_plates(support: Any) -> bool:
+    """Whether castings bear over all their length; those that are tilted do unless the case says otherwise."""
+    return support.casting_bears == "plate" or (
+        support.casting_bears is None and support.casting_tilt_m != 0.0
+    )
+
+
+def may_bear_as_plates(case: Any) -> bool:
+    """Whether the castings of a case could bear over all their length."""
+    alone = case.container.joints != "loose" and not getattr(case, "neighbour", ())
+    return bool(alone and case.floor.kind == "slab" and case.support.camber_m == 0.0)
+
+
+def _casting_does_not_fit(case: Any) -> str:
+    """Why castings do not fit below the base, empty where they do."""
+    if case.support.casting_m is None:
+        return ""
+    width, depth, inset = case.support.casting_m
+    if case.support.kind != "corners":
+        return f'belongs to support.kind = "corners", got "{case.support.kind}"; leave it out'
+    if width <= 0.0 or depth <= 0.0:
+        return f"must be [width, depth, inset] with a positive width and depth, got {case.support.casting_m}"
+    if case.floor.corner_patch_m is not None:
+        return "and floor.corner_patch_m both say what bears under a corner; keep one of them"
+    half = 0.5 * base_width(case)
+    if inset + width > half or 2.0 * depth > case.container.depth_m:
+        return (
+            f"= {case.support.casting_m} does not fit under the base: inset and width at most half of width_m = "
+            f"{half:g} m, two depths at most depth_m = {case.container.depth_m:g} m"
+        )
+    return ""
+
+
+CASTING_RULES = (
+    refused("support.casting_m", _casting_does_not_fit),
+    Rule(
+        "support.casting_bears",
+        lambda case: not bear_as_plates(case.support) or may_bear_as_plates(case),
+        '= "plate" and casting_tilt_m need floor.kind = "slab", one body and no camber_m: on a rigid floor, in a '
+        "loose stack and in a row castings touch with their outer edges; leave it out",
+    ),
+)

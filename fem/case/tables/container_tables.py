@@ -1,0 +1,182 @@
+"""The tables [container] and [support]: the boxes, and where their base may touch the floor.
+
+A key carries its unit. The type, range and unit of one key are checked by its `Quantity`; relations between keys are
+rules (`fem.case.tables.rules`, `fem.case.case_rules`). Keys of an option that is not chosen are checked and not used.
+"""
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field, Strict, ValidationInfo, field_validator
+
+from fem.case.tables import quantities as q
+from fem.case.tables.rules import CONTAINER_RULES
+from fem.case.tables.table import CaseTable, case_key, optional_key
+
+
+class BoxTable(CaseTable):
+    """One box of a stack whose boxes differ, from the floor up, in place of boxes."""
+
+    width_m: Annotated[float, q.LENGTH] | None = optional_key("outer width", 1.1)
+    height_m: Annotated[float, q.LENGTH] | None = optional_key("outer height", 1.0)
+    mass_kg: Annotated[float, q.MASS] | None = optional_key("with its fill", 2500.0)
+    centroid_m: Annotated[float, q.LENGTH] | None = optional_key("height of the mass centre in the box", 0.5)
+    wall_m: Annotated[float, q.WALL] | None = optional_key("wall thickness, shell only", 0.008)
+    offset_m: Annotated[float, q.OFFSET] = case_key("along x, from the axis of the box below", 0.0)
+
+
+def _as_tuple(value: object) -> object:
+    return tuple(value) if isinstance(value, list) else value
+
+
+class ContainerTable(CaseTable):
+    """One box of the container, and how many of them stand on one another."""
+
+    width_m: Annotated[float, q.LENGTH] = case_key("outer width, along x", example=1.1)
+    height_m: Annotated[float, q.LENGTH] = case_key("outer height of one box", example=1.0)
+    depth_m: Annotated[float, q.LENGTH] = case_key(
+        "outer depth, out of the plane; default: the width", follows=lambda values: values["width_m"]
+    )
+    box: Annotated[tuple[BoxTable, ...] | None, BeforeValidator(_as_tuple)] = Field(
+        default=None,
+        description="boxes that differ, [[container.box]] from the floor up; what one leaves out is as [container]",
+    )
+    boxes: Annotated[int, Strict(), q.BOXES] = case_key(
+        "number of equal boxes, one on the other; default: 1",
+        follows=lambda values: len(values["box"] or (None,)),
+        example=4,
+    )
+    joints: Literal["bolted", "loose"] = case_key(
+        '"bolted" | "loose": boxes that stand on one another without bolts', "bolted"
+    )
+    weight_N: Annotated[float, q.WEIGHT] | None = optional_key(
+        "of one box with its fill; or mass_kg, or density_kg_m3", 24525.0
+    )
+    mass_kg: Annotated[float, q.MASS] | None = optional_key(
+        "of one box with its fill, in place of weight_N", 2500.0
+    )
+    density_kg_m3: Annotated[float, q.DENSITY] | None = optional_key(
+        "mean density of one box with its fill, in place of weight_N", 2066.0
+    )
+    centroid_m: Annotated[float, q.LENGTH] = case_key(
+        "height of the mass centre in the box; default: half the height",
+        follows=lambda values: 0.5 * values["height_m"],
+    )
+    eccentricity_m: Annotated[float, q.OFFSET] = case_key(
+        "of the mass centre of every box from its axis, > 0: toward +x", 0.0
+    )
+    wall_m: Annotated[float, q.WALL] | None = optional_key(
+        "wall thickness, shell only", 0.008, only=("section", "shell")
+    )
+    wall_density_kg_m3: Annotated[float, q.WALL_DENSITY] = case_key(
+        "density of the walls, shell only", 7850.0, only=("section", "shell")
+    )
+    section: Literal["shell", "solid"] = case_key(
+        '"shell" | "solid"; default: shell where wall_m is given',
+        follows=lambda values: "shell" if _has_walls(values) else "solid",
+    )
+    youngs_modulus_Pa: Annotated[float, q.STIFFNESS] = case_key("Young's modulus", 2.1e11)
+    poisson_ratio: Annotated[float, q.POISSON] = case_key("Poisson's ratio", 0.3)
+    damping_ratio: Annotated[float, q.MATERIAL_DAMPING] = case_key(
+        "of the first elastic mode; it grows with frequency, zeta_n = zeta f_n/f_1", 0.02
+    )
+    post_m: Annotated[
+        tuple[Annotated[float, q.POST], Annotated[float, q.POST]] | None, BeforeValidator(_as_tuple)
+    ] = optional_key(
+        "[width, wall] of the square hollow section at each of the four edges of a box, shell only",
+        [0.12, 0.008],
+        only=("section", "shell"),
+    )
+    corner_post_N: Annotated[float, q.CORNER_FORCE] | None = optional_key(
+        "strength of the post above each bottom corner, of which two stand behind each other; default: on "
+        "castings that of post_m, S355; else the wall yields",
+        848e3,
+    )
+    mesh_file: str | None = optional_key("a mesh to use in place of the structured one", "container.msh")
+
+    rules = CONTAINER_RULES
+
+    @field_validator("boxes")
+    @classmethod
+    def _one_kind_of_stack(cls, value: int, info: ValidationInfo) -> int:
+        """Refuse a number of boxes beside [[container.box]]; it sees only a number that is given."""
+        if info.data.get("box") is not None:
+            raise ValueError(
+                f"cannot stand beside [[container.box]], of which each is one box (there are "
+                f"{len(info.data['box'])}); keep one of them"
+            )
+        return value
+
+    @property
+    def post_section(self) -> tuple[float, float] | None:
+        """Width and wall of the posts of a shell [m]; None without."""
+        return self.post_m if self.section == "shell" else None
+
+    @property
+    def is_loose(self) -> bool:
+        """Whether its boxes stand on one another without bolts."""
+        return self.joints == "loose"
+
+    @property
+    def bodies(self) -> int:
+        """How many bodies move each for itself: the boxes of a loose stack, else one."""
+        return self.boxes if self.is_loose else 1
+
+    @property
+    def bolted_joints(self) -> int:
+        """Joints whose bolts carry forces: those between the boxes of a bolted stack."""
+        return self.boxes - self.bodies
+
+    @property
+    def total_height(self) -> float:
+        """Height of all boxes together [m]."""
+        if self.box is None:
+            return self.boxes * self.height_m
+        return sum(self.height_m if box.height_m is None else box.height_m for box in self.box)
+
+
+def _has_walls(values: dict[str, Any]) -> bool:
+    """Whether [container] or one of its boxes has a wall."""
+    return values["wall_m"] is not None or any(value.wall_m is not None for value in values["box"] or ())
+
+
+class SupportTable(CaseTable):
+    """Where the base may touch the floor."""
+
+    kind: Literal["corners", "feet", "flat"] = case_key('"corners" | "feet" | "flat"', "corners")
+    foot_m: Annotated[float, q.FOOT] = case_key(
+        "length of each foot from its corner, feet only", 0.15, only=("kind", "feet")
+    )
+
+    effective_width: Annotated[float, q.EFFECTIVE_WIDTH] = case_key(
+        "width between the points about which it rocks, over width_m: rounded or worn edges; rigid, reduced",
+        1.0,
+    )
+
+    casting_m: Annotated[list[Annotated[float, q.CASTING]], Field(min_length=3, max_length=3)] | None = (
+        optional_key(
+            "[width, depth, inset from the side] of a corner casting, two behind each other; corners only",
+            [0.162, 0.178, 0.0],
+            only=("kind", "corners"),
+        )
+    )
+    casting_bears: Literal["plate", "edge"] | None = optional_key(
+        '"plate" | "edge": over all its length, or at its outer edge; default: edge, plate where it is tilted',
+        "plate",
+        only=("kind", "corners"),
+    )
+    casting_tilt_m: Annotated[float, q.TILT] = case_key(
+        "how far the outer edge of a casting stands higher than its inner one; < 0: lower",
+        0.0,
+        only=("kind", "corners"),
+    )
+    camber_m: Annotated[float, q.CAMBER] = case_key(
+        "how far the edges of the base stand higher than its middle, along a parabola; 0: sharp corners", 0.0
+    )
+    rocking_damping_ratio: Annotated[float, q.ROCKING_DAMPING] = case_key(
+        "of small rocking on a cambered base; not of feet, whose inner ends strike", 0.05
+    )
+
+    @property
+    def inset(self) -> float:
+        """Distance of the outer edge of the castings from the side of the box [m]."""
+        return self.casting_m[2] if self.casting_m is not None and self.kind == "corners" else 0.0

@@ -1,0 +1,114 @@
+"""The tables [initial], [static], [solver], [output] and [document]: a run, what it writes, and who signs it."""
+
+from typing import Annotated, Literal
+
+from pydantic import BeforeValidator, Field, Strict
+
+from fem.case.tables import quantities as q
+from fem.case.tables.rules import SOLVER_RULES
+from fem.case.tables.table import CaseTable, case_key, optional_key
+
+
+class InitialTable(CaseTable):
+    """Where the container starts, beside the motion of the floor."""
+
+    rotation_rad: Annotated[float, q.ROTATION] = case_key(
+        "> 0 about the right corner, < 0 about the left", 0.0
+    )
+    angular_velocity_rad_s: Annotated[float, q.ANGULAR_VELOCITY] = case_key(
+        "rigid, about that corner; at rotation 0 its sign chooses the corner", 0.0
+    )
+    velocity_m_s: Annotated[float, q.VELOCITY] = case_key("relative to the floor, added", 0.0)
+
+    @property
+    def is_pushed(self) -> bool:
+        """Whether the container starts tilted or in motion."""
+        return any((self.rotation_rad, self.angular_velocity_rad_s, self.velocity_m_s))
+
+
+class StaticTable(CaseTable):
+    """The lateral force method, EN 1998-1:2004, 4.3.3.2, beside the run; without this table it is left out."""
+
+    ground_acceleration_m_s2: Annotated[float, q.GROUND_ACCELERATION] = case_key(
+        "reference peak ground acceleration a_gR", 1.6
+    )
+    soil_factor: Annotated[float, q.SOIL_FACTOR] = case_key("S", 1.5)
+    corner_period_s: Annotated[float, q.CORNER_PERIOD] = case_key(
+        "T_C, up to which the spectrum is level; 0.8 s: ground type D, as the paper has it", 0.8
+    )
+    behaviour_factor: Annotated[float, q.BEHAVIOUR_FACTOR] = case_key("q", 1.5)
+    importance_factor: Annotated[float, q.IMPORTANCE_FACTOR] = case_key("gamma_I", 1.0)
+
+
+class SolverTable(CaseTable):
+    """Model of the container, mesh, time steps and duration."""
+
+    model: Literal["full", "reduced", "rigid"] = case_key(
+        '"full" (every node) | "reduced" (elastic modes) | "rigid"', "reduced"
+    )
+    elastic_modes: Annotated[int, Strict(), q.MODE_COUNT] = case_key("kept by the reduced model", 20)
+    scheme: Literal["generalised-alpha", "newmark"] = case_key(
+        '"generalised-alpha" | "newmark"', "generalised-alpha"
+    )
+    spectral_radius: Annotated[float, q.SPECTRAL_RADIUS] = case_key(
+        "generalised-alpha: damping of what the step does not resolve",
+        0.5,
+        only=("scheme", "generalised-alpha"),
+    )
+    newmark_beta: Annotated[float, q.NEWMARK_BETA] = case_key("newmark", 0.25, only=("scheme", "newmark"))
+    newmark_gamma: Annotated[float, q.NEWMARK_GAMMA] = case_key("newmark", 0.5, only=("scheme", "newmark"))
+    step_s: Annotated[float, q.STEP] | Literal["auto"] = case_key('largest step, or "auto"', "auto")
+    energy_tolerance: Annotated[float, q.ENERGY_TOLERANCE] = case_key(
+        "factor on the energy that a step may lose; 10: coarser and faster, for maps", 1.0
+    )
+    duration_s: Annotated[float, q.DURATION] | Literal["auto"] = case_key(
+        'simulated time, or "auto": pulse and table: their end and free motion until rest or a fall, '
+        "at most 60 s more; else 20 s",
+        "auto",
+    )
+    element_size_m: Annotated[float, q.ELEMENT_SIZE] = case_key(
+        "of the structured mesh; mesh lines also at wall_m and foot_m", 0.1
+    )
+    order: Annotated[int, Strict(), q.ORDER] = case_key("of the elements: 1 bilinear, 2 quadratic", 2)
+
+    rules = SOLVER_RULES
+
+
+class OutputTable(CaseTable):
+    """Files to write, and their intervals."""
+
+    history_s: Annotated[float, q.SAMPLING] = case_key("interval of the history", 0.005)
+    fields_s: Annotated[float, q.FRAME_INTERVAL] | Literal["auto"] = case_key(
+        'interval of the fields for ParaView and films; 0: none; "auto": 0.05 or longer, so that they take 16 MB',
+        "auto",
+    )
+    contents_filter_Hz: Annotated[float, q.CONTENTS_FILTER] = case_key(
+        "acceleration of the contents: cut-off of its low-pass filter, Butterworth of two poles", 33.0
+    )
+    figures: bool = case_key("draw the figures of a run, as SVG", True)
+    stop_when_overturned: bool = case_key("end the run when the container lies on its side", True)
+    stop_when_still: bool = case_key(
+        "rigid, under records: end the run when the container is at rest and what is left of them is below 0.9 of what "
+        "moves it; acceleration and sway of the contents are then not followed",
+        False,
+    )
+
+
+def _as_text(value: object) -> object:
+    """A number as text: a document may have the number 2417."""
+    return str(value) if isinstance(value, int) and not isinstance(value, bool) else value
+
+
+Text = Annotated[str | None, Field(max_length=200)]
+Mark = Annotated[Text, BeforeValidator(_as_text)]
+
+
+class DocumentTable(CaseTable):
+    """What identifies the pages of a case; it is no part of the hash."""
+
+    project: Text = optional_key("for every page", "Store of chemicals, hall 3")
+    company: Text = optional_key("for every page", "Example Ltd")
+    number: Mark = optional_key("of the document", "2417-ST-03")
+    revision: Mark = optional_key("of the document", "A")
+    author: Text = optional_key("who made it", "A. Author")
+    checker: Text = optional_key("who checked it", "C. Checker")
