@@ -181,6 +181,17 @@ def test_no_module_imports_itself_by_way_of_others():
     TopologicalSorter(graph).prepare()  # raises CycleError with the circle
 
 
+def test_no_folder_imports_itself_by_way_of_others():
+    """Folders inside a package, too: what one imports of its package does not import it."""
+    for folder in {path.parent for path in SOURCES} - {ROOT / package for package in PACKAGES}:
+        inside = {module for module, path in MODULES.items() if path.is_relative_to(folder)}
+        graph = {name_of(folder): set().union(*(of_this_project(MODULES[name]) for name in inside)) - inside}
+        for module in MODULES.keys() - inside:
+            names = of_this_project(MODULES[module])
+            graph[module] = {name_of(folder) if name in inside else name for name in names}
+        TopologicalSorter(graph).prepare()  # raises CycleError with the circle
+
+
 def test_no_folder_is_crowded():
     folders = Counter(path.parent for path in SOURCES)
     assert not {name_of(folder): count for folder, count in folders.items() if count > MOST_FILES}

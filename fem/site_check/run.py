@@ -38,6 +38,7 @@ from fem.site_check.motion_results import (
     write_ground,
 )
 from fem.site_check.motions import floor_motions, ground_motions, longest_period
+from fem.site_check.page.site_page import site_report
 from fem.site_check.preview import forecast
 from fem.site_check.result import (
     MOTIONS,
@@ -49,7 +50,6 @@ from fem.site_check.result import (
     SiteRun,
 )
 from fem.site_check.runs import COLUMNS, HAZARD, RunCases, RunKey, motion_stem
-from fem.site_check.site_page import site_report
 from fem.site_check.stages import Stages
 from fem.site_check.yearly import hazard_motions
 

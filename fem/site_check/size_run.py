@@ -28,12 +28,12 @@ from fem.site_check.answer import FULFILLED, answer_of, governing_run
 from fem.site_check.bodies import body_of
 from fem.site_check.bracket import SizeAxis, SizeResult, next_values, size_asked, size_result
 from fem.site_check.confirm import confirmed, deciding
-from fem.site_check.figures import draw_size
 from fem.site_check.file import SiteRequest
 from fem.site_check.inputs import copy_files, inputs_of, texts_of
 from fem.site_check.methods import wind_utilisation
 from fem.site_check.motion_results import set_result, write_csv_files
 from fem.site_check.motions import floor_motions, ground_motions, longest_period
+from fem.site_check.page.figures import draw_size
 from fem.site_check.preview import forecast
 from fem.site_check.reasons import NOT_FULFILLED
 from fem.site_check.result import ConfirmedRun, MotionSet, SiteAnswer

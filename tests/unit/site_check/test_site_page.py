@@ -16,16 +16,12 @@ from fem.html.page import Page, html_of
 from fem.html.sections import PageSection
 from fem.results.errors import FolderError
 from fem.results.files import to_json
+from fem.site_check.page.answer_section import answer_section, bolts_in_words, confirmation
+from fem.site_check.page.inputs_section import site_rows, spectra_section
+from fem.site_check.page.runs_section import runs_section
+from fem.site_check.page.site_page import site_report
+from fem.site_check.page.view import SiteView
 from fem.site_check.result import RESULT_FILE, FloorResult, SiteResult
-from fem.site_check.site_page import (
-    answer_section,
-    bolts_in_words,
-    confirmation,
-    site_report,
-    site_rows,
-    spectra_section,
-)
-from fem.site_check.site_sections import SiteView, runs_section
 
 ANSWERS = {
     "fulfilled": ({}, "Fulfilled under the rule below"),
@@ -42,7 +38,7 @@ def folders(tmp_path_factory):
         write_example(place / name, **changes)
         with pytest.MonkeyPatch.context() as patch:
             if name != "fulfilled":
-                patch.setattr("fem.site_check.site_page.MOST_DRAWN", 1)
+                patch.setattr("fem.site_check.page.site_page.MOST_DRAWN", 1)
             (place / name / "report.html").write_text(site_report(place / name), encoding="utf-8")
     return place
 
@@ -173,7 +169,7 @@ def test_a_short_page_has_the_sheet_that_is_signed_and_what_the_runs_found(folde
 
 
 def test_of_many_motions_the_first_are_drawn(folders, monkeypatch):
-    monkeypatch.setattr("fem.site_check.site_page.MOST_DRAWN", 2)
+    monkeypatch.setattr("fem.site_check.page.site_page.MOST_DRAWN", 2)
     page = site_report(folders / "fulfilled")
     assert page.count('aria-label="motion ') == 2 * 2 + 1
     assert "The curves of the other 5 motions are in their files." in page

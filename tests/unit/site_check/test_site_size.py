@@ -8,7 +8,7 @@ from site_example import INPUTS
 
 from fem.results.files import to_json
 from fem.site_check.bracket import SizeAxis, SizeResult, next_values, size_result, spaced
-from fem.site_check.figures import draw_size
+from fem.site_check.page.figures import draw_size
 from fem.site_check.result import SiteAnswer
 
 ANSWER = SiteAnswer(

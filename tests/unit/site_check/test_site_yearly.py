@@ -13,11 +13,12 @@ from fem.html.page import Page, html_of
 from fem.seismic.ground_motion import GroundMotion
 from fem.seismic.hazard import HazardCurve, counted_rate
 from fem.site_check.file import load_site
+from fem.site_check.page.answer_section import rates_in_words
+from fem.site_check.page.runs_section import runs_section
+from fem.site_check.page.view import SiteView
 from fem.site_check.rule import groups_of
 from fem.site_check.run import site_hash
 from fem.site_check.runs import HAZARD, key_of
-from fem.site_check.site_page import rates_in_words
-from fem.site_check.site_sections import SiteView, runs_section
 from fem.site_check.yearly import (
     annual_rates,
     hazard_motions,

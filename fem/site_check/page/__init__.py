@@ -1,0 +1,1 @@
+"""The page of a verification at a site, and its figures."""
