@@ -16,8 +16,8 @@ ELASTICITY = (
     "unit/solid/test_assembly.py",
     "verification/convergence/test_elements.py",
 )
-MODAL = ("unit/contact/test_modal_body.py",)
-LAWS = ("unit/contact/test_contact_laws.py", "unit/contact/test_contact_solver.py")
+MODAL = ("unit/contact/stepping/test_modal_body.py",)
+LAWS = ("unit/contact/interface/test_laws.py", "unit/contact/interface/test_solver.py")
 SLIDING = ("verification/test_verification_checks.py", "-k")
 
 MUTATIONS = (
@@ -158,7 +158,7 @@ MUTATIONS = (
         name="beta of generalised-alpha without its square",
         old="newmark_beta=0.25 * (1.0 - alpha_m + alpha_f) ** 2,",
         new="newmark_beta=0.25 * (1.0 - alpha_m + alpha_f),",
-        tests=("unit/contact/test_scheme.py",),
+        tests=("unit/contact/stepping/test_scheme.py",),
     ),
     Mutation(
         name="acceleration not shifted when the step changes",
@@ -182,31 +182,31 @@ MUTATIONS = (
         name="friction heat by the force of one end of the step",
         old="friction -= 0.5 * (force[i, 0] + force_new[i, 0]) * slip[i]",
         new="friction -= 0.5 * force_new[i, 0] * slip[i]",
-        tests=("unit/contact/test_ledger.py",),
+        tests=("unit/contact/stepping/test_ledger.py",),
     ),
     Mutation(
         name="energy of the contact springs without the half",
         old="energy += 0.5 * contact.normal_stiffness[i] * point[i, 1] ** 2",
         new="energy += contact.normal_stiffness[i] * point[i, 1] ** 2",
-        tests=("unit/contact/test_ledger.py",),
+        tests=("unit/contact/stepping/test_ledger.py",),
     ),
     Mutation(
         name="damping ratio with the whole base in place of one corner",
         old="math.sqrt(mass / (0.5 * base_stiffness))",
         new="math.sqrt(mass / base_stiffness)",
-        tests=("unit/contact/test_support.py",),
+        tests=("unit/contact/interface/test_support.py",),
     ),
     Mutation(
         name="tilted start without the centripetal acceleration",
         old="free = np.array([downhill, -gravity]) - angular_velocity**2 * arm",
         new="free = np.array([downhill, -gravity])",
-        tests=("unit/contact/test_equilibrium.py",),
+        tests=("unit/contact/interface/test_equilibrium.py",),
     ),
     Mutation(
         name="velocity of a harmonic floor without its frequency",
         old="return amplitude * sine, amplitude * omega * cosine, -amplitude * omega * omega * sine",
         new="return amplitude * sine, amplitude * cosine, -amplitude * omega * omega * sine",
-        tests=("unit/contact/test_base_motion.py",),
+        tests=("unit/contact/motion/test_base_motion.py",),
     ),
     Mutation(
         name="restitution by the ratio of energies, not of velocities",
@@ -236,7 +236,7 @@ MUTATIONS = (
         name="acceleration of the contents without its filter",
         old="contents_cutoff=2.0 * math.pi * case.output.contents_filter_Hz",
         new="contents_cutoff=1e4 + 0.0 * case.output.contents_filter_Hz",
-        tests=("unit/contact/test_contents.py", "-k", "cut_off"),
+        tests=("unit/contact/stepping/test_contents.py", "-k", "cut_off"),
     ),
     Mutation(
         name="velocities of the contents in the old frame after a change of frame",
@@ -248,19 +248,19 @@ MUTATIONS = (
         name="Housner's restitution with cos(al) for cos(2 al)",
         old="1.0 - (1.0 - math.cos(2.0 * self.slenderness_angle)) / self.inertia_ratio",
         new="1.0 - (1.0 - math.cos(self.slenderness_angle)) / self.inertia_ratio",
-        tests=("unit/contact/test_reference_rigid_block.py", "validation/test_closed_forms_rocking.py"),
+        tests=("unit/contact/reference/test_rigid_block.py", "validation/test_closed_forms_rocking.py"),
     ),
     Mutation(
         name="the analytic block tilts with the floor, not against it",
         old="weight * math.sin(lean) + side * acceleration.x",
         new="weight * math.sin(lean) - side * acceleration.x",
-        tests=("unit/contact/test_reference_rocking.py",),
+        tests=("unit/contact/reference/test_rocking.py",),
     ),
     Mutation(
         name="the analytic slider slides on mu_s",
         old="friction = -direction * slider.mu_kinetic * (slider.gravity",
         new="friction = -direction * slider.mu_static * (slider.gravity",
-        tests=("unit/contact/test_reference_slider.py",),
+        tests=("unit/contact/reference/test_slider.py",),
     ),
     Mutation(
         name="material damping of the full model in the fixed frame",

@@ -4,14 +4,14 @@ from mutation import Mutation
 
 LANDING = ("verification/test_verification_checks.py", "-k", "landing")
 FLOOR = "verification/closed_forms/test_floor.py"
-SOLVER = "unit/contact/test_contact_solver.py"
+SOLVER = "unit/contact/interface/test_solver.py"
 SLAB = "unit/model/test_floor.py"
 PLATES = "unit/model/test_plates.py"
 WEAK = "unit/model/test_weak_floor.py"
 
 DROP = ("verification/closed_forms/test_contact_drop.py", "-k", "crushes")
 CAMBER = "verification/closed_forms/test_camber.py"
-PLANE = "unit/contact/test_plane_slider.py"
+PLANE = "unit/contact/stepping/test_plane_slider.py"
 
 FLOOR_FAULTS = (
     Mutation(
@@ -24,7 +24,7 @@ FLOOR_FAULTS = (
         name="a gain by damping that excuses itself",
         old="control.energy_share * max(dissipated, 0.0)",
         new="control.energy_share * abs(dissipated)",
-        tests=("unit/contact/test_step_control.py",),
+        tests=("unit/contact/stepping/test_control.py",),
     ),
     Mutation(
         name="every floor of a building moves as its roof",
@@ -96,13 +96,13 @@ FLOOR_FAULTS = (
         name="a cap on the spring alone, not on the dashpot",
         old="    if force >= cap:\n        return cap, 0.0, 0.0\n",
         new="    if stiffness * penetration >= cap:\n        return cap, 0.0, 0.0\n",
-        tests=("unit/contact/test_contact_laws.py",),
+        tests=("unit/contact/interface/test_laws.py",),
     ),
     Mutation(
         name="the tangent of the spring kept at the cap",
         old="return cap, 0.0, 0.0",
         new="return cap, slope, by_rate",
-        tests=("unit/contact/test_contact_laws.py",),
+        tests=("unit/contact/interface/test_laws.py",),
     ),
     Mutation(
         name="a point at its cap without its tangential tangent",
@@ -216,7 +216,7 @@ FLOOR_FAULTS = (
         name="half the work of crushing",
         old="work += 0.5 * (force[i, 1]",
         new="work += 0.25 * (force[i, 1]",
-        tests=("unit/contact/test_ledger.py",),
+        tests=("unit/contact/stepping/test_ledger.py",),
     ),
     Mutation(
         name="the work of crushing left out of the balance",
@@ -228,7 +228,7 @@ FLOOR_FAULTS = (
         name="the work of crushing left out of the dissipation",
         old=" + terms[MATERIAL_DAMPING] + terms[CRUSHING]",
         new=" + terms[MATERIAL_DAMPING]",
-        tests=("unit/contact/test_ledger.py",),
+        tests=("unit/contact/stepping/test_ledger.py",),
     ),
     Mutation(
         name="gravity uphill in the floating frame",

@@ -29,7 +29,7 @@ LINK_FAULTS = (
         name="compliance of links turned on one side only",
         old="work.compliance[j, column] = along_z * x - along_x * z",
         new="work.compliance[j, column] = x",
-        tests=("unit/contact/test_links.py",),
+        tests=("unit/contact/stepping/test_links.py",),
     ),
     Mutation(
         name="links without friction",

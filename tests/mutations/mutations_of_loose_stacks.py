@@ -2,7 +2,7 @@
 
 from mutation import Mutation
 
-FACES = ("unit/contact/test_faces.py",)
+FACES = ("unit/contact/interface/test_faces.py",)
 STACKS = ("verification/test_verification_checks.py", "-k", "stacks")
 
 LOOSE_STACKS = (
@@ -10,7 +10,7 @@ LOOSE_STACKS = (
         name="a corner that slides onto a face as if it had been open",
         old="            elif weight > 0.0:\n                point",
         new="            elif weight > 1.0:\n                point",
-        tests=("unit/contact/test_faces.py", "-k", "slides_onto"),
+        tests=("unit/contact/interface/test_faces.py", "-k", "slides_onto"),
     ),
     Mutation(
         name="a lever rule that loads the far end of a face",
