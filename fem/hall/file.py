@@ -73,11 +73,6 @@ class HallFile:
         return self.path.stem
 
     @property
-    def columns(self) -> tuple[str, ...]:
-        """Those that are read."""
-        return tuple(self.meanings)
-
-    @property
     def keys(self) -> list[str]:
         """The dotted keys that columns name."""
         return [meaning for meaning in self.meanings.values() if meaning and meaning not in OWN]
@@ -104,16 +99,15 @@ class HallFile:
     def _row(self, number: int, line: TableLine) -> HallRow:
         given = {column: line.field(place) for column, place in self.places.items()}
         texts = dict(zip(self.meanings.values(), given.values(), strict=True))
-        places: dict[str, tuple[float, ...] | None] = dict.fromkeys(PLACES)
+        places: dict[str, Any] = dict.fromkeys(PLACES)
         problems: list[str] = []
         for place, most in PLACES.items():
             if any(map(texts.get, most)):
-                numbers = [_number(texts[name], most[name]) for name in most]
-                known = [value for value in numbers if value is not None]
-                places[place] = tuple(known) if len(known) == len(most) else None
+                numbers = {name: _number(texts[name], limit) for name, limit in most.items()}
+                places[place] = None if None in numbers.values() else tuple(numbers.values())
                 problems += [
                     f"{name} must be a number of at most {most[name]:g}, got {texts[name]!r}"
-                    for name, value in zip(most, numbers, strict=True)
+                    for name, value in numbers.items()
                     if value is None
                 ]
         count = _number(texts.get(COUNT) or "1", LARGEST_COUNT)
@@ -129,8 +123,7 @@ class HallFile:
             name=plain_text(texts.get(NAME, "")) or str(number),
             count=int(count),
             tag=plain_text(texts.get(TAG, "")),
-            place_m=places["place_m"],
-            lon_lat=places["lon_lat"],
+            **places,
             given=given,
             values={key: _value(key, texts[key]) for key in self.keys if whole and texts[key]},
             reason="; ".join(problems),

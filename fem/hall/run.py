@@ -23,25 +23,21 @@ from fem.case.validation import CaseError
 from fem.hall.file import HallFile
 from fem.hall.plan import Hall, HallItem, read_motions, say_time
 from fem.hall.result import OF_A_RUN, OF_MOTIONS, STATIC, HallResult
-from fem.hall.study import ContainerResult, study_of, weakness, written
+from fem.hall.study import WORST_FIRST, ContainerResult, study_of, weakness, written
 from fem.model.geometry import build_container
 from fem.model.motion import build_motions, peaks_in_run
 from fem.model.static_checks import static_checks_of
 from fem.results.disk import table_bytes
-from fem.results.figures import SLIPPED
 from fem.results.folder import ResultFolder
-from fem.results.outcome import Ending
+from fem.results.outcome import COUNTED_AS, Ending, counts_of
 from fem.sweep.cells import RunShown, shown_in
 
 RUNS, CHECKS = "runs.csv", "checks.csv"
 RUN_COLUMNS = {"container": int, "motion": int} | OF_A_RUN
 CHECK_COLUMNS = {"container": int} | CHECKED
-#: rotation ratio below which containers are ranked by the static rule: nothing rocks
-ROCKS = 0.01
 #: share of the containers, the weakest first, whose run is repeated under stronger motions and with other inputs; at
 #: least so many
 SHARE, LEAST = 0.1, 30
-WORST_FIRST = (Ending.OVERTURNED, Ending.INVALID, Ending.FAILED, Ending.STANDING)
 Checks = Literal["weakest", "all", "none"]
 
 
@@ -58,13 +54,11 @@ def run_hall(
     """Compute a hall into a folder; raises as `run_study`, and CaseError for bad input.
 
     Args:
-        file: the list.
         base: the case that its rows change.
         motions: files of motions in place of that of the case, "H" or "H,V" each; every container undergoes all.
         checks: which governing runs are repeated for `sure` and `margin`: those of the weakest tenth and of at least
             30 containers, all, or none.
         strict: refuse the list for one bad row.
-        options: of every study.
     """
     with runner_of(**options) as runner:
         say_time(file, base, max(len(motions), 1), runner, force=options.get("force", False))
@@ -121,20 +115,21 @@ class HallRuns:
     def governing(self, container: int) -> int:
         """The motion under which a container does worst, the first of equals."""
         runs = self.by_container[container]
-        return min(sorted(runs), key=lambda motion: _weakness(runs[motion], {}))
+
+        def order(motion: int) -> tuple[float, ...]:
+            run = runs[motion]
+            turned = run.turned if run.kind == Ending.STANDING else 0.0
+            return WORST_FIRST.index(COUNTED_AS[run.kind]), -turned, -run.slipped
+
+        return min(sorted(runs), key=order)
 
     def counts(self, container: int) -> tuple[int, ...]:
         """How many motions overturn a container, destroy a corner of it, have no outcome."""
-        endings = [run.kind for run in self.by_container[container].values()]
-        return tuple(map(endings.count, WORST_FIRST[:3]))
+        counts = counts_of([run.kind for run in self.by_container[container].values()])
+        return tuple(counts[ending] for ending in WORST_FIRST[:3])
 
     def to_check(self, checks: str, order: Sequence[int]) -> list[HallItem]:
-        """The governing runs that are still to be repeated.
-
-        Args:
-            checks: weakest | all | none.
-            order: of the containers, the weakest first, before any is repeated.
-        """
+        """The governing runs that are still to be repeated; `order` has the weakest first, before any is repeated."""
         count = {"none": 0, "all": len(order)}.get(checks, max(math.ceil(SHARE * len(order)), LEAST))
         worst = [self.hall.item(number, self.governing(number)) for number in order]
         ended = [item for item in worst if self.by_container[item[0]][item[1]].kind != Ending.FAILED]
@@ -150,13 +145,8 @@ class HallRuns:
             self.static[number] = {name: getattr(ruling, name) for name in STATIC}
 
     def weakest_first(self) -> list[int]:
-        """The containers in the order of their weakness: what overturned comes first, then as `WORST_FIRST`."""
-        return sorted(sorted(self.by_container), key=self.weakness)
-
-    def weakness(self, container: int) -> tuple[float, ...]:
-        """Smaller for the worse."""
-        run = self.by_container[container][self.governing(container)]
-        return _weakness(run, self.static[container] | self.checked.get(container, {}), ROCKS)
+        """The containers in the order of their weakness."""
+        return sorted(sorted(self.by_container), key=lambda number: weakness(self.found(number).row))
 
     def found(self, container: int) -> ContainerResult:
         """What is known of a container."""
@@ -168,7 +158,7 @@ class HallRuns:
             slipped = max(sorted(by_motion), key=lambda number: by_motion[number].slipped)
             under = names[governing], *self.counts(container), by_motion[slipped].slipped, names[slipped]
             values |= zip(OF_MOTIONS, under, strict=True)
-        return ContainerResult(values, self.weakness(container), partial(self.hall.command, motion=governing))
+        return ContainerResult(values, partial(self.hall.command, motion=governing))
 
     def compute(self, begun: HallResult, results: ResultFolder, runner: Runner) -> HallResult:
         """Compute what is missing, and write the list with its results, and its page."""
@@ -207,9 +197,3 @@ class HallRuns:
         checked = sorted(self.checked.items())
         results.write_text(CHECKS, table_text(CHECK_COLUMNS, ([k, *check.values()] for k, check in checked)))
         return written(results, begun, hall, [self.found(number) for number in range(len(hall.values))])
-
-
-def _weakness(run: RunShown, row: Row, rocks: float = 0.0) -> tuple[float, ...]:
-    """Smaller for the worse; only what stands counts as far as it turned, and that from `rocks` on."""
-    turned = run.turned if run.kind == Ending.STANDING and run.turned > rocks else 0.0
-    return weakness(WORST_FIRST.index(run.kind), row | {SLIPPED: run.slipped}, turned)

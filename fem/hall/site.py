@@ -19,8 +19,8 @@ from fem.case.case import Case
 from fem.case.validation import CaseError
 from fem.hall.file import HallFile
 from fem.hall.plan import Hall
-from fem.hall.result import AT_SITE, NO_ANSWER, RESULT_COLUMNS, HallResult
-from fem.hall.study import ContainerResult, study_of, weakness, written
+from fem.hall.result import AT_SITE, RESULT_COLUMNS, HallResult
+from fem.hall.study import ContainerResult, study_of, written
 from fem.results.errors import FolderError
 from fem.results.figures import SLIPPED, TURNED
 from fem.results.folder import ResultFolder, require_same_program
@@ -50,7 +50,6 @@ OF_THE_ANSWER |= {"factor_at_first_overturning": "factor_at_first_overturning"}
 COLUMNS = {"container": int} | {
     name: RESULT_COLUMNS[name] for name in ("status", "reason", *FIGURES, *AT_SITE)
 }
-WORST_FIRST = ("not fulfilled", NO_ANSWER, "not sure", "fulfilled")
 
 
 def run_hall_at_site(
@@ -66,13 +65,10 @@ def run_hall_at_site(
     """Verify every container of a list at a site, into a folder; raises as `run_study`, and CaseError for bad input.
 
     Args:
-        file: the list.
         site: the action, the motions, the limits.
         base: the case that the rows change; None: the container of the site.
-        folder: of the results.
         strict: refuse the list for one bad row.
         allow_outside: take records from outside the folder of the site file.
-        options: of every study.
     """
     for key in file.keys:
         if key.partition(".")[0] in OF_THE_SITE or key == "contact.mu_kinetic":
@@ -176,10 +172,7 @@ class _AtSite:
         page, site = folder / "report.html", results / folder / "site.toml"
         words = ["python", "-m", "fem", "assess", str(site), *["--allow-outside"] * self.outside]
         where = {"page": page.as_posix() if (results / page).is_file() else None}
-        order = WORST_FIRST.index(row["answer"] or NO_ANSWER)
-        return ContainerResult(
-            row | where, weakness(order, row, row[TURNED] or 0.0), lambda _: shlex.join(words)
-        )
+        return ContainerResult(row | where, lambda _: shlex.join(words))
 
     def _row_of(self, request: SiteRequest, folder: Path, runner: Runner) -> Row | None:
         """The row of a container; None where it was interrupted."""

@@ -16,45 +16,48 @@ from fem.hall.places import PICTURE, draw_places, geojson
 from fem.hall.plan import Hall
 from fem.hall.result import NO_ANSWER, REFUSED, RESULT_COLUMNS, HallResult
 from fem.results.disk import BYTES_BESIDE
-from fem.results.figures import SLIPPED
+from fem.results.figures import SLIPPED, TURNED
 from fem.results.folder import ResultFolder
 from fem.results.kinds import HALL
 from fem.results.outcome import COUNTED_AS, ending_of
 
 TABLE, PAGE, GEOJSON = "hall.csv", "report.html", "hall.geojson"
+#: what a container counts as, the worst first: by its run, or by its answer at a site
+WORST_FIRST = ("overturned", "invalid", "failed", "stood")
+WORST_ANSWER_FIRST = ("not fulfilled", NO_ANSWER, "not sure", "fulfilled")
+ROCKS = 0.01  #: rotation ratio up to which what stands is ranked by the static rule: nothing rocks
 
 
 class ContainerResult(NamedTuple):
     """What is known of a container in the end."""
 
     row: Row  #: its results, by column
-    weakness: tuple[float, ...]  #: smaller for the worse
     command: Callable[[HallRow], str]  #: that computes a row by itself, whose container it is
 
 
-def weakness(order: int, row: Row, turned: float) -> tuple[float, ...]:
-    """Smaller for the worse: by the order of what happened, by margin, by rotation, by the static rule, by slip.
+def ending_in(row: Row, *, at_site: bool) -> str:
+    """What a row counts as."""
+    if row["status"] == REFUSED:
+        return REFUSED
+    if at_site:
+        return row["answer"] or NO_ANSWER
+    return COUNTED_AS[ending_of(row["status"], row["outcome"])]
 
-    Args:
-        order: less for the worse.
-        row: of the container; one with a margin comes before one without.
-        turned: the rotation that counts.
-    """
-    margin = row.get("margin") or row.get("margin_tried_to")
-    static, slip = row.get("utilisation_overturning"), row.get(SLIPPED)
-    return order, margin is None, margin or 0.0, -turned, -(static or 0.0), -(slip or 0.0)
+
+def weakness(row: Row, *, at_site: bool = False) -> tuple[float, ...]:
+    """Smaller for the worse: by what a container counts as, by margin, by rotation, by the static rule, by slip."""
+    ending, margin = ending_in(row, at_site=at_site), row.get("margin") or row.get("margin_tried_to")
+    turned, static, slip = (row.get(name) or 0.0 for name in (TURNED, "utilisation_overturning", SLIPPED))
+    if not at_site and (ending != "stood" or turned <= ROCKS):
+        turned = 0.0
+    order = (WORST_ANSWER_FIRST if at_site else WORST_FIRST).index(ending)
+    return order, margin is None, margin or 0.0, -turned, -static, -slip
 
 
 def study_of(
     hall: Hall, compute: Callable[[HallResult, ResultFolder, Runner], HallResult], **fields: Any
 ) -> Study[HallResult]:
-    """The study of a list.
-
-    Args:
-        hall: the list, checked.
-        compute: what is missing of it.
-        fields: of the result before any run, in one way of computing.
-    """
+    """The study of a checked list; `fields` are of its result before any run, in one way of computing."""
     rows, file, origin = hall.rows, hall.file, hall.base.origin_with({})
     known = {"model": hall.base.solver.model, "allow_outside": origin.allow_outside or None}
     begun = HallResult(
@@ -65,7 +68,7 @@ def study_of(
         distinct=len(hall.containers),
         refused=sum(row.container is None for row in rows),
         kept=tuple(column for column, meaning in file.meanings.items() if not meaning),
-        columns=file.columns,
+        columns=tuple(file.meanings),
         **(known | fields),
     )
     return Study(
@@ -86,19 +89,14 @@ def study_of(
 def written(
     results: ResultFolder, begun: HallResult, hall: Hall, found: Sequence[ContainerResult]
 ) -> HallResult:
-    """The finished result, with the list, its plan and its page written.
-
-    Args:
-        begun: without rows, counts and answer.
-        hall: the list, checked.
-        found: of each container.
-    """
-    order = sorted(range(len(found)), key=lambda number: found[number].weakness)
+    """The finished result of a checked list, with the list, its plan and its page written."""
+    at_site = bool(begun.site)
+    order = sorted(range(len(found)), key=lambda number: weakness(found[number].row, at_site=at_site))
     table = tuple(_rows(hall, found, {number: rank for rank, number in enumerate(order, start=1)}))
     outcomes, tags = Counter[str](), dict[str, dict[str, Any]]()
     for row in table:
-        outcome, ending = _counted(row, begun)
-        outcomes[outcome] += row["count"]
+        ending = ending_in(row, at_site=at_site)
+        outcomes[ending if at_site else row["outcome"] or ending] += row["count"]
         empty = {"tag": row["tag"], "containers": 0, "counts": Counter[str](), "margin": None}
         tag = tags.setdefault(row["tag"], empty)
         tag["containers"] += row["count"]
@@ -135,16 +133,6 @@ def _rows(hall: Hall, found: Sequence[ContainerResult], ranks: Mapping[int, int]
             **{name: results.get(name) for name in RESULT_COLUMNS},
             "command": command,
         }
-
-
-def _counted(row: Row, result: HallResult) -> tuple[str, str]:
-    """What the outcomes count a row as, and what its tag does."""
-    if row["status"] == REFUSED:
-        return REFUSED, REFUSED
-    if result.site:
-        return row["answer"] or NO_ANSWER, row["answer"] or NO_ANSWER
-    ending = COUNTED_AS[ending_of(row["status"], row["outcome"])]
-    return row["outcome"] or ending, ending
 
 
 def answer_of(result: HallResult) -> str:

@@ -161,6 +161,13 @@ def test_every_container_is_verified_at_a_site_as_by_assess(tmp_path, base, monk
     assert "'motion.scale' has no effect at a site" in capsys.readouterr().err
 
 
+def runs_of_no_list():
+    hall = SimpleNamespace(
+        item=lambda *at: HallItem(*at, {}), motions=(), command=lambda row, motion: "not computed by itself"
+    )
+    return HallRuns(hall=hall)
+
+
 def noted(runs, container, motion, outcome, ratio):
     status = "overturned" if outcome == "overturned" else "completed" if outcome else "failed"
     fields = {"container": container, "motion": motion, "status": status, "outcome": outcome}
@@ -169,14 +176,14 @@ def noted(runs, container, motion, outcome, ratio):
 
 
 def test_motions_that_destroy_a_corner_are_counted_by_themselves_and_are_worse_than_those_without_an_outcome():
-    runs = HallRuns(hall=SimpleNamespace(item=lambda *at: HallItem(*at, {})))
+    runs = runs_of_no_list()
     for motion, outcome in enumerate(["rock", "", "invalid", "", "invalid", ""]):
         noted(runs, 0, motion, outcome, 0.3)
     assert (runs.counts(0), runs.governing(0)) == ((0, 2, 3), 2)
 
 
 def test_of_what_stands_the_larger_rotation_is_weaker_and_what_does_not_rock_follows_the_static_rule():
-    runs = HallRuns(hall=SimpleNamespace(item=lambda *at: HallItem(*at, {})))
+    runs = runs_of_no_list()
     for container, (outcome, ratio, use) in enumerate(
         [
             ("rest", 0.001, 0.8),
@@ -355,7 +362,7 @@ def test_a_result_may_be_the_list_of_the_next_hall(tmp_path, base):
     case = load_case(base)
     run_hall(read_hall(listed(tmp_path, LIST)), case, tmp_path / "out", checks="none")
     again = read_hall(tmp_path / "out" / "hall.csv")
-    assert again.columns == tuple(LIST.splitlines()[0].split(","))
+    assert tuple(again.meanings) == tuple(LIST.splitlines()[0].split(","))
     assert [row.name for row in again.rows] == ["A", "=B", "bad", "C", "D"]
     run_hall(again, case, tmp_path / "next", checks="none")
     first, second = ((tmp_path / name / "hall.csv").read_bytes() for name in ("out", "next"))
