@@ -93,8 +93,6 @@ class HallRuns:
     #: what they show, by container and by motion
     by_container: dict[int, dict[int, RunShown]] = field(default_factory=dict)
     checked: dict[int, Row] = field(default_factory=dict)  #: what the repetition showed, by container
-    #: of each container, utilisations by `STATIC` under the peak of its governing motion
-    static: dict[int, Row] = field(default_factory=dict)
 
     def note(self, line: str) -> None:
         """Add a line of the log of the runs; IndexError: of a container that is not in the list."""
@@ -136,29 +134,19 @@ class HallRuns:
         able = [item for item in ended if self.hall.model_of(item) != "full"]
         return [item for item in able[:count] if item.container not in self.checked]
 
-    def find_static(self) -> None:
-        """Note the utilisations of the containers, once all are run."""
-        for number in self.by_container:
-            case = self.hall.make(self.hall.item(number, self.governing(number)))
-            peaks = peaks_in_run(case, *build_motions(case))
-            ruling = static_checks_of(case, build_container(case), *peaks).ruling.to_result()
-            self.static[number] = {name: getattr(ruling, name) for name in STATIC}
-
-    def weakest_first(self) -> list[int]:
-        """The containers in the order of their weakness."""
-        return sorted(sorted(self.by_container), key=lambda number: weakness(self.found(number).row))
-
-    def found(self, container: int) -> ContainerResult:
-        """What is known of a container."""
+    def row(self, container: int) -> Row:
+        """The results of a container: those of its governing run, the static rule under its peak, all motions."""
         by_motion, governing = self.by_container[container], self.governing(container)
-        row = row_of(RUN_COLUMNS, self.lines[container, governing])
-        values = {name: row[name] for name in OF_A_RUN} | self.static[container]
-        values |= self.checked.get(container, {})
+        case = self.hall.make(self.hall.item(container, governing))
+        peaks = peaks_in_run(case, *build_motions(case))
+        ruling = static_checks_of(case, build_container(case), *peaks).ruling.to_result()
+        run = row_of(RUN_COLUMNS, self.lines[container, governing])
+        row = {name: run[name] for name in OF_A_RUN} | {name: getattr(ruling, name) for name in STATIC}
         if names := [pair.name for pair in self.hall.motions]:
             slipped = max(sorted(by_motion), key=lambda number: by_motion[number].slipped)
             under = names[governing], *self.counts(container), by_motion[slipped].slipped, names[slipped]
-            values |= zip(OF_MOTIONS, under, strict=True)
-        return ContainerResult(values, partial(self.hall.command, motion=governing))
+            row |= zip(OF_MOTIONS, under, strict=True)
+        return row
 
     def compute(self, begun: HallResult, results: ResultFolder, runner: Runner) -> HallResult:
         """Compute what is missing, and write the list with its results, and its page."""
@@ -175,8 +163,9 @@ class HallRuns:
         if missing := len(self.missing()):
             words = f"{total - missing} of {total} runs are computed"
             return replace(begun, status=INTERRUPTED, runs=total - missing, missing=words)
-        self.find_static()
-        to_check = partial(self.to_check, begun.checks, self.weakest_first())
+        rows = [self.row(container) for container in range(len(hall.values))]
+        order = sorted(range(len(rows)), key=lambda container: weakness(rows[container]))
+        to_check = partial(self.to_check, begun.checks, order)
         logged(
             what="containers repeated with other inputs and stronger motions",
             path=results.path / CHECKS,
@@ -196,4 +185,10 @@ class HallRuns:
         )
         checked = sorted(self.checked.items())
         results.write_text(CHECKS, table_text(CHECK_COLUMNS, ([k, *check.values()] for k, check in checked)))
-        return written(results, begun, hall, [self.found(number) for number in range(len(hall.values))])
+        found = [
+            ContainerResult(
+                row | self.checked.get(container, {}), partial(hall.command, motion=self.governing(container))
+            )
+            for container, row in enumerate(rows)
+        ]
+        return written(results, begun, hall, found)

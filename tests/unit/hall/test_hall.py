@@ -24,6 +24,7 @@ from fem.hall.plan import HallItem
 from fem.hall.result import HallResult
 from fem.hall.run import RUN_COLUMNS, HallRuns, run_hall
 from fem.hall.site import run_hall_at_site
+from fem.hall.study import weakness
 from fem.results.figures import SCALARS
 from fem.run.compute import compute
 from fem.site_check.file import load_site
@@ -161,31 +162,19 @@ def test_every_container_is_verified_at_a_site_as_by_assess(tmp_path, base, monk
     assert "'motion.scale' has no effect at a site" in capsys.readouterr().err
 
 
-def runs_of_no_list():
-    hall = SimpleNamespace(
-        item=lambda *at: HallItem(*at, {}), motions=(), command=lambda row, motion: "not computed by itself"
-    )
-    return HallRuns(hall=hall)
-
-
-def noted(runs, container, motion, outcome, ratio):
-    status = "overturned" if outcome == "overturned" else "completed" if outcome else "failed"
-    fields = {"container": container, "motion": motion, "status": status, "outcome": outcome}
-    fields |= {"rotation_ratio": ratio, "max_slip_m": 0.0}
-    runs.note(line_of(fields.get(name) for name in RUN_COLUMNS))
-
-
 def test_motions_that_destroy_a_corner_are_counted_by_themselves_and_are_worse_than_those_without_an_outcome():
-    runs = runs_of_no_list()
+    runs = HallRuns(hall=SimpleNamespace(item=lambda *at: HallItem(*at, {})))
     for motion, outcome in enumerate(["rock", "", "invalid", "", "invalid", ""]):
-        noted(runs, 0, motion, outcome, 0.3)
+        fields = {"container": 0, "motion": motion, "status": "completed" if outcome else "failed"}
+        fields |= {"outcome": outcome, "rotation_ratio": 0.3, "max_slip_m": 0.0}
+        runs.note(line_of(fields.get(name) for name in RUN_COLUMNS))
     assert (runs.counts(0), runs.governing(0)) == ((0, 2, 3), 2)
 
 
 def test_of_what_stands_the_larger_rotation_is_weaker_and_what_does_not_rock_follows_the_static_rule():
-    runs = runs_of_no_list()
-    for container, (outcome, ratio, use) in enumerate(
-        [
+    rows = [
+        {"status": "completed", "outcome": outcome, "rotation_ratio": ratio, "utilisation_overturning": use}
+        for outcome, ratio, use in [
             ("rest", 0.001, 0.8),
             ("rock", 0.02, 1.2),
             ("rest", 0.005, 0.9),
@@ -193,10 +182,8 @@ def test_of_what_stands_the_larger_rotation_is_weaker_and_what_does_not_rock_fol
             ("invalid", 0.3, 1.0),
             ("overturned", 1.0, 1.0),
         ]
-    ):
-        noted(runs, container, 0, outcome, ratio)
-        runs.static[container] = {"utilisation_overturning": use}
-    assert runs.weakest_first() == [5, 4, 3, 1, 2, 0]
+    ]
+    assert sorted(range(6), key=lambda row: weakness(rows[row])) == [5, 4, 3, 1, 2, 0]
 
 
 def test_equal_rows_are_computed_once_and_labels_cost_nothing(tmp_path, base):
