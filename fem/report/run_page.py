@@ -23,16 +23,16 @@ from fem.html.units import ABSENT, number, quantity, short, typeset
 from fem.model.model import build_model
 from fem.report.animation import animation_of
 from fem.report.comparison import case_rows, compared_table, limits_section
+from fem.report.run_motion import motion_section
 from fem.report.run_sections import (
-    RunView,
     block_section,
     boxes_section,
     joints_section,
     modes_section,
-    motion_section,
     sheet_section,
     variations_section,
 )
+from fem.report.run_view import RunView
 from fem.report.sketch import sketch
 from fem.report.variations import VariationTable, variation_table
 from fem.results.errors import FolderError

@@ -1,184 +1,33 @@
-"""The sections of the page of a run behind its first sheet: the motion, how sure it is, what it is compared with."""
+"""The sections of the page of a run behind its first sheet: how sure it is, and what it is compared with."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from functools import cached_property, partial
-from typing import Any
+from functools import partial
 
 from contact.reference.event_driven import EventError
-from fem.assessment.floor_words import drawn_level
 from fem.assessment.joint_tables import joints_note
-from fem.assessment.loose_boxes import BOXES_NOTE, box_rows
+from fem.assessment.loose_boxes import BOXES_NOTE
 from fem.assessment.ranges import impact_note
 from fem.assessment.rigid_check import check_against_rigid_block
 from fem.assessment.summary import BAND_NOTE
-from fem.case.case import Case
-from fem.figures.style import Drawing
 from fem.html import sections as html
-from fem.html.page import svg_element
 from fem.html.units import number, quantity, ratio, short, typeset
 from fem.model.model import Model
-from fem.report.animation import COLOURS, Animation, colour_scale, exaggeration, exaggerations, player_data
-from fem.report.comparison import Compared, compared_rows
+from fem.report.run_view import RunView
 from fem.report.static_sheet import SheetLine, static_sheet
-from fem.report.stills import stills
 from fem.report.variations import VariationTable, Varied
 from fem.results.figures import JOINT_SLIP, TURNED, Place, figures_of
 from fem.results.history import History
 from fem.results.kinds import RUN
 from fem.results.outcome import Outcome
 from fem.results.reader import OpenedRun
-from fem.results.run_result import JointDemand, RigidCheckResult, RunResult, Verdict
+from fem.results.run_result import JointDemand, RigidCheckResult
 from fem.solid.modes import FEW, elastic_mode_table
 
-#: figures beside the animation, in the order of reading; the others have their own sections
-MOTION = ("rotation", "slip", "base_motion", "spectrum", "uplift", "forces", "phase_portrait", "energy")
-SHORT_MOTION = ("rotation", "slip")
-KEYS = (
-    "Space or k plays and pauses, comma and full stop go by a sample, j and l by 0.1 s; a click on a curve goes to its "
-    "instant."
-)
 NOT_WORSE = (
     "A stronger motion is not always worse: the container may stand under a motion that is stronger than one that "
     "overturns it."
 )
 DEGREES = 57.29577951308232  #: in a radian
-
-
-@dataclass(frozen=True, kw_only=True)
-class RunView:
-    """A run as its page shows it."""
-
-    run: OpenedRun
-    model: Model
-    history: History
-    animation: Animation
-    drawn: Mapping[str, Drawing]
-    brief: bool  #: of three printed sheets at most
-
-    @property
-    def case(self) -> Case:
-        """The case, resolved."""
-        return self.run.case
-
-    @property
-    def result(self) -> RunResult:
-        """What `run.json` holds."""
-        return self.run.typed_result
-
-    @property
-    def verdict(self) -> Verdict:
-        """What the run found; empty before there is anything."""
-        return self.result.verdict or Verdict()
-
-    @cached_property
-    def compared(self) -> list[Compared]:
-        """The static rules beside the run."""
-        return compared_rows(self.model.static, self.verdict)
-
-    @cached_property
-    def boxes(self) -> Sequence[Sequence[str]]:
-        """A row for each box of a loose stack."""
-        return box_rows(self.result)
-
-    @cached_property
-    def played(self) -> dict[str, Any]:
-        """What the animation plays; empty where there is none."""
-        if len(self.history) < 2 or self.brief:
-            return {}
-        return player_data(self.animation, self.history, model=self.model)
-
-    @property
-    def note_on_level(self) -> str:
-        """A note that a sloping floor is drawn level; empty for a level one."""
-        return drawn_level(self.case.floor.slope_percent)
-
-    def figures(self, *names: str) -> list[html.Figure]:
-        """Figures of the drawings with these names, where there are any."""
-        return [
-            html.Figure(
-                svg_element(drawing.svg, label=drawing.title, prefix=drawing.name),
-                f"figure: {drawing.title}",
-                axes=drawing.cursor,
-            )
-            for drawing in (self.drawn[name] for name in names if name in self.drawn)
-        ]
-
-
-def motion_section(view: RunView) -> html.PageSection:
-    """The animation, the curves beside it, and stills for paper."""
-    moves = view.case.motion.kind != "none" or view.case.has_vertical
-    names = SHORT_MOTION if view.brief else MOTION
-    curves = view.figures(*(name for name in names if name != "base_motion" or moves))
-    if not curves:
-        return html.section("The motion", "motion-title", "There are no samples to show.")
-    player = [_player(view)] if view.played else []
-    motion = html.Group("motion brief" if view.brief else "motion", [*player, html.Group("curves", curves)])
-    stills = _stills(view)  # first: on paper they fill the sheet of the results, which no curve does
-    return html.section("The motion", "motion-title", *stills, motion)
-
-
-def _player(view: RunView) -> html.Player:
-    animation, height = view.animation, view.model.container.mesh.height
-    chosen = exaggeration(animation, height)
-    return html.Player(
-        f"{_what_is_played(view)} Red: normal force, blue: friction, on the container; dashed: where it first stood on "
-        f"the floor; ○: mass centre{' of each box' if view.boxes else ''}; ▲: where the middle of its base first was"
-        f"{f'; {view.note_on_level}' if view.note_on_level else ''}. {KEYS}",
-        loose=bool(view.boxes),
-        exaggerations=[
-            html.Choice(factor, f"× {short(factor)}", factor == chosen)
-            for factor in exaggerations(animation, height)
-        ],
-        meshed=bool(animation.frames),
-        legend=_legend(view),
-    )
-
-
-def _what_is_played(view: RunView) -> str:
-    animation, every = view.animation, f"every {short(view.played['step'], 1000)} ms"
-    if animation.stress_scale:
-        largest = quantity(animation.largest_stress, "MPa", 1e-6, 3)
-        return (
-            f"The rigid motion follows the history ({every}); deformation and stress follow "
-            f"{len(animation.frames)} frames and are interpolated between them. Largest stress in the frames: "
-            f"{largest}, in one place; 98 % of the values lie within the scale."
-        )
-    if animation.frames:
-        rigid = "The boxes are rigid: they have" if view.boxes else "The container is rigid: it has"
-        forces = f"the contact forces {len(animation.frames)} frames"
-        return f"The motion follows the history ({every}), {forces}. {rigid} no stress."
-    return "No fields were written: the container is shown without deformation."
-
-
-def _legend(view: RunView, more: str = "") -> html.Legend | None:
-    """The colours of the stress, where there is any."""
-    if not view.animation.stress_scale:
-        return None
-    most = quantity(view.animation.stress_scale, "MPa", 1e-6, 3)
-    return html.Legend("von Mises stress 0", f"{most} and more{more}", colour_scale("YlGnBu", COLOURS))
-
-
-def _stills(view: RunView) -> list[html.Block]:
-    mesh, angle = view.model.container.mesh, view.model.static.slenderness_angle
-    pictures = stills(
-        view.animation, view.history, view.verdict, angle=angle, width=mesh.width, height=mesh.height
-    )
-    if not pictures:
-        return []
-    legend = _legend(view, f"; elastic part × {short(exaggeration(view.animation, mesh.height))}")
-    level = view.note_on_level
-    return [
-        html.Group(
-            "whole",
-            [
-                html.Heading("Stills"),
-                html.Group("stills", [html.Figure(still.svg, caption=still.caption) for still in pictures]),
-                *([legend] if legend else []),
-                *([html.Note(f"In these drawings {level}.")] if level else []),
-            ],
-        )
-    ]
 
 
 def boxes_section(view: RunView) -> html.PageSection:
