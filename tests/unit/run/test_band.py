@@ -24,7 +24,8 @@ from fem.run.recorder import Recorder
 from fem.run.run import RunOptions, run_case
 from fem.run.simulation import simulate
 
-SHORT = ["solver.model=rigid", "solver.duration_s=3.0", "output.fields_s=0", "output.figures=false"]
+COARSE = "solver.element_size_m=0.5"
+SHORT = ["solver.model=rigid", COARSE, "solver.duration_s=3.0", "output.fields_s=0", "output.figures=false"]
 FEW = ["uncertainty.draws=2", "uncertainty.weakening_m=known", "uncertainty.stribeck_velocity_m_s=known"]
 
 
@@ -82,6 +83,7 @@ def test_members_side_by_side_are_the_runs_one_by_one(tmp_path, model):
     changes = [
         *FEW,
         f"solver.model={model}",
+        COARSE,
         "solver.duration_s=1",
         "output.fields_s=0",
         "output.figures=false",
@@ -124,7 +126,7 @@ def test_a_rest_far_below_the_static_limits_is_sure_without_a_band(tmp_path):
 class TestWhatDoesNotFitTheTime:
     """What is computed follows from the run's own steps and sizes; what is left out is said."""
 
-    case = load_case("seed_stack_plateau", ["solver.model=rigid"])
+    case = load_case("seed_stack_plateau", ["solver.model=rigid", COARSE])
     model = build_model(case)
 
     def numerics(self, steps):
@@ -167,7 +169,7 @@ class TestWhatDoesNotFitTheTime:
 
 @pytest.mark.parametrize(("share", "members"), [(0.8, 0), (0.9, 1), (1.05, 0)])
 def test_a_flat_base_near_uplift_is_tried_on_a_stiff_floor(share, members):
-    case = load_case("seed_stack", ["solver.model=rigid", "floor.kind=rigid", "support.kind=flat"])
+    case = load_case("seed_stack", ["solver.model=rigid", COARSE, "floor.kind=rigid", "support.kind=flat"])
     model = build_model(case)
     floors = [one for one in plan_of(model, result("rock", share)).changes if one.kind == "floor"]
     assert len(floors) == members
@@ -176,7 +178,9 @@ def test_a_flat_base_near_uplift_is_tried_on_a_stiff_floor(share, members):
 
 
 def test_an_outcome_that_depends_on_nothing_is_sure(tmp_path):
-    case = load_case("overturning", ["solver.model=rigid", "output.fields_s=0", "output.figures=false"])
+    case = load_case(
+        "overturning", ["solver.model=rigid", COARSE, "output.fields_s=0", "output.figures=false"]
+    )
     found = verdict_with_band(tmp_path, case)
     assert (found.band.outcomes, found.sure, found.band.unsure) == (("overturned",), "sure", False)
 
@@ -184,7 +188,7 @@ def test_an_outcome_that_depends_on_nothing_is_sure(tmp_path):
 def test_a_member_that_fails_is_named_in_a_warning_and_in_the_summary(tmp_path):
     # Newmark without averaging gains energy on a contact beyond 3 E/h and refuses it: h k/E is 2 here, 6 at x 3.
     soft = ("container.youngs_modulus_Pa=1e9", "contact.normal_penalty_Pa_m=2e10", "uncertainty.draws=0")
-    changes = (*SHORT, "solver.scheme=newmark", *soft)
+    changes = (*SHORT, "solver.element_size_m=0.1", "solver.scheme=newmark", *soft)
     assert main([*run_command("rocking", tmp_path, *changes), "--band"]) == 0
     found = read_result(tmp_path / "run.json")
     failed = [one for one in found["verdict"]["band"]["members"] if one["outcome"] is None]
@@ -204,7 +208,7 @@ def test_a_member_that_fails_is_named_in_a_warning_and_in_the_summary(tmp_path):
 @pytest.mark.parametrize("camber", [0.0, 0.004])
 def test_a_base_of_another_camber_touches_as_one(camber):
     flat = ["support.kind=flat", f"support.camber_m={camber}", "floor.corner_patch_m=[0.55, 1.1]"]
-    model = build_model(load_case("rocking", [*SHORT, *flat]))
+    model = build_model(load_case("rocking", [*SHORT, "solver.element_size_m=0.1", *flat]))
     changes = [one for one in changes_of(model.case, None) if "support.camber_m" in one.values]
     assert [one.values["support.camber_m"] for one in changes] == (
         [0.0005, 0.002] if not camber else [0.002, 0.008]
@@ -218,7 +222,7 @@ def test_a_base_of_another_camber_touches_as_one(camber):
 
 
 def test_members_without_inner_forces_move_as_those_with_them():
-    model = build_model(load_case("rocking", ["solver.duration_s=1", "output.fields_s=0"]))
+    model = build_model(load_case("rocking", [COARSE, "solver.duration_s=1", "output.fields_s=0"]))
     changes = [one for one in changes_of(model.case, model.penalty) if "contact.mu_kinetic" in one.values][:1]
     found = [
         run_changes(model, changes, numerics=Numerics(), stop=lambda: False, inner_forces=wanted)[0]
