@@ -1,55 +1,47 @@
 """The mesh of a container, with thickness and density of its cells.
 
-x to the right, z up; the base stands on z = 0 and is centred on x = 0. Cells are bilinear quadrilaterals,
-counter-clockwise; bolted boxes share the nodes between them. A mesh built here puts its lines on the
-faces of the walls and on the edges of the feet, so thickness and density are constant in every cell.
+A mesh built here puts its lines on the faces of the walls and on the edges of the feet, so thickness and density are
+constant in every cell.
 """
 
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 import numpy.typing as npt
 
-from mesh.cells import FloatArray, IntArray, areas_and_centroids, quadrature
+from mesh.cells import FloatArray, IntArray, areas_and_centroids
+from mesh.elevation import Elevation
 from mesh.errors import MeshError
 from mesh.fill import BoxCells, MassFill, cell_thickness, distribute_mass
 from mesh.geometry import ContainerGeometry, Section
 from mesh.grid import column_segments, require_affordable, row_segments
-from mesh.quality import require_quality
 from mesh.region import Region
 
-#: Points nearer to z = 0 than this share of the height are on the floor.
-FLOOR_SHARE = 1e-9
-
-#: Largest distance of the mesh line at the end of a foot from the given foot, as a share of the foot.
-FOOT_SHARE = 0.125
+#: elevations of structured meshes that are kept, those used last
+KEPT = 8
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ContainerMesh:
-    """Points, cells and mass of a container in elevation; its arrays are read-only.
+    """A container in elevation with its mass; its arrays are read-only.
 
     Raises MeshError for arrays that do not fit together, values that are not finite, a thickness that is
-    not positive, a negative density, no mass, a base that is not on z = 0 or not centred on x = 0;
-    MeshQualityError for distorted cells.
+    not positive, a negative density, no mass.
     """
 
-    points: FloatArray  #: (n, 2) [x, z] [m]
-    quads: IntArray  #: (m, 4) corners, counter-clockwise
+    elevation: Elevation
     region: IntArray  #: (m,) values of Region
     box: IntArray  #: (m,) box of the stack, from the floor up, from 0
     thickness: FloatArray  #: (m,) of the stiff material, out of the plane [m]
     areal_density: FloatArray  #: (m,) mass per area of elevation [kg/m2]
 
     def __post_init__(self) -> None:
-        for name in ("points", "thickness", "areal_density"):
+        for name in ("thickness", "areal_density"):
             self._own(name, np.array(getattr(self, name), dtype=np.float64))
-        for name in ("quads", "region", "box"):
+        for name in ("region", "box"):
             self._own(name, np.array(getattr(self, name), dtype=np.int64))
-        require_quality(self.points, self.quads)
         self._require_cell_data()
-        self._require_stance()
 
     def _own(self, name: str, array: npt.NDArray[np.generic]) -> None:
         array.setflags(write=False)
@@ -73,74 +65,49 @@ class ContainerMesh:
         if not self.mass > 0.0:
             raise MeshError("the container has no mass")
 
-    def _require_stance(self) -> None:
-        lowest = self.points[:, 1].min()
-        if abs(lowest) > FLOOR_SHARE * self.height:
-            raise MeshError(f"the base must stand on z = 0, its lowest point is at z = {lowest} m")
-        corners = self.points[self.base_points[[0, -1]], 0]
-        if abs(corners.sum()) > FLOOR_SHARE * self.width or not corners[0] < corners[1]:
-            raise MeshError(
-                f"the base must be centred on x = 0, it reaches from x = {corners[0]} to {corners[1]} m"
-            )
+    @property
+    def points(self) -> FloatArray:
+        """Positions [x, z], (n, 2) [m]."""
+        return self.elevation.points
 
-    @cached_property
+    @property
+    def quads(self) -> IntArray:
+        """Corners of the cells, counter-clockwise, (m, 4)."""
+        return self.elevation.quads
+
+    @property
     def width(self) -> float:
         """Width of the base, between its corners [m]."""
-        return float(np.ptp(self.points[self.base_points, 0]))
+        return self.elevation.width
 
-    @cached_property
+    @property
     def height(self) -> float:
         """Largest extent along z, all boxes [m]."""
-        return float(np.ptp(self.points[:, 1]))
+        return self.elevation.height
+
+    @property
+    def base_points(self) -> IntArray:
+        """Indices of the points on the floor, from left to right; the first and the last are the corners."""
+        return self.elevation.base_points
 
     @cached_property
     def mass(self) -> float:
         """Mass of the container with its fill [kg]."""
-        return float((quadrature(self.points, self.quads)[1] * self.areal_density[:, None]).sum())
+        return float((self.elevation.quadrature[1] * self.areal_density[:, None]).sum())
 
     @cached_property
     def centroid(self) -> tuple[float, float]:
         """Centre of mass (x, z) [m]."""
-        positions, weights = quadrature(self.points, self.quads)
+        positions, weights = self.elevation.quadrature
         x, z = np.einsum("m,mg,mgd->d", self.areal_density, weights, positions) / self.mass
         return float(x), float(z)
 
     @cached_property
     def inertia(self) -> float:
         """Moment of inertia about the centre of mass, rotation in the plane [kg m2]."""
-        positions, weights = quadrature(self.points, self.quads)
+        positions, weights = self.elevation.quadrature
         arms = ((positions - np.array(self.centroid)) ** 2).sum(axis=2)
         return float(np.einsum("m,mg,mg->", self.areal_density, weights, arms))
-
-    @cached_property
-    def base_points(self) -> IntArray:
-        """Indices of the points on the floor, from left to right; the first and the last are the corners."""
-        on_floor = np.flatnonzero(np.abs(self.points[:, 1]) <= FLOOR_SHARE * self.height)
-        return on_floor[np.argsort(self.points[on_floor, 0])]
-
-    def foot_widths(self, foot: float) -> tuple[float, float]:
-        """Widths of the left and the right foot in this mesh for a given foot [m].
-
-        Each foot ends at the base point nearest to `foot` from its corner; it includes all base nodes up to there, for
-        elements of any order.
-
-        Raises:
-            MeshError: no base point within an eighth of `foot` of its end.
-        """
-        base = self.points[self.base_points, 0]
-        left = _nearest_line(base - base[0], foot)
-        right = _nearest_line(base[-1] - base, foot)
-        return left, right
-
-
-def _nearest_line(distances: FloatArray, foot: float) -> float:
-    nearest = float(distances[np.argmin(np.abs(distances - foot))])
-    if not abs(nearest - foot) <= FOOT_SHARE * foot:
-        raise MeshError(
-            f"no base point ends a foot of {foot} m: the nearest is {nearest:.6g} m from the corner; "
-            "put a mesh line there, or change the foot"
-        )
-    return nearest
 
 
 def with_mass_beside(mesh: ContainerMesh, distance: float) -> ContainerMesh:
@@ -152,7 +119,7 @@ def with_mass_beside(mesh: ContainerMesh, distance: float) -> ContainerMesh:
     Raises:
         MeshError: so far that a density would be negative; a box of one column of elements.
     """
-    area, centre = areas_and_centroids(mesh.points, mesh.quads)
+    area, centre = mesh.elevation.areas_and_centroids
     mass, factor = area * mesh.areal_density, np.ones(len(mesh.quads))
     for box in range(int(mesh.box.max()) + 1):
         own = mesh.box == box
@@ -188,6 +155,22 @@ def build_container_mesh(
         MeshError: more than `mesh.grid.MOST_CELLS` cells, a foot that does not fit, a mass or a
             centroid that cannot be met.
     """
+    elevation, cells = _structured(geometry, element_size, foot, bears)
+    density, region = distribute_mass(geometry, fill, cells)
+    return ContainerMesh(
+        elevation=elevation,
+        region=np.tile(region, geometry.boxes),
+        box=np.repeat(np.arange(geometry.boxes), len(region)),
+        thickness=np.tile(cells.thickness, geometry.boxes),
+        areal_density=np.tile(density, geometry.boxes),
+    )
+
+
+@lru_cache(maxsize=KEPT)
+def _structured(
+    geometry: ContainerGeometry, element_size: float, foot: float | None, bears: bool
+) -> tuple[Elevation, BoxCells]:
+    """A structured mesh and the cells of its lowest box, before it is filled; containers of other mass share it."""
     columns = column_segments(geometry, element_size, foot)
     rows = row_segments(geometry, element_size, bears=bears)
     require_affordable(geometry, columns, rows)
@@ -198,37 +181,25 @@ def build_container_mesh(
     z = np.concatenate([box_z[:-1] + box * geometry.height for box in range(geometry.boxes)])
     z = np.append(z, geometry.total_height)
     points = np.column_stack([np.tile(x, len(z)), np.repeat(z, len(x))])
-    box_region = ring_regions(geometry, columns.lines(), box_z)
-
     quads = grid_quads(columns.count, rows.count * geometry.boxes)
     box_quads = quads[: rows.count * columns.count]
-    box_region, thickness, density = filled_grid(geometry, fill, points, box_quads, box_region)
-    return ContainerMesh(
-        points=points,
-        quads=quads,
-        region=np.tile(box_region, geometry.boxes),
-        box=np.repeat(np.arange(geometry.boxes), len(box_quads)),
-        thickness=np.tile(thickness, geometry.boxes),
-        areal_density=np.tile(density, geometry.boxes),
-    )
+    region = ring_regions(geometry, columns.lines(), box_z)
+    return Elevation(points, quads), box_cells(geometry, points, box_quads, region)
 
 
-def filled_grid(
-    geometry: ContainerGeometry, fill: MassFill, points: FloatArray, quads: IntArray, region: IntArray
-) -> tuple[IntArray, FloatArray, FloatArray]:
-    """Region, thickness and areal density of the cells of one box, a grid with points from its axis and its floor."""
+def box_cells(
+    geometry: ContainerGeometry, points: FloatArray, quads: IntArray, region: IntArray
+) -> BoxCells:
+    """The cells of one box, a grid with points from its axis and its floor, before it is filled."""
     area, centroid = areas_and_centroids(points, quads)
-    thickness = cell_thickness(geometry, region, centroid[:, 0])
-    cells = BoxCells(
+    return BoxCells(
         region=region,
-        thickness=thickness,
+        thickness=cell_thickness(geometry, region, centroid[:, 0]),
         area=area,
         centroid=centroid[:, 1],
         bottom=points[quads[:, 0], 1],
         top=points[quads[:, 2], 1],
     )
-    density, region = distribute_mass(geometry, fill, cells)
-    return region, thickness, density
 
 
 def ring_regions(geometry: ContainerGeometry, x: FloatArray, z: FloatArray) -> IntArray:

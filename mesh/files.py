@@ -16,13 +16,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from mesh.cells import FloatArray, IntArray, areas_and_centroids, signed_areas
+from mesh.cells import FloatArray, IntArray, signed_areas
 from mesh.container import ContainerMesh
+from mesh.elevation import Elevation
 from mesh.errors import MeshError
 from mesh.fill import BoxCells, MassFill, cell_thickness, distribute_mass
 from mesh.geometry import ContainerGeometry, Section
 from mesh.grid import MOST_CELLS
-from mesh.quality import require_positions, require_quality
+from mesh.quality import require_positions
 from mesh.region import Region
 from mesh.stack import StackedBox, joined, placed_apart, require_apart
 from mesh.tags import CellTags, cell_regions
@@ -190,14 +191,14 @@ def _container(
     points = place_on_floor(_plane(points[used]), geometry.width, geometry.total_height)
     clockwise = signed_areas(points, quads) < 0.0
     quads[clockwise] = quads[clockwise, ::-1]
-    require_quality(points, quads)
+    elevation = Elevation(points, quads)
     require_tiling(points, quads, geometry.width, geometry.total_height)
 
     region = cell_regions(tags, _allowed(geometry))
-    thickness = cell_thickness(geometry, region, areas_and_centroids(points, quads)[1][:, 0])
-    density, region, box = _fill_boxes(points, quads, region, thickness, geometry, fill)
+    thickness = cell_thickness(geometry, region, elevation.areas_and_centroids[1][:, 0])
+    density, region, box = _fill_boxes(elevation, region, thickness, geometry, fill)
     return ContainerMesh(
-        points=points, quads=quads, region=region, box=box, thickness=thickness, areal_density=density
+        elevation=elevation, region=region, box=box, thickness=thickness, areal_density=density
     )
 
 
@@ -252,16 +253,15 @@ def _plane(points: FloatArray) -> FloatArray:
 
 
 def _fill_boxes(
-    points: FloatArray,
-    quads: IntArray,
+    elevation: Elevation,
     region: IntArray,
     thickness: FloatArray,
     geometry: ContainerGeometry,
     fill: MassFill,
 ) -> tuple[FloatArray, IntArray, IntArray]:
     """Areal density, region and box of all cells, box by box."""
-    area, centroid = areas_and_centroids(points, quads)
-    corner_heights = points[quads, 1]
+    area, centroid = elevation.areas_and_centroids
+    corner_heights = elevation.points[elevation.quads, 1]
     bottom, top = corner_heights.min(axis=1), corner_heights.max(axis=1)
     box = np.clip((centroid[:, 1] / geometry.height).astype(np.int64), 0, geometry.boxes - 1)
     slack = TOLERANCE * geometry.height
@@ -272,7 +272,7 @@ def _fill_boxes(
             f"{int(astride.sum())} cells lie in two boxes, the first at x = {x:.4g} m, z = {z:.4g} m: "
             f"put mesh lines at every {geometry.height} m"
         )
-    density = np.empty(len(quads))
+    density = np.empty(len(region))
     region = region.copy()
     for number in range(geometry.boxes):
         cells = np.flatnonzero(box == number)

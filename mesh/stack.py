@@ -11,9 +11,10 @@ from itertools import pairwise
 import numpy as np
 
 from mesh.cells import FloatArray, IntArray
-from mesh.container import ContainerMesh, build_container_mesh, filled_grid, grid_quads, ring_regions
+from mesh.container import ContainerMesh, box_cells, build_container_mesh, grid_quads, ring_regions
+from mesh.elevation import Elevation
 from mesh.errors import MeshError
-from mesh.fill import MassFill
+from mesh.fill import MassFill, distribute_mass
 from mesh.geometry import ContainerGeometry
 from mesh.grid import MOST_CELLS, Segments, column_segments, row_segments, segments_between
 
@@ -64,10 +65,15 @@ def placed_apart(boxes: Sequence[StackedBox], meshes: Sequence[ContainerMesh]) -
     """Meshes of single boxes, each standing on z = 0 and centred on x = 0, moved to their places as one mesh."""
     starts = np.cumsum([0, *(len(mesh.points) for mesh in meshes)])
     return ContainerMesh(
-        points=np.concatenate(
-            [mesh.points + np.array([box.axis, box.bottom]) for box, mesh in zip(boxes, meshes, strict=True)]
+        elevation=Elevation(
+            np.concatenate(
+                [
+                    mesh.points + np.array([box.axis, box.bottom])
+                    for box, mesh in zip(boxes, meshes, strict=True)
+                ]
+            ),
+            np.concatenate([mesh.quads + start for start, mesh in zip(starts, meshes, strict=False)]),
         ),
-        quads=np.concatenate([mesh.quads + start for start, mesh in zip(starts, meshes, strict=False)]),
         region=np.concatenate([mesh.region for mesh in meshes]),
         box=np.repeat(np.arange(len(meshes)), [len(mesh.quads) for mesh in meshes]),
         thickness=np.concatenate([mesh.thickness for mesh in meshes]),
@@ -119,8 +125,7 @@ def joined(
             )
     _, first, merged = np.unique(np.concatenate(nodes), return_index=True, return_inverse=True)
     return ContainerMesh(
-        points=apart.points[first],
-        quads=merged[apart.quads],
+        elevation=Elevation(apart.points[first], merged[apart.quads]),
         region=apart.region,
         box=apart.box,
         thickness=apart.thickness,
@@ -135,8 +140,7 @@ def box_mesh(mesh: ContainerMesh, number: int) -> ContainerMesh:
     points = mesh.points[used]
     low, high = points.min(axis=0), points.max(axis=0)
     return ContainerMesh(
-        points=points - [0.5 * (low[0] + high[0]), low[1]],
-        quads=quads.reshape(-1, 4),
+        elevation=Elevation(points - [0.5 * (low[0] + high[0]), low[1]], quads.reshape(-1, 4)),
         region=mesh.region[cells],
         box=np.zeros(len(cells), dtype=np.int64),
         thickness=mesh.thickness[cells],
@@ -179,8 +183,7 @@ def build_bolted_mesh(
     used, numbers = np.unique(np.concatenate(quads), return_inverse=True)
     region, thickness, density = (np.concatenate(parts) for parts in zip(*data, strict=True))
     return ContainerMesh(
-        points=points[used],
-        quads=numbers.reshape(-1, 4),
+        elevation=Elevation(points[used], numbers.reshape(-1, 4)),
         region=region,
         box=np.repeat(np.arange(len(boxes)), [len(part) for part in quads]),
         thickness=thickness,
@@ -193,7 +196,9 @@ def _cells_of(box: StackedBox, x: FloatArray, z: FloatArray) -> tuple[IntArray, 
     points = np.column_stack([np.tile(x - box.axis, len(z)), np.repeat(z, len(x))])
     quads = grid_quads(len(x) - 1, len(z) - 1)
     region = ring_regions(box.geometry, x - box.axis + 0.5 * box.geometry.width, z)
-    return filled_grid(box.geometry, box.fill, points, quads, region)
+    cells = box_cells(box.geometry, points, quads, region)
+    density, region = distribute_mass(box.geometry, box.fill, cells)
+    return region, cells.thickness, density
 
 
 def _near(boxes: Sequence[StackedBox]) -> float:

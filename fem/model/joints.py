@@ -18,7 +18,6 @@ from fem.case.tables.links import held_above
 from fem.model.model import Model
 from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid.assembly import FiniteElements
-from mesh.cells import areas_and_centroids
 from mesh.container import ContainerMesh
 
 #: columns of a joint's motion: momentum [kg m/s], angular momentum about their own mass centre [kg m2/s] and mass
@@ -179,7 +178,7 @@ def joints_of(model: Model, heights: FloatArray | None = None) -> Joints | None:
 
 def _layers(elements: FiniteElements, mesh: ContainerMesh, height: FloatArray) -> tuple[csr_array, ...]:
     """Consistent masses (n, n) of the cells between consecutive heights (J + 1,) [kg]."""
-    middle = areas_and_centroids(mesh.points, mesh.quads)[1][:, 1]
+    middle = mesh.elevation.areas_and_centroids[1][:, 1]
     return tuple(
         elements.mass_of(np.flatnonzero((low < middle) & (middle < high)), mesh.areal_density)
         for low, high in pairwise(height)

@@ -28,7 +28,7 @@ def build_support(case: Case, mesh: ContainerMesh) -> Support:
         MeshError: no mesh line ends a foot.
     """
     chosen, x = case.support, base_positions(mesh, case.solver.order)
-    feet = (0.0, 0.0) if case.foot is None else mesh.foot_widths(case.foot)
+    feet = (0.0, 0.0) if case.foot is None else mesh.elevation.foot_widths(case.foot)
     kind = chosen.kind if case.foot is None else "feet"
     if case.rolls or sum(feet) >= MEETING * mesh.width:
         kind = "flat"

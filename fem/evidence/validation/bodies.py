@@ -9,6 +9,7 @@ from fem.case.case import Case
 from fem.evidence.verification.runs import STACK
 from fem.model.container import Container, discretise
 from mesh.container import ContainerMesh, grid_quads
+from mesh.elevation import Elevation
 from mesh.errors import MeshError
 from mesh.region import Region
 
@@ -62,8 +63,7 @@ def specimen(case: Case, *, centroid: float, inertia_ratio: float, columns: int 
     return discretise(
         case,
         ContainerMesh(
-            points=np.array([[x, z] for z in levels for x in across]),
-            quads=quads,
+            elevation=Elevation(np.array([[x, z] for z in levels for x in across]), quads),
             region=np.full(len(quads), int(Region.SOLID)),
             box=np.zeros(len(quads), dtype=np.int64),
             thickness=np.full(len(quads), case.container.depth_m),

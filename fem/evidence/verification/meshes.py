@@ -7,6 +7,7 @@ import numpy as np
 
 from fem.runtime.arrays import FloatArray, IntArray
 from mesh.container import ContainerMesh, grid_quads
+from mesh.elevation import Elevation
 from mesh.region import Region
 
 Mapping = Callable[[FloatArray, FloatArray], tuple[FloatArray, FloatArray]]
@@ -45,8 +46,7 @@ def grid_mesh(x: FloatArray, z: FloatArray, *, depth: float, areal_density: floa
     """A solid block with mesh lines at x and z [m]; areal density in kg/m2 of the elevation."""
     quads = grid_quads(x.size - 1, z.size - 1)
     return ContainerMesh(
-        points=np.column_stack([np.tile(x, z.size), np.repeat(z, x.size)]),
-        quads=quads,
+        elevation=Elevation(np.column_stack([np.tile(x, z.size), np.repeat(z, x.size)]), quads),
         region=np.full(len(quads), int(Region.SOLID)),
         box=np.zeros(len(quads), dtype=np.int64),
         thickness=np.full(len(quads), depth),

@@ -7,6 +7,7 @@ import pytest
 
 from mesh.cells import areas_and_centroids, quadrature, signed_areas
 from mesh.container import ContainerMesh, build_container_mesh
+from mesh.elevation import Elevation
 from mesh.errors import MeshError
 from mesh.fill import MassFill
 from mesh.geometry import ContainerGeometry, Section
@@ -29,7 +30,7 @@ def distorted_block() -> ContainerMesh:
     points = mesh.points.copy()
     inside = (np.abs(points[:, 0]) < 0.549) & (points[:, 1] > 0.001) & (points[:, 1] < 3.999)
     points[inside] += np.random.default_rng(1).uniform(-0.06, 0.06, (inside.sum(), 2))
-    return dataclasses.replace(mesh, points=points)
+    return dataclasses.replace(mesh, elevation=Elevation(points, mesh.quads))
 
 
 @pytest.mark.parametrize("mesh", [block(1.0), block(), distorted_block()])
@@ -117,7 +118,7 @@ def test_mesh_is_symmetric_to_the_last_bit():
 @pytest.mark.parametrize("foot", [0.15, 0.05, 0.0079, 0.008, 0.3, 0.5499])
 def test_feet_end_on_a_base_point(foot):
     mesh = build_container_mesh(STACK, FILL, element_size=0.1, foot=foot)
-    left, right = mesh.foot_widths(foot)
+    left, right = mesh.elevation.foot_widths(foot)
     assert left == pytest.approx(right, rel=1e-12)
     assert left == pytest.approx(foot, rel=1.0 / 8.0)
     assert np.isclose(mesh.points[mesh.base_points, 0] + 0.55, left, rtol=1e-12, atol=0.0).any()
@@ -126,7 +127,7 @@ def test_feet_end_on_a_base_point(foot):
 def test_a_foot_without_a_mesh_line_is_refused_with_the_nearest():
     mesh = build_container_mesh(STACK, FILL, element_size=0.5)
     with pytest.raises(MeshError, match=r"no base point ends a foot of 0.15 m: the nearest is 0.008 m"):
-        mesh.foot_widths(0.15)
+        mesh.elevation.foot_widths(0.15)
 
 
 def test_arrays_are_read_only_and_owned():
@@ -135,7 +136,7 @@ def test_arrays_are_read_only_and_owned():
         with pytest.raises(ValueError, match="read-only"):
             getattr(mesh, name)[0] = 0
     points = mesh.points.copy()
-    copied = dataclasses.replace(mesh, points=points)
+    copied = dataclasses.replace(mesh, elevation=Elevation(points, mesh.quads))
     points[0] = 99.0
     assert copied.points[0].tolist() == [-0.55, 0.0]
 
@@ -150,16 +151,25 @@ def test_arrays_are_read_only_and_owned():
         (lambda m: {"areal_density": -m.areal_density}, "not negative"),
         (lambda m: {"areal_density": 0.0 * m.areal_density}, "no mass"),
         (
-            lambda m: {"points": m.points + np.array([0.0, 0.1])},
+            lambda m: {"elevation": Elevation(m.points + np.array([0.0, 0.1]), m.quads)},
             "base must stand on z = 0, its lowest point is at z = 0.1",
         ),
-        (lambda m: {"points": m.points + np.array([0.1, 0.0])}, "centred on x = 0"),
+        (lambda m: {"elevation": Elevation(m.points + np.array([0.1, 0.0]), m.quads)}, "centred on x = 0"),
     ],
 )
 def test_arrays_that_do_not_make_a_container_are_refused(changes, reason):
     mesh = block()
     with pytest.raises(MeshError, match=reason):
         dataclasses.replace(mesh, **changes(mesh))
+
+
+def test_containers_of_different_mass_share_their_cells():
+    light, heavy = (
+        build_container_mesh(STACK, dataclasses.replace(FILL, mass=mass), element_size=0.25)
+        for mass in (FILL.mass, 2.0 * FILL.mass)
+    )
+    assert heavy.elevation is light.elevation
+    assert heavy.mass == pytest.approx(2.0 * light.mass, rel=1e-12)
 
 
 def test_absurd_sizes_are_refused_before_memory_is_taken():

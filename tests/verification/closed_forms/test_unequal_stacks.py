@@ -17,6 +17,7 @@ from fem.run.simulation import simulate
 from fem.solid.assembly import assemble
 from fem.solid.modes import elastic_modes
 from mesh.container import ContainerMesh
+from mesh.elevation import Elevation
 
 BOX = "[[container.box]]\n"
 LIGHT = f"{BOX}mass_kg = 4000.0\n{BOX}width_m = 0.8\nheight_m = 0.6\nmass_kg = 800.0\noffset_m = 0.1\n"
@@ -82,8 +83,7 @@ def test_modes_are_those_of_the_same_shape_meshed_as_one():
     used, quads = np.unique(np.column_stack([first, first + 1, first + 12, first + 11]), return_inverse=True)
     masses = np.where(row < 10, 2500.0 / 1.0, 2500.0 / 0.3)[inside]
     other = ContainerMesh(
-        points=np.column_stack([x.ravel(), z.ravel()])[used],
-        quads=quads.reshape(-1, 4),
+        elevation=Elevation(np.column_stack([x.ravel(), z.ravel()])[used], quads.reshape(-1, 4)),
         region=np.full(len(first), 3),
         box=np.where(row < 10, 0, 1)[inside],
         thickness=np.full(len(first), 1.1),
