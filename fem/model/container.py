@@ -56,7 +56,7 @@ class Container:
     #: row the corners that touch, in the order of `contact.interface.faces`, before these
     nodes: IntArray
     monitors: IntArray  #: (n_m,) nodes whose motion is observed
-    response: StaticResponse  #: none of a loose stack
+    response: StaticResponse  #: none of a loose stack, a rigid container
     basis: ReducedBasis  #: elastic modes of a reduced model; none of the others
     free_modes: int  #: of the basis, the lowest so many are those of the free container
     first: float  #: lowest elastic angular frequency; infinite for a rigid container [rad/s]
@@ -135,7 +135,8 @@ def discretise(case: Case, mesh: ContainerMesh | None = None, struck: FloatArray
     attached = nodes
     if struck is not None and case.solver.model == "reduced":
         attached = np.concatenate([nodes, nodes_at(struck, elements.nodes)])
-    response = static_response(elements, attached)
+    rigid = case.solver.model == "rigid"
+    response = _no_response(elements) if rigid else static_response(elements, attached)
     basis, first = _elastic(case, elements, response, modes_of_a_body(case))
     return Container(
         mesh=mesh,

@@ -80,7 +80,7 @@ def _stiffness_form(u: Any, v: Any, w: Any) -> Any:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FiniteElements:
-    """An assembled container: its nodes, its constant matrices and its large-rotation forces.
+    """The elements of a container: its nodes, its constant matrices and its large-rotation forces.
 
     `nodes[: len(points)]` are the points of the mesh, in their order; order 2 adds edge and cell middles.
     """
@@ -93,18 +93,49 @@ class FiniteElements:
     region: NDArray[np.integer]  #: region of each cell, shape (m,)
     box: NDArray[np.integer]  #: box of each cell, from 0, shape (m,)
     base_nodes: IntArray  #: nodes at z = 0, by rising x
-    mass: csr_array  #: consistent mass, the same for x and z, shape (n, n) [kg]
-    stiffness: csc_array  #: linear plane stress, shape (2n, 2n), interleaved [N/m]
+    thickness: NDArray[np.floating]  #: of each cell, out of plane, shape (m,) [m]
+    areal_density: NDArray[np.floating]  #: of each cell, shape (m,) [kg per m2 of elevation]
     lame: elasticity.LamePair = field(repr=False)
-    gradient: FloatArray = field(repr=False)  #: derivatives of the shape functions, (2, m, q, k) [1/m]
-    weights: FloatArray = field(repr=False)  #: volume of each quadrature point, (m, q) [m3]
     _basis: Basis = field(repr=False)
-    _recovery: csr_array = field(repr=False)  # quadrature points -> averaged nodes, (n, m q)
 
     @property
     def unknowns(self) -> int:
         """Number of displacement components."""
         return 2 * len(self.nodes)
+
+    @cached_property
+    def mass(self) -> csr_array:
+        """Consistent mass, the same for x and z, shape (n, n) [kg]."""
+        density = _at_points(self._basis, self.areal_density)
+        return csr_array(_mass_form.assemble(self._basis, areal_density=density))
+
+    @cached_property
+    def stiffness(self) -> csc_array:
+        """Linear plane stress, shape (2n, 2n), interleaved [N/m]."""
+        return csc_array(
+            _stiffness_form.assemble(
+                self._basis.with_element(ElementVector(self._basis.elem)),
+                thickness=_at_points(self._basis, self.thickness),
+                first=self.lame.first,
+                shear=self.lame.shear,
+            )
+        )
+
+    @cached_property
+    def gradient(self) -> FloatArray:
+        """Derivatives of the shape functions along x and z at the points of all cells, shape (2, m, q, k) [1/m]."""
+        functions = self._basis.basis
+        return np.ascontiguousarray(np.stack([function[0].grad for function in functions], axis=-1))
+
+    @cached_property
+    def weights(self) -> FloatArray:
+        """Volume of each quadrature point, (m, q) [m3]."""
+        return np.ascontiguousarray(self._basis.dx * _at_points(self._basis, self.thickness))
+
+    @cached_property
+    def _recovery(self) -> csr_array:
+        """Values at the quadrature points -> averaged nodes, (n, m q)."""
+        return _recovery_operator(self._basis, self.cells, np.asarray(self.thickness, dtype=float))
 
     @cached_property
     def blocks(self) -> elasticity.CellBlocks:
@@ -214,21 +245,16 @@ class FiniteElements:
 
 
 def assemble(mesh: QuadMesh, *, youngs_modulus: float, poisson_ratio: float, order: int) -> FiniteElements:
-    """Assemble the matrices and arrays that stay constant during a run.
+    """The finite elements of a mesh; their matrices are assembled on first use.
 
     Raises:
         ValueError: elastic constants out of range.
     """
     lame = elasticity.plane_stress_lame(youngs_modulus, poisson_ratio)
     basis = _scalar_basis(mesh, order)
-    thickness = _at_points(basis, mesh.thickness)
-    density = _at_points(basis, mesh.areal_density)
-
     cells = np.ascontiguousarray(basis.element_dofs.T).astype(np.int64)
     nodes = np.ascontiguousarray(basis.doflocs.T)
     nodes[: len(mesh.points)] = mesh.points  # exactly, not through the mapping
-    vector_basis = basis.with_element(ElementVector(basis.elem))
-    elastic = {"thickness": thickness, "first": lame.first, "shear": lame.shear}
     return FiniteElements(
         order=order,
         youngs_modulus=youngs_modulus,
@@ -238,13 +264,10 @@ def assemble(mesh: QuadMesh, *, youngs_modulus: float, poisson_ratio: float, ord
         region=np.asarray(mesh.region),
         box=np.asarray(mesh.box),
         base_nodes=_base_nodes(nodes),
-        mass=csr_array(_mass_form.assemble(basis, areal_density=density)),
-        stiffness=csc_array(_stiffness_form.assemble(vector_basis, **elastic)),
+        thickness=mesh.thickness,
+        areal_density=mesh.areal_density,
         lame=lame,
-        gradient=_shape_gradients(basis),
-        weights=np.ascontiguousarray(basis.dx * thickness),
         _basis=basis,
-        _recovery=_recovery_operator(basis, cells, np.asarray(mesh.thickness, dtype=float)),
     )
 
 
@@ -273,12 +296,6 @@ def _base_nodes(nodes: FloatArray) -> IntArray:
     height = np.ptp(nodes[:, 1])
     base = np.flatnonzero(np.abs(nodes[:, 1]) <= 1e-9 * height)
     return base[np.argsort(nodes[base, 0], kind="stable")]
-
-
-def _shape_gradients(basis: Basis) -> FloatArray:
-    """Derivatives of the shape functions along x and z at the points of all cells, shape (2, m, q, k) [1/m]."""
-    gradients = np.stack([basis.basis[i][0].grad for i in range(basis.Nbfun)], axis=-1)
-    return np.ascontiguousarray(gradients)
 
 
 def _recovery_operator(basis: Basis, cells: IntArray, thickness: FloatArray) -> csr_array:
