@@ -187,9 +187,7 @@ def _structured(
     return Elevation(points, quads), box_cells(geometry, points, box_quads, region)
 
 
-def box_cells(
-    geometry: ContainerGeometry, points: FloatArray, quads: IntArray, region: IntArray
-) -> BoxCells:
+def box_cells(geometry: ContainerGeometry, points: FloatArray, quads: IntArray, region: IntArray) -> BoxCells:
     """The cells of one box, a grid with points from its axis and its floor, before it is filled."""
     area, centroid = areas_and_centroids(points, quads)
     return BoxCells(

@@ -30,8 +30,7 @@ class JsonBlock:
 
     def __getitem__(self, key: str) -> Any:
         """A value by its key in the file; KeyError names the keys there are."""
-        names = [field.name for field in fields(self)]  # type: ignore[arg-type]
-        if key not in names:
+        if key not in (names := _names(type(self))):  # type: ignore[arg-type]
             raise KeyError(f"no key {key!r}; known: {', '.join(names)}")
         return getattr(self, key)
 
@@ -50,6 +49,12 @@ def _plain(value: Any) -> Any:
     if isinstance(value, JsonBlock):
         return value.to_json()
     return [_plain(item) for item in value] if isinstance(value, tuple) else value
+
+
+@cache
+def _names(kind: type[JsonBlock]) -> dict[str, None]:
+    """The keys, in their order."""
+    return dict.fromkeys(field.name for field in fields(kind))  # type: ignore[arg-type]
 
 
 @cache

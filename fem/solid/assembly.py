@@ -143,9 +143,10 @@ class FiniteElements:
         return elasticity.cell_blocks(self.cells, self.gradient, self.weights)
 
     @cached_property
-    def _parts(self) -> dict[bytes, Basis]:
-        """Bases of some cells alone, made on first use; the members of a band differ in their masses."""
-        return {}
+    def _unit_mass(self) -> FloatArray:
+        """Mass of each cell for a unit areal density, shape (m, k, k) [m2]."""
+        values = np.stack([function[0].value[0] for function in self._basis.basis])
+        return np.einsum("mq,iq,jq->mij", self._basis.dx, values, values, optimize=True)
 
     @property
     def nodal_mass(self) -> FloatArray:
@@ -162,11 +163,10 @@ class FiniteElements:
 
     def mass_of(self, cells: IntArray, areal_density: NDArray[np.floating]) -> csr_array:
         """Consistent mass of some cells alone, for the areal density (m,) of all [kg/m2]; shape (n, n) [kg]."""
-        key = cells.tobytes()
-        if key not in self._parts:
-            self._parts[key] = self._basis.with_elements(cells)
-        part = self._parts[key]
-        return csr_array(_mass_form.assemble(part, areal_density=_at_points(part, areal_density[cells])))
+        masses = areal_density[cells, None, None] * self._unit_mass[cells]
+        nodes = np.broadcast_to(self.cells[cells][:, :, None], masses.shape)
+        places = nodes.ravel(), nodes.swapaxes(1, 2).ravel()
+        return coo_array((masses.ravel(), places), shape=(len(self.nodes), len(self.nodes))).tocsr()
 
     def force_and_energy(self, displacement: FloatArray) -> tuple[FloatArray, float]:
         """Gradient of the strain energy, shape (n, 2) [N], and the energy itself [J]."""
