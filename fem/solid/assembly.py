@@ -145,7 +145,7 @@ class FiniteElements:
     @cached_property
     def _unit_mass(self) -> FloatArray:
         """Mass of each cell for a unit areal density, shape (m, k, k) [m2]."""
-        values = np.stack([function[0].value[0] for function in self._basis.basis])
+        values = np.stack([np.asarray(function[0])[0] for function in self._basis.basis])
         return np.einsum("mq,iq,jq->mij", self._basis.dx, values, values, optimize=True)
 
     @property
