@@ -10,6 +10,7 @@ the body with the same name.
 
 import math
 from collections.abc import Callable
+from functools import cache
 from typing import Annotated, Any, NamedTuple, TypeVar
 
 import numpy as np
@@ -78,13 +79,24 @@ class Ground(NamedTuple):
 
 def make_state(coordinates: int, points: int, monitors: int, boxes: int = 0) -> State:
     """Allocate a state for these numbers of coordinates, base points, monitored points and boxes of a loose stack."""
+    size, parts = _parts_of_a_state(coordinates, points, boxes)
+    numbers = np.zeros(size)
+    fields = {name: numbers[part].reshape(shape) for name, part, shape in parts}
+    return State(**fields, monitor=np.zeros((monitors, 4)), numbers=numbers)
+
+
+@cache  # asked twice for each run of a map
+def _parts_of_a_state(
+    coordinates: int, points: int, boxes: int
+) -> tuple[int, list[tuple[str, slice, tuple[int, ...]]]]:
+    """How many numbers a state has, and of each field its name, its place among them and its shape."""
     shapes = shapes_of(State, **{"d": coordinates, "n": points, "N": boxes, "4N": 4 * boxes})
-    numbers = np.zeros(sum(math.prod(shape) for shape in shapes.values()))
-    fields, begin = {}, 0
+    parts, begin = [], 0
     for name, shape in shapes.items():
         end = begin + math.prod(shape)
-        fields[name], begin = numbers[begin:end].reshape(shape), end
-    return State(**fields, monitor=np.zeros((monitors, 4)), numbers=numbers)
+        parts.append((name, slice(begin, end), shape))
+        begin = end
+    return begin, parts
 
 
 def implements(

@@ -88,12 +88,12 @@ OBSERVABLES = np.dtype(
 
 def make_observables() -> Any:
     """A record array (1,) of OBSERVABLES at the start."""
-    track = np.zeros(1, OBSERVABLES).view(np.recarray)
+    track = np.zeros(1, OBSERVABLES)
     for name in ("first_opening", "first_uplift", "overturned_at", "first_impact"):
         track[name] = NEVER
     for name in ("restitution", "turning_energy"):
         track[name] = np.nan
-    return track
+    return track.view(np.recarray)
 
 
 @compiled(inline=True)

@@ -203,9 +203,9 @@ LINK_RECORD = np.dtype(
 
 def make_links(count: int) -> Any:
     """A record array (count,) of LINK_RECORD at the start."""
-    links = np.zeros(count, LINK_RECORD).view(np.recarray)
+    links = np.zeros(count, LINK_RECORD)
     links["broken_at"] = links["away"] = links["least_gap"] = NEVER
-    return links
+    return links.view(np.recarray)
 
 
 def make_joints(
@@ -226,14 +226,14 @@ def make_joints(
     """
     boxes = np.atleast_1d(mass)
     number = np.arange(boxes.size)
-    joints = np.zeros(boxes.size, JOINT_RECORD).view(np.recarray)
+    joints = np.zeros(boxes.size, JOINT_RECORD)
     joints["mass"], joints["inertia"], joints["width"], joints["angle"] = boxes, inertia, width, angle
     joints["impact_share"] = impact_share
     joints["begin"] = 2 * number if in_a_row else np.maximum(4 * number - 2, 0)
     joints["end"] = 2 * number + 2 if in_a_row else 4 * number + 2
     joints["below"] = -1 if in_a_row else number - 1
     joints["fell_at"] = NEVER
-    return joints
+    return joints.view(np.recarray)
 
 
 @struct
@@ -397,7 +397,7 @@ def make_run(
             raise ValueError(
                 f"contact: {name} must have one entry for each of the {n} points, got the shape {part.shape}"
             )
-    clock = np.zeros(1, STEP_RECORD).view(np.recarray)
+    clock = np.zeros(1, STEP_RECORD)
     clock["smallest_step"] = NEVER
     clock["attempt_limit"] = UNLIMITED
     clock["rest_since"] = NEVER
@@ -423,7 +423,7 @@ def make_run(
         floor=np.tile(floor_motion(motion, 0.0), (2, 1)),
         lift=np.tile(floor_motion(vertical, 0.0), (2, 1)),
         ledger=np.zeros(LEDGER_ROWS),
-        clock=clock,
+        clock=clock.view(np.recarray),
         joints=make_joints(control.mass, control.inertia, control.width, control.slenderness_angle)
         if joints is None
         else joints,

@@ -59,6 +59,8 @@ class ContainerCache:
         #: containers that serve others as well, with their cases: rigid ones share all but their mass, those of a row
         #: all but their gaps
         self._alike: dict[Hashable, tuple[Case, Future[Container]]] = {}
+        #: the one asked for last, with its case: most cases of a study differ in tables that a container does not have
+        self._last: tuple[Case, Container] | None = None
         self._recoveries = WeakKeyDictionary[Container, Recovery]()
 
     def container_of(self, case: Case) -> Container:
@@ -67,6 +69,9 @@ class ContainerCache:
         Raises:
             CaseError, MeshError: bad input.
         """
+        with self._lock:
+            if self._last is not None and _from_the_same_tables(case, self._last[0]):
+                return self._last[1]
         key = container_key(case)
         alike = container_key(case, mass=case.solver.model != "rigid", gaps=False)
         with self._lock:
@@ -84,7 +89,10 @@ class ContainerCache:
                 promise.set_result(built)
             except BaseException as error:
                 promise.set_exception(error)
-        return promise.result()
+        container = promise.result()
+        with self._lock:
+            self._last = case, container
+        return container
 
     def recovery_of(self, model: Model) -> Recovery:
         """What recovers the stresses of a model's container; built once a container."""
@@ -92,6 +100,17 @@ class ContainerCache:
         if recovery is None:
             recovery = self._recoveries[model.container] = recovery_of(model)
         return recovery
+
+
+def _from_the_same_tables(case: Case, other: Case) -> bool:
+    """Whether two cases have the very tables, not only equal ones, of which `container_key` is made."""
+    tables = ("container", "support", "solver", "stop", "tie", "neighbour")
+    return (
+        all(getattr(case, name) is getattr(other, name) for name in tables)
+        and case.gravity_m_s2 == other.gravity_m_s2
+        and case.folder == other.folder
+        and case.output.stop_when_overturned == other.output.stop_when_overturned
+    )
 
 
 class PenaltyCache:

@@ -3,7 +3,7 @@
 from functools import cache
 from typing import Any, ClassVar, Self
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import BaseModel, ConfigDict, Field, ModelWrapValidatorHandler, model_validator
 from pydantic_core import PydanticUndefined
 
 from fem.case.tables.problem import BrokenRulesError, Rule, broken
@@ -15,12 +15,14 @@ class CaseTable(BaseModel):
     model_config = ConfigDict(strict=True, frozen=True, extra="forbid", allow_inf_nan=False)
     rules: ClassVar[tuple[Rule, ...]] = ()
 
-    @model_validator(mode="after")
-    def _obey_rules(self) -> Self:
-        """Refuse a table that breaks rules, with every reason at once."""
-        if problems := broken(self.rules, self):
+    @model_validator(mode="wrap")
+    @classmethod
+    def _obey_rules(cls, given: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
+        """Refuse a table that breaks rules, with every reason at once; one that is made already has obeyed them."""
+        table = handler(given)
+        if table is not given and (problems := broken(cls.rules, table)):
             raise BrokenRulesError(problems)
-        return self
+        return table
 
     @classmethod
     def as_meant(cls, given: dict[str, Any]) -> dict[str, Any]:
