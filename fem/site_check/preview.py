@@ -1,5 +1,6 @@
 """What can be said of a site before any run: action, motions, what they move, and what a verification would take."""
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -21,6 +22,8 @@ from fem.site_check.result import SiteBody
 from fem.site_check.runs import still
 from fem.site_check.stages import Stages
 
+OF_A_MOTION_S = 0.05  #: processor time of making an artificial motion
+
 
 @dataclass(frozen=True, kw_only=True)
 class Forecast(JsonBlock):
@@ -29,7 +32,7 @@ class Forecast(JsonBlock):
     of_set: int
     of_set_still: int  #: of these, below uplift and slip of a rigid body: not computed
     most: int  #: of all stages, without the deciding runs
-    seconds: float  #: of them, on these cores, roughly
+    seconds: float  #: of them and of making further motions, on these cores, roughly
     deciding_seconds: float  #: of the deciding runs, likewise; 0 where there are none
     cores: int
     quick: bool = False
@@ -44,15 +47,17 @@ class Forecast(JsonBlock):
         more = "" if self.quick else ", further motions and other factors"
         after = ""
         if self.deciding_seconds:
-            after = f"; then the deciding runs with their bands, about {_rounded(self.deciding_seconds)}"
+            after = f"; then the deciding runs with their bands, roughly {_rounded(self.deciding_seconds)}"
         return (
-            f"{rest}{moving} to compute, up to {self.most} with repetitions{more}: at most about "
+            f"{rest}{moving} to compute, up to {self.most} with repetitions{more}: up to roughly "
             f"{_rounded(self.seconds)} on {on}{after}"
         )
 
 
 def _rounded(seconds: float) -> str:
-    return clock_time(float(f"{seconds:.1g}"))
+    """A time of which one figure is known, rounded up."""
+    figure = 10.0 ** math.floor(math.log10(seconds))
+    return clock_time(figure * math.ceil(seconds / figure - 1e-9)) if seconds > 0.0 else clock_time(0.0)
 
 
 def forecast(stages: Stages, jobs: int, *, quick: bool = False, scan: bool = True) -> Forecast:
@@ -62,11 +67,12 @@ def forecast(stages: Stages, jobs: int, *, quick: bool = False, scan: bool = Tru
     case = still(request.variants[0].case, request.heading.model)
     total = len(stages.plan.of_set())
     moves = own > 0 and not quick
+    made = 0 if quick and own else request.motions.further
     return Forecast(
         of_set=total,
         of_set_still=total - own,
         most=most,
-        seconds=most * of_a_record_s(case) / jobs,
+        seconds=(most * of_a_record_s(case) + made * OF_A_MOTION_S) / jobs,
         deciding_seconds=MOST_DECIDING * of_its_band_s(of_a_record_s(still(case, MODEL))) / jobs
         if moves
         else 0.0,

@@ -28,7 +28,7 @@ from fem.case.validation import CaseError
 from fem.results.disk import BYTES_BESIDE, table_bytes
 from fem.results.folder import ResultFolder
 from fem.results.kinds import SWEEP
-from fem.runtime.progress import clock_time
+from fem.run.expected import expected_s, expected_words
 from fem.runtime.threads import cores
 from fem.sweep import perturbed
 from fem.sweep.answers import TRIED, sweep_answer
@@ -55,8 +55,6 @@ ROWS, TABLE, MEMBERS, MARGINS, CHANGES, ANSWERS = (
 UPDATE_S = 10.0
 #: cells that a sweep may have unless it is forced
 MOST_CELLS = 1_000_000
-#: rough CPU time of a simulated second [s]
-SECONDS_PER_SECOND = {"rigid": 3e-4, "reduced": 3e-3, "full": 6.0}
 OF_A_CELL = 250  #: numbers, in the log, the table, the copies and the maps
 
 
@@ -118,16 +116,13 @@ def check_size(sweep: Sweep, jobs: int, force: bool) -> None:
     """
     if sweep.count <= MOST_CELLS or force:
         return
-    axes = {axis.key: axis.values for axis in sweep.axes}
-    stated = axes.get("solver.duration_s", (sweep.base.solver.duration_s,))
-    durations = [longest_time(sweep.base) if duration == "auto" else duration for duration in stated]
-    speeds = [SECONDS_PER_SECOND[model] for model in axes.get("solver.model", (sweep.base.solver.model,))]
-    seconds = sweep.count * sum(durations) / len(durations) * sum(speeds) / len(speeds) / jobs
+    corners = [expected_s(case) for case in sweep.ends()] or [expected_s(sweep.base)]
+    seconds = sweep.count * sum(corners) / len(corners) / jobs
     sizes = " x ".join(str(size) for size in sweep.shape)
     room = table_bytes(sweep.count, OF_A_CELL) / 1e9
     raise CaseError(
-        f"{sweep.name}: [axes] make {sizes} = {sweep.count} cells, more than {MOST_CELLS}: about "
-        f"{clock_time(seconds)} on {jobs} core{'s' * (jobs > 1)}, {room:.1f} GB on the "
+        f"{sweep.name}: [axes] make {sizes} = {sweep.count} cells, more than {MOST_CELLS}: "
+        f"{expected_words(seconds, jobs)}, {room:.1f} GB on the "
         "disk; take fewer values, or say --force"
     )
 

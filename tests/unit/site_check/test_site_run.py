@@ -14,6 +14,7 @@ from fem.seismic.motion_files import write_at2, write_csv
 from fem.seismic.motion_set import check_set
 from fem.site_check.file import load_site
 from fem.site_check.motions import ground_motions
+from fem.site_check.preview import Forecast
 from fem.site_check.result import SiteResult
 from fem.site_check.run import run_site
 from fem.site_check.runs import NOT_COMPUTED, SCANNED, RunCases
@@ -298,6 +299,13 @@ def test_wind_on_a_tall_stack_is_refused_before_anything_is_computed(tmp_path, c
     (tmp_path / "k1.toml").write_text(CONTAINER.replace("height_m = 4.0", "height_m = 16.0"))
     assert main(["assess", str(place), "--out", str(tmp_path / "out"), "-q"]) == 2
     assert "[wind] the wind row is for bodies up to 15 m" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("seconds", "told"), [(14.8, "20 s"), (20.0, "20 s"), (61.0, "1 min 10 s")])
+def test_the_time_that_it_takes_at_most_is_rounded_up(seconds, told):
+    runs = Forecast(of_set=140, of_set_still=0, most=2460, seconds=seconds, deciding_seconds=31.0, cores=2)
+    assert f"up to roughly {told} on 2 cores; then the deciding runs" in runs.words
+    assert runs.words.endswith("roughly 40 s")
 
 
 def test_quick_is_never_fulfilled_of_a_container_that_moves(tmp_path, capsys, brief):
