@@ -7,6 +7,7 @@ ground = "D"
 reference_acceleration_m_s2 = 3.5
 [motions]
 count = 3
+stationary_s = 10.0
 further = 2
 [friction]
 mu_static = [0.4]

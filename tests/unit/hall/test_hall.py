@@ -44,7 +44,6 @@ peak_acceleration_m_s2 = 5.0
 pulse_s = 1.0
 [solver]
 model = "rigid"
-element_size_m = 1.0
 [uncertainty]
 draws = 2
 """

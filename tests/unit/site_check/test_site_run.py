@@ -34,7 +34,6 @@ peak_acceleration_m_s2 = 4.0
 frequency_Hz = 1.0
 [solver]
 model = "rigid"
-element_size_m = 1.0
 """
 SITE = """
 schema = 1

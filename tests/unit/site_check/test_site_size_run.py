@@ -14,7 +14,7 @@ from fem.seismic.ground_motion import GroundMotion
 from fem.site_check.file import load_site
 from fem.site_check.size_run import written_motions
 
-SURE = SITE.replace("further = 2", "further = 72\nvertical = false\nstationary_s = 10.0")
+SURE = SITE.replace("further = 2", "further = 72\nvertical = false")
 
 
 @pytest.fixture(scope="module")
