@@ -5,7 +5,7 @@ a loose stack the columns are those of the lowest box, the forces and energies t
 columns that it has by these names (`contact.stepping.state.row_names`); the rest is added by `fem.run.recorder`.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -28,7 +28,7 @@ class HistoryColumn:
 class ColumnGroup:
     """Columns that a run has together, once for each number."""
 
-    numbers: Callable[[Any], Iterable[int]]  #: of a case, whose tables may be read in part
+    numbers: Callable[[Any], Sequence[int]]  #: of a case, whose tables may be read in part
     columns: tuple[HistoryColumn, ...]
 
     def names(self, numbers: Iterable[int]) -> tuple[str, ...]:
@@ -142,7 +142,7 @@ def _states_restitution(case: Any) -> bool:
 
 def history_width(case: Any) -> int:
     """How many columns the history of a case has, which may be read in part."""
-    return sum(len(group.columns) * sum(1 for _ in group.numbers(case)) for group in GROUPS)
+    return sum(len(group.columns) * len(group.numbers(case)) for group in GROUPS)
 
 
 def history_columns(case: Any, joints: int | None = None) -> tuple[str, ...]:

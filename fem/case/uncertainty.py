@@ -86,20 +86,17 @@ def largest_first(changes: Sequence[InputChange]) -> list[InputChange]:
     return largest + [change for change in changes if change not in largest]
 
 
+def all_changes(
+    case: Case, penalty: float | None, draws: int | None = None
+) -> tuple[tuple[InputChange, ...], tuple[InputChange, ...], tuple[InputChange, ...]]:
+    """`changes_of`, `pairs_of` and `draws_of`."""
+    ranges = ranges_of(case, penalty)
+    return _singles(case, ranges), _pairs(case, ranges), _draws(case, ranges, draws)
+
+
 def changes_of(case: Case, penalty: float | None) -> tuple[InputChange, ...]:
     """One input changed at a time, to each end of its range and between, and the numerics ten times tighter."""
-    changes = [
-        InputChange(
-            kind="one", values={span.key: value}, share=span.share(value) if isinstance(value, float) else 1.0
-        )
-        for span in ranges_of(case, penalty)
-        if span.alone
-        for value in (*span.between, *span.ends)
-    ]
-    tolerance = max(TIGHTER * case.solver.energy_tolerance, q.ENERGY_TOLERANCE.least or 0.0)
-    if tolerance < case.solver.energy_tolerance:
-        changes.append(InputChange(kind="one", values={TOLERANCE: short(tolerance)}, share=1.0))
-    return tuple(changes)
+    return _singles(case, ranges_of(case, penalty))
 
 
 def pairs_of(case: Case) -> tuple[InputChange, ...]:
@@ -107,18 +104,7 @@ def pairs_of(case: Case) -> tuple[InputChange, ...]:
 
     At `mu_kinetic = mu_static` nothing falls, so the pair is tried half way.
     """
-    ranges = {span.key: span for span in ranges_of(case, None)}
-    if MU_KINETIC not in ranges:
-        return ()
-    friction = ranges[MU_KINETIC]
-    assert friction.drawn is not None
-    middle = short(float(friction.drawn(0.5)))
-    slower = [(key, ranges[key].ends[-1]) for key in (WEAKENING, STRIBECK) if key in ranges]
-    if middle >= case.contact.mu_static:
-        return ()
-    return tuple(
-        InputChange(kind="pair", values={MU_KINETIC: middle, key: end}, share=1.0) for key, end in slower
-    )
+    return _pairs(case, ranges_of(case, None))
 
 
 def draws_of(case: Case, penalty: float | None, count: int | None = None) -> tuple[InputChange, ...]:
@@ -128,7 +114,41 @@ def draws_of(case: Case, penalty: float | None, count: int | None = None) -> tup
         case, penalty: as for `ranges_of`.
         count: of draws; None: as the case says.
     """
-    ranges = [span for span in ranges_of(case, penalty) if span.drawn is not None]
+    return _draws(case, ranges_of(case, penalty), count)
+
+
+def _singles(case: Case, ranges: Sequence[InputRange]) -> tuple[InputChange, ...]:
+    changes = [
+        InputChange(
+            kind="one", values={span.key: value}, share=span.share(value) if isinstance(value, float) else 1.0
+        )
+        for span in ranges
+        if span.alone
+        for value in (*span.between, *span.ends)
+    ]
+    tolerance = max(TIGHTER * case.solver.energy_tolerance, q.ENERGY_TOLERANCE.least or 0.0)
+    if tolerance < case.solver.energy_tolerance:
+        changes.append(InputChange(kind="one", values={TOLERANCE: short(tolerance)}, share=1.0))
+    return tuple(changes)
+
+
+def _pairs(case: Case, ranges: Sequence[InputRange]) -> tuple[InputChange, ...]:
+    by_key = {span.key: span for span in ranges}
+    if MU_KINETIC not in by_key:
+        return ()
+    friction = by_key[MU_KINETIC]
+    assert friction.drawn is not None
+    middle = short(float(friction.drawn(0.5)))
+    slower = [(key, by_key[key].ends[-1]) for key in (WEAKENING, STRIBECK) if key in by_key]
+    if middle >= case.contact.mu_static:
+        return ()
+    return tuple(
+        InputChange(kind="pair", values={MU_KINETIC: middle, key: end}, share=1.0) for key, end in slower
+    )
+
+
+def _draws(case: Case, ranges: Sequence[InputRange], count: int | None) -> tuple[InputChange, ...]:
+    ranges = [span for span in ranges if span.drawn is not None]
     if not ranges:
         return ()
     places = latin_hypercube(case.uncertainty.draws if count is None else count, len(ranges))

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 from fem.assessment.sureness import judged, static_use
 from fem.case.case import Case
-from fem.case.uncertainty import InputChange, changes_of, draws_of, largest_first, pairs_of, stiff_floor
+from fem.case.uncertainty import InputChange, all_changes, largest_first, stiff_floor
 from fem.model.model import Model
 from fem.results.outcome import Outcome
 from fem.results.run_result import Numerics, RunResult, StaticResult, Verdict
@@ -74,7 +74,7 @@ def plan_of(model: Model, result: RunResult) -> Plan:
     bears = case.support.kind != "corners" or case.foot is not None
     soft = bears and low <= (own.utilisation_overturning or 0.0) <= high
     floor = (stiff_floor(case, penalty),) if soft else ()
-    singles, pairs, draws = changes_of(case, penalty), pairs_of(case), draws_of(case, penalty)
+    singles, pairs, draws = all_changes(case, penalty)
     ordered = (*floor, *largest_first(singles), *pairs, *draws)
     cost = cost_of(result.numerics or Numerics())
     most = LEAST_MEMBERS if case.solver.model == "full" else max(LEAST_MEMBERS, int(BUDGET_S / cost))

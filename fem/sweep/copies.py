@@ -12,7 +12,7 @@ from typing import Any
 from fem.batch.container_cache import container_key
 from fem.case.case import Case
 from fem.case.tables.input_keys import SUPPORT, TOLERANCE
-from fem.case.uncertainty import InputChange, as_changed, changes_of, draws_of, pairs_of
+from fem.case.uncertainty import InputChange, all_changes, as_changed
 from fem.model.geometry import build_container
 from fem.model.motion import build_motions
 from fem.model.support import normal_penalty
@@ -107,12 +107,12 @@ class CellCopies:
 
     def _over_ranges(self, case: Case, penalty: float | None) -> Iterator[InputChange]:
         """The changes of a run's band, without the inputs that are axes."""
-        changes = changes_of(case, penalty)
+        count = self._sweep.perturbation.draws
+        if count is None:
+            count = round(SHARE_OF_DRAWS * case.uncertainty.draws)
+        changes, pairs, draws = all_changes(case, penalty, count)
         if case.solver.model == "rigid":
-            draws = self._sweep.perturbation.draws
-            if draws is None:
-                draws = round(SHARE_OF_DRAWS * case.uncertainty.draws)
-            changes = (*changes, *pairs_of(case), *draws_of(case, penalty, draws))
+            changes = (*changes, *pairs, *draws)
         else:
             changes = tuple(
                 change for change in changes if change.share == 1.0 and TOLERANCE not in change.values

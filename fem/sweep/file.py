@@ -174,4 +174,4 @@ def _is_idle(case: Case, key: str) -> bool:
     table, _, name = key.rpartition(".")
     if key == "solver.elastic_modes":
         return case.solver.model != "reduced"
-    return bool(table) and table not in ROWS and name in getattr(case, table).idle_keys()
+    return bool(table) and table not in ROWS and getattr(case, table).is_idle(name)

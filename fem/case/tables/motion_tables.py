@@ -119,7 +119,7 @@ class FloorMotionTable(PulseAndTableKeys, HarmonicKeys):
     @property
     def factor(self) -> float:
         """Factor on the motion, with its sign [-]; 1 where the key `scale` is not used."""
-        return 1.0 if "scale" in self.idle_keys() else self.scale
+        return 1.0 if self.is_idle("scale") else self.scale
 
     @property
     def nominal_peak(self) -> float | None:

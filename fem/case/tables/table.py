@@ -35,9 +35,12 @@ class CaseTable(BaseModel):
 
     def idle_keys(self) -> frozenset[str]:
         """Keys that are not used because another option is chosen."""
-        return frozenset(
-            name for name, (key, options) in _options(type(self)).items() if getattr(self, key) not in options
-        )
+        return frozenset(filter(self.is_idle, _options(type(self))))
+
+    def is_idle(self, name: str) -> bool:
+        """Whether a key is not used because another option is chosen."""
+        chosen = _options(type(self)).get(name)
+        return chosen is not None and getattr(self, chosen[0]) not in chosen[1]
 
 
 @cache
