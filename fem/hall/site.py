@@ -42,10 +42,10 @@ from mesh.errors import MeshError
 SITES, FOLDERS = "sites.csv", "sites"
 #: tables of a case that a verification takes from its site file
 OF_THE_SITE = ("motion", "vertical", "initial", "static", "solver", "output", "uncertainty", "joints")
-FIGURES = ("outcome", "margin", TURNED, SLIPPED, "motions_overturned", "motions_failed")
+FIGURES = ("outcome", "margin", TURNED, SLIPPED, "motions_overturned", "motions_invalid")
 #: by column, the key of the answer
 OF_THE_ANSWER = {"margin": "margin_factor", TURNED: "rotation_ratio", SLIPPED: "slip_m"}
-OF_THE_ANSWER |= {"motions_overturned": "overturned", "answer": "answer"}
+OF_THE_ANSWER |= {"motions_overturned": "overturned", "motions_invalid": "invalid", "answer": "answer"}
 OF_THE_ANSWER |= {"factor_at_first_overturning": "factor_at_first_overturning"}
 COLUMNS = {"container": int} | {
     name: RESULT_COLUMNS[name] for name in ("status", "reason", *FIGURES, *AT_SITE)

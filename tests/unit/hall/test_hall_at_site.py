@@ -78,8 +78,9 @@ def asked(tmp_path, monkeypatch):
             (folder / name).write_text(text, encoding="utf-8")
         mark = {"asked": "", **program_of_results()}
         (folder / "assess.json").write_text(json.dumps(mark), encoding="utf-8")
-        names = ("margin_factor", "rotation_ratio", "slip_m", "overturned", "factor_at_first_overturning")
+        names = ("margin_factor", "rotation_ratio", "slip_m", "factor_at_first_overturning")
         answer = dict.fromkeys(names) | {"answer": "fulfilled", "reasons": [], "sentence": "It is fulfilled."}
+        answer |= {"overturned": 0, "invalid": 3}
         governing = SimpleNamespace(outcome="slide")
         return SimpleNamespace(
             state="finished", status="completed", result=SimpleNamespace(governing=governing, **answer)
@@ -110,6 +111,7 @@ def test_the_time_of_a_list_is_told_before_its_first_container(asked):
 def test_one_row_that_cannot_be_verified_is_a_row_with_its_reason(asked):
     low, tall, wide = asked[0]().table
     assert (low["status"], low["answer"], low["outcome"]) == ("completed", "fulfilled", "slide")
+    assert (low["motions_overturned"], low["motions_invalid"]) == (0, 3)
     assert tall["status"] == "refused" and "[wind]" in tall["reason"]
     assert (wide["status"], wide["reason"]) == ("failed", "the deciding run cannot be computed")
     assert low["rank"] == 2 and wide["rank"] == 1
