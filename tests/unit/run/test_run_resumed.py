@@ -12,8 +12,8 @@ from fem.case.case import load_case
 from fem.results.reader import OpenedRun
 from fem.run.run import RunOptions, run_case
 
-RIGID = ("solver.model=rigid", "solver.duration_s=1.2", "output.fields_s=0.1")
-REDUCED = ("solver.duration_s=0.7", "output.fields_s=0.1")
+RIGID = ("solver.model=rigid", "solver.element_size_m=0.5", "solver.duration_s=1.2", "output.fields_s=0.1")
+REDUCED = ("solver.element_size_m=0.25", "solver.duration_s=0.7", "output.fields_s=0.1")
 FLAT = (*REDUCED, *FLAT_SHELL)
 FULL = (*COARSE, "solver.duration_s=0.12", "output.fields_s=0.02")
 #: still beyond its slenderness angle when time is up, then falling
@@ -52,7 +52,7 @@ ROW = (
 )
 
 REDUCED_ROW = (
-    *(*REDUCED, "motion.peak_acceleration_m_s2=9", "solver.elastic_modes=4", "solver.element_size_m=0.25"),
+    *(*REDUCED, "motion.peak_acceleration_m_s2=9", "solver.elastic_modes=4"),
     "neighbour=[{side = 'left', gap_m = 0.001, stiffness_N_m = 1e8, boxes = 3}]",
     "stop=[{side = 'left', height_m = 2.5, gap_m = 0.001, stiffness_N_m = 1e8, mu = 0.3}]",
     STRAP,
