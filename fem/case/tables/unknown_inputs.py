@@ -52,6 +52,9 @@ CASTING_TILT_M = 5e-4
 ROCKING_DAMPING = (0.02, 0.1)  #: damping of small rocking on it, as far as the case has none beyond
 LOSS = (0.8, 1.5)  #: loss at an impact, 1 - e, over that of the case where its restitution is given
 RESTITUTIONS = (0.95, 1.06)  #: over Housner's, of sharp corners whose restitution is not given
+#: of the loss of Housner's impact of a homogeneous block, what the largest of these leaves at least: the mass of a
+#: container lies otherwise, and its draws move it
+LEAST_LOSS = 0.3
 WEAKENING_M, STRIBECK_M_S = 5e-3, 0.3  #: largest slip and velocity over which friction falls
 WEAKENINGS_BETWEEN_M = (1e-4, 1e-3)
 RAMP_CYCLES = 2.0
@@ -184,12 +187,13 @@ def _has_impacts(case: Any) -> bool:
 
 
 def _restitutions(case: Any, ratio: float) -> Ends:
-    """By the loss at an impact of a homogeneous block where it is given; never more than was there before."""
+    """By the loss at an impact of a homogeneous block where it is given; else a part of that loss is always left."""
     block = max(_blocks(case), key=lambda block: block.housner_restitution)
     limits, housner, (low, high) = q.RESTITUTION, block.housner_restitution, RESTITUTIONS
     if case.contact.restitution_over_housner is not None:
         low, high = ((1.0 - share * (1.0 - ratio * housner)) / housner for share in (LOSS[1], LOSS[0]))
     else:
+        high = min(high, (1.0 - LEAST_LOSS * (1.0 - housner)) / housner)
         if case.casting_length is not None and case.foot is None:  # it may land on their inner edges
             high = max(high, block.restitution_on_plates(case.casting_length) / housner)
         high = min(high, 0.999 / housner)

@@ -5,6 +5,9 @@ import math
 import numpy as np
 import pytest
 
+from fem.case.case import case_from
+from fem.case.uncertainty import all_changes, as_changed
+from fem.model.model import build_model
 from fem.model.restitution import Calibration, apparent_restitution, read_calibrations
 
 
@@ -104,3 +107,24 @@ def test_another_distribution_of_mass_keeps_the_share_of_housners_loss():
     heavy = apparent_restitution(**flat, housner=0.80)
     homogeneous = apparent_restitution(**flat, housner=housner(3.0))
     assert (1.0 - heavy) / 0.2 == pytest.approx((1.0 - homogeneous) / (1.0 - housner(3.0)))
+
+
+@pytest.mark.parametrize(
+    "box",
+    [
+        {"section": "solid", "centroid_m": 1.05},
+        {"section": "solid", "centroid_m": 1.95},
+        {"wall_m": 0.008, "mass_kg": 239.0},
+    ],
+    ids=["low", "high", "empty"],
+)
+def test_every_restitution_of_the_range_can_be_run_wherever_the_mass_lies(box):
+    # Its upper end follows from a homogeneous block; a slender container loses less by up to a ninth.
+    container = {"width_m": 0.3, "height_m": 3.0, "mass_kg": 800.0} | box
+    tables = {"container": container, "contact": {"mu_static": 0.4}, "motion": {"kind": "none"}}
+    case = case_from(tables | {"solver": {"model": "rigid"}})
+    singles, _, draws = all_changes(case, build_model(case).penalty)
+    factors = [change for change in singles if "contact.restitution_over_housner" in change.values]
+    assert len(factors) == 2 and len(draws) == 32
+    for change in (*factors, *draws):
+        build_model(case.with_values(as_changed(case, change.values)))
