@@ -67,6 +67,30 @@ def test_a_settled_container_is_in_equilibrium_on_springs_that_do_not_pull(point
     assert stance.angular_velocity == 0.0
 
 
+@pytest.mark.parametrize("elastic", [False, True])
+@pytest.mark.parametrize("points", [12, 13, 25, 76])
+def test_a_cambered_base_of_any_height_comes_to_rest(points, elastic):
+    # Its points change between carrying and open in a cycle of four for one height in a hundred, if all do at once.
+    point = base(points)
+    compliance = random_compliance(points) if elastic else np.zeros((2 * points, 2 * points))
+    for height in np.geomspace(1e-5, 5e-3, 150):
+        camber = height * (2.0 * point[:, 0] / WIDTH) ** 2
+        stance = standing(
+            weight=WEIGHT,
+            centroid=(0.0, 0.5 * HEIGHT),
+            point=point,
+            compliance=compliance,
+            normal_stiffness=np.full(points, STIFFNESS),
+            camber=camber,
+        )
+        normal = stance.force[:, 1]
+        yielding = compliance[1::2, 1::2] @ normal
+        gap = stance.centre[1] + point[:, 1] + camber - stance.rotation * point[:, 0] + yielding
+        assert normal.min() >= 0.0 and normal.sum() == pytest.approx(WEIGHT, rel=1e-9)
+        assert normal @ point[:, 0] == pytest.approx(0.0, abs=1e-8 * WEIGHT * WIDTH)
+        assert np.abs(normal - STIFFNESS * np.maximum(-gap, 0.0)).max() < 1e-6 * WEIGHT
+
+
 def test_an_eccentric_container_opens_the_far_side():
     stance, gap = settle(23, -0.45)
     assert stance.rotation < 0.0  # toward its mass centre
