@@ -41,6 +41,7 @@ JOINTS_DASHPOTS = (0.1, 2.0)  #: damping ratio between loose boxes, as far as th
 STATIC = (0.9, 1.1)  #: static friction over that of the case
 LEAST_KINETIC = 0.5  #: kinetic friction over the static, at least
 CENTROID = (0.98, 1.02)  #: height of the mass centre over that of the case
+THIRDS = (1.0 / 3.0 + 1e-9, 2.0 / 3.0 - 1e-9)  #: of the height of a solid box
 BESIDE = 0.01  #: of the mass centre from the axis, over the width
 EFFECTIVE_WIDTH = 0.97  #: over that of the case, at least
 SLOPE_PERCENT = 0.5  #: more or less than that of the case
@@ -205,6 +206,14 @@ def _kinetic(own: float, static: float) -> Ends:
     return short(min(own, LEAST_KINETIC * static)), static
 
 
+def _heights(case: Any, own: float) -> Ends:
+    """Of a solid box not beyond the thirds of its height: its density is linear in height and nowhere negative."""
+    (low, high), box = (share * own for share in CENTROID), case.container
+    if box.section == "solid":
+        low, high = max(low, THIRDS[0] * box.height_m), min(high, THIRDS[1] * box.height_m)
+    return short(min(low, own)), short(max(high, own))
+
+
 def _beside(case: Any, own: float) -> Ends:
     distance = BESIDE * case.container.width_m
     return short(own - distance), short(own + distance)
@@ -294,7 +303,7 @@ UNKNOWN: tuple[UnknownNumber | UnknownChoice, ...] = (
     Number(keys.ROCKING, "rocking_damping_ratio", "damping of rocking", q.ROCKING_DAMPING,
            _reaching(*ROCKING_DAMPING), matters=lambda case: case.rolls),
     Choice(keys.SUPPORT, "support", "contact of the base", _other_support, drawn=False),
-    Number(keys.CENTROID, "centroid_m", "height of the mass centre", q.LENGTH, CENTROID,
+    Number(keys.CENTROID, "centroid_m", "height of the mass centre", q.LENGTH, _heights,
            matters=lambda case: case.container.box is None and case.container.mesh_file is None, power=1.0),
     Number(keys.ECCENTRICITY, "eccentricity_m", "eccentricity of the mass centre", q.OFFSET, _beside,
            matters=_has_columns, power=1.0),

@@ -12,6 +12,7 @@ from fem.case.tables.input_ranges import UnknownNumber
 from fem.case.tables.links import ROWS
 from fem.case.tables.unknown_inputs import INPUTS, UNKNOWN, ranges_of
 from fem.case.uncertainty import as_changed, changes_of, draws_of, latin_hypercube, pairs_of, stiff_floor
+from fem.model.geometry import build_container
 
 PENALTY = 1e9
 FRICTION = {"contact.mu_kinetic": 0.2}
@@ -43,6 +44,14 @@ def test_defaults_follow_the_case():
         "contact.restitution_over_housner": (0.95, 1.06),
         "container.damping_ratio": (0.01, 0.04),
     }
+
+
+def test_the_mass_centre_of_a_solid_box_stays_where_it_can_lie():
+    for share, expected in ((0.5, (0.49, 0.51)), (0.66, (0.6468, 2.0 / 3.0)), (0.335, (1.0 / 3.0, 0.3417))):
+        values = {"container.section": "solid", "container.centroid_m": share, "container.height_m": 1.0}
+        assert ends("harmonic", values)["container.centroid_m"] == pytest.approx(expected)
+        for end in ends("harmonic", values)["container.centroid_m"]:
+            build_container(named_case("harmonic", values | {"container.centroid_m": end}))
 
 
 def test_an_impact_never_gives_more_than_there_was():
