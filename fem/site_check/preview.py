@@ -56,8 +56,8 @@ class Forecast(JsonBlock):
 
 def _rounded(seconds: float) -> str:
     """A time of which one figure is known, rounded up."""
-    figure = 10.0 ** math.floor(math.log10(seconds))
-    return clock_time(figure * math.ceil(seconds / figure - 1e-9)) if seconds > 0.0 else clock_time(0.0)
+    figure = 10.0 ** math.floor(math.log10(max(seconds, 1.0)))
+    return clock_time(figure * math.ceil(seconds / figure - 1e-9))
 
 
 def forecast(stages: Stages, jobs: int, *, quick: bool = False, scan: bool = True) -> Forecast:

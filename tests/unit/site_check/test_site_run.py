@@ -300,7 +300,9 @@ def test_wind_on_a_tall_stack_is_refused_before_anything_is_computed(tmp_path, c
     assert "[wind] the wind row is for bodies up to 15 m" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize(("seconds", "told"), [(14.8, "20 s"), (20.0, "20 s"), (61.0, "1 min 10 s")])
+@pytest.mark.parametrize(
+    ("seconds", "told"), [(0.0, "1 s"), (0.2, "1 s"), (14.8, "20 s"), (20.0, "20 s"), (61.0, "1 min 10 s")]
+)
 def test_the_time_that_it_takes_at_most_is_rounded_up(seconds, told):
     runs = Forecast(of_set=140, of_set_still=0, most=2460, seconds=seconds, deciding_seconds=31.0, cores=2)
     assert f"up to roughly {told} on 2 cores; then the deciding runs" in runs.words
@@ -311,7 +313,7 @@ def test_quick_is_never_fulfilled_of_a_container_that_moves(tmp_path, capsys, br
     place = site_file(tmp_path, reference=3.2, motions="vertical = false")
     assert main(["assess", str(place), "--out", str(tmp_path / "out"), "--quick", "-j", "1"]) == 0
     shown = capsys.readouterr()
-    assert "3 to compute, up to 18 with repetitions: at most" in shown.err
+    assert "3 to compute, up to 18 with repetitions: up to roughly" in shown.err
     found = json.loads((tmp_path / "out" / "assess.json").read_text())["result"]
     assert found["answer"] in ("not sure", "not fulfilled") and found["further"] == []
     assert any("Left out by --quick" in reason for reason in found["reasons"])
