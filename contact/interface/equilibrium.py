@@ -8,11 +8,8 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
-from contact.arrays import FloatArray
-
-BoolArray = npt.NDArray[np.bool_]
+from contact.arrays import BoolArray, FloatArray
 
 #: contact force over the weight below which a point of the settled base counts as open
 ROUNDING = 1e-12

@@ -74,8 +74,8 @@ class CaseContent(CaseHeading):
     def casting_length(self) -> float | None:
         """Length along x with which a casting presses the floor [m]; None of a base without castings.
 
-        Where a post stands on it, the length of the post: beyond it a plate bends (EN 1993-1-8, 6.2.5, adds one to two
-        thicknesses of the plate, and nobody knows that).
+        Where a post stands on it, the length of the post: beyond it the plate bends. EN 1993-1-8, 6.2.5 adds one to
+        two plate thicknesses, but the thickness is not an input.
         """
         support, post = self.support, self.container.post_section
         if support.kind != "corners" or support.casting_m is None:

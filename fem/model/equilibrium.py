@@ -295,9 +295,9 @@ def _stance(case: Case, container: Container, contact: Contact, gravity: float) 
     nodes = container.nodes[:base]
     placed = base_points(case, mesh, elements.nodes[nodes], base)
     point = placed - np.asarray(mesh.centroid)
-    compliance = np.zeros((2 * base, 2 * base))
-    if case.solver.model != "rigid":
-        compliance[:] = container.response.compliance[: 2 * base, : 2 * base]
+    rigid = case.solver.model == "rigid"
+    elastic = container.response.compliance[: 2 * base, : 2 * base]
+    compliance = np.zeros((2 * base, 2 * base)) if rigid else elastic
     if initial.rotation_rad == 0.0:
         stance = standing(
             weight=mesh.mass * gravity,

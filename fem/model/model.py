@@ -137,9 +137,8 @@ def build_model(
     compiled_motion, compiled_vertical = motion.compiled(), vertical.compiled()
     z, velocity_z, acceleration_z = floor_motion(compiled_vertical, 0.0)
     container, gravity = container or discretise(case), case.gravity_toward_floor + acceleration_z
-    known = equilibrium is not None and equilibrium.gravity == gravity
-    if equilibrium is None or not known:
-        equilibrium = find_equilibrium(case, container, gravity)
+    known = equilibrium if equilibrium and equilibrium.gravity == gravity else None
+    equilibrium = known or find_equilibrium(case, container, gravity)
     mesh, nodes = container.mesh, container.nodes
     contact, body = equilibrium.contact, equilibrium.body
     own = body.body if isinstance(body, LinkedBody) else body
@@ -147,8 +146,8 @@ def build_model(
     static = static_checks_of(case, mesh, *peaks_in_run(case, motion, vertical, duration))
     meshes = [alone.mesh for alone in container.row]
     row = [static_checks_of(alone, own, 0.0) for alone, own in zip(case.row, meshes, strict=True)]
-    for case_alone, checks in zip(case.row or [case], row or [static], strict=True):
-        if not known:  # else the same impacts
+    if known is None:  # else the same impacts
+        for case_alone, checks in zip(case.row or [case], row or [static], strict=True):
             require_loss(case_alone, checks)
     fastest = max(checks.frequency_parameter for checks in (static, *row))
     largest, breaks = largest_step_of(case, fastest, duration, motion, vertical)

@@ -59,6 +59,7 @@ def variations_section(view: RunView, variations: VariationTable | None) -> html
     model, other = variations.model, ""
     if model != view.case.solver.model:
         other = f" (the run itself used the {view.case.solver.model} model)"
+    starred = "* the outcome differs from the first line. " if variations.changed else ""
     harmless = f" {NOT_WORSE}" if view.case.motion.kind != "none" else ""
     return html.section(
         title,
@@ -70,8 +71,8 @@ def variations_section(view: RunView, variations: VariationTable | None) -> html
         ),
         _varied_table(variations, loose=bool(view.boxes)),
         html.Note(
-            "* the outcome differs from the first line. Sliding counts from 1 mm and 10⁻⁴ of the width, rocking from "
-            f"10⁻² of the slenderness angle.{harmless}"
+            f"{starred}Sliding counts from 1 mm and 10⁻⁴ of the width, rocking from 10⁻² of the slenderness "
+            f"angle.{harmless}"
         ),
         *_left_out(variations),
         *noted,

@@ -30,8 +30,8 @@ class JsonBlock:
 
     def __getitem__(self, key: str) -> Any:
         """A value by its key in the file; KeyError names the keys there are."""
-        if key not in (names := _names(type(self))):  # type: ignore[arg-type]
-            raise KeyError(f"no key {key!r}; known: {', '.join(names)}")
+        if key not in (known := _readers(type(self))):  # type: ignore[arg-type]
+            raise KeyError(f"no key {key!r}; known: {', '.join(known)}")
         return getattr(self, key)
 
     def get(self, key: str, default: Any = None) -> Any:
@@ -49,12 +49,6 @@ def _plain(value: Any) -> Any:
     if isinstance(value, JsonBlock):
         return value.to_json()
     return [_plain(item) for item in value] if isinstance(value, tuple) else value
-
-
-@cache
-def _names(kind: type[JsonBlock]) -> dict[str, None]:
-    """The keys, in their order."""
-    return dict.fromkeys(field.name for field in fields(kind))  # type: ignore[arg-type]
 
 
 @cache

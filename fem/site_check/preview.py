@@ -22,7 +22,7 @@ from fem.site_check.result import SiteBody
 from fem.site_check.runs import still
 from fem.site_check.stages import Stages
 
-OF_A_MOTION_S = 0.05  #: processor time of making an artificial motion
+OF_A_MOTION_S = 0.03  #: processor time of making an artificial motion of three components, tests/README.md
 
 
 @dataclass(frozen=True, kw_only=True)

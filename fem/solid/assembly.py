@@ -145,8 +145,8 @@ class FiniteElements:
     @cached_property
     def _unit_mass(self) -> FloatArray:
         """Mass of each cell for a unit areal density, shape (m, k, k) [m2]."""
-        values = np.stack([np.asarray(function[0])[0] for function in self._basis.basis])
-        return np.einsum("mq,iq,jq->mij", self._basis.dx, values, values, optimize=True)
+        unit = _at_points(self._basis, np.ones(len(self.cells)))
+        return np.asarray(_mass_form.elemental(self._basis, areal_density=unit).tolocal())
 
     @property
     def nodal_mass(self) -> FloatArray:

@@ -55,7 +55,7 @@ LOSS = (0.8, 1.5)  #: loss at an impact, 1 - e, over that of the case where its 
 RESTITUTIONS = (0.95, 1.06)  #: over Housner's, of sharp corners whose restitution is not given
 #: of the loss of Housner's impact of a homogeneous block, what the largest of these leaves at least: the mass of a
 #: container lies otherwise, and its draws move it
-LEAST_LOSS = 0.3
+LOSS_LEFT = 0.3
 WEAKENING_M, STRIBECK_M_S = 5e-3, 0.3  #: largest slip and velocity over which friction falls
 WEAKENINGS_BETWEEN_M = (1e-4, 1e-3)
 RAMP_CYCLES = 2.0
@@ -194,7 +194,7 @@ def _restitutions(case: Any, ratio: float) -> Ends:
     if case.contact.restitution_over_housner is not None:
         low, high = ((1.0 - share * (1.0 - ratio * housner)) / housner for share in (LOSS[1], LOSS[0]))
     else:
-        high = min(high, (1.0 - LEAST_LOSS * (1.0 - housner)) / housner)
+        high = min(high, (1.0 - LOSS_LEFT * (1.0 - housner)) / housner)
         if case.casting_length is not None and case.foot is None:  # it may land on their inner edges
             high = max(high, block.restitution_on_plates(case.casting_length) / housner)
         high = min(high, 0.999 / housner)

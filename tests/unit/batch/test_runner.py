@@ -10,7 +10,8 @@ import pytest
 from worker_tasks import end_the_process, hear_the_group_end, held_back, who_works
 
 from fem.assessment.verdict import verdict_of
-from fem.batch.container_cache import container_key
+from fem.batch.case_maker import CaseMaker
+from fem.batch.container_cache import ContainerCache, container_key
 from fem.batch.runner import Runner, run_cases
 from fem.batch.workers import WORTH_PROCESSES, LocalWorkers, WorkersLostError, hand_out
 from fem.case.case import load_case
@@ -189,6 +190,34 @@ def test_full_cases_run_in_other_processes():
     assert row["status"] == "completed"
     assert row["outcome"] == "rest"
     assert row["max_von_mises_Pa"] is None or row["max_von_mises_Pa"] > 0.0
+
+
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [
+        ("contact.mu_static", 0.3),
+        ("floor.slope_percent", 1.0),
+        ("initial.rotation_rad", 0.01),
+        ("output.history_s", 0.01),
+        ("container.damping_ratio", 0.1),
+        ("support.effective_width", 0.98),
+        ("gravity_m_s2", 9.0),
+        ("container.mass_kg", 2000.0),
+        ("container.centroid_m", 0.49),
+        ("support.kind", "flat"),
+        ("solver.element_size_m", 0.3),
+        ("solver.order", 1),
+        ("output.stop_when_overturned", False),
+        ("stop", [{"side": "right", "height_m": 0.1, "gap_m": 0.05, "stiffness_N_m": 1e8}]),
+    ],
+)
+def test_a_container_is_taken_again_where_its_key_is_the_same_and_nowhere_else(key, value):
+    cache, base = ContainerCache(), load_case("seed_stack_plateau", [*SHORT, "solver.model=rigid"])
+    changed = CaseMaker(base)({key: value}) if "." in key else base.with_values({key: value})
+    same = container_key(changed) == container_key(base)
+    first = cache.container_of(base)
+    assert (cache.container_of(changed) is first) == same
+    assert cache.container_of(base) is first
 
 
 def test_cases_that_differ_in_material_damping_share_their_container():

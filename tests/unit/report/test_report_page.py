@@ -4,6 +4,7 @@ import html
 import json
 import re
 import shutil
+from dataclasses import replace
 
 import pytest
 from markupsafe import escape
@@ -83,6 +84,18 @@ def test_variations_are_kept_beside_the_run(folder, page):
     assert said == [] and table.left_out == ()
     shown = [typeset(word) for line in table.lines for word in line.change.in_words]
     assert all(escape(word) in page for word in shown)
+
+
+@pytest.mark.parametrize("differs", [True, False])
+def test_a_star_is_explained_where_a_line_has_one(folder, monkeypatch, differs):
+    run = open_run(folder)
+    table = variation_table(run, every=True)
+    lines = [replace(line, changed=line is table.lines[1] and differs) for line in table.lines]
+    monkeypatch.setattr(
+        "fem.report.run_page.variation_table", lambda *given, **options: replace(table, lines=tuple(lines))
+    )
+    page = run_report(run, every_variation=True)
+    assert (" *</td>" in page) == ("* the outcome differs" in page) == differs
 
 
 def test_what_is_not_known_and_what_is_chosen_have_ranges_of_their_own(folder):
