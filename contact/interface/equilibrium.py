@@ -60,8 +60,8 @@ class Stance:
 class _Changes:
     """Which points change between carrying and open, step by step, until none is in tension or below the floor.
 
-    All that are wrong at once; where that does not make them fewer, one at a time, the deepest first: a few points of a
-    cambered base would else change for ever.
+    All that are wrong at once; where that does not make them fewer, one at a time, the deepest first: the points of a
+    cambered base may otherwise alternate for ever.
     """
 
     def __init__(self) -> None:

@@ -59,7 +59,7 @@ class ContainerCache:
         #: containers that serve others as well, with their cases: rigid ones share all but their mass, those of a row
         #: all but their gaps
         self._alike: dict[Hashable, tuple[Case, Future[Container]]] = {}
-        #: the one asked for last, with its case: most cases of a study differ in tables that a container does not have
+        #: the one asked for last, with its case: most cases of a study differ in what a container does not depend on
         self._last: tuple[Case, Container] | None = None
         self._recoveries = WeakKeyDictionary[Container, Recovery]()
 

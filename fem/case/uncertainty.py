@@ -89,7 +89,7 @@ def largest_first(changes: Sequence[InputChange]) -> list[InputChange]:
 def all_changes(
     case: Case, penalty: float | None, draws: int | None = None
 ) -> tuple[tuple[InputChange, ...], tuple[InputChange, ...], tuple[InputChange, ...]]:
-    """`changes_of`, `pairs_of` and `draws_of`."""
+    """`changes_of`, the pairs that matter and `draws_of`."""
     ranges = ranges_of(case, penalty)
     return _singles(case, ranges), _pairs(case, ranges), _draws(case, ranges, draws)
 
@@ -97,14 +97,6 @@ def all_changes(
 def changes_of(case: Case, penalty: float | None) -> tuple[InputChange, ...]:
     """One input changed at a time, to each end of its range and between, and the numerics ten times tighter."""
     return _singles(case, ranges_of(case, penalty))
-
-
-def pairs_of(case: Case) -> tuple[InputChange, ...]:
-    """The pairs that matter: a smaller fall of friction that is also a slower one.
-
-    At `mu_kinetic = mu_static` nothing falls, so the pair is tried half way.
-    """
-    return _pairs(case, ranges_of(case, None))
 
 
 def draws_of(case: Case, penalty: float | None, count: int | None = None) -> tuple[InputChange, ...]:
@@ -133,6 +125,10 @@ def _singles(case: Case, ranges: Sequence[InputRange]) -> tuple[InputChange, ...
 
 
 def _pairs(case: Case, ranges: Sequence[InputRange]) -> tuple[InputChange, ...]:
+    """The pairs that matter: a smaller fall of friction that is also a slower one.
+
+    At `mu_kinetic = mu_static` nothing falls, so the pair is tried half way.
+    """
     by_key = {span.key: span for span in ranges}
     if MU_KINETIC not in by_key:
         return ()

@@ -78,8 +78,8 @@ class HallFile:
         return [meaning for meaning in self.meanings.values() if meaning and meaning not in OWN]
 
     @cached_property
-    def places(self) -> dict[str, int]:
-        """In the header, of the columns that are read."""
+    def indices(self) -> dict[str, int]:
+        """Of the columns that are read, in the header."""
         return {column: self.header.index(column) for column in self.meanings}
 
     @cached_property
@@ -93,11 +93,11 @@ class HallFile:
         if not self.table.lines:
             raise CaseError(f"{self.path}: the list has a header and no rows; give one row a container")
         self.table.require_names()
-        self.table.require_one_decimal_mark(self.places[column] for column in numeric)
+        self.table.require_one_decimal_mark(self.indices[column] for column in numeric)
         return tuple(self._row(number, line) for number, line in enumerate(self.table.lines, start=1))
 
     def _row(self, number: int, line: TableLine) -> HallRow:
-        given = {column: line.field(place) for column, place in self.places.items()}
+        given = {column: line.field(index) for column, index in self.indices.items()}
         texts = dict(zip(self.meanings.values(), given.values(), strict=True))
         places: dict[str, Any] = dict.fromkeys(PLACES)
         problems: list[str] = []

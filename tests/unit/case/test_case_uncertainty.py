@@ -11,7 +11,7 @@ from fem.case.tables.all_tables import TABLES
 from fem.case.tables.input_ranges import UnknownNumber
 from fem.case.tables.links import ROWS
 from fem.case.tables.unknown_inputs import INPUTS, UNKNOWN, ranges_of
-from fem.case.uncertainty import as_changed, changes_of, draws_of, latin_hypercube, pairs_of, stiff_floor
+from fem.case.uncertainty import all_changes, as_changed, changes_of, draws_of, latin_hypercube, stiff_floor
 from fem.model.geometry import build_container
 
 PENALTY = 1e9
@@ -224,7 +224,7 @@ def test_a_stated_range_replaces_the_default_and_known_leaves_it_out():
         "contact.mu_kinetic": (0.1, 0.3),
         "contact.normal_penalty_Pa_m": (1e8,),
     }
-    assert pairs_of(named_case("harmonic", stated)) == ()
+    assert all_changes(named_case("harmonic", stated), None)[1] == ()
 
 
 def test_changes_between_the_ends_are_smaller_than_those_to_an_end():
@@ -236,12 +236,12 @@ def test_changes_between_the_ends_are_smaller_than_those_to_an_end():
 
 
 def test_pairs_join_a_smaller_fall_of_friction_with_a_slower_one():
-    assert [one.label for one in pairs_of(named_case("harmonic", FRICTION))] == [
+    assert [one.label for one in all_changes(named_case("harmonic", FRICTION), None)[1]] == [
         "contact.mu_kinetic = 0.3, contact.weakening_m = 0.005",
         "contact.mu_kinetic = 0.3, contact.stribeck_velocity_m_s = 0.3",
     ]
     held = {"uncertainty.mu_kinetic": "held"}
-    assert pairs_of(named_case("harmonic", held)) == ()
+    assert all_changes(named_case("harmonic", held), None)[1] == ()
 
 
 def test_draws_fill_every_range_and_make_cases_that_can_be_read():

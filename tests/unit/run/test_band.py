@@ -1,6 +1,7 @@
 """The band of a run: which runs have one, its members, what does not fit the time, failed members."""
 
 from dataclasses import replace
+from itertools import chain
 from pathlib import Path
 
 import pytest
@@ -10,7 +11,7 @@ from fem.__main__ import main
 from fem.assessment.joint_demands import joint_demands
 from fem.assessment.verdict import verdict_of
 from fem.case.case import Case, load_case
-from fem.case.uncertainty import as_changed, changes_of, draws_of, pairs_of
+from fem.case.uncertainty import all_changes, as_changed, changes_of, draws_of
 from fem.model.model import build_model
 from fem.model.recovery import recovery_of
 from fem.results.kinds import read_result
@@ -67,7 +68,7 @@ def test_members_are_the_run_itself_and_every_change_of_its_case(tmp_path):
     verdict = verdict_with_band(tmp_path, case)
     given, *others = verdict.band.members
     penalty = given.normal_penalty_Pa_m
-    wanted = [*changes_of(case, penalty), *pairs_of(case), *draws_of(case, penalty)]
+    wanted = list(chain(*all_changes(case, penalty)))
     assert sorted(one.change for one in others) == sorted(one.label for one in wanted)
     assert (given.change, given.outcome, given.rotation_ratio) == (
         "",
