@@ -149,7 +149,11 @@ def _value_that_decides(draws: Sequence[ChangedRun]) -> str:
 
 def _other_regime(verdict: Verdict, band: Band) -> str:
     """What variations do otherwise and what decides, with the ranges of slip and rotation."""
-    own, own_fell, on = band.members[0].outcome, band.members[0].fell_in_row, _depending(verdict)
+    own, own_fell, on = (
+        band.members[0].outcome,
+        band.members[0].fell_in_row,
+        deciding_in_words(verdict.decided_by),
+    )
     others = {member.outcome for member in band.members if member.outcome is not None} - {own}
     if own == Outcome.OVERTURNED:
         another = "container" if own_fell else "box"
@@ -185,9 +189,9 @@ def _may(own: Outcome, others: Set[Outcome]) -> str:
     return " or ".join(further or [words for kind, words in less.items() if kind in others])
 
 
-def _depending(verdict: Verdict) -> str:
+def deciding_in_words(keys: Sequence[str]) -> str:
     """The inputs that decide, as far as a sentence holds them."""
-    named = [WORDS.get(key, key) for key in verdict.decided_by[:MOST_NAMED]]
-    if len(verdict.decided_by) > MOST_NAMED:
+    named = [WORDS.get(key, key) for key in keys[:MOST_NAMED]]
+    if len(keys) > MOST_NAMED:
         return f"{', '.join(named)} and others"
     return " and ".join(named)

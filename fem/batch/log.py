@@ -8,13 +8,14 @@ study.
 import os
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import Any, Generic
 
 from fem.batch.runner import ChunkWork, ItemT, Row, Runner
 from fem.batch.shard import number_of
-from fem.batch.table import Columns, is_row, line_of, read_lines, table_of_lines
+from fem.batch.table import Columns, is_row, line_of, read_lines, row_of, table_of_lines
 from fem.case.case import Case
 from fem.results.errors import FolderError, FolderLostError
 from fem.results.files import write_atomically
@@ -73,9 +74,31 @@ class LoggedRows(Generic[ItemT]):
     columns: Columns  #: of the log
     #: values of the first columns; the others are of the row of an item
     key: Callable[[ItemT], Iterable[Any]]
-    note: Callable[[str], None]  #: called with every line of the log, old and new
+    note: Callable[[str], None] = lambda line: None  #: called with every line of the log, old and new
     logged: Callable[[Row], Row] = lambda row: row  #: a row as the log holds it
     number: Callable[[ItemT], int] = number_of  #: of an item, by which it has its shard
+    #: all that there may be, where they are known beforehand and their keys tell them apart: their lines are kept
+    items: Iterable[ItemT] = ()
+    lines: dict[tuple[Any, ...], str] = field(default_factory=dict, init=False)  #: by key
+
+    @cached_property
+    def keys(self) -> dict[tuple[Any, ...], ItemT]:
+        """The items by key."""
+        return {tuple(self.key(item)): item for item in self.items}
+
+    def missing(self, among: Iterable[ItemT] | None = None) -> list[ItemT]:
+        """Those of the items, or of some, that have no row yet."""
+        chosen = self.keys.values() if among is None else among
+        return [item for item in chosen if tuple(self.key(item)) not in self.lines]
+
+    def row(self, item: ItemT) -> Row:
+        """The row of an item, by column; empty where it has none."""
+        line = self.lines.get(tuple(self.key(item)))
+        return {} if line is None else row_of(self.columns, line)
+
+    def table(self) -> str:
+        """The rows in the order of their keys."""
+        return table_of_lines(self.columns, (line for _, line in sorted(self.lines.items())))
 
     def compute(
         self,
@@ -96,7 +119,7 @@ class LoggedRows(Generic[ItemT]):
         with closing(RowLog(self.path, self.columns, runner.reporter.warning)) as log:
             for line in log.lines:
                 try:
-                    self.note(line)
+                    self._note(line)
                 except (AttributeError, LookupError, TypeError, ValueError):
                     raise FolderError(
                         f"{self.path}: damaged, no run of this study has the row {line:.60}; start over with --force"
@@ -109,10 +132,16 @@ class LoggedRows(Generic[ItemT]):
                     lines = [self._line(item, row) for item, row in zip(chunk, rows, strict=True)]
                     log.append(lines)
                     for line in lines:
-                        self.note(line)
+                        self._note(line)
                 if runner.share and len(mine) < len(items) and not runner.stop():
                     runner.share.waits = True
             log.sync()
+
+    def _note(self, line: str) -> None:
+        if self.keys:
+            key = tuple(row_of(self.columns, line).values())[: len(next(iter(self.keys)))]
+            self.lines[tuple(self.key(self.keys[key]))] = line  # a LookupError: of no item
+        self.note(line)
 
     def _line(self, item: ItemT, row: Row) -> str:
         key, cells = tuple(self.key(item)), self.logged(row)

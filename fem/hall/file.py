@@ -5,10 +5,8 @@ What is wrong with the list as a whole is an error; what is wrong with a row is 
 
 import difflib
 import re
-import tomllib
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache, cached_property
 from pathlib import Path
@@ -16,6 +14,7 @@ from typing import Any, get_args
 
 from fem.batch.axes import NAMED, NO_AXIS, AxisError, field_of
 from fem.batch.table import plain_text
+from fem.case.overrides import parse_override
 from fem.case.tables.all_tables import TABLES
 from fem.case.validation import CaseError, known_keys, quantity_of
 from fem.hall.result import RESULT_COLUMNS
@@ -235,16 +234,10 @@ def _number(text: str, most: float) -> float | None:
 
 def _value(key: str, text: str) -> Any:
     """A field as a case file would give it: a number, true or false, a list, else text."""
-    field = field_of(key)
-    if text[0] == "[":
-        with suppress(ValueError):
-            return tomllib.loads(f"value = {text}")["value"]
+    field, number = field_of(key), number_in(text)
+    whole = int in (field.annotation, *get_args(field.annotation))
+    if number is not None and (whole or quantity_of(field.annotation, field.metadata)):
+        return int(number) if whole and number.is_integer() else number
     if text.lower() in ("true", "false"):
         return text.lower() == "true"
-    if quantity_of(field.annotation, field.metadata) is None and field.annotation is not int:
-        return plain_text(text)
-    number = number_in(text)
-    if number is None:
-        return text
-    whole = field.annotation is int or int in get_args(field.annotation)
-    return int(number) if whole and number.is_integer() else number
+    return parse_override(f"{key}={text}")[1] if text[0] == "[" else plain_text(text)

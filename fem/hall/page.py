@@ -8,9 +8,10 @@ from typing import Any
 
 from markupsafe import Markup
 
+from fem.assessment.margin_words import FACTOR
+from fem.assessment.sure_words import deciding_in_words
 from fem.batch.study import read_study
 from fem.case.case import load_case
-from fem.case.tables.unknown_inputs import WORDS
 from fem.hall.places import PICTURE
 from fem.hall.result import NO_ANSWER, HallResult
 from fem.html import sections as html
@@ -23,7 +24,6 @@ from fem.results.kinds import HALL
 from fem.results.outcome import Outcome
 
 BRIEFLY = 30  #: containers on the short page
-MOST_INPUTS = 3  #: of those that decide
 LOOKS = {"overturned": "bad", "invalid": "bad", "failed": "bad"}
 MARGIN = (
     "Margin: the factor on the whole motion of the run from which it overturns, with the range that all unknown inputs "
@@ -163,7 +163,7 @@ def weakest_table(rows: Sequence[A_ROW], most: int, *, linked: bool) -> html.Tab
         ),
         html.Column("margin", margin_words, html.NUMBER),
         html.key_column("sure", "sure"),
-        html.Column("decided by", _deciding, optional=True),
+        html.key_column("decided by", "decided_by", text=lambda keys: deciding_in_words(keys.split())),
         *html.figure_columns(figures_of(Place.KEY), value=figure),
         html.key_column(
             "utilisation", "utilisation_overturning", html.NUMBER, text=partial(number, figures=3)
@@ -184,15 +184,14 @@ def weakest_table(rows: Sequence[A_ROW], most: int, *, linked: bool) -> html.Tab
 
 def margin_words(row: A_ROW) -> str:
     """A margin with its range: "1.8 (1.5 to 2.1)", "1.8 (from 1.5)" where not all overturn, "> 4"; empty without."""
-    margin, low, high = row["margin"], row["margin_low"], row["margin_high"]
+    margin, tried = row["margin"], row["margin_tried_to"]
     if margin is None:
-        tried = row["margin_tried_to"]
-        return "" if tried is None else f"> {number(tried, figures=3)}"
-    words = number(margin, figures=3)
-    if low is None:
-        return words
-    least = number(low, figures=2)
-    return f"{words} (from {least})" if high is None else f"{words} ({least} to {number(high, figures=2)})"
+        return "" if tried is None else f"> {FACTOR.text(tried)}"
+    ends = [
+        FACTOR.in_figures(row[name], 2) for name in ("margin_low", "margin_high") if row[name] is not None
+    ]
+    span = {0: "", 1: " (from {})", 2: " ({} to {})"}[len(ends)]
+    return FACTOR.text(margin) + span.format(*ends)
 
 
 def commands_table(rows: Sequence[A_ROW]) -> html.Table:
@@ -203,9 +202,3 @@ def commands_table(rows: Sequence[A_ROW]) -> html.Table:
         html.Column("command", lambda row: html.Cell(html.code(row["command"]))),
     ]
     return html.table_of("commands", columns, rows, file="hall.json")
-
-
-def _deciding(row: A_ROW) -> str:
-    named = [WORDS.get(key, key) for key in (row["decided_by"] or "").split()]
-    more = len(named) - MOST_INPUTS
-    return ", ".join(named[:MOST_INPUTS]) + (f" and {more} more" if more > 0 else "")

@@ -8,13 +8,12 @@ from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import Any, NamedTuple, Self
 
-from fem.batch.axes import MOTION_FILE, Axis, AxisError, read_motion_files
+from fem.batch.axes import MOTION_FILE, VERTICAL_FILE, AxisError, read_axis
 from fem.batch.case_maker import CaseMaker
 from fem.batch.motion_set import FloorMotionPair, read_motion_set
 from fem.batch.runner import Runner
 from fem.case.case import Case, case_hash
-from fem.case.data_files import FILE_KEYS, as_named_from
-from fem.case.tables.problem import outside_the_folder, stays_in_the_folder
+from fem.case.data_files import as_named_from
 from fem.case.tables.unknown_inputs import excluded_values
 from fem.case.toml import toml_value
 from fem.case.validation import CaseError
@@ -53,11 +52,6 @@ class Hall:
         return [pair.keys for pair in self.motions] or [{}]
 
     @cached_property
-    def values(self) -> list[Mapping[str, Any]]:
-        """Of the keys that each container sets, by its number."""
-        return [*self.containers.values()]
-
-    @cached_property
     def make(self) -> Callable[[HallItem], Case]:
         """Makes the case of a run; picklable."""
         base = with_files_of_the_command_line(self.base) if self.motions else self.base
@@ -67,25 +61,22 @@ class Hall:
     def items(self) -> list[HallItem]:
         """All runs; those of a container follow one another."""
         motions = range(len(self.keys))
-        return [self.item(number, motion) for number in range(len(self.values)) for motion in motions]
-
-    def item(self, container: int, motion: int) -> HallItem:
-        """One run."""
-        return HallItem(container, motion, self.values[container])
+        containers = enumerate(self.containers.values())
+        return [HallItem(number, motion, values) for number, values in containers for motion in motions]
 
     def model_of(self, item: HallItem) -> str:
         """The model of a run."""
         return str(item.values.get("solver.model", self.base.solver.model))
 
-    def command(self, row: HallRow, motion: int) -> str:
-        """The command that computes a row under a motion by itself."""
+    def command(self, item: HallItem, values: Mapping[str, Any]) -> str:
+        """The command that computes a run by itself, with the values of a row."""
         origin = self.base.origin_with({})
         words = ["python", "-m", "fem", "run", origin.place, *["--allow-outside"] * origin.allow_outside]
         if self.named:
-            words += ["--motion", self.named[motion].partition(",")[0].strip()]
+            words += ["--motion", self.named[item.motion].partition(",")[0].strip()]
         # with a vertical file of a pair, or that a motion among pairs has none
-        set_by_motion = {k: v for k, v in self.keys[motion].items() if k != MOTION_FILE}
-        for key, value in {**set_by_motion, **row.values}.items():
+        set_by_motion = {k: v for k, v in self.keys[item.motion].items() if k != MOTION_FILE}
+        for key, value in {**set_by_motion, **values}.items():
             words += ["--set", f"{key}={value if isinstance(value, str) else toml_value(value)}"]
         return shlex.join(words)
 
@@ -95,10 +86,6 @@ class Hall:
         Raises:
             CaseError, MeshError, RecordError: what a run would be refused for.
         """
-        mesh = values.get("container.mesh_file")
-        # motions alone may lie anywhere
-        if self.motions and isinstance(mesh, str) and not stays_in_the_folder(mesh):
-            raise CaseError(f"[container] mesh_file {outside_the_folder(mesh)}")
         moved = any(key.startswith(("motion.", "vertical.")) for key in values)
         first = self.make(HallItem(0, 0, values))
         if reasons := excluded_values(first):
@@ -148,17 +135,17 @@ def read_motions(base: Case, named: Sequence[str], runner: Runner) -> tuple[Floo
     """
     pairs = [[as_named_from(base.folder, name.strip()) for name in pair.split(",")] for pair in named]
     try:
-        names, following = read_motion_files([pair if len(pair) > 1 else pair[0] for pair in pairs])
+        axis = read_axis(MOTION_FILE, [pair if len(pair) > 1 else pair[0] for pair in pairs])
     except AxisError as error:
         raise CaseError(f"--motion {error}") from None
-    axis = Axis(key=MOTION_FILE, values=names, following=following)
     return read_motion_set(with_files_of_the_command_line(base), [axis], runner)
 
 
 def with_files_of_the_command_line(base: Case) -> Case:
     """The base case with motions from anywhere."""
-    origin = replace(base.origin_with({}), trusted=frozenset(FILE_KEYS), allow_outside=True)
-    return base.from_origin(origin)
+    origin = base.origin_with({})
+    trusted = origin.trusted | {MOTION_FILE, VERTICAL_FILE}
+    return base.from_origin(replace(origin, trusted=trusted, allow_outside=True))
 
 
 def _case_of(make: CaseMaker, keys: Sequence[Mapping[str, Any]], item: HallItem) -> Case:

@@ -5,8 +5,9 @@ nor on the number of cores. A hall of which names, tags or places alone have cha
 """
 
 import math
+from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Literal, Unpack
@@ -17,20 +18,18 @@ from fem.batch.log import LoggedRuns
 from fem.batch.motion_set import motions_left_out
 from fem.batch.runner import Row, Runner
 from fem.batch.study import INTERRUPTED, StudyOptions, hash_of, run_study, runner_of
-from fem.batch.table import row_of, table_of_lines, table_text
 from fem.case.case import Case
 from fem.case.validation import CaseError
 from fem.hall.file import HallFile
 from fem.hall.plan import Hall, HallItem, read_motions, say_time
 from fem.hall.result import OF_A_RUN, OF_MOTIONS, STATIC, HallResult
-from fem.hall.study import WORST_FIRST, ContainerResult, study_of, weakness, written
+from fem.hall.study import WORST_FIRST, ending_in, study_of, weakness, written
 from fem.model.geometry import build_container
 from fem.model.motion import build_motions, peaks_in_run
 from fem.model.static_checks import static_checks_of
 from fem.results.disk import table_bytes
+from fem.results.figures import SLIPPED
 from fem.results.folder import ResultFolder
-from fem.results.outcome import COUNTED_AS, Ending, counts_of
-from fem.sweep.cells import RunShown, shown_in
 
 RUNS, CHECKS = "runs.csv", "checks.csv"
 RUN_COLUMNS = {"container": int, "motion": int} | OF_A_RUN
@@ -70,7 +69,7 @@ def run_hall(
         options["workers_of"] = runner.workers_of
         study = study_of(
             hall,
-            HallRuns(hall=hall).compute,
+            partial(_compute, hall),
             asked=hash_of([[*hall.containers], [pair.case_hash for pair in pairs]]),
             listed=hash_of([file.table.text, checks]),
             motions=motions,
@@ -84,111 +83,63 @@ def run_hall(
         return run_study(study, folder, **options)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class HallRuns:
-    """The runs so far, and what their repetition showed."""
+def _compute(hall: Hall, begun: HallResult, results: ResultFolder, runner: Runner) -> HallResult:
+    """Compute what is missing, and write the list with its results, and its page."""
+    items, motions = hall.items, len(hall.keys)
+    logged = partial(LoggedRuns[HallItem], make=hall.make, model_of=hall.model_of)
+    runs = logged(
+        what="runs",
+        path=results.path / RUNS,
+        columns=RUN_COLUMNS,
+        key=lambda item: item[:2],
+        items=items,
+        number=lambda item: item.container * motions + item.motion,
+    )
+    runs.run(runner, iter(runs.missing, []))
+    begun = replace(begun, runs=len(runs.lines))
+    if runs.missing():
+        words = f"{begun.runs} of {len(items)} runs are computed"
+        return replace(begun, status=INTERRUPTED, missing=words)
+    found = [_governing(hall, items[k : k + motions], runs) for k in range(0, len(items), motions)]
+    weakest = sorted(found, key=lambda pair: weakness(pair[1]))
+    able = [item for item, row in weakest if row["outcome"] and hall.model_of(item) != "full"]
+    count = {"none": 0, "all": len(able)}.get(begun.checks, max(math.ceil(SHARE * len(found)), LEAST))
+    checks = logged(
+        what="containers repeated with other inputs and stronger motions",
+        path=results.path / CHECKS,
+        columns=CHECK_COLUMNS,
+        key=lambda item: item[:1],
+        items=[item for item, _ in found],
+        work=check_chunk,
+    )
+    to_check = partial(checks.missing, able[:count])
+    checks.run(runner, iter(to_check, []))
+    begun = replace(begun, checked=len(checks.lines))
+    if left := len(to_check()):
+        return replace(begun, status=INTERRUPTED, missing=f"{left} of the weakest are still to be repeated")
+    results.check()
+    results.write_text(RUNS, runs.table())
+    results.write_text(CHECKS, checks.table())
+    rows = [row | checks.row(item) for item, row in found]
+    return written(results, begun, hall, rows, lambda number, values: hall.command(found[number][0], values))
 
-    hall: Hall
-    lines: dict[tuple[int, int], str] = field(default_factory=dict)  #: of the log, by container and motion
-    #: what they show, by container and by motion
-    by_container: dict[int, dict[int, RunShown]] = field(default_factory=dict)
-    checked: dict[int, Row] = field(default_factory=dict)  #: what the repetition showed, by container
 
-    def note(self, line: str) -> None:
-        """Add a line of the log of the runs; IndexError: of a container that is not in the list."""
-        row = row_of(RUN_COLUMNS, line)
-        item = self.hall.item(row["container"], row["motion"])
-        self.lines[item.container, item.motion] = line
-        self.by_container.setdefault(item.container, {})[item.motion] = shown_in(row)
+def _governing(hall: Hall, items: Sequence[HallItem], runs: LoggedRuns[HallItem]) -> tuple[HallItem, Row]:
+    """The run in which a container does worst, the first of equals; and the results of the container.
 
-    def note_check(self, line: str) -> None:
-        """Add a line of the log of the repetitions."""
-        row = row_of(CHECK_COLUMNS, line)
-        self.checked[row.pop("container")] = row
-
-    def missing(self) -> list[HallItem]:
-        """Runs that have no line."""
-        return [item for item in self.hall.items if item[:2] not in self.lines]
-
-    def governing(self, container: int) -> int:
-        """The motion under which a container does worst, the first of equals."""
-        runs = self.by_container[container]
-
-        def order(motion: int) -> tuple[float, ...]:
-            run = runs[motion]
-            turned = run.turned if run.kind == Ending.STANDING else 0.0
-            return WORST_FIRST.index(COUNTED_AS[run.kind]), -turned, -run.slipped
-
-        return min(sorted(runs), key=order)
-
-    def counts(self, container: int) -> tuple[int, ...]:
-        """How many motions overturn a container, destroy a corner of it, have no outcome."""
-        counts = counts_of([run.kind for run in self.by_container[container].values()])
-        return tuple(counts[ending] for ending in WORST_FIRST[:3])
-
-    def to_check(self, checks: str, order: Sequence[int]) -> list[HallItem]:
-        """The governing runs that are still to be repeated; `order` has the weakest first, before any is repeated."""
-        count = {"none": 0, "all": len(order)}.get(checks, max(math.ceil(SHARE * len(order)), LEAST))
-        worst = [self.hall.item(number, self.governing(number)) for number in order]
-        ended = [item for item in worst if self.by_container[item[0]][item[1]].kind != Ending.FAILED]
-        able = [item for item in ended if self.hall.model_of(item) != "full"]
-        return [item for item in able[:count] if item.container not in self.checked]
-
-    def row(self, container: int) -> Row:
-        """The results of a container: those of its governing run, the static rule under its peak, all motions."""
-        by_motion, governing = self.by_container[container], self.governing(container)
-        case = self.hall.make(self.hall.item(container, governing))
-        peaks = peaks_in_run(case, *build_motions(case))
-        ruling = static_checks_of(case, build_container(case), *peaks).ruling.to_result()
-        run = row_of(RUN_COLUMNS, self.lines[container, governing])
-        row = {name: run[name] for name in OF_A_RUN} | {name: getattr(ruling, name) for name in STATIC}
-        if names := [pair.name for pair in self.hall.motions]:
-            slipped = max(sorted(by_motion), key=lambda number: by_motion[number].slipped)
-            under = names[governing], *self.counts(container), by_motion[slipped].slipped, names[slipped]
-            row |= zip(OF_MOTIONS, under, strict=True)
-        return row
-
-    def compute(self, begun: HallResult, results: ResultFolder, runner: Runner) -> HallResult:
-        """Compute what is missing, and write the list with its results, and its page."""
-        hall, total = self.hall, len(self.hall.items)
-        logged = partial(LoggedRuns[HallItem], make=hall.make, model_of=hall.model_of)
-        logged(
-            what="runs",
-            path=results.path / RUNS,
-            columns=RUN_COLUMNS,
-            key=lambda item: item[:2],
-            note=self.note,
-            number=lambda item: item.container * len(hall.keys) + item.motion,
-        ).run(runner, iter(self.missing, []))
-        if missing := len(self.missing()):
-            words = f"{total - missing} of {total} runs are computed"
-            return replace(begun, status=INTERRUPTED, runs=total - missing, missing=words)
-        rows = [self.row(container) for container in range(len(hall.values))]
-        order = sorted(range(len(rows)), key=lambda container: weakness(rows[container]))
-        to_check = partial(self.to_check, begun.checks, order)
-        logged(
-            what="containers repeated with other inputs and stronger motions",
-            path=results.path / CHECKS,
-            columns=CHECK_COLUMNS,
-            key=lambda item: item[:1],
-            note=self.note_check,
-            work=check_chunk,
-        ).run(runner, iter(to_check, []))
-        begun = replace(begun, runs=total, checked=len(self.checked))
-        if left := len(to_check()):
-            return replace(
-                begun, status=INTERRUPTED, missing=f"{left} of the weakest are still to be repeated"
-            )
-        results.check()
-        results.write_text(
-            RUNS, table_of_lines(RUN_COLUMNS, (line for _, line in sorted(self.lines.items())))
-        )
-        checked = sorted(self.checked.items())
-        results.write_text(CHECKS, table_text(CHECK_COLUMNS, ([k, *check.values()] for k, check in checked)))
-        found = [
-            ContainerResult(
-                row | self.checked.get(container, {}), partial(hall.command, motion=self.governing(container))
-            )
-            for container, row in enumerate(rows)
-        ]
-        return written(results, begun, hall, found)
+    These are those of that run, the static rule under its peak, and what all its motions do.
+    """
+    rows = [runs.row(item) for item in items]
+    ranks = [*map(weakness, rows)]
+    item = items[ranks.index(min(ranks))]
+    case = hall.make(item)
+    peaks = peaks_in_run(case, *build_motions(case))
+    ruling = static_checks_of(case, build_container(case), *peaks).ruling.to_result()
+    row = {name: rows[item.motion][name] for name in OF_A_RUN}
+    row |= {name: getattr(ruling, name) for name in STATIC}
+    if names := [pair.name for pair in hall.motions]:
+        counts, slips = Counter(map(ending_in, rows)), [run[SLIPPED] or 0.0 for run in rows]
+        slid = slips.index(max(slips))
+        under = names[item.motion], *(counts[word] for word in WORST_FIRST[:3]), slips[slid], names[slid]
+        row |= zip(OF_MOTIONS, under, strict=True)
+    return item, row

@@ -6,7 +6,7 @@ The verifications follow one another, each on all cores. What is kept of a finis
 import shlex
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any, Unpack
@@ -14,17 +14,15 @@ from typing import Any, Unpack
 from fem.batch.log import LoggedRows
 from fem.batch.runner import Row, Runner
 from fem.batch.study import FAILED, INTERRUPTED, StudyOptions, hash_of, run_study
-from fem.batch.table import row_of, table_of_rows
 from fem.case.case import Case
 from fem.case.validation import CaseError
 from fem.hall.file import HallFile
 from fem.hall.plan import Hall
 from fem.hall.result import AT_SITE, RESULT_COLUMNS, HallResult
-from fem.hall.study import ContainerResult, study_of, written
-from fem.results.errors import FolderError
+from fem.hall.study import study_of, written
 from fem.results.figures import SLIPPED, TURNED
-from fem.results.folder import ResultFolder, require_same_program
-from fem.results.kinds import SITE, read_result
+from fem.results.folder import ResultFolder
+from fem.results.kinds import SITE
 from fem.results.run_files import copy_data_files
 from fem.run.expected import expected_words
 from fem.runtime.progress import SilentReporter
@@ -81,7 +79,6 @@ def run_hall_at_site(
         # of records the contents: they may change under the same name
         ground=ground_motions(site, LAST_PERIOD_S, allow_outside=allow_outside) if site.motions.files else [],
         outside=allow_outside or bool(site.motions.files),
-        force=options.get("force", False),
     )
     hall = Hall(file=file, base=work.start, containers={}).checked(work.hash_of, strict=strict)
     study = study_of(
@@ -104,8 +101,6 @@ class _AtSite:
     start: Case  #: that the rows change
     ground: Sequence[GroundMotion]  #: records of the site
     outside: bool  #: records may lie outside the folder of the site file
-    force: bool  #: verify every container again
-    rows: dict[int, Row] = field(default_factory=dict)  #: of the log, by container
 
     def request(self, values: Mapping[str, Any], name: str) -> SiteRequest:
         """The verification of a container.
@@ -132,47 +127,41 @@ class _AtSite:
 
     def compute(self, hall: Hall, begun: HallResult, results: ResultFolder, runner: Runner) -> HallResult:
         """Verify what is missing, and write the list with the answers, and its page."""
-        numbers = range(len(hall.containers))
+        values, count = [*hall.containers.values()], len(hall.containers)
         folders = [Path(FOLDERS) / f"{k + 1:03d}-{digest[:8]}" for k, digest in enumerate(hall.containers)]
         names = {row.container: row.name for row in reversed(hall.rows)}
-
-        def note(line: str) -> None:
-            row = row_of(COLUMNS, line)
-            self.rows[row["container"]] = row
-
-        def missing() -> Iterator[list[int]]:
-            yield [k for k in numbers if k not in self.rows]
 
         def verified(left: Sequence[int]) -> Iterator[tuple[list[int], list[Row]]]:
             """The rows of these containers, one after another, until it is interrupted."""
             for done, k in enumerate(left):
                 if runner.stop():
                     return
-                request = self.request(hall.values[k], names[k])
+                request = self.request(values[k], names[k])
                 if done == 0 and len(left) > 1:
                     _say_expected(len(left), request, runner)
-                runner.reporter.message(f"container {k + 1} of {len(numbers)} at the site")
+                runner.reporter.message(f"container {k + 1} of {count} at the site")
                 if (row := self._row_of(request, results.path / folders[k], runner)) is None:
                     return
                 yield [k], [dict.fromkeys(COLUMNS) | row]
 
-        log = LoggedRows[int](path=results.path / SITES, columns=COLUMNS, key=lambda k: (k,), note=note)
-        log.compute(runner, missing(), verified)
-        if len(self.rows) < len(numbers):
-            words = f"{len(self.rows)} of {len(numbers)} containers are verified"
+        sites = LoggedRows(path=results.path / SITES, columns=COLUMNS, key=lambda k: (k,), items=range(count))
+        sites.compute(runner, (sites.missing() for _ in range(1)), verified)
+        if left := len(sites.missing()):
+            words = f"{count - left} of {count} containers are verified"
             return replace(begun, status=INTERRUPTED, missing=words)
         results.check()
-        rows = [self.rows[number] for number in numbers]
-        results.write_text(SITES, table_of_rows(COLUMNS, rows))
-        found = [self.found(row, results.path, folder) for row, folder in zip(rows, folders, strict=True)]
-        return written(results, replace(begun, runs=len(numbers)), hall, found)
+        results.write_text(SITES, sites.table())
+        pages = [(folder / "report.html").as_posix() for folder in folders]
+        rows = [
+            sites.row(k) | {"page": page if (results.path / page).is_file() else None}
+            for k, page in enumerate(pages)
+        ]
 
-    def found(self, row: Row, results: Path, folder: Path) -> ContainerResult:
-        """What is known of a container; the folder is that of its verification, within that of the results."""
-        page, site = folder / "report.html", results / folder / "site.toml"
-        words = ["python", "-m", "fem", "assess", str(site), *["--allow-outside"] * self.outside]
-        where = {"page": page.as_posix() if (results / page).is_file() else None}
-        return ContainerResult(row | where, lambda _: shlex.join(words))
+        def command(number: int, values: Mapping[str, Any]) -> str:
+            place = str(results.path / folders[number] / "site.toml")
+            return shlex.join(["python", "-m", "fem", "assess", place, *["--allow-outside"] * self.outside])
+
+        return written(results, replace(begun, runs=count), hall, rows, command)
 
     def _row_of(self, request: SiteRequest, folder: Path, runner: Runner) -> Row | None:
         """The row of a container; None where it was interrupted."""
@@ -184,7 +173,7 @@ class _AtSite:
                 jobs=runner.jobs,
                 workers_of=runner.workers_of,
                 resume=True,
-                force=self.force or _is_of_another_program(folder),
+                force=not (folder / SITE.mark).is_file(),  # --force has removed it
                 reporter=SilentReporter(),
                 copy_records=False,  # of every container the same: the site file names them where they are
             )
@@ -213,13 +202,3 @@ def _say_expected(count: int, request: SiteRequest, runner: Runner) -> None:
             f"{count} containers with up to {each.most} runs each: at most "
             f"{expected_words(each.seconds * count, runner.jobs)}, and the deciding runs with their bands"
         )
-
-
-def _is_of_another_program(folder: Path) -> bool:
-    """Whether the folder holds a verification by another version of the program."""
-    if (folder / SITE.mark).exists():
-        try:
-            require_same_program(folder, read_result(folder / SITE.mark, SITE))
-        except FolderError:  # damaged, too
-            return True
-    return False

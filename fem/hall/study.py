@@ -4,13 +4,13 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import Any, NamedTuple
+from typing import Any
 
 from fem.batch.runner import Row, Runner
 from fem.batch.study import COMPLETED, FAILED, Study
 from fem.batch.table import table_text
 from fem.case.toml import toml_document
-from fem.hall.file import LISTED, HallRow
+from fem.hall.file import LISTED
 from fem.hall.page import hall_report
 from fem.hall.places import PICTURE, draw_places, geojson
 from fem.hall.plan import Hall
@@ -25,33 +25,33 @@ TABLE, PAGE, GEOJSON = "hall.csv", "report.html", "hall.geojson"
 #: what a container counts as, the worst first: by its run, or by its answer at a site
 WORST_FIRST = ("overturned", "invalid", "failed", "stood")
 WORST_ANSWER_FIRST = ("not fulfilled", NO_ANSWER, "not sure", "fulfilled")
+RANKS = {word: rank for words in (WORST_FIRST, WORST_ANSWER_FIRST) for rank, word in enumerate(words)}
 ROCKS = 0.01  #: rotation ratio up to which what stands is ranked by the static rule: nothing rocks
 
 
-class ContainerResult(NamedTuple):
-    """What is known of a container in the end."""
-
-    row: Row  #: its results, by column
-    command: Callable[[HallRow], str]  #: that computes a row by itself, whose container it is
+#: the command that computes a row by itself, from the number of its container and what the row sets
+CommandOf = Callable[[int, Mapping[str, Any]], str]
 
 
-def ending_in(row: Row, *, at_site: bool) -> str:
-    """What a row counts as."""
+def ending_in(row: Row) -> str:
+    """What a row counts as; at a site each has an answer or reasons."""
     if row["status"] == REFUSED:
         return REFUSED
-    if at_site:
+    if row.get("answer") or row.get("reasons"):
         return row["answer"] or NO_ANSWER
     return COUNTED_AS[ending_of(row["status"], row["outcome"])]
 
 
-def weakness(row: Row, *, at_site: bool = False) -> tuple[float, ...]:
-    """Smaller for the worse: by what a container counts as, by margin, by rotation, by the static rule, by slip."""
-    ending, margin = ending_in(row, at_site=at_site), row.get("margin") or row.get("margin_tried_to")
+def weakness(row: Row) -> tuple[float, ...]:
+    """Smaller for the worse: by what it counts as, by margin, by rotation, by the static rule, by slip.
+
+    Of a run alone neither margin nor static rule are known.
+    """
+    ending, margin = ending_in(row), row.get("margin") or row.get("margin_tried_to")
     turned, static, slip = (row.get(name) or 0.0 for name in (TURNED, "utilisation_overturning", SLIPPED))
-    if not at_site and (ending != "stood" or turned <= ROCKS):
+    if ending in WORST_FIRST[:3] or (static and turned <= ROCKS):
         turned = 0.0
-    order = (WORST_ANSWER_FIRST if at_site else WORST_FIRST).index(ending)
-    return order, margin is None, margin or 0.0, -turned, -static, -slip
+    return RANKS[ending], margin is None, margin or 0.0, -turned, -static, -slip
 
 
 def study_of(
@@ -87,16 +87,24 @@ def study_of(
 
 
 def written(
-    results: ResultFolder, begun: HallResult, hall: Hall, found: Sequence[ContainerResult]
+    results: ResultFolder, begun: HallResult, hall: Hall, found: Sequence[Row], command_of: CommandOf
 ) -> HallResult:
-    """The finished result of a checked list, with the list, its plan and its page written."""
-    at_site = bool(begun.site)
-    order = sorted(range(len(found)), key=lambda number: weakness(found[number].row, at_site=at_site))
-    table = tuple(_rows(hall, found, {number: rank for rank, number in enumerate(order, start=1)}))
+    """The finished result of a checked list, with the list, its plan and its page written.
+
+    Args:
+        results: folder.
+        begun: what is known of the result.
+        hall: the list.
+        found: results of each container, by column.
+        command_of: the command of a row.
+    """
+    order = sorted(range(len(found)), key=[*map(weakness, found)].__getitem__)
+    ranks = {number: rank for rank, number in enumerate(order, start=1)}
+    table = tuple(_rows(hall, found, ranks, command_of))
     outcomes, tags = Counter[str](), dict[str, dict[str, Any]]()
     for row in table:
-        ending = ending_in(row, at_site=at_site)
-        outcomes[ending if at_site else row["outcome"] or ending] += row["count"]
+        ending = ending_in(row)
+        outcomes[ending if begun.site else row["outcome"] or ending] += row["count"]
         empty = {"tag": row["tag"], "containers": 0, "counts": Counter[str](), "margin": None}
         tag = tags.setdefault(row["tag"], empty)
         tag["containers"] += row["count"]
@@ -104,7 +112,7 @@ def written(
         tag["margin"] = min(filter(None, (tag["margin"], row["margin"])), default=None)
     result = replace(
         begun,
-        status=FAILED if {container.row["status"] for container in found} == {FAILED} else COMPLETED,
+        status=FAILED if {row["status"] for row in found} == {FAILED} else COMPLETED,
         outcomes=dict(sorted(outcomes.items())),
         tags=tuple(tag for _, tag in sorted(tags.items())) if {*tags} != {""} else (),
         table=table,
@@ -121,12 +129,12 @@ def written(
     return result
 
 
-def _rows(hall: Hall, found: Sequence[ContainerResult], ranks: Mapping[int, int]) -> Iterator[Row]:
+def _rows(hall: Hall, found: Sequence[Row], ranks: Mapping[int, int], command_of: CommandOf) -> Iterator[Row]:
     """The rows of the list with their results."""
     for number, row in enumerate(hall.rows, start=1):
         results, command = {"status": REFUSED, "reason": row.reason}, None
         if (k := row.container) is not None:
-            results, command = found[k].row | {"rank": ranks[k]}, found[k].command(row)
+            results, command = found[k] | {"rank": ranks[k]}, command_of(k, row.values)
         yield {
             "row": number,
             **{name: getattr(row, name) for name in LISTED},

@@ -47,12 +47,13 @@ def write_atomically(path: Path, content: str | bytes) -> None:
 
 def remove_files(folder: Path, patterns: Sequence[str]) -> None:
     """Remove files that match these patterns, what a kill left of them, and subfolders that are empty then."""
-    for place in {(folder / pattern).parent for pattern in patterns}:
-        for name in (Path(pattern).name for pattern in patterns if (folder / pattern).parent == place):
-            for file in (*place.glob(name), *place.glob(f".{name}.part")):
+    for pattern in map(Path, patterns):
+        for name in (pattern.name, f".{pattern.name}.part"):
+            for file in folder.glob(str(pattern.parent / name)):
                 file.unlink(missing_ok=True)
-        if place != folder:
-            with suppress(OSError):  # missing, or something else lies in it
+    for parent in {str(Path(pattern).parent) for pattern in patterns} - {"."}:
+        for place in folder.glob(parent):
+            with suppress(OSError):  # something else lies in it
                 place.rmdir()
 
 

@@ -143,6 +143,7 @@ HALL = ResultKind(
         "runs.csv",
         "checks.csv",
         "sites.csv",
+        "sites/*/assess.json",
         "list.csv",
         "base.toml",
         "report.html",

@@ -15,22 +15,17 @@ CHECKS = WantedChecks(band=False, margin=True)  #: as `run` makes them, without 
 
 def find_margins(runner: Runner, sweep: Sweep, log: Path) -> dict[int, tuple[str, ...]]:
     """The fields of `MARGIN` by cell, none where none are asked for; what the log holds is not computed again."""
-    margins: dict[int, tuple[str, ...]] = {}
     if not sweep.margin:
-        return margins
-
-    def note(line: str) -> None:
-        cell, *fields = fields_of(line)
-        margins[int(cell)] = tuple(fields)
-
-    LoggedRuns(
+        return {}
+    margins = LoggedRuns[int](
         what="margins of cells",
         path=log,
         columns={"cell": int, **MARGIN},
         make=sweep.case,
         model_of=sweep.model_of,
         key=lambda cell: (cell,),
-        note=note,
+        items=sweep.by_container(range(sweep.count)),
         work=partial(check_chunk, checks=CHECKS),
-    ).run(runner, (sweep.by_container(set(range(sweep.count)) - margins.keys()) for _ in range(1)))
-    return margins
+    )
+    margins.run(runner, iter(margins.missing, []))
+    return {cell: tuple(fields_of(line)[1:]) for (cell,), line in margins.lines.items()}

@@ -7,22 +7,20 @@ import re
 import shlex
 from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
 
 import pytest
 from small_site import SITE
 
 from fem.__main__ import main
 from fem.batch.shard import Shard
-from fem.batch.table import line_of
+from fem.batch.table import table_text
 from fem.case.case import load_case
 from fem.case.validation import CaseError
 from fem.cli.batch import page_of
 from fem.hall.file import read_hall
 from fem.hall.places import INVALID, UNKNOWN, class_of, draw_places, plan_of
-from fem.hall.plan import HallItem
 from fem.hall.result import HallResult
-from fem.hall.run import RUN_COLUMNS, HallRuns, run_hall
+from fem.hall.run import run_hall
 from fem.hall.site import run_hall_at_site
 from fem.hall.study import weakness
 from fem.results.figures import SCALARS
@@ -163,13 +161,25 @@ def test_every_container_is_verified_at_a_site_as_by_assess(tmp_path, base, monk
     assert "'motion.scale' has no effect at a site" in capsys.readouterr().err
 
 
-def test_motions_that_destroy_a_corner_are_counted_by_themselves_and_are_worse_than_those_without_an_outcome():
-    runs = HallRuns(hall=SimpleNamespace(item=lambda *at: HallItem(*at, {})))
-    for motion, outcome in enumerate(["rock", "", "invalid", "", "invalid", ""]):
-        fields = {"container": 0, "motion": motion, "status": "completed" if outcome else "failed"}
-        fields |= {"outcome": outcome, "rotation_ratio": 0.3, "max_slip_m": 0.0}
-        runs.note(line_of(fields.get(name) for name in RUN_COLUMNS))
-    assert (runs.counts(0), runs.governing(0)) == ((0, 2, 3), 2)
+def test_motions_that_destroy_a_corner_are_counted_by_themselves_and_are_worse_than_those_without_an_outcome(
+    tmp_path, base, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    motions = tuple(f"{number}.csv" for number in range(6))
+    for number, name in enumerate(motions):
+        samples = [f"{0.1 * k},{0.5 * (k % 2)}" for k in range(5 + number)]
+        listed(tmp_path, "\n".join(["time_s,acceleration_m_s2", *samples]), name)
+    out, options = tmp_path / "out", {"motions": motions, "checks": "none"}
+    run_hall(read_hall(listed(tmp_path, "name,width_m\na,3\n")), load_case("base.toml"), out, **options)
+    rows = rows_of(out / "runs.csv")
+    for row, outcome in zip(rows, ["rock", "", "invalid", "", "invalid", ""], strict=True):
+        row |= {"status": "completed" if outcome else "failed", "outcome": outcome}
+    (out / "runs.csv").write_text(table_text(rows[0], (row.values() for row in rows)), encoding="utf-8")
+    renamed = read_hall(listed(tmp_path, "name,width_m\nb,3\n"))
+    (row,) = run_hall(renamed, load_case("base.toml"), out, **options).table
+    assert (row["name"], row["outcome"], row["motion"]) == ("b", "invalid", "2.csv")
+    counts = (row["motions_overturned"], row["motions_invalid"], row["motions_failed"])
+    assert counts == (0, 2, 3)
 
 
 def test_of_what_stands_the_larger_rotation_is_weaker_and_what_does_not_rock_follows_the_static_rule():
