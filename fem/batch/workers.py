@@ -25,9 +25,11 @@ from multiprocessing.synchronize import Semaphore
 from types import TracebackType
 from typing import Self, TypeVar
 
-#: number of cases from which processes pay off for the compiled models: to start they take as long as a thousand rigid
-#: runs, and runs that follow records step for so long that threads do as well
+#: number of cases from which processes pay off for the compiled models: to start from nothing they take as long as a
+#: thousand rigid runs
 WORTH_PROCESSES = {"rigid": 2000, "reduced": 100, "full": 1}
+#: the same of processes that are forked, with all modules loaded
+WORTH_FORKS = {"rigid": 64, "reduced": 8, "full": 1}
 IN_THREADS = dict.fromkeys(WORTH_PROCESSES, math.inf)  #: no number: threads alone
 ENDING = (signal.SIGINT, signal.SIGTERM)  #: signals that end a process
 STDIN = "<stdin>"  #: file of a script that Python reads from its standard input
@@ -68,11 +70,12 @@ class LocalWorkers:
     `full` runs in processes. The compiled models step without the interpreter's lock, but building the model and the
     row takes two fifths of a rigid case: with threads, two cores are 1.3 times as fast as one. Many cases are
     therefore shared by one thread of this process, which works while the others start, and one process for each other
-    core. Started processes are kept for later cases; leaving the context ends them at once, as a case may take an hour.
+    core. They are forks of this process where it has no other thread yet, as at the command line. Started processes are
+    kept for later cases; leaving the context ends them at once, as a case may take an hour.
 
     Args:
         jobs: cores to use.
-        worth: number of cases of a model from which processes are started; default: `WORTH_PROCESSES`.
+        worth: number of cases of a model from which new processes are started; default: `WORTH_PROCESSES`.
     """
 
     def __init__(self, jobs: int, worth: Mapping[str, float] | None = None) -> None:
@@ -83,12 +86,12 @@ class LocalWorkers:
         self._pools: dict[tuple[type[Executor], int], Executor] = {}
 
     def __call__(self, model: str, count: int) -> Sequence[Pool]:
-        jobs, worth = self._jobs, count >= self._worth[model]
+        jobs, worth = self._jobs, count >= (WORTH_FORKS if _may_fork() else self._worth)[model]
         if model == "full" and worth:
             return [self._processes(jobs)]
         started = (ProcessPoolExecutor, jobs - 1) in self._pools
         if jobs > 1 and (started or worth):
-            return [self._threads(1), self._processes(jobs - 1)]
+            return [self._processes(jobs - 1), self._threads(1)]  # the thread second: it would rule out forks
         return [self._threads(jobs)]
 
     def __enter__(self) -> Self:
@@ -112,11 +115,19 @@ class LocalWorkers:
     def _processes(self, count: int) -> Pool:
         key = ProcessPoolExecutor, count
         if key not in self._pools:
-            context = get_context("spawn")
+            context = get_context("fork" if _may_fork() else "spawn")
             self._over = self._over or context.Semaphore(0)
             executor = ProcessPoolExecutor(count, context, _end_with_parent, (os.getpid(), self._over))
             self._pools[key] = self._held.enter_context(executor)
         return Pool(self._pools[key], count)
+
+
+def _may_fork() -> bool:
+    """Whether a copy of this process would lack nothing: it has no other thread, of Python or of a library.
+
+    Such a thread may hold a lock, which nobody releases in the copy.
+    """
+    return sys.platform == "linux" and len(os.listdir("/proc/self/task")) == 1
 
 
 def hand_out(

@@ -12,10 +12,12 @@ from fem.batch.runner import Row
 from fem.batch.table import row_of, table_text
 from fem.case.case import Case, read_case
 from fem.case.data_files import FILE_KEYS
+from fem.case.tables.input_keys import TOLERANCE
 from fem.case.toml import toml_document
 from fem.results.figures import Place, columns_of, types_of
 from fem.results.outcome import Outcome
 from fem.run.bracket import values_to_try
+from fem.run.changed_runs import DRAWN_TOLERANCE
 from fem.site_check.file import FULL, SiteRequest
 from fem.site_check.result import MOTIONS, SiteRun
 from fem.site_check.rule import RuleFound, RunGroup, groups_of
@@ -197,6 +199,10 @@ class RunCases:
             "motion.file": str(place / f"{key.stem}_h.csv"),
             "motion.scale": key.factor,
         }
+        if key.stage in (FURTHER, HAZARD):  # they are counted
+            values[TOLERANCE] = max(
+                DRAWN_TOLERANCE, self.bases[key.mass, key.elevation].solver.energy_tolerance
+            )
         if key.vertical_sign:
             values |= {
                 "vertical.kind": "table",

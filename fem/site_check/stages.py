@@ -275,7 +275,7 @@ class Stages:
         return sorted(left, key=lambda key: (key.factor, key.stem, key.vertical_sign))
 
     def _make(self, runner: Runner, keys: Sequence[RunKey]) -> None:
-        """Make the further motions of these runs, and write their files."""
+        """Let the workers make the further motions of these runs, with their files."""
         for period in dict.fromkeys(key.building_period_s for key in keys):
             numbers = sorted({key.motion for key in keys if key.building_period_s == period})
             stage = keys[0].stage
@@ -286,14 +286,13 @@ class Stages:
                 self.plan.vertical,
                 self.longest,
                 period,
-                FIRST_OF_HAZARD if stage == HAZARD else FIRST_FURTHER,
+                stage,
+                self.folder,
             )
             pools = runner.workers_of(self.request.heading.model, len(keys))
             for chunk, made in hand_out(numbers, make, pools, at_a_time=4, stop=runner.stop):
                 for number, motion in zip(chunk, made, strict=True):
-                    stem = motion_stem(number, period, stage)
-                    self.screening.motions[stem] = motion
-                    write_csv_files(self.folder, replace(motion, second=None), stem)
+                    self.screening.motions[motion_stem(number, period, stage)] = motion
 
 
 def further_motions(
@@ -302,11 +301,16 @@ def further_motions(
     vertical: bool,
     longest: float,
     period: float | None,
-    first: int,
+    stage: str,
+    folder: Path,
     numbers: Sequence[int],
 ) -> list[GroundMotion]:
-    """Artificial motions beyond the set, on the floor of a building of this period or on the ground (None)."""
+    """Artificial motions beyond the set, on the floor of a building of this period or on the ground (None).
+
+    Their files are written in the folder.
+    """
     table, made = request.motions, []
+    first = FIRST_OF_HAZARD if stage == HAZARD else FIRST_FURTHER
     for number in numbers:
         (motion,) = artificial_motions(
             target,
@@ -318,5 +322,7 @@ def further_motions(
             second=table.second_component,
             first=first + number,
         )
-        made.append(on_floor(request.building, motion, period))
+        moved = on_floor(request.building, motion, period)
+        write_csv_files(folder, replace(moved, second=None), motion_stem(number, period, stage))
+        made.append(moved)
     return made
