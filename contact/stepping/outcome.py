@@ -131,6 +131,16 @@ def on_resting_floor(run: RunState, since: float, place: Sequence[float]) -> Run
 
 
 @inlined
+def least_sunk(run: RunState, begin: int, end: int) -> float:
+    """How much lower the first of some points of the base bears than on an undamaged floor [m]."""
+    crushed, camber = run.old.crushed, run.problem.contact.camber
+    least = crushed[begin] + camber[begin]
+    for i in range(begin + 1, end):
+        least = min(least, crushed[i] + camber[i])
+    return least
+
+
+@inlined
 def mean_of_row(run: RunState) -> float:
     """How much lower the mass centre of a row is, where the floor is crushed [m]."""
     sunk, mass = 0.0, 0.0
@@ -165,9 +175,11 @@ def is_over(run: RunState, part: int) -> bool:
     moving = run.old.energy[KINETIC] + control.mass * floor_velocity * (
         0.5 * floor_velocity - run.old.pose[VELOCITY_X]
     )
-    sunk = 0.5 * (run.old.crushed[0] + run.old.crushed[control.base_points - 1])
     if in_a_row(run):
         sunk = mean_of_row(run)
+    else:
+        points = control.base_points
+        sunk = 0.5 * (least_sunk(run, 0, (points + 1) // 2) + least_sunk(run, points // 2, points))
     raised = max(0.0, lifting_energy(control, run.old, run.floor[0, 0], sunk)) if part == FREE else 0.0
     if moving + raised > RESTING_ENERGY * control.reference_energy:
         clock.rest_since = NEVER

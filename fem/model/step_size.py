@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from contact.interface.workspace import Contact
-from contact.motion.base_motion import BaseMotion
+from contact.motion.base_motion import BaseMotion, TableMotion
 from contact.stepping.scheme import Scheme, generalised_alpha, newmark
 from contact.stepping.state import Control
 from fem.case.case import Case, CaseError
@@ -18,6 +18,9 @@ from fem.runtime.arrays import FloatArray
 
 #: largest step over the time scale of rocking, 1/p, and over that of the base motion
 STEP_OF_ROCKING, STEP_OF_MOTION = 0.01, 0.02
+#: the latter of eager steps on a record, of which they span half an interval. On 80 artificial motions the rotation
+#: ratio of a rigid container scatters by as little (median 2e-5, 9 in 10 below 1e-3) as with steps of a fifth of one
+EAGER_STEP_OF_RECORD = 0.05
 #: share of the run below which a motion sets the step only while it lasts, in at most so many steps
 SHORT_SHARE, MOST_PIECES = 0.5, 2000
 #: largest step that may be given, over the shortest period of the motion
@@ -40,13 +43,19 @@ TRAIL_SHARE, TRAIL_TIME = 2e-2, 0.1
 MOST_SHARE, MOST_TRAIL = 8e-3, 3e-2
 #: the same of a rigid container: it does not ring, and loses energy once, at the impact itself
 MOST_RIGID_SHARE, MOST_RIGID_TRAIL = 1e-1, 4e-1
-EAGER_TOLERANCE = 2.0  #: above which its steps are eager: for maps
+EAGER_TOLERANCE = 2.0  #: above which its steps are eager, as of maps
 #: the same of a loose stack of rigid boxes, which rattle
 MOST_RATTLING_SHARE = 4e-2
 #: energy of a contact, over the energy to overturn, below which the energy balance alone controls the step
 SOFT_CLOSING = 1e-6
 #: beyond both limits a Newmark run without averaging gains energy
 STIFF_CONTACT, LARGE_CONTACT_STEP = 3.0, 0.7
+
+
+def steps_eagerly(case: Case) -> bool:
+    """Whether a run steps as those of maps do: of rigid bodies on the floor, with a loose tolerance."""
+    rigid = case.solver.model == "rigid" and case.container.bodies == 1
+    return rigid and case.solver.energy_tolerance > EAGER_TOLERANCE
 
 
 def largest_step_of(
@@ -65,13 +74,14 @@ def largest_step_of(
     Raises:
         CaseError: a given step that is too long for a motion.
     """
-    solver, output = case.solver, case.output
+    solver, output, eager = case.solver, case.output, steps_eagerly(case)
     largest, ends = STEP_OF_ROCKING / rocking, set[float]()
     if solver.step_s != "auto":
         largest = solver.step_s
     most = largest
     for motion in motions:
-        wanted, (begin, end) = STEP_OF_MOTION * motion.time_scale, motion.span
+        share = EAGER_STEP_OF_RECORD if eager and isinstance(motion, TableMotion) else STEP_OF_MOTION
+        wanted, (begin, end) = share * motion.time_scale, motion.span
         pieces = (end - begin) / wanted if math.isfinite(end) else math.inf
         short = pieces <= MOST_PIECES and end - begin < SHORT_SHARE * duration
         inside = np.asarray(motion.break_times, dtype=float)
@@ -145,11 +155,11 @@ def control_of(
     softest = min(SOFT_CLOSING * energy / body.mass for energy, body in zip(energies, bodies, strict=True))
     rate = static.frequency_parameter
     loose = case.solver.energy_tolerance
-    share, trail, eager = MOST_SHARE, MOST_TRAIL, False
+    share, trail = MOST_SHARE, MOST_TRAIL
     if case.solver.model == "rigid":
         share = MOST_RATTLING_SHARE
         if container.row or not container.boxes:
-            share, trail, eager = MOST_RIGID_SHARE, MOST_RIGID_TRAIL, loose > EAGER_TOLERANCE
+            share, trail = MOST_RIGID_SHARE, MOST_RIGID_TRAIL
     spring, dashpots = float(contact.normal_stiffness[0]), contact.normal_stiffness * contact.relaxation_time
     joints = dashpots[: dashpots.size - len(case.links)]
     dashpot = float(joints.max() if container.boxes else dashpots[0])
@@ -184,7 +194,7 @@ def control_of(
         top_monitors=2,
         base_points=base,
         rolls=case.rolls,
-        eager=eager,
+        eager=steps_eagerly(case),
     )
 
 

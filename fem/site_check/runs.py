@@ -199,7 +199,10 @@ class RunCases:
             "motion.file": str(place / f"{key.stem}_h.csv"),
             "motion.scale": key.factor,
         }
-        if key.stage in (FURTHER, HAZARD):  # they are counted
+        if key.stage not in (
+            SET,
+            REPEATED,
+        ):  # by these the rule decides; others are counted, or seek its margin
             values[TOLERANCE] = max(
                 DRAWN_TOLERANCE, self.bases[key.mass, key.elevation].solver.energy_tolerance
             )
