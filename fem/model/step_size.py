@@ -18,8 +18,9 @@ from fem.runtime.arrays import FloatArray
 
 #: largest step over the time scale of rocking, 1/p, and over that of the base motion
 STEP_OF_ROCKING, STEP_OF_MOTION = 0.01, 0.02
-#: the latter of eager steps on a record, of which they span half an interval. On 80 artificial motions the rotation
-#: ratio of a rigid container scatters by as little (median 2e-5, 9 in 10 below 1e-3) as with steps of a fifth of one
+#: the latter of eager steps on a record, of which they span half an interval. Of 180 records of 5, 10 and 20 ms that
+#: rock a rigid container hard, 22 change between standing and overturning by it, against a tolerance of 0.1; with steps
+#: of a fifth of an interval 27, with the usual tolerance 16. The mean rotation ratio differs by at most 0.025
 EAGER_STEP_OF_RECORD = 0.05
 #: share of the run below which a motion sets the step only while it lasts, in at most so many steps
 SHORT_SHARE, MOST_PIECES = 0.5, 2000

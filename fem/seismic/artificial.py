@@ -36,6 +36,7 @@ SHORTEST_PERIOD_S = 0.02
 #: the longest period is matched from beyond it
 BEYOND = 1.05
 PERIODS_PER_DECADE = 43
+#: of a motion of a set, whose spectrum is then 2.7 % off in the root mean square; after 15 it is 3.2 %
 PASSES = 25
 #: over the length of the motion: that of the transform. Finer harmonics than those of the motion itself shape the
 #: longest periods; without them the spectrum is 5 % off there
@@ -114,12 +115,13 @@ class Shaper:
     def _zero_end(self) -> ZeroEnd:
         return ZeroEnd(times=self.times)
 
-    def motion(self, target: Target, stream: Sequence[int]) -> FloatArray:
+    def motion(self, target: Target, stream: Sequence[int], passes: int = PASSES) -> FloatArray:
         """One component whose spectrum matches a target, shape (n,) [m/s2].
 
         Args:
             target: elastic spectrum at 5 %; at zero period, the peak.
             stream: of the random numbers.
+            passes: of the iteration.
         """
         peak = float(target(np.zeros(1))[0])
         wanted = target(self.periods)
@@ -128,7 +130,7 @@ class Shaper:
         motion *= peak / np.abs(motion).max()
         motion = self._finished(motion, peak)
         best, least = motion, math.inf
-        for more in reversed(range(PASSES)):
+        for more in reversed(range(passes)):
             ratios = wanted / pseudo_accelerations(STEP_S, motion, self.periods)
             error = float(np.mean((ratios - 1.0) ** 2))
             if error < least:
@@ -188,6 +190,7 @@ def artificial_motions(
     vertical: bool = True,
     second: float = 0.0,
     first: int = 1,
+    passes: int = PASSES,
 ) -> list[GroundMotion]:
     """Motions that match the elastic spectra of a site, each with phases of its own and by itself.
 
@@ -198,6 +201,7 @@ def artificial_motions(
         vertical: with a vertical component of other phases, matched to the vertical spectrum.
         second: with a second horizontal component of other phases, matched to this share of the spectrum; 0: without.
         first: number of the first one. Motion k of a seed does not depend on how many are made.
+        passes: in which each component is matched.
 
     Raises:
         ValueError: a stationary part that is too short or too long, or a period beyond Annex A.
@@ -207,9 +211,9 @@ def artificial_motions(
         GroundMotion(
             name=f"motion_{number:02d}",
             step=STEP_S,
-            horizontal=shaper.motion(action.horizontal, (seed, number, 0)),
-            vertical=shaper.motion(action.vertical, (seed, number, 1)) if vertical else None,
-            second=second * shaper.motion(action.horizontal, (seed, number, 2)) if second else None,
+            horizontal=shaper.motion(action.horizontal, (seed, number, 0), passes),
+            vertical=shaper.motion(action.vertical, (seed, number, 1), passes) if vertical else None,
+            second=second * shaper.motion(action.horizontal, (seed, number, 2), passes) if second else None,
             origin=f"artificial, seed {seed}, number {number}",
             stationary=stationary,
         )

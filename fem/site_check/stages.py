@@ -23,6 +23,7 @@ from fem.site_check.yearly import annual_rates, hazard_motions, hazard_runs, roc
 
 #: numbers of the artificial motions beyond the set begin behind those of any set
 FIRST_FURTHER, FIRST_OF_HAZARD = 10_000, 100_000
+FURTHER_PASSES = 15  #: in which those are matched: they are many, and nobody compares one with the target
 #: why the slip in two directions is not known
 ON_A_SLOPE = (
     "Slip under both horizontal components at once is not computed on a sloping floor: how far it slides there is not "
@@ -321,6 +322,7 @@ def further_motions(
             vertical=vertical,
             second=table.second_component,
             first=first + number,
+            passes=FURTHER_PASSES,
         )
         moved = on_floor(request.building, motion, period)
         write_csv_files(folder, replace(moved, second=None), motion_stem(number, period, stage))

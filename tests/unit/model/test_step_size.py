@@ -8,6 +8,7 @@ from contact.stepping.integrator import FAILED
 from contact.stepping.outcome import run_to_end
 from fem.case.case import CaseError, load_case
 from fem.model.model import build_model
+from fem.run.outcome import run_without_history
 from fem.run.recorder import Recorder
 from fem.run.simulation import simulate, stepping_failure
 
@@ -101,6 +102,17 @@ def test_a_loose_tolerance_saves_steps_of_a_rigid_container_and_keeps_its_motion
         assert not build_model(
             rigid(solver__energy_tolerance=tolerance, solver__model="reduced")
         ).run.problem.control.eager
+
+
+def test_eager_steps_on_a_record_are_longer_and_keep_its_motion():
+    times = np.arange(0.0, 12.0, 0.01)
+    pulse = 4.0 * np.sin(2.0 * np.pi * times) * (times < 1.0)
+    record = rigid(solver__duration_s="auto").with_motion(times, pulse)
+    exact, close = (build_model(record.with_values({"solver.energy_tolerance": t})) for t in (1.0, 10.0))
+    verdicts = [run_without_history(model, None)[0] for model in (exact, close)]
+    assert close.run.clock[0].steps < 0.6 * exact.run.clock[0].steps
+    assert verdicts[0].rotation_ratio > 0.1
+    assert verdicts[1].rotation_ratio == pytest.approx(verdicts[0].rotation_ratio, rel=2e-3)
 
 
 def test_no_step_is_longer_than_the_samples_in_memory_reach():
