@@ -17,7 +17,7 @@ from fem.site_check.motions import ground_motions
 from fem.site_check.preview import Forecast
 from fem.site_check.result import SiteResult
 from fem.site_check.run import run_site
-from fem.site_check.runs import NOT_COMPUTED, SCANNED, RunCases
+from fem.site_check.runs import NOT_COMPUTED, SCANNED, RunCases, key_of
 from fem.site_check.stages import Stages
 
 CONTAINER = """
@@ -122,6 +122,17 @@ def test_runs_below_uplift_and_slip_are_not_computed_and_rest_where_they_are(com
     beyond = min((key for key in keys if stages.screening.used(key) > 1.3), key=stages.screening.used)
     (row,) = run_chunk(cases, [beyond])
     assert row["rotation_ratio"] > 1e-4 or row["max_slip_m"] > 1e-6
+
+
+def test_what_the_rule_decides_by_is_computed_as_a_single_run_and_what_is_counted_more_coarsely(computed):
+    result, folder = computed
+    request = load_site(folder / "site.toml")
+    made = RunCases.of(request, folder / "out")
+    tolerances = {run.stage: made(key_of(run)).solver.energy_tolerance for run in result.runs}
+    assert tolerances.keys() >= {"set", "repeated", "scan", "refined", "further"}
+    usual = request.container.solver.energy_tolerance
+    assert {tolerances.pop(stage) for stage in ("set", "repeated")} == {usual}
+    assert {*tolerances.values()} == {10.0}
 
 
 @pytest.mark.parametrize(("preset", "spared"), [("concrete C25/30", True), ("compacted gravel", False)])
