@@ -17,6 +17,7 @@ from fem.batch.runner import Runner
 from fem.batch.shard import Shard, Share, join_logs, lines_of_logs, read_shards
 from fem.batch.workers import LocalWorkers, WorkersOf
 from fem.case.case import Case
+from fem.results.disk import BYTES_BESIDE
 from fem.results.errors import OTHER_FOLDER, FolderError
 from fem.results.folder import ResultFolder, open_result_folder, program_of_results
 from fem.results.json_block import JsonBlock
@@ -91,10 +92,10 @@ class Study(Generic[ResultT]):
     #: computes what is missing of it; the status of the result says how far it came
     compute: Callable[[ResultFolder, Runner], ResultT]
     texts: Mapping[str, str]  #: files that say what is asked, by name
-    size: float  #: of its folder [bytes]
     subject: str  #: of a refusal, such as "the ensemble"
     way_out: str  #: where the disk has too little room
     progress: Callable[[Path], str]  #: of an unfinished one in a folder, in words; "" where nothing is lost
+    size: float = 0.0  #: of its folder, besides `BYTES_BESIDE` [bytes]
     cases: Sequence[Case] = ()  #: whose mesh and motions its folder keeps
     motions: Sequence[Case] = ()  #: likewise; their motions were read
     begun: StudyResult = field(default_factory=StudyResult)  #: its marking file while it runs
@@ -137,7 +138,7 @@ def run_study(study: Study[ResultT], folder: Path, **options: Unpack[StudyOption
         if progress := study.progress(folder):
             place.refuse_unfinished(progress)
         place.require_same_program()
-        place.require_room(study.size, study.subject, study.way_out)
+        place.require_room(study.size + BYTES_BESIDE, study.subject, study.way_out)
         mark = {kind.request: study.request}
         parts = read_shards(place, study.request, merge) if merge else []
         share = Share(shard) if shard else None

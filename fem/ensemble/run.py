@@ -33,7 +33,7 @@ from fem.ensemble.plan import Draw, Ensemble, sets_among
 from fem.ensemble.result import EnsembleResult
 from fem.ensemble.statistics import POINT_COLUMNS, PointRow, count_point, fragility_of
 from fem.ensemble.unknown import UnknownInputs
-from fem.results.disk import BYTES_BESIDE, table_bytes
+from fem.results.disk import table_bytes
 from fem.results.figures import FELL_FIRST, RUN_COLUMNS, SLIPPED, TURNED, Place, columns_of
 from fem.results.folder import ResultFolder
 from fem.results.kinds import ENSEMBLE
@@ -185,12 +185,12 @@ def _compute(
 def required_disk(
     ensemble: Ensemble, unknown: UnknownInputs, copied: Sequence[FloorMotionPair] = ()
 ) -> float:
-    """Size of the folder of an ensemble [bytes]: the rows of the draws twice, a row a point, motions, figures."""
+    """Size of the folder of an ensemble [bytes]: the rows of the draws twice, a row a point, motions."""
     columns = OF_A_DRAW + len(ensemble.random) + len(unknown.keys)
     draws = 2 * table_bytes(ensemble.count * ensemble.draws, columns)
     motions = table_bytes(ensemble.replicates if ensemble.motions else 0, OF_A_MOTION)
     motions += sum(path.stat().st_size for motion in copied for path in motion.case.data_files.values())
-    return draws + table_bytes(ensemble.count, OF_A_POINT) + motions + BYTES_BESIDE
+    return draws + table_bytes(ensemble.count, OF_A_POINT) + motions
 
 
 def ensemble_hash(ensemble: Ensemble, motions: Sequence[str] | None = None) -> str:

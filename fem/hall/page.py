@@ -1,6 +1,5 @@
 """The page of a hall: what the containers did, the weakest first, by tag, and the command of each."""
 
-import shlex
 from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
@@ -22,6 +21,7 @@ from fem.report.comparison import case_rows
 from fem.results.figures import TURNED, Place, figures_of
 from fem.results.kinds import HALL
 from fem.results.outcome import Outcome
+from fem.runtime.identity import command_line
 
 BRIEFLY = 30  #: containers on the short page
 LOOKS = {"overturned": "bad", "invalid": "bad", "failed": "bad"}
@@ -97,10 +97,10 @@ def hall_report(
 
 def command_again(info: HallResult) -> str:
     """The command that computes the hall."""
-    words = ["python", "-m", "fem", "batch", "list.csv", "--case", "base.toml"]
-    words += ["--motion", *info.motions] if info.motions else ["--site", info.site] if info.site else []
+    words = ["--motion", *info.motions] if info.motions else ["--site", info.site] if info.site else []
     words += ["--margins", info.checks] * (info.checks != "weakest")
-    return shlex.join([*words, *["--allow-outside"] * bool(info.allow_outside)])
+    outside = bool(info.allow_outside)
+    return command_line("batch", "list.csv", "--case", "base.toml", *words, allow_outside=outside)
 
 
 def found_section(info: HallResult) -> html.PageSection:

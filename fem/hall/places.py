@@ -7,13 +7,14 @@ from typing import Any
 
 from fem.figures import style
 from fem.hall.result import RESULT_COLUMNS, HallResult
-from fem.results.outcome import ENDINGS, Outcome
+from fem.results.outcome import Outcome
 
 PICTURE = "figures/hall.svg"
 EARTH_RADIUS_M = 6.371e6
 MOST_NAMED = 8  #: of the weakest, in the picture
 #: classes from the weakest, what they are called, colour and mark; margins up to the number, above the one before
 OVERTURNED, INVALID, NONE = "overturned", "corner destroyed, not valid", "no outcome"
+FALLEN = {None: NONE, Outcome.OVERTURNED: OVERTURNED, Outcome.INVALID: INVALID}  #: by outcome
 UNKNOWN, BEYOND = "stood, margin not sought", "stood, margin above 3"
 MARGINS = ((1.5, style.VERMILLION, "s"), (2.0, style.ORANGE, "s"), (3.0, style.SKY, "o"))
 LOOKS = {
@@ -42,13 +43,9 @@ def plan_of(result: HallResult) -> list[tuple[float, float, Mapping[str, Any]]]:
 
 def class_of(row: Mapping[str, Any]) -> str:
     """The class of a row in the picture."""
-    if row["outcome"] is None:
-        return NONE
-    if row["outcome"] in ENDINGS:
-        return OVERTURNED if row["outcome"] == Outcome.OVERTURNED else INVALID
     margin = row["margin"] or row["margin_tried_to"]
-    if margin is None:
-        return UNKNOWN
+    if row["outcome"] in FALLEN or margin is None:
+        return FALLEN.get(row["outcome"], UNKNOWN)
     return next((f"stood, margin up to {limit:g}" for limit, *_ in MARGINS if margin <= limit), BEYOND)
 
 

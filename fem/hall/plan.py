@@ -1,7 +1,6 @@
 """A hall as it is computed: which containers differ, which runs there are, and the case of each."""
 
 import re
-import shlex
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -21,6 +20,7 @@ from fem.hall.file import HallFile, HallRow
 from fem.model.geometry import build_container
 from fem.model.motion import build_motions
 from fem.run.expected import expected_s, expected_words, say_expected
+from fem.runtime.identity import command_line
 
 MOST_RUNS = 200_000  #: unless it is forced
 MOST_NAMED = 20  #: bad rows in a refusal
@@ -44,7 +44,7 @@ class Hall:
     motions: tuple[FloorMotionPair, ...] = ()  #: in place of that of the base case
     named: tuple[str, ...] = ()  #: these, as they were named on the command line
     rows: tuple[HallRow, ...] = ()  #: each with its container, or why it is refused
-    containers: Mapping[str, Mapping[str, Any]]  #: values of the keys that each sets, by hash
+    containers: Mapping[str, HallRow]  #: by hash, the first row of each
 
     @cached_property
     def keys(self) -> list[Mapping[str, Any]]:
@@ -61,8 +61,8 @@ class Hall:
     def items(self) -> list[HallItem]:
         """All runs; those of a container follow one another."""
         motions = range(len(self.keys))
-        containers = enumerate(self.containers.values())
-        return [HallItem(number, motion, values) for number, values in containers for motion in motions]
+        rows = enumerate(self.containers.values())
+        return [HallItem(number, motion, row.values) for number, row in rows for motion in motions]
 
     def model_of(self, item: HallItem) -> str:
         """The model of a run."""
@@ -71,14 +71,14 @@ class Hall:
     def command(self, item: HallItem, values: Mapping[str, Any]) -> str:
         """The command that computes a run by itself, with the values of a row."""
         origin = self.base.origin_with({})
-        words = ["python", "-m", "fem", "run", origin.place, *["--allow-outside"] * origin.allow_outside]
+        words = ["run", origin.place, *["--allow-outside"] * origin.allow_outside]
         if self.named:
             words += ["--motion", self.named[item.motion].partition(",")[0].strip()]
         # with a vertical file of a pair, or that a motion among pairs has none
         set_by_motion = {k: v for k, v in self.keys[item.motion].items() if k != MOTION_FILE}
         for key, value in {**set_by_motion, **values}.items():
             words += ["--set", f"{key}={value if isinstance(value, str) else toml_value(value)}"]
-        return shlex.join(words)
+        return command_line(*words)
 
     def hash_of(self, values: Mapping[str, Any]) -> str:
         """The hash of a container's case under the first motion, once its mesh and motions can be built.
@@ -105,7 +105,7 @@ class Hall:
         Raises:
             CaseError: no good row; with `strict` any bad row.
         """
-        containers: dict[str, Mapping[str, Any]] = {}
+        containers: dict[str, HallRow] = {}
         numbers: dict[str, int] = {}  #: of the containers, by hash
         seen: dict[str, dict[str, Any]] = {}  #: by what a row sets: its container, or why it is refused
         rows = []
@@ -114,7 +114,7 @@ class Hall:
             if not row.reason and values not in seen:
                 try:
                     digest = hash_of(row.values)
-                    containers.setdefault(digest, row.values)
+                    containers.setdefault(digest, row)
                     seen[values] = {"container": numbers.setdefault(digest, len(numbers))}
                 except ValueError as error:
                     seen[values] = {"reason": _in_words_of_list(str(error), self.base)}

@@ -76,7 +76,7 @@ def run_hall(
             motion_covered=motions_left_out(base, pairs),
             checks=checks,
         )
-        size = study.size + 2.0 * table_bytes(len(hall.items), len(RUN_COLUMNS))
+        size = 2.0 * table_bytes(len(hall.items), len(RUN_COLUMNS))
         study = replace(
             study, size=size, cases=[] if pairs else [base], motions=[pair.case for pair in pairs]
         )

@@ -3,7 +3,6 @@
 The verifications follow one another, each on all cores. What is kept of a finished one is a line of a log.
 """
 
-import shlex
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -23,8 +22,8 @@ from fem.hall.study import study_of, written
 from fem.results.figures import SLIPPED, TURNED
 from fem.results.folder import ResultFolder
 from fem.results.kinds import SITE
-from fem.results.run_files import copy_data_files
 from fem.run.expected import expected_words
+from fem.runtime.identity import command_line
 from fem.runtime.progress import SilentReporter
 from fem.seismic.action import LAST_PERIOD_S
 from fem.seismic.ground_motion import GroundMotion
@@ -127,16 +126,15 @@ class _AtSite:
 
     def compute(self, hall: Hall, begun: HallResult, results: ResultFolder, runner: Runner) -> HallResult:
         """Verify what is missing, and write the list with the answers, and its page."""
-        values, count = [*hall.containers.values()], len(hall.containers)
+        rows, count = [*hall.containers.values()], len(hall.containers)
         folders = [Path(FOLDERS) / f"{k + 1:03d}-{digest[:8]}" for k, digest in enumerate(hall.containers)]
-        names = {row.container: row.name for row in reversed(hall.rows)}
 
         def verified(left: Sequence[int]) -> Iterator[tuple[list[int], list[Row]]]:
             """The rows of these containers, one after another, until it is interrupted."""
             for done, k in enumerate(left):
                 if runner.stop():
                     return
-                request = self.request(values[k], names[k])
+                request = self.request(rows[k].values, rows[k].name)
                 if done == 0 and len(left) > 1:
                     _say_expected(len(left), request, runner)
                 runner.reporter.message(f"container {k + 1} of {count} at the site")
@@ -152,16 +150,16 @@ class _AtSite:
         results.check()
         results.write_text(SITES, sites.table())
         pages = [(folder / "report.html").as_posix() for folder in folders]
-        rows = [
+        found = [
             sites.row(k) | {"page": page if (results.path / page).is_file() else None}
             for k, page in enumerate(pages)
         ]
 
         def command(number: int, values: Mapping[str, Any]) -> str:
             place = str(results.path / folders[number] / "site.toml")
-            return shlex.join(["python", "-m", "fem", "assess", place, *["--allow-outside"] * self.outside])
+            return command_line("assess", place, allow_outside=self.outside)
 
-        return written(results, replace(begun, runs=count), hall, rows, command)
+        return written(results, replace(begun, runs=count), hall, found, command)
 
     def _row_of(self, request: SiteRequest, folder: Path, runner: Runner) -> Row | None:
         """The row of a container; None where it was interrupted."""
@@ -181,9 +179,6 @@ class _AtSite:
             return {"status": FAILED, "reason": str(error), "reasons": str(error)}
         if result.state != "finished":
             return None
-        # for the command of the row; what is no motion is not handed on
-        with suppress(CaseError):
-            copy_data_files(request.container, folder)
         answer = result.result
         return {
             "status": result.status,

@@ -15,7 +15,6 @@ from fem.hall.page import hall_report
 from fem.hall.places import PICTURE, draw_places, geojson
 from fem.hall.plan import Hall
 from fem.hall.result import NO_ANSWER, REFUSED, RESULT_COLUMNS, HallResult
-from fem.results.disk import BYTES_BESIDE
 from fem.results.figures import SLIPPED, TURNED
 from fem.results.folder import ResultFolder
 from fem.results.kinds import HALL
@@ -78,7 +77,6 @@ def study_of(
         begun=begun,
         compute=partial(compute, begun),
         texts={"list.csv": file.table.text, "base.toml": toml_document(hall.base.given())},
-        size=BYTES_BESIDE,
         subject=f"the hall ({begun.distinct} containers)",
         way_out="take fewer rows",
         progress=lambda results: "what was computed so far",

@@ -1,6 +1,5 @@
 """The report of a response curve: where it overturns and coexists, the curve, its points, the request."""
 
-import shlex
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -17,6 +16,7 @@ from fem.response.answer import branches_in_words, response_answer
 from fem.response.records import POINT_FIGURES, PointRow
 from fem.response.result import ResponseResult
 from fem.results.kinds import RESPONSE
+from fem.runtime.identity import command_line
 
 FIGURES = ("figures/response_curve.svg", "figures/sections.svg", "figures/portraits.svg")
 STABLE = ": amplitudes do not diverge, and without drive the motion dies out."
@@ -78,7 +78,7 @@ def response_report(folder: Path, *, signature: Signature | None = None) -> str:
         ],
         again=studies.Again(
             words="Save the file below as case.toml:",
-            command=shlex.join(["python", "-m", "fem", "response", "case.toml", *_options(info.request)]),
+            command=command_line("response", "case.toml", *_options(info.request)),
             files=[("case.toml", studies.text_of(folder / "case.toml"))],
         ),
     )

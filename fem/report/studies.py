@@ -1,6 +1,5 @@
 """Common parts of the reports of sweeps, ensembles and response curves: answer, drawings, how to repeat them."""
 
-import shlex
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,6 +15,7 @@ from fem.html.page import Page, Signature, html_of, svg_element
 from fem.html.units import short, typeset
 from fem.report.comparison import limits_section
 from fem.results.errors import FolderError
+from fem.runtime.identity import command_line
 
 MOST_DRAWING_BYTES = 400_000  #: of a drawing, as SVG
 
@@ -161,7 +161,7 @@ def again_from_files(folder: Path, *, study: str, name: str, case: Case) -> Agai
     records = " and the files of its motions" if case.motion.kind == "table" else ""
     return Again(
         words=f'Save the two files below in one folder{records}, with case = "base.toml" in {name}.toml:',
-        command=f"python -m fem {study} {shlex.quote(name + '.toml')}",
+        command=command_line(study, f"{name}.toml"),
         files=[
             (f"{name}.toml", text_of(folder / f"{study}.toml")),
             ("base.toml", text_of(folder / "base.toml")),

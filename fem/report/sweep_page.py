@@ -4,7 +4,6 @@ Cells are numbered as in `table.csv`, the last axis the fastest. The map shows a
 numbers go in single precision; the values of axes and derived keys, from which the command of a cell is made, in full.
 """
 
-import shlex
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
@@ -31,6 +30,7 @@ from fem.report.motion_part import motions_of_sweep
 from fem.results.errors import FolderError
 from fem.results.figures import Place, Shown, figures_of
 from fem.runtime import units
+from fem.runtime.identity import command_line
 from fem.sweep.answers import AnswerRow, SweepAnswer, sweep_answer
 from fem.sweep.maps import SHARE_COLOURS, shares_of
 from fem.sweep.perturbation import input_in_words
@@ -297,7 +297,7 @@ def map_data(table: SweepTable, folder: Path) -> dict[str, Any]:
             for name, label, colour, found_any in OUTCOMES
         ],
         "colours": colour_scale("viridis", COLOURS),
-        "command": f"python -m fem run {shlex.quote(str(folder / 'base.toml'))}",
+        "command": command_line("run", str(folder / "base.toml")),
     }
 
 

@@ -33,7 +33,7 @@ from fem.response.records import (
 )
 from fem.response.request import ResponseRequest
 from fem.response.result import ResponseResult
-from fem.results.disk import BYTES_BESIDE, table_bytes
+from fem.results.disk import table_bytes
 from fem.results.folder import ResultFolder
 from fem.results.kinds import RESPONSE
 from fem.results.outcome import MODES
@@ -68,11 +68,9 @@ def run_response(
 
 
 def required_disk(request: ResponseRequest) -> float:
-    """Size of the folder of a response curve [bytes]: sections, portraits, the state twice, figures."""
+    """Size of the folder of a response curve [bytes]: sections, portraits, the state twice."""
     portrait = min(request.observe, PORTRAYED) * SAMPLES_PER_PERIOD * OF_A_SAMPLE
-    return (
-        table_bytes(2 * request.count, request.observe * OF_A_PERIOD + portrait + OF_A_POINT) + BYTES_BESIDE
-    )
+    return table_bytes(2 * request.count, request.observe * OF_A_PERIOD + portrait + OF_A_POINT)
 
 
 def _compute(

@@ -2,6 +2,7 @@
 
 import hashlib
 import platform
+import shlex
 from functools import cache
 from importlib import metadata
 from pathlib import Path
@@ -27,3 +28,8 @@ def program_identity() -> dict[str, str]:
         digest.update(source.relative_to(root).as_posix().encode())
         digest.update(source.read_bytes())
     return versions() | {"machine": platform.machine(), "sources": digest.hexdigest()[:16]}
+
+
+def command_line(*words: str, allow_outside: bool = False) -> str:
+    """A command of this program, for people to copy."""
+    return shlex.join(("python", "-m", "fem", *words, *["--allow-outside"] * allow_outside))

@@ -57,9 +57,9 @@ def texts_of(request: SiteRequest, kind: ResultKind, *, records: bool = True) ->
     return own | {name: text_of(request.origin.folder / name) for name in request.point_files.values()}
 
 
-def copy_files(request: SiteRequest, folder: Path) -> None:
-    """Copy the records of the site file, and the mesh of its container, to where the copy of that file names them."""
-    for path, place in _records(request).values():
+def copy_files(request: SiteRequest, folder: Path, *, records: bool = True) -> None:
+    """Copy the mesh of the container, and `records` of the site file, to where the copies of their files name them."""
+    for path, place in _records(request).values() if records else ():
         if not Path(place).is_absolute():
             (folder / place).parent.mkdir(parents=True, exist_ok=True)
             if real_path(folder / place) != real_path(path):

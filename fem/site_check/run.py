@@ -6,7 +6,6 @@ neither on that nor on the number of cores.
 
 import hashlib
 import platform
-import shlex
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -18,10 +17,10 @@ from fem.batch.runner import Runner
 from fem.batch.study import COMPLETED, INTERRUPTED, Study, StudyOptions, hash_of, run_study
 from fem.case.case import case_hash
 from fem.html.page import Signature
-from fem.results.disk import BYTES_BESIDE, table_bytes
+from fem.results.disk import table_bytes
 from fem.results.folder import ResultFolder
 from fem.results.kinds import SITE
-from fem.runtime.identity import versions
+from fem.runtime.identity import command_line, versions
 from fem.seismic.ground_motion import GroundMotion
 from fem.seismic.motion_set import MotionSetCheck, check_set
 from fem.site_check.answer import answer_of, governing_run, no_answer_yet
@@ -103,8 +102,7 @@ def run_site(
         compute=work.compute,
         texts=texts_of(request, SITE, records=copy_records),
         size=table_bytes(files, OF_A_MOTION)
-        + table_bytes(TIMES_THE_SET * len(stages.plan.of_set()), len(COLUMNS))
-        + BYTES_BESIDE,
+        + table_bytes(TIMES_THE_SET * len(stages.plan.of_set()), len(COLUMNS)),
         subject="the verification",
         way_out="take fewer motions",
         progress=lambda place: "its runs so far",
@@ -152,8 +150,8 @@ class _Verification:
         )
         written = write_ground(place.path, self.ground)
         motions = set_result(self.request, checked, self.ground, written)
+        copy_files(self.request, place.path, records=self.copy_records)
         if self.copy_records:
-            copy_files(self.request, place.path)
             motions = replace(motions, notes=(*motions.notes, *left_elsewhere(self.request)))
         for period, moved in self.stages.floors.items():
             for number, motion in enumerate(moved, start=1):
@@ -234,7 +232,7 @@ class _Verification:
                 else 0.0,
             ),
             provenance=SiteProvenance(
-                command=f"python -m fem assess {shlex.quote(request.origin.place)}{' --quick' if self.quick else ''}",
+                command=command_line("assess", request.origin.place, *["--quick"] * self.quick),
                 site_hash=self.digest,
                 case_hash=case_hash(request.container),
                 versions=tuple(versions().items()),

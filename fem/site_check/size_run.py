@@ -4,7 +4,6 @@ At a value only the runs of the set are computed, not the scan of factors nor th
 they are ready, so that an interrupted computation continues where it was.
 """
 
-import shlex
 import shutil
 import time
 from collections.abc import Iterator, Mapping, Sequence
@@ -18,10 +17,10 @@ from fem.batch.runner import Row, Runner
 from fem.batch.study import INTERRUPTED, Study, StudyOptions, hash_of, run_study
 from fem.batch.table import row_of, table_text
 from fem.case.case import Case
-from fem.results.disk import BYTES_BESIDE
 from fem.results.folder import ResultFolder
 from fem.results.kinds import SIZE
 from fem.run.expected import say_expected
+from fem.runtime.identity import command_line
 from fem.seismic.ground_motion import GroundMotion
 from fem.seismic.motion_set import check_set
 from fem.site_check.answer import FULFILLED, answer_of, governing_run
@@ -125,7 +124,7 @@ def run_size(
         begun=begun,
         compute=_Sizing(request=request, axis=axis, begun=begun, allow_outside=allow_outside).compute,
         texts=texts_of(request, SIZE),
-        size=BYTES_OF_SETS + BYTES_BESIDE,
+        size=BYTES_OF_SETS,
         subject="the result",
         way_out="take fewer motions",
         progress=lambda place: "its runs so far",
@@ -296,5 +295,5 @@ def _ground(request: SiteRequest, allow_outside: bool) -> list[GroundMotion]:
 
 def _command(request: SiteRequest, axis: SizeAxis) -> str:
     first, last = axis.values[0], axis.values[-1]
-    ends = f"--from {first:g} --to {last:g} --count {len(axis.values)}"
-    return f"python -m fem size {shlex.quote(request.origin.place)} --over {axis.key} {ends}"
+    ends = ("--from", f"{first:g}", "--to", f"{last:g}", "--count", str(len(axis.values)))
+    return command_line("size", request.origin.place, "--over", axis.key, *ends)

@@ -25,7 +25,7 @@ from fem.case.tables.duration import ends_at_rest, longest_time
 from fem.case.tables.uncertainty_table import UncertaintyTable
 from fem.case.toml import toml_document
 from fem.case.validation import CaseError
-from fem.results.disk import BYTES_BESIDE, table_bytes
+from fem.results.disk import table_bytes
 from fem.results.folder import ResultFolder
 from fem.results.kinds import SWEEP
 from fem.run.expected import expected_s, expected_words
@@ -77,7 +77,7 @@ def run_sweep(sweep: Sweep, folder: Path, **options: Unpack[StudyOptions]) -> Sw
         motions=[motion.case for motion in motions],
         compute=partial(_compute, sweep, motions, begun),
         texts={"sweep.toml": sweep.text, "base.toml": toml_document(sweep.base.given())},
-        size=table_bytes(sweep.count, OF_A_CELL) + BYTES_BESIDE,
+        size=table_bytes(sweep.count, OF_A_CELL),
         subject=f"the sweep ({sweep.count} cells)",
         way_out="take fewer values",
         progress=partial(_progress, sweep),

@@ -18,7 +18,7 @@ from fem.results.folder import program_of_results
 from fem.results.kinds import SITE as KIND
 from fem.runtime.progress import SilentReporter
 from fem.site_check.file import load_site
-from fem.site_check.inputs import texts_of
+from fem.site_check.inputs import copy_files, texts_of
 from fem.site_check.motions import ground_motions
 
 BASE = """
@@ -74,6 +74,7 @@ def asked(tmp_path, monkeypatch):
         if request.container.container.width_m == 2.0:
             raise CaseError("the deciding run cannot be computed")
         folder.mkdir(parents=True, exist_ok=True)
+        copy_files(request, folder, records=copy_records)
         for name, text in texts_of(request, KIND, records=copy_records).items():
             (folder / name).write_text(text, encoding="utf-8")
         mark = {"asked": "", **program_of_results()}
