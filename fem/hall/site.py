@@ -39,13 +39,11 @@ from mesh.errors import MeshError
 SITES, FOLDERS = "sites.csv", "sites"
 #: tables of a case that a verification takes from its site file
 OF_THE_SITE = ("motion", "vertical", "initial", "static", "solver", "output", "uncertainty", "joints")
-FIGURES = ("outcome", "margin", TURNED, SLIPPED, "motions_overturned", "motions_invalid")
 #: by column, the key of the answer
-OF_THE_ANSWER = {"margin": "margin_factor", TURNED: "rotation_ratio", SLIPPED: "slip_m"}
-OF_THE_ANSWER |= {"motions_overturned": "overturned", "motions_invalid": "invalid", "answer": "answer"}
-OF_THE_ANSWER |= {"factor_at_first_overturning": "factor_at_first_overturning"}
+FIGURES = {"margin": "margin_factor", TURNED: "rotation_ratio", SLIPPED: "slip_m"}
+FIGURES |= {"motions_overturned": "overturned", "motions_invalid": "invalid"}
 COLUMNS = {"container": int} | {
-    name: RESULT_COLUMNS[name] for name in ("status", "reason", *FIGURES, *AT_SITE)
+    name: RESULT_COLUMNS[name] for name in ("status", "reason", "outcome", *FIGURES, *AT_SITE)
 }
 
 
@@ -184,8 +182,10 @@ class _AtSite:
             "status": result.status,
             "reason": None if answer.answer else answer.sentence,
             "outcome": answer.governing.outcome if answer.governing else None,
+            **{name: getattr(answer, key) for name, key in FIGURES.items()},
+            "answer": answer.answer,
             "reasons": " ".join(answer.reasons or ([] if answer.answer else [answer.sentence])),
-            **{name: getattr(answer, key) for name, key in OF_THE_ANSWER.items()},
+            "factor_at_first_overturning": answer.factor_at_first_overturning,
         }
 
 

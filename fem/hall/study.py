@@ -93,12 +93,12 @@ def written(
         results: folder.
         begun: what is known of the result.
         hall: the list.
-        found: results of each container, by column.
+        found: results of each container, by column; its rank is added.
         command_of: the command of a row.
     """
-    order = sorted(range(len(found)), key=[*map(weakness, found)].__getitem__)
-    ranks = {number: rank for rank, number in enumerate(order, start=1)}
-    table = tuple(_rows(hall, found, ranks, command_of))
+    for rank, container in enumerate(sorted(found, key=weakness), start=1):
+        container["rank"] = rank
+    table = tuple(_rows(hall, found, command_of))
     outcomes, tags = Counter[str](), dict[str, dict[str, Any]]()
     for row in table:
         ending = ending_in(row)
@@ -118,27 +118,22 @@ def written(
     result = replace(result, answer=answer_of(result))
     fields = ([*row["given"].values(), *(row[name] for name in RESULT_COLUMNS)] for row in table)
     results.write_text(TABLE, table_text((*result.columns, *RESULT_COLUMNS), fields))
+    results.remove(PICTURE, GEOJSON)
     for name, text in ((PICTURE, draw_places(result)), (GEOJSON, geojson(result))):
         if text:
             results.write_text(name, text)
-        else:
-            results.remove(name)
     results.write_text(PAGE, hall_report(results.path, result=result))
     return result
 
 
-def _rows(hall: Hall, found: Sequence[Row], ranks: Mapping[int, int], command_of: CommandOf) -> Iterator[Row]:
+def _rows(hall: Hall, found: Sequence[Row], command_of: CommandOf) -> Iterator[Row]:
     """The rows of the list with their results."""
     for number, row in enumerate(hall.rows, start=1):
-        results, command = {"status": REFUSED, "reason": row.reason}, None
+        results: Row = {"status": REFUSED, "reason": row.reason}
         if (k := row.container) is not None:
-            results, command = found[k] | {"rank": ranks[k]}, command_of(k, row.values)
-        yield {
-            "row": number,
-            **{name: getattr(row, name) for name in LISTED},
-            **{name: results.get(name) for name in RESULT_COLUMNS},
-            "command": command,
-        }
+            results = found[k] | {"command": command_of(k, row.values)}
+        own = {"row": number} | {name: getattr(row, name) for name in LISTED}
+        yield own | {name: results.get(name) for name in (*RESULT_COLUMNS, "command")}
 
 
 def answer_of(result: HallResult) -> str:
