@@ -86,7 +86,10 @@ class LocalWorkers:
         self._pools: dict[tuple[type[Executor], int], Executor] = {}
 
     def __call__(self, model: str, count: int) -> Sequence[Pool]:
-        jobs, worth = self._jobs, count >= (WORTH_FORKS if _may_fork() else self._worth)[model]
+        jobs, least = self._jobs, self._worth[model]
+        if least < math.inf and _may_fork():
+            least = min(least, WORTH_FORKS[model])
+        worth = count >= least
         if model == "full" and worth:
             return [self._processes(jobs)]
         started = (ProcessPoolExecutor, jobs - 1) in self._pools

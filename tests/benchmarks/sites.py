@@ -16,7 +16,7 @@ from fem.seismic.action import SiteAction, eurocode_shape
 from fem.seismic.artificial import artificial_set
 
 REPEATS = 3
-SPECTRUM_S, MOTIONS_S, EXAMPLE_S = 0.1, 2.0, 30.0
+SPECTRUM_S, MOTIONS_S, EXAMPLE_S = 0.1, 2.0, 15.0
 STEP = 0.005
 
 
