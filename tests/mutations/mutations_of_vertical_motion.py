@@ -91,8 +91,8 @@ VERTICAL_MOTION = (
     ),
     Mutation(
         name="steps of the horizontal motion alone",
-        old="for motion in motions:\n        wanted",
-        new="for motion in motions[:1]:\n        wanted",
+        old="for motion in motions:\n        share",
+        new="for motion in motions[:1]:\n        share",
         tests=("unit/model/test_step_size.py", "-k", "vertical"),
     ),
 )
