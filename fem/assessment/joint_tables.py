@@ -66,7 +66,7 @@ def joint_tables(every: Sequence[JointDemand], verdict: Verdict) -> Iterator[Ren
         )
     yield from (forces, bolts)
     if any(joint.bolt_utilisation is not None for joint in joints):
-        yield Text("In parentheses: the larger tension over joints.bolt_capacity_N.\n")
+        yield Text("In parentheses: the larger tension over the capacity of a bolt.\n")
     left_out = len(every) - len(joints)
     yield Text(
         joints_note(verdict) + (f" {left_out} more joints are in run.json." if left_out else "") + "\n"

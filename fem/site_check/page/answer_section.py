@@ -201,7 +201,7 @@ def bolts_in_words(confirmed: Sequence[ConfirmedRun]) -> str:
     most = max(loaded, key=lambda run: run.bolt_tension_N or 0.0)
     tension, used = FIGURES["bolt_tension_N"].unit.text(most.bolt_tension_N, figures=2), most.bolt_utilisation
     of_it = (
-        "; no joints.bolt_capacity_N is given"
+        "; the capacity of a bolt is not given"
         if used is None
         else f", {short(used, 100, 2)} % of their capacity"
     )

@@ -217,7 +217,7 @@ def test_what_decides_is_repeated(change, words):
 def test_the_bolts_of_the_deciding_runs_are_told():
     pulled = replace(CONFIRMED, bolt_tension_N=18_200.0)
     assert bolts_in_words([CONFIRMED]) == ""
-    assert bolts_in_words([pulled]).endswith("18 kN of tension there; no joints.bolt_capacity_N is given.")
+    assert bolts_in_words([pulled]).endswith("18 kN of tension there; the capacity of a bolt is not given.")
     assert "18 kN of tension there, 7.3 % of their capacity." in bolts_in_words(
         [replace(pulled, bolt_utilisation=0.073)]
     )
