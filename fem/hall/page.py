@@ -187,11 +187,13 @@ def margin_words(row: A_ROW) -> str:
     margin, tried = row["margin"], row["margin_tried_to"]
     if margin is None:
         return "" if tried is None else f"> {FACTOR.text(tried)}"
-    ends = [
-        FACTOR.in_figures(row[name], 2) for name in ("margin_low", "margin_high") if row[name] is not None
-    ]
-    span = {0: "", 1: " (from {})", 2: " ({} to {})"}[len(ends)]
-    return FACTOR.text(margin) + span.format(*ends)
+    low, high = (
+        None if row[name] is None else FACTOR.in_figures(row[name], 2)
+        for name in ("margin_low", "margin_high")
+    )
+    if low is None:
+        return FACTOR.text(margin)
+    return f"{FACTOR.text(margin)} ({f'from {low}' if high is None else f'{low} to {high}'})"
 
 
 def commands_table(rows: Sequence[A_ROW]) -> html.Table:

@@ -55,7 +55,7 @@ STIFF_CONTACT, LARGE_CONTACT_STEP = 3.0, 0.7
 
 def steps_eagerly(case: Case) -> bool:
     """Whether a run steps as those of maps do: of rigid bodies on the floor, with a loose tolerance."""
-    rigid = case.solver.model == "rigid" and case.container.bodies == 1
+    rigid = case.solver.model == "rigid" and not case.container.is_loose
     return rigid and case.solver.energy_tolerance > EAGER_TOLERANCE
 
 

@@ -53,7 +53,7 @@ def remove_files(folder: Path, patterns: Sequence[str]) -> None:
                 file.unlink(missing_ok=True)
     for parent in {str(Path(pattern).parent) for pattern in patterns} - {"."}:
         for place in folder.glob(parent):
-            with suppress(OSError):  # something else lies in it
+            with suppress(OSError):  # it is not empty
                 place.rmdir()
 
 

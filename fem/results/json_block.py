@@ -30,7 +30,7 @@ class JsonBlock:
 
     def __getitem__(self, key: str) -> Any:
         """A value by its key in the file; KeyError names the keys there are."""
-        if key not in (known := _readers(type(self))):  # type: ignore[arg-type]
+        if key not in (known := _readers(type(self))):  # type: ignore[arg-type]  # a class can be hashed
             raise KeyError(f"no key {key!r}; known: {', '.join(known)}")
         return getattr(self, key)
 

@@ -84,6 +84,11 @@ def workers_for(model: Model, runs: int) -> int:
     return runs_in_memory(workers, full_model_memory(len(model.container.elements.nodes)))
 
 
+def tolerance_of_draws(case: Case) -> float:
+    """Energy tolerance of runs that are drawn or counted."""
+    return max(DRAWN_TOLERANCE, case.solver.energy_tolerance)
+
+
 def run_changes(
     model: Model,
     changes: Sequence[InputChange],
@@ -160,7 +165,7 @@ def _run_changed(run: Model, change: InputChange, shared: Shared, stop: Callable
     try:
         values = {**change.values, "output.fields_s": 0.0}
         if change.kind == "draw" or SUPPORT in change.values:  # a flat base takes twenty times as long
-            values[TOLERANCE] = max(DRAWN_TOLERANCE, run.case.solver.energy_tolerance)
+            values[TOLERANCE] = tolerance_of_draws(run.case)
         case = run.case.with_values(as_changed(run.case, values))
         motions = build_motions(case, (run.case, run.motion, run.vertical))
         model = build_model(case, shared.container_of(case), motions=motions)

@@ -28,7 +28,7 @@ from fem.model.static_checks import static_checks_of
 from fem.results.outcome import Ending, Outcome, ending_of
 from fem.results.run_result import Margin, Numerics, RunResult, Verdict
 from fem.run.bracket import Change, changes_of
-from fem.run.changed_runs import DRAWN_TOLERANCE, cost_of, workers_for
+from fem.run.changed_runs import cost_of, tolerance_of_draws, workers_for
 from fem.run.outcome import run_without_history
 from fem.run.recorder import Recorder
 from fem.run.simulation import simulate
@@ -323,7 +323,7 @@ def _trial(model: Model, values: Mapping[str, Value], stop: Callable[[], bool]) 
     own = model.case
     coarse: dict[str, Value] = {
         "output.fields_s": 0.0,
-        TOLERANCE: max(DRAWN_TOLERANCE, own.solver.energy_tolerance),
+        TOLERANCE: tolerance_of_draws(own),
     }
 
     @cache

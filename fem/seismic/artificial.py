@@ -36,7 +36,7 @@ SHORTEST_PERIOD_S = 0.02
 #: the longest period is matched from beyond it
 BEYOND = 1.05
 PERIODS_PER_DECADE = 43
-#: of a motion of a set, whose spectrum is then 2.7 % off in the root mean square; after 15 it is 3.2 %
+#: of a motion of a set, whose spectrum is then 2.7 % off in the root mean square; after 15 it is 3.3 %
 PASSES = 25
 #: over the length of the motion: that of the transform. Finer harmonics than those of the motion itself shape the
 #: longest periods; without them the spectrum is 5 % off there

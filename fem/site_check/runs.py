@@ -17,7 +17,7 @@ from fem.case.toml import toml_document
 from fem.results.figures import Place, columns_of, types_of
 from fem.results.outcome import Outcome
 from fem.run.bracket import values_to_try
-from fem.run.changed_runs import DRAWN_TOLERANCE
+from fem.run.changed_runs import tolerance_of_draws
 from fem.site_check.file import FULL, SiteRequest
 from fem.site_check.result import MOTIONS, SiteRun
 from fem.site_check.rule import RuleFound, RunGroup, groups_of
@@ -199,13 +199,8 @@ class RunCases:
             "motion.file": str(place / f"{key.stem}_h.csv"),
             "motion.scale": key.factor,
         }
-        if key.stage not in (
-            SET,
-            REPEATED,
-        ):  # by these the rule decides; others are counted, or seek its margin
-            values[TOLERANCE] = max(
-                DRAWN_TOLERANCE, self.bases[key.mass, key.elevation].solver.energy_tolerance
-            )
+        if key.stage not in (SET, REPEATED):  # others are counted, or seek the margin of the rule
+            values[TOLERANCE] = tolerance_of_draws(self.bases[key.mass, key.elevation])
         if key.vertical_sign:
             values |= {
                 "vertical.kind": "table",

@@ -24,7 +24,6 @@ from fem.evidence.validation.bodies import rigid_case, specimen
 from fem.evidence.validation.experiments import Experiment, Predictor
 from fem.evidence.validation.vote import (
     Block,
-    BoolArray,
     Vote,
     brier,
     by_threshold,
@@ -36,7 +35,7 @@ from fem.model.model import build_model
 from fem.records.spectrum import evenly_sampled, response_spectrum
 from fem.results.outcome import Outcome
 from fem.run.outcome import run_without_history
-from fem.runtime.arrays import FloatArray
+from fem.runtime.arrays import BoolArray, FloatArray
 from fem.runtime.threads import cores
 from mesh.errors import MeshError
 

@@ -17,9 +17,8 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from fem.runtime.arrays import FloatArray
+from fem.runtime.arrays import BoolArray, FloatArray
 
-BoolArray = NDArray[np.bool_]
 SHARE = 0.07  #: of the tests, which no block predicts
 NEAR = 3  #: neighbours in angle on either side with which a block predicts
 

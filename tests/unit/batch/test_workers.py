@@ -28,7 +28,7 @@ SCRIPT = dedent(
 HERE = ("before the start", True)
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="forks")
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere no process is forked")
 @pytest.mark.parametrize(
     ("count", "beside", "workers"),
     [

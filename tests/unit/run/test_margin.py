@@ -97,7 +97,7 @@ def test_the_low_end_is_that_of_a_draw_of_margin_or_band(with_draws):
     run, _ = with_draws
     margin, own = run.verdict.margin, run.case
     case = fem.load_case("rocking", RIGID)
-    coarse = {"solver.energy_tolerance": search.DRAWN_TOLERANCE}
+    coarse = {"solver.energy_tolerance": changed_runs.DRAWN_TOLERANCE}
     assert margin.low < margin.factor
 
     def falls(factor: float) -> bool:
