@@ -19,9 +19,9 @@ def code_note(static: StaticResult) -> str:
 def _values(static: StaticResult) -> str:
     values = static.code_values
     if values is None:
-        return "the values of [static]"
+        return "the values of the case"
     return (
-        f"the values of [static] in the case: a_gR = {values.ground_acceleration_m_s2:g} m/s2, "
+        f"the values of the case: a_gR = {values.ground_acceleration_m_s2:g} m/s2, "
         f"S = {values.soil_factor:g}, q = {values.behaviour_factor:g}, gamma_I = {values.importance_factor:g}, "
         f"T_C = {values.corner_period_s:g} s"
     )

@@ -14,15 +14,15 @@ from fem.runtime.units import visible_number
 
 MOST_JOINTS = 8  #: joints shown; of more, those with a largest value
 JOINTS_NOTE = (
-    "The boxes are bolted and move as one. The table gives the forces in their joints (means over output.history_s), "
-    "the tension in the bolts along one edge, the shear in the bolts beyond friction with the floor's mu_static, and "
-    "when a joint without bolts would open at an edge or slide."
+    "The boxes are bolted and move as one. The table gives the forces in their joints (means over the interval "
+    "of the history), the tension in the bolts along one edge, the shear in the bolts beyond static friction as on the "
+    "floor, and when a joint without bolts would open at an edge or slide."
 )
 OVERSTATED = (
     "Where impacts are elastic, means over them overstate the friction needed, the forces in the bolts, and how often "
     "joints without bolts would open or slide."
 )
-LOOSE_RUN = 'A run with container.joints = "loose" finds what loose boxes do.'
+LOOSE_RUN = "A run of the stack with loose joints finds what boxes without bolts do."
 LARGEST = ("max_shear_N", "max_moment_Nm", "bolt_tension_left_N", "bolt_tension_right_N", "bolt_shear_N")
 
 

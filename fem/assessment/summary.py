@@ -38,11 +38,6 @@ from fem.runtime.units import DEGREES, INVISIBLE, visible_number
 
 TEXT_WIDTH = 80
 LEANING = 0.01  #: tilt at the end over the slenderness angle from which it is said
-BAND_NOTE = (
-    "The band repeats the run with changed inputs: one at a time to the ends of the ranges that [uncertainty] states "
-    "or that follow from the case, and with all of them drawn at once. Numbers in parentheses are the least and the "
-    "largest of the runs that stand, or overturn, as this one does."
-)
 MARGIN_NOTE = (
     "The rotation ratio is not a margin. The margin is the factor on the motion at which the container overturns; "
     "--margin finds it."
@@ -104,11 +99,24 @@ def _parts(result: run_result.RunResult, folder: Path) -> Iterator[RenderableTyp
         yield from joint_tables(result.joints, verdict)
     if lacks_margin(result):
         yield Text(f"{MARGIN_NOTE}\n")
-    if verdict.band is not None:
-        yield Text(f"{BAND_NOTE}\n")
+    if note := band_note(verdict.band):
+        yield Text(f"{note}\n")
     if result.warnings:
         yield Text("".join(f"Warning: {warning}\n" for warning in result.warnings))
     yield from _table_of_pairs("Numerics", numerics_rows(result))
+
+
+def band_note(band: run_result.Band | None) -> str:
+    """What the band tried and what its ranges are; empty where nothing was varied."""
+    kinds = {member.kind for member in band.members[1:]} if band is not None else set()
+    if not kinds:
+        return ""
+    at_once = ", and with all of them drawn at once" if "draw" in kinds else ""
+    return (
+        "The band repeats the run with changed inputs: one at a time to the ends of their ranges, which the case "
+        f"states or which follow from it{at_once}. Numbers in parentheses are the least and the largest of the runs "
+        "that stand, or overturn, as this one does."
+    )
 
 
 def lacks_margin(result: run_result.RunResult) -> bool:

@@ -43,10 +43,7 @@ def sureness_in_words(result: RunResult) -> str:
         return "Unsure: see the band." if band is not None and band.unsure else ""
     if band is None:
         used = static_use(result) or 0.0
-        return (
-            f"Sure: the utilisation of the static rule is {used:.2f} and nothing else acts, so this motion was not "
-            "repeated with other inputs."
-        )
+        return f"Sure by the static rule alone: its utilisation is {used:.2f} and nothing else acts."
     tried = [member for member in band.members[1:] if member.outcome is not None]
     if not tried:
         return (

@@ -36,11 +36,11 @@ class Compared(NamedTuple):
 
 def compared_rows(static: StaticChecks, verdict: Verdict) -> list[Compared]:
     """Sliding and overturning under the run's own peak, then under the code's base shear."""
+    compared = static.own_motion, static.own_motion_vertical
     actions = [(static.own_motion, typeset(own_motion_name(static.to_result())))]
     if static.own_motion_vertical is not None:
         peak = quantity(static.peak_vertical_acceleration, "m/s²", figures=3)
         actions.append((static.own_motion_vertical, f"own peak, and {peak} vertical"))
-    own = [action for action, _ in actions]
     if (code := static.by_code) is not None:
         q = code.values.behaviour_factor
         codes = [(code.as_given, f"code, q = {short(q)}"), (code.q1, "code, q = 1")]
@@ -55,7 +55,9 @@ def compared_rows(static: StaticChecks, verdict: Verdict) -> list[Compared]:
             exceeded=not rule.passed,
             clause=rule.clause.removeprefix(EDITION).removesuffix(f", {check}"),
             rule=rule_says(check, rule.utilisation if math.isfinite(rule.utilisation) else None),
-            run=typeset(words_of(verdict)) if action in own and verdict.outcome else "",
+            run=typeset(words_of(verdict))
+            if verdict.outcome and any(action is own for own in compared)
+            else "",
         )
         for action, name in actions
         for check, rule, words_of in (

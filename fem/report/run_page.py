@@ -13,7 +13,6 @@ from fem.assessment.loose_boxes import largest_joint_slip
 from fem.assessment.ranges import largest_ratio, largest_rotation, largest_slip, of_band
 from fem.assessment.rule_or_run import governing
 from fem.assessment.summary import MARGIN_NOTE, lacks_margin, outcome_sentence, result_rows
-from fem.assessment.sureness import ending
 from fem.case.case import Case
 from fem.case.tables.unknown_inputs import WORDS
 from fem.figures.cache import drawings_of
@@ -198,7 +197,7 @@ def _sure(verdict: Verdict) -> tuple[str, str]:
         known = verdict.sure or ("unsure" if band.unsure else "same outcome")
         return known, f"{', '.join(band.outcomes)}{decided}"
     if verdict.sure:
-        return verdict.sure, "far below the static limits"
+        return verdict.sure, "by the static rule alone"
     return "not computed", html.joined(html.code("run --band"), " computes it")
 
 
@@ -214,10 +213,12 @@ def _reading(view: RunView, variations: VariationTable | None) -> Iterator[str]:
         yield html.link(f"{variations.changed} of {count} variations of one input", "variations")
         yield f" change{'s' if variations.changed == 1 else ''} the outcome"
         members = view.verdict.band.members if view.verdict.band else ()
-        crossing = [
-            member for member in members if member.kind == "draw" and ending(member) != ending(members[0])
+        together = [
+            member
+            for member in members
+            if member.kind in ("pair", "draw") and member.outcome not in (members[0].outcome, None)
         ]
-        yield "; draws of all inputs at once do. " if crossing and not variations.changed else ". "
+        yield "; changes of several at once do. " if together and not variations.changed else ". "
     if warnings := len(view.result.warnings or ()):
         yield f"{warnings} warning{'' if warnings == 1 else 's'}: see "
         yield html.link("numerics", "numerics")

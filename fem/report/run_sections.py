@@ -4,11 +4,11 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 
 from contact.reference.event_driven import EventError
-from fem.assessment.joint_tables import joints_note
+from fem.assessment.joint_tables import joints_note, unbolted
 from fem.assessment.loose_boxes import BOXES_NOTE
 from fem.assessment.ranges import impact_note
 from fem.assessment.rigid_check import check_against_rigid_block
-from fem.assessment.summary import BAND_NOTE
+from fem.assessment.summary import band_note
 from fem.html import sections as html
 from fem.html.units import number, quantity, ratio, short, typeset
 from fem.model.model import Model
@@ -51,7 +51,8 @@ def boxes_section(view: RunView) -> html.PageSection:
 def variations_section(view: RunView, variations: VariationTable | None) -> html.PageSection:
     """The outcome under changed assumptions, and over the unknown inputs."""
     title, band = "How the outcome changes", view.figures("band")
-    noted: list[html.Block] = [*band, html.Note(BAND_NOTE)] if band else []
+    note = band_note(view.verdict.band)
+    noted: list[html.Block] = [*band, *([html.Note(note)] if note else [])]
     if view.brief:
         return html.section(title, "variations", *noted, look="brief")
     if variations is None:
@@ -251,6 +252,7 @@ def joints_section(view: RunView) -> html.PageSection:
         html.Column("normal [kN]", normal, html.NUMBER),
         *(html.Column(head, partial(force, name), html.NUMBER) for head, name in forces.items()),
         html.Column("friction needed", friction, html.NUMBER),
+        html.Column("without bolts it", unbolted),
     ]
     return html.section(
         f"Joints between the boxes{impact_note(view.verdict)}",

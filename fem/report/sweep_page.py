@@ -141,7 +141,7 @@ def _sure_lines(table: SweepTable) -> Iterator[str]:
     )
     left_out = f" Left out: {info.left_out}." if info.left_out else ""
     yield (
-        "A copy changes one input over its range in [uncertainty], a pair of them or all at once, or the motion, "
+        "A copy changes one input over its range, a pair of them or all at once, or the motion, "
         f"friction or damping a little: {info.copies} copies of {info.perturbed} cells.{left_out}"
     )
     if inputs := [f"{input_in_words(key)} ({count})" for key, count in deciding(table)]:

@@ -47,7 +47,7 @@ def further_changes(case: Case) -> Iterator[InputChange]:
     if motion.kind == "harmonic":
         for share in PHASES:
             phase = math.remainder(motion.phase_rad + share * math.pi, 2.0 * math.pi)
-            yield change("phase of the floor", degrees(phase, 3), {"motion.phase_rad": phase})
+            yield change("phase of the motion", degrees(phase, 3), {"motion.phase_rad": phase})
     if case.has_vertical:
         key = "scale" if case.vertical.scale_to_m_s2 is None else "scale_to_m_s2"
         other = {f"vertical.{key}": -getattr(case.vertical, key)}
@@ -63,7 +63,7 @@ def further_changes(case: Case) -> Iterator[InputChange]:
     for factor in STRENGTHS:
         at_peak = f", peak {quantity(factor * peak, 'm/s²', figures=3)}" if peak else ""
         if values := scaled_motion(case, factor):
-            yield change("strength", f"× {factor:g}{at_peak}{', both motions' * both}", values)
+            yield change("strength of the motion", f"× {factor:g}{at_peak}{', both motions' * both}", values)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,7 +72,7 @@ class Varied:
 
     change: InputChange
     run: ChangedRun
-    changed: bool  #: another outcome than the first line's
+    changed: bool  #: another outcome than the first line's; one that failed has none
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,23 +93,25 @@ class VariationTable:
     def sentence(self) -> str:
         """The table in a few words."""
         count, outcomes = len(self.lines) - 1, [line.run.outcome for line in self.lines]
-        overturned, invalid = (
-            outcomes[1:].count(outcome) for outcome in (Outcome.OVERTURNED, Outcome.INVALID)
+        overturned, invalid, failed = (
+            outcomes[1:].count(outcome) for outcome in (Outcome.OVERTURNED, Outcome.INVALID, None)
         )
         words = [
-            f"The outcome is the same in all {count}."
-            if self.changed == 0
-            else f"In {self.changed} of {count} the outcome differs."
+            f"In {self.changed} of {count} the outcome differs."
+            if self.changed or failed
+            else f"The outcome is the same in all {count}."
         ]
         if overturned and outcomes[0] != Outcome.OVERTURNED:
             words.append(f"It overturns in {overturned}.")
         if invalid:
             words.append(f"It destroys a corner in {invalid}.")
+        if failed:
+            words.append(f"There is no outcome in {failed}.")
         own, *others = self.lines
         chosen = _reach([line for line in others if line.change.kind == "further"])
         unknown = _reach([own, *(line for line in others if line.change.kind != "further")])
         reaches = [
-            f"{unknown} with one input changed that is not known" if unknown else "",
+            f"{unknown} with one unknown input changed" if unknown else "",
             f"{chosen} with another floor, motion or start, which no range in the verdict covers"
             if chosen
             else "",
@@ -185,7 +187,7 @@ def variation_table(
     return VariationTable(
         model=case.solver.model,
         lines=tuple(
-            Varied(change=change, run=variation, changed=variation.outcome != own.outcome)
+            Varied(change=change, run=variation, changed=variation.outcome not in (own.outcome, None))
             for change, variation in zip((first, *chosen), (own, *runs), strict=True)
         ),
         left_out=tuple(left_out),

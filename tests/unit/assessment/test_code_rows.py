@@ -73,7 +73,7 @@ def test_a_result_of_before_names_no_values():
         "clause": "EN 1998-1:2004, 4.3.3.2.1 (2)",
     }
     note = code_note(StaticResult.from_json(old))
-    assert "take the values of [static]. They" in note and note.count(APPLIES_NOT) == 1
+    assert "take the values of the case. They" in note and note.count(APPLIES_NOT) == 1
 
 
 @pytest.mark.parametrize("name", ["seed_box", "rocking", "sliding", "overturning", "free_rocking"])

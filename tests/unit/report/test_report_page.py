@@ -10,6 +10,7 @@ import pytest
 from markupsafe import escape
 
 from fem.__main__ import main
+from fem.assessment.joint_tables import unbolted
 from fem.case.case import load_case, read_case
 from fem.html.units import typeset
 from fem.model.model import build_model
@@ -18,6 +19,7 @@ from fem.report.animation import animation_of
 from fem.report.run_page import Signature, run_report
 from fem.report.variations import variation_table
 from fem.results.reader import open_run
+from fem.results.run_result import ChangedRun
 from fem.run.run import RunOptions, run_case
 
 SECTIONS = """verdict-title asked assumptions static motion-title variations modes block joints sheet
@@ -96,6 +98,43 @@ def test_a_star_is_explained_where_a_line_has_one(folder, monkeypatch, differs):
     )
     page = run_report(run, every_variation=True)
     assert (" *</td>" in page) == ("* the outcome differs" in page) == differs
+
+
+def rows_of(page, label):
+    """The texts of the cells of a table."""
+    table = re.search(rf'aria-label="{label}">.*?</table>', page, re.DOTALL)[0]
+    return [re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", row) for row in re.findall(r"<tr.*?</tr>", table)[1:]]
+
+
+def test_the_codes_rows_are_not_compared_even_where_their_base_shear_is_that_of_the_run(page):
+    found = {row[1]: row[6] for row in rows_of(page, "static rule and run")}
+    assert [found[action] for action in found if action.startswith("code")] == ["not compared"] * 2
+    assert "not compared" not in [found[action] for action in found if action.startswith("own")]
+
+
+def test_the_page_says_what_each_joint_would_do_without_bolts(page, folder):
+    joints = open_run(folder).typed_result.joints
+    assert [row[-1] for row in rows_of(page, "joints between the boxes")] == list(map(unbolted, joints))
+
+
+def test_no_note_of_the_page_names_a_key(page):
+    notes = re.findall(r'<p class="note">(.*?)</p>', page, re.DOTALL)
+    assert any("joints" in note for note in notes) and any("band" in note for note in notes)
+    assert not [note for note in notes if re.search(r"\[[a-z]+\]|[a-z]_[a-z]+\b|\b[a-z]+\.[a-z]+\b", note)]
+
+
+def test_a_variation_that_failed_has_no_outcome_that_could_differ(folder, monkeypatch):
+    run, computed = open_run(folder), variations.run_changes
+
+    def one_fails(*given, **options):
+        _, *others = computed(*given, **options)
+        return [ChangedRun(status="failed", error="no equilibrium"), *others]
+
+    before = variation_table(run, every=True)
+    monkeypatch.setattr(variations, "run_changes", one_fails)
+    table = variation_table(run, every=True)
+    assert not table.lines[1].changed and table.changed == before.changed - before.lines[1].changed
+    assert "There is no outcome in 1." in table.sentence and "in all" not in table.sentence
 
 
 def test_what_is_not_known_and_what_is_chosen_have_ranges_of_their_own(folder):

@@ -119,8 +119,7 @@ def test_a_rest_far_below_the_static_limits_is_sure_without_a_band(tmp_path):
     found = run_case(case, case_text=case.text, folder=tmp_path).typed_result.verdict
     assert (found.outcome, found.sure, found.band) == ("rest", "sure", None)
     assert found.first_line.endswith(
-        "Sure: the utilisation of the static rule is 0.37 and nothing else acts, so this motion was not repeated "
-        "with other inputs."
+        "Sure by the static rule alone: its utilisation is 0.37 and nothing else acts."
     )
 
 
