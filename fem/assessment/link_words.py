@@ -106,7 +106,7 @@ def _left(link: LinkResult | NeighbourResult, what: str) -> str:
     return (
         ""
         if link.gap_left_m is None
-        else f", {SHORT_MILLIMETRES.text(link.gap_left_m)} of the {what} were left"
+        else f", {SHORT_MILLIMETRES.text(link.gap_left_m)} of the {what} was left"
     )
 
 

@@ -1,34 +1,46 @@
 """The margin of a run in one sentence: whether it stands, and by which factor on the motion it overturns."""
 
+from fem.assessment.motion_words import covered_in_words, is_cut
 from fem.results.outcome import Outcome
-from fem.results.run_result import Margin, Verdict
+from fem.results.run_result import Margin, MotionResult, Verdict
 from fem.runtime.units import DisplayUnit
 
 FACTOR = DisplayUnit(figures=3)
 
 
-def margin_in_words(verdict: Verdict | None) -> str:
-    """The margin of a verdict as a sentence; empty if none was computed."""
+def margin_in_words(verdict: Verdict | None, motion: MotionResult | None = None) -> str:
+    """The margin of a verdict as a sentence; empty if none was computed.
+
+    Args:
+        verdict: of a run.
+        motion: of that run, which may end before its motion does.
+    """
     if verdict is None or verdict.margin is None:
         return ""
     margin, stands = verdict.margin, verdict.outcome != Outcome.OVERTURNED
-    lead, early = f"{'Stands' if stands else 'Overturns'}; ", _destroyed_first(margin)
-    it = f"{lead}{early} and it " if early else lead
+    under, this = "", "this motion"
+    if motion is not None and is_cut(motion):
+        under, this = f" under {covered_in_words(motion)}", "this part of the motion"
+    lead, early = f"{'Stands' if stands else 'Overturns'}{under}; ", _destroyed_first(margin, this)
+    whom = "one of the row" if verdict.neighbours else "it"
+    subject = "one of the row" if verdict.neighbours and stands else "it" if early else ""
+    it = lead + (f"{early} and " if early else "") + (f"{subject} " if subject else "")
     if margin.factor is None:
         count, also = margin.runs, " and " if early else ""
-        whom = "one of the row" if verdict.neighbours else "it"
-        tried = f"{count or 'no'} multiple{'s' * (count > 1)} of this motion"
-        if count:
-            tried += f", up to {margin.largest_tried:.3g} times, do{'es' * (count == 1)} not overturn {whom}"
+        if count and margin.largest_tried > 1.0:
+            tried = (
+                f"{count} multiple{'s' * (count > 1)} of {this}, up to {margin.largest_tried:.3g} times, "
+                f"do{'es' * (count == 1)} not overturn {whom}"
+            )
         else:
-            tried += f" shows whether {whom} overturns"
+            tried = f"no multiple of {this} above 1 shows whether {whom} overturns"
         words = f"{lead}{early}{also}{tried}"
     elif margin.stands_up_to is None:
         still = "overturns" if stands else "still does"
-        words = f"{it}{still} at {margin.factor:.3g} times this motion, the weakest tried"
+        words = f"{it}{still} at {margin.factor:.3g} times {this}, the weakest tried"
     else:
-        up_to = "" if stands else f"stands up to {FACTOR.text(margin.stands_up_to)} times this motion, "
-        times = " times this motion" if stands else ""
+        up_to = "" if stands else f"stands up to {FACTOR.text(margin.stands_up_to)} times {this}, "
+        times = f" times {this}" if stands else ""
         words = f"{it}{up_to}overturns first at {FACTOR.text(margin.factor)}{times}"
     late = "" if early else _destroyed(margin)
     words += f"{_range(margin)}{_islands(margin)}{late}{_without_links(verdict, margin)}."
@@ -46,7 +58,7 @@ def _without_links(verdict: Verdict, margin: Margin) -> str:
     if most is None:
         return ""
     if margin.factor_without_links is None:
-        return f"; {it} stands up to {most:.3g}"
+        return f"; {it} does not overturn up to {most:.3g} times"
     return f"; {it} overturns first at {FACTOR.text(margin.factor_without_links)}"
 
 
@@ -56,8 +68,8 @@ def _range(margin: Margin) -> str:
         return f", nor does the strongest overturn any of {margin.draws} draws of what is not known"
     if margin.low is None or margin.high is None:
         return ""
-    low, high = FACTOR.in_figures(margin.low, 2), FACTOR.in_figures(margin.high, 2)
-    return f" ({low} to {high} over what is not known)"
+    ends = " to ".join(dict.fromkeys(map(FACTOR.text, (margin.low, margin.high))))
+    return f" ({ends} over what is not known)"
 
 
 def _islands(margin: Margin) -> str:
@@ -69,12 +81,12 @@ def _islands(margin: Margin) -> str:
     return f", stands again at {' and at '.join(again)}" if again else ""
 
 
-def _destroyed_first(margin: Margin) -> str:
+def _destroyed_first(margin: Margin, this: str) -> str:
     """At which factor a corner is destroyed, where that is below the first that overturns; empty elsewhere."""
     least = margin.destroyed_from
     if least is None or (margin.factor is not None and margin.factor <= least):
         return ""
-    return f"at {FACTOR.text(least)} times this motion a corner is destroyed,"
+    return f"at {FACTOR.text(least)} times {this} a corner is destroyed,"
 
 
 def _destroyed(margin: Margin) -> str:
@@ -104,4 +116,4 @@ def _draws(margin: Margin) -> str:
         return f" Over what is not known, {counts}"
     if margin.high is not None:
         return f" {counts.capitalize()}"
-    return f" Over what is not known it overturns from {FACTOR.in_figures(margin.low, 2)} times on; {counts}"
+    return f" Over what is not known it overturns from {FACTOR.text(margin.low)} times on; {counts}"

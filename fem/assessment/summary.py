@@ -133,7 +133,7 @@ def outcome_sentence(result: run_result.RunResult) -> str:
     outcome = _found(result)
     if result.status in ("interrupted", "running"):
         return f"Not finished ({result.status}). So far: {outcome}."
-    parts = (margin_in_words(result.verdict), f"Result: {outcome}.", sureness_in_words(result))
+    parts = (margin_in_words(result.verdict, result.motion), f"Result: {outcome}.", sureness_in_words(result))
     return " ".join(part for part in parts if part)
 
 

@@ -51,14 +51,16 @@ def wants_band(choice: bool | None, case: Case, result: RunResult) -> bool:
 def rests_far_below_limits(case: Case, result: RunResult) -> bool:
     """True if the run rests and no unknown input could use up the static reserve; where all that acts is in the rule.
 
-    It does not cover the joints of a loose stack, a neighbour, a push at the start, or a floor that moves up by a part
-    of gravity.
+    It does not cover the joints of a loose stack, a neighbour, a push at the start, a floor that moves up by a part of
+    gravity, or a range that the case states, which may be wider than the reserve.
     """
+    stated = any(isinstance(span, list) for _, span in case.uncertainty)
     used, lifting = static_use(result), (result.static or StaticResult()).ruling.utilisation_lifting or 0.0
     if (
         case.container.is_loose
         or case.neighbour
         or case.initial.is_pushed
+        or stated
         or lifting > MOST_LIFTING
         or used is None
     ):

@@ -49,8 +49,8 @@ def test_what_stops_and_ties_did_is_said_of_each():
     held = replace(hit, neighbour=2, to="neighbour 1", broken_at_s=1.5)
     assert links_in_words(RunResult(status="completed", stops=(hit, missed), ties=(missed, held))) == (
         "the stop on the left at 0.1 m was hit 2 times, at 0.5 m/s at most, with up to 200 kN; the stop on the left at "
-        "0.1 m was not touched, 12.3 mm of the gap were left; the tie on the left at 0.1 m stayed slack, 12.3 mm of "
-        "the slack were left; the tie of neighbour 2 on the left at 0.1 m to neighbour 1 carried up to 200 kN, and "
+        "0.1 m was not touched, 12.3 mm of the gap was left; the tie on the left at 0.1 m stayed slack, 12.3 mm of "
+        "the slack was left; the tie of neighbour 2 on the left at 0.1 m to neighbour 1 carried up to 200 kN, and "
         "broke at t = 1.500 s"
     )
 
@@ -100,5 +100,5 @@ def test_beside_the_margin_of_a_row_stands_that_of_the_container_alone(force, su
     margin = replace(margin, factor_without_links=2.0, without_links_tried_to=4.0)
     row = Verdict(outcome="rock", margin=margin, neighbours=(BESIDE,), stop_force_N=force)
     assert margin_in_words(row) == (
-        f"Stands; overturns first at 1.50 times this motion; {subject} overturns first at 2.00."
+        f"Stands; one of the row overturns first at 1.50 times this motion; {subject} overturns first at 2.00."
     )

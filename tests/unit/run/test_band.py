@@ -123,6 +123,20 @@ def test_a_rest_far_below_the_static_limits_is_sure_without_a_band(tmp_path):
     )
 
 
+def test_a_range_that_the_case_states_is_tried_even_far_below_the_static_limits(tmp_path):
+    """1.7 m/s2 is 0.39 of the friction of the middle of the range, and 1.16 of that of its lower end."""
+    changes = [
+        "motion.peak_acceleration_m_s2=1.7",
+        "contact.mu_static=[0.15, 0.75]",
+        "solver.model=rigid",
+        *SHORT,
+    ]
+    case = load_case("seed_stack", changes)
+    found = run_case(case, case_text=case.text, folder=tmp_path).typed_result.verdict
+    assert (found.outcome, found.sure) == ("rest", "regime unsure")
+    assert "slide" in found.band.outcomes and "Sure" not in found.first_line
+
+
 class TestWhatDoesNotFitTheTime:
     """What is computed follows from the run's own steps and sizes; what is left out is said."""
 
