@@ -1,13 +1,14 @@
 """Bodies with the mass properties of a specimen, and halves of a series of tests to fit on and to predict."""
 
 from collections.abc import Callable, Sequence
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
 from fem.case.case import Case
 from fem.evidence.verification.runs import STACK
 from fem.model.container import Container, discretise
+from fem.runtime.arrays import FloatArray
 from mesh.container import ContainerMesh, grid_quads
 from mesh.elevation import Elevation
 from mesh.errors import MeshError
@@ -20,9 +21,7 @@ TestT = TypeVar("TestT")
 FitT = TypeVar("FitT")
 
 
-def rigid_case(
-    *, width: float, height: float, element_size: float, **changes: float | str | list[float]
-) -> Case:
+def rigid_case(*, width: float, height: float, element_size: float, **changes: Any) -> Case:
     """A rigid block as deep as it is wide, on two corners, which does not slide; `__` in place of the dot of a key."""
     keys = {
         "container.width_m": width,
@@ -32,6 +31,30 @@ def rigid_case(
         "solver.element_size_m": element_size,
     }
     return STACK.with_values(keys | {key.replace("__", "."): value for key, value in changes.items()})
+
+
+def layer_shares(width: float, height: float, *, centroid: float, inertia_ratio: float) -> FloatArray:
+    """Shares of the mass, from the floor up, that three equal layers have of a block of given mass centre and inertia.
+
+    Args:
+        width, height: of the block [m].
+        centroid: height of the mass centre above the base [m].
+        inertia_ratio: moment of inertia about the mass centre over the mass [m2].
+
+    Raises:
+        MeshError: a layer would have a negative mass.
+    """
+    levels, layer = np.linspace(0.0, height, LAYERS + 1), height / LAYERS
+    middle = 0.5 * (levels[1:] + levels[:-1])
+    about_centroid = (middle - centroid) ** 2 + (layer**2 + width**2) / 12.0
+    conditions = np.stack([np.ones(LAYERS), middle, about_centroid])
+    shares = np.asarray(np.linalg.solve(conditions, [1.0, centroid, inertia_ratio]), dtype=np.float64)
+    if shares.min() < 0.0:
+        raise MeshError(
+            f"no body of {width:g} x {height:g} m has its mass centre at {centroid:g} m and an inertia of "
+            f"{inertia_ratio:g} m2 times its mass"
+        )
+    return shares
 
 
 def specimen(case: Case, *, centroid: float, inertia_ratio: float, columns: int = 1) -> Container:
@@ -47,17 +70,8 @@ def specimen(case: Case, *, centroid: float, inertia_ratio: float, columns: int 
         MeshError: a layer would have a negative mass.
     """
     width, height, mass = case.container.width_m, case.container.height_m, case.box_mass
-    levels = np.linspace(0.0, height, LAYERS + 1)
-    middle, layer = 0.5 * (levels[1:] + levels[:-1]), height / LAYERS
-    about_centroid = (middle - centroid) ** 2 + (layer**2 + width**2) / 12.0
-    shares = np.linalg.solve(
-        np.stack([np.ones(LAYERS), middle, about_centroid]), [1.0, centroid, inertia_ratio]
-    )
-    if shares.min() < 0.0:
-        raise MeshError(
-            f"no body of {width:g} x {height:g} m has its mass centre at {centroid:g} m and an inertia of "
-            f"{inertia_ratio:g} m2 times its mass"
-        )
+    shares = layer_shares(width, height, centroid=centroid, inertia_ratio=inertia_ratio)
+    levels, layer = np.linspace(0.0, height, LAYERS + 1), height / LAYERS
     quads = grid_quads(columns, LAYERS)
     across = np.linspace(-0.5 * width, 0.5 * width, columns + 1)
     return discretise(
@@ -67,7 +81,7 @@ def specimen(case: Case, *, centroid: float, inertia_ratio: float, columns: int 
             region=np.full(len(quads), int(Region.SOLID)),
             box=np.zeros(len(quads), dtype=np.int64),
             thickness=np.full(len(quads), case.container.depth_m),
-            areal_density=np.repeat(np.asarray(mass * shares / (width * layer), dtype=np.float64), columns),
+            areal_density=np.repeat(mass * shares / (width * layer), columns),
         ),
     )
 
