@@ -77,8 +77,8 @@ def _hit(floor: FloorNumbers) -> str:
     ratio, speed, crushing = floor.hit_rotation_ratio, floor.closing_speed_m_s, floor.crushing_per_hit_m
     if ratio is None or speed is None or crushing is None:
         return ""
-    gives = "crushes the corner" if crushing else "crushes nothing"
-    return f"back from {ratio:g} of the slenderness angle: {in_figures(speed, FEW)} m/s, which {gives}"
+    gives = "crush the corner" if crushing else "crush nothing"
+    return f"back from {ratio:g} of the slenderness angle it would strike at {in_figures(speed, FEW)} m/s and {gives}"
 
 
 def _in_units(value: float, *units: tuple[str, float]) -> str:

@@ -7,6 +7,7 @@ margin.
 """
 
 import io
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -186,20 +187,25 @@ def _static_table(static: run_result.StaticResult, verdict: run_result.Verdict) 
             slid, tilted = (run_slid(verdict), run_tilted(verdict)) if name.startswith("own") else ("", "")
             factor = 1e-3 * share_of_weight(action, static)
             demand = f"{visible_number(action.base_shear_N, 1e-3)} / {visible_number(sliding, factor)} kN"
-            use = action.utilisation_sliding
+            use = _use(action.utilisation_sliding, action.base_shear_N)
             table.add_row(
                 name, "sliding", demand, visible_number(use, 1.0, ".3f"), rule_says("sliding", use), slid
             )
             demand = (
                 f"{visible_number(action.tilting_moment_Nm, 1e-3)} / {visible_number(restoring, factor)} kNm"
             )
-            use, check = action.utilisation_overturning, "overturning"
+            use, check = _use(action.utilisation_overturning, action.tilting_moment_Nm), "overturning"
             table.add_row("", check, demand, visible_number(use, 1.0, ".3f"), rule_says(check, use), tilted)
             if (use := action.utilisation_lifting) is not None and use > 1.0:
                 lifted, weight = run_lifted(verdict), visible_number(static.weight_N, 1e-3)
                 demand = f"{visible_number(static.weight_N, 1e-3 * use)} / {weight} kN"
                 table.add_row("", "lifting", demand, f"{use:.3f}", rule_says("lifting", use), lifted)
     return table
+
+
+def _use(utilisation: float | None, demand: float | None) -> float | None:
+    """A utilisation as `run.json` has it, where a demand without any capacity has none: infinite."""
+    return math.inf if utilisation is None and demand else utilisation
 
 
 def share_of_weight(action: run_result.ActionResult, static: run_result.StaticResult) -> float:

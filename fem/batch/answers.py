@@ -151,7 +151,9 @@ def sentence_of(answer: Answer, axis: Axis, *, rising: bool, where: str = "") ->
     """An answer in words: "stood in every motion tried up to 0.42 g (slid up to 50 mm); first overturned at 0.44 g"."""
     every = f"stood in every {'motion' if axis.key.startswith('motion.') else 'case'} tried"
     limit = "" if answer.limit_slip is None else slip_in_words(answer.limit_slip)
-    overturned = f"slid beyond {limit}" if answer.slid else "not valid" if answer.invalid else "overturned"
+    overturned = (
+        f"slid beyond {limit}" if answer.slid else "destroyed a corner" if answer.invalid else "overturned"
+    )
     stood, fell = ends_in_words(answer, axis)
     if stood and answer.stood_slip is not None and answer.stood_slip >= MILLIMETRES.least:
         there = f" (slid up to {slip_in_words(answer.stood_slip)})"

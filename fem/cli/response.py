@@ -91,15 +91,16 @@ def page_of(request: "ResponseRequest", result: "ResponseResult", folder: Path) 
     yield f"  judged by   {request.observe} periods each, after {request.settle}"
     for direction in ("up", "down"):
         counted = Counter(point.words for point in result.points if point.direction == direction)
-        words = ", ".join(f"{count} x {word}" for word, count in counted.items())
+        words = ", ".join(f"{word} at {count}" for word, count in counted.items())
         yield f"  {direction:<11} {words or 'not reached'}"
     for change, sweep, where, how in branches(result):
         yield f"  {change:<11} {sweep}, {where}: {how}"
     judged = [point.stable for point in result.points if point.stable is not None]
-    yield (
-        f"  stable      {sum(judged)} of {len(judged)} points: amplitudes do not diverge, and without drive the "
-        "motion dies out"
-    )
+    if judged:
+        yield (
+            f"  stable      {sum(judged)} of {len(judged)} points: amplitudes do not diverge, and without drive the "
+            "motion dies out"
+        )
     for point in result.points:
         if point.status == "failed":
             yield f"  failed      {point.direction}, {point.frequency_Hz:.4g} Hz: {point.reason}"

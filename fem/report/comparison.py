@@ -51,10 +51,10 @@ def compared_rows(static: StaticChecks, verdict: Verdict) -> list[Compared]:
             action=name,
             demand=quantity(rule.demand, f"k{rule.unit}", 1e-3),
             capacity=quantity(rule.capacity, f"k{rule.unit}", 1e-3),
-            utilisation=number(rule.utilisation),
+            utilisation="∞" if rule.utilisation == math.inf else number(rule.utilisation),
             exceeded=not rule.passed,
             clause=rule.clause.removeprefix(EDITION).removesuffix(f", {check}"),
-            rule=rule_says(check, rule.utilisation if math.isfinite(rule.utilisation) else None),
+            rule=rule_says(check, rule.utilisation),
             run=typeset(words_of(verdict))
             if verdict.outcome and any(action is own for own in compared)
             else "",

@@ -87,13 +87,17 @@ def response_report(folder: Path, *, signature: Signature | None = None) -> str:
 def found_section(info: ResponseResult) -> html.PageSection:
     """The answer, and how many points were computed, of which kinds."""
     counts = Counter(point.words for point in info.points).most_common()
-    counted = ", ".join(f"{count} {words}" for words, count in counts)
+    counted = ", ".join(f"{words} at {count}" for words, count in counts)
     judged = [point.stable for point in info.points if point.stable is not None]
     return studies.answer_section(
         info,
         response_answer(info),
         f"{len(info.points)} of {2 * info.request['count']} points{studies.unfinished(info)}: {counted}.",
-        html.joined(f"{sum(judged)} of {len(judged)} points are ", html.strong("stable"), STABLE),
+        *(
+            [html.joined(f"{sum(judged)} of {len(judged)} points are ", html.strong("stable"), STABLE)]
+            if judged
+            else []
+        ),
         note=METHOD,
     )
 

@@ -13,6 +13,7 @@ from fem.assessment.loose_boxes import largest_joint_slip
 from fem.assessment.ranges import largest_ratio, largest_rotation, largest_slip, of_band
 from fem.assessment.rule_or_run import governing
 from fem.assessment.summary import MARGIN_NOTE, lacks_margin, outcome_sentence, result_rows
+from fem.assessment.sureness import SURE, numerical
 from fem.case.case import Case
 from fem.case.tables.unknown_inputs import WORDS
 from fem.figures.cache import drawings_of
@@ -195,6 +196,8 @@ def _sure(verdict: Verdict) -> tuple[str, str]:
         named = ", ".join(WORDS.get(key, key) for key in verdict.decided_by)
         decided = f"; decided by {named}" if named else ""
         known = verdict.sure or ("unsure" if band.unsure else "same outcome")
+        if verdict.sure == SURE and all(map(numerical, band.members[1:])):
+            known = "no input varied"
         return known, f"{', '.join(band.outcomes)}{decided}"
     if verdict.sure:
         return verdict.sure, "by the static rule alone"

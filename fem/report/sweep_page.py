@@ -130,14 +130,14 @@ def _sure_lines(table: SweepTable) -> Iterator[str]:
             )
         return
     yield html.joined(
-        f"{sure[SURE]} cells are ",
+        "Cells that are ",
         html.strong(SURE),
-        f": every copy of them has the same outcome. {sure[REGIME_UNSURE]} are ",
+        f", {sure[SURE]}: every copy has the same outcome; ",
         html.strong(REGIME_UNSURE),
-        ": none of their copies overturns, or all do, but they rest, slide or rock in different ways. "
-        f"{info.unsure} are ",
+        f", {sure[REGIME_UNSURE]}: no copy overturns, or all do, but they rest, slide or rock in different ways; ",
         html.strong(UNSURE),
-        ": they stand or overturn depending on unknown inputs, or on small changes of the motion.",
+        f", {info.unsure}: whether they stand depends on unknown inputs or on small changes of the motion, or is not "
+        "known because a corner is destroyed or a copy failed.",
     )
     left_out = f" Left out: {info.left_out}." if info.left_out else ""
     yield (
@@ -193,7 +193,8 @@ def answer_table(answer: SweepAnswer) -> html.Table:
 
     def end(k: int, row: AnswerRow) -> str:
         words = ends_in_words(row.answer, answer.axis, bare=True)[k] or ABSENT
-        return f"{words} (slid too far)" if k == 1 and row.answer.slid else words
+        noted = "slid too far" if row.answer.slid else "a corner destroyed" if row.answer.invalid else ""
+        return f"{words} ({noted})" if k == 1 and noted else words
 
     def slip(value: float | None) -> str:
         return "" if value is None else millimetres(value)

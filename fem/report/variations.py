@@ -11,6 +11,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
+from fem.assessment.sureness import numerical
 from fem.assessment.verdict import numerics_of
 from fem.case.case import Case, case_hash
 from fem.case.strength import scaled_motion
@@ -109,7 +110,8 @@ class VariationTable:
             words.append(f"There is no outcome in {failed}.")
         own, *others = self.lines
         chosen = _reach([line for line in others if line.change.kind == "further"])
-        unknown = _reach([own, *(line for line in others if line.change.kind != "further")])
+        tried = [line for line in others if line.change.kind != "further" and not numerical(line.change)]
+        unknown = _reach([own, *tried]) if tried else ""
         reaches = [
             f"{unknown} with one unknown input changed" if unknown else "",
             f"{chosen} with another floor, motion or start, which no range in the verdict covers"

@@ -38,7 +38,7 @@ def fates_of(result: ResponseResult) -> Fates:
     for point in result.points:
         if point.motion == Outcome.INVALID:
             fates.destroyed.append(point)
-        elif point.status == "overturned":
+        elif point.fell:
             fates.overturned.append(point)
         elif point.status != "failed":
             (fates.slid if result.slid(point) > limit else fates.standing).append(point)
@@ -68,7 +68,8 @@ def response_answer(result: ResponseResult) -> str | None:
         if fates.slid:
             there = slip_in_words(result.slid(fates.slid[0]))
             parts.append(f"slid beyond {limit} at {_counted(fates.slid)} (slip there {there})")
-        parts += [f"stood at the other {len(fates.standing)} points"] if fates.standing else []
+        if count := len(fates.standing):
+            parts.append(f"stood at the other {f'{count} points' if count > 1 else 'point'}")
     if fates.standing:
         most = max(fates.standing, key=lambda point: point.turned)
         turned = f"{most.turned:.2g} of the slenderness angle, at {most.frequency_Hz:.4g} Hz"

@@ -107,10 +107,8 @@ def jumps(records: Sequence[PointRecord]) -> list[Jump]:
 def drop_outs(records: Sequence[PointRecord]) -> list[DropOut]:
     """Ranges of neighbouring frequencies, along each sweep, at which the container overturned."""
     falls = []
-    for (direction, status), run in groupby(
-        records, lambda record: (record.row.direction, record.row.status)
-    ):
-        if status == "overturned":
+    for (direction, fell), run in groupby(records, lambda record: (record.row.direction, record.row.fell)):
+        if fell:
             rows = [record.row for record in run]
             falls.append(
                 DropOut(

@@ -57,6 +57,11 @@ class PointRow(JsonBlock):
     reason: str | None = None
 
     @property
+    def fell(self) -> bool:
+        """Whether it overturned, without a corner destroyed before."""
+        return self.status == "overturned" and self.motion != Outcome.INVALID
+
+    @property
     def turned(self) -> float:
         """Largest |rotation| over the slenderness angle; 0 where none is known."""
         return self.rotation_ratio or 0.0

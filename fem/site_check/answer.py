@@ -16,6 +16,7 @@ from fem.site_check.reasons import (
     NOT_SURE,
     Evidence,
     Reason,
+    above_one,
     places_of,
     span,
 )
@@ -96,7 +97,7 @@ def answer_of(
         withstood = NOT_FULFILLED if beside.wind > 1.0 else FULFILLED
         actions.append(result.ActionAnswer(name=WIND, answer=withstood, utilisation=beside.wind))
         if beside.wind > 1.0:
-            words = f"Wind uses {beside.wind:.2f} of the resistance of the lightest container."
+            words = f"Wind uses {above_one(beside.wind)} times the resistance of the lightest container."
             against.append(Reason(NOT_FULFILLED, words))
     answer = None if unknown else gravest(against)
     against.sort(key=lambda reason: reason.answer != NOT_FULFILLED)
@@ -145,7 +146,8 @@ def two_directions_reasons(slip: result.TwoDirections, limit: float) -> Iterator
     clearance = f"the clearance of {SHORT_MILLIMETRES.text(limit)}"
     words = "Under both horizontal components at once the largest slip is"
     if low > limit:
-        slid = _slip_in_words(slip.slip_largest_m)
+        figures = places_of("slip_m", limit, (slip.slip_largest_m,))
+        slid = SHORT_MILLIMETRES.text(slip.slip_largest_m, figures=max(figures, SHORT_MILLIMETRES.figures))
         yield Reason(NOT_FULFILLED, f"{words} {slid}, beyond {clearance} {where}")
     else:
         places = places_of("slip_m", limit, (low, high))
@@ -336,8 +338,9 @@ def _sentence(
     furthest = max(figures.slip_m or 0.0, slip.slip_largest_m if slip else 0.0)
     return (
         f"Fulfilled under the rule below: none of {runs} runs overturned; rotation "
-        f"{RATIO.text(figures.rotation_ratio)} of the slenderness angle (limit {limits.rotation_ratio:g}), "
-        f"largest slip {_slip_in_words(furthest)} (limit {1e3 * limits.slip_m:g} mm)."
+        f"{RATIO.text(figures.rotation_ratio)} of the slenderness angle (limit {limits.rotation_ratio:g}), of a single "
+        f"motion {RATIO.text(figures.rotation_ratio_largest)} (limit {limits.single_rotation_ratio:g}), largest slip "
+        f"{_slip_in_words(furthest)} (limit {1e3 * limits.slip_m:g} mm)."
     )
 
 

@@ -46,7 +46,7 @@ class Evidence:
         if self.rule.invalid:
             yield Reason(
                 NOT_FULFILLED,
-                f"{self.rule.invalid} of {runs} runs destroyed a corner: they are not valid beyond that, and do not "
+                f"{self.rule.invalid} of {runs} runs destroyed a corner: beyond that a run is not valid, and does not "
                 "count as standing.",
             )
         if self.rule.overturned:
@@ -114,7 +114,7 @@ class Evidence:
                 "destroyed a corner.",
             )
         if self.repetitions_failed:
-            yield Reason(NOT_SURE, f"{self.repetitions_failed} runs of the repetitions failed.")
+            yield Reason(NOT_SURE, f"Runs of the repetitions that failed: {self.repetitions_failed}.")
 
     def _confirmed(self) -> Iterator[Reason]:
         """What the elastic model and the unknown inputs make of the deciding runs."""
@@ -132,7 +132,8 @@ class Evidence:
         if (bolts := max((repeated.bolt_utilisation or 0.0 for repeated in again), default=0.0)) > 1.0:
             yield Reason(
                 NOT_SURE,
-                f"In a deciding run the bolts carry {bolts:.2g} of their capacity: the stack does not stay one body.",
+                f"In a deciding run the bolts carry {above_one(bolts)} times their capacity: the stack does not stay "
+                "one body.",
             )
         if invalid:
             yield Reason(NOT_SURE, f"{invalid} of {len(again)} {words} can destroy a corner.")
@@ -177,6 +178,13 @@ def against(group: FurtherMotions) -> Iterator[Reason]:
             f"{group.motions} further motions cannot show that at most {per_cent} overturn it: at least "
             f"{least_draws(MOST_OVERTURNING, CONFIDENCE)} can.",
         )
+
+
+def above_one(utilisation: float) -> str:
+    """A utilisation above 1 with enough figures to be seen above it."""
+    return next(
+        (words for figures in (2, 3, 4) if (words := f"{utilisation:.{figures}g}") != "1"), "just over 1"
+    )
 
 
 def both_ways(group: FurtherMotions) -> str:

@@ -74,7 +74,7 @@ def beside_the_set(result: SiteResult) -> list[str]:
         worst = max(known, key=lambda group: (group.overturned + group.invalid, group.beyond_limits))
         furthest = max(known, key=lambda group: group.beyond_limits)
         slips = [group.slip_largest_m for group in known if group.slip_largest_m is not None]
-        slid = f" (the largest in both directions is {millimetres(max(slips))} mm)" if slips else ""
+        slid = f" (the largest slip in both directions is {millimetres(max(slips))} mm)" if slips else ""
         low, high = (short(end, 100, 2) for end in worst.interval)
         location = "floor" if result.floor and result.floor.z_over_h is None else "site"
         of_both = " of both" if worst.invalid else ""
@@ -96,13 +96,14 @@ def beside_the_set(result: SiteResult) -> list[str]:
         words[-1] += f" {bolts}"
     if failed := {point.factor: point.failed for point in answer.scan if point.failed}:
         words.append(
-            f"{sum(failed.values())} runs failed at the factors {', '.join(map(short, failed))} on the set: the margin "
-            "does not know how they end."
+            f"Runs that failed at other factors on the set: "
+            f"{', '.join(f'{count} at {short(factor)}' for factor, count in failed.items())}. The margin does not know "
+            "how they end."
         )
     if answer.failed_between:
         words.append(
-            f"{answer.failed_between} runs failed at factors between those of the scan: the margin does not know how "
-            "they end."
+            f"Runs that failed at factors between those of the scan: {answer.failed_between}. The margin does not know "
+            "how they end."
         )
     if answer.hazard:
         words += rates_in_words(answer.hazard, result.inputs.slip_limit_m)
@@ -182,7 +183,8 @@ def confirmation(result: SiteResult) -> str:
     turned = max((end for run in again for end in run.rotation_ratio_range), default=None)
     slipped = max((end for run in again for end in run.max_slip_m_range), default=None)
     over = (
-        f"; over {inputs} none overturns, either, with up to {ratio(turned)} and {millimetres(slipped)} mm"
+        f"; over {inputs} none overturns, either, with rotation ratios up to {ratio(turned)} and slips up to "
+        f"{millimetres(slipped)} mm"
         if turned is not None and slipped is not None
         else ""
     )

@@ -26,7 +26,7 @@ MARGIN = (
 )
 SINGLE = (
     "The peak of a single motion is chaotic: with other numerics the same motion may turn a body half or twice as far. "
-    "Two figures are given; what the rule makes of all of them is steadier, and its range is on the first sheet."
+    "Two figures are given; what the rule makes of all of them is steadier."
 )
 FURTHER = [key for key in keys_of(Place.RUNS) if key != TURNED]
 
@@ -47,8 +47,9 @@ def runs_section(view: SiteView, *, brief: bool = False) -> html.PageSection:
     if moving:
         blocks.append(_groups_table(view, moving, both))
     if resting := len(view.groups) - len(moving):
-        count = f"All {resting}" if not moving else f"The other {resting} of {len(view.groups)}"
-        blocks.append(f"{count} combinations of weight, elevation and friction are at rest in every motion.")
+        blocks.append(
+            f"{resting} of {len(view.groups)} combinations of weight, elevation and friction rest in every motion."
+        )
     if both and moving:
         blocks.append(html.Note(BOTH))
     if result.floor and result.floor.z_over_h is not None and not brief:

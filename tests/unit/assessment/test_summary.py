@@ -10,6 +10,7 @@ from fem.assessment.warnings import warnings_for
 from fem.case.case import Case, load_case
 from fem.model.geometry import build_container
 from fem.model.model import static_checks_of
+from fem.report.comparison import compared_rows
 from fem.results.run_result import ActionResult, Band, Energy, MotionResult, Numerics, RunResult, Verdict
 
 # The stack of four under 4.0 m/s2: 40 kN against 39.24 kN, 80 kNm against 53.955 kNm (the paper, g = 9.81).
@@ -110,6 +111,19 @@ def test_only_the_own_motion_is_compared_with_the_run():
     lines = [line.split() for line in text_of(RESULT).splitlines()]
     rules = [line[-1] for line in lines if {"sliding", "overturning"} & {*line[:4]} and "/" in line]
     assert rules[2:] == ["slides", "overturns", "slides", "overturns"]
+
+
+def test_a_demand_without_capacity_is_infinite_and_the_rule_says_so():
+    """The floor falls with more than gravity: nothing is left of the weight."""
+    static = static_checks_of(CASE, build_container(CASE), 4.0, 12.0)
+    lines = plain_summary(replace(RESULT, static=static.to_result()), folder=Path("outputs")).splitlines()
+    own, below = (
+        next(k for k, line in enumerate(lines) if name in line) for name in ("own, vertical", "code, q")
+    )
+    said = " ".join(lines[own:below]).split()
+    assert said.count("inf") == 2 and {"slides", "overturns"} < set(said)
+    rows = compared_rows(static, RESULT.verdict)[2:4]
+    assert [(row.utilisation, row.rule) for row in rows] == [("∞", "slides"), ("∞", "overturns")]
 
 
 def test_the_summary_holds_what_the_run_found_in_units_for_people():

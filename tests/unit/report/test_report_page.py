@@ -11,6 +11,7 @@ from markupsafe import escape
 
 from fem.__main__ import main
 from fem.assessment.joint_tables import unbolted
+from fem.assessment.sureness import numerical
 from fem.case.case import load_case, read_case
 from fem.html.units import typeset
 from fem.model.model import build_model
@@ -137,15 +138,25 @@ def test_a_variation_that_failed_has_no_outcome_that_could_differ(folder, monkey
     assert "There is no outcome in 1." in table.sentence and "in all" not in table.sentence
 
 
+def test_a_run_of_which_no_input_was_varied_is_not_called_sure(folder, tmp_path):
+    copied = shutil.copytree(folder, tmp_path / "copied")
+    result = json.loads((copied / "run.json").read_text())
+    own, *others = result["verdict"]["band"]["members"]
+    tighter = [member for member in others if "solver.energy_tolerance" in member["values"]]
+    result["verdict"]["band"]["members"], result["verdict"]["sure"] = [own, *tighter], "sure"
+    (copied / "run.json").write_text(json.dumps(result))
+    page = run_report(open_run(copied), brief=True)
+    assert "No input was varied" in page and "no input varied" in page and ">sure<" not in page
+
+
 def test_what_is_not_known_and_what_is_chosen_have_ranges_of_their_own(folder):
     table = variation_table(open_run(folder), every=True)
     own, *others = table.lines
     chosen = [line.run.rotation_ratio for line in others if line.change.kind == "further"]
-    unknown = [
-        line.run.rotation_ratio for line in (own, *others) if line.change.kind != "further" or line is own
-    ]
+    varied = [line for line in others if line.change.kind == "one" and not numerical(line.change)]
+    unknown = [line.run.rotation_ratio for line in (own, *varied)]
     said = re.search(
-        r"is (\S+) to (\S+) with one input .* and (\S+) to (\S+) with another floor", table.sentence
+        r"is (\S+) to (\S+) with one unknown input .* and (\S+) to (\S+) with another floor", table.sentence
     )
     expected = [min(unknown), max(unknown), min(chosen), max(chosen)]
     assert [float(one) for one in said.groups()] == pytest.approx(expected, abs=5e-4)

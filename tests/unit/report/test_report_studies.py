@@ -67,6 +67,16 @@ def test_an_ensemble_says_where_half_overturned_and_shows_every_point(tmp_path):
     assert "python -m fem ensemble &#39;my ensemble.toml&#39;" in page
 
 
+def test_a_curve_of_which_no_point_was_judged_says_nothing_of_stable_ones(tmp_path):
+    page = page_of("response", tmp_path)
+    assert "3 of 4 points are <strong>stable</strong>" in page
+    assert "rock of period 1 at 3, overturned at 1." in page
+    found = response_folder(tmp_path / "none")
+    text = (found / "response.json").read_text()
+    (found / "response.json").write_text(re.sub(r'"stable": (true|false)', '"stable": null', text))
+    assert "stable</strong>" not in response_report(found)
+
+
 def test_a_response_curve_is_repeated_by_its_command(tmp_path):
     page = page_of("response", tmp_path)
     assert (

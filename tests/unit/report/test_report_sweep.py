@@ -101,9 +101,21 @@ def words_in(data, name):
 def test_the_page_says_what_is_held_and_what_decides(folder):
     page = sweep_report(folder)
     assert "with mu_k = mu_s/2 falling at once" in page
-    assert "1 are <strong>regime unsure</strong>" in page and "2 are <strong>unsure</strong>" in page
+    assert (
+        "<strong>regime unsure</strong>, 1: no copy" in page and "<strong>unsure</strong>, 2: whether" in page
+    )
     assert "Unsure cells are decided by kinetic friction (1), start (1)." in page
     assert "Left out: pairs." in page
+
+
+def test_what_destroyed_a_corner_is_not_listed_as_overturned(folder):
+    table = (folder / "table.csv").read_text()
+    (folder / "table.csv").write_text(
+        table.replace("overturned", "invalid").replace("failed,,no", "completed,rest,no")
+    )
+    page = sweep_report(folder)
+    assert "first destroyed a corner at" in page and "(a corner destroyed)</td>" in page
+    assert "first overturned at 2" not in page
 
 
 def test_a_folder_of_before_still_opens(folder):

@@ -1,10 +1,13 @@
 """The sentence of a response curve: where it overturned, how far it turned, where two motions coexist."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 
 from fem.response.answer import fates_of, response_answer
-from fem.response.branches import Coexistence, DropOut
-from fem.response.records import PointRow
+from fem.response.branches import Coexistence, DropOut, drop_outs
+from fem.response.records import PointRecord, PointRow
 from fem.response.result import ResponseResult
 
 
@@ -73,6 +76,11 @@ TWO = Coexistence(from_Hz=1.0, to_Hz=1.0, frequencies=1, up=("rock",), down=("re
             "other 3 points; largest rotation 0.62 of the slenderness angle, at 1 Hz going up",
         ),
         (
+            curve(point(0.5, "up", 0.1, "rest"), point(0.5, "down", 0.1, motion="invalid")),
+            "frequency: not valid at 1 point, the first at 0.5 Hz going down: a corner is destroyed; stood at the "
+            "other point; at rest there",
+        ),
+        (
             curve(
                 *STANDS[:3],
                 point(0.5, "down", 0.1, slip=0.064),
@@ -109,3 +117,16 @@ def test_a_curve_has_one_sentence(result, sentence):
 def test_the_share_that_does_not_stand_counts_points_with_an_outcome(points, limit, share):
     result = curve(*points, request={"observe": 48, "limit_slip_m": limit})
     assert fates_of(result).overturned_share == share
+
+
+def test_what_destroyed_a_corner_before_it_lay_down_did_not_overturn():
+    fallen, destroyed = point(0.5, "up", None), replace(point(0.6, "up", None), motion="invalid")
+    empty = np.empty((0, 2))
+    rows = [
+        PointRecord(row=row, sections=empty, extremes=empty, portrait=empty) for row in (fallen, destroyed)
+    ]
+    assert [(fall.from_Hz, fall.to_Hz) for fall in drop_outs(rows)] == [(0.5, 0.5)]
+    assert response_answer(curve(fallen, destroyed, drop_outs=tuple(drop_outs(rows)))) == (
+        "frequency: overturned at 0.5 Hz going up; not valid at 1 point, the first at 0.6 Hz going up: a corner is "
+        "destroyed"
+    )

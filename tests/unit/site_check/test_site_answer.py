@@ -99,7 +99,7 @@ def test_a_limit_within_the_range_of_the_repetitions_is_not_sure(own, again):
     ("stages", "beside", "words"),
     [
         ([repeated(outcome="overturned"), further()], {}, "In 5 of 5 repetitions"),
-        ([repeated(outcome=None), further()], {}, "35 runs of the repetitions failed"),
+        ([repeated(outcome=None), further()], {}, "Runs of the repetitions that failed: 35."),
         ([repeated(), further(71)], {}, "cannot show that at most 5 % overturn it: at least 72 can"),
         ([repeated(), further(100, overturned=2)], {}, "2 of 100 further motions overturned it"),
         ([repeated(), further(100, beyond=18)], {}, "Of 100 further motions 18 went beyond a limit"),
@@ -134,7 +134,7 @@ def test_any_overturning_is_not_fulfilled_and_counts_before_all_doubts():
     found = answer(own, repeated(), further(100, beyond=20), wind=1.27)
     assert found.answer == "not fulfilled" and found.rotation_ratio is None
     assert "1 of 7 runs overturned: up to 1 of 7 motions" in found.sentence
-    assert "Wind uses 1.27" in found.sentence and "further" not in found.sentence
+    assert "Wind uses 1.3 times" in found.sentence and "further" not in found.sentence
     assert any("20 went beyond" in reason for reason in found.reasons)
 
 
@@ -215,6 +215,21 @@ def test_the_slip_in_two_directions_is_compared_with_the_clearance():
         "(motion 5, friction 0.3/0.15; a body that does not rock).",
     )
     assert found.actions[0].utilisation == pytest.approx(1.2)
+
+
+@pytest.mark.parametrize(("used", "said"), [(1.27, "1.3"), (1.004, "1.004"), (1.00001, "just over 1")])
+def test_what_is_used_up_is_not_rounded_to_its_limit(used, said):
+    found = answer(runs_of(), repeated(), further(), wind=used, confirmed=(confirmed(bolt_utilisation=used),))
+    assert f"Wind uses {said} times the resistance" in found.reasons[0]
+    assert f"the bolts carry {said} times their capacity" in found.reasons[1]
+    slid = answer(runs_of(), repeated(), further(), two_directions=two_directions(0.1004, 1.0))
+    assert "the largest slip is 100.4 mm, beyond the clearance of 100 mm" in slid.sentence
+
+
+def test_fulfilled_names_every_limit_with_what_is_held_against_it():
+    found = answer(runs_of(), repeated(), further())
+    assert found.answer == "fulfilled" and found.rotation_ratio_largest == 0.1
+    assert "(limit 0.5), of a single motion 0.100 (limit 0.8), largest slip" in found.sentence
 
 
 def test_within_the_clearance_the_slip_in_two_directions_is_the_one_in_the_sentence():
