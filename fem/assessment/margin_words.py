@@ -103,7 +103,9 @@ def _draws(margin: Margin) -> str:
     if standing and (margin.low is not None or failed or margin.draws == 1):
         parts.append((standing, f"stand{'s' * (standing == 1)} at {margin.draws_tried_to:.3g} times"))
     if failed:
-        parts.append((failed, f"destroy{'s' * (failed == 1)} a corner or fail{'s' * (failed == 1)}"))
+        parts.append(
+            (failed, f"destroy{'s' * (failed == 1)} a corner or fail{'s' * (failed == 1)} at some factor")
+        )
     if not parts:
         return ""
     count = margin.draws + failed

@@ -242,6 +242,8 @@ def run_slid(verdict: run_result.Verdict) -> str:
     slip = largest_slip(verdict)
     if not slip:
         return "-"
+    if verdict.outcome == Outcome.INVALID:
+        return Outcome.INVALID.verb
     sliding = not {verdict.outcome, *verdict.modes}.isdisjoint(SLIDING)
     if not verdict.boxes:
         return f"{'slid' if sliding else 'held'}, slip {slip}"
@@ -251,6 +253,8 @@ def run_slid(verdict: run_result.Verdict) -> str:
 
 def run_lifted(verdict: run_result.Verdict) -> str:
     """Whether all of the base left the floor at once."""
+    if verdict.outcome == Outcome.INVALID:
+        return Outcome.INVALID.verb
     hopped = Outcome.HOP in {verdict.outcome, *verdict.modes}
     return f"{'hopped' if hopped else 'stayed'}, uplift {of_band(verdict, 'max_uplift_m')}"
 

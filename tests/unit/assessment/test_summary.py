@@ -5,7 +5,15 @@ from pathlib import Path
 
 import pytest
 
-from fem.assessment.summary import brief_summary, outcome_sentence, plain_summary, result_rows
+from fem.assessment.summary import (
+    brief_summary,
+    outcome_sentence,
+    plain_summary,
+    result_rows,
+    run_lifted,
+    run_slid,
+    run_tilted,
+)
 from fem.assessment.warnings import warnings_for
 from fem.case.case import Case, load_case
 from fem.model.geometry import build_container
@@ -124,6 +132,12 @@ def test_a_demand_without_capacity_is_infinite_and_the_rule_says_so():
     assert said.count("inf") == 2 and {"slides", "overturns"} < set(said)
     rows = compared_rows(static, RESULT.verdict)[2:4]
     assert [(row.utilisation, row.rule) for row in rows] == [("∞", "slides"), ("∞", "overturns")]
+
+
+def test_of_a_run_that_is_not_valid_nothing_is_said_to_have_held():
+    verdict = replace(RESULT.verdict, outcome="invalid", invalid_reason="its floor is crushed")
+    assert [words(verdict) for words in (run_slid, run_tilted, run_lifted)] == ["not valid"] * 3
+    assert "held" not in plain_summary(replace(RESULT, verdict=verdict), folder=Path("outputs"))
 
 
 def test_the_summary_holds_what_the_run_found_in_units_for_people():

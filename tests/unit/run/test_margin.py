@@ -234,7 +234,8 @@ MARGIN = Margin(
             },
             "overturned",
             "Overturns; stands up to 0.799 times this motion, overturns first at 0.810. Over what is not known it "
-            "overturns from 0.720 times on; of 18 draws 3 stand at 4 times and 2 destroy a corner or fail.",
+            "overturns from 0.720 times on; of 18 draws 3 stand at 4 times and 2 destroy a corner or fail "
+            "at some factor.",
         ),
         (
             {"destroyed_from": 2.9},
@@ -245,7 +246,8 @@ MARGIN = Margin(
             {"destroyed_from": 1.24, "low": 1.0, "draws": 0, "draws_failed": 16},
             "rock",
             "Stands; at 1.24 times this motion a corner is destroyed, and it overturns first at 1.50 times this "
-            "motion. Over what is not known it overturns from 1.00 times on; all 16 draws destroy a corner or fail.",
+            "motion. Over what is not known it overturns from 1.00 times on; all 16 draws destroy a corner or fail "
+            "at some factor.",
         ),
         (
             {"factor": None, "stands_up_to": None, "destroyed_from": 2.42},
