@@ -79,13 +79,14 @@ def page_of(result: "SiteResult", folder: Path) -> Iterator[str]:
     def destroyed(count: int) -> str:
         return f", {count} destroyed a corner" if count else ""
 
-    yield f"  runs       {answer.runs}, {answer.overturned} overturned{destroyed(answer.invalid)}"
+    still = f"; {answer.still} not computed: no rigid body moves in them" if answer.still else ""
+    yield f"  runs       {answer.runs}, {answer.overturned} overturned{destroyed(answer.invalid)}{still}"
     for single in answer.actions:
         used = "" if single.utilisation is None else f", utilisation {single.utilisation:.3g}"
         yield f"  {single.name:<10} {single.answer or 'no answer'}{used}"
     if answer.scan:
         fails, first = (
-            "none" if factor is None else f"{factor:.3g}"
+            "none" if factor is None else f"{'at most ' * answer.is_least_tried(factor)}{factor:.3g}"
             for factor in (answer.margin_factor, answer.factor_at_first_overturning)
         )
         yield (

@@ -61,8 +61,8 @@ def coexistences(records: Sequence[PointRecord]) -> list[Coexistence]:
 
 
 def differ(up: PointRecord, down: PointRecord) -> bool:
-    """Whether two points at one frequency are different motions; a failed one says nothing."""
-    if "failed" in (up.row.status, down.row.status):
+    """Whether two points at one frequency are different motions; one that is not valid says nothing."""
+    if up.row.says_nothing or down.row.says_nothing:
         return False
     if not (up.stands and down.stands):
         return up.stands != down.stands

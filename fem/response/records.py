@@ -57,9 +57,14 @@ class PointRow(JsonBlock):
     reason: str | None = None
 
     @property
+    def says_nothing(self) -> bool:
+        """Whether it failed, or is not valid: a corner was destroyed."""
+        return self.status == "failed" or self.motion == Outcome.INVALID
+
+    @property
     def fell(self) -> bool:
         """Whether it overturned, without a corner destroyed before."""
-        return self.status == "overturned" and self.motion != Outcome.INVALID
+        return self.status == "overturned" and not self.says_nothing
 
     @property
     def turned(self) -> float:
@@ -92,8 +97,8 @@ class PointRecord:
 
     @property
     def stands(self) -> bool:
-        """It has a long-time motion."""
-        return self.row.long_time is not None
+        """It has a long-time motion, and no corner was destroyed in it."""
+        return self.row.long_time is not None and not self.row.says_nothing
 
     def number(self, column: str) -> float:
         """A number of the row; nan where it does not apply."""

@@ -362,6 +362,10 @@ class SiteAnswer(ByRule):
     further: tuple[FurtherMotions, ...] = ()
     confirmed: tuple[ConfirmedRun, ...] = ()
 
+    def is_least_tried(self, factor: float) -> bool:
+        """Whether no smaller factor on the motions was tried: what happens at it may happen below it, too."""
+        return bool(self.scan) and factor <= min(point.factor for point in self.scan)
+
 
 @dataclass(frozen=True, kw_only=True)
 class SiteMethod(JsonBlock):

@@ -69,7 +69,7 @@ def beside_the_set(result: SiteResult) -> list[str]:
             count = f"Nothing moves up to {short(moved, figures=3)} × the set: all {answer.runs} runs stay"
         words.append(f"{count} below uplift and slip of a rigid body and were not computed.")
     if answer.two_directions:
-        words.append(two_directions_in_words(answer.two_directions))
+        words.append(two_directions_in_words(answer.two_directions, further=bool(answer.further)))
     if known := [group for group in answer.further if group.motions]:
         worst = max(known, key=lambda group: (group.overturned + group.invalid, group.beyond_limits))
         furthest = max(known, key=lambda group: group.beyond_limits)
@@ -146,7 +146,7 @@ def rates_in_words(rates: AnnualRates, slip_limit: float) -> list[str]:
     ]
 
 
-def two_directions_in_words(slip: TwoDirections) -> str:
+def two_directions_in_words(slip: TwoDirections, *, further: bool) -> str:
     """How far it slides under both horizontal components, and how much further than in the plane of the runs."""
     largest, mean = millimetres(slip.slip_largest_m), millimetres(slip.slip_mean_m)
     again = ""
@@ -154,9 +154,9 @@ def two_directions_in_words(slip: TwoDirections) -> str:
         again = f"; in the repetitions {' to '.join(dict.fromkeys(map(millimetres, slip.slip_range_m)))} mm"
     return (
         f"Under both horizontal components at once, sliding without rocking: largest slip {largest} mm, mean {mean} "
-        f"mm, in the plane {millimetres(slip.slip_mean_in_plane_m)} mm{again}. It is held against the clearance, too, "
-        "also under the further motions. Rocking, and the slip of a container that rocks or bends, are computed in the "
-        "plane only."
+        f"mm, in the plane {millimetres(slip.slip_mean_in_plane_m)} mm{again}. It is held against the clearance, too"
+        f"{', also under the further motions' * further}. Rocking, and the slip of a container that rocks or bends, "
+        "are computed in the plane only."
     )
 
 
@@ -222,13 +222,14 @@ def _headlines(result: SiteResult) -> list[html.Headline]:
     slip, both = f"{_with_range('slip_m', answer, span)} mm", answer.two_directions
     where = f"mean {millimetres(answer.slip_mean_m)}"
     if both and both.slip_largest_m > (answer.slip_m or 0.0):  # of which the first sentence speaks
-        where = f"under both horizontal components; in the plane {slip}, {where}"
+        plane = "" if answer.slip_m is None else f"; in the plane {slip}, {where}"
+        where = f"under both horizontal components{plane}"
         slip = f"{millimetres(both.slip_largest_m)} mm"
 
     def at(factor: float | None) -> str:
         if factor is None:
             return "none" if tried else ABSENT
-        least = "at most " if tried and factor == tried[0] else ""
+        least = "at most " if answer.is_least_tried(factor) else ""
         return f"{least}{short(factor, figures=3)} × the set"
 
     return [

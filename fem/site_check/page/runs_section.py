@@ -195,9 +195,9 @@ def _levels(rates: AnnualRates) -> list[html.Block]:
         html.Note(
             typeset(
                 "The rate up to a level arises from the one before it; up to the first, from the first movement of a "
-                f"rigid body. Beyond the strongest level {rates.beyond_per_year:.2g} per year arise, if the share that "
-                "overturns stays as counted there. A level is exceeded as often as the user's hazard says; the rates "
-                "hold for that hazard spread by the scatter."
+                f"rigid body. Beyond the strongest level {rates.beyond_per_year:.2g} per year arises, if the share "
+                "that overturns stays as counted there. A level is exceeded as often as the user's hazard says; the "
+                "rates hold for that hazard spread by the scatter."
             )
         ),
     ]

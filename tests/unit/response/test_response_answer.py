@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fem.response.answer import fates_of, response_answer
-from fem.response.branches import Coexistence, DropOut, drop_outs
+from fem.response.branches import Coexistence, DropOut, differ, drop_outs, jumps
 from fem.response.records import PointRecord, PointRow
 from fem.response.result import ResponseResult
 
@@ -130,3 +130,16 @@ def test_what_destroyed_a_corner_before_it_lay_down_did_not_overturn():
         "frequency: overturned at 0.5 Hz going up; not valid at 1 point, the first at 0.6 Hz going up: a corner is "
         "destroyed"
     )
+
+
+def test_a_destroyed_corner_is_no_motion_that_coexists_with_another():
+    empty = np.empty((0, 7))
+
+    def record(direction, **changed):
+        row = replace(point(0.5, direction, 0.2), **changed)
+        return PointRecord(row=row, sections=empty, extremes=empty, portrait=empty)
+
+    resting = record("up", long_time="rest", motion="rest", rotation_ratio=0.0)
+    assert differ(resting, record("down"))
+    destroyed = record("down", motion="invalid")
+    assert not differ(resting, destroyed) and jumps([resting, destroyed, replace(destroyed)]) == []

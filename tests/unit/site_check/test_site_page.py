@@ -21,7 +21,7 @@ from fem.site_check.page.inputs_section import site_rows, spectra_section
 from fem.site_check.page.runs_section import runs_section
 from fem.site_check.page.site_page import site_report
 from fem.site_check.page.view import SiteView
-from fem.site_check.result import RESULT_FILE, FloorResult, SiteResult
+from fem.site_check.result import RESULT_FILE, FloorResult, SiteResult, TwoDirections
 
 ANSWERS = {
     "fulfilled": ({}, "Fulfilled under the rule below"),
@@ -234,6 +234,33 @@ def test_destroyed_corners_are_named_beside_the_runs_that_overturned():
     )
     rows = page_with(runs_section(SiteView(result=crushed)))
     assert "of 14, 1 destroyed a corner" in rows
+
+
+def test_a_factor_of_which_no_smaller_was_tried_is_at_most_that():
+    result, _ = example()
+    least = result.result.scan[0].factor
+    answer = replace(result.result, margin_factor=least, factor_at_first_overturning=None)
+    printed = "\n".join(lines_of(replace(result, result=answer), Path("out")))
+    assert f"first fails: at most {least:g}, first overturning: none" in printed
+    assert f"at most {least:g}" in words_of(box_of(replace(result, result=answer)))
+
+
+def test_where_a_run_overturned_no_slip_in_the_plane_is_named():
+    result, _ = example()
+    both = TwoDirections(
+        slip_mean_m=0.4,
+        slip_largest_m=0.5,
+        slip_mean_in_plane_m=0.2,
+        mu_static=0.3,
+        mu_kinetic=0.15,
+        motion=1,
+    )
+    answer = replace(
+        result.result, answer="not fulfilled", slip_m=None, slip_mean_m=None, further=(), two_directions=both
+    )
+    words = words_of(box_of(replace(result, result=answer)))
+    assert "under both horizontal components" in words and "in the plane –" not in words
+    assert "It is held against the clearance, too. Rocking" in words
 
 
 def test_runs_that_failed_at_other_factors_are_told():
