@@ -34,6 +34,7 @@ from fem.assessment.rule_or_run import governing
 from fem.assessment.sure_words import sureness_in_words
 from fem.results import run_result
 from fem.results.figures import BRIEF, FIGURES, SUMMARY, Place, summary_order
+from fem.results.kinds import RUN
 from fem.results.outcome import ENDINGS, ROCKING, SLIDING, Outcome
 from fem.runtime.units import DEGREES, INVISIBLE, visible_number
 
@@ -82,7 +83,7 @@ def _brief_parts(result: run_result.RunResult, folder: Path) -> Iterator[Rendera
     if of_record:  # what was read is no detail
         yield Text("".join(f"Warning: {note}\n" for note in of_record))
     if result.static is not None:
-        yield _static_table(replace(result.static, code=None, code_q1=None), verdict)
+        yield _static_table(replace(result.static, code=None, code_q1=None), to_compare(result))
 
 
 def _parts(result: run_result.RunResult, folder: Path) -> Iterator[RenderableType]:
@@ -91,7 +92,7 @@ def _parts(result: run_result.RunResult, folder: Path) -> Iterator[RenderableTyp
     yield Text(f"{outcome_sentence(result)}\n")
     yield from _table_of_pairs(_of_whom(verdict), result_rows(result))
     if result.static is not None:
-        yield _static_table(result.static, verdict)
+        yield _static_table(result.static, to_compare(result))
         yield from (Text(f"{sentence}\n") for sentence in governing(result))
         if note := code_note(result.static):
             yield Text(f"{note}\n")
@@ -157,7 +158,10 @@ def _found(result: run_result.RunResult) -> str:
         return "; ".join(filter(None, (fell, links_in_words(result))))
     restored = ", returned upright" if verdict.restored else _leaning(verdict, result.static)
     under = f" under {covered_in_words(motion)}{missing_peak(motion)}"
-    if motion.kind == "none" and motion.vertical is None:  # it was pushed, or stood tilted
+    if result.status not in RUN.finished:
+        simulated = (result.numerics or run_result.Numerics()).simulated_s
+        under = "" if simulated is None else f" up to t = {simulated:.4g} s"
+    elif motion.kind == "none" and motion.vertical is None:  # it was pushed, or stood tilted
         under = ""
     outcome = f"{Outcome(verdict.outcome).verb}{restored} and did not overturn{under}"
     return "; ".join(filter(None, (outcome, joints_in_words(verdict, result.static), links_in_words(result))))
@@ -170,6 +174,11 @@ def _leaning(verdict: run_result.Verdict, static: run_result.StaticResult | None
         return ""
     leaning = DEGREES.text(abs(tilt), figures=2)
     return f", left leaning by {leaning}: {abs(tilt) / angle:.0%} less capacity on that side,"
+
+
+def to_compare(result: run_result.RunResult) -> run_result.Verdict:
+    """What may be compared with a static rule, which takes the whole motion: nothing before the run has ended."""
+    return (result.status in RUN.finished and result.verdict) or run_result.Verdict()
 
 
 def _static_table(static: run_result.StaticResult, verdict: run_result.Verdict) -> Table:
@@ -228,8 +237,8 @@ def own_motion_name(static: run_result.StaticResult) -> str:
 
 def rule_says(check: str, utilisation: float | None) -> str:
     """What the static rule concludes from a utilisation, for `sliding`, `overturning` or `lifting`."""
-    if utilisation is None:
-        return "-"
+    if not utilisation:  # a push or a tilt at the start is no load that the rule knows
+        return "-" if utilisation is None else "no demand"
     if check == "lifting":
         return "lifts off" if utilisation > 1.0 else "stays"
     if check == "sliding":

@@ -206,8 +206,11 @@ def _sure(verdict: Verdict) -> tuple[str, str]:
 
 def _reading(view: RunView, variations: VariationTable | None) -> Iterator[str]:
     """How the answer is to be read, and where there is more."""
+    under = (
+        "What happened under this motion" if view.run.status in RUN.finished else "What has happened so far"
+    )
     yield (
-        "What happened under this motion; a margin is that of the same motion made stronger or weaker. This is a "
+        f"{under}; a margin is that of the same motion made stronger or weaker. This is a "
         "study, not a verification, and says nothing about motions of another form. "
     )
     if lacks_margin(view.result):

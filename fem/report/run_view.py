@@ -7,6 +7,7 @@ from typing import Any
 
 from fem.assessment.floor_words import drawn_level
 from fem.assessment.loose_boxes import box_rows
+from fem.assessment.summary import to_compare
 from fem.case.case import Case
 from fem.figures.style import Drawing
 from fem.html import sections as html
@@ -48,7 +49,7 @@ class RunView:
     @cached_property
     def compared(self) -> list[Compared]:
         """The static rules beside the run."""
-        return compared_rows(self.model.static, self.verdict)
+        return compared_rows(self.model.static, to_compare(self.result))
 
     @cached_property
     def boxes(self) -> Sequence[Sequence[str]]:

@@ -134,6 +134,22 @@ def test_a_demand_without_capacity_is_infinite_and_the_rule_says_so():
     assert [(row.utilisation, row.rule) for row in rows] == [("∞", "slides"), ("∞", "overturns")]
 
 
+def test_a_rule_without_a_demand_says_nothing_of_a_container_that_was_pushed():
+    static = static_checks_of(CASE, build_container(CASE), 0.0)
+    text = plain_summary(
+        replace(RESULT, static=replace(static.to_result(), code=None, code_q1=None)), folder=Path("o")
+    )
+    assert text.count("no demand") == 2 and "stands " not in text
+    assert [row.rule for row in compared_rows(static, RESULT.verdict)[:2]] == ["no demand"] * 2
+
+
+@pytest.mark.parametrize("status", ["interrupted", "running", "failed"])
+def test_a_run_that_has_not_ended_is_not_compared_with_a_rule_on_the_whole_motion(status):
+    for make in (plain_summary, brief_summary):
+        text = make(replace(RESULT, status=status), folder=Path("outputs"))
+        assert "slides" in text and "held" not in text and "stood" not in text
+
+
 def test_of_a_run_that_is_not_valid_nothing_is_said_to_have_held():
     verdict = replace(RESULT.verdict, outcome="invalid", invalid_reason="its floor is crushed")
     assert [words(verdict) for words in (run_slid, run_tilted, run_lifted)] == ["not valid"] * 3
@@ -173,8 +189,8 @@ def test_the_summary_holds_what_the_run_found_in_units_for_people():
             "Result: overturned at t = 3.250 s.",
         ),
         (
-            changed(status="interrupted"),
-            "Not finished (interrupted). So far: rocked, returned upright and did not overturn under this motion.",
+            changed(status="interrupted", numerics__simulated_s=0.1344),
+            "Not finished (interrupted). So far: rocked, returned upright and did not overturn up to t = 0.1344 s.",
         ),
         (RunResult(status="interrupted"), "Not finished (interrupted). So far: no result yet."),
         (
