@@ -1,8 +1,9 @@
 """How often a verdict that is sure is turned over by ordinary changes of the case: random containers, floors, motions.
 
-Each case is run with its band. Of those that are sure, or stand or fall in all variations (regime unsure), further
-changes are run, which an engineer would not call another case: friction, width, mass centre, strength of the motion,
-phase, duration, floor, the other model. A verdict is wrong where one of them crosses between standing and overturning.
+The motions are harmonic, pulses and records, with and without a vertical one. Each case is run with its band. Of those
+that are sure, or stand or fall in all variations (regime unsure), further changes are run, which an engineer would not
+call another case: friction, width, mass centre, strength of the motion, phase, duration, floor, the other model. A
+verdict is wrong where one of them crosses between standing and overturning.
 
     python tests/benchmarks/random_verdicts.py --cases 200 --seed 7 --jobs 2
 """
@@ -16,6 +17,7 @@ from concurrent.futures import ProcessPoolExecutor
 from typing import Any
 
 import numpy as np
+from motion_set import motion as random_motion
 
 import fem
 from fem.case.case import Case
@@ -25,8 +27,8 @@ MOST_WRONG, LEAST_DECIDED = 0.02, 0.4
 Change = tuple[str, dict[str, Any]]
 
 
-def random_case(generator: np.random.Generator) -> dict[str, Any]:
-    """The tables of a container, on any base and floor, under a motion of 0.9 to 3 times its static limit."""
+def random_case(generator: np.random.Generator) -> Case:
+    """A container on any base and floor, under a motion of 0.9 to 3 times its static limit."""
     draw, pick = generator.uniform, generator.choice
     boxes, width = int(pick([1, 2, 3, 4])), float(draw(0.5, 2.5))
     height = float(draw(0.8, 2.5)) * width * (1.0 if boxes == 1 else 0.6)
@@ -45,8 +47,9 @@ def random_case(generator: np.random.Generator) -> dict[str, Any]:
             "pulse_s": float(draw(0.2, 1.0)),
             "delay_s": 0.1,
         },
+        {"kind": "none"},  # in its place a record
     ]
-    motion = motions[int(pick([0, 1]))]
+    motion = motions[int(pick(3))]
     tables: dict[str, Any] = {
         "container": {
             "width_m": width,
@@ -74,7 +77,12 @@ def random_case(generator: np.random.Generator) -> dict[str, Any]:
         tables["floor"] = {"preset": "concrete C25/30"}
         if support["kind"] == "corners":
             tables["floor"]["corner_patch_m"] = [0.15, 0.3]
-    return tables
+    case = fem.case_from(tables)
+    if motion["kind"] != "none":
+        return case
+    times, along = random_motion(int(generator.integers(2**31))).T
+    upward = float(draw(0.5, 3.0)) * random_motion(int(generator.integers(2**31)))[:, 1]
+    return case.with_motion(times, peak * along, upward if pick([True, False]) else None)
 
 
 def changes_of(case: Case) -> Iterator[Change]:
@@ -106,9 +114,8 @@ def changes_of(case: Case) -> Iterator[Change]:
 
 def judged(seed: int) -> dict[str, Any]:
     """The verdict of a random case, and the changes that turn it over."""
-    tables = random_case(np.random.default_rng(seed))
     try:
-        case = fem.case_from(tables)
+        case = random_case(np.random.default_rng(seed))
         run = fem.compute(case, band=True, margin=False)
     except ValueError as error:
         return {"seed": seed, "sure": "refused", "reason": str(error).splitlines()[0]}
@@ -116,6 +123,7 @@ def judged(seed: int) -> dict[str, Any]:
     verdict = run.verdict
     found: dict[str, Any] = {
         "seed": seed,
+        "motion": case.motion.kind,
         "sure": verdict.sure,
         "outcome": verdict.outcome,
         "turned": [],
@@ -146,6 +154,7 @@ def main() -> int:
         found = list(pool.map(judged, seeds))
     known = [one for one in found if one["sure"] not in ("refused", None)]
     print(f"{len(known)} of {len(found)} cases computed: {dict(Counter(one['sure'] for one in found))}")
+    print(f"by motion: {dict(Counter((one['motion'], one['sure']) for one in known))}")
     wrong = 0.0
     for word in ("sure", "regime unsure"):
         some = [one for one in known if one["sure"] == word]
