@@ -194,16 +194,19 @@ def _dashpot(case: Case, numerics: Numerics) -> str:
     )
 
 
-def limits_section(case: Case, result: RunResult | None = None) -> html.PageSection:
-    """What a result rests on, and what it leaves out."""
-    assumed = html.Group("", [html.Heading("Assumed"), html.Bullets(assumptions(case, result))])
+def limits_section(
+    case: Case, result: RunResult | None = None, *, joints_below: bool = False
+) -> html.PageSection:
+    """What a result rests on, and what it leaves out; `joints_below`: the page lists the forces in the joints."""
+    lines = assumptions(case, result, joints_below=joints_below)
+    assumed = html.Group("", [html.Heading("Assumed"), html.Bullets(lines)])
     missing = html.Group("", [html.Heading("Not covered"), html.Bullets(exclusions(case))])
     return html.section(
         "Assumptions and exclusions", "assumptions", html.Group("columns even", [assumed, missing])
     )
 
 
-def assumptions(case: Case, result: RunResult | None = None) -> list[str]:
+def assumptions(case: Case, result: RunResult | None = None, *, joints_below: bool = False) -> list[str]:
     """What the result rests on; of a run, with its contact frequency."""
     contact, numerics = case.contact, (result and result.numerics) or Numerics()
     law = (
@@ -219,7 +222,7 @@ def assumptions(case: Case, result: RunResult | None = None) -> list[str]:
         _material(case),
     ]
     if case.container.boxes > 1:
-        listed = "; the forces in the joints are listed below" if result and result.joints else ""
+        listed = "; the forces in the joints are listed below" if joints_below else ""
         lines.append(
             "The boxes stand on one another without bolts. Corners of a box meet the face of the next, with the laws "
             "of the floor."

@@ -115,7 +115,11 @@ def _page(view: RunView, signature: Signature | None, varied: VariationTable | N
     behind = [part(view) for part in (motion_section, boxes_section)]
     proof = [part(view) for part in (*further, numerics_section, provenance_section)]
     finished = view.run.status in RUN.finished
-    first = [verdict_section(view, varied), case_section(view), limits_section(view.case, view.result)]
+    first = [
+        verdict_section(view, varied),
+        case_section(view),
+        limits_section(view.case, view.result, joints_below=bool(view.result.joints) and not view.brief),
+    ]
     return Page(
         kind=f"{'Short report' if view.brief else 'Report'} of a run",
         title=view.case.title or view.run.name,

@@ -138,6 +138,12 @@ def test_a_variation_that_failed_has_no_outcome_that_could_differ(folder, monkey
     assert "There is no outcome in 1." in table.sentence and "in all" not in table.sentence
 
 
+def test_only_a_page_with_the_forces_in_the_joints_says_that_they_are_below(page, folder):
+    listed = "the forces in the joints are listed below"
+    short = run_report(open_run(folder), brief=True)
+    assert listed in page and "The boxes are bolted" in short and listed not in short
+
+
 def test_a_run_of_which_no_input_was_varied_is_not_called_sure(folder, tmp_path):
     copied = shutil.copytree(folder, tmp_path / "copied")
     result = json.loads((copied / "run.json").read_text())
