@@ -76,10 +76,11 @@ def ratio(value: float | None) -> str:
 
 
 def typeset(text: str) -> str:
-    """A line of the summary for a page: true minus signs, powers of ten, m/s²."""
+    """A line of the summary for a page: true minus and times signs, powers of ten, m/s², µm, ν."""
     if text == "-":
         return ABSENT
-    text = text.replace("m/s2", "m/s²")
+    text = re.sub(r"(?<=\d) x (?=\d)", " × ", text.replace("m/s2", "m/s²").replace("nu = ", "ν = "))
+    text = re.sub(r"(?<=\d) um\b", " µm", text)
     text = re.sub(r"(?<![\w.)-])-(?=\d)", "−", text)
     return re.sub(r"(?<=\d)e([+-]\d+)\b", lambda power: times_ten_to(power[1]), text)
 

@@ -228,6 +228,7 @@ def test_a_folder_without_results_or_with_damaged_ones_is_refused(tmp_path, caps
         ("192.2, -184.3 mm", "192.2, −184.3 mm"),
         ("6.5e-05 of it, 172 m/s2", "6.5 × 10⁻⁵ of it, 172 m/s²"),
         ("2.5e+06 N (-3)", "2.5 × 10⁶ N (−3)"),
+        ("nu = 0.2; 0.2 x 0.4 m: sinks in by 1.1 um", "ν = 0.2; 0.2 × 0.4 m: sinks in by 1.1 µm"),
         ("EN 1998-1:2004, 2026-11-21, slide-rock", "EN 1998-1:2004, 2026-11-21, slide-rock"),
     ],
 )
