@@ -10,7 +10,7 @@ from collections.abc import Callable
 from fem.assessment.motion_words import doubts
 from fem.assessment.ranges import plastic_corner
 from fem.assessment.sure_words import sureness_in_words
-from fem.assessment.sureness import UNSURE
+from fem.assessment.sureness import REGIME_UNSURE, UNSURE
 from fem.assessment.verdict import GAIN_LIMIT, LOSS_LIMIT, LOSS_SHARE_LIMIT
 from fem.case.case import Case
 from fem.case.tables.duration import MOST_FREE_MOTION, ends_at_rest, longest_time
@@ -147,9 +147,17 @@ def motion_is_doubtful(result: run_result.RunResult, case: Case) -> str | None:
 
 
 def rest_proves_nothing(result: run_result.RunResult, case: Case) -> str | None:
-    """Where the static rule also says that it stands, a run at rest is no argument against the rule."""
-    own = _own_motion(result)
-    if _verdict(result).outcome != Outcome.REST or case.neighbour or own == run_result.ActionResult():
+    """Where the static rule also says that it stands, a run at rest is no argument against the rule.
+
+    Nothing is confirmed where a variation moves the container.
+    """
+    own, doubted = _own_motion(result), _verdict(result).sure in (REGIME_UNSURE, UNSURE)
+    if (
+        _verdict(result).outcome != Outcome.REST
+        or doubted
+        or case.neighbour
+        or own == run_result.ActionResult()
+    ):
         return None
     uses = (own.utilisation_sliding, own.utilisation_overturning)
     if any(use is None or use > 1.0 for use in uses):

@@ -142,8 +142,8 @@ class Evidence:
         elif beyond and not self.rule.fails(self.limits):
             yield Reason(
                 NOT_SURE,
-                f"{beyond} of {len(again)} deciding runs, repeated with the elastic model, go beyond a limit of a "
-                "single motion.",
+                "Deciding runs that go beyond a limit of a single motion, repeated with the elastic model: "
+                f"{beyond} of {len(again)}.",
             )
 
 

@@ -326,6 +326,20 @@ def test_no_warning_on_the_good_side_of_a_limit_or_without_results(result):
     assert warnings_for(result, CASE) == []
 
 
+def test_a_rest_that_a_variation_ends_confirms_no_rule():
+    resting = changed(
+        verdict__outcome="rest",
+        static__own_motion=ActionResult(
+            base_shear_N=3e4, tilting_moment_Nm=4e4, utilisation_sliding=0.9, utilisation_overturning=0.8
+        ),
+    )
+    (warning,) = warnings_for(resting, CASE)
+    assert "confirms it" in warning
+    for sure in ("regime unsure", "unsure"):
+        moved = replace(resting, verdict=replace(resting.verdict, sure=sure))
+        assert not [words for words in warnings_for(moved, CASE) if "confirms it" in words]
+
+
 def test_creep_of_regularised_friction_is_estimated():
     # v = v_reg artanh(s): 11 mm in 20 s at 1 mm/s and half the friction limit.
     result = changed(static__own_motion__utilisation_sliding=0.5)
