@@ -23,6 +23,7 @@ from fem.seismic.floor_spectrum import FloorSpectrum
 from fem.seismic.ground_motion import GroundMotion
 from fem.seismic.motion_set import periods_of_check
 from fem.site_check.file import SiteRequest
+from fem.site_check.result import SiteBody
 from fem.site_check.tables import BuildingTable
 
 #: largest difference of two intervals of a record that is sampled evenly, over the interval
@@ -32,13 +33,10 @@ MATCHED = Processing(baseline="zero-end")  #: what matching does to a record bes
 BASELINE = "take another record, or set allow_baseline = true"  #: where one is refused
 
 
-def longest_period(rates: Sequence[float]) -> float:
-    """End of the band of periods: 4 s, or 2 pi/p of the largest body where that is longer, up to 10 s.
-
-    Args:
-        rates: frequency parameters p of the bodies [1/s].
-    """
-    return min(max(LAST_PERIOD_S, *(2.0 * math.pi / rate for rate in rates)), LAST_PERIOD_ANNEX_A_S)
+def longest_period(bodies: Sequence[SiteBody]) -> float:
+    """End of the band of periods: 4 s, or 2 pi/p of the largest body where that is longer, up to 10 s."""
+    periods = (2.0 * math.pi / body.frequency_parameter_1_s for body in bodies)
+    return min(max(LAST_PERIOD_S, *periods), LAST_PERIOD_ANNEX_A_S)
 
 
 def ground_motions(

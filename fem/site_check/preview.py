@@ -95,7 +95,7 @@ def _stages_of(
     request: SiteRequest, bodies: Sequence[SiteBody], *, allow_outside: bool
 ) -> tuple[Sequence[GroundMotion], Stages]:
     """The motions of the ground, and the stages, without a folder."""
-    longest = longest_period([body.frequency_parameter_1_s for body in bodies])
+    longest = longest_period(bodies)
     ground = ground_motions(request, longest, allow_outside=allow_outside)
     return ground, Stages.of(request, floor_motions(request, ground), longest=longest, folder=Path())
 

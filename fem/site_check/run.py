@@ -78,7 +78,7 @@ def run_site(
     """
     began = time.perf_counter()
     bodies = tuple(map(body_of, request.variants))
-    longest = longest_period([body.frequency_parameter_1_s for body in bodies])
+    longest = longest_period(bodies)
     ground = ground_motions(request, longest, allow_outside=allow_outside)
     floors = floor_motions(request, ground)
     stages = Stages.of(request, floors, longest=longest, folder=folder)

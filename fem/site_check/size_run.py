@@ -240,7 +240,7 @@ class _Sizing:
         """Make the motions of a value, and the cases of its runs."""
         request = at(self.request, self.axis, value)
         bodies = [body_of(variant) for variant in request.variants]
-        longest = longest_period([body.frequency_parameter_1_s for body in bodies])
+        longest = longest_period(bodies)
         ground = ground_motions(request, longest, allow_outside=self.allow_outside)
         floors = floor_motions(request, ground)
         folder = written_motions(request, floors, longest, working)
@@ -289,7 +289,7 @@ def written_motions(
 
 
 def _ground(request: SiteRequest, allow_outside: bool) -> list[GroundMotion]:
-    longest = longest_period([body_of(variant).frequency_parameter_1_s for variant in request.variants])
+    longest = longest_period([*map(body_of, request.variants)])
     return ground_motions(request, longest, allow_outside=allow_outside)
 
 
