@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
-from fem.batch.answers import slip_in_words, table_lines
+from fem.batch.answers import table_lines
 from fem.case.case import CaseError, load_case
 from fem.cli.console import SHARED, AllowOutside, SharedFlags, flag, print_result, print_to_pdf
-from fem.results.figures import SLIPPED, TURNED
+from fem.results.figures import TURNED, Place, figures_of
 from fem.results.kinds import HALL
+from fem.results.outcome import Outcome
 
 if TYPE_CHECKING:
     from fem.hall.result import HallResult
@@ -111,9 +112,8 @@ def _row_in_words(row: dict[str, object]) -> str:
         does = "fails the rule" if row["answer"] else "overturns"
         words.append(f"{does} from {row['margin']:.3g} times the motion on")
     elif isinstance(row["margin_tried_to"], float):
-        words.append(f"stands up to {row['margin_tried_to']:.3g} times the motion")
-    if isinstance(turned := row[TURNED], float) and row["outcome"] != "overturned":
-        words.append(f"rotation ratio {turned:.2g}")
-    if isinstance(slip := row[SLIPPED], float):
-        words.append(f"slip {slip_in_words(slip)}")
+        words.append(f"does not overturn up to {row['margin_tried_to']:.3g} times the motion")
+    for key, figure in figures_of(Place.KEY).items():
+        if isinstance(value := row[key], float) and (key, row["outcome"]) != (TURNED, Outcome.OVERTURNED):
+            words.append(f"{figure.head or figure.words} {figure.text(value)}")
     return ", ".join(words)

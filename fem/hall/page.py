@@ -187,13 +187,10 @@ def margin_words(row: A_ROW) -> str:
     margin, tried = row["margin"], row["margin_tried_to"]
     if margin is None:
         return "" if tried is None else f"> {FACTOR.text(tried)}"
-    low, high = (
-        None if row[name] is None else FACTOR.in_figures(row[name], 2)
-        for name in ("margin_low", "margin_high")
-    )
-    if low is None:
+    low, high = (FACTOR.text(row[name]) for name in ("margin_low", "margin_high"))
+    if not low:
         return FACTOR.text(margin)
-    return f"{FACTOR.text(margin)} ({f'from {low}' if high is None else f'{low} to {high}'})"
+    return f"{FACTOR.text(margin)} ({f'{low} to {high}' if high else f'from {low}'})"
 
 
 def commands_table(rows: Sequence[A_ROW]) -> html.Table:

@@ -291,6 +291,19 @@ def test_a_list_that_cannot_be_read_is_refused_in_a_sentence(tmp_path, text, wor
     assert words in str(error.value) and str(error.value).startswith(str(tmp_path / "hall.csv"))
 
 
+def test_the_terminal_says_of_a_container_what_the_summary_of_a_run_would(
+    tmp_path, base, monkeypatch, capsys
+):
+    monkeypatch.chdir(tmp_path)
+    path = listed(
+        tmp_path, "name,width_m,mu_static,motion.peak_acceleration_m_s2\nfalls,0.6,0.9,\nrests,2.4,0.9,0.01\n"
+    )
+    assert main(["batch", str(path), "--case", "base.toml", "-q"]) == 0
+    lines = {line.split()[0]: line for line in capsys.readouterr().out.splitlines() if line.startswith("  ")}
+    assert "overturned, overturns from " in lines["falls"] and "rotation ratio" not in lines["falls"]
+    assert "rest, does not overturn up to 4 times the motion, rotation ratio < 0.001, slip" in lines["rests"]
+
+
 def test_a_bad_row_has_its_reason_and_strict_refuses(tmp_path, base, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     text = (
