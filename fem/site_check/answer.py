@@ -192,15 +192,15 @@ def governing_run(request: SiteRequest, runs: Sequence[result.SiteRun]) -> resul
     known = [group for group in groups_of(runs) if not group.failed]
     if not known:
         return None
-    _, name, group = max(
+    _, figure, group = max(
         (
-            ((group.by_rule[name] or 0.0) / getattr(request.limits, name), name, group)
+            ((group.by_rule[name] or 0.0) / getattr(request.limits, limit.key), limit.of, group)
             for group in known
-            for name in result.LIMITED
+            for name, limit in result.LIMITS.items()
         ),
         key=lambda use: use[0],
     )
-    return max(group.runs, key=lambda run: run[result.LIMITED[name]] or 0.0)
+    return max(group.runs, key=lambda run: run[figure] or 0.0)
 
 
 def rule_range(

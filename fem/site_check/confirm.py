@@ -21,7 +21,7 @@ def deciding(runs: Mapping[RunKey, SiteRun], governing: SiteRun | None) -> list[
         return []
     stood = {key: run for key, run in own.items() if run.outcome not in ENDINGS}
     keys = [next(key for key, run in own.items() if run is governing)] if len(stood) < len(own) else []
-    figures = list(LIMITED.values())[len(keys) :] if stood else []
+    figures = LIMITED[len(keys) :] if stood else ()
     keys += [max(stood, key=lambda key: stood[key][figure] or 0.0) for figure in figures]
     return list(dict.fromkeys(keys))
 

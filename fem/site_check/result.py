@@ -158,7 +158,7 @@ class Limited:
 
     key: str  #: of the limit in [limits]
     words: str  #: what is beyond it
-    of: str = ""  #: the figure of a run by which the governing run is found; empty: it does not govern
+    of: str  #: the figure of a run that it is found from
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -175,7 +175,7 @@ class ByRule(JsonBlock):
     rotation_ratio_largest: Annotated[
         float | None,
         figures.Shown("largest of one motion", RATIO),
-        Limited("single_rotation_ratio", "the rotation of one motion"),
+        Limited("single_rotation_ratio", "the rotation of one motion", figures.TURNED),
     ] = None
     #: of a single motion, the largest: a clearance is used up once
     slip_m: Annotated[
@@ -190,8 +190,8 @@ BY_RULE = figures.declared_in(ByRule)
 LIMITS = figures.noted_in(ByRule, Limited)
 #: the figure that each limit is on
 FIGURE_OF = {limit.key: name for name, limit in LIMITS.items()}
-#: the figure of a run that each of those that govern is on
-LIMITED = {name: limit.of for name, limit in LIMITS.items() if limit.of}
+#: the figures of a run that limits are on
+LIMITED = tuple(dict.fromkeys(limit.of for limit in LIMITS.values()))
 
 
 @dataclass(frozen=True, kw_only=True)

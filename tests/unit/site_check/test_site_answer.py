@@ -120,6 +120,14 @@ def test_what_speaks_against_it_is_one_sentence_and_not_sure(stages, beside, wor
     assert len(found.reasons) == 1 and words in found.reasons[0] and words in found.sentence
 
 
+def test_the_limit_of_a_single_rotation_governs_where_most_of_it_is_used():
+    """0.5 of 0.8 by one motion of the empty container; of the full one slip 0.06 of 0.1 m."""
+    empty = runs_of(**OTHERS, mass="empty") + runs_of(**FIRST, mass="empty", rotation_ratio=0.5)
+    found = answer(runs_of(max_slip_m=0.06) + empty, repeated(), further())
+    assert found.actions[0].utilisation == pytest.approx(0.5 / 0.8)
+    assert (found.governing.mass, found.governing.motion) == ("empty", 1)
+
+
 def test_what_further_motions_can_show():
     """0 of 72 and 1 of 110 put the upper end of the 95 % interval at 5 %."""
     for motions, overturned, sure in ((72, 0, True), (109, 1, False), (110, 1, True), (200, 3, True)):
