@@ -9,6 +9,7 @@ from scipy.special import ndtr
 from site_example import RUN, example, site_body
 
 from fem.case.validation import CaseError
+from fem.cli.assess import page_of
 from fem.html.page import Page, html_of
 from fem.seismic.ground_motion import GroundMotion
 from fem.seismic.hazard import HazardCurve, counted_rate
@@ -125,6 +126,15 @@ def test_scatter_of_the_motions_spreads_the_hazard():
     acting = scattered(CURVE, 0.4, [1.0, 8.0])
     assert acting.lognormal(3.0, 0.3) == pytest.approx(CURVE.lognormal(3.0, math.hypot(0.3, 0.4)), rel=1e-4)
     assert scattered(CURVE, 0.0, [1.0, 8.0]) is CURVE
+
+
+def test_the_terminal_tells_the_rates(tmp_path):
+    found = rates(tmp_path, {1.0: 0, 2.0: 30, 4.0: 100})
+    result = example()[0]
+    lines = [*page_of(replace(result, result=replace(result.result, hazard=found)), tmp_path)]
+    fall, slide = (line for line in lines if line.startswith("  a year"))
+    assert f"overturns {found.overturning_per_year:.2g} times (" in fall and "% in 50 years" in fall
+    assert f"slides beyond the limit {found.slip_per_year:.2g} times (" in slide
 
 
 def test_counts_of_a_fragility_give_its_rate_with_scatter(tmp_path):
