@@ -95,10 +95,12 @@ def _doubts(verdict: Verdict, band: Band, tried: Sequence[ChangedRun]) -> Iterat
 
 
 def changes_in_words(runs: Sequence[ChangedRun]) -> str:
-    """What was changed in the first of these runs, and how many more there are."""
-    words = " and with ".join(in_words(run.values or {}) for run in runs[:MOST_NAMED])
+    """What was changed in the first of these runs, each by itself, and how many more there are."""
+    words = [in_words(run.values or {}) for run in runs[:MOST_NAMED]]
     more = len(runs) - MOST_NAMED
-    return words if more <= 0 else f"{words} and {more} other change{'s' * (more > 1)}"
+    if more > 0:
+        words.append(f"one of {more} other changes" if more > 1 else "another change")
+    return ", or with ".join(words)
 
 
 def _counted(draws: Sequence[ChangedRun]) -> str:

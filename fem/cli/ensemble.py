@@ -47,7 +47,7 @@ def page_of(result: "EnsembleResult", folder: Path) -> Iterator[str]:
         motions = f"the intervals are those of a sample of {count} motions"
     yield f"  random: {', '.join(result.random)}; {motions}"
     if result.drawn_over_uncertainty:
-        yield f"  drawn over [uncertainty]: {', '.join(result.drawn_over_uncertainty)}"
+        yield f"  drawn as unknown inputs: {', '.join(result.drawn_over_uncertainty)}"
     if result.held:
         yield f"  held: {result.held}"
     limit = f"{result.probability:g}"

@@ -123,7 +123,7 @@ def answer_table(answer: EnsembleAnswer, info: EnsembleResult) -> html.Table:
 def random_table(info: EnsembleResult) -> html.Table:
     """What is drawn: by the file, and over the ranges of the unknown inputs."""
     rows = [[key, _drawn(spread)] for key, spread in info.random.items()]
-    rows += [[key, "over its range in [uncertainty]"] for key in info.drawn_over_uncertainty]
+    rows += [[key, "over its range as an unknown input"] for key in info.drawn_over_uncertainty]
     columns = html.in_order("key", "drawn")
     return html.table_of("random quantities", columns, rows, caption="Random quantities")
 

@@ -197,6 +197,9 @@ def test_draws_that_overturn_are_counted_with_their_interval_and_the_value_that_
     assert words(*mixed).endswith("overturned in 8 of 16 draws (95 %: 25 to 75 %).")
     alone = words(*((draw(place, 0.5), {}) for place in places), (HALF, FELL))
     assert alone == "Unsure: overturns with kinetic friction 0.3; not in 8 draws of all inputs at once."
+    each = words((HALF, FELL), (STIFF, FELL), (SLOW, FELL), (BOTH, FELL))  # each by itself
+    assert each.startswith("Unsure: overturns with kinetic friction 0.3, or with ")
+    assert each.endswith(" Pa/m, or with one of 2 other changes.")
 
 
 @pytest.mark.parametrize(

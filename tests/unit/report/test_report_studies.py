@@ -61,7 +61,7 @@ def test_an_ensemble_says_where_half_overturned_and_shows_every_point(tmp_path):
             "normal, mean 1, deviation 0.05, cut at 3 deviations, times the value of the key",
         ],
         ["free.ratio", "uniform, 0.5 to 1"],
-        ["motion.start", "over its range in [uncertainty]"],
+        ["motion.start", "over its range as an unknown input"],
     ]
     assert "case = &#34;&lt;b&gt;.toml&#34;" in page
     assert "python -m fem ensemble &#39;my ensemble.toml&#39;" in page
