@@ -1,9 +1,9 @@
 """How often a verdict that is sure is turned over by ordinary changes of the case: random containers, floors, motions.
 
-The motions are harmonic, pulses and records, with and without a vertical one. Each case is run with its band. Of those
-that are sure, or stand or fall in all variations (regime unsure), further changes are run, which an engineer would not
-call another case: friction, width, mass centre, strength of the motion, phase, duration, floor, the other model. A
-verdict is wrong where one of them crosses between standing and overturning.
+The motions are pulses, and harmonic ones and records with and without a vertical one. Each case is run with its band.
+Of those that are sure, or stand or fall in all variations (regime unsure), further changes are run, which an engineer
+would not call another case: friction, width, mass centre, strength of the motion, phase, duration, floor, the other
+model. A verdict is wrong where one of them crosses between standing and overturning.
 
     python tests/benchmarks/random_verdicts.py --cases 200 --seed 7 --jobs 2
 """

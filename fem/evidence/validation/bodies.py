@@ -1,7 +1,7 @@
 """Bodies with the mass properties of a specimen, and halves of a series of tests to fit on and to predict."""
 
 from collections.abc import Callable, Sequence
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import numpy as np
 
@@ -21,7 +21,13 @@ TestT = TypeVar("TestT")
 FitT = TypeVar("FitT")
 
 
-def rigid_case(*, width: float, height: float, element_size: float, **changes: Any) -> Case:
+def rigid_case(
+    *,
+    width: float,
+    height: float,
+    element_size: float,
+    **changes: float | str | list[float] | list[dict[str, float]],
+) -> Case:
     """A rigid block as deep as it is wide, on two corners, which does not slide; `__` in place of the dot of a key."""
     keys = {
         "container.width_m": width,
