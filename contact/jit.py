@@ -16,6 +16,7 @@ from typing import Any
 
 import numba
 from numba.core import config
+from numba.core.caching import IndexDataCacheFile
 from numba.core.cpu import CPUTargetOptions
 from numba.core.registry import CPUDispatcher
 from numba.core.types import unliteral
@@ -126,6 +127,26 @@ class Kernel(CPUDispatcher):
         return super().get_call_template([unliteral(kind) for kind in args], named)
 
 
+@cache
+def _content_digest(source: str) -> str:
+    return hashlib.sha256(Path(source).read_bytes()).hexdigest()
+
+
+def _name_by_module(code: Any, folder: Path, function: Callable[..., Any]) -> None:
+    """Keep cached machine code under the module's name: numba takes its path, so that each clone would compile again.
+
+    Sources outside the digest of `folder`, as those of tests, are told apart by their own content.
+    """
+    if not hasattr(code, "_cache_file") or not hasattr(code, "_impl"):  # numba does not promise them
+        return
+    code._cache_path = code._impl.locator._cache_path = str(folder / function.__module__)
+    code._cache_file = IndexDataCacheFile(
+        cache_path=code._cache_path,
+        filename_base=code._impl.filename_base,
+        source_stamp=_content_digest(function.__code__.co_filename),
+    )
+
+
 def compiled(
     function: Callable[..., Any] | None = None, *, inline: bool = False, sources: tuple[Path, ...] = ()
 ) -> Any:
@@ -151,6 +172,7 @@ def compiled(
     # numba would first load all that its compiler knows (0.1 s, 27 MB); a compilation does so itself.
     if hasattr(entry._cache, "_load_overload"):
         entry._cache.load_overload = entry._cache._load_overload
+    _name_by_module(entry._cache, cache_folder(sources), function)
     kernel.entry = entry
     return kernel
 
