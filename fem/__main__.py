@@ -149,7 +149,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except Exception as error:
         if interruptions() > before:
             return _interrupted(tokens)
-        if type(error).__module__.partition(".")[0] not in OWN_PACKAGES:
+        if OWN_PACKAGES.isdisjoint(kind.__module__.partition(".")[0] for kind in type(error).__mro__):
             raise  # not the user's fault: show where
         return _refuse(str(error), getattr(error, "exit_code", BAD_INPUT))
     return result if isinstance(result, int) else 0

@@ -11,6 +11,7 @@ from cyclopts import Parameter
 from fem.case.case import CaseError
 from fem.case.validation import did_you_mean
 from fem.cli.console import EXIT_CODES, Jobs, Quiet, flag, print_json
+from fem.cli.evidence import from_clone
 from fem.results.files import to_json
 from fem.run.expected import say_expected
 from fem.runtime.progress import ScreenReporter
@@ -44,7 +45,7 @@ def study(
     """
     if name not in STUDIES:
         raise CaseError(f"no study {_unknown(name, STUDIES)}")
-    every = importlib.import_module("fem.evidence.paper.index").all_claims()
+    every = from_clone("paper.index").all_claims()
     known = [claim.name for claim in every]
     if unknown := [claim for claim in only if claim not in known]:
         raise CaseError(f"--only: no such claim {_unknown(unknown[0], known)}")
@@ -54,7 +55,7 @@ def study(
     if as_json:
         print_json(to_json(document))
     else:
-        page = importlib.import_module("fem.evidence.paper.page")
+        page = from_clone("paper.page")
         print("\n".join(page.lines_of(document)))
         print(f"{folder / 'study.html'} shows the runs, figures and numbers behind them")
     return EXIT_CODES[document["status"]]
@@ -64,8 +65,8 @@ def _checked(
     folder: Path, claims: Sequence[Any], *, jobs: int | None, force: bool, quiet: bool
 ) -> dict[str, Any]:
     """Check the claims, and report each with its runs."""
-    experiments = importlib.import_module("fem.evidence.paper.experiments")
-    paper = importlib.import_module("fem.evidence.paper.run")
+    experiments = from_clone("paper.experiments")
+    paper = from_clone("paper.run")
     signals = importlib.import_module("fem.runtime.signals")
     compilation = importlib.import_module("fem.runtime.compilation")
     reporter = ScreenReporter(quiet=quiet)

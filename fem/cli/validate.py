@@ -1,6 +1,5 @@
 """`validate`: predict laboratory experiments and compare with what was measured."""
 
-import importlib
 import sys
 from functools import partial
 from pathlib import Path
@@ -9,7 +8,7 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from fem.cli.console import AsJson, Quiet
-from fem.cli.evidence import compute_into
+from fem.cli.evidence import compute_into, from_clone
 from fem.run.expected import say_expected
 from fem.runtime.progress import ScreenReporter
 
@@ -27,8 +26,8 @@ def validate(
     quiet: Quiet = False,
 ) -> int:
     """Predict experiments; writes validate.json and validate.html; exits with 3 if one is missed."""
-    suite = importlib.import_module("fem.evidence.validation.suite")
-    pages = importlib.import_module("fem.evidence.validation.page")
+    suite = from_clone("validation.suite")
+    pages = from_clone("validation.page")
 
     def report(name: str) -> None:
         if not quiet:

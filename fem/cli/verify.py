@@ -1,6 +1,5 @@
 """`verify`: compute the verification checks and compare every row with its reference."""
 
-import importlib
 import sys
 from functools import partial
 from pathlib import Path
@@ -9,7 +8,7 @@ from typing import Annotated, Any
 from cyclopts import Parameter
 
 from fem.cli.console import AsJson, Quiet, flag
-from fem.cli.evidence import compute_into
+from fem.cli.evidence import compute_into, from_clone
 from fem.run.expected import say_expected
 from fem.runtime.progress import ScreenReporter
 
@@ -26,8 +25,8 @@ def verify(
     quiet: Quiet = False,
 ) -> int:
     """Compute the verification checks; writes verify.json and verify.html; ends with 3 if one row fails."""
-    suite = importlib.import_module("fem.evidence.verification.suite")
-    pages = importlib.import_module("fem.evidence.verification.page")
+    suite = from_clone("verification.suite")
+    pages = from_clone("verification.page")
     # refuses an unknown topic before a folder is made
     chosen = suite.chosen_checks(quick=quick, topics=topic)
 

@@ -6,9 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
-from fem.evidence.validation import cube, impacts, pulses, rocks
-from fem.evidence.validation.shake_tests import (
+from validation import cube, impacts, pulses, rocks
+from validation.shake_tests import (
     ROCK,
     ROCK_MOTIONS,
     Body,
@@ -16,8 +15,8 @@ from fem.evidence.validation.shake_tests import (
     ShakeTestError,
     read_series,
 )
-from fem.evidence.validation.suite import run_validation
-from fem.evidence.validation.vote import Block
+from validation.suite import run_validation
+from validation.vote import Block
 
 DATA = Path(__file__).parents[3] / "shared" / "experiments"
 

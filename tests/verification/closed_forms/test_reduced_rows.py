@@ -8,13 +8,13 @@ from collections.abc import Sequence
 
 import numpy as np
 import pytest
+from runs import STACK, Finished, harmonic, pulse, run
 
 from contact.stepping.body import VELOCITY_X
 from contact.stepping.ledger import IMBALANCE, MATERIAL_DAMPING
 from fem.assessment.verdict import audit
 from fem.batch.container_cache import ContainerCache
 from fem.case.case import Case
-from fem.evidence.verification.runs import STACK, Finished, harmonic, pulse, run
 from fem.model.container import discretise
 from fem.model.model import build_model
 from fem.model.recovery import recovery_of

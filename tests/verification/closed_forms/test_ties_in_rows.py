@@ -4,11 +4,11 @@ import math
 
 import numpy as np
 import pytest
+from runs import SOLID, STACK, Finished, harmonic, pulse, run
 
 from contact.interface.penalty import restitution_of
 from contact.stepping.ledger import CONTACT_DAMPING, FRICTION
 from fem.case.case import Case
-from fem.evidence.verification.runs import SOLID, STACK, Finished, harmonic, pulse, run
 
 MASS, WIDTH, HEIGHT, SPEED, GRAVITY = 1e4, 1.1, 4.0, 0.5, 9.81
 OTHER = {"left": "right", "right": "left"}
