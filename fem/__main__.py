@@ -78,7 +78,9 @@ GROUPS = {
 COMMANDS = [name for commands in GROUPS.values() for name in commands]
 READING = {"check", "init", "list", "completion", "schema", "doctor"}  #: commands that compute nothing
 #: import strings of commands that are not `fem.cli.NAME:NAME`
-PLACES = {"list": "fem.cli.list_cases:list_cases", "completion": "fem.__main__:completion"}
+PLACES = {"list": "fem.cli.list_cases:list_cases", "completion": "fem.__main__:completion"} | {
+    command: f"fem.cli.evidence:{command}" for command in ("verify", "validate", "study")
+}
 
 
 def build_app(name: str = "python -m fem") -> App:

@@ -124,9 +124,9 @@ BUDGET = {
     "pages": ("fem/html fem/figures fem/render fem/report", 6_791, 206),
     "study": ("fem/batch fem/sweep fem/ensemble fem/hall fem/response", 10_119, 291),
     "site": ("fem/site_check", 6_487, 172),
-    "cli": ("fem/cli fem/__init__.py fem/__main__.py", 2_157, 48),
-    "product": ("mesh contact fem", 63_693, 1_913),
-    "tests": ("tests", 52_654, 3_138),
+    "cli": ("fem/cli fem/__init__.py fem/__main__.py", 2_072, 47),
+    "product": ("mesh contact fem", 63_608, 1_912),
+    "tests": ("tests", 52_293, 3_139),
 }
 
 

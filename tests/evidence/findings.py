@@ -5,15 +5,17 @@ A reference is `analytic` (a closed form, or a statement such as symmetry), `pri
 """
 
 import math
-from collections.abc import Mapping
+import time
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import KW_ONLY, dataclass
 from functools import partial
-from typing import Any, Literal, SupportsFloat
+from typing import Any, Literal, SupportsFloat, TypeVar
 
 import numpy as np
 
 Kind = Literal["analytic", "printed", "computed", "measured", "limit"]
 Value = float | str
+ResultT = TypeVar("ResultT")
 
 
 @dataclass(frozen=True)
@@ -165,3 +167,19 @@ def referred(
 analytic = partial(referred, "analytic")
 printed = partial(referred, "printed")
 computed = partial(referred, "computed")
+
+
+def failures(findings: Iterable[Finding]) -> int:
+    """Number of findings that do not hold."""
+    return sum(finding.holds is False for finding in findings)
+
+
+def attempted(work: Callable[[], ResultT]) -> tuple[ResultT | None, str, float]:
+    """Result of some work, or None and the reason why there is none; and its time [s]."""
+    began = time.perf_counter()
+    result, reason = None, ""
+    try:
+        result = work()
+    except (ArithmeticError, ValueError, RuntimeError, LookupError, TypeError) as error:
+        reason = f"{type(error).__name__}: {error}"
+    return result, reason, time.perf_counter() - began

@@ -7,14 +7,16 @@ import os
 
 import pytest
 from evidence.findings import Convergence, analytic, at_least, at_most, equal, prediction
+from evidence.pages import convergence_plot, page_of, verification_lines
 from verification import suite
 from verification.checks import check
-from verification.page import convergence_plot, lines_of, page_of
-from verification.suite import run_suite
+from verification.suite import chosen_checks
 
 import fem.results.files
 from fem.__main__ import main
+from fem.results.files import to_json
 from fem.run.expected import expected_words
+from fem.runtime.progress import SilentReporter
 
 
 def finding(value, *, tolerance=0.01, reference=2.0, relative=False, **optional):
@@ -85,24 +87,30 @@ def small_suite(monkeypatch):
     monkeypatch.setattr(suite, "CHECKS", (good, off, check("attic", "broken", quick=False)(broken)))
 
 
+def computed(*, quick=False):
+    """What verify.json holds."""
+    document = suite.run_suite(chosen_checks(quick=quick), quick=quick, reporter=SilentReporter())
+    return json.loads(to_json(document))
+
+
 def test_a_check_that_cannot_be_computed_is_a_finding_that_fails(small_suite):
-    result = run_suite(quick=False)
-    assert (result.count, result.failures) == (4, 2)
-    last = list(result.findings)[-1]
-    assert not last.holds
-    assert "no equilibrium" in last.note
+    document = computed()
+    assert (document["count"], document["failures"]) == (4, 2)
+    last = document["rows"][-1]
+    assert last["passed"] is False
+    assert "no equilibrium" in last["note"]
 
 
 def test_the_terminal_names_what_fails(small_suite):
-    lines = lines_of(run_suite(quick=False))
+    lines = verification_lines(computed())
     assert sum("FAIL" in line for line in lines) == 3
     assert lines[-1].endswith("2 FAIL")
     assert any("no equilibrium" in line for line in lines)
-    assert lines_of(run_suite(quick=True))[-1].endswith("all pass")
+    assert verification_lines(computed(quick=True))[-1].endswith("all pass")
 
 
 def test_the_page_needs_nothing_from_elsewhere(small_suite):
-    text = page_of(run_suite(quick=False))
+    text = page_of("verify", computed(), {})
     assert text.count("<svg") == 1
     assert "a quantity &lt;b&gt; [m]" in text
     assert "src=" not in text
@@ -113,7 +121,7 @@ def test_the_page_needs_nothing_from_elsewhere(small_suite):
 
 def test_a_plot_is_the_same_bytes_again():
     errors = falling([1e-2, 3e-3, 6e-4])
-    assert convergence_plot(errors) == convergence_plot(errors)
+    assert convergence_plot(errors.document) == convergence_plot(errors.document)
 
 
 @pytest.mark.parametrize(("options", "code"), [(["--quick"], 0), ([], 3), (["--room", "cellar"], 0)])
@@ -130,7 +138,7 @@ def test_the_command_ends_with_3_if_a_finding_fails(small_suite, tmp_path, capsy
 def test_the_time_of_long_checks_is_told_by_the_share_of_them_that_is_chosen(
     small_suite, tmp_path, capsys, monkeypatch, options, share
 ):
-    monkeypatch.setattr("fem.cli.verify.ALL_S", 200.0)
+    monkeypatch.setattr("verification.suite.ALL_S", 200.0)
     main(["verify", *options, "--out", str(tmp_path)])
     assert f": {expected_words(200.0 * share)}\n" in capsys.readouterr().err
 

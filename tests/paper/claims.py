@@ -9,8 +9,7 @@ from dataclasses import asdict, dataclass
 from enum import Enum
 from typing import Any, Literal, TypeVar
 
-from evidence.findings import Finding
-from evidence.suite import failures
+from evidence.findings import Finding, failures
 from paper.cases import PaperCase
 from paper.experiments import Experiments, VariantBand
 

@@ -6,8 +6,7 @@ A printed number has half a unit of its last digit as tolerance.
 import math
 
 import numpy as np
-from evidence.findings import Finding, at_least, at_most, equal
-from evidence.suite import failures
+from evidence.findings import Finding, at_least, at_most, equal, failures
 from paper.cases import BOX, FOR_MAPS, G_TEN, NO_SLIDING, PLATEAU, RIGID, SHELL, STACK, PaperCase
 from paper.claims import Evidence, claim, outcomes
 from paper.dimensions import (

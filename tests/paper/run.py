@@ -4,25 +4,43 @@
 program has decided, with the same libraries, is taken from there.
 """
 
+import hashlib
+import sys
 import time
 from collections.abc import Callable, Sequence
+from functools import cache
 from pathlib import Path
 from typing import Any
 
-from evidence.suite import attempted
+from evidence.findings import attempted
+from evidence.pages import page_of
+from jinja2 import UndefinedError
 from paper.claims import Claim, Conclusion
 from paper.experiments import Experiments, InterruptedStudyError
 from paper.index import TOPICS, UNTRIED, all_claims
-from paper.page import paper_report
 
+from fem.case.validation import CaseError, did_you_mean
+from fem.html.page import Signature
 from fem.results.errors import FolderError
 from fem.results.folder import REMEDY, ResultFolder, open_result_folder, program_of_results
-from fem.results.kinds import PAPER
+from fem.results.kinds import PAPER, read_result
+from fem.run.expected import say_expected
+from fem.runtime.compilation import compilation_announced
+from fem.runtime.progress import ScreenReporter
+from fem.runtime.signals import interruptible
+from fem.runtime.threads import cores
 
 STUDY, PAGE, FIGURES = "seed", "study.html", "figures"
 #: size of page, document and figures of all claims, twice while the page is written [bytes]
 ROOM = 1e7
+OF_A_CLAIM_S = 3.3  #: processor time, on average [s]
 
+SOURCES = (
+    "evidence",
+    "paper",
+    "rigs",
+    "verification",
+)  #: folders of the tests that decide, besides the program
 Entries = dict[str, dict[str, Any]]  #: of `study.json`, by the name of the claim
 
 
@@ -75,19 +93,82 @@ def check_claims(
         return document
 
 
+def check_paper(
+    folder: Path, *, only: Sequence[str], jobs: int | None, force: bool, quiet: bool
+) -> dict[str, Any]:
+    """Check claims by name, or all, into a folder, and report each with its runs.
+
+    Raises:
+        CaseError: a claim is not one of the paper's.
+    """
+    every = {claim.name: claim for claim in all_claims()}
+    for name in only:
+        if name not in every:
+            near = did_you_mean(name, every)
+            hint = f"; {near}" if near else ""
+            raise CaseError(f"--only: no such claim {name!r}{hint} (known: {', '.join(every)})")
+    claims = [claim for name, claim in every.items() if not only or name in only]
+    reporter = ScreenReporter(quiet=quiet)
+    workers = jobs or cores()
+    say_expected(reporter, f"{len(claims)} claims", OF_A_CLAIM_S * len(claims) / workers, workers)
+    in_place = not quiet and sys.stderr.isatty()
+
+    def progress(done: int, total: int) -> None:
+        if in_place:
+            end = "\r" if done < total else "\r" + " " * 40 + "\r"
+            print(f"    {done} of {total} runs", end=end, file=sys.stderr, flush=True)
+
+    with interruptible(reporter) as stop, compilation_announced(reporter.message):
+        experiments = Experiments(jobs=jobs, progress=progress, stop=stop)
+        return check_claims(folder, experiments, claims=claims, force=force, report=reporter.message)
+
+
+def paper_report(folder: Path, *, signature: Signature | None = None) -> str:
+    """The page of a folder of checked claims.
+
+    Raises:
+        FolderError: `study.json` is missing, damaged, or something else.
+    """
+    path = folder / PAPER.mark
+    document = read_result(path, PAPER)
+    try:
+        figures = {svg.stem: svg.read_text(encoding="utf-8") for svg in (folder / FIGURES).glob("*.svg")}
+        return page_of("study", document, figures, signature or Signature())
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, UndefinedError) as error:
+        raise FolderError(
+            f"{path}: damaged, or not the result of a study ({error}); compute it again with "
+            "python -m fem study seed --force"
+        ) from None
+
+
+def _decided_by() -> dict[str, Any]:
+    """Program, libraries and checks: a claim that the same have decided is not checked again."""
+    program = program_of_results()
+    return program | {"program": _with_the_checks(program["program"])}
+
+
+@cache
+def _with_the_checks(program: str) -> str:
+    digest = hashlib.sha256(program.encode())
+    for folder in SOURCES:
+        for source in sorted((Path(__file__).parents[1] / folder).rglob("*.py")):
+            digest.update(source.read_bytes())
+    return digest.hexdigest()[:16]
+
+
 def _checked(claim: Claim, experiments: Experiments, results: ResultFolder) -> dict[str, Any]:
     """Check a claim: its entry of `study.json`. A claim that cannot be computed gives the reason."""
     entry: dict[str, Any] = {name: getattr(claim, name) for name in ("name", "section", "quote", "tried")}
-    entry["program"] = program_of_results()["program"]
+    entry["program"] = _decided_by()["program"]
     experiments.failed.clear()
-    done = attempted(lambda: claim.check(experiments))
-    if done.result is None:
-        entry |= {"verdict": Conclusion.UNDECIDED.value, "error": done.reason}
+    result, reason, seconds = attempted(lambda: claim.check(experiments))
+    if result is None:
+        entry |= {"verdict": Conclusion.UNDECIDED.value, "error": reason}
     else:
-        for figure in done.result.figures:
+        for figure in result.figures:
             results.write_text(f"{FIGURES}/{figure.name}.svg", figure.svg)
-        entry |= done.result.to_dict() | {"failed_runs": len(experiments.failed)}
-    return entry | {"seconds": done.seconds}
+        entry |= result.to_dict() | {"failed_runs": len(experiments.failed)}
+    return entry | {"seconds": seconds}
 
 
 def _document(status: str, entries: Entries, began: float) -> dict[str, Any]:
@@ -103,14 +184,14 @@ def _document(status: str, entries: Entries, began: float) -> dict[str, Any]:
         "statements": len(verdicts),
         "groups": [group for group in groups if group["statements"]],
         "untried": [dict(zip(("section", "quote", "reason"), sentence, strict=True)) for sentence in UNTRIED],
-        **program_of_results(),
+        **_decided_by(),
         "wall_s": time.perf_counter() - began,
     }
 
 
 def _decided(results: ResultFolder) -> Entries:
     """Claims in the folder that this version of the program decided, and whose figures are there."""
-    study, program = results.earlier or {}, program_of_results()
+    study, program = results.earlier or {}, _decided_by()
     try:
         entries = [entry for group in study.get("groups", ()) for entry in group["statements"]]
         return {

@@ -5,6 +5,7 @@ import pytest
 from paper import example, quasi_static, rocking, shape, stacking
 from paper.claims import Conclusion
 from paper.experiments import Experiments
+from paper.index import all_claims
 
 
 @pytest.fixture(scope="module")
@@ -34,6 +35,12 @@ def test_conclusion_on_a_claim_that_theory_decides(experiments, claim, conclusio
     finding = claim.check(experiments)
     assert not experiments.failed
     assert finding.conclusion is conclusion
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("claim", all_claims(), ids=lambda claim: claim.name)
+def test_every_claim_is_decided_and_no_run_that_it_needs_fails(experiments, claim):
+    assert claim.check(experiments).conclusion is not Conclusion.UNDECIDED
 
 
 def test_inertia_of_a_cylinder_about_the_edge_of_its_base():

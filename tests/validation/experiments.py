@@ -1,11 +1,10 @@
 """An experiment with its findings: predictions beside measurements, by criteria that were set beforehand."""
 
-from collections.abc import Iterator
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from evidence.findings import Finding
-from evidence.suite import failures
+from evidence.findings import Finding, failures
 
 from fem.runtime.identity import versions
 
@@ -55,62 +54,39 @@ class Experiment:
         return failures(self.findings)
 
 
-@dataclass(frozen=True, kw_only=True)
-class ValidationResult:
-    """All experiments."""
+def document_of(experiments: Sequence[Experiment]) -> dict[str, Any]:
+    """The content of validate.json."""
+    every = [finding for experiment in experiments for finding in experiment.findings]
+    return {
+        "passed": failures(every) == 0,
+        "missed": failures(every),
+        "judged": sum(finding.holds is not None for finding in every),
+        "sentence": in_a_sentence(experiments),
+        "experiments": [
+            {key: value for key, value in asdict(experiment).items() if key != "figures"}
+            | {"findings": [finding.document(KEYS) for finding in experiment.findings]}
+            | {"computed": not experiment.not_computed, "missed": experiment.missed}
+            for experiment in experiments
+        ],
+        "versions": versions(),
+    }
 
-    experiments: tuple[Experiment, ...]
 
-    @property
-    def findings(self) -> Iterator[Finding]:
-        """Every finding, in order."""
-        return (finding for experiment in self.experiments for finding in experiment.findings)
-
-    @property
-    def failures(self) -> int:
-        """Number of findings that miss their criterion."""
-        return failures(self.findings)
-
-    @property
-    def judged(self) -> int:
-        """Number of findings with a criterion."""
-        return sum(finding.holds is not None for finding in self.findings)
-
-    @property
-    def sentence(self) -> str:
-        """The result in one sentence, missed criteria first."""
-        if not self.judged:
-            return "No experiment was computed."
-        judged = f"{self.judged - self.failures} of {self.judged} judged predictions meet their criterion"
-        missed = ", ".join(experiment.title for experiment in self.experiments if experiment.missed)
-        parts = [f"{judged}; missed: {missed}" if missed else judged]
-        if stated := [finding for finding in self.findings if finding.holds is None]:
-            off = [finding for finding in stated if finding.telling]
-            parts.append(f"{len(stated)} are stated and not judged")
-            if off:
-                gaps = "; ".join(
-                    f"{finding.what}: measured {finding.reference}, predicted {finding.value}"
-                    for finding in off
-                )
-                parts[-1] += f", of which {len(off)} tell most ({gaps})"
-        if skipped := [experiment.title for experiment in self.experiments if experiment.not_computed]:
-            parts.append(
-                f"{len(skipped)} of {len(self.experiments)} experiments not computed ({', '.join(skipped)})"
-            )
-        return "; ".join(parts) + "."
-
-    def to_dict(self) -> dict[str, Any]:
-        """Everything as plain data, for JSON."""
-        return {
-            "passed": self.failures == 0,
-            "missed": self.failures,
-            "judged": self.judged,
-            "sentence": self.sentence,
-            "experiments": [
-                {key: value for key, value in asdict(experiment).items() if key != "figures"}
-                | {"findings": [finding.document(KEYS) for finding in experiment.findings]}
-                | {"computed": not experiment.not_computed, "missed": experiment.missed}
-                for experiment in self.experiments
-            ],
-            "versions": versions(),
-        }
+def in_a_sentence(experiments: Sequence[Experiment]) -> str:
+    """The result, missed criteria first."""
+    every = [finding for experiment in experiments for finding in experiment.findings]
+    stated = [finding for finding in every if finding.holds is None]
+    judged = len(every) - len(stated)
+    if not judged:
+        return "No experiment was computed."
+    met = f"{judged - failures(every)} of {judged} judged predictions meet their criterion"
+    missed = ", ".join(experiment.title for experiment in experiments if experiment.missed)
+    parts = [f"{met}; missed: {missed}" if missed else met]
+    if stated:
+        off = [finding for finding in stated if finding.telling]
+        gaps = "; ".join(f"{one.what}: measured {one.reference}, predicted {one.value}" for one in off)
+        telling = f", of which {len(off)} tell most ({gaps})" if off else ""
+        parts.append(f"{len(stated)} are stated and not judged{telling}")
+    if skipped := [experiment.title for experiment in experiments if experiment.not_computed]:
+        parts.append(f"{len(skipped)} of {len(experiments)} experiments not computed ({', '.join(skipped)})")
+    return "; ".join(parts) + "."

@@ -1,15 +1,19 @@
 """The suite of experiments."""
 
-from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from evidence.findings import prediction
-from evidence.suite import attempted
+from evidence.findings import attempted, prediction
 from validation import contents, cube, impacts, pulses, rocks
-from validation.experiments import Experiment, ValidationResult
+from validation.experiments import Experiment, document_of
 from validation.shake_tests import read_series
+
+from fem.run.expected import say_expected
+from fem.runtime.progress import ScreenReporter
+
+__all__ = ["document_of", "require", "run_validation"]
+ALL_S, TABLE_S = 60.0, 240.0  #: without and with tests on a shake table
 
 
 def require(data: Path | None) -> None:
@@ -22,18 +26,19 @@ def require(data: Path | None) -> None:
         read_series(data)
 
 
-def run_validation(
-    data: Path | None, *, before: Callable[[str], None] = lambda name: None
-) -> ValidationResult:
-    """Compute every experiment; `before` each, call with its name.
+def run_validation(data: Path | None, *, reporter: ScreenReporter) -> list[Experiment]:
+    """Compute every experiment.
 
     Args:
         data: folder of shake-table tests; None leaves that experiment out.
+        reporter: told the name of each.
 
     Raises:
         ShakeTestError: as for `require`.
     """
     require(data)
+    expected = ALL_S + (TABLE_S if data is not None else 0.0)
+    say_expected(reporter, "the experiments, once kernels are compiled", expected)
     experiments = []
     for name, compute in (
         ("rocks", partial(rocks.compute, data)),
@@ -42,11 +47,10 @@ def run_validation(
         ("impacts", impacts.compute),
         ("contents", contents.compute),
     ):
-        before(name)
-        done = attempted(compute)
-        experiment = done.result or not_computed(name, done.reason)
-        experiments.append(replace(experiment, seconds=done.seconds))
-    return ValidationResult(experiments=tuple(experiments))
+        reporter.message(name)
+        experiment, reason, seconds = attempted(compute)
+        experiments.append(replace(experiment or not_computed(name, reason), seconds=seconds))
+    return experiments
 
 
 def not_computed(name: str, reason: str) -> Experiment:

@@ -6,11 +6,11 @@ from functools import partial
 import numpy as np
 import pytest
 from evidence.findings import prediction
+from evidence.pages import page_of, validation_lines
 from runs import STACK
 from validation import contents
 from validation.bodies import cross_validated, specimen
-from validation.experiments import Experiment, ValidationResult
-from validation.page import lines_of, page_of
+from validation.experiments import Experiment, document_of, in_a_sentence
 from validation.vote import (
     Block,
     Vote,
@@ -70,13 +70,13 @@ def experiment(name: str, *met: bool | None, not_computed: str = "") -> Experime
     ],
 )
 def test_the_sentence_names_what_is_missed_and_what_is_not_computed(experiments, sentence):
-    assert ValidationResult(experiments=tuple(experiments)).sentence.endswith(sentence)
+    assert in_a_sentence(experiments).endswith(sentence)
 
 
 def test_a_telling_number_that_is_not_judged_stands_in_the_sentence():
     off = prediction("restitution", "1.002", reference=0.95, telling=True)
     one = replace(experiment("a", True, None), findings=(*experiment("a", True, None).findings, off))
-    assert ValidationResult(experiments=(one,)).sentence == (
+    assert in_a_sentence([one]) == (
         "1 of 1 judged predictions meet their criterion; 2 are stated and not judged, of which 1 tell most "
         "(restitution: measured 0.95, predicted 1.002)."
     )
@@ -134,17 +134,16 @@ def test_a_threshold_is_fitted_to_the_measure_that_separates():
 
 
 def test_an_experiment_that_is_missed_comes_first_on_the_page_and_in_the_terminal():
-    result = ValidationResult(experiments=(experiment("held", True), experiment("failed", False)))
-    text = page_of(result)
+    document = document_of([experiment("held", True), experiment("failed", False)])
+    text = page_of("validate", document, {"held": [], "failed": []})
     assert text.index('id="failed"') < text.index('id="held"')
-    lines = lines_of(result)
+    lines = validation_lines(document)
     assert lines.index("failed  (3 tests, 0 s)") < lines.index("held  (3 tests, 0 s)")
     assert any("MISSED" in line for line in lines)
 
 
 def test_the_json_has_every_finding():
-    result = ValidationResult(experiments=(experiment("a", False, None),))
-    document = result.to_dict()
+    document = document_of([experiment("a", False, None)])
     assert (document["passed"], document["missed"], document["judged"]) == (False, 1, 1)
     assert [one["passed"] for one in document["experiments"][0]["findings"]] == [False, None]
 
