@@ -34,6 +34,7 @@ OWN_PACKAGES = {"fem", "mesh", "contact"}
 FLAGS = ("--help", "-h", "--version")
 #: options that were there, and what to use in their place
 GONE = {
+    "--width": "a movie is as wide as a picture; any program for films scales it",
     "--all-variations": "use run --band, which varies the unknown inputs, and run --margin, which varies the strength",
 }
 #: group -> command -> what it does, and arguments as an example
