@@ -35,7 +35,13 @@ def known_keys(table: type[CaseTable]) -> dict[str, FieldInfo]:
 
 TOP = known_keys(CaseHeading)
 #: keys that were there, and what to use in their place
-GONE = {"tie.to_height_m": "ties run to the floor or to a wall; tie each container of a row to one of these"}
+GONE = {
+    "tie.to_height_m": "ties run to the floor or to a wall; tie each container of a row to one of these",
+    "support.casting_bears": "castings touch with their outer edges; a container on wide plates has support.kind = "
+    '"feet"',
+    "support.casting_tilt_m": "castings are level; uncertainty.restitution_over_housner varies how an impact lands",
+    "uncertainty.casting_tilt_m": "castings are level; restitution_over_housner varies how an impact lands",
+}
 MOST_BOXES = range(1, 51)
 #: what values of the wrong type should have been, by pydantic's name of the fault
 KINDS = {

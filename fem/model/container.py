@@ -191,7 +191,7 @@ def adapted_container(case: Case, container: Container, own: Case) -> Container 
 def _touching(case: Case) -> tuple[object, ...]:
     """What says which points of a base touch, and how high they stand."""
     support = case.support
-    return support.kind, case.foot, support.casting_tilt_m, support.camber_m
+    return support.kind, case.foot, support.camber_m
 
 
 def without_links(case: Case, container: Container) -> Container:

@@ -200,7 +200,6 @@ def test_it_rocks_as_an_event_driven_block_of_that_width(times, shape, seconds, 
 @pytest.mark.parametrize(("peak", "outcome"), [(3.6, "invalid"), (3.8, "overturned")])
 def test_a_fall_before_the_floor_is_destroyed_is_a_fall(peak, outcome):
     # 6.5 mm deep as it passes its slenderness angle, and no deeper; where it stands it falls back on that floor, 24 mm.
-    # A block on 21 elastoplastic points a casting (`block_on_plates`) turns 0.63 of the angle under 3.6, and falls.
     keys = {"kind": "pulse", "shape": "sine", "pulse_s": 1.0, "peak_acceleration_m_s2": peak}
     case = on_asphalt(1.5, **{f"motion.{key}": value for key, value in keys.items()})
     verdict, error = run_without_history(build_model(case), None)
