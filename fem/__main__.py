@@ -32,6 +32,11 @@ WORDS = defaultdict(lambda: "another value", float="a number", int="a whole numb
 OWN_PACKAGES = {"fem", "mesh", "contact"}
 
 FLAGS = ("--help", "-h", "--version")
+#: options that were there, and what to use in their place
+GONE = {
+    "--width": "a movie is as wide as a picture; any program for films scales it",
+    "--all-variations": "use run --band, which varies the unknown inputs, and run --margin, which varies the strength",
+}
 #: group -> command -> what it does, and arguments as an example
 GROUPS = {
     "Start": {
@@ -124,6 +129,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     tokens = list(sys.argv[1:] if arguments is None else arguments)
     if tokens and tokens[0] not in COMMANDS and tokens[0] not in FLAGS:
         return _refuse(_unknown_command(tokens[0]))
+    if gone := [token for token in tokens if token.partition("=")[0] in GONE]:
+        return _refuse(f"{gone[0]} is gone; {GONE[gone[0].partition('=')[0]]}")
     if tokens and (short := shortage(tokens[0] in set(COMMANDS) - READING, _jobs_of(tokens))):
         return _refuse(short, FAILED)
     try:

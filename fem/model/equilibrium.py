@@ -122,7 +122,7 @@ def _of_row(case: Case, container: Container, gravity: float) -> Equilibrium:
         None if alone.initial.rotation_rad != 0.0 else settled.stance
         for alone, settled in zip(case.row, row, strict=True)
     ]
-    standing = corners_at_rest(body, bodies, upright)
+    standing = corners_at_rest(body, upright)
     measure_gaps(body, standing, own_stiffness(contact))
     place = np.zeros((contact.cap.size, 2))
     place_points(body.faces, standing.reshape(-1, 2), place)

@@ -1,9 +1,7 @@
 """The contact nodes of a case's container, and their penalty."""
 
 import math
-from dataclasses import dataclass, replace
-
-import numpy as np
+from dataclasses import dataclass
 
 from contact.interface.penalty import STIFFEST, choose_normal_penalty
 from contact.interface.support import Support, cambered, choose_support
@@ -16,8 +14,6 @@ from mesh.container import ContainerMesh
 
 LEAST_POINTS = 5  #: of a base that rolls: fewer are a polygon of two or three sides
 #: of a casting at most: the cost of a step grows with their square; 41 turn a stack 3 % further, see README.md
-CASTING_POINTS = 5
-MEETING = 1.0 - 1e-9  #: share of the width from which castings bear under all of it
 
 
 def build_support(case: Case, mesh: ContainerMesh) -> Support:
@@ -29,9 +25,7 @@ def build_support(case: Case, mesh: ContainerMesh) -> Support:
     """
     chosen, x = case.support, base_positions(mesh, case.solver.order)
     feet = (0.0, 0.0) if case.foot is None else mesh.elevation.foot_widths(case.foot)
-    kind = chosen.kind if case.foot is None else "feet"
-    if case.rolls or sum(feet) >= MEETING * mesh.width:
-        kind = "flat"
+    kind = "flat" if case.rolls else chosen.kind
     try:
         level = choose_support(
             kind,
@@ -42,8 +36,6 @@ def build_support(case: Case, mesh: ContainerMesh) -> Support:
         )
     except ValueError as error:
         raise CaseError(str(error)) from error
-    if case.foot is not None and kind == "feet" and chosen.kind == "corners":
-        return _on_castings(level, x, case.foot, chosen.casting_tilt_m)
     if chosen.camber_m == 0.0:
         return level
     if case.rolls and level.index.size < LEAST_POINTS:
@@ -52,34 +44,6 @@ def build_support(case: Case, mesh: ContainerMesh) -> Support:
             f"does not roll; take at most {0.25 * float(x[-1] - x[0]):.2g} m"
         )
     return cambered(level, x[level.index], chosen.camber_m)
-
-
-def _on_castings(support: Support, x: FloatArray, length: float, tilt: float) -> Support:
-    """The support on a few of the points of castings, closer to one another toward the outer edges.
-
-    Args:
-        support: all nodes over the castings.
-        x: of the base nodes [m].
-        length: of a casting [m].
-        tilt: how far its outer edge stands higher than its inner one [m].
-    """
-    index, lengths = [], []
-    for nodes in np.array_split(support.index, 2):
-        inward = np.abs(x[nodes] - x[nodes[0] if x[nodes[0]] < 0.0 else nodes[-1]])
-        wanted = inward.max() * np.linspace(0.0, 1.0, CASTING_POINTS) ** 2
-        kept = np.unique(np.abs(inward[:, None] - wanted).argmin(axis=0))
-        halves = 0.5 * np.abs(np.diff(inward[kept]))
-        index.append(nodes[kept])
-        lengths.append(np.append(halves, 0.0) + np.append(0.0, halves))
-    points = np.concatenate(index)
-    height = tilt * (np.abs(x[points]) - x[-1]) / length
-    return replace(
-        support,
-        index=points,
-        length=np.concatenate(lengths),
-        camber=height - height.min(),
-        sinking=np.zeros(points.size),
-    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -162,15 +126,12 @@ def steel_penalty(case: Case, mesh: ContainerMesh) -> float:
 def base_points(case: Case, mesh: ContainerMesh, place: FloatArray, count: int) -> FloatArray:
     """Points of a container (n, 2), the first of which bear on the floor: corners where the container turns [m].
 
-    Many points of one patch find by themselves which of them carry the container on a weak floor. Those of a casting
-    keep their distances where it stands inside the side.
+    Many points of one patch find by themselves which of them carry the container on a weak floor.
     """
-    sharp = case.support.kind == "corners" and case.foot is None
-    inset = 0.0 if sharp else case.support.inset
+    sharp = case.support.kind == "corners"
     share = pivot_share(case, mesh) if sharp else case.support.effective_width
-    if share == 1.0 and inset == 0.0:
+    if share == 1.0:
         return place
     placed = place.copy()
     placed[:count, 0] = share * place[:count, 0]
-    placed[:count, 0] -= np.copysign(inset, place[:count, 0])
     return placed

@@ -25,7 +25,7 @@ class Place(Flag):
     """Where a figure stands."""
 
     KEY = auto()  #: every row of a run that a study compares
-    RUNS = auto()  #: the rows of the runs of a site, and of variations
+    RUNS = auto()  #: the rows of the runs of a site
     COLUMN = auto()  #: the tables of sweeps, the rows of `run_cases`
     BAND = auto()  #: the members of a band, and its ranges
     SUMMARY = auto()  #: a row of the summary and the page of a run

@@ -159,16 +159,6 @@ class SupportTable(CaseTable):
             only=("kind", "corners"),
         )
     )
-    casting_bears: Literal["plate", "edge"] | None = optional_key(
-        '"plate" | "edge": over all its length, or at its outer edge; default: edge, plate where it is tilted',
-        "plate",
-        only=("kind", "corners"),
-    )
-    casting_tilt_m: Annotated[float, q.TILT] = case_key(
-        "how far the outer edge of a casting stands higher than its inner one; < 0: lower",
-        0.0,
-        only=("kind", "corners"),
-    )
     camber_m: Annotated[float, q.CAMBER] = case_key(
         "how far the edges of the base stand higher than its middle, along a parabola; 0: sharp corners", 0.0
     )

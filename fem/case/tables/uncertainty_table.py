@@ -29,9 +29,6 @@ class UncertaintyTable(CaseTable):
     )
     joints_weakening_m: Unknown = optional_key("loose joints: default: 0 to 5 mm", [0.0, 0.005])
     joints_damping_ratio: Unknown = optional_key("loose joints: default: 0.1 to 2, and as given", [0.1, 2.0])
-    casting_tilt_m: Unknown = optional_key(
-        "of castings that bear as plates; default: 0.5 mm less to 0.5 mm more", [-0.001, 0.001]
-    )
     camber_m: Unknown = optional_key(
         "of the support; default: half to twice, of a level base flat or on feet 0 to 2 mm", [0.0, 0.002]
     )
