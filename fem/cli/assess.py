@@ -99,14 +99,5 @@ def page_of(result: "SiteResult", folder: Path) -> Iterator[str]:
             f"{further.beyond_limits} go beyond a limit of one motion ({further.mass}, friction "
             f"{further.mu_static:.3g}/{further.mu_kinetic:.3g})"
         )
-    if rates := answer.hazard:
-        low, high = rates.interval
-        yield (
-            f"  a year     overturns {rates.overturning_per_year:.2g} times ({low:.2g} to {high:.2g}), "
-            f"{100.0 * rates.in_50_years:.2g} % in 50 years"
-        )
-        if rates.slip_per_year is not None:
-            low, high = rates.slip_interval
-            yield f"  a year     slides beyond the limit {rates.slip_per_year:.2g} times ({low:.2g} to {high:.2g})"
     yield f"  rule       {answer.rule}"
     yield f"  files      {folder}"

@@ -40,7 +40,6 @@ class Beside:
     two_directions: result.TwoDirections | None = None  #: None: not asked for, or not known
     slips_of_further: MotionSlips = field(default_factory=dict)  #: empty: not asked for, or not known
     in_plane_only: str = ""  #: why the slip in two directions, which was asked for, is not known, in words
-    hazard: result.AnnualRates | None = None  #: None: no hazard was given
     still: int = 0  #: runs that the rigid bound made superfluous
     moves_at: float | None = None  #: factor on the motions at which a rigid body first uplifts or slips
     left_out: str = ""  #: stages that were not asked for, in words
@@ -124,7 +123,6 @@ def answer_of(
         factor_at_first_overturning=_first_overturning(runs),
         factor_at_first_movement=beside.moves_at,
         two_directions=slip,
-        hazard=beside.hazard,
         rule_range=span,
         scan=_scan(runs),
         failed_between=sum(key.stage == REFINED and run.outcome is None for key, run in runs.items()),

@@ -2,7 +2,6 @@
 
 from fem.case.case import CaseError
 from fem.model.geometry import build_container
-from fem.model.resting import gives_way
 from fem.model.static_checks import static_checks_of
 from fem.site_check.file import EMPTY, Variant
 from fem.site_check.result import SiteBody
@@ -37,5 +36,4 @@ def body_of(variant: Variant) -> SiteBody:
         frequency_parameter_1_s=static.frequency_parameter,
         uplift_acceleration_m_s2=static.uplift_acceleration,
         housner_restitution=static.housner_restitution,
-        gives_way=gives_way(case, mesh, static),
     )

@@ -21,14 +21,12 @@ from fem.case.validation import CaseError
 from fem.runtime.user_files import leads_out, real_path
 from fem.seismic.action import SiteAction
 from fem.seismic.floor_spectrum import HORIZONTAL, PERIOD, VERTICAL, FloorSpectrum, read_spectrum
-from fem.seismic.hazard import ACCELERATION, HazardCurve, read_hazard
 from fem.seismic.wind import german_pressure, terrain_pressure
 from fem.site_check.action import action_of
 from fem.site_check.tables import (
     BuildingTable,
     FloorSpectrumTable,
     FrictionTable,
-    HazardTable,
     LimitsTable,
     MotionsTable,
     SiteTable,
@@ -50,7 +48,6 @@ TABLES: dict[str, type[CaseTable]] = {
     "friction": FrictionTable,
     "limits": LimitsTable,
     "wind": WindTable,
-    "hazard": HazardTable,
     "sources": SourcesTable,
     "document": DocumentTable,
 }
@@ -100,7 +97,6 @@ class SiteRequest:
     friction: FrictionTable
     limits: LimitsTable
     wind: WindTable | None
-    hazard: HazardTable | None
     sources: SourcesTable
     document: DocumentTable | None
 
@@ -155,12 +151,8 @@ class SiteRequest:
     @property
     def point_files(self) -> dict[str, str]:
         """Names of the files of points beside the site file, by the tables that name them."""
-        given = {"hazard": self.hazard, "floor_spectrum": self.floor_spectrum}
-        return {
-            table: entry.file
-            for table, entry in given.items()
-            if entry is not None and entry.file is not None
-        }
+        floor = self.floor_spectrum
+        return {"floor_spectrum": floor.file} if floor is not None and floor.file is not None else {}
 
     @property
     def frictions(self) -> list[tuple[float, float]]:
@@ -188,23 +180,6 @@ class SiteRequest:
                 for mass, case in masses.items()
             ]
         return variants
-
-    @cached_property
-    def hazard_curve(self) -> HazardCurve | None:
-        """The hazard of the site; None: the file gives none.
-
-        Raises:
-            CaseError: points that are no hazard curve, or a file that holds none.
-        """
-        if self.hazard is None:
-            return None
-        key = "file" if self.hazard.points is None else "points"
-        try:
-            if self.hazard.points is not None:
-                return HazardCurve.from_return_periods([(years, a) for years, a in self.hazard.points])
-            return read_hazard(self._beside(self.hazard.file or ""))
-        except ValueError as error:
-            raise CaseError(f"[hazard] {key}: {error}") from None
 
     @property
     def wind_pressure(self) -> tuple[float, str] | None:
@@ -350,7 +325,6 @@ def _request(data: Mapping[str, Any], origin: Origin, container: Case | None = N
         friction=read["friction"],
         limits=read["limits"],
         wind=read.get("wind"),
-        hazard=read.get("hazard"),
         sources=read["sources"],
         document=read.get("document"),
     )
@@ -377,7 +351,7 @@ def _check(request: SiteRequest) -> None:
             "container: [[neighbour]] is not verified at a site, whose second component, rigid bound and simplified "
             "methods know a container that stands alone; leave it out, or run the motions one by one"
         )
-    _ = request.action, request.variants, request.wind_pressure, request.hazard_curve, request.floor_target
+    _ = request.action, request.variants, request.wind_pressure, request.floor_target
     _check_floor(request)
     if request.heading.empty_centroid_m is not None and request.heading.empty_mass_kg is None:
         raise CaseError("empty_centroid_m has no effect without empty_mass_kg")
@@ -401,11 +375,6 @@ def _check_floor(request: SiteRequest) -> None:
         raise CaseError(
             '[floor_spectrum] and [motions] source = "floor" both say how the floor moves; leave the spectrum out, or '
             'fit the records to it with source = "records" or "matched"'
-        )
-    curve = request.hazard_curve
-    if request.on_given_floor and curve is not None and curve.measure != ACCELERATION:
-        raise CaseError(
-            f"[hazard] file: rates of the velocity of the ground say nothing of {given}; give them over {ACCELERATION}"
         )
 
 

@@ -131,7 +131,6 @@ class SiteBody(JsonBlock):
     frequency_parameter_1_s: float
     uplift_acceleration_m_s2: float
     housner_restitution: float
-    gives_way: bool = False  #: whether it tilts on its floor before a side lifts off, see `fem.model.resting`
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -284,55 +283,6 @@ class TwoDirections(JsonBlock):
 
 
 @dataclass(frozen=True, kw_only=True)
-class HazardLevel(JsonBlock):
-    """Motions of one strength, which are those of no other level."""
-
-    strength: float  #: in the unit of the hazard
-    factor: float  #: on motions for the action of the site
-    motions: int
-    overturned: int
-    slipped: int  #: beyond the limit, in the plane or in both directions
-    failed: int = 0  #: motions without an outcome, which are none of `motions`
-    rate_per_year: float = 0.0  #: at which the hazard exceeds it
-    interval: tuple[float, ...] = ()  #: of the probability that it does not stand, 95 %, two-sided
-    #: what arises from the level before, or the first movement, up to this one
-    overturning_per_year: float = 0.0
-
-
-@dataclass(frozen=True, kw_only=True)
-class AnnualRates(JsonBlock):
-    """How often a year the container overturns, or slides beyond the limit, by counts at several levels."""
-
-    mass: str  #: that rocks most in the set, and so the elevation, period and friction
-    elevation: str
-    building_period_s: float | None = None
-    mu_static: float
-    mu_kinetic: float
-    scatter: float  #: of records about a level, of the logarithm
-    measure: str  #: acceleration_m_s2: a_gR; velocity_m_s: peak of the ground
-    strengths: tuple[float, ...]  #: of the hazard curve
-    rates_per_year: tuple[float, ...]
-    levels: tuple[HazardLevel, ...]
-    overturning_per_year: float
-    beyond_per_year: float = 0.0  #: of it beyond the strongest level, where the share stays as counted there
-    #: with the 95 % intervals of all counts at once, the tails as bounds, and failed runs in the upper end
-    interval: tuple[float, ...]
-    in_50_years: float  #: probability
-    #: strengths between which most of the rate arises; None: nothing overturned
-    most_from: float | None = None
-    most_to: float | None = None  #: None also: beyond the strongest level
-    share: float  #: of the rate that arises there
-    #: with the friction that slides furthest in the set; None: on a sloping floor
-    slip_per_year: float | None
-    slip_interval: tuple[float, ...]
-    #: of the lognormal curve fitted to the counts of overturning; None: there is none
-    median: float | None = None
-    beta: float | None = None  #: with the scatter
-    fit_per_year: float | None = None  #: of that curve
-    closed_form_per_year: float | None = None  #: of it with one power law: H(median) exp(k^2 beta^2/2)
-
-
-@dataclass(frozen=True, kw_only=True)
 class SiteAnswer(ByRule):
     """The answer, under the rule that is printed with it."""
 
@@ -353,7 +303,6 @@ class SiteAnswer(ByRule):
     factor_at_first_overturning: float | None = None
     #: at which a rigid body first uplifts or slips; None: not known
     factor_at_first_movement: float | None = None
-    hazard: AnnualRates | None = None  #: None: no hazard was given
     #: None: motions.second_component = 0, or not known on a sloping floor or for motions without that component
     two_directions: TwoDirections | None = None
     rule_range: RuleRange | None = None

@@ -40,7 +40,6 @@ from fem.site_check.motions import floor_motions, ground_motions, longest_period
 from fem.site_check.page.site_page import site_report
 from fem.site_check.preview import forecast
 from fem.site_check.result import (
-    MOTIONS,
     MotionSet,
     SiteAnswer,
     SiteBody,
@@ -48,9 +47,8 @@ from fem.site_check.result import (
     SiteResult,
     SiteRun,
 )
-from fem.site_check.runs import COLUMNS, HAZARD, RunCases, RunKey, motion_stem
+from fem.site_check.runs import COLUMNS, RunCases, RunKey, motion_stem
 from fem.site_check.stages import Stages
-from fem.site_check.yearly import hazard_motions
 
 RUNS, PAGE = "runs.csv", "report.html"
 OF_A_MOTION = 75_000  #: numbers, in three files
@@ -82,7 +80,7 @@ def run_site(
     ground = ground_motions(request, longest, allow_outside=allow_outside)
     floors = floor_motions(request, ground)
     stages = Stages.of(request, floors, longest=longest, folder=folder)
-    files = len(ground) * (1 + len(floors)) + request.motions.further + hazard_motions(request)
+    files = len(ground) * (1 + len(floors)) + request.motions.further
     digest = hash_of([site_hash(request, ground), "quick"]) if quick else site_hash(request, ground)
     work = _Verification(
         request=request,
@@ -118,9 +116,7 @@ def site_hash(request: SiteRequest, ground: Sequence[GroundMotion]) -> str:
     for motion in ground:
         for component in motion.components:
             digest.update(component.tobytes())
-    if (curve := request.hazard_curve) is not None:  # of its file the request has the name alone
-        digest.update(curve.measure.encode() + curve.strengths.tobytes() + curve.rates.tobytes())
-    if (floor := request.floor_target) is not None:  # likewise
+    if (floor := request.floor_target) is not None:  # of its file the request has the name alone
         points = floor.periods, floor.accelerations, floor.vertical_accelerations
         digest.update(repr(points).encode())
     return hash_of([data, case_hash(request.container), digest.hexdigest()])
@@ -189,10 +185,7 @@ class _Verification:
                 again = confirmed(cases, runs, keys, runner.jobs)
         if runner.stop():
             return None
-        velocity = sum(motion.pgv_m_s for motion in motions.motions) / max(len(motions.motions), 1)
-        beside = replace(stages.beside(again, self.wind, self.bodies, velocity), left_out=left_out)
-        for file in place.path.glob(f"{MOTIONS}/{HAZARD}_*.csv"):  # the seed gives them again
-            file.unlink()
+        beside = replace(stages.beside(again, self.wind), left_out=left_out)
         return answer_of(self.request, motions, rows.in_order(), beside)
 
     def _deciding(self, runs: Mapping[RunKey, SiteRun]) -> list[RunKey]:
@@ -255,4 +248,3 @@ class _Verification:
         yield from self.stages.of_the_answer(runner, quick=self.quick)
         if not self.quick:
             yield from self.stages.of_the_margin()
-            yield from self.stages.of_the_hazard(runner, self.bodies)

@@ -23,8 +23,7 @@ from fem.site_check.result import MOTIONS, SiteRun
 from fem.site_check.rule import RuleFound, RunGroup, groups_of
 
 SET, REPEATED, SCAN, REFINED, FURTHER = "set", "repeated", "scan", "refined", "further"
-HAZARD = "hazard"  #: levels for the rate per year
-STAGES = (SET, REPEATED, SCAN, REFINED, FURTHER, HAZARD)  #: in the order of the rows
+STAGES = (SET, REPEATED, SCAN, REFINED, FURTHER)  #: in the order of the rows
 WIDTH = "width"  #: the elevation that a case file shows
 #: factors on the motions beside 1, and values tried below the first that fails and below the first that overturns
 SCANNED = (0.5, 0.75, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0, 3.5, 4.0)
@@ -65,7 +64,7 @@ COLUMNS = {key: types_of(RunKey)[key] for key in RunKey._fields} | FOUND | {"rea
 
 def motion_stem(number: int, period: float | None, stage: str = SET) -> str:
     """Beginning of the names of the files of a motion."""
-    name = f"{stage}_{number:03d}" if stage in (FURTHER, HAZARD) else f"motion_{number:02d}"
+    name = f"{stage}_{number:03d}" if stage == FURTHER else f"motion_{number:02d}"
     return name if period is None else f"{name}_floor_{period:g}s"
 
 

@@ -15,14 +15,13 @@ from fem.site_check.answer import Beside, MotionSlips
 from fem.site_check.file import SiteRequest
 from fem.site_check.motion_results import write_csv_files
 from fem.site_check.motions import motion_target, on_floor
-from fem.site_check.result import ConfirmedRun, SiteBody, TwoDirections
+from fem.site_check.result import ConfirmedRun, TwoDirections
 from fem.site_check.rule import RuleFound, governing_groups, groups_of
-from fem.site_check.runs import FURTHER, HAZARD, REPETITIONS, SCAN, SET, RunKey, RunPlan, RunRows, motion_stem
+from fem.site_check.runs import FURTHER, REPETITIONS, SCAN, SET, RunKey, RunPlan, RunRows, motion_stem
 from fem.site_check.screening import Screening
-from fem.site_check.yearly import annual_rates, hazard_motions, hazard_runs, rocking_most
 
 #: numbers of the artificial motions beyond the set begin behind those of any set
-FIRST_FURTHER, FIRST_OF_HAZARD = 10_000, 100_000
+FIRST_FURTHER = 10_000
 FURTHER_PASSES = 15  #: in which those are matched: they are many, and nobody compares one with the target
 #: why the slip in two directions is not known
 ON_A_SLOPE = (
@@ -118,7 +117,7 @@ class Stages:
 
         Args:
             quick: the set and its repetitions alone.
-            scan: with the set at other factors, and the levels of the rate per year.
+            scan: with the set at other factors.
         """
 
         def left(keys: Sequence[RunKey]) -> int:
@@ -134,7 +133,6 @@ class Stages:
             return own, most
         most += pairs * self.request.motions.further * len(self.plan.signs)
         if scan:
-            most += hazard_motions(self.request)
             most += sum(left(self.plan.scanned(factor)) for factor in self.plan.factors)
         return own, most
 
@@ -160,42 +158,19 @@ class Stages:
         factors = [self.screening.moves_at(key) for key in self.plan.of_set()]
         return None if None in factors else min(factor for factor in factors if factor is not None)
 
-    def of_the_hazard(self, runner: Runner, bodies: Sequence[SiteBody]) -> Iterator[Sequence[RunKey]]:
-        """Motions at several levels, where a hazard was given."""
-        own = self.rows.of(self.plan.of_set())
-        if self.request.hazard is None or runner.stop() or not own:
-            return
-        groups = groups_of(own)
-        floor = self.floors[rocking_most(groups, bodies).first.building_period_s]
-        keys = hazard_runs(groups, bodies, floor, self.request.hazard.motions)
-        self._make(runner, keys)
-        if not runner.stop():
-            yield self._left(keys)
-
-    def beside(
-        self,
-        confirmed: Sequence[ConfirmedRun],
-        wind: float | None,
-        bodies: Sequence[SiteBody] = (),
-        peak_velocity: float = 0.0,
-    ) -> Beside:
+    def beside(self, confirmed: Sequence[ConfirmedRun], wind: float | None) -> Beside:
         """What the answer rests on beside the runs.
 
         Args:
-            bodies: of all containers, and peak_velocity: mean of the set on the ground [m/s]; for the hazard.
             confirmed: the deciding runs, repeated.
             wind: the largest utilisation under wind; None: it was not asked for.
         """
-        slid = self._two_directions()
         return Beside(
             confirmed=confirmed,
             wind=wind,
-            two_directions=slid,
+            two_directions=self._two_directions(),
             slips_of_further=self._slips_of_further(),
             in_plane_only=self._in_plane_only,
-            hazard=annual_rates(
-                self.request, self.rows.in_order(), self.screening.motions, bodies, slid, peak_velocity
-            ),
             still=sum(key.stage == SET for key in self.rows.still),
             moves_at=self.first_movement,
         )
@@ -279,7 +254,6 @@ class Stages:
         """Let the workers make the further motions of these runs, with their files."""
         for period in dict.fromkeys(key.building_period_s for key in keys):
             numbers = sorted({key.motion for key in keys if key.building_period_s == period})
-            stage = keys[0].stage
             make = partial(
                 further_motions,
                 self.request,
@@ -287,13 +261,12 @@ class Stages:
                 self.plan.vertical,
                 self.longest,
                 period,
-                stage,
                 self.folder,
             )
             pools = runner.workers_of(self.request.heading.model, len(keys))
             for chunk, made in hand_out(numbers, make, pools, at_a_time=4, stop=runner.stop):
                 for number, motion in zip(chunk, made, strict=True):
-                    self.screening.motions[motion_stem(number, period, stage)] = motion
+                    self.screening.motions[motion_stem(number, period, FURTHER)] = motion
 
 
 def further_motions(
@@ -302,7 +275,6 @@ def further_motions(
     vertical: bool,
     longest: float,
     period: float | None,
-    stage: str,
     folder: Path,
     numbers: Sequence[int],
 ) -> list[GroundMotion]:
@@ -311,7 +283,6 @@ def further_motions(
     Their files are written in the folder.
     """
     table, made = request.motions, []
-    first = FIRST_OF_HAZARD if stage == HAZARD else FIRST_FURTHER
     for number in numbers:
         (motion,) = artificial_motions(
             target,
@@ -321,10 +292,10 @@ def further_motions(
             longest=longest,
             vertical=vertical,
             second=table.second_component,
-            first=first + number,
+            first=FIRST_FURTHER + number,
             passes=FURTHER_PASSES,
         )
         moved = on_floor(request.building, motion, period)
-        write_csv_files(folder, replace(moved, second=None), motion_stem(number, period, stage))
+        write_csv_files(folder, replace(moved, second=None), motion_stem(number, period, FURTHER))
         made.append(moved)
     return made

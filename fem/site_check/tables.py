@@ -47,8 +47,6 @@ STATIONARY = Quantity(
     advice="EN 1998-1:2004, 3.2.3.1.2 (3) asks for 10 s at least",
 )
 SHARE = Quantity(above=0.0, most=1.0, advice="0.5 to 1 is usual")
-SCATTER = Quantity(least=0.0, most=1.0, advice="0.4 is a common value for records")
-RATED = Quantity(above=0.0, below=1e9)
 SECOND = Quantity(least=0.0, most=1.5, advice="1 is the same spectrum in both directions")
 ROTATION_RATIO = Quantity(above=0.0, most=1.0, advice="0.5 is usual; 1 is on the point of falling")
 SLIP = Quantity(unit="m", above=0.0, most=100.0, typical=0.1, slips={"millimetres": 1e-3})
@@ -297,10 +295,6 @@ class MotionsTable(CaseTable):
     allow_baseline: Literal[True] | None = optional_key(
         "true takes matched records of which the baseline changes a peak by more than 20 %", True
     )
-    scatter: Annotated[float, SCATTER] = case_key(
-        "of motions about one strength in [hazard], of the logarithm: that of records, which artificial ones lack",
-        0.4,
-    )
     further: Annotated[int, Strict(), Quantity(least=0, most=10_000)] = case_key(
         "further artificial motions, for the share that overturns; 0: none", 100
     )
@@ -370,23 +364,6 @@ class SourcesTable(CaseTable):
     container: OfSource = case_key("weights, dimensions, mass centre", "")
     friction: OfSource = case_key("the range of friction", "", example="tests of castings on this floor")
     limits: OfSource = case_key("limits of rotation and slip", "", example="clearances of drawing 12")
-
-
-class HazardTable(CaseTable):
-    """The hazard of the site, for the rate per year of overturning and of slip beyond the limit."""
-
-    points: list[Annotated[list[Annotated[float, RATED]], Field(min_length=2, max_length=2)]] | None = (
-        optional_key("return periods in years and a_gR in m/s2", [[475, 1.6], [2475, 3.0]])
-    )
-    file: str | None = optional_key(
-        "in their place, columns acceleration_m_s2 (a_gR) or velocity_m_s (peak, of the ground) and rate_per_year",
-        "hazard.csv",
-    )
-    motions: Annotated[int, Strict(), Quantity(least=10, most=1000)] = case_key(
-        "artificial motions at each of seven levels", 40
-    )
-
-    rules = (one_of("hazard.points", "file"), file_beside("hazard.file"))
 
 
 class WindTable(CaseTable):

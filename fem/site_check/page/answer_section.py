@@ -8,13 +8,11 @@ from fem.html import sections as html
 from fem.html.units import ABSENT, millimetres, number, quantity, ratio, short, typeset
 from fem.results.figures import FIGURES, TURNED, RunFigures
 from fem.results.outcome import Outcome
-from fem.seismic.hazard import ACCELERATION
 from fem.site_check.answer import FULFILLED
 from fem.site_check.reasons import NOT_FULFILLED, both_ways, destroyed, unit_of
 from fem.site_check.reasons import span as span_in_words
 from fem.site_check.result import (
     ActionAnswer,
-    AnnualRates,
     ConfirmedRun,
     RuleRange,
     SiteAnswer,
@@ -105,45 +103,7 @@ def beside_the_set(result: SiteResult) -> list[str]:
             f"Runs that failed at factors between those of the scan: {answer.failed_between}. The margin does not know "
             "how they end."
         )
-    if answer.hazard:
-        words += rates_in_words(answer.hazard, result.inputs.slip_limit_m)
     return words
-
-
-def rates_in_words(rates: AnnualRates, slip_limit: float) -> list[str]:
-    """How often a year it overturns and slides too far, and what that rests on."""
-    unit = "m/s²" if rates.measure == ACCELERATION else "m/s"
-    low, high = rates.interval
-    most = ""
-    if rates.most_from is not None:
-        begin = short(rates.most_from, figures=3)
-        strengths = (
-            f"beyond {begin}"
-            if rates.most_to is None
-            else f"from {begin} to {short(rates.most_to, figures=3)}"
-        )
-        most = f"; {short(rates.share, 100, 2)} % of it arises {strengths} {unit}"
-    fitted = "no lognormal curve fits the counts"
-    if rates.fit_per_year is not None:
-        fitted = (
-            f"a lognormal curve through them (median {short(rates.median, figures=3)} {unit}, with the scatter beta "
-            f"{short(rates.beta, figures=2)}) gives {rates.fit_per_year:.2g} per year, the closed form "
-            f"{rates.closed_form_per_year:.2g}"
-        )
-    slip = "of that the rate is not known on a sloping floor."
-    if rates.slip_per_year is not None:
-        slow, shigh = rates.slip_interval
-        slip = f"{rates.slip_per_year:.2g} per year ({slow:.2g} to {shigh:.2g})."
-    failed = sum(level.failed for level in rates.levels)
-    return [
-        f"Rate of overturning by counts: {rates.overturning_per_year:.2g} per year ({low:.2g} to {high:.2g} with the "
-        f"95 % intervals of all counts and the tails as bounds), {100.0 * rates.in_50_years:.2g} % in 50 years"
-        f"{most}. Slip beyond {quantity(slip_limit, 'mm', 1000, 3)}: {slip}",
-        f"The counts ({rates.mass}, friction {rates.mu_static:.3g}/{rates.mu_kinetic:.3g}) are in a table behind this "
-        f"sheet; {fitted}. Artificial motions scatter less than records; the hazard is spread by {rates.scatter:g} of "
-        "the logarithm for it. Targets are the user's: none is compared.",
-        *([f"{failed} of these runs failed; they count into the upper ends alone."] if failed else []),
-    ]
 
 
 def two_directions_in_words(slip: TwoDirections, *, further: bool) -> str:

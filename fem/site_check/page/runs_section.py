@@ -5,14 +5,13 @@ from functools import partial
 from typing import NamedTuple
 
 from fem.html import sections as html
-from fem.html.units import ABSENT, figure_head, short, typeset
+from fem.html.units import ABSENT, figure_head, short
 from fem.results.figures import FIGURES, TURNED, Place, figures_of, keys_of
 from fem.results.outcome import ENDINGS, Outcome
-from fem.seismic.hazard import ACCELERATION
 from fem.site_check.page.figures import draw_floor, draw_scan
 from fem.site_check.page.view import RunPair, SiteView, figure, friction, pairs_of, sign_in_words, two_figures
 from fem.site_check.reasons import destroyed
-from fem.site_check.result import BY_RULE, AnnualRates, ByRule, ConfirmedRun, HazardLevel, SiteRun
+from fem.site_check.result import BY_RULE, ByRule, ConfirmedRun, SiteRun
 from fem.site_check.rule import RunGroup, both_directions
 
 BOTH = (
@@ -69,8 +68,6 @@ def runs_section(view: SiteView, *, brief: bool = False) -> html.PageSection:
             draw_scan(result.result, result.inputs), "scan", "outcome over the factor on the motions"
         )
         blocks += [html.Heading("Margin"), drawn, html.Note(MARGIN)]
-    if result.result.hazard:
-        blocks += [html.Heading("The rate of overturning, level by level"), *_levels(result.result.hazard)]
     return html.section("What the runs found", "found", *blocks)
 
 
@@ -168,36 +165,3 @@ def _confirmed_table(confirmed: Sequence[ConfirmedRun]) -> html.Table:
         html.Column("outcomes over unknown inputs", lambda repeat: ", ".join(repeat.outcomes) or ABSENT),
     ]
     return html.table_of("the deciding runs, repeated", columns, confirmed, look="runs")
-
-
-def _levels(rates: AnnualRates) -> list[html.Block]:
-    """The counts at each level of the motion, and what of the rate arises up to it."""
-    unit = "m/s²" if rates.measure == ACCELERATION else "m/s"
-
-    def interval(level: HazardLevel) -> str:
-        return f"{' to '.join(short(end, 100, 2) for end in level.interval)} %" if level.interval else ABSENT
-
-    def share(level: HazardLevel) -> str:
-        whole = rates.overturning_per_year
-        return f"{short(level.overturning_per_year / whole, 100, 2)} %" if whole else ABSENT
-
-    columns: list[html.Column[HazardLevel]] = [
-        html.Column(f"level [{unit}]", lambda level: short(level.strength, figures=3), html.NUMBER),
-        html.Column("exceeded [1/year]", lambda level: f"{level.rate_per_year:.2g}", html.NUMBER),
-        html.Column("overturned", lambda level: f"{level.overturned} of {level.motions}", html.NUMBER),
-        html.Column("95 % interval", interval, html.NUMBER),
-        html.Column("slid too far", lambda level: f"{level.slipped} of {level.motions}", html.NUMBER),
-        html.Column("rate up to it [1/year]", lambda level: f"{level.overturning_per_year:.2g}", html.NUMBER),
-        html.Column("of the whole", share, html.NUMBER),
-    ]
-    return [
-        html.table_of("the rate of overturning, level by level", columns, rates.levels, look="runs"),
-        html.Note(
-            typeset(
-                "The rate up to a level arises from the one before it; up to the first, from the first movement of a "
-                f"rigid body. Beyond the strongest level {rates.beyond_per_year:.2g} per year arises, if the share "
-                "that overturns stays as counted there. A level is exceeded as often as the user's hazard says; the "
-                "rates hold for that hazard spread by the scatter."
-            )
-        ),
-    ]

@@ -46,8 +46,6 @@ mu_static = [0.4]
 slip_m = 0.1
 [wind]
 german_zone = 2
-[hazard]
-file = "hazard.csv"
 """
 LIST = "name,width_m,height_m,mass_kg\nlow,1,2,2000\ntall,9,40,200000\nwide,2,2,2000\n"
 
@@ -60,11 +58,10 @@ def record(path, frequency):
 
 @pytest.fixture
 def asked(tmp_path, monkeypatch):
-    """The list and the site file, with motions and hazard beside it; verifications that answer at once."""
+    """The list and the site file, with motions beside it; verifications that answer at once."""
     monkeypatch.chdir(tmp_path)
     for name, text in (("base.toml", BASE), ("site.toml", SITE), ("hall.csv", LIST)):
         Path(name).write_text(text, encoding="utf-8")
-    Path("hazard.csv").write_text("acceleration_m_s2,rate_per_year\n1,1e-2\n3,1e-3\n", encoding="utf-8")
     for number in (1, 2, 3):
         record(tmp_path / f"{number}.csv", 5.0 + number)
     made = []
@@ -118,17 +115,12 @@ def test_one_row_that_cannot_be_verified_is_a_row_with_its_reason(asked):
     assert low["rank"] == 2 and wide["rank"] == 1
 
 
-def test_changed_contents_of_records_or_of_the_hazard_are_another_hall(asked):
+def test_changed_contents_of_records_are_another_hall(asked):
     hall, made = asked
     first = hall()
     assert hall().asked == first.asked and not made
-    for change in (
-        lambda: record(Path("2.csv"), 9.0),
-        lambda: Path("hazard.csv").write_text("acceleration_m_s2,rate_per_year\n1,1e-2\n3,2e-3\n"),
-    ):
-        change()
-        assert hall(force=True).asked != first.asked
-        first = hall()
+    record(Path("2.csv"), 9.0)
+    assert hall(force=True).asked != first.asked
 
 
 def test_another_spectrum_of_the_floor_under_the_same_name_is_another_hall(asked):
@@ -166,10 +158,9 @@ def test_records_outside_the_folder_need_the_flag_and_the_command_of_a_row_runs(
     words = shlex.split(row["command"])
     assert words[-1] == "--allow-outside"
     again = load_site(words[4])
-    assert again.hazard_curve.rates.tolist() == [1e-2, 1e-3]
     assert len(ground_motions(again, 4.0, allow_outside=True)) == 3
     (tmp_path / "below").mkdir()
-    for name in ("site.toml", "base.toml", "hazard.csv"):
+    for name in ("site.toml", "base.toml"):
         Path(name).rename(tmp_path / "below" / name)
     text = SITE.replace('["', '["../')
     (tmp_path / "below" / "site.toml").write_text(text, encoding="utf-8")

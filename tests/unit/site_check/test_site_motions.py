@@ -249,9 +249,3 @@ def test_the_preview_says_that_the_floor_is_given(tmp_path):
         in (preview_lines(found, asked))
     )
     assert own.floor is None and not any(line.startswith("  floor") for line in preview_lines(own, asked))
-
-
-def test_rates_over_the_velocity_of_the_ground_are_refused_on_a_given_floor(tmp_path):
-    (tmp_path / "curve.csv").write_text("velocity_m_s,rate_per_year\n0.1,1e-2\n0.6,1e-4\n")
-    with pytest.raises(CaseError, match="velocity of the ground"):
-        request(tmp_path, SPECTRUM, '[hazard]\nfile = "curve.csv"')

@@ -349,17 +349,15 @@ def test_an_empty_box_lighter_than_its_walls_is_refused(tmp_path, capsys):
 
 
 def test_the_folder_holds_the_files_of_points_so_that_it_can_be_repeated(tmp_path, brief):
-    tables = '[floor_spectrum]\nfile = "in/floor.csv"\n[hazard]\nfile = "hazard.csv"\nmotions = 10'
+    tables = '[floor_spectrum]\nfile = "in/floor.csv"'
     place = site_file(tmp_path, further=0, more=tables)
     place.write_text(place.read_text().replace("k1.toml", "seed_stack"))
     (tmp_path / "in").mkdir()
     (tmp_path / "in" / "floor.csv").write_text("period_s,acceleration_m_s2\n0.03,0.1\n4,0.02\n")
-    (tmp_path / "hazard.csv").write_text("acceleration_m_s2,rate_per_year\n1,1e-2\n3,1e-3\n")
     asked = load_site(place)
     run_site(asked, tmp_path / "out", quick=True, jobs=1)
     again = load_site(tmp_path / "out" / "site.toml")
     assert again.floor_target == asked.floor_target
-    assert again.hazard_curve.rates.tolist() == [1e-2, 1e-3]
 
 
 @pytest.mark.parametrize("most", [20_000_000, 1000])
@@ -392,8 +390,8 @@ def test_a_folder_of_results_is_repeated_by_itself(tmp_path, monkeypatch, brief,
 
 
 def test_a_file_of_points_named_like_a_result_is_refused(tmp_path):
-    (tmp_path / "runs.csv").write_text("acceleration_m_s2,rate_per_year\n1,1e-2\n3,1e-3\n")
-    asked = load_site(site_file(tmp_path, more='[hazard]\nfile = "runs.csv"'))
-    with pytest.raises(CaseError, match=r"\[hazard\] file is named 'runs.csv', like a result"):
+    (tmp_path / "runs.csv").write_text("period_s,acceleration_m_s2\n0.03,0.1\n4,0.02\n")
+    asked = load_site(site_file(tmp_path, more='[floor_spectrum]\nfile = "runs.csv"'))
+    with pytest.raises(CaseError, match=r"\[floor_spectrum\] file is named 'runs.csv', like a result"):
         run_site(asked, tmp_path / "out", jobs=1)
     assert not (tmp_path / "out").exists()
