@@ -57,10 +57,8 @@ class FloorAction:
     vertical_peak: float  #: of the floor; on the ground gamma_a a_vg [m/s2]
     peak_velocity: float  #: of the floor, horizontal [m/s]
     spectrum: Spectrum  #: of the floor, elastic, horizontal
-    vertical_spectrum: Spectrum  #: of the floor, elastic
     ground_peak: float  #: gamma_a a_g S of the site [m/s2]
     in_building: bool = False  #: filtered by a building, and so nearly harmonic
-    second_component: float = 0.0  #: of a second horizontal component over the first; 0: motion in a plane
 
     def __post_init__(self) -> None:
         for name in ("peak", "vertical_peak", "peak_velocity", "ground_peak"):
@@ -75,7 +73,6 @@ class FloorAction:
             vertical_peak=factor * self.vertical_peak,
             peak_velocity=factor * self.peak_velocity,
             spectrum=lambda periods, damping: factor * self.spectrum(periods, damping),
-            vertical_spectrum=lambda periods, damping: factor * self.vertical_spectrum(periods, damping),
             ground_peak=factor * self.ground_peak,
         )
 
@@ -87,7 +84,6 @@ class FloorAction:
             vertical_peak=site.vertical_acceleration,
             peak_velocity=peak_velocity,
             spectrum=site.horizontal,
-            vertical_spectrum=site.vertical,
             ground_peak=site.surface_acceleration,
         )
 
@@ -106,11 +102,8 @@ class FloorAction:
 class Limits:
     """The limits that the user gives."""
 
-    rotation: float = 0.5  #: largest |rotation| over the slenderness angle [-]
     slip: float  #: [m]
 
     def __post_init__(self) -> None:
-        if not 0.0 < self.rotation <= 1.0:
-            raise ValueError(f"limit of rotation must be above 0 and at most 1, got {self.rotation}")
         if not 0.0 < self.slip < math.inf:
             raise ValueError(f"slip must be positive and finite, got {self.slip} m")

@@ -4,7 +4,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 
-from fem.seismic.asce_43 import rocking_row, sliding_row
 from fem.seismic.body import FloorAction, Limits, LooseBody
 from fem.seismic.method import MethodQuantity, MethodRow
 from fem.seismic.sliding_rules import sliding_rows
@@ -48,15 +47,12 @@ def methods_of(
         for q in sorted({behaviour_factor, 1.0})[::-1]
         if height_ratio is not None
     ]
-    rocking = [partial(rocking_row, body, limits, vertical=vertical) for vertical in (False, True)]
     return [
         *pairs,
         partial(both_directions_rows, body),
         *elements,
         *plateaus,
-        *(lambda action, row=row: [row(action)] for row in rocking),
         partial(velocity_rows, body),
-        lambda action: [sliding_row(body, limits, action)],
         partial(sliding_rows, body, limits),
     ]
 

@@ -3,7 +3,6 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 
@@ -32,7 +31,6 @@ def site_methods(
     periods_s: Sequence[float],
     floor: FloorResult | None,
     runs: Sequence[SiteRun],
-    second_component: float = 0.0,
 ) -> tuple[SiteMethod, ...]:
     """Every method for every body, with the least friction, and for the lightest body the wind.
 
@@ -43,15 +41,14 @@ def site_methods(
         periods_s: of the spectrum of the floor.
         floor: of the building; None: on the ground.
         runs: those of the set count, with both signs.
-        second_component: a second horizontal component over the first; 0: motion in a plane.
     """
-    limits = Limits(rotation=inputs.rotation_ratio_limit, slip=inputs.slip_limit_m)
+    limits = Limits(slip=inputs.slip_limit_m)
     by_rule = LimitsTable(
         rotation_ratio=inputs.rotation_ratio_limit,
         single_rotation_ratio=inputs.single_rotation_ratio_limit,
         slip_m=inputs.slip_limit_m,
     )
-    action = replace(floor_action(site, motions, periods_s, floor), second_component=second_component)
+    action = floor_action(site, motions, periods_s, floor)
     rows = []
     for body in bodies:
         loose = loose_body(body, inputs)
@@ -140,20 +137,16 @@ def floor_action(
     known = np.array([0.0, *periods_s])
     values = np.array([floor.peak_m_s2, *floor.mean_m_s2])
 
-    def spectrum(periods: FloatArray, damping_ratio: float, values: FloatArray = values) -> FloatArray:
+    def spectrum(periods: FloatArray, damping_ratio: float) -> FloatArray:
         corrected = damping_correction(damping_ratio) / damping_correction(DAMPING_RATIO)
         return np.asarray(corrected * np.interp(periods, known, values))
 
-    upward, upward_peak = ground.vertical_spectrum, ground.vertical_peak
-    if floor.vertical_peak_m_s2 is not None:
-        upward_peak = floor.vertical_peak_m_s2
-        upward = partial(spectrum, values=np.array([upward_peak, *floor.vertical_mean_m_s2]))
+    given = floor.vertical_peak_m_s2
     return FloorAction(
         peak=floor.peak_m_s2,
-        vertical_peak=upward_peak,
+        vertical_peak=ground.vertical_peak if given is None else given,
         peak_velocity=floor.peak_velocity_m_s,
         spectrum=spectrum,
-        vertical_spectrum=upward,
         ground_peak=ground.ground_peak,
         in_building=True,
     )

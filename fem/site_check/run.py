@@ -220,9 +220,6 @@ class _Verification:
                 periods_s=action.periods_s,
                 floor=floor,
                 runs=own if answer else (),
-                second_component=request.motions.second_component
-                if self.ground[0].second is not None
-                else 0.0,
             ),
             provenance=SiteProvenance(
                 command=command_line("assess", request.origin.place, *["--quick"] * self.quick),

@@ -11,7 +11,7 @@ SITE = SiteAction(shape=eurocode_shape(1, "D"), reference_acceleration=2.4 / 1.3
 #: 0.06 (S_alpha S_beta)^0.55 with the plateau and the value at 1 s
 PEAK_VELOCITY = 0.06 * (6.0 * 4.8) ** 0.55
 ACTION = FloorAction.on_ground(SITE, PEAK_VELOCITY)
-LIMITS = Limits(rotation=0.5, slip=0.1)
+LIMITS = Limits(slip=0.1)
 
 
 def k1(*, mu_static: float = 0.4, mu_kinetic: float = 0.2) -> LooseBody:
