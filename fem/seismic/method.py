@@ -11,7 +11,6 @@ class SourceStanding(StrEnum):
     CLAUSE = "clause"  #: a clause of a standard
     LITERATURE = "literature"  #: published, as cited
     DERIVED = "derived"  #: derived here, or filled in where the source is incomplete
-    UNCHECKED = "unchecked"  #: after a source whose text was not seen
 
 
 class MethodQuantity(StrEnum):
@@ -39,7 +38,6 @@ class MethodSource:
             SourceStanding.CLAUSE: f"{self.work}, {self.clause}",
             SourceStanding.LITERATURE: self.work,
             SourceStanding.DERIVED: f"after {self.work}; derived here, not the text of a clause",
-            SourceStanding.UNCHECKED: f"after {self.work}; not checked against its text",
         }[self.standing]
 
 

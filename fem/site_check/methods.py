@@ -11,10 +11,10 @@ from contact.stepping.observables import ROCKING
 from fem.case.validation import CaseError
 from fem.results.outcome import least_slide
 from fem.runtime.arrays import FloatArray
-from fem.seismic.action import DAMPING_RATIO, SiteAction, damping_correction
-from fem.seismic.body import FloorAction, Limits, LooseBody
-from fem.seismic.method import MethodQuantity, MethodRow, SourceStanding, length_in_words
-from fem.seismic.methods import method_capacities, method_rows, methods_of
+from fem.seismic.action import SiteAction
+from fem.seismic.body import FloorAction, LooseBody
+from fem.seismic.method import MethodQuantity, MethodRow, length_in_words
+from fem.seismic.methods import methods_of, rows_with_factors
 from fem.seismic.wind import wind_rows
 from fem.site_check.reasons import destroyed
 from fem.site_check.result import FloorResult, SiteBody, SiteInputs, SiteMethod, SiteMotion, SiteRun
@@ -42,8 +42,7 @@ def site_methods(
         floor: of the building; None: on the ground.
         runs: those of the set count, with both signs.
     """
-    limits = Limits(slip=inputs.slip_limit_m)
-    by_rule = LimitsTable(
+    limits = LimitsTable(
         rotation_ratio=inputs.rotation_ratio_limit,
         single_rotation_ratio=inputs.single_rotation_ratio_limit,
         slip_m=inputs.slip_limit_m,
@@ -54,20 +53,19 @@ def site_methods(
         loose = loose_body(body, inputs)
         methods = methods_of(
             loose,
-            limits,
+            inputs.slip_limit_m,
             behaviour_factor=inputs.behaviour_factor,
             height_ratio=floor.z_over_h if floor else 0.0,
         )
-        capacities = method_capacities(methods, action)
         own = [run for run in runs if (run.mass, run.elevation) == (body.mass, body.elevation)]
         rows += [
             _result(
                 row,
                 body,
-                found_by_runs(row, own, width=body.support_width_m, limits=by_rule),
-                capacity.factor,
+                found_by_runs(row, own, width=body.support_width_m, limits=limits),
+                factor,
             )
-            for row, capacity in zip(method_rows(methods, action), capacities, strict=True)
+            for row, factor in rows_with_factors(methods, action)
         ]
     if inputs.wind_pressure_Pa is not None:
         lightest = lightest_of(bodies)
@@ -127,7 +125,6 @@ def floor_action(
 ) -> FloorAction:
     """The motion below the body: that of the site, or in a building the mean of the floor motions.
 
-    On a floor only the spectrum at 5 % damping is known; at another damping ratio it is corrected by Eq. (3.6).
     The vertical motion is that of the ground, unless that of the floor is given.
     """
     velocity = sum(motion.pgv_m_s for motion in motions) / len(motions)
@@ -137,9 +134,8 @@ def floor_action(
     known = np.array([0.0, *periods_s])
     values = np.array([floor.peak_m_s2, *floor.mean_m_s2])
 
-    def spectrum(periods: FloatArray, damping_ratio: float) -> FloatArray:
-        corrected = damping_correction(damping_ratio) / damping_correction(DAMPING_RATIO)
-        return np.asarray(corrected * np.interp(periods, known, values))
+    def spectrum(periods: FloatArray) -> FloatArray:
+        return np.asarray(np.interp(periods, known, values))
 
     given = floor.vertical_peak_m_s2
     return FloorAction(
@@ -220,7 +216,6 @@ def _result(row: MethodRow, body: SiteBody, comparison: Found, factor: float | N
         mass=body.mass,
         elevation=body.elevation,
         utilisation=_finite(row.utilisation),
-        checked=row.source.standing is not SourceStanding.UNCHECKED,
         found=comparison.words,
         compared=comparison.compared,
         factor=factor,

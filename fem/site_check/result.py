@@ -333,7 +333,6 @@ class SiteMethod(JsonBlock):
     says: str
     source: str
     validity: str
-    checked: bool = True  #: against the text of its source
     #: half of such motions or bodies exceed it, so that it is not compared with the runs
     median: bool = False
     beyond: str = ""  #: why it does not hold here, and is not compared; empty: it does

@@ -1,4 +1,4 @@
-"""The rules of thumb on the page of a site: side by side, unchecked, and with their numbers."""
+"""The rules of thumb on the page of a site: side by side, and with their numbers."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -16,12 +16,11 @@ from fem.site_check.result import SiteMethod
 def methods_section(view: SiteView) -> html.PageSection:
     """The simplified methods side by side, and what each says of the strength."""
     result = view.result
-    checked = [row for row in result.methods if row.checked]
-    if not checked:
+    if not result.methods:
         return html.section("", "methods")
     governing = result.result.governing
     mass = governing.mass if governing else result.bodies[0].mass
-    drawn = [row for row in checked if row.mass == mass and not row.beyond]
+    drawn = [row for row in result.methods if row.mass == mass and not row.beyond]
     capacities = (
         draw_methods(drawn, result.result, mass) if any(row.factor is not None for row in drawn) else ""
     )
@@ -41,24 +40,8 @@ def methods_section(view: SiteView) -> html.PageSection:
             html.link("static calculation", "sheet"),
             ".",
         ),
-        _methods_table("rules of thumb side by side", checked),
+        _methods_table("rules of thumb side by side", result.methods),
         *([figure(capacities, "methods-0", "capacity over strength by each method")] if capacities else []),
-    )
-
-
-def unchecked_section(view: SiteView) -> html.PageSection:
-    """The simplified methods whose sources were not seen, on a sheet of their own."""
-    rows = [row for row in view.result.methods if not row.checked]
-    if not rows:
-        return html.section("", "unchecked")
-    return html.section(
-        "Further rules of thumb, not checked against their texts",
-        "unchecked",
-        html.Paragraph(
-            "They are no part of the verification: take them as a hint, or look up the source.", "tight"
-        ),
-        _methods_table("rules of thumb that were not checked", rows),
-        look="break",
     )
 
 

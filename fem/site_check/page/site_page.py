@@ -16,7 +16,7 @@ from fem.site_check.page.answer_section import answer_section
 from fem.site_check.page.appendices import DrawnMotion, every_run_section, motions_section, repeat_section
 from fem.site_check.page.figures import draw_motion
 from fem.site_check.page.inputs_section import inputs_section, set_section, spectra_section
-from fem.site_check.page.methods_sections import methods_section, sheet_section, unchecked_section
+from fem.site_check.page.methods_sections import methods_section, sheet_section
 from fem.site_check.page.runs_section import runs_section
 from fem.site_check.page.view import SiteView
 from fem.site_check.result import RESULT_FILE, SiteMotion, SiteResult
@@ -97,7 +97,6 @@ def site_report(
                 else [
                     spectra_section(result),
                     methods_section(view),
-                    unchecked_section(view),
                     motions_section(motions),
                     every_run_section(view),
                     sheet_section(view),
