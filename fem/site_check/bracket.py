@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
-from itertools import pairwise
+from itertools import groupby, pairwise
 from typing import Literal
 
 import numpy as np
@@ -85,6 +85,22 @@ def next_values(axis: SizeAxis, answers: Mapping[float, SiteAnswer]) -> list[flo
     return values_to_try(
         outcomes, resolution=RESOLUTION, inner=INNER, least=least_width(axis.values, RESOLUTION)
     )
+
+
+def so_far(axis: SizeAxis, answers: Mapping[float, SiteAnswer], value: float) -> str:
+    """What is decided, and what comes next: "number of boxes: 1 to 5 fulfilled, 6 being tried"."""
+    stretches = [
+        (list(values), said)
+        for said, values in groupby(
+            sorted(answers), lambda tried: answers[tried].answer or "without an answer"
+        )
+    ]
+    decided = [
+        f"{' to '.join(dict.fromkeys(f'{end:.4g}' for end in (values[0], values[-1])))} {said}"
+        for values, said in stretches
+    ]
+    unit = f" [{axis.unit}]" if axis.unit else ""
+    return f"{axis.words}{unit}: {', '.join([*decided, f'{value:.4g} being tried'])}"
 
 
 def size_asked(axis: SizeAxis, followers: tuple[str, ...] = (), command: str = "") -> SizeResult:

@@ -91,7 +91,7 @@ def set_result(
 
 def write_ground(folder: Path, ground: Sequence[GroundMotion]) -> list[SiteMotion]:
     """Write the motions of the ground as CSV and as AT2, and describe them, apart from their spectra."""
-    (folder / MOTIONS).mkdir(exist_ok=True)
+    (folder / MOTIONS).mkdir(parents=True, exist_ok=True)
     described = []
     for number, motion in enumerate(ground, start=1):
         files = write_csv_files(folder, motion, motion.name)
@@ -123,7 +123,7 @@ def write_ground(folder: Path, ground: Sequence[GroundMotion]) -> list[SiteMotio
 
 def write_csv_files(folder: Path, motion: GroundMotion, stem: str) -> list[str]:
     """Write the components of a motion for the runs; returns the names in the folder of results."""
-    (folder / MOTIONS).mkdir(exist_ok=True)
+    (folder / MOTIONS).mkdir(parents=True, exist_ok=True)
     files = {f"{MOTIONS}/{stem}_{letter}.csv": component for letter, component in motion.lettered.items()}
     for name, component in files.items():
         write_csv(folder / name, motion.step, component)

@@ -7,14 +7,16 @@ neither on that nor on the number of cores.
 import hashlib
 import platform
 import time
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Unpack
 
 from fem.batch.log import LoggedRuns
 from fem.batch.runner import Runner
 from fem.batch.study import COMPLETED, INTERRUPTED, Study, StudyOptions, hash_of, run_study
+from fem.batch.table import row_of
 from fem.case.case import case_hash
 from fem.html.page import Signature
 from fem.results.disk import table_bytes
@@ -23,7 +25,7 @@ from fem.results.kinds import SITE
 from fem.runtime.identity import command_line, versions
 from fem.seismic.ground_motion import GroundMotion
 from fem.seismic.motion_set import MotionSetCheck, check_set
-from fem.site_check.answer import answer_of, governing_run, no_answer_yet
+from fem.site_check.answer import FULFILLED, answer_of, governing_run, no_answer_yet
 from fem.site_check.bodies import body_of
 from fem.site_check.confirm import confirmed, deciding
 from fem.site_check.file import SiteRequest
@@ -39,13 +41,13 @@ from fem.site_check.motion_results import (
 from fem.site_check.motions import floor_motions, ground_motions, longest_period
 from fem.site_check.page.site_page import site_report
 from fem.site_check.preview import forecast
+from fem.site_check.reasons import NOT_FULFILLED
 from fem.site_check.result import (
     MotionSet,
     SiteAnswer,
     SiteBody,
     SiteProvenance,
     SiteResult,
-    SiteRun,
 )
 from fem.site_check.runs import COLUMNS, RunCases, RunKey, motion_stem
 from fem.site_check.stages import Stages
@@ -74,28 +76,14 @@ def run_site(
         quick: the set and its repetitions alone; "fulfilled" then only of a container that rests.
         copy_records: copy the records that the site file names, so that the folder can be repeated by itself.
     """
-    began = time.perf_counter()
-    bodies = tuple(map(body_of, request.variants))
-    longest = longest_period(bodies)
-    ground = ground_motions(request, longest, allow_outside=allow_outside)
-    floors = floor_motions(request, ground)
-    stages = Stages.of(request, floors, longest=longest, folder=folder)
-    files = len(ground) * (1 + len(floors)) + request.motions.further
-    digest = hash_of([site_hash(request, ground), "quick"]) if quick else site_hash(request, ground)
-    work = _Verification(
-        request=request,
-        stages=stages,
-        bodies=bodies,
-        ground=ground,
-        wind=wind_utilisation(bodies, inputs_of(request)),
-        digest=digest,
-        quick=quick,
-        copy_records=copy_records,
-        began=began,
+    work = Verification.of(
+        request, folder, allow_outside=allow_outside, quick=quick, copy_records=copy_records
     )
+    stages = work.stages
+    files = len(work.ground) * (1 + len(stages.floors)) + request.motions.further
     study = Study(
         kind=SITE,
-        request=digest,
+        request=work.digest,
         result=SiteResult,
         compute=work.compute,
         texts=texts_of(request, SITE, records=copy_records),
@@ -123,7 +111,7 @@ def site_hash(request: SiteRequest, ground: Sequence[GroundMotion]) -> str:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class _Verification:
+class Verification:
     """What is asked, and its motions."""
 
     request: SiteRequest
@@ -131,74 +119,129 @@ class _Verification:
     bodies: tuple[SiteBody, ...]
     ground: Sequence[GroundMotion]  #: motions of the set
     wind: float | None  #: the largest utilisation under it
-    digest: str  #: of the request
-    quick: bool
-    copy_records: bool
-    began: float  #: when it was asked for [s]
+    quick: bool = False
+    copy_records: bool = True
+    began: float = field(default_factory=time.perf_counter)  #: when it was asked for [s]
+
+    @classmethod
+    def of(
+        cls, request: SiteRequest, folder: Path, *, allow_outside: bool = False, **options: bool
+    ) -> "Verification":
+        """For a request whose runs read their motions from a folder.
+
+        Raises:
+            CaseError, MeshError: a record or a container that cannot be used.
+        """
+        bodies = tuple(map(body_of, request.variants))
+        longest = longest_period(bodies)
+        ground = ground_motions(request, longest, allow_outside=allow_outside)
+        return cls(
+            request=request,
+            stages=Stages.of(request, floor_motions(request, ground), longest=longest, folder=folder),
+            bodies=bodies,
+            ground=ground,
+            wind=wind_utilisation(bodies, inputs_of(request)),
+            **options,
+        )
+
+    @property
+    def digest(self) -> str:
+        """Equal for requests that give the same result."""
+        digest = site_hash(self.request, self.ground)
+        return hash_of([digest, "quick"]) if self.quick else digest
+
+    @cached_property
+    def checked(self) -> MotionSetCheck:
+        """What the checks of the set found."""
+        stages, second = self.stages, self.request.motions.second_component
+        return check_set(self.ground, stages.target, longest=stages.longest, second=second or 1.0)
 
     def compute(self, place: ResultFolder, runner: Runner) -> SiteResult:
         """Write the motions, compute what is missing, and write runs and page."""
-        checked = check_set(
-            self.ground,
-            self.stages.target,
-            longest=self.stages.longest,
-            second=self.request.motions.second_component or 1.0,
-        )
-        written = write_ground(place.path, self.ground)
-        motions = set_result(self.request, checked, self.ground, written)
+        motions = set_result(self.request, self.checked, self.ground, write_ground(place.path, self.ground))
         copy_files(self.request, place.path, records=self.copy_records)
         if self.copy_records:
             motions = replace(motions, notes=(*motions.notes, *left_elsewhere(self.request)))
-        for period, moved in self.stages.floors.items():
-            for number, motion in enumerate(moved, start=1):
-                if period is not None:
-                    write_csv_files(place.path, motion, motion_stem(number, period))
-        answer = self._answer(place, runner, motions)
+        self.write_floors()
+        if motions.valid:
+            runner.reporter.message(forecast(self.stages, runner.jobs, quick=self.quick).words)
+        answer = self.answer(motions, runner, place.path / RUNS)
         place.check()
-        result = self._result(checked, motions, answer)
+        result = self._result(motions, answer)
         if result.status == COMPLETED:
             if self.stages.rows.runs:
                 place.write_text(RUNS, self.stages.rows.table())
             place.write_text(PAGE, site_report(place.path, result))
         return result
 
-    def _answer(self, place: ResultFolder, runner: Runner, motions: MotionSet) -> SiteAnswer | None:
-        """Compute the runs that are missing; None where it was interrupted."""
+    def write_floors(self, *, ground: bool = False) -> None:
+        """Write the motions of the floors of a building, and `ground`: those without one, for the runs."""
+        for period, moved in self.stages.floors.items():
+            for number, motion in enumerate(moved, start=1):
+                if ground or period is not None:
+                    write_csv_files(self.stages.folder, motion, motion_stem(number, period))
+
+    def answer(
+        self, motions: MotionSet, runner: Runner, log: Path, value: float | None = None
+    ) -> SiteAnswer | None:
+        """Compute the runs that are missing; None where it was interrupted.
+
+        Args:
+            motions: the set.
+            log: of the runs.
+            value: of the key that `size` varies, in the first column of its log. It is decided without a margin, and
+                without what comes after the first that speaks against it.
+        """
         again, stages, rows = [], self.stages, self.stages.rows
         left_out = QUICK if self.quick and not stages.rests else ""
+        varied = {} if value is None else {"value": float}
+        columns = varied | COLUMNS
+
+        def now() -> SiteAnswer:
+            beside = replace(stages.beside(again, self.wind), left_out=left_out)
+            return answer_of(self.request, motions, rows.in_order(), beside)
+
+        def batches() -> Iterator[Sequence[RunKey]]:
+            for keys in stages.of_the_answer(runner, quick=self.quick):
+                yield keys
+                if varied and now().answer == NOT_FULFILLED:
+                    return
+            if not (self.quick or varied):
+                yield from stages.of_the_margin()
+
+        def note(line: str) -> None:
+            row = row_of(columns, line)
+            if row.pop("value", value) == value:
+                rows.add(row)
+
         if motions.valid:
-            cases = RunCases.of(self.request, place.path)
-            runner.reporter.message(forecast(stages, runner.jobs, quick=self.quick).words)
+            cases = RunCases.of(self.request, stages.folder)
             LoggedRuns(
                 what="runs",
-                path=place.path / RUNS,
-                columns=COLUMNS,
+                path=log,
+                columns=columns,
                 make=cases,
                 model_of=lambda key: key.model,
-                key=lambda key: key,
-                note=rows.note,
-            ).run(runner, self._batches(runner))
-            runs = rows.in_order()
-            keys = [key for key in self._deciding(runs) if key not in rows.still and not left_out]
-            if not runner.stop() and keys:
-                runner.reporter.message("repeating the deciding runs with the reduced model")
-                again = confirmed(cases, runs, keys, runner.jobs)
-        if runner.stop():
-            return None
-        beside = replace(stages.beside(again, self.wind), left_out=left_out)
-        return answer_of(self.request, motions, rows.in_order(), beside)
+                key=lambda key: (value, *key) if varied else key,
+                note=note,
+            ).run(runner, batches())
+            if not (runner.stop() or left_out) and not (varied and now().answer != FULFILLED):
+                runs, own = rows.in_order(), rows.of(stages.plan.of_set())
+                keys = [
+                    key for key in deciding(runs, governing_run(self.request, own)) if key not in rows.still
+                ]
+                if keys:
+                    runner.reporter.message("repeating the deciding runs with the reduced model")
+                    again = confirmed(cases, runs, keys, runner.jobs)
+        return None if runner.stop() else now()
 
-    def _deciding(self, runs: Mapping[RunKey, SiteRun]) -> list[RunKey]:
-        own = self.stages.rows.of(self.stages.plan.of_set())
-        return deciding(runs, governing_run(self.request, own))
-
-    def _result(self, checked: MotionSetCheck, motions: MotionSet, answer: SiteAnswer | None) -> SiteResult:
+    def _result(self, motions: MotionSet, answer: SiteAnswer | None) -> SiteResult:
         """Everything that was found; without an answer what there is, and what is missing."""
         request, inputs, rows = self.request, inputs_of(self.request), self.stages.rows
         own = rows.of(self.stages.plan.of_set())
         missing = None if answer else self._missing()
-        action = action_result(request.action, checked)
-        floor = floor_result(request, self.stages.floors, checked)
+        action = action_result(request.action, self.checked)
+        floor = floor_result(request, self.stages.floors, self.checked)
         document = request.document.model_dump(exclude_none=True) if request.document else None
         return SiteResult(
             status=COMPLETED if answer else INTERRUPTED,
@@ -239,9 +282,3 @@ class _Verification:
         if left := len(rows.missing(wanted)):
             return f"{len(wanted) - left} of {len(wanted)} runs of the set are computed"
         return "repetitions, further motions, other factors on the motions or the deciding runs are missing"
-
-    def _batches(self, runner: Runner) -> Iterator[Sequence[RunKey]]:
-        """The runs of each stage that are missing; a stage is asked for when the one before is there."""
-        yield from self.stages.of_the_answer(runner, quick=self.quick)
-        if not self.quick:
-            yield from self.stages.of_the_margin()

@@ -10,9 +10,10 @@ import pytest
 from small_site import SITE
 
 from fem.__main__ import main
-from fem.seismic.ground_motion import GroundMotion
+from fem.site_check.bracket import size_asked
 from fem.site_check.file import load_site
-from fem.site_check.size_run import written_motions
+from fem.site_check.size_axis import size_axis
+from fem.site_check.size_run import _Sizing
 
 SURE = SITE.replace("further = 2", "further = 72\nvertical = false")
 
@@ -32,8 +33,7 @@ def place(tmp_path_factory):
     command = ["size", str(place / "hall.toml"), "--over", "container.boxes", "--to", "4", *out(place)]
     told = io.StringIO()
     with pytest.MonkeyPatch.context() as patch, redirect_stderr(told):
-        patch.setattr("fem.site_check.size_run.confirmed", confirmed)
-        patch.setattr("fem.run.expected.LONG_S", 0.0)
+        patch.setattr("fem.site_check.run.confirmed", confirmed)
         assert main(command) == 0
     (place / "told.txt").write_text(told.getvalue(), encoding="utf-8")
     assert asked  # of the boxes that stand and move
@@ -51,6 +51,10 @@ def test_the_time_of_its_runs_is_told_before_the_first(place):
         point["runs"] for point in result_in(place / "found")["points"]
     )
     assert told.index(expected[0]) == re.search(r"\d+ (values|runs)", told).start()
+    assert [line for line in told.splitlines() if "being tried" in line][:2] == [
+        "number of boxes: 1 being tried",
+        "number of boxes: 1 fulfilled, 2 being tried",
+    ]
 
 
 def result_in(folder) -> dict:
@@ -69,26 +73,27 @@ def test_the_tallest_stack_is_found(place):
     assert not (place / "found" / ".motions").exists()
 
 
-def test_values_share_a_folder_of_motions_where_the_further_motions_are_the_same(tmp_path):
-    """The set may be the same all the same: one of records has no seed, and its scale need not follow the spectrum."""
-    wave = np.sin(np.arange(0.0, 2.0, 0.01))
-    floors = {None: [GroundMotion(name="record", step=0.01, horizontal=wave, vertical=0.5 * wave)]}
-    site = load_site("site")
-
-    def folder(key, value, longest=4.0):
-        return written_motions(site.with_value(key, value), floors, longest, tmp_path)
-
-    own = folder("motions.seed", site.motions.seed)
-    assert folder("container.width_m", 1.5) == folder("friction.mu_static", [0.3]) == own
-    others = {
-        folder("motions.seed", site.motions.seed + 1),
-        folder("motions.stationary_s", 20.0),
-        folder("motions.vertical", False),
-        folder("site.importance_factor", 1.2),
-        folder("container.width_m", 1.5, longest=5.0),
-    }
-    assert len(others) == 5 and own not in others
-    assert {path.name for path in own.rglob("*.csv")} == {"motion_01_h.csv", "motion_01_v.csv"}
+@pytest.mark.parametrize(
+    ("key", "ends", "folders"),
+    [
+        ("container.width_m", (0.8, 1.0), 1),
+        ("limits.slip_m", (0.1, 0.2), 1),
+        ("site.importance_factor", (0.8, 1.2), 2),
+    ],
+)
+def test_values_share_a_folder_of_motions_where_these_are_the_same(tmp_path, key, ends, folders):
+    (tmp_path / "hall.toml").write_text(SITE, encoding="utf-8")
+    asked = load_site(tmp_path / "hall.toml")
+    axis = size_axis(asked, key, low=ends[0], high=ends[1], count=2)
+    sizing = _Sizing(request=asked, axis=axis, begun=size_asked(axis), allow_outside=False)
+    works = [sizing._verification(value, tmp_path / "made") for value in axis.values]
+    assert len({work.stages.folder for work in works}) == len(list((tmp_path / "made").iterdir())) == folders
+    for work in works:
+        key = work.stages.plan.of_set()[0]
+        assert (work.stages.folder / "motions" / f"{key.stem}_h.csv").is_file()
+        np.testing.assert_array_equal(
+            work.stages.screening.motions[key.stem].horizontal, work.ground[0].horizontal
+        )
 
 
 def test_bad_input_is_told_before_anything_is_computed(place, capsys):
