@@ -36,7 +36,7 @@ LAYERS = (
     ("fem.sweep", "fem.response"),
     ("fem.ensemble",),
     ("fem.report",),
-    ("fem.site_check",),
+    ("fem.site",),
     ("fem.hall",),
     ("fem.evidence",),
     ("fem.evidence.verification",),
@@ -103,7 +103,7 @@ LOADING_LATE = {
     "fem/results/history.py",
     "fem/results/reader.py",
     "fem/run/checks.py",
-    "fem/site_check/motions.py",
+    "fem/site/motions.py",
     "mesh/files.py",
 }
 

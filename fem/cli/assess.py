@@ -10,7 +10,7 @@ from fem.results.kinds import SITE
 from fem.runtime.progress import ScreenReporter
 
 if TYPE_CHECKING:
-    from fem.site_check.result import SiteResult
+    from fem.site.result import SiteResult
 
 
 def assess(
@@ -44,11 +44,11 @@ def assess(
     site:
         A site file or the name of a shipped one: site, cologne.
     """
-    request = importlib.import_module("fem.site_check.file").load_site(
+    request = importlib.import_module("fem.site.request").load_site(
         site, motion, allow_baseline=allow_baseline
     )
     folder = flags.folder(request.name)
-    study = importlib.import_module("fem.site_check.run")
+    study = importlib.import_module("fem.site.run")
     with flags.options() as options:
         result = study.run_site(
             request, folder, allow_outside=allow_outside or bool(motion), quick=quick, **options

@@ -71,7 +71,7 @@ def batch(
     folder = flags.folder(listed.name)
     with flags.options() as options:
         if site is not None:
-            request = importlib.import_module("fem.site_check.file").load_site(site)
+            request = importlib.import_module("fem.site.request").load_site(site)
             study = importlib.import_module("fem.hall.site")
             result = study.run_hall_at_site(
                 listed, request, base, folder, strict=strict, allow_outside=allow_outside, **options

@@ -27,13 +27,13 @@ from fem.runtime.identity import command_line
 from fem.runtime.progress import SilentReporter
 from fem.seismic.action import LAST_PERIOD_S
 from fem.seismic.ground_motion import GroundMotion
-from fem.site_check.bodies import body_of
-from fem.site_check.file import SiteRequest
-from fem.site_check.inputs import inputs_of
-from fem.site_check.methods import wind_utilisation
-from fem.site_check.motions import ground_motions
-from fem.site_check.preview import forecast_of
-from fem.site_check.run import run_site, site_hash
+from fem.site.bodies import bodies_of
+from fem.site.copies import inputs_of
+from fem.site.methods import wind_utilisation
+from fem.site.motions import ground_motions
+from fem.site.preview import forecast_of
+from fem.site.request import SiteRequest
+from fem.site.run import run_site, site_hash
 from mesh.errors import MeshError
 
 SITES, FOLDERS = "sites.csv", "sites"
@@ -119,7 +119,7 @@ class _AtSite:
             CaseError, MeshError: what it would be refused for.
         """
         request = self.request(values, "container")
-        wind_utilisation([body_of(variant) for variant in request.variants], inputs_of(request))
+        wind_utilisation(bodies_of(request), inputs_of(request))
         return hash_of([request.portable, site_hash(request, self.ground)])
 
     def compute(self, hall: Hall, begun: HallResult, results: ResultFolder, runner: Runner) -> HallResult:

@@ -25,8 +25,8 @@ from fem.hall.site import run_hall_at_site
 from fem.hall.study import weakness
 from fem.results.figures import SCALARS
 from fem.run.compute import compute
-from fem.site_check.file import load_site
-from fem.site_check.run import run_site
+from fem.site.request import load_site
+from fem.site.run import run_site
 
 BASE = """
 [container]
@@ -127,9 +127,9 @@ def test_columns_of_links_and_neighbours_are_keys(tmp_path, base):
 
 
 def test_every_container_is_verified_at_a_site_as_by_assess(tmp_path, base, monkeypatch, capsys):
-    monkeypatch.setattr("fem.site_check.run.confirmed", lambda *arguments: [])
-    monkeypatch.setattr("fem.site_check.run.site_report", lambda *arguments: "")  # tested by itself
-    monkeypatch.setattr("fem.site_check.runs.SCANNED", (0.5,))
+    monkeypatch.setattr("fem.site.run.confirmed", lambda *arguments: [])
+    monkeypatch.setattr("fem.site.run.site_report", lambda *arguments: "")  # tested by itself
+    monkeypatch.setattr("fem.site.stages.SCANNED", (0.5,))
     monkeypatch.chdir(tmp_path)
     listed(tmp_path, OF_BASE, "site.toml")
     listed(tmp_path, "name,width_m,mu_static,tag\nslim,0.5,,a\nwide,3,0.9,b\nbad,-1,,b\nagain,3.0,0.9,b\n")

@@ -17,9 +17,9 @@ from fem.hall.site import run_hall_at_site
 from fem.results.folder import program_of_results
 from fem.results.kinds import SITE as KIND
 from fem.runtime.progress import SilentReporter
-from fem.site_check.file import load_site
-from fem.site_check.inputs import copy_files, texts_of
-from fem.site_check.motions import ground_motions
+from fem.site.copies import copy_files, texts_of
+from fem.site.motions import ground_motions
+from fem.site.request import load_site
 
 BASE = """
 [container]
