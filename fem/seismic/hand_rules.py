@@ -3,7 +3,7 @@
 import math
 
 from fem.seismic.body import FloorAction, LooseBody
-from fem.seismic.method import MethodQuantity, MethodRow, MethodSource, SourceStanding, length_in_words
+from fem.seismic.method import MethodQuantity, MethodRow, derived, length_in_words
 
 SMALL_RATIO = 0.17  #: of yield to peak acceleration, below which Newmark's slip is its bound
 
@@ -21,7 +21,7 @@ def housner_row(body: LooseBody, action: FloorAction) -> MethodRow:
         capacity=capacity,
         unit="m/s",
         says=f"{'less' if velocity < capacity else 'more'} than half of such motions overturn it",
-        source=MethodSource(work="Housner (1963)", standing=SourceStanding.DERIVED),
+        source=derived("Housner (1963)"),
         validity="slender body, random motion with a constant velocity spectrum; about 50 % overturn at 1: no limit "
         "state",
         median=True,
@@ -57,7 +57,7 @@ def newmark_row(body: LooseBody, slip_limit: float, action: FloorAction) -> Meth
         capacity=slip_limit,
         unit="m",
         says=f"slides {length_in_words(slip)}" if slides else "does not slide",
-        source=MethodSource(work="Newmark (1965)", standing=SourceStanding.LITERATURE),
+        source="Newmark (1965)",
         validity="upper bound; slip in one direction on a slope, one friction coefficient",
         beyond="on a floor: it was made of ground motions" if action.in_building else "",
     )

@@ -13,7 +13,7 @@ from fem.case.toml import toml_document, toml_value
 from fem.results.kinds import ResultKind
 from fem.results.run_files import copy_data_files, require_free_name
 from fem.runtime.user_files import real_path
-from fem.seismic.point_files import text_of
+from fem.seismic.floor_spectrum import text_of
 from fem.site.request import SiteRequest
 from fem.site.result import USUAL_BEHAVIOUR_FACTOR, SiteInputs
 

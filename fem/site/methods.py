@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -70,7 +69,7 @@ def site_methods(
     if inputs.wind_pressure_Pa is not None:
         lightest = lightest_of(bodies)
         rows += [
-            _result(row, lightest, Found(words="no run: wind"), None)
+            _result(row, lightest, ("no run: wind", ""), None)
             for row in wind_rows(
                 loose_body(lightest, inputs), inputs.wind_pressure_Pa, gamma_mu=inputs.gamma_mu
             )
@@ -148,16 +147,10 @@ def floor_action(
     )
 
 
-@dataclass(frozen=True, kw_only=True)
-class Found:
-    """What the runs of the set found of one body and one quantity."""
-
-    words: str
-    compared: str = ""
-
-
-def found_by_runs(row: MethodRow, runs: Sequence[SiteRun], *, width: float, limits: LimitsTable) -> Found:
-    """What the rule finds in the runs of the set beside a method, and how the two compare.
+def found_by_runs(
+    row: MethodRow, runs: Sequence[SiteRun], *, width: float, limits: LimitsTable
+) -> tuple[str, str]:
+    """What the rule finds in the runs of the set beside a method, and how the two compare, in words.
 
     Overturning: over all frictions; slip: with the least friction, as the methods take it. A method is conservative
     where it refuses what the rule fulfils, or tells more slip than the rule counts. Neither a median nor a method out
@@ -165,15 +158,13 @@ def found_by_runs(row: MethodRow, runs: Sequence[SiteRun], *, width: float, limi
     """
     done = [run for run in runs if run.stage == "set" and run.outcome is not None]
     if not done:
-        return Found(words="no runs")
-    if row.quantity is MethodQuantity.OVERTURNING:
-        comparison = _overturning(row, done, limits)
-    else:
-        comparison = _sliding(row, done, width)
-    return replace(comparison, compared="") if row.median or row.beyond else comparison
+        return "no runs", ""
+    overturns = row.quantity is MethodQuantity.OVERTURNING
+    words, compared = _overturning(row, done, limits) if overturns else _sliding(row, done, width)
+    return words, "" if row.median or row.beyond else compared
 
 
-def _overturning(row: MethodRow, done: Sequence[SiteRun], limits: LimitsTable) -> Found:
+def _overturning(row: MethodRow, done: Sequence[SiteRun], limits: LimitsTable) -> tuple[str, str]:
     tally = RuleFound.of(groups_of(done))
     words = f"{tally.overturned or 'none'} of {len(done)} overturned{destroyed(tally.invalid)}"
     turned, largest = tally.by_rule.rotation_ratio, tally.by_rule.rotation_ratio_largest
@@ -182,10 +173,10 @@ def _overturning(row: MethodRow, done: Sequence[SiteRun], limits: LimitsTable) -
         if largest > ROCKING and largest > turned:
             words += f", at most {largest:.2g}"
     failed = tally.overturned + tally.invalid > 0 or bool({*tally.exceeded(limits)} - {"slip_m"})
-    return Found(words=words, compared=_compared(refused=not row.fulfilled, failed=failed))
+    return words, _compared(refused=not row.fulfilled, failed=failed)
 
 
-def _sliding(row: MethodRow, done: Sequence[SiteRun], width: float) -> Found:
+def _sliding(row: MethodRow, done: Sequence[SiteRun], width: float) -> tuple[str, str]:
     least = min((run.mu_static, run.mu_kinetic) for run in done)
     own = [run for run in done if (run.mu_static, run.mu_kinetic) == least]
     most = max(run.slipped for run in own)
@@ -195,12 +186,9 @@ def _sliding(row: MethodRow, done: Sequence[SiteRun], width: float) -> Found:
     if slides and mean is not None:
         words += f", mean {length_in_words(mean)}"
     if row.quantity is MethodQuantity.SLIDING:
-        return Found(words=words, compared=_compared(refused=not row.fulfilled, failed=slides))
+        return words, _compared(refused=not row.fulfilled, failed=slides)
     within = min(row.demand, most) >= 0.9 * max(row.demand, most)
-    return Found(
-        words=words,
-        compared="agrees" if within else "conservative" if row.demand > most else "not conservative",
-    )
+    return words, "agrees" if within else "conservative" if row.demand > most else "not conservative"
 
 
 def _compared(*, refused: bool, failed: bool) -> str:
@@ -209,15 +197,14 @@ def _compared(*, refused: bool, failed: bool) -> str:
     return "conservative" if refused else "not conservative"
 
 
-def _result(row: MethodRow, body: SiteBody, comparison: Found, factor: float | None) -> SiteMethod:
+def _result(row: MethodRow, body: SiteBody, found: tuple[str, str], factor: float | None) -> SiteMethod:
     return SiteMethod(
-        **vars(row)
-        | {"quantity": row.quantity.value, "demand": _finite(row.demand), "source": str(row.source)},
+        **vars(row) | {"quantity": row.quantity.value, "demand": _finite(row.demand)},
         mass=body.mass,
         elevation=body.elevation,
         utilisation=_finite(row.utilisation),
-        found=comparison.words,
-        compared=comparison.compared,
+        found=found[0],
+        compared=found[1],
         factor=factor,
     )
 

@@ -82,12 +82,6 @@ class SizePoint(ByRule):
     runs: int
     fails: str = ""  #: why it is not fulfilled, in words
 
-    def __post_init__(self) -> None:
-        if bool(self.fails) == bool(self.fulfilled):
-            raise ValueError(
-                f"{self.value}: a reason is given where, and only where, the rule is not fulfilled"
-            )
-
 
 @dataclass(frozen=True, kw_only=True)
 class SizeResult(StudyResult):

@@ -6,6 +6,8 @@ from functools import partial
 from itertools import product
 from pathlib import Path
 
+import numpy as np
+
 from fem.batch.runner import Runner
 from fem.batch.workers import hand_out
 from fem.results.outcome import Outcome
@@ -13,7 +15,7 @@ from fem.run.bracket import values_to_try
 from fem.seismic.action import MotionTarget
 from fem.seismic.artificial import artificial_motions
 from fem.seismic.ground_motion import GroundMotion
-from fem.seismic.two_directions import largest_slip, slip_in_two_directions
+from fem.seismic.two_directions import largest_slip, largest_slips
 from fem.site.answer import Beside
 from fem.site.bodies import Screening
 from fem.site.motion_results import write_csv_files
@@ -270,47 +272,52 @@ class Stages:
             return ""
         if self.request.container.floor.slope_percent:
             return ON_A_SLOPE
-        lacking = any(motion.second is None for floor in self.floors.values() for motion in floor)
-        return NO_SECOND if lacking else ""
+        return NO_SECOND if self._lacks_second else ""
+
+    @property
+    def _lacks_second(self) -> bool:
+        """Whether a motion has no second horizontal component."""
+        return any(motion.second is None for floor in self.floors.values() for motion in floor)
 
     def _two_directions(self) -> TwoDirections | None:
         """How far the container slides in both directions if it does not rock; None where that is not known.
 
         On a sloping floor it is not: a body that has no preferred direction would also creep downhill.
         """
-        box, pairs = self.request.container, self.request.frictions
-        if box.floor.slope_percent:
+        gravity = self.request.container.gravity_m_s2
+        if self.request.container.floor.slope_percent or self._lacks_second:
             return None
-        gravity = box.gravity_m_s2
         slips = {
-            period: slip_in_two_directions(motions, pairs, gravity=gravity)
+            (period, pair): slid
             for period, motions in self.floors.items()
+            for pair, slid in largest_slips(motions, self.request.frictions, gravity=gravity).items()
         }
-        known = {period: slip for period, slip in slips.items() if slip is not None}
-        if not known:
-            return None
-        worst = max(known, key=lambda period: known[period].largest)
-        longest, first = max(known.values(), key=lambda slip: slip.mean), known[worst]
-        pair = first.mu_static, first.mu_kinetic
+        longest = max(slips, key=lambda what: float(slips[what].mean()))
+        worst = max(slips, key=lambda what: float(slips[what].max()))
+        period, pair = worst
+        in_plane = [replace(motion, second=None) for motion in self.floors[longest[0]]]
 
         def largest(factor: float) -> float:
             return max(
-                largest_slip(motion.scaled(factor), pair, gravity=gravity) for motion in self.floors[worst]
+                largest_slip(motion.scaled(factor), pair, gravity=gravity) for motion in self.floors[period]
             )
 
         def too_far(factor: float) -> bool:
             return largest(factor) > self.request.limits.slip_m
 
         tried = sorted({1.0, *(key.factor for key in self.rows.runs if key.stage in (SET, SCAN))})
-        alike = [first.largest, *map(largest, REPETITIONS)]
+        most = float(slips[worst].max())
+        alike = [most, *map(largest, REPETITIONS)]
         return TwoDirections(
-            slip_mean_m=longest.mean,
-            slip_largest_m=first.largest,
-            slip_mean_in_plane_m=longest.mean_in_plane,
-            mu_static=first.mu_static,
-            mu_kinetic=first.mu_kinetic,
-            motion=first.motion,
-            building_period_s=worst,
+            slip_mean_m=float(slips[longest].mean()),
+            slip_largest_m=most,
+            slip_mean_in_plane_m=float(
+                largest_slips(in_plane, longest[1:], gravity=gravity)[longest[1]].mean()
+            ),
+            mu_static=pair[0],
+            mu_kinetic=pair[1],
+            motion=1 + int(np.argmax(slips[worst])),
+            building_period_s=period,
             margin_factor=next(filter(too_far, tried), None),
             slip_range_m=(min(alike), max(alike)),
         )

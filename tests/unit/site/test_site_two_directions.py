@@ -6,7 +6,7 @@ import pytest
 from site_example import RUN, example
 
 from fem.batch.study import runner_of
-from fem.seismic.two_directions import largest_slip, slip_in_two_directions
+from fem.seismic.two_directions import largest_slip, largest_slips
 from fem.site.answer import answer_of
 from fem.site.motions import floor_motions, ground_motions
 from fem.site.request import load_site
@@ -48,8 +48,10 @@ def stages_of(folder, *, limit=0.2, motions="", building="", container=""):
 def test_the_largest_slip_of_the_set_is_found_with_its_friction_and_motion(tmp_path):
     found, floors = slid(tmp_path, limit=0.01)
     pairs = [(0.2, 0.1), (0.2, 0.2), (0.4, 0.2), (0.4, 0.4), (0.3, 0.225)]
-    expected = slip_in_two_directions(floors[None], pairs)
-    assert found.slip_largest_m == expected.largest > 0.1
+    slips = largest_slips(floors[None], pairs)
+    assert found.slip_largest_m == max(slid.max() for slid in slips.values()) > 0.1
+    assert found.slip_mean_m == max(slid.mean() for slid in slips.values())
+    assert found.motion == 1 + slips[0.2, 0.1].argmax()
     assert (found.mu_static, found.mu_kinetic) == (0.2, 0.1)
     assert found.slip_mean_in_plane_m < 0.8 * found.slip_mean_m
     assert found.margin_factor == 1.0  # beyond 10 mm
@@ -92,7 +94,7 @@ def test_of_the_periods_of_a_building_the_worst_counts(tmp_path):
         tmp_path, building="[building]\nz_over_h = 1.0\nbuilding_period_s = 0.5\nstoreys = 5"
     )
     slips = {
-        period: slip_in_two_directions(motions, [(0.2, 0.1)]).largest for period, motions in floors.items()
+        period: largest_slips(motions, [(0.2, 0.1)])[0.2, 0.1].max() for period, motions in floors.items()
     }
     assert found.building_period_s == max(slips, key=slips.get)
     assert found.slip_largest_m == max(slips.values())
