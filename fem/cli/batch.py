@@ -9,7 +9,7 @@ from cyclopts import Parameter
 
 from fem.batch.answers import table_lines
 from fem.case.case import CaseError, load_case
-from fem.cli.console import SHARED, AllowOutside, SharedFlags, flag, print_result, print_to_pdf
+from fem.cli.console import STUDY, AllowOutside, StudyFlags, flag, print_result, print_to_pdf
 from fem.results.figures import TURNED, Place, figures_of
 from fem.results.kinds import HALL
 from fem.results.outcome import Outcome
@@ -51,7 +51,7 @@ def batch(
     strict: Annotated[bool, flag("Refuse the list if one of its rows is bad.")] = False,
     allow_outside: AllowOutside = False,
     pdf: Annotated[bool, flag("Print the page to report.pdf, by Chromium or Chrome.")] = False,
-    flags: SharedFlags = SHARED,
+    flags: StudyFlags = STUDY,
 ) -> int:
     """Compute a list of containers: which rest, slide, rock or overturn, and which is the weakest?
 

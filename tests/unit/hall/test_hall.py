@@ -12,7 +12,6 @@ import pytest
 from small_site import SITE
 
 from fem.__main__ import main
-from fem.batch.shard import Shard
 from fem.batch.table import table_text
 from fem.case.case import load_case
 from fem.case.validation import CaseError
@@ -21,7 +20,6 @@ from fem.hall.file import read_hall
 from fem.hall.places import INVALID, UNKNOWN, class_of, draw_places, plan_of
 from fem.hall.result import HallResult
 from fem.hall.run import run_hall
-from fem.hall.site import run_hall_at_site
 from fem.hall.study import weakness
 from fem.results.figures import SCALARS
 from fem.run.compute import compute
@@ -149,12 +147,6 @@ def test_every_container_is_verified_at_a_site_as_by_assess(tmp_path, base, monk
     alone = run_site(load_site(shlex.split(wide["command"])[4]), tmp_path / "alone").result
     assert (alone.answer, alone.margin_factor) == (wide["answer"], wide["margin"])
     assert (alone.rotation_ratio, alone.slip_m) == (wide["rotation_ratio"], wide["max_slip_m"])
-    shards = [tmp_path / f"shard {number}" for number in (1, 2)]
-    asked = read_hall(tmp_path / "hall.csv"), load_site("site.toml"), load_case("base.toml")
-    for number, folder in enumerate(shards, start=1):
-        run_hall_at_site(*asked, folder, shard=Shard(number, 2))
-    merged = run_hall_at_site(*asked, tmp_path / "merged", merge=shards[::-1])
-    assert [row["answer"] for row in merged.table] == [row["answer"] for row in found["table"]]
     assert main([*command[:-3], "--motion", "x.csv"]) == 2
     listed(tmp_path, "name,motion.scale\na,2\n", "moved.csv")
     assert main(["batch", "moved.csv", "--site", "site.toml"]) == 2

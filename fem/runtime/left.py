@@ -1,0 +1,16 @@
+"""What an earlier version had: options, commands, tables and keys, and what to use in place of each.
+
+Whoever still has one in a script or a file is told so in one sentence.
+"""
+
+#: an option, or one of a command alone; a table in brackets; a key behind its table
+LEFT = {
+    "--slurm": "start workers with dask-jobqueue and give the address of their scheduler with --scheduler",
+    "--shard": "give the address of a dask scheduler with --scheduler; its workers share the runs",
+    "--merge": "give the address of a dask scheduler with --scheduler; the result lies in one folder",
+}
+
+
+def left_words(name: str) -> str:
+    """What to say behind the name of what left; empty where it did not."""
+    return f"is no longer there; {LEFT[name]}" if name in LEFT else ""
