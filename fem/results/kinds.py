@@ -137,8 +137,6 @@ HALL = ResultKind(
         "hall.geojson",
         "runs.csv",
         "checks.csv",
-        "sites.csv",
-        "sites/*/assess.json",
         "list.csv",
         "base.toml",
         "report.html",

@@ -307,6 +307,7 @@ def test_results_of_another_program_are_not_continued(tmp_path, study, mark, log
         (["sweep", "outcome_map", "-j", "0"], "-j"),
         (["sweep", "outcome_map", "--shard", "1/2"], "--shard is no longer there; give the address"),
         (["ensemble", "boundary", "--slurm=job.toml"], "--slurm is no longer there; start workers"),
+        (["batch", "l.csv", "--site", "site.toml"], "batch --site is no longer there; verify each container"),
         (["ensemble", "fragilty"], "did you mean 'fragility'"),
         (["ensemble", "fragility", "-j", "0"], "-j"),
         (["response", "--from", "2", "--to", "1"], "--from must be less than --to"),
