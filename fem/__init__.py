@@ -40,7 +40,8 @@ if sys.argv[:1] == ["-m"]:
 def __getattr__(name: str) -> Any:
     """What the package gives away, loaded when it is first asked for: the command line answers without it."""
     if name not in PLACES:
-        raise AttributeError(left_words(f"fem.{name}") or f"module {__name__!r} has no attribute {name!r}")
+        left = left_words(f"fem.{name}")
+        raise AttributeError(f"fem.{name} {left}" if left else f"module {__name__!r} has no attribute {name!r}")
     return getattr(importlib.import_module(PLACES[name]), name)
 
 

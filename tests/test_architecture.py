@@ -86,7 +86,6 @@ DOORS = {
     "pydantic": {"fem"},
     # optional, and slow to import: loaded where a cluster is asked for
     "dask": {"fem/batch/cluster.py"},
-    "dask_jobqueue": {"fem/batch/slurm.py"},
     "distributed": {"fem/batch/cluster.py"},
     "jinja2": {"fem/html/page.py"},
 }

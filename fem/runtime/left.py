@@ -8,6 +8,7 @@ LEFT = {
     "--slurm": "start workers with dask-jobqueue and give the address of their scheduler with --scheduler",
     "--shard": "give the address of a dask scheduler with --scheduler; its workers share the runs",
     "--merge": "give the address of a dask scheduler with --scheduler; the result lies in one folder",
+    "batch --site": "verify each container with assess, by a site file that names it",
     "[hazard]": "estimate the fragility with `python -m fem ensemble` and integrate it over your hazard curve",
     "motions.scatter": "it was part of [hazard]; leave it out",
     "fem.annual_rate": "integrate your fragility curve over your hazard curve",

@@ -41,25 +41,24 @@ def inputs_of(request: SiteRequest) -> SiteInputs:
     )
 
 
-def texts_of(request: SiteRequest, kind: ResultKind, *, records: bool = True) -> dict[str, str]:
+def texts_of(request: SiteRequest, kind: ResultKind) -> dict[str, str]:
     """The site file, its container, and the files of points that it names, by their names in a folder of results.
 
-    The site file names what lies beside it there, so that it can be repeated from there alone; `records`: also its
-    records, see `copy_files`.
+    The site file names what lies beside it there, so that it can be repeated from there alone.
 
     Raises:
         CaseError: a file of points is named like a result, which would replace it.
         ValueError: it cannot be read.
     """
-    own = {"site.toml": _beside_its_files(request, records), CONTAINER: request.container.text}
+    own = {"site.toml": _beside_its_files(request), CONTAINER: request.container.text}
     for table, name in request.point_files.items():
         require_free_name(place_of(f"{table}.file"), PurePath(name), kind, own)
     return own | {name: text_of(request.origin.folder / name) for name in request.point_files.values()}
 
 
-def copy_files(request: SiteRequest, folder: Path, *, records: bool = True) -> None:
-    """Copy the mesh of the container, and `records` of the site file, to where the copies of their files name them."""
-    for path, place in _records(request).values() if records else ():
+def copy_files(request: SiteRequest, folder: Path) -> None:
+    """Copy the mesh of the container, and the records, to where the copies of their files name them."""
+    for path, place in _records(request).values():
         if not Path(place).is_absolute():
             (folder / place).parent.mkdir(parents=True, exist_ok=True)
             if real_path(folder / place) != real_path(path):
@@ -94,11 +93,11 @@ def _records(request: SiteRequest) -> dict[str, tuple[Path, str]]:
     return places
 
 
-def _beside_its_files(request: SiteRequest, records: bool) -> str:
+def _beside_its_files(request: SiteRequest) -> str:
     """The site file with the names of the copies beside it; with its comments, where these names alone change."""
     names = {request.heading.container: CONTAINER}
     wanted = {**request.data, "container": CONTAINER}
-    if records and request.motions.files:
+    if request.motions.files:
         for name, (_, place) in _records(request).items():
             channel = split_channel(request.origin.folder, name)[1]
             names[name] = f"{place}#{channel}" if channel else place

@@ -1,7 +1,7 @@
 """What can be said of a site before any run: action, motions, what they move, and what a verification would take."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -9,7 +9,6 @@ from fem.results.json_block import JsonBlock
 from fem.run.expected import of_a_record_s, of_its_band_s
 from fem.runtime.progress import clock_time
 from fem.runtime.threads import cores
-from fem.seismic.ground_motion import GroundMotion
 from fem.seismic.motion_set import check_set
 from fem.site.bodies import bodies_of
 from fem.site.confirm import MODEL, MOST_DECIDING
@@ -81,25 +80,6 @@ def forecast(stages: Stages, jobs: int, *, quick: bool = False, scan: bool = Tru
     )
 
 
-def forecast_of(request: SiteRequest, jobs: int, *, allow_outside: bool = False) -> Forecast:
-    """As `forecast`, of a request of which nothing is made yet.
-
-    Raises:
-        CaseError, MeshError: it cannot be computed.
-    """
-    bodies = bodies_of(request)
-    return forecast(_stages_of(request, bodies, allow_outside=allow_outside)[1], jobs)
-
-
-def _stages_of(
-    request: SiteRequest, bodies: Sequence[SiteBody], *, allow_outside: bool
-) -> tuple[Sequence[GroundMotion], Stages]:
-    """The motions of the ground, and the stages, without a folder."""
-    longest = longest_period(bodies)
-    ground = ground_motions(request, longest, allow_outside=allow_outside)
-    return ground, Stages.of(request, floor_motions(request, ground), longest=longest, folder=Path())
-
-
 @dataclass(frozen=True, kw_only=True)
 class SitePreview(JsonBlock):
     """What is known of a verification before it is computed."""
@@ -127,7 +107,9 @@ def preview_of(request: SiteRequest, *, allow_outside: bool = False) -> SitePrev
         CaseError, MeshError: it cannot be computed.
     """
     bodies = bodies_of(request)
-    ground, stages = _stages_of(request, bodies, allow_outside=allow_outside)
+    longest = longest_period(bodies)
+    ground = ground_motions(request, longest, allow_outside=allow_outside)
+    stages = Stages.of(request, floor_motions(request, ground), longest=longest, folder=Path())
     checked = check_set(
         ground, stages.target, longest=stages.longest, second=request.motions.second_component or 1.0
     )

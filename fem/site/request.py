@@ -216,28 +216,6 @@ class SiteRequest:
             return _request(dict(self.data) | {table: content}, self.origin, self.container)
         return _request(self.data, self.origin, self.container.with_values({key: value}))
 
-    def of_container(self, name: str, container: Case, mu_static: float | None = None) -> "SiteRequest":
-        """This request for another container, whose file is `container.toml` beside that of the site.
-
-        Args:
-            name: of the container.
-            container: the case; mu_static: in place of the range; None: the range.
-
-        Raises:
-            CaseError: it cannot be verified at a site.
-        """
-        data = {**self.data, "container": "container.toml"}
-        if mu_static is not None:
-            data["friction"] = {**data["friction"], "mu_static": [mu_static]}
-        if self.motions.files:
-            files = [
-                [str((self.origin.folder / file).absolute()) for file in pair] for pair in self.motions.files
-            ]
-            data["motions"] = {**data["motions"], "files": files}
-        text = toml_document(container.given())
-        given = container.from_origin(replace(container.origin_with({}), name=name, text=text))
-        return _request(data, replace(self.origin, text=toml_document(data)), given)
-
     def _beside(self, name: str) -> Path:
         """A file of points; a link to elsewhere is refused with ValueError, for messages quote what they read."""
         path = self.origin.folder / name

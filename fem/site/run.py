@@ -68,7 +68,6 @@ def run_site(
     *,
     allow_outside: bool = False,
     quick: bool = False,
-    copy_records: bool = True,
     **options: Unpack[StudyOptions],
 ) -> SiteResult:
     """Verify a container at a site, into a folder; raises as `run_study`, and CaseError for bad input.
@@ -76,11 +75,8 @@ def run_site(
     Args:
         allow_outside: take records from outside the folder of the site file.
         quick: the set and its repetitions alone; "fulfilled" then only of a container that rests.
-        copy_records: copy the records that the site file names, so that the folder can be repeated by itself.
     """
-    work = Verification.of(
-        request, folder, allow_outside=allow_outside, quick=quick, copy_records=copy_records
-    )
+    work = Verification.of(request, folder, allow_outside=allow_outside, quick=quick)
     stages = work.stages
     files = len(work.ground) * (1 + len(stages.floors)) + request.motions.further
     study = Study(
@@ -88,7 +84,7 @@ def run_site(
         request=work.digest,
         result=SiteResult,
         compute=work.compute,
-        texts=texts_of(request, SITE, records=copy_records),
+        texts=texts_of(request, SITE),
         size=table_bytes(files, OF_A_MOTION)
         + table_bytes(TIMES_THE_SET * len(stages.of_set()), len(COLUMNS)),
         subject="the verification",
@@ -122,7 +118,6 @@ class Verification:
     ground: Sequence[GroundMotion]  #: motions of the set
     wind: float | None  #: the largest utilisation under it
     quick: bool = False
-    copy_records: bool = True
     began: float = field(default_factory=time.perf_counter)  #: when it was asked for [s]
 
     @classmethod
@@ -161,9 +156,8 @@ class Verification:
     def compute(self, place: ResultFolder, runner: Runner) -> SiteResult:
         """Write the motions, compute what is missing, and write runs and page."""
         motions = set_result(self.request, self.checked, self.ground, write_ground(place.path, self.ground))
-        copy_files(self.request, place.path, records=self.copy_records)
-        if self.copy_records:
-            motions = replace(motions, notes=(*motions.notes, *left_elsewhere(self.request)))
+        copy_files(self.request, place.path)
+        motions = replace(motions, notes=(*motions.notes, *left_elsewhere(self.request)))
         self.write_floors()
         if motions.valid:
             runner.reporter.message(forecast(self.stages, runner.jobs, quick=self.quick).words)

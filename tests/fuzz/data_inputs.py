@@ -176,7 +176,6 @@ NAMED: dict[str, tuple[tuple[str, ...], dict[str, str]]] = {
     "ensemble.toml": (("ensemble", "ensemble.toml"), {}),
     "site.toml": (("assess", "site.toml"), {}),
     "hall.csv": (("batch", "hall.csv", "--case", "seed_stack"), {}),
-    "jobs.toml": (("sweep", "sweep.toml", "--slurm", "jobs.toml"), {"sweep.toml": SMALL}),
     "motion.at2": (("check", "seed_stack", "--motion", "motion.at2"), {}),
     "drawn.at2": (("picture", "drawn.at2"), {}),
     "outcomes.csv": (("validate", "--data", "."), {"body.toml": (
