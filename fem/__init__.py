@@ -41,7 +41,9 @@ def __getattr__(name: str) -> Any:
     """What the package gives away, loaded when it is first asked for: the command line answers without it."""
     if name not in PLACES:
         left = left_words(f"fem.{name}")
-        raise AttributeError(f"fem.{name} {left}" if left else f"module {__name__!r} has no attribute {name!r}")
+        raise AttributeError(
+            f"fem.{name} {left}" if left else f"module {__name__!r} has no attribute {name!r}"
+        )
     return getattr(importlib.import_module(PLACES[name]), name)
 
 

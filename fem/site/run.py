@@ -42,6 +42,7 @@ from fem.site.page import site_report
 from fem.site.preview import forecast
 from fem.site.request import SiteRequest
 from fem.site.result import (
+    ConfirmedRun,
     MotionSet,
     RunKey,
     SiteAnswer,
@@ -188,7 +189,8 @@ class Verification:
             value: of the key that `size` varies, in the first column of its log. It is decided without a margin, and
                 without what comes after the first that speaks against it.
         """
-        again, stages, rows = [], self.stages, self.stages.rows
+        stages, rows = self.stages, self.stages.rows
+        again: list[ConfirmedRun] = []
         left_out = QUICK if self.quick and not stages.rests else ""
         varied = {} if value is None else {"value": float}
         columns = varied | COLUMNS

@@ -122,7 +122,7 @@ def size_axis(
         CaseError: no such key, one without a number, a range that does not rise or that the key cannot have, or at an
             end of which the containers cannot be built.
     """
-    quantity, value = _quantity(key), _value(request, key)
+    quantity, value = _quantity(key), _given(request, key)
     steps = _steps(request, key)
     last_is_usual = high is None
     if low is None or high is None:
@@ -224,7 +224,7 @@ def _quantity(key: str) -> Quantity:
     return quantity
 
 
-def _value(request: SiteRequest, key: str) -> float | None:
+def _given(request: SiteRequest, key: str) -> float | None:
     """The value in the files; None where there is none."""
     table, _, name = key.partition(".")
     if table not in TABLES:

@@ -187,7 +187,7 @@ def test_wind_pressures_come_from_a_table_or_a_terrain(tmp_path):
         ("[limits]", "[wind]\n[limits]", r"german_zone, terrain: exactly one of the three"),
         ("[limits]", '[wind]\ngerman_zone = 1\ngerman_place = "coast"\n[limits]', r"no simplified wind"),
         ("[limits]", "[hazard]\npoints = [[475, 1.6]]\n[limits]", r"\[hazard\] is no longer there; estimate"),
-        ("[limits]", "[motions]\nscatter = 0.4\n[limits]", r"motions.scatter is no longer there"),
+        ("[limits]", "[motions]\nscatter = 0.4\n[limits]", r"\[motions\] 'scatter' is no longer there"),
         ("[limits]", "[wnd]\n[limits]", r"unknown table; did you mean 'wind'"),
         ('"seed_stack"', '"no-such.toml"', r"is no file in .* and no shipped case"),
         ('"seed_stack"', '"seed_stack"\nempty_mass_kg = 0.4', r"mass"),
