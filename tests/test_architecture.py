@@ -38,7 +38,7 @@ LAYERS = (
     ("fem.sweep", "fem.response"),
     ("fem.ensemble",),
     ("fem.report",),
-    ("fem.site_check",),
+    ("fem.site",),
     ("fem.hall",),
     ("fem.cli",),
 )
@@ -85,7 +85,6 @@ DOORS = {
     "pydantic": {"fem"},
     # optional, and slow to import: loaded where a cluster is asked for
     "dask": {"fem/batch/cluster.py"},
-    "dask_jobqueue": {"fem/batch/slurm.py"},
     "distributed": {"fem/batch/cluster.py"},
     "jinja2": {"fem/html/page.py"},
 }
@@ -102,7 +101,7 @@ LOADING_LATE = {
     "fem/results/history.py",
     "fem/results/reader.py",
     "fem/run/checks.py",
-    "fem/site_check/motions.py",
+    "fem/site/motions.py",
     "mesh/files.py",
 }
 

@@ -20,7 +20,7 @@ PAGES = {
     "ensemble.json": "fem.report.ensemble_page:ensemble_report",
     "response.json": "fem.report.response_page:response_report",
     "study.json": "fem.cli.evidence:paper_report",
-    "assess.json": "fem.site_check.page.site_page:site_report",
+    "assess.json": "fem.site.page:site_report",
     "hall.json": "fem.hall.page:hall_report",
 }
 
