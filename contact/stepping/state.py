@@ -158,7 +158,10 @@ JOINT_RECORD = np.dtype(
         # friction
         ("sliding", "i8"),  # 1 while every loaded point slides: kinetic friction
         ("slip_since_break", "f8"),  # path since the joint broke loose
-        ("slip", "f8"),  # displacement of the base over what is below since the start, signed, see `bearing_place`
+        (
+            "slip",
+            "f8",
+        ),  # displacement of the base over what is below since the start, signed, see `bearing_place`
         ("stood_at", "f8"),  # `bearing_place` at the start
         ("slip_in_air", "f8"),  # the part of `slip` that was moved without a contact force
         ("slip_velocity", "f8"),  # force-weighted

@@ -101,9 +101,7 @@ def _watched(container: Container, number: int) -> IntArray:
     return monitors if number == len(container.boxes) - 1 else monitors[2:]
 
 
-def _modal_body(
-    case: Case, container: Container, number: int, damping: float, tolerance: float
-) -> ModalBody:
+def _modal_body(case: Case, container: Container, number: int, damping: float, tolerance: float) -> ModalBody:
     box, place = container.boxes[number], case.stack[number]
     centroid = np.asarray(box.mesh.centroid)
     watched = _watched(container, number)
