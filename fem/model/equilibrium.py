@@ -15,6 +15,7 @@ from contact.stepping.links import LinkedBody
 from contact.stepping.loose_stack import LooseStack
 from contact.stepping.modal_body import ModalBody, make_modal_body
 from fem.case.case import Case, CaseError
+from fem.model.bounce import bounce_of
 from fem.model.container import Container
 from fem.model.edge_springs import edge_factors
 from fem.model.floor import slab_of
@@ -168,6 +169,7 @@ def same_equilibrium(case: Case, other: Case) -> bool:
         and case.container.centroid_m == other.container.centroid_m
         and case.container.eccentricity_m == other.container.eccentricity_m
         and case.container.damping_ratio == other.container.damping_ratio
+        and case.container.fill_damping_ratio == other.container.fill_damping_ratio
         and case.gravity_m_s2 == other.gravity_m_s2
         and case.solver.model == other.solver.model
     )
@@ -237,7 +239,7 @@ def _body(
     elements, mesh = container.elements, container.mesh
     gravity, downhill = case.gravity_toward_floor, case.gravity_downhill
     nodes, monitors = container.nodes, container.monitors
-    damping = container.damping(case.container.damping_ratio)
+    damping = bounce_of(case, container, contact).material_damping
     placed = base_points(case, mesh, elements.nodes[nodes], container.support.index.size)
     links = slice(len(nodes) - len(case.links), None)
     if case.links and case.solver.model != "full":  # it has points wherever they are asked for
