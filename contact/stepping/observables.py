@@ -107,9 +107,9 @@ def bearing_place(
     """Where a base stands on what is below it: the slip is how far this has moved [m].
 
     The place of a point is how far it is from where it is along the undeformed base, less what its stuck spring has
-    given way. They are weighted by the normal forces; in the air the point nearest to the ground counts. So rocking from
-    corner to corner moves nothing, a flight moves what the base moves, and an upright container has moved as far as its
-    mass centre.
+    given way. They are weighted by the normal forces; in the air the point nearest to the ground counts. So rocking
+    from corner to corner moves nothing, a flight moves what the base moves, and an upright container has moved as far
+    as its mass centre.
 
     Args:
         contact: its properties; along: (n,) `RunProblem.along`; state: of the run.

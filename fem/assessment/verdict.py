@@ -357,7 +357,7 @@ def numerics_of(model: Model, stepping_cpu: float) -> Numerics:
             sorted(f for spectrum in spectra for f in spectrum[elastic:].tolist())
         ),
         corner_force_window_s=run.problem.control.force_window,
-        bounce_frequency_Hz=bounce.frequency_Hz,
+        bounce_frequency_Hz=bounce.frequency,
         bounce_container_damping_ratio=bounce.container_damping_ratio,
         bounce_contact_damping_ratio=bounce.contact_damping_ratio,
         contents_filter=CONTENTS_FILTER,

@@ -37,8 +37,8 @@ class Bounce:
     material_damping: float  #: a of C = a K [s]
 
     @property
-    def frequency_Hz(self) -> float:
-        """Its frequency [Hz]."""
+    def frequency(self) -> float:
+        """Cycles a second [Hz]."""
         return self.angular_frequency / (2.0 * math.pi)
 
     def force_window(self, frequency_parameter: float) -> float:

@@ -12,7 +12,6 @@ from fem.case.tables import quantities as q
 from fem.case.tables.rules import CONTAINER_RULES
 from fem.case.tables.table import CaseTable, case_key, optional_key
 
-
 #: damping ratio of a mode in which the fill alone moved, by kind of fill. Grains in a container that is not full take
 #: all of a rebound from 1.5 times the container's own mass on (Pacheco-Vazquez and Dorbolo, Sci. Rep. 3 (2013) 2158);
 #: 6 % of mass as particles alone give 0.04 (Friend and Kinra, J. Sound Vib. 233 (2000) 93); a landing on a fill that
