@@ -17,12 +17,11 @@ from contact.stepping.modal_body import ModalBody, make_modal_body
 from fem.case.case import Case, CaseError
 from fem.model.bounce import bounce_of
 from fem.model.container import Container
-from fem.model.edge_springs import edge_factors
 from fem.model.floor import slab_of
 from fem.model.links import lines_at, places_of_links, shapes_at_links, with_links
 from fem.model.loose_stack import make_stack_state, own_stiffness, settle, stack_of, with_joints
 from fem.model.row import body_of_row, contact_of_row, corners_at_rest, measure_gaps, require_no_jam
-from fem.model.support import Rolling, base_points, normal_penalty, steel_penalty
+from fem.model.support import Rolling, base_points, edge_factors, normal_penalty, steel_penalty
 from fem.model.validity import require_bearing, require_stiff_contact, require_stiff_container
 from fem.runtime.arrays import FloatArray
 from fem.solid.assembly import FiniteElements
