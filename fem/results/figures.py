@@ -148,7 +148,7 @@ class Figures(JsonBlock, Generic[ValueT]):
     max_indentation_m: Annotated[ValueT | None, Shown("indentation of the floor", MM, BAND)] = None
     #: no corner has sunk in further than the law of its contact holds
     valid: Annotated[bool | None, Shown("valid", units.COUNT, COLUMN)] = None
-    #: rotation at the end; None of what overturned, or still turns about one side
+    #: rotation at the end; None of what overturned, or turns about one side
     tilt_rad: Annotated[
         ValueT | None,
         Shown("tilt at the end", units.DEGREES, COLUMN | BAND | SUMMARY, lowest=True),
