@@ -69,7 +69,7 @@ def friction_decides(result: run_result.RunResult, case: Case) -> str | None:
         f"friction ({kinetic:g}) does not, so one landing that breaks it loose decides"
         + (
             f"; if friction falls over {1e3 * gentlest.values[WEAKENING]:g} mm of slip instead of at once, it reaches "
-            f"{gentlest.rotation_ratio:.2g} of its slenderness angle and slips {1e3 * (gentlest.max_slip_m or 0.0):.3g} mm"
+            f"{gentlest.rotation_ratio:.2g} of its slenderness angle, slip {1e3 * (gentlest.max_slip_m or 0.0):.3g} mm"
             if gentlest is not None and gentlest.rotation_ratio is not None
             else ""
         )
