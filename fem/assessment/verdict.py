@@ -21,8 +21,9 @@ from contact.stepping.ledger import (
     LOSS_SHARE_LIMIT,
     MATERIAL_DAMPING,
 )
-from contact.stepping.observables import FORCE_WINDOW, HOPPING, ROCKING
+from contact.stepping.observables import HOPPING, ROCKING
 from fem.case.case import Case
+from fem.model.bounce import bounce_of
 from fem.model.floor import YIELD_STRENGTH, is_steel_shell, post_strength, slab_of, steel_capacity
 from fem.model.floor_numbers import plastic_work
 from fem.model.model import Model
@@ -136,6 +137,7 @@ def verdict_from(
         modes=_modes_seen(track.modes | _hops(model) << Outcome.HOP.code, outcome, slides=_slides(model)),
         max_rotation_rad=rotation,
         rotation_ratio=relative_rotation(rotation, angle),
+        flight_share=track.flight_time / track.rocking_time if track.rocking_time > 0.0 else None,
         slip_peak_to_peak_m=_peak_to_peak(model, end, time, slip),
         max_indentation_m=_indentation(model),
         tilt_rad=None if outcome == Outcome.OVERTURNED else _tilt(run.old, track),
@@ -331,6 +333,7 @@ def numerics_of(model: Model, stepping_cpu: float) -> Numerics:
     # Rayleigh and Ritz: the modes of the free container come first, then the attachment modes of its contact points.
     elastic = model.elastic_modes if model.case.solver.model == "reduced" else 1
     spectra = model.spectra
+    bounce = bounce_of(model.case, container, model.equilibrium.contact)
     return Numerics(
         unknowns=int(run.old.position.size),
         contact_nodes=int(
@@ -353,7 +356,10 @@ def numerics_of(model: Model, stepping_cpu: float) -> Numerics:
         attachment_frequencies_Hz=tuple(
             sorted(f for spectrum in spectra for f in spectrum[elastic:].tolist())
         ),
-        corner_force_window_s=FORCE_WINDOW / run.problem.control.frequency_parameter,
+        corner_force_window_s=run.problem.control.force_window,
+        bounce_frequency_Hz=bounce.frequency,
+        bounce_container_damping_ratio=bounce.container_damping_ratio,
+        bounce_contact_damping_ratio=bounce.contact_damping_ratio,
         contents_filter=CONTENTS_FILTER,
         contents_filter_Hz=model.case.output.contents_filter_Hz,
     )

@@ -22,6 +22,7 @@ from fem.case.tables.links import MOST_ROWS, ROWS
 from fem.case.tables.problem import Problem, broken
 from fem.case.tables.quantities import Quantity, with_unit
 from fem.case.tables.table import CaseTable
+from fem.runtime.left import left_words
 
 
 class CaseError(ValueError):
@@ -34,14 +35,6 @@ def known_keys(table: type[CaseTable]) -> dict[str, FieldInfo]:
 
 
 TOP = known_keys(CaseHeading)
-#: keys that were there, and what to use in their place
-GONE = {
-    "tie.to_height_m": "ties run to the floor or to a wall; tie each container of a row to one of these",
-    "support.casting_bears": "castings touch with their outer edges; a container on wide plates has support.kind = "
-    '"feet"',
-    "support.casting_tilt_m": "castings are level; uncertainty.restitution_over_housner varies how an impact lands",
-    "uncertainty.casting_tilt_m": "castings are level; restitution_over_housner varies how an impact lands",
-}
 MOST_BOXES = range(1, 51)
 #: what values of the wrong type should have been, by pydantic's name of the fault
 KINDS = {
@@ -306,8 +299,8 @@ def _shown(value: object) -> str:
 
 
 def _unknown_key(table: str, key: str, known: Mapping[str, FieldInfo]) -> str:
-    if gone := GONE.get(f"{table}.{key}"):
-        return f"{key} is gone: {gone}"
+    if words := left_words(f"{table}.{key}"):
+        return f"{key!r} {words}"
     elsewhere = [f"[{name}]" for name, model in TABLES.items() if name != table and key in known_keys(model)]
     if elsewhere:
         way_out = f"it belongs into {' or '.join(elsewhere)}"
@@ -319,5 +312,7 @@ def _unknown_key(table: str, key: str, known: Mapping[str, FieldInfo]) -> str:
 
 
 def _unknown_table(name: str) -> str:
+    if words := left_words(f"[{name}]"):
+        return words
     near = did_you_mean(name, TABLES)
     return f"unknown table{'; ' + near if near else ''} (known: {', '.join(TABLES)})"

@@ -40,8 +40,8 @@ def check(
     if case is not None and is_site(case):
         if overrides or motion is not None:
             raise CaseError(f"{case}: a site file takes neither --set nor --motion; edit the file")
-        files = importlib.import_module("fem.site_check.file")
-        previews = importlib.import_module("fem.site_check.preview")
+        files = importlib.import_module("fem.site.request")
+        previews = importlib.import_module("fem.site.preview")
         request = files.load_site(case, allow_baseline=allow_baseline)
         outlook = previews.preview_of(request, allow_outside=allow_outside)
         lines = previews.preview_lines(outlook, request)

@@ -19,8 +19,8 @@ PAGES = {
     "sweep.json": "fem.report.sweep_page:sweep_report",
     "ensemble.json": "fem.report.ensemble_page:ensemble_report",
     "response.json": "fem.report.response_page:response_report",
-    "study.json": "fem.evidence.paper.page:paper_report",
-    "assess.json": "fem.site_check.page.site_page:site_report",
+    "study.json": "fem.cli.evidence:paper_report",
+    "assess.json": "fem.site.page:site_report",
     "hall.json": "fem.hall.page:hall_report",
 }
 

@@ -71,10 +71,6 @@ class Container:
         corners = [nodes[box.corners] for box, nodes in zip(self.boxes, self.box_nodes, strict=True)]
         return np.concatenate(corners)
 
-    def damping(self, ratio: float) -> float:
-        """a of C = a K [s], with this damping ratio of the first elastic mode."""
-        return 2.0 * ratio / self.first
-
     def lowest_modes(self, count: int) -> ElasticModes:
         """The lowest elastic modes of the free container: those of a reduced model, or computed.
 

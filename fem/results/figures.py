@@ -116,6 +116,15 @@ class Figures(JsonBlock, Generic[ValueT]):
             lowest=True,
         ),
     ] = None
+    #: the part of the slip at the end that was moved while nothing touched the floor
+    slip_in_air_m: Annotated[
+        ValueT | None,
+        Shown("slip moved in the air", MM, COLUMN | BAND | SUMMARY, "joint.slip_in_air", lowest=True),
+    ] = None
+    #: of the time with a rotation above 0.01 of the slenderness angle, the share without any contact force
+    flight_share: Annotated[
+        ValueT | None, Shown("in the air while it rocks", units.RATIO, COLUMN | BAND | READ)
+    ] = None
     #: over the last full cycle of a harmonic drive
     slip_peak_to_peak_m: Annotated[ValueT | None, Shown("slip, peak to peak", MM, COLUMN)] = None
     #: total

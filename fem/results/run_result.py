@@ -315,6 +315,11 @@ class Numerics(JsonBlock):
     normal_penalty_Pa_m: float | None = None
     contact_damping_ratio: float | None = None
     contact_frequency_Hz: float | None = None
+    bounce_frequency_Hz: float | None = None  #: of the container on one corner, shell and floor in series
+    bounce_container_damping_ratio: float | None = None  #: what steel and fill take of it
+    bounce_contact_damping_ratio: float | None = (
+        None  #: .. and the floor, or the dashpot of the numerical penalty
+    )
     static_penetration_m: float | None = None
     max_penetration_m: float | None = None
     elastic_frequencies_Hz: tuple[float, ...] = ()

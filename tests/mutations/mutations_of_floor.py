@@ -33,12 +33,6 @@ FLOOR_FAULTS = (
         tests=("unit/seismic/test_floor.py", "-k", "closed_form"),
     ),
     Mutation(
-        name="motions of one strength that do not scatter",
-        old="hazard.lognormal(strength, scatter)",
-        new="hazard.rate(strength)",
-        tests=("unit/site_check/test_site_yearly.py", "-k", "spreads"),
-    ),
-    Mutation(
         name="a slider that a rising floor makes lighter",
         old="            n = gravity + acceleration[2, i] + s * dn\n",
         new="            n = gravity - acceleration[2, i] + s * dn\n",

@@ -51,6 +51,9 @@ class UncertaintyTable(CaseTable):
         "of the contact, where it is given; default: a loss 1 - e of 0.8 to 1.5 times", [0.9, 1.0]
     )
     material_damping_ratio: Unknown = optional_key("of the container; default: half to twice", [0.01, 0.04])
+    fill_damping_ratio: Unknown = optional_key(
+        "of the container; default: a quarter to two and a half times", [0.05, 0.5]
+    )
     stop_gap_m: Unknown = optional_key(
         "of the stops, where they differ the largest, and all in proportion; default: 0.8 to 1.2 times",
         [0.04, 0.06],

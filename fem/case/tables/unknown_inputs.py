@@ -34,6 +34,7 @@ from fem.case.tables.problem import refused
 
 SOFTEST, STIFFEST = 1.0 / 9.0, 3.0  #: contact stiffness over that of the case
 DAMPING = (0.5, 2.0)  #: contact and material damping over those of the case
+FILL_DAMPINGS = (0.25, 2.5)  #: damping of the fill over that of the case: 0.05 to 0.5 of a granular one
 SLAB = (0.5, 2.0)  #: Young's modulus and bearing strength of a slab over those of the case
 JOINTS = (0.5, 2.0)  #: static friction between loose boxes over that of the case, where this has the floor's
 JOINTS_DASHPOTS = (0.1, 2.0)  #: damping ratio between loose boxes, as far as the case has none beyond
@@ -354,6 +355,8 @@ UNKNOWN: tuple[UnknownNumber | UnknownChoice, ...] = (
            matters=_has_impacts, power=1.0),
     Number(keys.MATERIAL, "material_damping_ratio", "damping of the container", q.MATERIAL_DAMPING, DAMPING,
            matters=lambda case: case.solver.model != "rigid"),
+    Number(keys.FILL, "fill_damping_ratio", "damping of the fill", q.MATERIAL_DAMPING, FILL_DAMPINGS,
+           matters=lambda case: case.solver.model != "rigid" and case.container.is_filled_shell),
 )
 # fmt: on
 INPUTS = (*(unknown.key for unknown in UNKNOWN), keys.TOLERANCE)

@@ -45,5 +45,5 @@ def test_the_band_takes_the_restitution_up_to_that_of_plates():
     ],
 )
 def test_how_castings_bear_is_no_key_any_more(key, value):
-    with pytest.raises(CaseError, match=f"{key.partition('.')[2]} is gone: castings "):
+    with pytest.raises(CaseError, match=f"{key.partition('.')[2]} ' is no longer there; castings "):
         named_case("seed_stack_plateau", {key: value})

@@ -17,8 +17,7 @@ from fem.case.case import CaseError, load_case
 from fem.cli.check import preview_of
 from fem.model.model import build_model
 from fem.run.outcome import run_without_history
-from fem.site_check.bodies import body_of
-from fem.site_check.file import Variant
+from fem.site.bodies import body_of
 
 WEIGHT, LENGTH, EDGE = 98.1e3, 0.1, 0.55
 STRENGTH = 5e6  #: of asphalt [Pa]
@@ -100,7 +99,7 @@ def test_all_that_follows_from_the_width_follows_it():
     assert static.own_motion.overturning.capacity == pytest.approx(WEIGHT * half)
     assert block_of(model).half_width == pytest.approx(half)
     assert preview_of(case).floor.pivot_inset_m == pytest.approx(0.04)
-    at_a_site = body_of(Variant(mass="full", elevation="width", case=case))
+    at_a_site = body_of("full", "width", case)
     assert at_a_site.support_width_m == pytest.approx(2.0 * half)
 
 

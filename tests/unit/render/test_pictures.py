@@ -209,7 +209,7 @@ def test_a_gif_is_in_real_time(run, renders, tmp_path, options, shown, duration)
     [
         (["--from", "50"], "no frame from 50 to inf s; they lie from 0 to"),
         (["--fps", "0"], "--fps must lie within 0.1 and 60"),
-        (["--width", "20"], "--width is gone; a movie is as wide as a picture"),
+        (["--width", "20"], "movie --width is no longer there; a movie is as wide as a picture"),
     ],
 )
 def test_a_film_of_no_part_or_size_is_refused(run, renders, capsys, options, words):

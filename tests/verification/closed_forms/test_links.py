@@ -8,11 +8,11 @@ import math
 import numpy as np
 import pytest
 from block_at_wall import SETTLED, fall_back
+from runs import SOLID, STACK, Finished, harmonic, pulse, run
 
 from contact.interface.penalty import damping_ratio_of, restitution_of
 from contact.stepping.ledger import BASE_WORK, CONTACT_DAMPING, FRICTION, IMBALANCE
 from fem.case.case import Case
-from fem.evidence.verification.runs import SOLID, STACK, Finished, harmonic, pulse, run
 
 MASS, WIDTH, MIDDLE = 1e4, 1.1, 2.0
 GRAVITY, SPEED = 9.81, 0.5
