@@ -11,14 +11,13 @@ from fem.runtime.progress import clock_time
 from fem.runtime.threads import cores
 from fem.seismic.motion_set import check_set
 from fem.site.bodies import bodies_of
-from fem.site.confirm import MODEL, MOST_DECIDING
 from fem.site.copies import inputs_of
 from fem.site.methods import wind_utilisation
 from fem.site.motion_results import GIVEN_FLOORS
 from fem.site.motions import floor_motions, ground_motions, longest_period
 from fem.site.request import SiteRequest
 from fem.site.result import SiteBody
-from fem.site.runs import still
+from fem.site.runs import CONFIRMING, MOST_DECIDING, still
 from fem.site.stages import Stages
 
 OF_A_MOTION_S = 0.03  #: processor time of making an artificial motion of three components, tests/README.md
@@ -72,7 +71,7 @@ def forecast(stages: Stages, jobs: int, *, quick: bool = False, scan: bool = Tru
         of_set_still=total - own,
         most=most,
         seconds=(most * of_a_record_s(case) + made * OF_A_MOTION_S) / jobs,
-        deciding_seconds=MOST_DECIDING * of_its_band_s(of_a_record_s(still(case, MODEL))) / jobs
+        deciding_seconds=MOST_DECIDING * of_its_band_s(of_a_record_s(still(case, CONFIRMING))) / jobs
         if moves
         else 0.0,
         cores=jobs,

@@ -7,12 +7,14 @@ neither on that nor on the number of cores.
 import hashlib
 import platform
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Unpack
 
+from fem.assessment.ranges import largest_bolt_forces
+from fem.batch.compute_many import compute_many
 from fem.batch.log import LoggedRuns
 from fem.batch.runner import Runner
 from fem.batch.study import COMPLETED, INTERRUPTED, Study, StudyOptions, hash_of, run_study
@@ -20,14 +22,16 @@ from fem.batch.table import row_of
 from fem.case.case import case_hash
 from fem.html.page import Signature
 from fem.results.disk import table_bytes
+from fem.results.figures import SLIPPED, TURNED, Place
 from fem.results.folder import ResultFolder
 from fem.results.kinds import SITE
+from fem.results.outcome import ENDINGS
+from fem.results.run_result import Band
 from fem.runtime.identity import command_line, versions
 from fem.seismic.ground_motion import GroundMotion
 from fem.seismic.motion_set import MotionSetCheck, check_set
 from fem.site.answer import FULFILLED, NOT_FULFILLED, answer_of, no_answer_yet
 from fem.site.bodies import bodies_of
-from fem.site.confirm import confirmed, deciding
 from fem.site.copies import copy_files, inputs_of, left_elsewhere, texts_of
 from fem.site.methods import site_methods, wind_utilisation
 from fem.site.motion_results import (
@@ -42,6 +46,7 @@ from fem.site.page import site_report
 from fem.site.preview import forecast
 from fem.site.request import SiteRequest
 from fem.site.result import (
+    SET,
     ConfirmedRun,
     MotionSet,
     RunKey,
@@ -49,10 +54,11 @@ from fem.site.result import (
     SiteBody,
     SiteProvenance,
     SiteResult,
+    SiteRun,
     motion_stem,
 )
 from fem.site.rule import governing_run
-from fem.site.runs import COLUMNS, RunCases, cells_of
+from fem.site.runs import COLUMNS, CONFIRMING, RunCases, cells_of
 from fem.site.stages import Stages
 
 RUNS, PAGE = "runs.csv", "report.html"
@@ -281,3 +287,54 @@ class Verification:
         if left := len(rows.missing(wanted)):
             return f"{len(wanted) - left} of {len(wanted)} runs of the set are computed"
         return "repetitions, further motions, other factors on the motions or the deciding runs are missing"
+
+
+def deciding(runs: Mapping[RunKey, SiteRun], governing: SiteRun | None) -> list[RunKey]:
+    """The runs that decide: one that overturned, else that of the largest rotation; and that of the largest slip."""
+    own = {key: run for key, run in runs.items() if key.stage == SET and run.outcome is not None}
+    if governing is None or not own:
+        return []
+    stood = {key: run for key, run in own.items() if run.outcome not in ENDINGS}
+    keys = [next(key for key, run in own.items() if run is governing)] if len(stood) < len(own) else []
+    figures = (TURNED, SLIPPED)[len(keys) :] if stood else ()
+    keys += [max(stood, key=lambda key: stood[key][figure] or 0.0) for figure in figures]
+    return list(dict.fromkeys(keys))
+
+
+def confirmed(
+    cases: RunCases, runs: Mapping[RunKey, SiteRun], keys: list[RunKey], jobs: int | None
+) -> list[ConfirmedRun]:
+    """These runs with the reduced model, each with its band unless it rests far below the static limits.
+
+    None where a signal stops them; the caller asks that.
+
+    Raises:
+        CaseError, MeshError: one of them cannot be computed.
+    """
+    results: list[ConfirmedRun] = []
+    try:
+        repeated = [cases(replace(key, model=CONFIRMING)) for key in keys]
+        again = compute_many(repeated, jobs, margin=False, inner_forces=False)
+    except KeyboardInterrupt:
+        return results
+    for key, run in zip(keys, again, strict=True):
+        verdict, joints = run.verdict, run.typed_result.joints or ()
+        band = verdict.band or Band()
+        tension, shear = largest_bolt_forces(joints) if joints else (None, None)
+        used = [joint.bolt_utilisation for joint in joints if joint.bolt_utilisation is not None]
+        results.append(
+            ConfirmedRun(
+                run=runs[key],
+                model=CONFIRMING,
+                outcome=verdict.outcome,
+                **verdict.figures(Place.KEY),
+                bolt_tension_N=tension,
+                bolt_shear_N=shear,
+                bolt_utilisation=max(used, default=None),
+                sure=verdict.sure or "",
+                outcomes=band.outcomes,
+                rotation_ratio_range=band.rotation_ratio or (),
+                max_slip_m_range=band.max_slip_m or (),
+            )
+        )
+    return results
