@@ -212,8 +212,8 @@ def draw_methods(methods: Sequence[result.SiteMethod], answer: result.SiteAnswer
             axes.plot([FACTORS[0], x], [row, row], color="#DDDDDD", linewidth=0.8, zorder=1)
             axes.plot(x, row, color=COLOURS[method.quantity], marker=marker, markersize=4.5, linestyle="none")
         for quantity, colour in COLOURS.items():
-            look = {"color": colour, "marker": MARKERS[quantity], "linestyle": "none"}
-            axes.plot([], [], markersize=4.5, label=quantity, **look)
+            (dot,) = axes.plot([], [], color=colour, marker=MARKERS[quantity], markersize=4.5, label=quantity)
+            dot.set_linestyle("none")
         labels = [f"{method.name}, {method.quantity}" for method in drawn]
         axes.set_yticks(range(len(drawn)), labels, fontsize=7)
         axes.set_ylim(len(drawn) - 0.4, -0.6)
