@@ -13,8 +13,7 @@ from fem.seismic.motion_set import check_set
 from fem.site.bodies import bodies_of
 from fem.site.copies import inputs_of
 from fem.site.methods import wind_utilisation
-from fem.site.motion_results import GIVEN_FLOORS
-from fem.site.motions import floor_motions, ground_motions, longest_period
+from fem.site.motions import GIVEN_FLOORS, floor_motions, ground_motions, longest_period
 from fem.site.request import SiteRequest
 from fem.site.result import SiteBody
 from fem.site.runs import CONFIRMING, MOST_DECIDING, still

@@ -34,14 +34,16 @@ from fem.site.answer import FULFILLED, NOT_FULFILLED, answer_of, no_answer_yet
 from fem.site.bodies import bodies_of
 from fem.site.copies import copy_files, inputs_of, left_elsewhere, texts_of
 from fem.site.methods import site_methods, wind_utilisation
-from fem.site.motion_results import (
+from fem.site.motions import (
     action_result,
+    floor_motions,
     floor_result,
+    ground_motions,
+    longest_period,
     set_result,
     write_csv_files,
     write_ground,
 )
-from fem.site.motions import floor_motions, ground_motions, longest_period
 from fem.site.page import site_report
 from fem.site.preview import forecast
 from fem.site.request import SiteRequest

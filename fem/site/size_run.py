@@ -20,7 +20,7 @@ from fem.runtime.identity import command_line
 from fem.seismic.ground_motion import GroundMotion
 from fem.site.copies import copy_files, inputs_of, texts_of
 from fem.site.figures import draw_size
-from fem.site.motion_results import set_result
+from fem.site.motions import set_result
 from fem.site.preview import forecast
 from fem.site.request import SiteRequest
 from fem.site.result import SiteAnswer

@@ -18,8 +18,7 @@ from fem.seismic.ground_motion import GroundMotion
 from fem.seismic.two_directions import largest_slip, largest_slips
 from fem.site.answer import Beside
 from fem.site.bodies import Screening
-from fem.site.motion_results import write_csv_files
-from fem.site.motions import motion_target, on_floor
+from fem.site.motions import motion_target, on_floor, write_csv_files
 from fem.site.request import SiteRequest
 from fem.site.result import (
     FURTHER,
