@@ -9,11 +9,7 @@ from fem.results.json_block import JsonBlock
 from fem.run.expected import of_a_record_s, of_its_band_s
 from fem.runtime.progress import clock_time
 from fem.runtime.threads import cores
-from fem.seismic.motion_set import check_set
-from fem.site.bodies import bodies_of
-from fem.site.copies import inputs_of
-from fem.site.methods import wind_utilisation
-from fem.site.motions import GIVEN_FLOORS, floor_motions, ground_motions, longest_period
+from fem.site.motions import GIVEN_FLOORS
 from fem.site.request import SiteRequest
 from fem.site.result import SiteBody
 from fem.site.runs import CONFIRMING, MOST_DECIDING, still
@@ -104,27 +100,22 @@ def preview_of(request: SiteRequest, *, allow_outside: bool = False) -> SitePrev
     Raises:
         CaseError, MeshError: it cannot be computed.
     """
-    bodies = bodies_of(request)
-    longest = longest_period(bodies)
-    ground = ground_motions(request, longest, allow_outside=allow_outside)
-    stages = Stages.of(request, floor_motions(request, ground), longest=longest, folder=Path())
-    checked = check_set(
-        ground, stages.target, longest=stages.longest, second=request.motions.second_component or 1.0
-    )
+    stages = Stages.of(request, Path(), allow_outside=allow_outside)
+    checked = stages.checked
     return SitePreview(
         site=request.name,
         title=request.heading.title,
         spectrum=request.action.shape.source,
         ag_S_m_s2=request.action.surface_acceleration,
         avg_m_s2=request.action.vertical_acceleration,
-        bodies=bodies,
+        bodies=stages.bodies,
         floor=GIVEN_FLOORS[request.motions.source == "floor"] if request.on_given_floor else None,
-        motions=len(ground),
+        motions=len(stages.ground),
         set_valid=checked.valid,
         reasons=checked.reasons,
-        notes=tuple(dict.fromkeys(note for motion in ground for note in motion.notes)),
+        notes=tuple(dict.fromkeys(note for motion in stages.ground for note in motion.notes)),
         factor_at_first_movement=stages.first_movement,
-        wind_utilisation=wind_utilisation(bodies, inputs_of(request)),
+        wind_utilisation=stages.wind,
         forecast=forecast(stages, cores()),
     )
 

@@ -20,13 +20,13 @@ from fem.runtime.identity import command_line
 from fem.seismic.ground_motion import GroundMotion
 from fem.site.copies import copy_files, inputs_of, texts_of
 from fem.site.figures import draw_size
-from fem.site.motions import set_result
 from fem.site.preview import forecast
 from fem.site.request import SiteRequest
 from fem.site.result import SiteAnswer
 from fem.site.run import RUNS, Verification, site_hash
 from fem.site.runs import COLUMNS
 from fem.site.size import SizeAxis, SizeResult, at, followers, next_values, size_asked, size_result, so_far
+from fem.site.stages import Stages
 
 FIGURE = "figures/size.svg"
 WORKING = ".motions"  #: of the sets, as long as they are computed
@@ -48,7 +48,7 @@ def run_size(
         axis: the key and the values of the scan.
         allow_outside: take records from outside the folder of the site file.
     """
-    ground = Verification.of(request, folder, allow_outside=allow_outside).ground
+    ground = Stages.of(request, folder, allow_outside=allow_outside).ground
     begun = size_asked(axis, followers(request, axis.key), _command(request, axis))
     study = Study(
         kind=SIZE,
@@ -92,8 +92,7 @@ def _compute(
             for value in values:
                 runner.reporter.message(so_far(axis, answers, value))
                 work = tried[value]
-                motions = set_result(work.request, work.checked, work.ground, ())
-                answer = work.answer(motions, runner, place.path / RUNS, value)
+                answer = work.answer(work.set_of(()), runner, place.path / RUNS, value)
                 if answer is None:
                     left = f"{len(answers)} values are decided, {len(tried) - len(answers)} are not"
                     return replace(begun, status=INTERRUPTED, missing=left)
@@ -127,13 +126,13 @@ def verification_at(
     Args:
         working: holds the folders; made: the motions in each, by stem, to which those of this value are added.
     """
-    work = Verification.of(at(request, axis, value), working, allow_outside=allow_outside)
+    stages = Stages.of(at(request, axis, value), working, allow_outside=allow_outside)
     moves = axis.key.partition(".")[0] in MOVING
-    folder = working / f"{value if moves else work.stages.longest:.9g}"
+    folder = working / f"{value if moves else stages.longest:.9g}"
     motions = made.setdefault(folder, {})
-    motions |= work.stages.screening.motions
-    screening = replace(work.stages.screening, motions=motions)
-    work = replace(work, stages=replace(work.stages, folder=folder, screening=screening))
+    motions |= stages.screening.motions
+    screening = replace(stages.screening, motions=motions)
+    work = Verification(stages=replace(stages, folder=folder, screening=screening))
     work.write_floors(ground=True)
     return work
 

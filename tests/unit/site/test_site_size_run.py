@@ -90,7 +90,7 @@ def test_values_share_a_folder_of_motions_where_these_are_the_same(tmp_path, key
         key = work.stages.of_set()[0]
         assert (work.stages.folder / "motions" / f"{key.stem}_h.csv").is_file()
         np.testing.assert_array_equal(
-            work.stages.screening.motions[key.stem].horizontal, work.ground[0].horizontal
+            work.stages.screening.motions[key.stem].horizontal, work.stages.ground[0].horizontal
         )
 
 
