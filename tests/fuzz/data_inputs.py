@@ -15,7 +15,7 @@ from small_sweep import SMALL
 
 from fem.case.toml import toml_value
 from fem.records.source import MOST_SAMPLES
-from mesh.untrusted import FORMATS
+from mesh.files import FORMATS
 
 Draw = Any
 #: a rigid block on a motion that is put in, for a moment
