@@ -44,6 +44,7 @@ class Component:
     quantity: Quantity = "acceleration"
     unit: str = "m/s2"  #: of the readings
     unit_stated: bool = True  #: by the file; else by who reads it
+    time_stated: bool = True  #: the unit of the times or the interval; else they are taken in s
     name: str = ""  #: as the file calls it, such as "HNE" or "Chan 2: 360 Deg"
     direction: Direction | None = None  #: None where the file does not say
 
