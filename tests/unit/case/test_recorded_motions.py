@@ -75,7 +75,6 @@ def test_the_vertical_component_follows_what_is_common_to_both():
         ("h.at2", ("vertical.kind=table",), r"\[vertical\] h.at2: no vertical component"),
         ("one.at2", ("vertical.kind=table",), "has one motion, which moves the floor along x already"),
         ("one.at2#1", ("vertical.kind=table", "vertical.file=one.at2#1"), "has one motion, which moves"),
-        ("h.at2", ("vertical.kind=table", "vertical.file=short.at2"), "do not belong together: 801 and 700 samples"),
         ("h.at2", ("vertical.kind=table", "vertical.file=slow.at2"), "0.005 and 0.01 s between samples"),
         ("h.at2", ("motion.unit=gal",), "the file states 'g', but unit = 'gal' is given"),
         ("bare.csv", (), "does not state the unit of its values; state it as unit"),
