@@ -113,7 +113,7 @@ def _page(preview: Preview, document: dict[str, Any]) -> str:
         f"  frequency parameter    {static.frequency_parameter:8.4f} 1/s",
         f"  rocking period, paper  {static.period_eq2:8.3f} s as a point mass, {static.period_eq3:.3f} s as a rod",
         f"  uplift from            {static.uplift_acceleration:8.4f} m/s2, "
-        f"slip from {static.sliding_limit_static / derived['mass_kg'] - static.downhill:.4g} m/s2",
+        f"slip from {static.slip_acceleration:.4g} m/s2",
         f"  restitution, Housner   {static.housner_restitution:8.4f}",
         f"  restitution, contact   {_restitution_of_contact(case, document)}",
         "",

@@ -148,6 +148,7 @@ class StaticChecks:
     restoring_moment: float
     #: of the floor, uphill on a slope: g (cos(slope) tan al - sin(slope)) [m/s2]. Paper, Eqs. (9) and (10); West (1885)
     uplift_acceleration: float
+    slip_acceleration: float  #: of the floor, at which it slips [m/s2]
     #: ratio of the angular velocities after and before an impact, 1 - (M R^2/I_O)(1 - cos 2 al) [-]; angular momentum
     #: about the new corner is kept, Housner (1963). Negative for a squat block: it would not rise on the other corner
     housner_restitution: float
@@ -228,6 +229,7 @@ def static_checks(
     code: StaticTable | None = None,
     initial_rotation: float = 0.0,
     slope: float = 0.0,
+    horizontal: bool = False,
 ) -> StaticChecks:
     """All static checks of one container under one motion.
 
@@ -247,6 +249,7 @@ def static_checks(
             ordinary rotation of a rocking container.
         slope: of the floor [rad]. The rule under the run's own peak takes the motion uphill, to which the weight adds
             its part along the floor; the code's rows are those of a level floor.
+        horizontal: the floor's acceleration is, and not along the slope: uphill it takes weight off the floor.
 
     The rocking period that is compared with the limit of the lateral force method is that of Eq. (3), as
     in the paper's section 4.2.
@@ -259,6 +262,11 @@ def static_checks(
     period = period_eq3(radius=arm, gravity=gravity)
     slope = abs(slope)
     toward, downhill = math.cos(slope), gravity * math.sin(slope)
+    lean = math.sin(slope) if horizontal else 0.0
+
+    def moves_from(tangent: float) -> float:
+        """The acceleration of the floor at which what holds with this tangent no longer does [m/s2]."""
+        return (toward * gravity * tangent - downhill) / ((toward if horizontal else 1.0) + lean * tangent)
 
     def under(base_shear: float, least_weight: float | None = None, share: float = 1.0) -> ActionCheck:
         moment = base_shear * centroid  # paper, Eq. (9)
@@ -309,7 +317,8 @@ def static_checks(
         sliding_limit_static=toward * friction,
         sliding_limit_kinetic=toward * mu_kinetic * weight,
         restoring_moment=toward * restoring,
-        uplift_acceleration=toward * gravity * math.tan(angle) - downhill,
+        uplift_acceleration=moves_from(math.tan(angle)),
+        slip_acceleration=moves_from(mu_static),
         # Of the same angular momentum: 1 - M nearer width/I_O; the last factor is 1 with the mass centre in the middle.
         housner_restitution=1.0
         - mass * arm**2 / about_corner * (1.0 - math.cos(2.0 * angle)) * (width / (2.0 * nearer)),
@@ -347,6 +356,7 @@ def static_checks_of(
         code=case.static,
         initial_rotation=case.initial.rotation_rad,
         slope=case.floor.slope,
+        horizontal=case.floor.turn != 0.0,
     )
 
 

@@ -33,7 +33,7 @@ QUANTITIES: dict[str, Quantity] = {name: name for name in PLURALS}
 
 class _Sampling(NamedTuple):
     line: int
-    count: str
+    number: str
     step: str
 
 
@@ -43,7 +43,7 @@ def recognises(source: MotionText) -> bool:
     if sampling is None:
         return False
     rows = [line for line in source.lines[sampling.line :] if line.strip()]
-    in_columns = sampling.count.isdigit() and len(rows) == int(sampling.count) > 1
+    in_columns = sampling.number.isdigit() and len(rows) == int(sampling.number) > 1
     return not in_columns or len(rows[0].split()) == 1
 
 

@@ -117,8 +117,8 @@ def processed(component: Component, processing: Processing) -> Component:
         raise RecordError(
             f"baseline {processing.baseline!r} corrects accelerations; displacements take 'none'"
         )
-    component = trimmed(component, processing.start, processing.end)
-    times, values = component.times, component.readings * (component.factor * processing.scale)
+    part = trimmed(component, processing.start, processing.end)
+    times, values = part.times, part.readings * (component.factor * processing.scale)
     if component.quantity == "acceleration":
         values = values - _baseline(times, values, processing.baseline)
     if processing.peak is not None:
@@ -126,7 +126,7 @@ def processed(component: Component, processing: Processing) -> Component:
         if largest == 0.0:
             raise RecordError("its accelerations are all zero, so they cannot be scaled to a peak")
         values = values * (processing.peak / largest)
-    return replace(component, readings=values, factor=1.0)
+    return replace(part, readings=values, factor=1.0)
 
 
 def baseline_change(component: Component, processing: Processing) -> BaselineChange | None:

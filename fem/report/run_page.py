@@ -181,7 +181,7 @@ def _headlines(view: RunView) -> Iterator[html.Headline]:
         yield html.Headline("largest slip between boxes", _words(slip), where)
     impacts = f"{verdict.impacts} impact{'' if verdict.impacts == 1 else 's'}"
     yield html.Headline("largest uplift", _words(of_band(verdict, "max_uplift_m")), impacts)
-    sliding, overturning = view.compared[2:4] if view.case.has_vertical else view.compared[:2]
+    sliding, overturning = view.compared[2:4] if view.case.has_normal else view.compared[:2]
     yield html.Headline(
         "static rule, same motion",
         f"{overturning.rule}, {sliding.rule}",
