@@ -49,7 +49,7 @@ DIRECTIONS: dict[int, tuple[Direction | None, ...]] = {
 FACT = re.compile(
     r"\b(?:(?P<count>npts|n(?:o|um|umber)?\.? of (?:points|samples|data|values))"
     r"|(?P<step>dt|delta t|sampling (?:interval|period|step)|time (?:step|interval))"
-    r"|(?P<rate>sampl(?:ing|e) (?:rate|freq[a-z]*))|(?P<length>^\W*(?:record )?(?:duration|length))"
+    r"|(?P<rate>sampl(?:ing|e) (?:rate|freq[a-z]*))|(?P<length>^\W*(?:record )?(?:duration|length)(?: time)?)"
     r"|(?P<peak>pga|(?:peak|max(?:imum)?\.?) (?:ground )?acc[a-z]*\.?))\s*(?:[\[(](?P<unit>[^\])]{0,20})[\])])?"
     rf"\s*[:=,]?\s*(?P<value>{NUMBER}\s*[^\s,;:=]*)",
     re.IGNORECASE,
@@ -76,7 +76,7 @@ def read_columns(source: MotionText, *, unit: str | None, sample_interval: float
             no unit.
     """
     top = list(islice(_down_to_numbers(source.lines), MOST_HEADER))
-    if not top or not _is_data(top[-1][1]):
+    if not top or not _is_data(top[-1][1], stated_separator(source.line(1)) or " "):
         raise source.refused("no numbers were found; a motion file is needed")
     first, line = top.pop()
     separator, decimal_comma = _separators(line, source.line(1))
@@ -123,6 +123,7 @@ def _too_many(source: MotionText, count: int, line: int) -> RecordError:
 
 def _down_to_numbers(lines: Sequence[str]) -> Iterator[tuple[int, str]]:
     """The lines down to the first of numbers, with their places, without empty ones; of comments their text."""
+    mark = stated_separator(lines[0]) or " "
     for place, line in enumerate(lines, start=1):
         text = line.strip()
         if COMMENT.match(text):
@@ -130,7 +131,7 @@ def _down_to_numbers(lines: Sequence[str]) -> Iterator[tuple[int, str]]:
                 yield place, text + "#"  # is no number, whatever it holds
         elif text:
             yield place, text
-            if _is_data(text):
+            if _is_data(text, mark):
                 return
 
 
@@ -142,11 +143,15 @@ def _contents(lines: Sequence[str], first: int = 1) -> Iterator[tuple[int, str]]
             yield number, content
 
 
-def _is_data(line: str) -> bool:
-    """Whether a line holds numbers alone, or what is meant as such."""
+def _is_data(line: str, mark: str = " ") -> bool:
+    """Whether a line holds numbers alone, or what is meant as such, between separators or this one."""
     if line.endswith("#"):
         return False
-    fields = [text for part in re.split(r"[;,\s]+", line.partition("#")[0]) if (text := part.strip('"'))]
+    fields = [
+        text
+        for part in re.split(r"[;,\s]+", line.partition("#")[0].replace(mark, " "))
+        if (text := part.strip('"'))
+    ]
     return bool(fields) and all(
         text.lower() in NOT_NUMBERS or as_numbers([text]) is not None for text in fields
     )
@@ -210,21 +215,17 @@ def _header(source: MotionText, top: list[tuple[int, str]], count: int, separato
     """What the lines above the numbers say; of names the last line that has any."""
     header = _Header([Name()] * count, [None] * count)
     for number, text in ((number, line.rstrip("#")) for number, line in top):
-        if facts := list(FACT.finditer(text)):
-            for fact in facts:
-                header.facts.setdefault(str(fact.lastgroup and _kind(fact)), Stated(fact["value"], number))
-                header.peak_unit = fact["unit"] if fact["peak"] else header.peak_unit
-            continue
-        labels = _labels(text, count, separator)
-        units = _units_in(text, count) if labels is None else [_unit_of(label) for label in labels]
+        for fact in FACT.finditer(text):
+            header.facts.setdefault(_kind(fact), Stated(fact["value"], number))
+            header.peak_unit = fact["unit"] if fact["peak"] else header.peak_unit
+        said = FACT.sub(" ", text)
+        labels = _labels(said, count, separator) if said == text else None
+        units = _units_in(said, count, separator) if labels is None else [_unit_of(label) for label in labels]
         names = [named(label) for label in labels or ()]
-        if labels and not all(units) and any(name != Name() for name in names):
+        if labels and not all(map(_is_unit, labels)) and any(name != Name() for name in names):
             header.names, header.line = names, number
             bare = (BRACKETS.sub("", label).strip() for label in labels)
-            header.unclear = any(
-                text and not name.word and unit_spelled(text) is None
-                for text, name in zip(bare, names, strict=True)
-            )
+            header.unclear = any(label and not name.word for label, name in zip(bare, names, strict=True))
         for column, unit in enumerate(units):
             if column >= count:
                 raise source.refused(f"the header names more units than the {count} columns have", number)
@@ -247,7 +248,9 @@ def _labels(text: str, count: int, separator: str | None) -> list[str] | None:
     most = MOST_WORDS if count > 1 else MOST_WORDS // 2
     for labels in splits:
         if len(labels) == count and all(len(label.split()) <= most for label in labels):
-            return None if any(as_numbers([label]) is not None for label in labels) else labels
+            units = sum(map(_is_unit, labels))
+            text_alone = any(as_numbers([label]) is not None for label in labels) or 0 < units < count
+            return None if text_alone else labels
     words = text.split()  # a title, where one of them says nothing
     says = (
         len(words) == count
@@ -257,9 +260,15 @@ def _labels(text: str, count: int, separator: str | None) -> list[str] | None:
     return words if says else None
 
 
-def _units_in(line: str, count: int) -> list[str | None]:
+def _is_unit(label: str) -> bool:
+    """Whether the name of a column is a unit alone."""
+    return label.strip()[:1] not in ("[", "(") and unit_spelled(label) is not None
+
+
+def _units_in(line: str, count: int, separator: str | None) -> list[str | None]:
     """Units in a line of the header that is no list of names, by column."""
     units = units_in_words(line) or [unit_spelled(text) for text in BRACKETED.findall(line)]
+    units = units or [unit_spelled(text) for text in fields_in(line, separator or ",")[1:]]
     known = [unit for unit in units if unit is not None]
     if len(known) == 1 and known[0] not in TIMES:  # one unit, of all values
         return [None] * (count > 1) + known * max(1, count - 1)
@@ -268,8 +277,11 @@ def _units_in(line: str, count: int) -> list[str | None]:
 
 def _unit_of(label: str) -> str | None:
     """The unit in the name of a column: in brackets, behind an underscore or a blank, or the whole name."""
-    if bracketed := BRACKETED.search(label):
-        return unit_spelled(bracketed[1]) or ("?" if named(label).is_time else None)
+    if _is_unit(label):
+        return unit_spelled(label)
+    if bracketed := BRACKETED.findall(label):
+        known = [unit for text in bracketed if (unit := unit_spelled(text))]
+        return known[0] if known else "?" if named(label).is_time else None
     parts = re.split(r"[_\s]", label.strip())[-2:]  # no unit has more, such as m_s2
     spelled = [unit_spelled("_".join(parts[k:])) for k in range(len(parts))]
     return next((unit for unit in spelled if unit in UNITS or unit in TIMES or (unit and "/" in unit)), None)
@@ -392,7 +404,7 @@ def _components(
     for k, name in enumerate(names):
         if not by_name:
             direction, sense = DIRECTIONS[len(names)][k], 1.0
-            word = direction or ""
+            word = str(direction or "")
         else:
             # beside accelerations without a direction "v" and "d" are velocities and displacements
             known = letters or name.word not in ("v", "d")

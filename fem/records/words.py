@@ -67,9 +67,9 @@ def named(text: str) -> Name:
     joined = "".join(words)
     quantity = next((QUANTITIES[word] for word in words if word in QUANTITIES), None)
     is_time = joined in TIME or any(word in TIME and len(word) > 1 for word in words)
-    for word in (joined, *words):
+    for word in (*words, joined):
         # "i", "f" and the like are words of their own, but the ends of others; "sample time" is a time
-        alone = len(word) > 1 or len(words) == 1 or word == words[0] != "i"
+        alone = len(word) > 1 or words[:1] == [word]
         if (meaning := OTHER.get(word)) and alone and not (is_time and meaning == "a count"):
             return Name(word=word, other=meaning)
     if is_time:
@@ -102,7 +102,7 @@ def direction_of(text: str) -> tuple[Direction | None, float]:
 
 def stream_direction(code: str) -> Direction | None:
     """Direction by the code of a stream, such as HNE or HNZ."""
-    match = re.fullmatch(r"[a-z][nlghj]([zne123rtxy])", code.casefold())
+    match = re.fullmatch(r"[bcdefghlmsuv][nlghj]([zne123rtxy])", code.casefold())
     if match is None:
         return None
     return "vertical" if match[1] == "z" else "horizontal"

@@ -29,11 +29,15 @@ def horizontal(record):
     return record.component("horizontal", quantity="acceleration")
 
 
+def first_of(record):
+    return record.component("horizontal", quantity="acceleration", channel="1")
+
+
 @pytest.mark.parametrize("name", WRITTEN)
 def test_every_format_is_read_to_the_same_numbers(tmp_path, name):
     form, values, text = written(name)
     record = read(tmp_path, text, unit=form.unit, sample_interval=form.sample_interval)
-    found = horizontal(record)
+    found = first_of(record)
     assert record.format == form.format and len(record.components) == form.components
     assert found.times == pytest.approx(TIMES[: values.size], abs=1e-12)
     expected = values - values.mean() if form.centred else values
@@ -58,16 +62,18 @@ def test_every_format_is_read_to_the_same_numbers(tmp_path, name):
 def test_encodings_and_line_ends_make_no_difference(tmp_path, name, change):
     form, values, text = written(name)
     text = text.replace("Nowhere", "Görlitz")
-    found = horizontal(read(tmp_path, change(text), unit=form.unit, sample_interval=form.sample_interval))
+    found = first_of(read(tmp_path, change(text), unit=form.unit, sample_interval=form.sample_interval))
     assert found.times.size == values.size
 
 
-@pytest.mark.parametrize("name", [name for name, form in WRITTEN.items() if form.format != "columns"])
+@pytest.mark.parametrize(
+    "name", [name for name, form in WRITTEN.items() if form.unit is None and form.format != "columns"]
+)
 def test_the_file_states_the_unit_and_its_user_may_not_state_another(tmp_path, name):
     form, _, text = written(name)
-    found = horizontal(read(tmp_path, text))
+    found = first_of(read(tmp_path, text))
     assert found.unit_stated
-    assert horizontal(read(tmp_path, text, unit=found.unit)).values == pytest.approx(found.values)
+    assert first_of(read(tmp_path, text, unit=found.unit)).values == pytest.approx(found.values)
     with pytest.raises(ValueError, match=f"the file states '{found.unit}', but unit = 'mm/s2' is given"):
         read(tmp_path, text, unit="mm/s2")
     with pytest.raises(
@@ -83,7 +89,17 @@ def cut_line(text):
     return "\n".join(lines[:last] + lines[last + 1 :])
 
 
-COUNTED = [name for name, form in WRITTEN.items() if form.format not in ("columns",)]
+ROWS = ("columns", "JMA CSV", "K-NET CSV", "AFAD", "ASA", "count and interval")  #: without a block of numbers
+COUNTED = [name for name, form in WRITTEN.items() if form.format not in ROWS]
+
+
+@pytest.mark.parametrize("name", ["AFAD", "ASA", "K-NET CSV"])
+def test_rows_that_are_not_as_many_as_the_header_says_are_refused(tmp_path, name):
+    text = written(name)[2].rstrip("\n")
+    with pytest.raises(ValueError, match=r"the header (says \d+ values, found|gives a length of)"):
+        read(tmp_path, text.rsplit("\n", 10)[0])
+    with pytest.raises(ValueError, match=r"line \d+: [34] columns are needed as in line \d+, found 1"):
+        read(tmp_path, text + "\n1.0")
 
 
 @pytest.mark.parametrize("name", COUNTED)
