@@ -15,7 +15,6 @@ import numpy as np
 
 from fem.records.header import (
     NUMBER,
-    Stated,
     measured,
     require_count,
     require_interval,
@@ -62,10 +61,10 @@ class _Header:
 
     names: list[Name]
     units: list[str | None]
-    facts: dict[str, Stated] = field(default_factory=dict)
-    peak_unit: str | None = None
     line: int | None = None  #: of the names
     unclear: bool = False  #: names that are no directions
+    facts: dict[str, tuple[float, int]] = field(default_factory=dict)  #: in SI units, and their lines
+    peak: tuple[str, str | None, int] | None = None  #: number, unit, line
 
 
 def read_columns(source: MotionText, *, unit: str | None, sample_interval: float | None) -> Record:
@@ -216,8 +215,7 @@ def _header(source: MotionText, top: list[tuple[int, str]], count: int, separato
     header = _Header([Name()] * count, [None] * count)
     for number, text in ((number, line.rstrip("#")) for number, line in top):
         for fact in FACT.finditer(text):
-            header.facts.setdefault(_kind(fact), Stated(fact["value"], number))
-            header.peak_unit = fact["unit"] if fact["peak"] else header.peak_unit
+            _note(source, header, fact, number)
         said = FACT.sub(" ", text)
         labels = _labels(said, count, separator) if said == text else None
         units = _units_in(said, count, separator) if labels is None else [_unit_of(label) for label in labels]
@@ -235,8 +233,21 @@ def _header(source: MotionText, top: list[tuple[int, str]], count: int, separato
     return header
 
 
-def _kind(fact: re.Match[str]) -> str:
-    return next(kind for kind in ("count", "step", "rate", "length", "peak") if fact[kind])
+def _note(source: MotionText, header: _Header, fact: re.Match[str], line: int) -> None:
+    """Note what a line states of the samples."""
+    text = fact["value"]
+    if fact["peak"]:
+        number = re.match(NUMBER, text)
+        unit = unit_spelled(fact["unit"] or text[number.end() if number else 0 :])
+        header.peak = (number[0] if number else "", unit, line)
+    elif fact["count"]:
+        header.facts["count"] = whole_number(source, text, "number of samples", line), line
+    elif fact["rate"]:
+        header.facts["step"] = 1.0 / measured(source, text, "sampling rate", line, units=RATES), line
+    elif fact["step"]:
+        header.facts["step"] = measured(source, text, "interval of the samples", line), line
+    else:
+        header.facts["length"] = measured(source, text, "duration", line), line
 
 
 def _labels(text: str, count: int, separator: str | None) -> list[str] | None:
@@ -331,25 +342,19 @@ def _interval(
             f"sample_interval_s is for a file of one column, and {count} were found"
             + ("; write decimals with a point" if separator == "," else "")
         )
-    facts, stated = header.facts, None
-    if "step" in facts:
-        stated = measured(source, facts["step"].text, "interval of the samples", facts["step"].line)
-    elif "rate" in facts:
-        stated = 1.0 / measured(source, facts["rate"].text, "sampling rate", facts["rate"].line, units=RATES)
     if not timeless:
         return None
-    if stated is None and given is None:
+    stated, _ = header.facts.get("step", (given, 0))
+    if stated is None:
         columns = "one column" if count == 1 else f"{count} columns that are named as components, all"
         raise source.refused(f"{columns} without times: give the interval as sample_interval_s")
-    if stated is not None and given is not None and abs(stated - given) > SAME_TIME * given:
+    if given is not None and abs(stated - given) > SAME_TIME * given:
         raise source.refused(
             f"the file states an interval of {stated:g} s, but sample_interval_s = {given:g} is given; correct one of "
             "them"
         )
-    step = given if stated is None else stated
-    if step is not None:
-        require_interval(step, "the header gives")
-    return step
+    require_interval(stated, "the header gives")
+    return stated
 
 
 def _require_titles(
@@ -381,8 +386,8 @@ def _require_increasing(source: MotionText, times: FloatArray, first: int) -> No
         how = "occurs twice" if times[row] == times[row + 1] else "is earlier than that of the line before"
         number, _ = next(islice(_contents(source.lines[first - 1 :], first), row + 1, None))
         raise source.refused(
-            f"times must increase, but time {times[row + 1]:g} s {how}; where the first column is a component and no time, "
-            "name the columns, such as NS, EW, UD, and give sample_interval_s",
+            f"times must increase, but time {times[row + 1]:g} s {how}; where the first column is a component and no "
+            "time, name the columns, such as NS, EW, UD, and give sample_interval_s",
             number,
         )
 
@@ -437,30 +442,18 @@ def _require_facts(source: MotionText, header: _Header, components: Sequence[Com
     """Refuse samples that are not what the header says of them."""
     facts, first = header.facts, components[0]
     if "count" in facts:
-        text, line = facts["count"]
-        require_count(source, first.times.size, whole_number(source, text, "number of samples", line), line)
-    for kind, units in (("step", TIMES), ("rate", RATES)):
-        if kind in facts:
-            text, line = facts[kind]
-            stated = measured(source, text, f"{kind} of the samples", line, units=units)
-            step = stated if kind == "step" else 1.0 / stated
-            if abs(step - first.step) > 0.01 * first.step:
-                raise source.refused(
-                    f"the header states an interval of {step:g} s, and the samples are {first.step:g} s apart",
-                    line,
-                )
+        require_count(source, first.times.size, int(facts["count"][0]), facts["count"][1])
+    if "step" in facts and abs(facts["step"][0] - first.step) > 0.01 * first.step:
+        raise source.refused(
+            f"the header states an interval of {facts['step'][0]:g} s, and the samples are {first.step:g} s apart",
+            facts["step"][1],
+        )
     if "length" in facts:
-        text, line = facts["length"]
-        require_length(source, measured(source, text, "duration", line), first.times.size, first.step, line)
-    if "peak" in facts:
-        text, line = facts["peak"]
-        number = re.match(NUMBER, text)
-        unit = unit_spelled(header.peak_unit or text[number.end() if number else 0 :]) or first.unit
-        if number and unit in UNITS:
-            value = abs(float(number[0].replace("D", "E").replace("d", "e"))) * UNITS[unit].factor
-            peaks = [float(np.abs(component.values).max()) for component in components]
-            nearest = min(peaks, key=lambda peak: abs(peak - value))
-            require_peak(source, np.array([nearest]), repr(value), line)
+        require_length(source, facts["length"][0], first.times.size, first.step, facts["length"][1])
+    if header.peak:
+        number, unit, line = header.peak
+        factor = UNITS[unit].factor if unit in UNITS else abs(first.factor)
+        require_peak(source, [component.values / factor for component in components], number, line)
 
 
 def given_record(times: FloatArray, accelerations: Mapping[Direction, FloatArray]) -> Record:

@@ -9,10 +9,10 @@ import re
 from dataclasses import dataclass
 
 from fem.records.fixed_width import fortran_format, read_block
-from fem.records.header import measured, rate_to_step, regular_component, require_peak, whole_number
+from fem.records.header import measured, regular_component, require_peak, whole_number
 from fem.records.record import Component, Quantity, Record
 from fem.records.source import MotionText
-from fem.records.units import settled_unit, unit_in_header, unit_spelled
+from fem.records.units import RATES, settled_unit, unit_in_header, unit_spelled
 
 NAME = "CSMIP"
 TITLE = re.compile(r"\s*(un)?corrected accelerogram|\s*response and fourier", re.IGNORECASE)
@@ -62,7 +62,7 @@ def read(source: MotionText, unit: str | None) -> Record:
             stated = unit_in_header(source, opening.unit.rstrip("."), opening.quantity)
             settled = settled_unit(stated, unit, source.name)
             if peak is not None and unit_spelled(peak[2]) == settled[0]:
-                require_peak(source, readings, peak[1], line)
+                require_peak(source, [readings], peak[1], line)
             components.append(regular_component(readings, opening.step, settled, name=name))
     if not components:
         raise source.refused("no line gives number, interval and unit of accelerations")
@@ -98,7 +98,7 @@ def _opening(source: MotionText, line: int) -> _Opening | None:
     if match := RATED.match(source.line(line)):
         return _Opening(
             count=whole_number(source, match[1], "number of samples", line),
-            step=rate_to_step(source, match[2], line),
+            step=1.0 / measured(source, match[2], "sampling rate", line, units=RATES),
             quantity="acceleration",
             unit=match[3],
             layout=LAYOUTS["rated"],

@@ -8,7 +8,7 @@ import re
 
 from fem.records.fixed_width import read_separated
 from fem.records.header import measured, regular_component, require_length, require_peak, whole_number
-from fem.records.record import PLURALS, Record
+from fem.records.record import PLURALS, Quantity, Record
 from fem.records.source import MotionText
 from fem.records.units import settled_unit, unit_in_header
 
@@ -46,7 +46,7 @@ def read(source: MotionText, unit: str | None) -> Record:
     last = 1 + max(k for k, text in enumerate(header) if re.search("[a-z]{3}", text, re.IGNORECASE))
     readings = read_separated(source, last + 1, count)[0]
     if peak := next((m for m in map(PEAK.match, header) if m), None):
-        require_peak(source, readings, peak[1])
+        require_peak(source, [readings], peak[1])
         if peak[2]:
             require_length(source, measured(source, peak[2], "duration"), count, step)
     name = next((m[1].strip() for m in map(COMPONENT.match, header) if m), "")

@@ -43,7 +43,7 @@ def read(source: MotionText, unit: str | None) -> Record:
     readings = read_separated(source, first, count)[0]
     for key, peak in header.items():
         if key.startswith("PGA_") and unit_spelled(key[4:]) == settled[0]:
-            require_peak(source, readings, peak)
+            require_peak(source, [readings], peak)
     component = regular_component(readings, step, settled, name=header.get("STREAM", ""))
     return Record(
         components=(component,),

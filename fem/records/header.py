@@ -5,14 +5,14 @@ Fortran exponent D is one; a fraction is none.
 """
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from fem.records.record import Component, Direction, RecordError
 from fem.records.source import MOST_SAMPLES, MotionText, as_numbers
-from fem.records.units import RATES, TIMES, UNITS, unit_spelled
+from fem.records.units import TIMES, UNITS, unit_spelled
 from fem.records.words import direction_of
 from fem.runtime.arrays import FloatArray
 
@@ -84,18 +84,16 @@ def whole_number(source: MotionText, text: str, what: str, line: int | None = No
     return int(stripped)
 
 
-def rate_to_step(source: MotionText, text: str, line: int | None = None) -> float:
-    """The interval of samples by their rate [s]."""
-    return 1.0 / measured(source, text, "sampling rate", line, units=RATES)
-
-
-def require_peak(source: MotionText, values: FloatArray, text: str, line: int | None = None) -> None:
-    """Refuse values whose peak contradicts what the file states, a number in the same unit; none is no statement."""
+def require_peak(
+    source: MotionText, values: Sequence[FloatArray], text: str, line: int | None = None
+) -> None:
+    """Refuse components of which none has the peak that the file states in their unit; no number states nothing."""
     match = WORD.fullmatch(text.strip())
     numbers = as_numbers([match[1]]) if match else None
     if numbers is None or not numbers[0]:
         return
-    stated, found = abs(float(numbers[0])), float(np.abs(values).max())
+    stated = abs(float(numbers[0]))
+    found = min((float(np.abs(one).max()) for one in values), key=lambda peak: abs(peak - stated))
     if abs(stated - found) > CONTRADICTION * max(stated, found):
         raise source.refused(
             f"the header states a peak of {stated:g}, and the values reach {found:g} in the same unit; one of them is "
@@ -164,13 +162,4 @@ def regular_component(
         unit_stated=unit[1],
         name=name,
         direction=along,
-    )
-
-
-def regular_components(
-    table: FloatArray, step: float, unit: tuple[str, bool], names: Iterable[str]
-) -> tuple[Component, ...]:
-    """Those of the columns of a table (n, k), by their names."""
-    return tuple(
-        regular_component(column, step, unit, name=name) for column, name in zip(table.T, names, strict=True)
     )

@@ -6,10 +6,10 @@ The scale factor of the header makes them gal; they stand about an offset, so th
 import re
 
 from fem.records.fixed_width import read_block, read_separated, require_end
-from fem.records.header import NUMBER, measured, rate_to_step, regular_component, require_peak
+from fem.records.header import NUMBER, measured, regular_component, require_peak
 from fem.records.record import Record
 from fem.records.source import MotionText, as_numbers
-from fem.records.units import settled_unit
+from fem.records.units import RATES, settled_unit
 from fem.records.words import direction_of
 from fem.runtime.arrays import FloatArray
 
@@ -32,7 +32,7 @@ def read(source: MotionText, unit: str | None) -> Record:
     Raises:
         RecordError: a line of the header, counts, units or numbers that do not fit; with the line.
     """
-    step = rate_to_step(source, _value(source, 11), 11)
+    step = 1.0 / measured(source, _value(source, 11), "sampling frequency", 11, units=RATES)
     duration = measured(source, _value(source, 12), "duration", 12)
     scale = SCALE.fullmatch(_value(source, 14))
     if scale is None:
@@ -45,7 +45,7 @@ def read(source: MotionText, unit: str | None) -> Record:
     counts = _counts(source, count)
     sensor = _value(source, 13)
     readings = (counts - counts.mean()) * factor
-    require_peak(source, readings, _value(source, 15), 15)
+    require_peak(source, [readings], _value(source, 15), 15)
     component = regular_component(
         readings, step, settled, name=sensor, direction=direction_of(SENSORS.get(sensor, sensor))
     )

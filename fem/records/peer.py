@@ -1,8 +1,8 @@
-"""Files of the PEER databases: .AT2 accelerations, .VT2 velocities, .DT2 displacements, with all their headers.
+"""Files of the PEER databases, and others of one component under a line with number and interval of the samples.
 
-Four lines: database; event, date, station, component; "ACCELERATION TIME SERIES IN UNITS OF G"; and number and interval
-of the samples: "NPTS= 4000, DT= .0050 SEC" in either order and with or without signs, or " 4000 0.0050 NPTS, DT", or the
-two numbers alone. Then 5 numbers of 15 columns in a line, or numbers between blanks.
+PEER has four lines: database; event, date, station, component; "ACCELERATION TIME SERIES IN UNITS OF G"; and "NPTS=
+4000, DT= .0050 SEC" in either order, with signs or without, or " 4000 0.0050 NPTS, DT", or the two numbers alone. Then
+5 numbers of 15 columns in a line, or numbers between blanks, as many as the header says.
 """
 
 import re
@@ -27,7 +27,7 @@ QUANTITY = re.compile(
     r"\(?([^\s,;()]+)",
     re.IGNORECASE,
 )
-ALONE = re.compile(r"\s*(\d+)\s*,?\s+([\d.]+\S*)(?:\s+[a-z]+)?\s*", re.IGNORECASE | re.ASCII)
+ALONE = re.compile(r"\s*(\d{1,7})[\s,;]+([\d.]\S*(?:\s+s(?:ec\w*)?)?)\s*", re.IGNORECASE | re.ASCII)
 QUANTITIES: dict[str, Quantity] = {name: name for name in PLURALS}
 
 
@@ -79,10 +79,17 @@ def _sampling(source: MotionText) -> _Sampling | None:
         count, step = COUNT.search(line), STEP.search(line)
         if count and step:
             return _Sampling(number, count[1], step[1])
-        alone = ALONE.fullmatch(line)
-        if alone and number > 1 and QUANTITY.search(source.line(number - 1)):
+        if (alone := ALONE.fullmatch(line)) and _stands_over(source, number, int(alone[1])):
             return _Sampling(number, alone[1], alone[2])
     return None
+
+
+def _stands_over(source: MotionText, line: int, count: int) -> bool:
+    """Whether as many numbers as a line says follow it, which are not in pairs, as the rows of a table are."""
+    if QUANTITY.search(source.line(line - 1)):
+        return True
+    widths = [len(row.split()) for row in source.lines[line:]]
+    return sum(widths) == count > 1 and max(widths) != 2
 
 
 def _unit(source: MotionText, last: int) -> str | None:

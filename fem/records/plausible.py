@@ -73,8 +73,8 @@ def _of_way(name: str, component: Component, far: float) -> list[str]:
     if far > limit:
         sign = f"{notes[0]}, and " if notes else ""
         raise RecordError(
-            f"{name}: {sign}the floor would move {far:.3g} m, and no floor does; is it a spectrum, is gravity or an offset "
-            'in it, are its times in another unit, or does it need baseline = "mean" or "linear"?'
+            f"{name}: {sign}the floor would move {far:.3g} m, and no floor does; is it a spectrum, is gravity or an "
+            'offset in it, are its times in another unit, or does it need baseline = "mean" or "linear"?'
         )
     if far > FAR:
         notes.append(
@@ -89,9 +89,9 @@ def _of_peak(name: str, component: Component, peak: float, scale: float) -> list
     if min(peak, unscaled) > limit:
         source = "the unit that the file states," if component.unit_stated else "unit ="
         raise RecordError(
-            f"{name}: its accelerations reach {unscaled:.4g} m/s2 with {source} {component.unit!r}, and hardly any record "
-            f"reaches {limit:g} m/s2, {limit / 10.0:g} g{_other_units(component, unscaled)}; is the unit right? If they are "
-            f"meant, say so: scale_to_m_s2 = {peak:.4g}"
+            f"{name}: its accelerations reach {unscaled:.4g} m/s2 with {source} {component.unit!r}, and hardly any "
+            f"record reaches {limit:g} m/s2, {limit / 10.0:g} g{_other_units(component, unscaled)}; is the unit right? "
+            f"If they are meant, say so: scale_to_m_s2 = {peak:.4g}"
         )
     if USUAL_PEAKS[0] <= peak <= USUAL_PEAKS[1]:
         return []

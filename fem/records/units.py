@@ -39,15 +39,16 @@ UNITS = {
 }
 #: units that headers are known to give and that are not read
 FOREIGN = (
-    "in", "ft", "in/s2", "ft/s2", "%g", "in/s", "ft/s", "counts", "volts", "v", "mv", "h", "hz", "%", "rad/s", "deg", "d",
+    "in", "ft", "in/s2", "ft/s2", "%g", "in/s", "ft/s", "counts", "volts", "v", "mv", "h", "hz", "%", "rad/s",
+    "deg", "d",
 )  # fmt: skip
 #: units of time, and of rates, to s and 1/s
 TIMES = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "min": 60.0}
 RATES = {"hz": 1.0, "khz": 1e3}
 SPELLED = {unit: unit for unit in (*UNITS, *FOREIGN, *TIMES, *RATES)} | {
     "gals": "gal", "g's": "g", "millis": "ms", "micros": "us", "μs": "us", "minute": "min", "minutes": "min",
-    "mins": "min", "hour": "h", "hours": "h", "hr": "h", "hrs": "h", "day": "d", "days": "d", "hertz": "hz", "1/s": "hz",
-    "sps": "hz", "samples/s": "hz", "points/s": "hz", "pts/s": "hz", "muestras/s": "hz", "count": "counts",
+    "mins": "min", "hour": "h", "hours": "h", "hr": "h", "hrs": "h", "day": "d", "days": "d", "hertz": "hz",
+    "1/s": "hz", "sps": "hz", "samples/s": "hz", "points/s": "hz", "pts/s": "hz", "muestras/s": "hz", "count": "counts",
     "volt": "volts", "percent": "%", "%ofg": "%g", "percentg": "%g",
 }  # fmt: skip
 #: what a user may state; a file may also state the others

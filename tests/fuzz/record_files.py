@@ -330,7 +330,7 @@ WRITTEN = {
     "K-NET CSV": Written(
         text=lambda a, b, c: knet_csv((100.0 * a, 100.0 * b, 100.0 * c)),
         digits=1e-6,
-        format="K-NET CSV",
+        format="columns",
         components=3,
     ),
     "ASA": Written(
@@ -341,7 +341,7 @@ WRITTEN = {
         text=lambda a, b, c: f"a title\n{len(a)} {STEP}\n" + "\n".join(rows([f"{v:12.7f}" for v in a], 8)),
         digits=1e-7,
         unit="m/s2",
-        format="count and interval",
+        format="PEER",
     ),
     "one column": Written(
         text=lambda a, b, c: "".join(f"{v:.7f}\n" for v in a),

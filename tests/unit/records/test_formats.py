@@ -89,8 +89,8 @@ def cut_line(text):
     return "\n".join(lines[:last] + lines[last + 1 :])
 
 
-ROWS = ("columns", "JMA CSV", "K-NET CSV", "AFAD", "ASA", "count and interval")  #: without a block of numbers
-COUNTED = [name for name, form in WRITTEN.items() if form.format not in ROWS]
+ROWS = ("columns", "JMA CSV", "AFAD", "ASA")  #: without a block of numbers
+COUNTED = [name for name, form in WRITTEN.items() if form.format not in ROWS and form.unit is None]
 
 
 @pytest.mark.parametrize("name", ["AFAD", "ASA", "K-NET CSV"])

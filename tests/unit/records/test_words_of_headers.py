@@ -261,8 +261,8 @@ class TestWhatAFileStates:
             ("NPTS = 400", "the header says 400 values, found 401"),
             ("number of points: 999", "the header says 999 values, found 401"),
             ("dt = 0.01 s", "states an interval of 0.01 s, and the samples are 0.005 s apart"),
-            ("PGA (cm/s2) = 58", "the header states a peak of 0.58"),
-            ("PGA: 9 g", "the header states a peak of 88"),
+            ("PGA (cm/s2) = 58", "the header states a peak of 58"),
+            ("PGA: 9 g", "the header states a peak of 9,"),
             ("duration 40 s", "the header gives a length of 40 s"),
         ],
     )
