@@ -6,10 +6,10 @@ from typing import Literal
 import numpy as np
 
 from fem.case.case import Case
+from fem.case.plausible import doubts
 from fem.case.tables.motion_tables import FloorMotionTable
 from fem.case.validation import CaseError
 from fem.records.files import read_record
-from fem.records.plausible import doubts
 from fem.records.processing import Processing, motion_of, processed, stated_baseline, trimmed
 from fem.records.record import Component, Record, RecordError, cut_together
 

@@ -7,10 +7,10 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 
 from fem.case.data_files import split_channel
+from fem.case.plausible import doubts
 from fem.case.validation import CaseError
 from fem.cli.console import ELSEWHERE_TO
 from fem.records.files import read_record
-from fem.records.plausible import doubts
 from fem.records.processing import Baseline, Processing, baseline_change, processed
 from fem.records.record import Component
 from fem.render.opengl import require_rendering

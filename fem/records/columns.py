@@ -22,7 +22,7 @@ from fem.records.header import (
     require_peak,
     whole_number,
 )
-from fem.records.record import SAME_TIME, Component, Direction, Record, RecordError
+from fem.records.record import SAME_TIME, Component, Direction, Record
 from fem.records.source import BLOCK, LARGEST_NUMBER, MotionText, as_numbers, read_rows
 from fem.records.table import fields_in, stated_separator
 from fem.records.units import RATES, TIMES, UNITS, settled_unit, unit_spelled, units_in_words
@@ -80,16 +80,19 @@ def read_columns(source: MotionText, *, unit: str | None, sample_interval: float
     first, line = top.pop()
     separator, decimal_comma = _separators(line, source.line(1))
     count = len(fields_in(line.partition("#")[0], separator))
-    if count > MOST_COLUMNS:
-        raise _too_many(source, count, first)
     header = _header(source, top, count, separator)
     timeless = count == 1 or _is_timeless(header)
     _require_motion(source, header, timeless)
-    if count == MOST_COLUMNS and not all(name.direction for name in header.names[not timeless :]):
-        raise _too_many(source, count, first)
+    directed = all(name.direction for name in header.names[not timeless :])
+    if count > MOST_COLUMNS or (count == MOST_COLUMNS and not directed):
+        raise source.refused(
+            f"{count} columns; a motion has one (with sample_interval_s), two (time, value) or three (time, "
+            "horizontal, vertical), or a time and three components that name their directions, such as NS, EW, UD",
+            first,
+        )
     step = _interval(source, header, sample_interval, timeless, separator)
     table = _table(source, first, count, separator, decimal_comma)
-    _require_titles(source, top, table, separator)
+    _require_begin(source, top, table, separator, step)
     if step is None:
         times = table[:, 0] * TIMES[header.units[0] or "s"]
         _require_increasing(source, times, first)
@@ -97,7 +100,6 @@ def read_columns(source: MotionText, *, unit: str | None, sample_interval: float
             require_interval(float(np.median(np.diff(times))), "the samples have")
     else:
         times = np.arange(len(table), dtype=np.float64) * step
-        _require_no_count(source, table, step, first)
     components = _components(source, table, header, times, unit, timeless)
     _require_facts(source, header, components)
     return Record(components=components, name=source.name, format=NAME)
@@ -110,14 +112,6 @@ def rows_of(source: MotionText, first: int, count: int) -> FloatArray:
         RecordError: another number of columns, or what is no number; with the line.
     """
     return _table(source, first, count, "," if "," in source.line(first) else None, False)
-
-
-def _too_many(source: MotionText, count: int, line: int) -> RecordError:
-    return source.refused(
-        f"{count} columns; a motion has one (with sample_interval_s), two (time, value) or three (time, horizontal, "
-        "vertical), or a time and three components that are named by their directions, such as NS, EW, UD",
-        line,
-    )
 
 
 def _down_to_numbers(lines: Sequence[str]) -> Iterator[tuple[int, str]]:
@@ -357,25 +351,24 @@ def _interval(
     return stated
 
 
-def _require_titles(
-    source: MotionText, top: list[tuple[int, str]], table: FloatArray, separator: str | None
+def _require_begin(
+    source: MotionText,
+    top: list[tuple[int, str]],
+    table: FloatArray,
+    separator: str | None,
+    step: float | None,
 ) -> None:
-    """Refuse a row above the numbers that begins with one and goes on with none: it may be a broken row, or a title."""
+    """Refuse a broken row that would be taken for a title, and a count or interval that would be taken for a value."""
     for number, text in top:
         fields = fields_in(text, separator)
         begin = as_numbers(fields[:1]) if len(fields) == table.shape[1] > 1 else None
         if begin is not None and not text.endswith("#") and begin[0] < table[0, 0]:
             raise source.refused("not a number, or too large for one (no unit, no text)", number)
-
-
-def _require_no_count(source: MotionText, table: FloatArray, step: float, first: int) -> None:
-    """Refuse a count or an interval that stands above one column as if it were a value."""
-    begin, behind = float(table[0, 0]), len(table) - 1
-    if table.shape[1] == 1 and behind > 1 and (begin in (behind, behind - 1) or begin == step):
-        what = "the interval of the samples" if begin == step else "the number of the values below it"
+    value, behind = float(table[0, 0]), len(table) - 1
+    if table.shape[1] == 1 and behind > 1 and value in (behind, behind - 1, step):
+        what = "the interval of the samples" if value == step else "the number of the values below it"
         raise source.refused(
-            f"its first number is {what}; delete the line, or write number and interval in one line above the values",
-            first,
+            f"its first number is {what}; delete the line, or write number and interval in one line above the values"
         )
 
 
@@ -403,36 +396,36 @@ def _components(
     """The columns that are no times, with the directions of their names, or by number where none has a name."""
     begin = int(not timeless)
     names = header.names[begin:]
-    letters = sum(name.direction is not None and name.word not in ("v", "d", "z") for name in names)
-    by_name = any(name.direction for name in names) or header.unclear or timeless
+    if header.unclear or timeless or any(name.direction for name in names):
+        # beside what names no direction, "v" and "d" are velocities and displacements
+        plain = not any(name.direction and name.word not in ("v", "d", "z") for name in names)
+        names = [
+            name._replace(direction=None) if plain and name.word in ("v", "d") else name for name in names
+        ]
+    else:
+        by_number = zip(names, DIRECTIONS[len(names)], strict=True)
+        names = [
+            name._replace(word=direction or name.word, direction=direction) for name, direction in by_number
+        ]
     components = []
-    for k, name in enumerate(names):
-        if not by_name:
-            direction, sense = DIRECTIONS[len(names)][k], 1.0
-            word = str(direction or "")
-        else:
-            # beside accelerations without a direction "v" and "d" are velocities and displacements
-            known = letters or name.word not in ("v", "d")
-            direction, sense = (name.direction, name.sense) if known else (None, 1.0)
-            word = name.word.upper() if len(name.word) < 4 and direction else name.word
-        settled, by_file = settled_unit(header.units[begin + k], unit, source.name)
+    for column, name in enumerate(names, start=begin):
+        settled, by_file = settled_unit(header.units[column], unit, source.name)
         if name.quantity not in (None, UNITS[settled].quantity):
             raise source.refused(
-                f"the header names column {begin + k + 1} {name.word}, and {settled!r} measures "
-                f"{UNITS[settled].quantity}",
+                f"the header names column {column + 1} {name.word}, and {settled!r} measures {UNITS[settled].quantity}",
                 header.line,
             )
         components.append(
             Component(
                 times=times,
-                readings=table[:, begin + k],
-                factor=sense * UNITS[settled].factor,
+                readings=table[:, column],
+                factor=name.sense * UNITS[settled].factor,
                 quantity=UNITS[settled].quantity,
                 unit=settled,
                 unit_stated=by_file,
                 time_stated=timeless or header.units[0] is not None,
-                name=word,
-                direction=direction,
+                name=(name.word.upper() if len(name.word) < 4 else name.word) if name.direction else "",
+                direction=name.direction,
             )
         )
     return tuple(components)

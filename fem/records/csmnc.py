@@ -38,7 +38,7 @@ def read(source: MotionText, unit: str | None) -> Record:
     count = whole_number(source, counted[1], "number of samples", line)
     step = measured(source, counted[2], "interval of the samples", line)
     spelled = next((m for m in map(UNIT.search, header) if m), None)
-    quantity = next(
+    quantity: Quantity = next(
         (q for q in PLURALS if spelled and spelled[1].casefold().startswith(q[:3])), "acceleration"
     )
     stated = unit_in_header(source, spelled[2], quantity) if spelled else None

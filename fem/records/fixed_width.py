@@ -2,7 +2,7 @@
 
 import re
 
-from fem.records.source import LARGEST_NUMBER, MotionText, read_rows
+from fem.records.source import LARGEST_NUMBER, MotionText, as_numbers, read_rows
 from fem.runtime.arrays import FloatArray
 
 #: such as (8f10.6), (5E15.7), (10I8), (1P8E10.3)
@@ -64,6 +64,21 @@ def read_separated(source: MotionText, first: int, count: int) -> tuple[FloatArr
         raise source.refused(f"the header says {count} values, found {total}")
     rows = ((number, line.split()) for number, line in enumerate(lines, start=first))
     return read_rows(source, rows), len(source.lines) + 1
+
+
+def read_values(source: MotionText, first: int, count: int, *, per_line: int, width: int) -> FloatArray:
+    """Numbers up to the end of the file, in full lines of a fixed width or between blanks, by the first line.
+
+    Raises:
+        RecordError: as `read_block`, and content after the numbers.
+    """
+    line = source.line(first).rstrip()
+    fields = [line[at : at + width] for at in range(0, len(line), width)]
+    if len(fields) != min(per_line, count) or len(line) % width or as_numbers(fields) is None:
+        return read_separated(source, first, count)[0]
+    numbers, behind = read_block(source, first, count, per_line=per_line, width=width)
+    require_end(source, behind, count)
+    return numbers
 
 
 def require_end(source: MotionText, line: int, count: int) -> None:

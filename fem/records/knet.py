@@ -5,13 +5,12 @@ The scale factor of the header makes them gal; they stand about an offset, so th
 
 import re
 
-from fem.records.fixed_width import read_block, read_separated, require_end
+from fem.records.fixed_width import read_values
 from fem.records.header import NUMBER, measured, regular_component, require_peak
 from fem.records.record import Record
-from fem.records.source import MotionText, as_numbers
+from fem.records.source import MotionText
 from fem.records.units import RATES, settled_unit
 from fem.records.words import direction_of
-from fem.runtime.arrays import FloatArray
 
 NAME = "K-NET"
 LINES, LABEL = 17, 18  #: of the header, and columns of its labels
@@ -42,7 +41,7 @@ def read(source: MotionText, unit: str | None) -> Record:
     count = round(duration / step)
     if not 1 <= count <= 10**8:
         raise source.refused("the header gives no number of samples", 12)
-    counts = _counts(source, count)
+    counts = read_values(source, LINES + 1, count, per_line=PER_LINE, width=WIDTH)
     sensor = _value(source, 13)
     readings = (counts - counts.mean()) * factor
     require_peak(source, [readings], _value(source, 15), 15)
@@ -60,14 +59,3 @@ def read(source: MotionText, unit: str | None) -> Record:
 
 def _value(source: MotionText, number: int) -> str:
     return source.line(number)[LABEL:].strip()
-
-
-def _counts(source: MotionText, count: int) -> FloatArray:
-    first = LINES + 1
-    line = source.line(first).rstrip()
-    fields = [line[at : at + WIDTH] for at in range(0, len(line), WIDTH)]
-    if len(line) % WIDTH or as_numbers(fields) is None:
-        return read_separated(source, first, count)[0]
-    numbers, behind = read_block(source, first, count, per_line=PER_LINE, width=WIDTH)
-    require_end(source, behind, count)
-    return numbers

@@ -8,13 +8,12 @@ PEER has four lines: database; event, date, station, component; "ACCELERATION TI
 import re
 from typing import NamedTuple
 
-from fem.records.fixed_width import read_block, read_separated, require_end
+from fem.records.fixed_width import read_values
 from fem.records.header import measured, regular_component, whole_number
 from fem.records.record import PLURALS, Quantity, Record
-from fem.records.source import MotionText, as_numbers
+from fem.records.source import MotionText
 from fem.records.units import settled_unit, unit_in_header, units_in_words
 from fem.records.words import BRACKETS
-from fem.runtime.arrays import FloatArray
 
 NAME = "PEER"
 PER_LINE, WIDTH = 5, 15
@@ -61,7 +60,8 @@ def read(source: MotionText, unit: str | None) -> Record:
     # what follows the station is its network or number, in brackets: "090 (CDMG STATION 99999)", "E, (CWB)"
     fields = [field for part in described.split(",") if (field := BRACKETS.sub("", part).strip())]
     name = fields[-1] if len(fields) > 1 else ""
-    component = regular_component(_numbers(source, last + 1, count), step, settled, name=name)
+    readings = read_values(source, last + 1, count, per_line=PER_LINE, width=WIDTH)
+    component = regular_component(readings, step, settled, name=name)
     return Record(
         components=(component,),
         name=source.name,
@@ -99,14 +99,3 @@ def _unit(source: MotionText, last: int) -> str | None:
         if units := units_in_words(line):
             return units[0]
     return None
-
-
-def _numbers(source: MotionText, first: int, count: int) -> FloatArray:
-    line = source.line(first).rstrip()
-    fields = [line[at : at + WIDTH] for at in range(0, len(line), WIDTH)]
-    full = len(fields) == min(PER_LINE, count) and len(line) % WIDTH == 0 and as_numbers(fields) is not None
-    if not full:
-        return read_separated(source, first, count)[0]
-    numbers, behind = read_block(source, first, count, per_line=PER_LINE, width=WIDTH)
-    require_end(source, behind, count)
-    return numbers

@@ -8,10 +8,10 @@ from itertools import combinations
 import numpy as np
 
 from fem.case.data_files import split_channel
+from fem.case.plausible import doubts
 from fem.case.tables.problem import outside_the_folder, stays_in_the_folder
 from fem.case.validation import CaseError
 from fem.records.files import read_record
-from fem.records.plausible import doubts
 from fem.records.processing import Processing, stated_baseline
 from fem.records.record import Component, Direction, Record, RecordError, cut_together
 from fem.records.spectrum import response_spectrum

@@ -5,8 +5,8 @@ import pytest
 import record_files as files
 from record_files import STEP, G, synthetic_motion
 
+from fem.case.plausible import doubts
 from fem.records.files import read_record
-from fem.records.plausible import doubts
 from fem.records.processing import Processing, processed
 from fem.records.record import Component, RecordError
 
