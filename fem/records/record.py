@@ -23,6 +23,7 @@ PLURALS: dict[Quantity, str] = {
 
 #: largest difference of two sampling times that count as one, over the interval: what seven printed digits leave
 SAME_TIME = 1e-3
+LEAST_SHARED = 0.5  #: samples that components of one recording share, over those of the longer one
 
 
 class RecordError(ValueError):
@@ -200,7 +201,11 @@ def cut_together(components: Sequence[Component], names: Sequence[str]) -> tuple
             raise RecordError(
                 f"{apart}{first.step:g} and {other.step:g} s between samples; both components must be of one recording"
             )
-        shared = min(first.times.size, other.times.size)
+        shared, longest = sorted((first.times.size, other.times.size))
+        if shared < LEAST_SHARED * longest:
+            raise RecordError(
+                f"{apart}{first.times.size} and {other.times.size} samples; start_s and end_s cut them"
+            )
         off = float(np.abs(first.times[:shared] - other.times[:shared]).max())
         if off > SAME_TIME * first.step:
             raise RecordError(
