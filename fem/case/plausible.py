@@ -65,7 +65,7 @@ def _of_way(name: str, component: Component, far: float) -> list[str]:
     notes, limit = [], TOO_FAR
     if component.quantity == "acceleration" and a.size >= LEAST_SAMPLES:
         peak, mean = float(np.abs(a).max()), float(np.mean(a))
-        if float(a.min()) >= 0.0 or float(a.max()) <= 0.0:
+        if peak > 0.0 and (float(a.min()) >= 0.0 or float(a.max()) <= 0.0):
             notes, limit = ["its accelerations have one sign"], TOO_FAR_ONE_WAY
         elif abs(mean) > LOPSIDED * peak:
             notes = [f"the mean of its accelerations is {abs(mean) / peak:.0%} of their peak"]

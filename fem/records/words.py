@@ -7,6 +7,7 @@ import re
 from typing import NamedTuple
 
 from fem.records.record import Direction, Quantity
+from fem.records.units import TIMES, UNITS, unit_spelled
 
 
 def _words(text: str) -> frozenset[str]:
@@ -64,6 +65,11 @@ def named(text: str) -> Name:
     """What the name of a column says."""
     bare = BRACKETS.sub("", text).strip(" \t'\".:").casefold()
     words = [word for word in re.split(r"[\s_,;:./]+", bare) if word]
+    for length in (2, 1):  # no unit has more words, such as m_s2
+        if len(words) > length and unit_spelled("_".join(words[-length:])) in (*UNITS, *TIMES):
+            words = words[:-length]
+            bare = "_".join(words)
+            break
     joined = "".join(words)
     quantity = next((QUANTITIES[word] for word in words if word in QUANTITIES), None)
     is_time = joined in TIME or any(word in TIME and len(word) > 1 for word in words)

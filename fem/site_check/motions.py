@@ -146,7 +146,8 @@ def _record(request: SiteRequest, number: int, names: Sequence[str], allow_outsi
         components, cut = cut_together(components, [record.name for record in records])
         noted = [cut] if cut else []
         for record, component in zip(records, components, strict=True):
-            said = doubts(record.name, component, component, scale=1.0, confirmed=False)
+            scaled = request.motions.source != "floor"
+            said = doubts(record.name, component, component, scale=1.0, confirmed=scaled)
             noted += [f"{record.name}: {note}" for note in (*component.notes, *said)]
     except RecordError as error:
         raise CaseError(f"[motions] files: {error}") from None

@@ -171,7 +171,9 @@ class TestDirectionsAndSigns:
             (("NS", "UD"), ["horizontal", "vertical"]), (("UD", "NS"), ["vertical", "horizontal"]),
             (("NS", "DOWN"), ["horizontal", "down"]), (("N-S", "E-W"), ["horizontal", "horizontal"]),
             (("H1", "Z"), ["horizontal", "vertical"]), (("HN1", "HNZ"), ["horizontal", "vertical"]),
-            (("acc_x", "acc_z"), ["horizontal", "vertical"]), (("Horizontal", "Vertical"), ["horizontal", "vertical"]),
+            (("acc_x", "acc_z"), ["horizontal", "vertical"]),
+            (("horizontal_m_s2", "vertical_m_s2"), ["horizontal", "vertical"]),
+            (("Horizontal", "Vertical"), ["horizontal", "vertical"]),
             (("one", "two"), [None, None]), (("", ""), ["horizontal", "vertical"]),
         ],
     )  # fmt: skip
