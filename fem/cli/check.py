@@ -149,7 +149,8 @@ def _motion_lines(name: str, more: str, keys: FloorMotionTable, motion: MotionRe
     """What moves the floor in one direction, and the numbers of its motion."""
     table = f"table {keys.file}" if keys.file else "in the file of [motion]"
     harmonic = f"A = {keys.amplitude:.4g} m, Omega = {keys.angular_frequency:.4g} rad/s"
-    words = {"none": "at rest", "harmonic": harmonic, "pulse": f"{keys.shape} pulse", "table": table}
+    still = "at rest" if not motion.peak_in_run_m_s2 else "what [motion] is normal to the floor"
+    words = {"none": still, "harmonic": harmonic, "pulse": f"{keys.shape} pulse", "table": table}
     yield f"  {name:<11} {words[keys.kind]}, peak {motion.peak_in_run_m_s2 or 0.0:.4g} m/s2"
     if length := motion_in_words(motion):
         yield f"  {more:<11} {length}"

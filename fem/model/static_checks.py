@@ -15,7 +15,7 @@ reduced response of an elastic building: another question, in rows of its own, w
 import math
 from dataclasses import dataclass, replace
 
-from fem.case.case import Case
+from fem.case.case import Case, CaseError
 from fem.case.tables.run_tables import StaticTable
 from fem.model.floor import pivot_share
 from fem.results.run_result import ActionResult, CodeValues, StaticResult
@@ -342,7 +342,7 @@ def static_checks_of(
     peak_vertical_acceleration: float | None = None,
 ) -> StaticChecks:
     """Static checks of a case's container on its mesh, under the peak accelerations of its own floor [m/s2]."""
-    return static_checks(
+    static = static_checks(
         mass=mesh.mass,
         centroid=mesh.centroid[1],
         inertia=mesh.inertia,
@@ -358,6 +358,13 @@ def static_checks_of(
         slope=case.floor.slope,
         horizontal=case.floor.turn != 0.0,
     )
+    held = case.links or case.neighbour or case.initial.rotation_rad or distance_beside(mesh)
+    if case.floor.slope and not held and static.uplift_acceleration <= 0.0:
+        raise CaseError(
+            f"[floor] slope_percent = {case.floor.slope_percent:g}: nothing stands there: the mass centre is beyond "
+            f"the lower edge from {100.0 * math.tan(static.slenderness_angle):.3g} % on"
+        )
+    return static
 
 
 def distance_beside(mesh: ContainerMesh) -> float:

@@ -54,10 +54,13 @@ class Network:
         def stated(begin: str) -> tuple[str, Stated]:
             found = next(((key, value) for key, value in keys.items() if key.startswith(begin)), None)
             if found is None or not found[1].text:
-                raise source.refused(f"the header of a {self.NAME} file has no {begin.upper()}")
+                raise source.refused(
+                    f"the header has no {begin.upper()}, as {self.NAME} has; write one component into a column, and "
+                    "give unit and sample_interval_s"
+                )
             return found
 
-        (key, spelled), (_, interval) = stated(self.unit), stated(self.step)
+        (key, spelled), (step_key, interval) = stated(self.unit), stated(self.step)
         bracketed = re.search(r"\(([^()]*)\)", key)
         unit_text = bracketed[1] if bracketed else spelled.text
         settled = settled_unit(unit_in_header(source, unit_text, "acceleration"), unit, source.name)
@@ -68,7 +71,7 @@ class Network:
             if self.names
             else fields_in(above, "," if "," in above else None)
         )
-        rate = "rate" in self.step
+        rate = "rate" in step_key or "freq" in step_key
         steps = {
             measured(source, text, "interval of the samples", interval.line, units=RATES if rate else TIMES)
             for text in _listed(interval.text)[: len(names)]
@@ -115,7 +118,7 @@ NETWORKS = (
         peaks="raw pga values",
         station="station id",
     ),
-    Network(NAME="JMA CSV", mark="site code", step="sampling rate", unit="unit", station="site code"),
+    Network(NAME="JMA CSV", mark="site code", step="sampling", unit="unit", station="site code"),
     Network(
         NAME="ASA",
         mark="archivo estandar de aceleracion",

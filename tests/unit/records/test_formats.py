@@ -279,3 +279,31 @@ def test_headers_say_where_and_when(tmp_path):
     found = read(tmp_path, files.esm(FIRST))
     assert (found.event, found.station, found.date) == ("NOWHERE", "TST", "19990102")
     assert read(tmp_path, files.knet(FIRST[:2000])).station == "TST001"
+
+
+@pytest.mark.parametrize(
+    ("name", "key", "words"),
+    [
+        ("JMA", " UNIT  =", "the header has no UNIT, as JMA CSV has; write one component into a column"),
+        ("JMA", " SAMPLING RATE=", "has no SAMPLING, as JMA CSV"),
+        ("AFAD", "SAMPLING INTERVAL (sec) :", "the header has no SAMPLING INTERVAL, as AFAD"),
+        ("ASA", "ORIENTACION", "the header has no ORIENTACION C1-C6, as ASA"),
+        ("JMA", "gal(cm/s/s)", "in a unit that is not known"),
+        ("ASA", "/0.005/0.005/", "its channels have different intervals"),
+    ],
+)
+def test_a_national_format_that_lacks_a_key_is_refused_by_name(tmp_path, name, key, words):
+    text = written(name)[2]
+    assert key in text
+    with pytest.raises(ValueError, match=re.escape(words)):
+        read(tmp_path, text.replace(key, "/0.005/0.01/" if key.startswith("/") else "X "))
+
+
+def test_smc_of_type_0_does_not_say_what_it_holds(tmp_path):
+    text = files.smc(100.0 * FIRST, title="0 UNKNOWN")
+    with pytest.raises(
+        ValueError, match="an SMC file of type 0 does not say what its values are; state it as unit"
+    ):
+        read(tmp_path, text)
+    (found,) = read(tmp_path, text, unit="cm/s2").components
+    assert found.values == pytest.approx(FIRST, abs=1e-7) and not found.unit_stated
