@@ -13,7 +13,7 @@ import numpy as np
 
 from contact.interface.penalty import contact_frequency
 from contact.motion.base_motion import BaseMotion
-from contact.motion.kernel import PIECEWISE, floor_motion
+from contact.motion.kernel import PIECEWISE, SUM, floor_motion
 from contact.reference.floor_acceleration import FloorAcceleration
 from contact.reference.planar_block import PlanarBlock, simulate_planar_block
 from contact.reference.planar_motion import PlanarImpact, PlanarMode
@@ -196,7 +196,7 @@ def follow_block(model: Model, end: float) -> Reference:
         angular_velocity=rate,
         slip_velocity=start,
     )
-    left = case.has_vertical and sliding.outcome is PlanarMode.OUTSIDE
+    left = case.has_normal and sliding.outcome is PlanarMode.OUTSIDE
     if left or sliding.modes & {PlanarMode.SLIDE, PlanarMode.SLIDE_ROCK}:
 
         def at(times: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -221,7 +221,7 @@ def _floor_and_start(model: Model) -> tuple[FloorAcceleration, float]:
     """The acceleration of a run's floor, with its slope and vertical motion, and the slip velocity at t = 0 [m/s]."""
     case = model.case
     floor = floor_of(model.motion, driven_until=model.duration).on_slope(case.gravity_downhill)
-    if case.has_vertical:
+    if case.has_normal:
         floor = floor.with_vertical(floor_of(model.vertical, driven_until=model.duration))
     jerk = 0.0 if case.starts_moving else floor_motion(model.motion.compiled(), 0.0)[1]
     return floor, case.initial.velocity_m_s - jerk
@@ -231,7 +231,7 @@ def floor_of(motion: BaseMotion, *, driven_until: float) -> FloorAcceleration:
     """Acceleration of the floor of a run, zero after its duration."""
     data = motion.compiled()
     breaks = {*motion.break_times.tolist(), driven_until}
-    if data.kind == PIECEWISE:  # it bends at every sample
+    if data.kind in (PIECEWISE, SUM):  # it bends at every sample
         breaks |= set(data.breaks.tolist())
 
     def acceleration(time: float) -> float:

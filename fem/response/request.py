@@ -58,6 +58,11 @@ class ResponseRequest:
                 "of the horizontal motion is swept, and a vertical one would have to be changed with it; "
                 "take --set vertical.kind=none, or a sweep over motion.frequency_Hz"
             )
+        if self.case.floor.turn:
+            raise CaseError(
+                '[floor] motion_along must be "floor" for a response curve on a slope, whose motion has no part normal '
+                "to the floor; take --set floor.motion_along=floor"
+            )
         if self.case.container.is_loose:
             raise CaseError(
                 '[container] joints must be "bolted" for a response curve, which follows one body; take a sweep over '

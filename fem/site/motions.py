@@ -11,11 +11,12 @@ from pathlib import Path
 import numpy as np
 
 from fem.case.data_files import split_channel
+from fem.case.plausible import doubts
 from fem.case.tables.problem import outside_the_folder, stays_in_the_folder
 from fem.case.validation import CaseError
 from fem.records.files import read_record
 from fem.records.processing import Processing, stated_baseline
-from fem.records.record import Component, Direction, Record, RecordError, require_together
+from fem.records.record import Component, Direction, Record, RecordError, cut_together
 from fem.records.spectrum import response_spectrum
 from fem.runtime.arrays import FloatArray
 from fem.runtime.user_files import leads_out, real_path
@@ -159,10 +160,15 @@ def _record(request: SiteRequest, number: int, names: Sequence[str], allow_outsi
             components.append(record.component(direction, quantity="acceleration", channel=channel))
         for record, component in zip(records, components, strict=True):
             component.require_no_gap(record.name)
-        require_together(components, [record.name for record in records])
+        components, cut = cut_together(components, [record.name for record in records])
+        noted = [cut] if cut else []
+        for record, component in zip(records, components, strict=True):
+            scaled = request.motions.source != "floor"
+            said = doubts(record.name, component, component, scale=1.0, confirmed=scaled)
+            noted += [f"{record.name}: {note}" for note in (*component.notes, *said)]
     except RecordError as error:
         raise CaseError(f"[motions] files: {error}") from None
-    notes = _baselines_in_words(request, given, records, components)
+    notes = (*noted, *_baselines_in_words(request, given, records, components))
     if len(set(map(id, components))) < len(components):
         raise CaseError(f"[motions] files: a component of {records[0].name} is named for two directions")
     step, values = _even(components)

@@ -289,7 +289,7 @@ def test_motions_that_cannot_be_used_are_refused(tmp_path, capsys, make, message
     assert message in capsys.readouterr().err
 
 
-def test_components_of_different_length_are_refused(tmp_path, capsys):
+def test_components_of_quite_different_length_are_refused(tmp_path, capsys):
     motions = records(tmp_path)
     write_csv(tmp_path / "r0_v.at2", 0.005, np.zeros(100))
     place = site_file(tmp_path, motions=motions)
