@@ -72,13 +72,13 @@ def numerics_lines(numerics: Mapping[str, Any]) -> list[str]:
     """The numerical settings, for people."""
     modes = f", {numerics['elastic_modes']} elastic modes" if numerics["elastic_modes"] else ""
     pascals = numerics["normal_penalty_Pa_m"]
-    penalty = "" if pascals is None else f"penalty {pascals:.4g} Pa/m, "
+    penalty = "" if pascals is None else f"{pascals:.4g} Pa/m, "
     most = "at most " if numerics["ends_at_rest"] else ""
     return [
         f"  model       {numerics['model']}{modes}, {numerics['scheme']}",
         f"  mesh        {numerics['elements']} elements, {numerics['nodes']} nodes "
         f"({numerics['mesh_unknowns']} unknowns), {numerics['contact_nodes']} contact nodes",
-        f"  contact     {penalty}{numerics['contact_frequency_Hz']:.4g} Hz, "
+        f"  contact     {penalty}frequency {numerics['contact_frequency_Hz']:.4g} Hz, "
         f"static penetration {1e6 * numerics['static_penetration_m']:.3g} um",
         f"  output      {numerics['history_samples']} samples, {numerics['field_frames']} frames "
         f"over {most}{numerics['duration_s']:g} s, about {in_units(numerics['output_bytes'])}",

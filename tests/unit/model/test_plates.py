@@ -39,7 +39,7 @@ PULSE = {
 
 
 def stack(**values):
-    return named_case("seed_stack_plateau", STACK | values)
+    return named_case("stack_on_concrete", STACK | values)
 
 
 def released(**values):
@@ -133,7 +133,7 @@ def test_plates_keep_their_length_where_they_stand_inside_the_sides():
 
 
 def test_a_casting_under_a_post_presses_the_floor_where_the_post_stands():
-    case = named_case("seed_stack_plateau", {"solver.model": "rigid", "support.casting_bears": "plate"})
+    case = named_case("stack_on_concrete", {"solver.model": "rigid", "support.casting_bears": "plate"})
     x = build_model(case).run.old.point[:, 0]
     assert x[x > 0.0][0] == pytest.approx(0.55 - 0.12, rel=1e-5) and slab_of(case, case.mass).patch == (
         0.2,
@@ -171,7 +171,7 @@ def test_a_tilted_start_on_a_fine_mesh_is_no_matter_of_its_outermost_point():
     build_model(stack(**{"motion.kind": "none", "initial.rotation_rad": 0.08, "solver.element_size_m": 0.03}))
 
 
-@pytest.mark.parametrize("name", ["iso_20ft_two_loose", "seed_stack_plateau"])
+@pytest.mark.parametrize("name", ["iso_20ft_two_loose", "stack_on_concrete"])
 def test_loose_boxes_and_rigid_floors_have_the_outer_edge_alone(name):
     rigid = {} if "loose" in name else {"floor.kind": "rigid"}
     case = named_case(name, rigid)
