@@ -20,7 +20,8 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 
 from fem.html.drawing import require_drawing
-from fem.html.sections import Block
+from fem.html.sections import Block, Written
+from fem.html.units import millimetres, ratio, short, typeset
 from fem.results.json_block import JsonBlock
 
 TEMPLATES = "templates"
@@ -122,13 +123,16 @@ def _environment() -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters["css_string"] = _css_string
+    environment.filters |= {"css_string": _css_string, "short": short, "ratio": ratio}
+    environment.filters |= {"millimetres": millimetres, "typeset": typeset}
     environment.globals["draw"] = _draw
     return environment
 
 
 def _draw(block: Block) -> Markup:
     """A block as HTML, by the macro that is named after its class."""
+    if isinstance(block, Written):
+        return Markup(_environment().get_template(block.template).render(block.values))
     name = "str" if isinstance(block, str) else type(block).__name__.lower()
     macros = _environment().get_template("sections.html.j2").module
     return Markup(getattr(macros, name)(block))

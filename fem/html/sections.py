@@ -326,6 +326,14 @@ class CellMap:
 
 
 #: a macro of `sections.html.j2` for each
+@dataclass(frozen=True)
+class Written:
+    """Sections that a template of their own writes."""
+
+    template: str  #: its file
+    values: Mapping[str, Any]  #: what it shows
+
+
 Block = (
     str
     | Paragraph
@@ -344,4 +352,5 @@ Block = (
     | Legend
     | Player
     | CellMap
+    | Written
 )

@@ -48,6 +48,14 @@ class Orbit:
     portrait: FloatArray  #: (n_samples, 2) rotation [rad] and angular velocity [rad/s] over the last periods
     reason: str | None = None  #: why it failed
 
+    @classmethod
+    def empty(cls, status: str, reason: str | None) -> "Orbit":
+        """Of a motion that ended before its first section."""
+        sections, extremes = np.zeros((0, len(SECTION_COLUMNS))), np.zeros((0, len(EXTREME_COLUMNS)))
+        return cls(
+            status=status, sections=sections, extremes=extremes, portrait=np.zeros((0, 2)), reason=reason
+        )
+
 
 def no_progress(time: float, rotation: float, mode: int) -> None:
     """A `Progress` that ignores it."""
