@@ -1,7 +1,7 @@
 """The answer of a response curve in one sentence, and what lasts at each frequency in words."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from fem.batch.answers import slip_in_words
@@ -20,10 +20,10 @@ MOST_RANGES = 3  #: of frequencies that are named
 class Fates:
     """The points of a curve that have an outcome, by what became of the container."""
 
-    overturned: list[PointRow]
-    destroyed: list[PointRow]  #: one of its corners
-    slid: list[PointRow]  #: beyond the limit
-    standing: list[PointRow]
+    overturned: tuple[PointRow, ...]
+    destroyed: tuple[PointRow, ...]  #: one of its corners
+    slid: tuple[PointRow, ...]  #: beyond the limit
+    standing: tuple[PointRow, ...]
 
     @property
     def overturned_share(self) -> float | None:
@@ -34,16 +34,14 @@ class Fates:
 
 def fates_of(result: ResponseResult) -> Fates:
     """What became of the container at each point."""
-    fates = Fates(overturned=[], destroyed=[], slid=[], standing=[])
     limit = math.inf if result.limit_slip is None else result.limit_slip
-    for point in result.points:
-        if point.motion == Outcome.INVALID:
-            fates.destroyed.append(point)
-        elif point.fell:
-            fates.overturned.append(point)
-        elif point.status != "failed":
-            (fates.slid if result.slid(point) > limit else fates.standing).append(point)
-    return fates
+    stands = [point for point in result.points if not point.fell and not point.says_nothing]
+    return Fates(
+        overturned=tuple(point for point in result.points if point.fell),
+        destroyed=tuple(point for point in result.points if point.motion == Outcome.INVALID),
+        slid=tuple(point for point in stands if result.slid(point) > limit),
+        standing=tuple(point for point in stands if result.slid(point) <= limit),
+    )
 
 
 def fell_share(frequencies: tuple[AtFrequency, ...]) -> float | None:
@@ -141,7 +139,7 @@ def range_of(change: Coexistence | DropOut) -> str:
     return _range(change.from_Hz, change.to_Hz)
 
 
-def _counted(points: list[PointRow]) -> str:
+def _counted(points: Sequence[PointRow]) -> str:
     count = f"{len(points)} point{'s' * (len(points) != 1)}"
     return f"{count}, the first at {points[0].frequency_Hz:.4g} Hz going {points[0].direction}"
 

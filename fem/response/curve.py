@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from contact.stepping.observables import ROCKING
+from contact.stepping.state import Control
 from fem.assessment.verdict import destroyed_corner
 from fem.case.case import Case
 from fem.model.container import Container
@@ -28,14 +29,6 @@ WINDOWS = 4  #: a motion that is not settled is observed again, at most so many 
 SEED = 1  #: of the random states
 REACH = (0.6, 0.7)  #: of random states: rotation over the slenderness angle al, angular velocity over al p
 PHASES = 3  #: sections of a motion from which it is followed to a neighbour, at most
-
-
-@dataclass(frozen=True, kw_only=True)
-class Scales:
-    """Of a container."""
-
-    angle: float  #: its slenderness angle [rad]
-    rate: float  #: its frequency parameter [1/s]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,7 +69,7 @@ def computed(
     task: Task,
     records: Sequence[PointRecord],
     before: DrivenModel | None,
-    scales: Scales,
+    control: Control,
     progress: Progress = no_progress,
 ) -> tuple[list[PointRecord], DrivenModel | None]:
     """The points of a task, and the motion to carry on; None where there is none.
@@ -87,7 +80,7 @@ def computed(
         task: what to compute.
         records: what was computed before.
         before: the motion to carry on; None: begin as the case does.
-        scales: of the container.
+        control: of its model.
         progress: called within a point with the time since its beginning [s], the rotation [rad] and the mode.
     """
     case = request.case_at(task.number, task.model)
@@ -96,7 +89,7 @@ def computed(
         return [point[0]], point[1]
     found: list[PointRecord] = []
     states = (
-        random_states(request, task, scales) if task.way == "random" else neighbours(records, found, task)
+        random_states(request, task, control) if task.way == "random" else neighbours(records, found, task)
     )
     at_section = {"initial.velocity_m_s": 0.0, "motion.phase_rad": 0.5 * math.pi, "motion.ramp_cycles": 0.0}
     for rotation, rate in states:
@@ -106,10 +99,11 @@ def computed(
     return found, None
 
 
-def random_states(request: ResponseRequest, task: Task, scales: Scales) -> list[tuple[float, float]]:
+def random_states(request: ResponseRequest, task: Task, control: Control) -> list[tuple[float, float]]:
     """Rotations [rad] and angular velocities [rad/s] as the floor turns at +A, the same whenever they are asked for."""
     drawn = np.random.default_rng([SEED, task.number]).uniform(-1.0, 1.0, (request.starts, 2))
-    largest = np.multiply(REACH, [scales.angle, scales.angle * scales.rate])
+    angle = control.slenderness_angle
+    largest = np.multiply(REACH, [angle, angle * control.frequency_parameter])
     return [(float(rotation), float(rate)) for rotation, rate in drawn * largest]
 
 

@@ -5,6 +5,7 @@ valid is marked and not joined.
 """
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -18,12 +19,14 @@ from fem.results.figures import TURNED
 from fem.results.outcome import Outcome
 from fem.runtime.units import MILLIMETRES
 
-LOOKS = {
+LOOKS: dict[str, dict[str, Any]] = {
     "up": {"color": style.BLUE, "marker": "^", "linestyle": "-"},
     "down": {"color": style.VERMILLION, "marker": "v", "linestyle": "--"},
     "start": {"color": style.PURPLE, "marker": "o", "linestyle": ":"},
 }
-SHELL = {"color": style.GREEN, "linewidth": 0.9}
+SMALL: dict[str, Any] = {"markersize": 3.5, "markeredgewidth": 0.0}
+DOTS: dict[str, Any] = {"linestyle": "none", "marker": "o", "markersize": 2.6, "markeredgewidth": 0.0}
+SHELL: dict[str, Any] = {"color": style.GREEN, "linewidth": 0.9}
 LEADS = {"start": "from random states"}
 PORTRAITS = 5  #: frequencies whose motions are drawn
 COLUMNS = 3
@@ -63,16 +66,27 @@ def draw_curves(request: ResponseRequest, records: Sequence[PointRecord]) -> Fig
     )
     for axes, column, factor, label, least in drawn:
         for direction in ("up", "down"):
-            _draw_branch(axes, _swept(own, direction), column, factor, label=direction, **LOOKS[direction])
-            if shell:
-                look = SHELL | {"linestyle": LOOKS[direction]["linestyle"]}
-                _draw_branch(
-                    axes, _swept(shell, direction), column, factor, label=f"shell, {direction}", **look
-                )
+            look = LOOKS[direction]
+            beside = SHELL | {"linestyle": look["linestyle"]}
+            for label, drawn_so, of in ((direction, look, own), (f"shell, {direction}", beside, shell)):
+                if branch := _swept(of, direction):  # broken where there is no value
+                    axes.plot(
+                        [record.row.frequency_Hz for record in branch],
+                        [factor * record.number(column) for record in branch],
+                        label=label,
+                        **SMALL | drawn_so,
+                    )
         axes.set_ylabel(label)
         axes.set_ylim(0.0, max(axes.get_ylim()[1], least))  # rounding is not to look like motion
     _draw_ends(rotation, own)
-    _draw_off_the_curve(rotation, own)
+    for k, row in enumerate(one.row for one in shown(own) if one.row.direction == "start"):
+        mark: dict[str, Any] = {
+            "color": style.PURPLE,
+            "marker": f"${row.period_n or '?'}$",
+            "markersize": 5.5,
+        }
+        label = "_" if k else "from random states: its period"
+        rotation.plot(row.frequency_Hz, row.turned, label=label, linestyle="none", **mark)
     if request.starts:
         width = 0.5 * (request.last_Hz - request.first_Hz) / request.count
         places = [at.frequency_Hz for at in frequencies]
@@ -115,8 +129,10 @@ def draw_sections(request: ResponseRequest, records: Sequence[PointRecord]) -> F
                 [record.row.frequency_Hz for record in standing], [part.size for part in sections]
             )
             turned = np.degrees(np.concatenate(sections))
-            dots = {"linestyle": "none", "markersize": 2.4, "markeredgewidth": 0.0}
-            axes.plot(places, turned, label=LEADS.get(direction, direction), **look | dots)  # type: ignore[arg-type]
+            label = LEADS.get(direction, direction)
+            axes.plot(
+                places, turned, label=label, **DOTS | {"color": look["color"], "marker": look["marker"]}
+            )
     axes.set_ylabel("rotation [deg]")
     axes.set_xlabel(FREQUENCY)
     _frequency_axis(axes, request)
@@ -142,7 +158,10 @@ def draw_portraits(records: Sequence[PointRecord]) -> Figure:
     for k, (axes, number) in enumerate(zip(subplots, chosen, strict=False)):
         drawn = [group[0] for group in lasting_at(records, number)]
         for record in sorted(drawn, key=lambda record: -record.row.turned):
-            _draw_portrait(axes, record)
+            repeats = record.row.long_time in ("periodic", "rest")
+            colour = LOOKS[record.row.direction]["color"] if repeats else style.GREY
+            axes.plot(*np.degrees(record.portrait).T, color=colour, linewidth=0.9 if repeats else 0.6)
+            axes.plot(*np.degrees(record.sections[:, :2]).T, color=style.BLACK, **DOTS)
         row, words = drawn[0].row, " and ".join(record.row.words for record in drawn)
         axes.set_title(f"{row.frequency_Hz:.3g} Hz, η = {row.eta or 0.0:.3g}\n{words}", fontsize=7.5)
         axes.margins(0.08)
@@ -168,15 +187,6 @@ def _swept(records: Sequence[PointRecord], direction: str) -> list[PointRecord]:
     return sorted(swept, key=lambda record: record.row.number)
 
 
-def _draw_branch(
-    axes: Axes, swept: Sequence[PointRecord], column: str, factor: float, **look: object
-) -> None:
-    """A line with marks, broken where there is no value."""
-    numbers = [factor * record.number(column) for record in swept]
-    frequencies = [record.row.frequency_Hz for record in swept]
-    axes.plot(frequencies, numbers, **{"markersize": 3.5, "markeredgewidth": 0.0} | look)  # type: ignore[arg-type]
-
-
 def _draw_ends(axes: Axes, records: Sequence[PointRecord]) -> None:
     """Where a sweep overturned or destroyed a corner: marks at the upper edge, joined with nothing."""
     for direction, height in (("up", 0.97), ("down", 0.91)):
@@ -197,36 +207,6 @@ def _draw_ends(axes: Axes, records: Sequence[PointRecord]) -> None:
                     transform=axes.get_xaxis_transform(),
                     label=f"{direction}: {words}",
                 )
-
-
-def _draw_off_the_curve(axes: Axes, records: Sequence[PointRecord]) -> None:
-    """Motions that no sweep met, each as the number of periods after which it repeats."""
-    away = [record.row for record in shown(records) if record.row.direction == "start"]
-    for k, row in enumerate(away):
-        axes.plot(
-            [row.frequency_Hz],
-            [row.turned],
-            linestyle="none",
-            marker=f"${row.period_n or '?'}$",
-            markersize=5.5,
-            color=style.PURPLE,
-            label="_" if k else "from random states: its period",
-        )
-
-
-def _draw_portrait(axes: Axes, record: PointRecord) -> None:
-    row, look = record.row, LOOKS[record.row.direction]
-    rotation, rate = np.degrees(record.portrait).T
-    repeats = row.long_time in ("periodic", "rest")
-    axes.plot(
-        rotation,
-        rate,
-        color=look["color"] if repeats else style.GREY,
-        linewidth=0.9 if repeats else 0.6,
-    )
-    turned, turning = np.degrees(record.sections[:, :2]).T
-    dots = {"linestyle": "none", "marker": "o", "markersize": 2.6, "markeredgewidth": 0.0}
-    axes.plot(turned, turning, color=style.BLACK, **dots)  # type: ignore[arg-type]
 
 
 def _frequency_axis(axes: Axes, request: ResponseRequest) -> None:

@@ -110,11 +110,6 @@ def _mend_floor(run: RunState) -> None:
     state.force[state.point[:, 1] > 0.0] = 0.0
 
 
-def section_times(period: float, count: int) -> np.ndarray:
-    """Instants of the sections, one a period from the end of the first on, shape (count,) [s]."""
-    return period * np.arange(1, count + 1)
-
-
 def with_sections(driven: DrivenModel, count: int) -> DrivenModel:
     """The same at t = 0 again, with steps that end on each of the next `count` sections.
 
@@ -123,7 +118,7 @@ def with_sections(driven: DrivenModel, count: int) -> DrivenModel:
     """
     clock = driven.run.clock
     clock.time, clock.samples, clock.samples_drained, clock.next_break = 0.0, 0, 0, 0
-    breaks = np.append(section_times(driven.period, count), np.inf)
+    breaks = np.append(driven.period * np.arange(1, count + 1), np.inf)
     return replace(driven, run=driven.run.with_problem(breaks=breaks))
 
 

@@ -151,7 +151,7 @@ def record_of(
             "growth": amplitude_growth(ratios),
         }
     if decay is not None:
-        known |= {"undriven": decay.fate, "undriven_s": decay.time}
+        known |= {"undriven": decay[0], "undriven_s": decay[1]}
     if known["direction"] == "start":
         start = case.initial
         known |= {
@@ -161,8 +161,8 @@ def record_of(
     if orbit.status != "failed" and known["motion"] != Outcome.INVALID:
         bounded = judged is not None and not amplitudes_diverge(ratios)
         known["bounded"] = bounded
-        if not bounded or (decay is not None and decay.fate != "failed"):
-            known["stable"] = bounded and decay is not None and decay.fate == "dies out"
+        if not bounded or (decay is not None and decay[0] != "failed"):
+            known["stable"] = bounded and decay is not None and decay[0] == "dies out"
     row = PointRow(
         frequency_Hz=omega / (2.0 * math.pi),
         amplitude_m=case.amplitude,

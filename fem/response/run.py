@@ -14,14 +14,14 @@ import numpy as np
 
 from fem.batch.runner import Runner
 from fem.batch.study import COMPLETED, FAILED, INTERRUPTED, Study, StudyOptions, run_study
-from fem.case.case import Case, to_toml
-from fem.model.container import Container, discretise
+from fem.case.case import to_toml
+from fem.model.container import discretise
 from fem.model.model import build_model
 from fem.response.answer import fates_of, fell_share, response_answer
-from fem.response.curve import Scales, Task, computed, plan_of
+from fem.response.curve import Task, computed, plan_of
 from fem.response.figures import response_figures
 from fem.response.lasting import coexistences, drop_outs, frequencies_of, of_first_model, shown
-from fem.response.model import DrivenModel, driven_model
+from fem.response.model import driven_model
 from fem.response.records import (
     PORTRAYED,
     PointRecord,
@@ -52,6 +52,8 @@ def run_response(
     begun = ResponseResult(
         asked=request.hash, case=request.case.name, title=request.case.title, request=request.to_dict()
     )
+    portrait = min(request.observe, PORTRAYED) * SAMPLES_PER_PERIOD * OF_A_SAMPLE
+    points = request.count * (2 + 2 * request.shell + request.starts)
     study = Study(
         kind=RESPONSE,
         request=request.hash,
@@ -59,19 +61,12 @@ def run_response(
         begun=begun,
         compute=partial(_compute, request, begun),
         texts={"case.toml": to_toml(request.case)},
-        size=required_disk(request),
+        size=table_bytes(points, request.observe * OF_A_PERIOD + portrait + OF_A_POINT),
         subject="the response curve",
         way_out="take fewer frequencies or starts",
         progress=lambda results: "its frequencies so far",
     )
     return run_study(study, folder, **options)
-
-
-def required_disk(request: ResponseRequest) -> float:
-    """Size of the folder of a response curve [bytes]: sections, portraits, the state twice."""
-    portrait = min(request.observe, PORTRAYED) * SAMPLES_PER_PERIOD * OF_A_SAMPLE
-    points = request.count * (2 + 2 * request.shell + request.starts)
-    return table_bytes(points, request.observe * OF_A_PERIOD + portrait + OF_A_POINT)
 
 
 def _compute(
@@ -118,15 +113,20 @@ def _follow(
     own, before = request.case.solver.model, None
     containers = {model: discretise(request.case_at(0, model)) for model in {task.model for task in plan}}
     control = build_model(request.case, containers[own]).run.problem.control
-    scales = Scales(angle=control.slenderness_angle, rate=control.frequency_parameter)
     if saved is not None:
         records, done = unpacked(saved), int(saved["done"])
         if "clock" in saved:
             last = plan[done - 1]
-            before = driven_from(
-                request.case_at(last.number, last.model), containers[last.model], saved, results.path / STATE
-            )
-    spans = [_simulated(request, task) for task in plan]
+            before = driven_model(request.case_at(last.number, last.model), containers[last.model])
+            parts = changing(before.model)
+            require_same(results.path / STATE, saved, parts)
+            for name, part in parts.items():
+                part[...] = saved[name]
+    periods = request.settle + request.observe
+    runs = [request.starts if task.way == "random" else 1 for task in plan]
+    spans = [
+        n * periods / float(request.frequencies[task.number]) for n, task in zip(runs, plan, strict=True)
+    ]
     seconds = sum(
         span * of_a_second(request.case_at(task.number, task.model))
         for span, task in zip(spans[done:], plan[done:], strict=True)
@@ -139,32 +139,12 @@ def _follow(
             return INTERRUPTED, done, records
 
         def progress(time: float, rotation: float, mode: int, behind: float = sum(spans[:done])) -> None:
-            reporter.update(behind + time, abs(rotation) / scales.angle, MODES[mode])
+            reporter.update(behind + time, abs(rotation) / control.slenderness_angle, MODES[mode])
 
-        found, before = computed(request, containers[task.model], task, records, before, scales, progress)
+        found, before = computed(request, containers[task.model], task, records, before, control, progress)
         records, done = records + found, done + 1
         carried = {} if before is None else changing(before.model)
         results.write_arrays(STATE, packed(records) | {"done": np.array(done)} | carried)
     reporter.finish()
     failed = any(record.row.status == "failed" for record in of_first_model(records))
     return FAILED if failed else COMPLETED, done, records
-
-
-def driven_from(case: Case, container: Container, arrays: dict[str, np.ndarray], path: Path) -> DrivenModel:
-    """The motion that the state kept in a file.
-
-    Raises:
-        CheckpointError: it does not fit the model.
-    """
-    driven = driven_model(case, container)
-    parts = changing(driven.model)
-    require_same(path, arrays, parts)
-    for name, part in parts.items():
-        part[...] = arrays[name]
-    return driven
-
-
-def _simulated(request: ResponseRequest, task: Task) -> float:
-    """Time that a task follows [s], without what its motions settle later or fall earlier."""
-    runs = {"random": request.starts, "risen": 1, "sunk": 1}.get(task.way, 1)
-    return runs * (request.settle + request.observe) / float(request.frequencies[task.number])

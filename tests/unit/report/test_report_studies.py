@@ -84,8 +84,8 @@ def test_a_response_curve_is_repeated_by_its_command(tmp_path):
     page = page_of("response", tmp_path)
     assert (
         "Frequency: largest lasting motion 0.62 of the slenderness angle, rock of period 1 at 1 Hz (going up); "
-        "overturned at 0.5 Hz going down; stood at the other 3 points; slid by up to 12 mm a period, at 0.5 Hz going up; motions "
-        "coexist at 1 Hz." in page
+        "overturned at 0.5 Hz going down; stood at the other 3 points; slid by up to 12 mm a period, at 0.5 "
+        "Hz going up; motions coexist at 1 Hz." in page
     )
     assert rows_of(page, "points")[-1] == ["down", "0.5", "overturned", *"–––––", "no", ""]
     assert rows_of(page, "what lasts")[-1] == [

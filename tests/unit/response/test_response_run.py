@@ -9,8 +9,9 @@ from contact.stepping.body import CENTRE_Z, ROTATION
 from fem.__main__ import main
 from fem.case.case import CaseError, load_case
 from fem.model.container import discretise
+from fem.model.model import build_model
 from fem.report.response_page import response_report
-from fem.response.curve import Scales, computed, plan_of
+from fem.response.curve import computed, plan_of
 from fem.response.model import carry_drive
 from fem.response.request import ResponseRequest
 from fem.response.run import run_response
@@ -124,7 +125,9 @@ def test_each_frequency_begins_on_a_floor_that_is_whole(tmp_path):
             assert carried.pose[CENTRE_Z] - before.run.old.pose[CENTRE_Z] == pytest.approx(
                 depths[-1], abs=1e-12
             )
-        (point,), before = computed(request, container, task, [], before, Scales(angle=1.0, rate=1.0))
+        (point,), before = computed(
+            request, container, task, [], before, build_model(case, container).run.problem.control
+        )
         assert point.row.status == "completed" and point.row.reason is None  # the energy balance closes
     assert min(depths) > 1e-5
 

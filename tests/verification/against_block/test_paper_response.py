@@ -1,4 +1,4 @@
-"""The response of the paper's stack on a rigid ground, as `python -m fem response` gives it, against the analytic block.
+"""The response of the paper's stack, as `python -m fem response` gives it, against the analytic block.
 
 Period-3 motions were found by a separate event-driven program from 120 random states at each of five frequencies.
 """

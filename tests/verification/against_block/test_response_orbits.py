@@ -12,7 +12,8 @@ from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
 from fem.evidence.verification.runs import STACK
 from fem.model.container import discretise
-from fem.response.curve import Scales, Task, computed, follow_point, plan_of
+from fem.model.model import build_model
+from fem.response.curve import Task, computed, follow_point, plan_of
 from fem.response.lasting import coexistences, drop_outs, frequencies_of
 from fem.response.model import begin_drive, carry_drive
 from fem.response.orbit import follow_periods, step_until
@@ -52,9 +53,9 @@ def followed(request):
 def swept(request):
     """The points of both sweeps."""
     container, before, points = discretise(request.case), None, []
-    scales = Scales(angle=BLOCK.slenderness_angle, rate=BLOCK.frequency_parameter)
+    control = build_model(request.case, container).run.problem.control
     for task in plan_of(request):
-        found, before = computed(request, container, task, points, before, scales)
+        found, before = computed(request, container, task, points, before, control)
         points += found
     return points
 
