@@ -126,7 +126,7 @@ BUDGET = {
     "site": ("fem/site_check", 6_487, 172),
     "cli": ("fem/cli fem/__init__.py fem/__main__.py", 2_072, 47),
     "product": ("mesh contact fem", 63_352, 1_902),
-    "tests": ("tests", 52_549, 3_149),
+    "tests": ("tests", 52_551, 3_149),
 }
 
 
