@@ -53,6 +53,7 @@ BAD_INPUT = [
     (["run", "--set", "solver.duration_s=0", "--dry-run"], "duration_s must be between"),
     (["run", "-q", "-v"], "contradict each other"),
     (["run", "--band", "--bandd"], "--bandd"),
+    (["report", "out", "--all-variations"], "report --all-variations is no longer there; run --band"),
     (["modes", "--set", "solver.order=3"], "order must be between 1 and 2"),
     (["modes", "--count", "2.5"], "a whole number is needed, not '2.5'"),
     (["init", "seed_stak"], "did you mean 'seed_stack'?"),
