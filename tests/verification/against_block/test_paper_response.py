@@ -10,7 +10,7 @@ import math
 import numpy as np
 import pytest
 
-from contact.reference.floor_acceleration import sine_floor
+from floors import sine_floor
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
 from fem.__main__ import main
