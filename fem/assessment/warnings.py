@@ -76,8 +76,8 @@ def friction_decides(result: run_result.RunResult, case: Case) -> str | None:
     length = max(gradual)
     slip, ratio = 1e3 * (gradual[length].max_slip_m or 0.0), gradual[length].rotation_ratio
     return (
-        f"{words}; if friction falls over {1e3 * length:g} mm of slip instead of at once, it reaches {ratio:.2g} of its "
-        f"slenderness angle, slip {slip:.3g} mm"
+        f"{words}; if friction falls over {1e3 * length:g} mm of slip instead of at once, it reaches {ratio:.2g} of "
+        f"its slenderness angle, slip {slip:.3g} mm"
     )
 
 
