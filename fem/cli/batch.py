@@ -46,8 +46,8 @@ def batch(
 ) -> int:
     """Compute a list of containers: which rest, slide, rock or overturn, and which is the weakest?
 
-    The header names keys of a case (width_m, mass_kg, mu_static, container.wall_m), name, count, tag, x_m and y_m, or
-    lon and lat; other columns are kept. A bad row is a row with its reason. Writes hall.csv, hall.json, report.html.
+    The header names keys of a case (width_m, mass_kg, mu_static, container.wall_m), name, count, tag; other columns are
+    kept. A bad row is a row with its reason. Writes hall.csv, hall.json, report.html.
 
     Parameters
     ----------

@@ -27,16 +27,14 @@ LARGEST_FILE = 512 * 2**20  #: [bytes]
 #: tables whose keys a column may name without the table
 PLAIN_TABLES = ("container", "contact", "support", "floor")
 NAME, COUNT, TAG = "name", "count", "tag"
-#: columns of a place, with the largest number of each: x, y [m]; longitude, latitude [degrees]
-PLACES = {"place_m": {"x_m": 1e6, "y_m": 1e6}, "lon_lat": {"lon": 180.0, "lat": 90.0}}
-OWN = (NAME, COUNT, TAG, *PLACES["place_m"], *PLACES["lon_lat"])
+OWN = (NAME, COUNT, TAG)
 #: a unit at the end of a name, as people write it
 UNIT = re.compile(r"[ _]*[\[(]?\b(mm|cm|m|kg|t|g|kn|n|mpa|gpa|pa|rad|deg|s|hz)\b[\])]?$", re.IGNORECASE)
 LIKE = 0.8  #: likeness from which an unknown name is taken for a slip
-OTHER_NAMES = {"mu": "mu_static", "friction_coefficient": "mu_static", "longitude": "lon", "latitude": "lat"}
+OTHER_NAMES = {"mu": "mu_static", "friction_coefficient": "mu_static"}
 LARGEST_COUNT = 10**9
 #: of a row, what the result says of it
-LISTED = ("line", "name", "count", "tag", "place_m", "lon_lat", "given")
+LISTED = ("line", "name", "count", "tag", "given")
 A_HEADER = "the first line must name the columns, such as name;width_m;height_m;mass_kg;mu_static"
 
 
@@ -48,8 +46,6 @@ class HallRow:
     name: str
     count: int
     tag: str
-    place_m: tuple[float, ...] | None  #: x, y
-    lon_lat: tuple[float, ...] | None  #: [degrees]
     given: Mapping[str, str]  #: its fields by column
     values: Mapping[str, Any]  #: of the dotted keys that it sets
     reason: str  #: why it cannot be used; empty: it can
@@ -98,17 +94,7 @@ class HallFile:
     def _row(self, number: int, line: TableLine) -> HallRow:
         given = {column: line.field(index) for column, index in self.indices.items()}
         texts = dict(zip(self.meanings.values(), given.values(), strict=True))
-        places: dict[str, Any] = dict.fromkeys(PLACES)
         problems: list[str] = []
-        for place, most in PLACES.items():
-            if any(map(texts.get, most)):
-                numbers = {name: _number(texts[name], limit) for name, limit in most.items()}
-                places[place] = None if None in numbers.values() else tuple(numbers.values())
-                problems += [
-                    f"{name} must be a number of at most {most[name]:g}, got {texts[name]!r}"
-                    for name, value in numbers.items()
-                    if value is None
-                ]
         count = _number(texts.get(COUNT) or "1", LARGEST_COUNT)
         if count is None or not count.is_integer() or count < 1.0:
             problems.append(f"count must be a whole number of at least 1, got {texts[COUNT]!r}")
@@ -122,7 +108,6 @@ class HallFile:
             name=plain_text(texts.get(NAME, "")) or str(number),
             count=int(count),
             tag=plain_text(texts.get(TAG, "")),
-            **places,
             given=given,
             values={key: _value(key, texts[key]) for key in self.keys if whole and texts[key]},
             reason="; ".join(problems),
@@ -153,7 +138,7 @@ def read_hall(path: Path) -> HallFile:
 
 
 def _meanings_of(path: Path, columns: Sequence[str]) -> dict[str, str]:
-    """What each column means; refuses a meaning that occurs twice, and half a place.
+    """What each column means; refuses a meaning that occurs twice.
 
     Raises:
         CaseError: every problem of the header.
@@ -173,10 +158,6 @@ def _meanings_of(path: Path, columns: Sequence[str]) -> dict[str, str]:
         if count > 1:
             same = [repr(column) for column in columns if meanings.get(column) == meaning]
             problems.append(f"columns {' and '.join(same)} both set {meaning!r}; keep one")
-    for pair in PLACES.values():
-        there = {column.lower() for column in columns} & {*pair}
-        if len(there) == 1:
-            problems.append(f"{' and '.join(pair)} belong together, and only {there.pop()} is there")
     if problems:
         raise CaseError("\n".join(f"{path}: {problem}" for problem in problems))
     return meanings

@@ -11,7 +11,6 @@ from fem.assessment.margin_words import FACTOR
 from fem.assessment.sure_words import deciding_in_words
 from fem.batch.study import read_study
 from fem.case.case import load_case
-from fem.hall.places import PICTURE
 from fem.hall.result import HallResult
 from fem.html import sections as html
 from fem.html.page import Signature
@@ -45,7 +44,7 @@ def hall_report(
         folder: of the hall.
         signature: author, checker, revision.
         result: what its marking file is to hold; default: what it holds.
-        brief: only the answer, the plan, the tags and the weakest.
+        brief: only the answer, the tags and the weakest.
 
     Raises:
         FolderError: it is not the folder of a hall, it is damaged, or it is not finished.
@@ -78,7 +77,6 @@ def hall_report(
         hash=info.asked,
         sections=[
             found_section(info),
-            html.section("In plan", "plan", *studies.drawings(folder, [PICTURE], "batch")),
             html.section("By tag", "tags", *([tags_table(info)] if info.tags else [])),
             html.section("The weakest first", "weakest", weakest, html.Note(MARGIN)),
             html.section("Refused rows", "refused", *([refused_table] if info.not_computed else [])),

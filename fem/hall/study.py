@@ -12,7 +12,6 @@ from fem.batch.table import table_text
 from fem.case.toml import toml_document
 from fem.hall.file import LISTED
 from fem.hall.page import hall_report
-from fem.hall.places import PICTURE, draw_places, geojson
 from fem.hall.plan import Hall
 from fem.hall.result import REFUSED, RESULT_COLUMNS, HallResult
 from fem.results.figures import SLIPPED, TURNED
@@ -20,7 +19,7 @@ from fem.results.folder import ResultFolder
 from fem.results.kinds import HALL
 from fem.results.outcome import COUNTED_AS, ending_of
 
-TABLE, PAGE, GEOJSON = "hall.csv", "report.html", "hall.geojson"
+TABLE, PAGE = "hall.csv", "report.html"
 WORST_FIRST = ("overturned", "invalid", "failed", "stood")  #: what a container counts as
 ROCKS = 0.01  #: rotation ratio up to which what stands is ranked by the static rule: nothing rocks
 
@@ -80,7 +79,7 @@ def study_of(
 def written(
     results: ResultFolder, begun: HallResult, hall: Hall, found: Sequence[Row], command_of: CommandOf
 ) -> HallResult:
-    """The finished result of a checked list, with the list, its plan and its page written.
+    """The finished result of a checked list, with the list and its page written.
 
     Args:
         results: folder.
@@ -111,10 +110,6 @@ def written(
     result = replace(result, answer=answer_of(result))
     fields = ([*row["given"].values(), *(row[name] for name in RESULT_COLUMNS)] for row in table)
     results.write_text(TABLE, table_text((*result.columns, *RESULT_COLUMNS), fields))
-    results.remove(PICTURE, GEOJSON)
-    for name, text in ((PICTURE, draw_places(result)), (GEOJSON, geojson(result))):
-        if text:
-            results.write_text(name, text)
     results.write_text(PAGE, hall_report(results.path, result=result))
     return result
 

@@ -5,7 +5,6 @@ import io
 import json
 import re
 import shlex
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -16,7 +15,6 @@ from fem.case.case import load_case
 from fem.case.validation import CaseError
 from fem.cli.batch import page_of
 from fem.hall.file import read_hall
-from fem.hall.places import INVALID, UNKNOWN, class_of, draw_places, plan_of
 from fem.hall.result import HallResult
 from fem.hall.run import run_hall
 from fem.hall.study import weakness
@@ -238,7 +236,6 @@ def test_lists_of_every_spreadsheet_are_read(tmp_path, text, encoding):
         ("name,width_m,container.width_m\na,1,1\n", "both set 'container.width_m'"),
         ("name,width_m,width_m\na,1,1\n", "'width_m' occurs 2 times"),
         ("name,margin,width_m\na,1,1\n", "'margin' has the name of a result"),
-        ("name,x_m,width_m\na,1,1\n", "only x_m is there"),
         ("name,width_m,\na,1,lost\n", "line 2: column 3 has values and no name"),
         ("name;width_m\na;1,5\nb;1.5\n", "decimal commas (line 2) and decimal points (line 3)"),
         ("\0\1", "not a text file"),
@@ -266,7 +263,7 @@ def test_the_terminal_says_of_a_container_what_the_summary_of_a_run_would(
 def test_a_bad_row_has_its_reason_and_strict_refuses(tmp_path, base, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     text = (
-        "name,count,width_m,x_m,y_m,wall_m,mass_kg\nfine,1,1,0,0,,\ncount,1.5,1,0,0,,\nplace,1,1,here,0,,\n"
+        "name,count,width_m,x_m,lat,wall_m,mass_kg\nfine,1,1,0,0,,\ncount,1.5,1,0,0,,\nplace,1,1,here,0,,\n"
         "short,1,1\nunit,1,1 m,0,0,,\nheavy,1,1,0,0,0.2,100\n"
     )
     path = listed(tmp_path, text)
@@ -275,12 +272,12 @@ def test_a_bad_row_has_its_reason_and_strict_refuses(tmp_path, base, monkeypatch
     for name, words in {
         "fine": "",
         "count": "count must be a whole number",
-        "place": "x_m must be a number",
+        "place": "",  # a column that sets nothing is kept as it is
         "short": "3 fields, and the header names 7 columns",
         "unit": "width_m must be a number",
         "heavy": "the walls of one box weigh",
     }.items():
-        assert words in reasons[name] and bool(reasons[name]) == (name != "fine")
+        assert words in reasons[name] and bool(reasons[name]) == bool(words)
     capsys.readouterr()
     assert main(["batch", str(path), "--case", "base.toml", "--strict", "--out", "strict", "-q"]) == 2
     assert "hall, line 3 (count): count must be" in capsys.readouterr().err
@@ -337,39 +334,6 @@ def test_a_result_may_be_the_list_of_the_next_hall(tmp_path, base):
     run_hall(again, case, tmp_path / "next", checks="none")
     first, second = ((tmp_path / name / "hall.csv").read_bytes() for name in ("out", "next"))
     assert first == second
-
-
-def test_places_are_drawn_in_plan_and_written_as_geojson(tmp_path, base):
-    """The picture has one mark a container, its class by outcome; formulas and mathematics in names stay text."""
-    text = "name,width_m,lon,lat,note\n=A$x_,0.3,8.40,49.0,<b>\nB,3,8.41,49.0,\nbad,-1,8.42,49.0,\nnowhere,3,,,\n"
-    text += "far,3,200,49.0,\n"
-    out = tmp_path / "out"
-    result = run_hall(read_hall(listed(tmp_path, text)), load_case(base), out, checks="none")
-    found = json.loads((out / "hall.geojson").read_text(encoding="utf-8"))
-    assert found["type"] == "FeatureCollection"
-    assert len(found["features"]) == 3  # no place beyond the globe
-    first, _, bad = found["features"]
-    assert first["geometry"] == {"type": "Point", "coordinates": [8.4, 49.0]}
-    assert first["properties"]["name"] == "=A$x_" and first["properties"]["note"] == "<b>"
-    assert (first["properties"]["outcome"], bad["properties"]["status"]) == ("overturned", "refused")
-    east = [x for x, _, _ in plan_of(result)]
-    assert east[1] - east[0] == pytest.approx(0.01 * 111.19e3 * 0.6561, rel=1e-3)  # cos 49 degrees
-    assert [class_of(row) for row in result.table] == [
-        "overturned",
-        UNKNOWN,
-        "no outcome",
-        UNKNOWN,
-        "no outcome",
-    ]
-    destroyed = result.table[1] | {"outcome": "invalid"}
-    assert class_of(destroyed) == INVALID
-    assert INVALID in draw_places(replace(result, table=(result.table[0], destroyed)))
-    drawn = (out / "figures" / "hall.svg").read_text(encoding="utf-8")
-    assert "=A$x_" in drawn and "east of the middle" in drawn
-    assert 'id="plan"' in (out / "report.html").read_text(encoding="utf-8")
-    without = re.sub(r"(8\.4\d|200),49\.0", ",", text)
-    run_hall(read_hall(listed(tmp_path, without)), load_case(base), out, checks="none")
-    assert not (out / "hall.geojson").exists() and not (out / "figures").exists()
 
 
 def test_of_an_unfinished_list_no_file_is_named_that_is_not_there():
