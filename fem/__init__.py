@@ -14,12 +14,12 @@ from typing import TYPE_CHECKING, Any
 from fem.runtime.signals import exit_on_signal
 
 if TYPE_CHECKING:
-    from fem.batch.compute_many import compute_many
     from fem.case.case import case_from, load_case
     from fem.run.compute import compute
     from fem.run.opened import open_run
     from fem.seismic.hazard import annual_rate
     from fem.seismic.two_directions import slide_in_plane
+    from fem.study.compute_many import compute_many
 
 __all__ = ["annual_rate", "case_from", "compute", "compute_many", "load_case", "open_run", "slide_in_plane"]
 
@@ -28,7 +28,7 @@ PLACES = {
     "annual_rate": "fem.seismic.hazard",
     "case_from": "fem.case.case",
     "compute": "fem.run.compute",
-    "compute_many": "fem.batch.compute_many",
+    "compute_many": "fem.study.compute_many",
     "load_case": "fem.case.case",
     "open_run": "fem.run.opened",
     "slide_in_plane": "fem.seismic.two_directions",

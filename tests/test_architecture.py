@@ -32,12 +32,10 @@ LAYERS = (
     ("fem.html",),
     ("fem.figures",),
     ("fem.render", "fem.run"),
-    ("fem.batch",),
-    ("fem.sweep", "fem.response"),
-    ("fem.ensemble",),
+    ("fem.study",),
+    ("fem.response",),
     ("fem.report",),
     ("fem.site_check",),
-    ("fem.hall",),
     ("fem.evidence",),
     ("fem.evidence.verification",),
     ("fem.evidence.paper", "fem.evidence.validation"),
@@ -68,7 +66,7 @@ NARROW = {
     },
     "fem.records": {"contact.arrays", "contact.jit", "contact.motion", "fem.runtime"},
     # what the package offers by name
-    "fem": {"fem.runtime", "fem.seismic", "fem.case", "fem.results", "fem.run", "fem.batch"},
+    "fem": {"fem.runtime", "fem.seismic", "fem.case", "fem.results", "fem.run", "fem.study"},
     "fem.__main__": {"fem.runtime", "fem.cli"},
 }
 MOST_FILES = 25  #: in one folder
@@ -85,8 +83,8 @@ DOORS = {
     },
     "pydantic": {"fem"},
     # optional, and slow to import: loaded where a cluster is asked for
-    "dask": {"fem/batch/cluster.py"},
-    "distributed": {"fem/batch/cluster.py"},
+    "dask": {"fem/study/cluster.py"},
+    "distributed": {"fem/study/cluster.py"},
     "jinja2": {"fem/html/page.py"},
 }
 

@@ -21,7 +21,7 @@ PAGES = {
     "response.json": "fem.report.response_page:response_report",
     "study.json": "fem.evidence.paper.page:paper_report",
     "assess.json": "fem.site_check.page.site_page:site_report",
-    "hall.json": "fem.hall.page:hall_report",
+    "hall.json": "fem.report.hall_page:hall_report",
 }
 
 #: the files that mark a folder whose report has a short form

@@ -5,13 +5,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from fem.batch.answers import falling_in_words
-from fem.batch.axes import Axis
-from fem.batch.labels import axis_label, in_words, place_in_words
-from fem.batch.study import read_study
 from fem.case.case import load_case
-from fem.ensemble.answers import EnsembleAnswer, ensemble_answer, fragility_lines, interval_in_words
-from fem.ensemble.result import EnsembleResult
 from fem.html import sections as html
 from fem.html.page import Signature
 from fem.html.units import ABSENT, number, short, typeset
@@ -22,6 +16,16 @@ from fem.results.figures import SLIPPED, Shown
 from fem.results.kinds import ENSEMBLE
 from fem.results.outcome import COUNTED
 from fem.runtime import units
+from fem.study.answers import (
+    EnsembleAnswer,
+    ensemble_answer,
+    falling_in_words,
+    fragility_lines,
+    interval_in_words,
+)
+from fem.study.axes import Axis, axis_label, in_words, place_in_words
+from fem.study.driver import read_study
+from fem.study.fragility import EnsembleResult
 
 STOOD = Shown("slip of those that stood", units.MILLIMETRES)
 FIGURES = ("figures/fragility.svg", "figures/boundary.svg")

@@ -4,17 +4,15 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from fem.ensemble.result import EnsembleResult
 from fem.html import sections as html
 from fem.html.units import ABSENT, millimetres, number, ratio, short
 from fem.records.units import STANDARD_GRAVITY
 from fem.report.studies import drawings
 from fem.results.figures import DURATION, PGA, PGD, PGV
 from fem.results.outcome import COUNTED, ROCKING, SLIDING
-from fem.sweep.cells import shown_at
-from fem.sweep.motion_outcomes import MEAN_TURNED, WORST_TURNED, MotionOutcome, motions_at
-from fem.sweep.result import SweepResult
-from fem.sweep.table import SweepTable
+from fem.study.fragility import EnsembleResult
+from fem.study.motion_outcomes import MEAN_TURNED, WORST_TURNED, MotionOutcome, motions_at
+from fem.study.sweep_table import SweepResult, SweepTable, shown_at
 
 PEAK = "peak_acceleration_m_s2"
 #: what is shown of a motion

@@ -5,7 +5,6 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from fem.batch.study import read_study
 from fem.case.case import load_case
 from fem.html import sections as html
 from fem.html.page import Signature
@@ -17,6 +16,7 @@ from fem.response.records import POINT_FIGURES, PointRow
 from fem.response.result import ResponseResult
 from fem.results.kinds import RESPONSE
 from fem.runtime.identity import command_line
+from fem.study.driver import read_study
 
 FIGURES = ("figures/response_curve.svg", "figures/sections.svg", "figures/portraits.svg")
 STABLE = ": amplitudes do not diverge, and without drive the motion dies out."

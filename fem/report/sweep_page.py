@@ -15,9 +15,6 @@ from markupsafe import Markup
 from numpy.typing import NDArray
 
 from fem.assessment.sureness import REGIME_UNSURE, SURE, UNSURE
-from fem.batch.answers import ends_in_words, ranges_in_words
-from fem.batch.labels import axis_label, unit_in_words
-from fem.batch.table import read_rows
 from fem.case.case import load_case
 from fem.figures.style import STATE_COLOURS, VERMILLION
 from fem.html import sections as html
@@ -31,11 +28,13 @@ from fem.results.errors import FolderError
 from fem.results.figures import Place, Shown, figures_of
 from fem.runtime import units
 from fem.runtime.identity import command_line
-from fem.sweep.answers import AnswerRow, SweepAnswer, sweep_answer
-from fem.sweep.maps import SHARE_COLOURS, shares_of
-from fem.sweep.perturbation import input_in_words
-from fem.sweep.refine import CHANGES, change_columns
-from fem.sweep.table import RATIOS, SweepTable, open_sweep
+from fem.study.answers import ends_in_words, ranges_in_words
+from fem.study.axes import axis_label, unit_in_words
+from fem.study.maps import SHARE_COLOURS, shares_of
+from fem.study.perturbation import input_in_words
+from fem.study.sure import CHANGES, change_columns
+from fem.study.sweep_table import RATIOS, AnswerRow, SweepAnswer, SweepTable, open_sweep, sweep_answer
+from fem.study.table import read_rows
 
 #: what can be shown, by column
 QUANTITIES = figures_of(Place.MAP) | RATIOS | {"wall_s": Shown("computing time", units.SECONDS)}

@@ -4,13 +4,13 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from fem.batch.answers import slip_in_words
 from fem.response.branches import Coexistence, DropOut, Jump
 from fem.response.records import PointRow
 from fem.response.result import ResponseResult
 from fem.results.figures import TURNED
 from fem.results.outcome import Outcome
 from fem.runtime.units import MILLIMETRES, RATIO
+from fem.study.answers import slip_in_words
 
 MOST_RANGES = 3  #: of frequencies that are named
 

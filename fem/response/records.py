@@ -7,7 +7,6 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from fem.batch.table import table_text
 from fem.response.curve import PORTRAYED, CurvePoint
 from fem.response.model import SAMPLES_PER_PERIOD
 from fem.response.orbit import EXTREME_COLUMNS, SECTION_COLUMNS
@@ -16,6 +15,7 @@ from fem.results.json_block import JsonBlock
 from fem.results.outcome import Outcome
 from fem.runtime import units
 from fem.runtime.arrays import FloatArray
+from fem.study.table import table_text
 
 PORTRAIT_COLUMNS = ("rotation_rad", "angular_velocity_rad_s")
 ARRAYS = {"sections": SECTION_COLUMNS, "extremes": EXTREME_COLUMNS, "portrait": PORTRAIT_COLUMNS}

@@ -8,9 +8,9 @@ from typing import Literal
 
 import numpy as np
 
-from fem.batch.study import COMPLETED, StudyResult
 from fem.run.bracket import least_width, values_to_try
 from fem.site_check.result import FIGURE_OF, LIMITS, ByRule, SiteAnswer
+from fem.study.driver import COMPLETED, StudyResult
 
 RESOLUTION = 0.01  #: largest width of a bracket over the value
 INNER = 3  #: values tried within a bracket at a time

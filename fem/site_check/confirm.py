@@ -3,12 +3,12 @@
 from collections.abc import Mapping
 
 from fem.assessment.ranges import largest_bolt_forces
-from fem.batch.compute_many import compute_many
 from fem.results.figures import Place
 from fem.results.outcome import ENDINGS
 from fem.results.run_result import Band
 from fem.site_check.result import LIMITED, ConfirmedRun, SiteRun
 from fem.site_check.runs import SET, RunCases, RunKey
+from fem.study.compute_many import compute_many
 
 MODEL = "reduced"
 MOST_DECIDING = 2  #: runs

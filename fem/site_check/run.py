@@ -12,9 +12,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Unpack
 
-from fem.batch.log import LoggedRuns
-from fem.batch.runner import Runner
-from fem.batch.study import COMPLETED, INTERRUPTED, Study, StudyOptions, hash_of, run_study
 from fem.case.case import case_hash
 from fem.html.page import Signature
 from fem.results.disk import table_bytes
@@ -51,6 +48,9 @@ from fem.site_check.result import (
 from fem.site_check.runs import COLUMNS, HAZARD, RunCases, RunKey, motion_stem
 from fem.site_check.stages import Stages
 from fem.site_check.yearly import hazard_motions
+from fem.study.driver import COMPLETED, INTERRUPTED, Study, StudyOptions, hash_of, run_study
+from fem.study.log import LoggedRuns
+from fem.study.runner import Runner
 
 RUNS, PAGE = "runs.csv", "report.html"
 OF_A_MOTION = 75_000  #: numbers, in three files

@@ -7,9 +7,6 @@ from itertools import product
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from fem.batch.case_maker import CaseMaker
-from fem.batch.runner import Row
-from fem.batch.table import row_of, table_text
 from fem.case.case import Case, read_case
 from fem.case.data_files import FILE_KEYS
 from fem.case.tables.input_keys import TOLERANCE
@@ -21,6 +18,9 @@ from fem.run.changed_runs import tolerance_of_draws
 from fem.site_check.file import FULL, SiteRequest
 from fem.site_check.result import MOTIONS, SiteRun
 from fem.site_check.rule import RuleFound, RunGroup, groups_of
+from fem.study.design import CaseMaker
+from fem.study.runner import Row
+from fem.study.table import row_of, table_text
 
 SET, REPEATED, SCAN, REFINED, FURTHER = "set", "repeated", "scan", "refined", "further"
 HAZARD = "hazard"  #: levels for the rate per year

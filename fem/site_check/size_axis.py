@@ -3,13 +3,13 @@
 import math
 from dataclasses import replace
 
-from fem.batch.axes import AxisError, field_of
-from fem.batch.derived import value_in
 from fem.case.tables.quantities import Quantity
 from fem.case.validation import CaseError, did_you_mean, known_keys, quantity_of
 from fem.site_check.bodies import body_of
 from fem.site_check.bracket import SizeAxis, Wanted, spaced
 from fem.site_check.file import TABLES, SiteRequest
+from fem.study.axes import AxisError, field_of
+from fem.study.design import value_in
 from mesh.errors import MeshError
 
 COUNT = 13  #: values of the scan

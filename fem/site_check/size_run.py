@@ -12,10 +12,6 @@ from hashlib import sha256
 from pathlib import Path
 from typing import NamedTuple, Unpack
 
-from fem.batch.log import LoggedRuns
-from fem.batch.runner import Row, Runner
-from fem.batch.study import INTERRUPTED, Study, StudyOptions, hash_of, run_study
-from fem.batch.table import row_of, table_text
 from fem.case.case import Case
 from fem.results.folder import ResultFolder
 from fem.results.kinds import SIZE
@@ -40,6 +36,10 @@ from fem.site_check.run import site_hash
 from fem.site_check.runs import COLUMNS, RunCases, RunKey, RunRows, motion_stem
 from fem.site_check.size_axis import at, followers
 from fem.site_check.stages import Stages
+from fem.study.driver import INTERRUPTED, Study, StudyOptions, hash_of, run_study
+from fem.study.log import LoggedRuns
+from fem.study.runner import Row, Runner
+from fem.study.table import row_of, table_text
 
 RUNS, FIGURE = "runs.csv", "figures/size.svg"
 SIZE_COLUMNS = {"value": float} | COLUMNS

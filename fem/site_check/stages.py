@@ -5,8 +5,6 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 
-from fem.batch.runner import Runner
-from fem.batch.workers import hand_out
 from fem.seismic.action import MotionTarget
 from fem.seismic.artificial import artificial_motions
 from fem.seismic.ground_motion import GroundMotion
@@ -20,6 +18,8 @@ from fem.site_check.rule import RuleFound, governing_groups, groups_of
 from fem.site_check.runs import FURTHER, HAZARD, REPETITIONS, SCAN, SET, RunKey, RunPlan, RunRows, motion_stem
 from fem.site_check.screening import Screening
 from fem.site_check.yearly import annual_rates, hazard_motions, hazard_runs, rocking_most
+from fem.study.runner import Runner
+from fem.study.workers import hand_out
 
 #: numbers of the artificial motions beyond the set begin behind those of any set
 FIRST_FURTHER, FIRST_OF_HAZARD = 10_000, 100_000

@@ -11,7 +11,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from fem.ensemble.fragility import fit_lognormal
 from fem.model.resting import KEPT, BodyAtRest
 from fem.results.outcome import ENDINGS
 from fem.runtime.intervals import binomial_interval
@@ -24,6 +23,7 @@ from fem.site_check.result import AnnualRates, HazardLevel, SiteBody, SiteRun, T
 from fem.site_check.rule import RunGroup
 from fem.site_check.runs import HAZARD, SET, RunKey, key_of
 from fem.site_check.screening import moves_at
+from fem.study.fragility import fit_lognormal
 
 LEVELS = 7
 #: as `KEPT`, on a floor that gives way, where a container rocks before a side would lift off a rigid one: under the

@@ -7,7 +7,6 @@ import numpy as np
 
 from contact.reference.floor_acceleration import sine_floor
 from contact.reference.sliding import RigidSlider, simulate_sliding
-from fem.batch.runner import Row
 from fem.evidence.findings import at_most
 from fem.evidence.paper.cases import BOX, FOR_MAPS, PLATEAU, RIGID, STACK, friction
 from fem.evidence.paper.claims import Evidence, claim, table
@@ -16,6 +15,7 @@ from fem.evidence.paper.experiments import Experiments, capped_ratio, stands
 from fem.evidence.paper.figures import curve, draw_curves
 from fem.evidence.paper.maps import MapCell, pairs, stack_map
 from fem.results.outcome import Outcome
+from fem.study.runner import Row
 
 #: c/a of the stack is 3.636: below a/c = 0.275 it slides before it tilts
 WIDTH_OVER_HEIGHT = WIDTH / HEIGHT

@@ -9,13 +9,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fem.batch.runner import Row
 from fem.evidence.findings import at_most, equal
 from fem.evidence.paper.cases import FOR_MAPS, STACK, PaperCase, friction
 from fem.evidence.paper.claims import Evidence, claim, table
 from fem.evidence.paper.dimensions import ANGULAR_FREQUENCY, PLATEAU_PEAK, STATED_PEAK, WIDTH
 from fem.evidence.paper.experiments import Experiments, capped_ratio, stands
 from fem.figures.heat_map import MapAxis
+from fem.study.runner import Row
 
 FLOOR_MU = 0.4
 SHARES = (0.5, 0.75, 1.0, 1.5)  #: friction between the boxes over that of the floor

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fem.ensemble.fragility import Lognormal, fit_lognormal
 from fem.evidence.findings import prediction
 from fem.evidence.validation.bodies import rigid_case
 from fem.evidence.validation.experiments import Experiment, Predictor
@@ -22,6 +21,7 @@ from fem.seismic.action import SiteAction, eurocode_shape
 from fem.seismic.artificial import artificial_motions
 from fem.seismic.ground_motion import GroundMotion
 from fem.seismic.velocity_rules import CONTENTS_SHARE, contents_velocity
+from fem.study.fragility import Lognormal, fit_lognormal
 
 MOTIONS, STATIONARY_S = 12, 10.0
 GROUND = "C"

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 
-from fem.batch.study import read_study
 from fem.html import sections as html
 from fem.html.page import Page, Signature, html_of
 from fem.results.errors import FolderError
@@ -20,6 +19,7 @@ from fem.site_check.page.methods_sections import methods_section, sheet_section,
 from fem.site_check.page.runs_section import runs_section
 from fem.site_check.page.view import SiteView
 from fem.site_check.result import RESULT_FILE, SiteMotion, SiteResult
+from fem.study.driver import read_study
 
 COPIES = ("site.toml", "container.toml")  #: in the folder, printed on the page
 CODE = (

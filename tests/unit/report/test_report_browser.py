@@ -20,9 +20,9 @@ from fem.report.sweep_page import sweep_report
 from fem.results.reader import open_run
 from fem.run.run import run_case
 from fem.runtime.progress import SilentReporter
-from fem.sweep.file import load_sweep
-from fem.sweep.run import run_sweep
-from fem.sweep.table import open_sweep
+from fem.study.file import load_sweep
+from fem.study.sweep import run_sweep
+from fem.study.sweep_table import open_sweep
 
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium: apt-get install chromium")
 

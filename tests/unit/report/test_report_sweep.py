@@ -13,7 +13,7 @@ from fem.__main__ import main
 from fem.report import sweep_page
 from fem.report.sweep_page import map_data, sweep_report
 from fem.results.errors import FolderError
-from fem.sweep.table import BAND, FOUND, WIDTH, open_sweep
+from fem.study.sweep_table import BAND, FOUND, WIDTH, open_sweep
 
 SPEED, MU = "motion.peak_acceleration_m_s2", "contact.mu_static"
 BASE = HARMONIC.replace("amplitude_m = 0.05", "peak_acceleration_m_s2 = 4.0") + '[solver]\nmodel = "rigid"\n'

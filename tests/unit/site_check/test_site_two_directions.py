@@ -5,7 +5,6 @@ from dataclasses import replace
 import pytest
 from site_example import RUN, example
 
-from fem.batch.study import runner_of
 from fem.seismic.two_directions import largest_slip, slip_in_two_directions
 from fem.site_check.answer import answer_of
 from fem.site_check.file import load_site
@@ -13,6 +12,7 @@ from fem.site_check.motions import floor_motions, ground_motions
 from fem.site_check.rule import groups_of
 from fem.site_check.runs import REPETITIONS
 from fem.site_check.stages import Stages
+from fem.study.driver import runner_of
 
 SITE = """
 container = "seed_stack"

@@ -12,7 +12,6 @@ import pytest
 from contact.stepping.body import VELOCITY_X
 from contact.stepping.ledger import IMBALANCE, MATERIAL_DAMPING
 from fem.assessment.verdict import audit
-from fem.batch.container_cache import ContainerCache
 from fem.case.case import Case
 from fem.evidence.verification.runs import STACK, Finished, harmonic, pulse, run
 from fem.model.container import discretise
@@ -22,6 +21,7 @@ from fem.run.recorder import Recorder
 from fem.run.simulation import simulate
 from fem.solid.reduction import static_response
 from fem.solid.sides import nodes_at
+from fem.study.containers import ContainerCache
 
 HEIGHT, WIDTH, SPEED = 4.0, 1.1, 0.5
 BESIDE = {"side": "right", "gap_m": 0.01, "stiffness_N_m": 1e8, "damping_ratio": 0.5}

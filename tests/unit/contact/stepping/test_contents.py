@@ -9,9 +9,9 @@ import pytest
 import scipy.signal
 
 from contact.stepping.contents import ACCELERATION, begin_contents, filter_contents, shift_contents
-from fem.batch.runner import run_cases
 from fem.case.case import load_case
 from fem.evidence.verification.runs import run
+from fem.study.runner import run_cases
 
 CUTOFF, END = 2.0 * math.pi * 33.0, 0.3
 AT_REST = (0.0, 0.0)  # the floor
