@@ -1,12 +1,12 @@
-"""Keys that follow others by an expression, and the numbers that keys have where others vary."""
+"""What makes the cases of a study: points on axes times draws, and keys that follow others by an expression."""
 
 import math
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
-from typing import Annotated, Any, Literal, NamedTuple, Self
+from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
 from pydantic import Field, ValidationError
@@ -14,13 +14,13 @@ from pydantic import Field, ValidationError
 from fem.case.case import Case
 from fem.case.overrides import keys_in_effect, with_overrides
 from fem.case.tables.all_tables import TABLES
-from fem.case.tables.input_ranges import Value
 from fem.case.tables.links import ROWS
 from fem.case.tables.quantities import Quantity
 from fem.case.tables.table import CaseTable
 from fem.case.tables.unknown_inputs import INPUTS, ranges_of
 from fem.case.uncertainty import as_changed, drawn_values
 from fem.case.validation import CaseError, known_keys
+from fem.runtime.arrays import FloatArray
 from fem.runtime.expressions import Expression, ExpressionError, parse_expression
 from fem.study.axes import MOTION_FILE, Axis, AxisError, point_of, shape_of, with_following
 from fem.study.containers import PenaltyCache
@@ -157,18 +157,57 @@ _WHOLE_KEYS = frozenset(
 )
 
 
+class Item(NamedTuple):
+    """One run of a study."""
+
+    cell: int  #: of the grid, the last axis the fastest; or its number in a list
+    draw: int  #: at this point; of a cell its copy, of a container its motion
+    point: Mapping[str, Any]  #: what the axes or the list set
+    drawn: Mapping[
+        str, Any
+    ] = {}  #: what is random, relative quantities as factors; a key that is None is not set
+    unknown: Mapping[str, Any] = {}  #: the unknown inputs, or what a copy changes, as the log has them
+    more: Mapping[str, Any] = {}  #: that these set, over all other keys
+
+
 class CaseMaker:
-    """Makes `base.with_values(values)`, at a tenth of the cost.
+    """Makes `base.with_values(values)`, at a tenth of the cost, and the cases of a study.
 
     Only the tables that change and the rules of the whole case are checked again; a case that breaks one is made the
     long way, which names the error.
+
+    Args:
+        base: the case that is varied.
+        derived: keys that follow others.
+        relative: keys that are drawn as a factor on the value that they have anyway.
     """
 
-    def __init__(self, base: Case) -> None:
+    def __init__(self, base: Case, derived: tuple[Derived, ...] = (), relative: Collection[str] = ()) -> None:
         self.base = base
+        self._derived, self._relative = derived, relative
         self._kinds = base.kinds
         #: by the keys that are set: what does not change, and the content of the tables that do
         self._templates: dict[tuple[str, ...], tuple[dict[str, Any], dict[str, dict[str, Any]]]] = {}
+
+    def case(self, item: Item) -> Case:
+        """The case of a run.
+
+        Raises:
+            CaseError: an expression has no value, a relative quantity has none to scale, a bad case.
+        """
+        values = self.values(item.point, item.drawn)
+        keys = {key: value for key, value in values.items() if not key.startswith(FREE)}
+        return self({**keys, **item.more})
+
+    def values(self, point: Mapping[str, Any], drawn: Mapping[str, Any] = {}) -> dict[str, Any]:
+        """All keys that a run sets before what is unknown, derived ones included; raises as `case`."""
+        values = dict(point)
+        for key, value in drawn.items():
+            if key in self._relative:
+                value *= number_of(key, values, self.base)
+            if value is not None:
+                values[key] = value
+        return with_derived(values, self._derived, self.base)
 
     def __call__(self, values: Mapping[str, Any]) -> Case:
         """The base with dotted keys set; alternatives are replaced.
@@ -242,30 +281,18 @@ class Threshold(CaseTable):
     )
 
 
-class CopyItem(NamedTuple):
-    """A copy of a cell."""
-
-    cell: int
-    number: int  #: of the copy
-    values: Mapping[str, Any]  #: that make its case of that of the cell
-    change: Mapping[str, Any]  #: what it changes, for the log
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Sweep:
-    """What a sweep file asks for."""
+class Design:
+    """A base case, points on axes, and keys that follow; what is drawn at a point is of an `Ensemble`."""
 
-    name: str  #: stem of the file, or name of the shipped sweep
-    text: str  #: of the file
-    title: str
+    name: str  #: stem of the file, or name of the shipped study
+    text: str = ""  #: of the file
+    title: str = ""
     base: Case  #: with the keys of [set]
-    axes: tuple[Axis, ...]
-    derived: tuple[Derived, ...]  #: in an order in which each follows what it refers to
-    perturbation: Perturbation
-    threshold: Threshold | None
-    maps: MapChoice
-    limit_slip_m: float | None = None  #: beyond which a cell does not stand in the answer
-    margin: bool = False  #: find the factor on the motion at which each cell overturns first
+    axes: tuple[Axis, ...] = ()
+    derived: tuple[Derived, ...] = ()  #: in an order in which each follows what it refers to
+    relative: frozenset[str] = frozenset()  #: keys that are drawn as factors
+    limit_slip_m: float | None = None  #: beyond which a run does not stand
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -274,71 +301,50 @@ class Sweep:
 
     @property
     def count(self) -> int:
-        """Cells."""
+        """Points."""
         return math.prod(self.shape)
 
     def point(self, cell: int) -> dict[str, Any]:
-        """Values of the axes in a cell, by key."""
+        """Values of the axes at a point, by key."""
         return point_of(self.axes, cell)
 
-    def values(self, point: Mapping[str, Any]) -> dict[str, Any]:
-        """All keys that a point on the axes sets, derived ones included.
+    def item(self, cell: int) -> Item:
+        """The run of a point, where nothing is drawn."""
+        return Item(cell, 0, with_following(self.axes, self.point(cell)))
 
-        Raises:
-            CaseError: an expression has no value there.
-        """
-        return with_derived(with_following(self.axes, point), self.derived, self.base)
-
-    def model_of(self, cell: int) -> str:
-        """The model of a cell."""
-        return str(self.point(cell).get("solver.model", self.base.solver.model))
-
-    def case_at(self, point: Mapping[str, Any], more: Mapping[str, Any] | None = None) -> Case:
-        """The case at a point on the axes, with further keys set.
-
-        Raises:
-            CaseError: it cannot be used.
-        """
-        return self._make(self.values(point) | dict(more or {}))
+    @cached_property
+    def make(self) -> CaseMaker:
+        """Makes the cases of runs; picklable, and small."""
+        return CaseMaker(self.base.without_fields(), self.derived, self.relative)
 
     def case(self, cell: int) -> Case:
-        """The case of a cell."""
-        return self.case_at(self.point(cell))
+        """The case of a point."""
+        return self.make.case(self.item(cell))
 
     def ends(self) -> list[Case]:
         """The cases at the ends of each axis, those that can be made."""
         cases = []
         for corner in product(*((axis.values[0], axis.values[-1]) for axis in self.axes)):
             with suppress(CaseError):
-                cases.append(self.case_at(dict(zip((axis.key for axis in self.axes), corner, strict=True))))
+                point = dict(zip((axis.key for axis in self.axes), corner, strict=True))
+                cases.append(self.make.case(Item(0, 0, with_following(self.axes, point))))
         return cases
 
-    def copy_case(self, item: CopyItem) -> Case:
-        """The case of a copy of a cell."""
-        return self.case_at(self.point(item.cell), item.values)
+    def model_of(self, item: Item) -> str:
+        """The model of a run."""
+        return str({**item.point, **item.drawn}.get("solver.model", self.base.solver.model))
 
-    def tried_case(self, item: tuple[int, float]) -> Case:
-        """The case between cells that a threshold tries: a cell of the line, and the value on the axis."""
-        cell, value = item
-        return self.case_at(self.point(cell) | {self.threshold_axis.key: value})
+    def by_container(self, items: Iterable[Item]) -> list[Item]:
+        """Runs in an order in which those of one container are neighbours."""
+        return sorted(items, key=lambda item: (self.container_of(item), item.cell))
 
-    @property
-    def threshold_axis(self) -> Axis:
-        """The axis along which changes of outcome are located; only where that is asked for."""
-        assert self.threshold is not None
-        return next(axis for axis in self.axes if axis.key == self.threshold.axis)
-
-    def by_container(self, cells: Iterable[int]) -> list[int]:
-        """The cells in an order in which those of one container are neighbours."""
-        return sorted(cells, key=lambda cell: (self.container_of(cell), cell))
-
-    def container_of(self, cell: int) -> str:
-        """Equal for cells that have the same container."""
+    def container_of(self, item: Item) -> str:
+        """Equal for runs that have the same container."""
         if not self._varies_container:
             return ""
-        values = self.point(cell)
+        values = item.point
         with suppress(CaseError):  # a derived key without a value: the row will have the reason
-            values = self.values(values)
+            values = self.make.values(values)
         return repr([value for key, value in values.items() if key.startswith(OF_THE_CONTAINER)])
 
     @cached_property
@@ -346,23 +352,26 @@ class Sweep:
         moving = {axis.key for axis in self.axes} | {quantity.key for quantity in self.derived}
         return any(key.startswith(OF_THE_CONTAINER) for key in moving)
 
-    @cached_property
-    def _make(self) -> CaseMaker:
-        return CaseMaker(self.base.without_fields())
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Sweep(Design):
+    """What a sweep file asks for."""
+
+    perturbation: Perturbation
+    threshold: Threshold | None
+    maps: MapChoice
+    margin: bool = False  #: find the factor on the motion at which each cell overturns first
+
+    @property
+    def threshold_axis(self) -> Axis:
+        """The axis along which changes of outcome are located; only where that is asked for."""
+        assert self.threshold is not None
+        return next(axis for axis in self.axes if axis.key == self.threshold.axis)
 
 
 #: unknown inputs that the file does not vary: drawn over [uncertainty] of the case, or held
 Unknown = Literal["drawn", "held"]
-
-
-class Draw(NamedTuple):
-    """One draw at a point."""
-
-    cell: int  #: number of the point, the last axis the fastest
-    number: int  #: at this point, replicate after replicate
-    values: tuple[Any, ...]  #: of the random quantities, relative ones as factors
-    unknown: Mapping[str, Value] = {}  #: of the unknown inputs, by key
-    following: Mapping[str, str | None] = {}  #: keys that its motion sets, of a set
+STREAM = 1  #: of random numbers of the unknown inputs
 
 
 def sets_among(random: Iterable[RandomQuantity | RandomChoice]) -> list[Axis]:
@@ -372,16 +381,10 @@ def sets_among(random: Iterable[RandomQuantity | RandomChoice]) -> list[Axis]:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Ensemble:
+class Ensemble(Design):
     """What an ensemble file asks for."""
 
-    name: str
-    text: str  #: of the file
-    title: str
-    base: Case  #: with the keys of [set]
-    axes: tuple[Axis, ...]
     random: tuple[RandomQuantity | RandomChoice, ...]
-    derived: tuple[Derived, ...]  #: in an order in which each follows what it refers to
     draws: int  #: at each point
     seed: int
     sampling: Sampling
@@ -389,102 +392,57 @@ class Ensemble:
     confidence: float
     probability: float  #: of overturning, to which the points are compared
     unknown_inputs: Unknown = "drawn"
-    limit_slip_m: float | None = None  #: beyond which a draw does not stand
     copy_motions: bool | None = None  #: into the results; None: those of small sets
-
-    @property
-    def count(self) -> int:
-        """Points."""
-        return math.prod(shape_of(self.axes))
-
-    def point(self, cell: int) -> dict[str, Any]:
-        """Values of the axes at a point, by key."""
-        return point_of(self.axes, cell)
 
     @property
     def motions(self) -> Axis | None:
         """The set of motions that are drawn; None where there is one motion."""
         return next(iter(sets_among(self.random)), None)
 
-    def draws_at(self, cell: int) -> list[Draw]:
+    def draws_at(self, cell: int) -> list[Item]:
         """The draws of a point; each motion of a set is drawn equally often, and is a replicate."""
         spread = [quantity for quantity in self.random if quantity.key != MOTION_FILE]
-        shares = np.empty((self.draws, 0))
-        if spread:
-            shares = draw_shares(
-                self.sampling,
-                seed=self.seed,
-                cell=cell,
-                dimensions=len(spread),
-                draws=self.draws,
-                replicates=self.replicates,
-            )
+        shares = self.shares(cell, len(spread)) if spread else np.empty((self.draws, 0))
         columns: dict[str, Sequence[Any]] = {
             quantity.key: np.asarray(quantity.values(shares[:, k]), dtype=object).tolist()
             for k, quantity in enumerate(spread)
         }
-        each, following = self.draws // self.replicates, [dict[str, str | None]()] * self.replicates
-        if self.motions is not None:
-            columns[MOTION_FILE] = np.repeat(self.motions.values, each).tolist()
-            keys, rows = self.motions.following, zip(*self.motions.following.values(), strict=True)
-            following = [dict(zip(keys, row, strict=True)) for row in rows] or following
-        draws = zip(*(columns[quantity.key] for quantity in self.random), strict=True)
+        each = self.draws // self.replicates
+        for axis in sets_among(self.random):
+            sets = {axis.key: axis.values, **axis.following}
+            columns |= {key: [value for value in row for _ in range(each)] for key, row in sets.items()}
+        point, rows = self.point(cell), zip(*columns.values(), strict=True)
         return [
-            Draw(cell, number, drawn, following=following[number // each])
-            for number, drawn in enumerate(draws)
+            Item(cell, number, point, dict(zip(columns, row, strict=True))) for number, row in enumerate(rows)
         ]
 
-    def case(self, draw: Draw) -> Case:
-        """The case of a draw.
-
-        Raises:
-            CaseError: it cannot be used.
-        """
-        following = {key: value for key, value in draw.following.items() if value is not None}
-        return self.case_of(self.point(draw.cell) | following, draw.values, draw.unknown)
-
-    @property
-    def of_draws(self) -> Self:
-        """The ensemble without text and list of motions: small enough to be sent with every task."""
-        random = tuple(
-            replace(quantity, axis=replace(quantity.axis, values=(), following={}))
-            if isinstance(quantity, RandomChoice) and quantity.key == MOTION_FILE
-            else quantity
-            for quantity in self.random
+    def shares(self, cell: int, dimensions: int, stream: int = 0) -> FloatArray:
+        """Shares of probability of the draws of a point, (draws, dimensions)."""
+        return draw_shares(
+            self.sampling,
+            seed=self.seed,
+            cell=cell,
+            dimensions=dimensions,
+            draws=self.draws,
+            replicates=self.replicates,
+            stream=stream,
         )
-        return replace(self, random=random, text="")
 
-    def case_of(
-        self, point: Mapping[str, Any], drawn: Sequence[Any], unknown: Mapping[str, Value] | None = None
-    ) -> Case:
-        """The case at a point, of values drawn.
-
-        Raises:
-            CaseError: an expression has no value, a relative quantity has no value to scale, a bad case.
-        """
-        values = dict(point)
-        for quantity, value in zip(self.random, drawn, strict=True):
-            if isinstance(quantity, RandomChoice):
-                values |= with_following([quantity.axis], {quantity.key: value})
-            else:
-                scale = number_of(quantity.key, values, self.base) if quantity.relative else 1.0
-                values[quantity.key] = value * scale
-        values = with_derived(values, self.derived, self.base)
-        keys = {key: value for key, value in values.items() if not key.startswith(FREE)}
-        if unknown and keys.get("container.joints", self.base.container.joints) == "loose":
-            unknown = as_changed(self._make(keys), unknown)
-        return self._make(keys | dict(unknown or {}))
-
-    @cached_property
-    def _make(self) -> CaseMaker:
-        return CaseMaker(self.base)
-
-
-STREAM = 1  #: of random numbers
+    def drawn(self, point: Mapping[str, Any], values: Iterable[Any]) -> Item:
+        """The run at a point, of values of what is random."""
+        drawn: dict[str, Any] = {}
+        for quantity, value in zip(self.random, values, strict=True):
+            choice = [quantity.axis] if isinstance(quantity, RandomChoice) else []
+            drawn |= with_following(choice, {quantity.key: value})
+        return Item(0, 0, point, drawn)
 
 
 class UnknownInputs:
-    """The unknown inputs of an ensemble, and their values in each draw."""
+    """The unknown inputs, drawn over their ranges at every draw of an ensemble.
+
+    What the file varies itself, by [axes], [random] or [derived], stays as it is there; the rest follows [uncertainty]
+    of the case. These draws have random numbers of their own, so those of [random] do not depend on them.
+    """
 
     def __init__(self, ensemble: Ensemble) -> None:
         self._ensemble = ensemble
@@ -499,36 +457,26 @@ class UnknownInputs:
         #: what is held fixed of the others, in words
         self.held = held_inputs(cases, varied | set(self.keys))
 
-    def draws_at(self, cell: int) -> list[Draw]:
+    def draws_at(self, cell: int) -> list[Item]:
         """The draws of a point, with the values of the unknown inputs."""
-        ensemble = self._ensemble
-        draws = ensemble.draws_at(cell)
+        draws = self._ensemble.draws_at(cell)
         if not self.keys:
             return draws
-        shares = draw_shares(
-            ensemble.sampling,
-            seed=ensemble.seed,
-            cell=cell,
-            dimensions=len(self.keys),
-            draws=ensemble.draws,
-            replicates=ensemble.replicates,
-            stream=STREAM,
-        )
-        return [
-            draw._replace(unknown=self._values(draw, row))
-            for draw, row in zip(draws, shares.tolist(), strict=True)
-        ]
+        shares = self._ensemble.shares(cell, len(self.keys), STREAM).tolist()
+        return [self._with_unknown(draw, row) for draw, row in zip(draws, shares, strict=True)]
 
-    def _values(self, draw: Draw, shares: list[float]) -> dict[str, Value]:
-        """Values at these shares of the ranges that a draw has; empty for a draw that cannot be made."""
+    def _with_unknown(self, draw: Item, shares: list[float]) -> Item:
+        """A draw with values at these shares of the ranges that it has; without any where it cannot be made."""
         try:
-            case = self._ensemble.case(draw)
+            case = self._ensemble.make.case(draw)
             share = dict(zip(self.keys, shares, strict=True))
             ranges = ranges_of(case, self._penalties.of(case))
         except (CaseError, ValueError):
-            return {}
+            return draw
         drawn = [interval for interval in ranges if interval.key in share]
-        return drawn_values(drawn, [share[interval.key] for interval in drawn])
+        unknown = drawn_values(drawn, [share[interval.key] for interval in drawn])
+        more = as_changed(case, unknown) if unknown and case.container.is_loose else unknown
+        return draw._replace(unknown=unknown, more=more)
 
 
 def _cases(ensemble: Ensemble) -> Iterator[Case]:
@@ -539,4 +487,4 @@ def _cases(ensemble: Ensemble) -> Iterator[Case]:
     for corner, values in product(corners, drawn):
         with suppress(CaseError):
             point = {axis.key: value for axis, value in zip(ensemble.axes, corner, strict=True)}
-            yield ensemble.case_of(point, values)
+            yield ensemble.make.case(ensemble.drawn(point, values))

@@ -21,7 +21,7 @@ from fem.results.kinds import ENSEMBLE
 from fem.results.outcome import COUNTED, COUNTED_AS, Ending, counts_of, ending_of
 from fem.study.answers import ensemble_answer
 from fem.study.axes import AxisResult
-from fem.study.design import Draw, Ensemble, UnknownInputs, sets_among
+from fem.study.design import Ensemble, Item, UnknownInputs, sets_among
 from fem.study.draws import RandomChoice
 from fem.study.driver import (
     COMPLETED,
@@ -44,7 +44,7 @@ from fem.study.motions import (
     write_motions,
 )
 from fem.study.runner import Row, Runner
-from fem.study.table import Columns, row_of, table_of_lines, table_of_rows
+from fem.study.table import Columns, row_of, table_of_rows
 
 DRAWS = "draws.csv"
 #: numbers in a row of draws.csv besides what is drawn, of a point in its files, of a motion: spectrum and measures
@@ -59,22 +59,20 @@ class DrawRows:
 
     def __init__(self, ensemble: Ensemble, unknown: UnknownInputs) -> None:
         self._ensemble, self._unknown = ensemble, unknown
-        #: keys that follow the motion of a draw
-        self._following = [key for axis in sets_among(ensemble.random) for key in axis.following]
-        keys = [f"{quantity.key}{' factor' if quantity.relative else ''}" for quantity in ensemble.random]
-        keys += self._following
+        #: keys that are drawn, and those that follow the motion of a draw
+        self._drawn = [quantity.key for quantity in ensemble.random]
+        self._drawn += [key for axis in sets_among(ensemble.random) for key in axis.following]
+        keys = [f"{key}{' factor' if key in ensemble.relative else ''}" for key in self._drawn]
         numbers: Columns = dict.fromkeys(("point", "draw", "replicate"), int)
         self.columns = numbers | dict.fromkeys((*keys, *unknown.keys), str) | SHOWN
         self.codes = np.full((ensemble.count, ensemble.draws), Ending.UNKNOWN, dtype=np.int8)
         self.slips = np.full(self.codes.shape, np.nan)
-        self._lines: dict[tuple[int, int], str] = {}
 
-    def key(self, draw: Draw) -> tuple[Any, ...]:
+    def key(self, draw: Item) -> tuple[Any, ...]:
         """What was drawn."""
-        replicate = draw.number // (self._ensemble.draws // self._ensemble.replicates)
+        replicate = draw.draw // (self._ensemble.draws // self._ensemble.replicates)
         unknown = (draw.unknown.get(key) for key in self._unknown.keys)
-        following = (draw.following.get(key) for key in self._following)
-        return draw.cell, draw.number, replicate, *draw.values, *following, *unknown
+        return draw.cell, draw.draw, replicate, *map(draw.drawn.get, self._drawn), *unknown
 
     def note(self, line: str) -> None:
         """Add a line of the log."""
@@ -83,22 +81,17 @@ class DrawRows:
         self.codes[at], self.slips[at] = COUNTED[row["outcome"]], row[SLIPPED] or 0.0
         if limit is not None and self.codes[at] == Ending.STANDING and self.slips[at] > limit:
             self.codes[at] = Ending.OVERTURNED
-        self._lines[at] = line
-
-    def table(self) -> str:
-        """`draws.csv`: a row a draw, in their order."""
-        return table_of_lines(self.columns, (line for _, line in sorted(self._lines.items())))
 
     def by_replicate(self) -> list[dict[str, int]]:
         """How many draws of each replicate stood, overturned and failed, over all points."""
         blocks = self.codes.reshape(len(self.codes), self._ensemble.replicates, -1)
         return [counts_of(block) for block in np.moveaxis(blocks, 1, 0)]
 
-    def missing(self) -> list[Draw]:
+    def missing(self) -> list[Item]:
         """The draws that have no row."""
         cells = np.flatnonzero((self.codes == Ending.UNKNOWN).any(axis=1)).tolist()
         draws = (draw for cell in cells for draw in self._unknown.draws_at(cell))
-        return [draw for draw in draws if self.codes[draw.cell, draw.number] == Ending.UNKNOWN]
+        return [draw for draw in draws if self.codes[draw.cell, draw.draw] == Ending.UNKNOWN]
 
 
 def draw_row(row: Row) -> Row:
@@ -148,21 +141,23 @@ def _compute(
 ) -> EnsembleResult:
     """Compute the draws that are missing, count what there is, and write it."""
     draws = DrawRows(ensemble, unknown)
-    LoggedRuns(
+    log = LoggedRuns[Item](
         what="draws",
         path=results.path / DRAWS,
         columns=draws.columns,
-        make=ensemble.of_draws.case,
+        make=ensemble.make.case,
         model_of=lambda draw: ensemble.base.solver.model,
         key=draws.key,
+        ids=2,
         note=draws.note,
         logged=draw_row,
-    ).run(runner, iter(draws.missing, []))
+    )
+    log.run(runner, iter(draws.missing, []))
     complete = (draws.codes != Ending.UNKNOWN).all(axis=1)
     points = [count_point(ensemble, int(k), draws.codes[k], draws.slips[k]) for k in np.flatnonzero(complete)]
     results.check()
     results.write_text("points.csv", csv_of_points(ensemble, points))
-    results.write_text(DRAWS, draws.table())
+    results.write_text(DRAWS, log.table())
     regions = [point["region"] for point in points]
     result = replace(
         begun,

@@ -28,6 +28,7 @@ from fem.study.axes import (
     hint,
     read_axis,
     set_axis,
+    with_following,
 )
 from fem.study.design import (
     FREE,
@@ -362,7 +363,7 @@ def _try_cells(sweep: Sweep) -> None:
     for corner in islice(product(*ends), TRIED):
         point = {axis.key: value for axis, value in zip(sweep.axes, corner, strict=True)}
         try:
-            case = sweep.base.with_values(sweep.values(point))
+            case = sweep.base.with_values(sweep.make.values(with_following(sweep.axes, point)))
         except CaseError as error:
             where = ", ".join(f"{key} = {value}" for key, value in point.items())
             raise CaseError(f"{error}\n[axes] make this cell: {where}") from None
@@ -453,6 +454,7 @@ def _read_ensemble(data: Mapping[str, Any], origin: Origin) -> Ensemble:
         base=base,
         axes=axes,
         random=random,
+        relative=frozenset(quantity.key for quantity in random if quantity.relative),
         derived=_derived_ensemble(tables.get("derived", {}), varied_keys),
         draws=heading.draws,
         seed=heading.seed,
@@ -549,7 +551,7 @@ def _try_cases(ensemble: Ensemble) -> None:
     for corner in islice(product(*ends, *drawn), TRIED):
         point = {axis.key: value for axis, value in zip(ensemble.axes, corner, strict=False)}
         try:
-            ensemble.case_of(point, corner[len(ends) :])
+            ensemble.make.case(ensemble.drawn(point, corner[len(ends) :]))
         except CaseError as error:
             keys = [*(axis.key for axis in ensemble.axes), *(quantity.key for quantity in ensemble.random)]
             where = ", ".join(

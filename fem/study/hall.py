@@ -1,14 +1,18 @@
-"""The result of a hall as typed data: what `hall.json` holds, and the columns that it adds to a list."""
+"""A list of containers: which differ, the run of each under each motion, the weakest repeated, the list with results.
+
+The runs are logged as they are ready, so an interrupted list continues where it was; its files depend neither on that
+nor on the number of cores. A list of which names or tags alone have changed is written again, not computed.
+"""
 
 import math
 import re
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from pathlib import Path
-from typing import Any, Literal, NamedTuple, Self, Unpack
+from typing import Any, Literal, Unpack
 
 from fem.case.case import Case, case_hash
 from fem.case.data_files import as_named_from
@@ -26,7 +30,7 @@ from fem.results.outcome import COUNTED_AS, ending_of
 from fem.run.expected import expected_s, expected_words, say_expected
 from fem.runtime.identity import command_line
 from fem.study.axes import MOTION_FILE, VERTICAL_FILE, AxisError, read_axis
-from fem.study.design import CaseMaker
+from fem.study.design import CaseMaker, Design, Item
 from fem.study.driver import (
     COMPLETED,
     FAILED,
@@ -53,29 +57,29 @@ from fem.study.motions import FloorMotionPair, motions_left_out, read_motion_set
 from fem.study.runner import CHECKED, Row, Runner, check_chunk
 from fem.study.table import table_text
 
+TABLE, RUNS, CHECKS = "hall.csv", "runs.csv", "checks.csv"
+RUN_COLUMNS = {"container": int, "motion": int} | OF_A_RUN
+CHECK_COLUMNS = {"container": int} | CHECKED
 MOST_RUNS = 200_000  #: unless it is forced
 MOST_NAMED = 20  #: bad rows in a refusal
 OF_A_ROW = 3e-3  #: processor time of checking a row [s]
-
-
-class HallItem(NamedTuple):
-    """A run: a container under a motion."""
-
-    container: int
-    motion: int
-    values: Mapping[str, Any]  #: of the keys that its row sets
+#: share of the containers, the weakest first, whose run is repeated under stronger motions and with other inputs; at
+#: least so many
+SHARE, LEAST = 0.1, 30
+Checks = Literal["weakest", "all", "none"]
+WORST_FIRST = ("overturned", "invalid", "failed", "stood")  #: what a container counts as
+ROCKS = 0.01  #: rotation ratio up to which what stands is ranked by the static rule: nothing rocks
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Hall:
+class Hall(Design):
     """A list of containers, and the motions that they undergo."""
 
     file: HallFile
-    base: Case  #: that the rows change
     motions: tuple[FloorMotionPair, ...] = ()  #: in place of that of the base case
     named: tuple[str, ...] = ()  #: these, as they were named on the command line
     rows: tuple[HallRow, ...] = ()  #: each with its container, or why it is refused
-    containers: Mapping[str, HallRow]  #: by hash, the first row of each
+    containers: Mapping[str, HallRow] = field(default_factory=dict)  #: by hash, the first row of each
 
     @cached_property
     def keys(self) -> list[Mapping[str, Any]]:
@@ -83,30 +87,29 @@ class Hall:
         return [pair.keys for pair in self.motions] or [{}]
 
     @cached_property
-    def make(self) -> Callable[[HallItem], Case]:
-        """Makes the case of a run; picklable."""
+    def make(self) -> CaseMaker:
+        """Makes the cases of runs."""
         base = with_files_of_the_command_line(self.base) if self.motions else self.base
-        return partial(_case_of, CaseMaker(base.without_fields()), self.keys)
+        return CaseMaker(base.without_fields())
 
     @property
-    def items(self) -> list[HallItem]:
+    def items(self) -> list[Item]:
         """All runs; those of a container follow one another."""
-        motions = range(len(self.keys))
         rows = enumerate(self.containers.values())
-        return [HallItem(number, motion, row.values) for number, row in rows for motion in motions]
+        return [
+            Item(number, motion, keys, row.values)
+            for number, row in rows
+            for motion, keys in enumerate(self.keys)
+        ]
 
-    def model_of(self, item: HallItem) -> str:
-        """The model of a run."""
-        return str(item.values.get("solver.model", self.base.solver.model))
-
-    def command(self, item: HallItem, values: Mapping[str, Any]) -> str:
+    def command(self, item: Item, values: Mapping[str, Any]) -> str:
         """The command that computes a run by itself, with the values of a row."""
         origin = self.base.origin_with({})
         words = ["run", origin.place, *["--allow-outside"] * origin.allow_outside]
         if self.named:
-            words += ["--motion", self.named[item.motion].partition(",")[0].strip()]
+            words += ["--motion", self.named[item.draw].partition(",")[0].strip()]
         # with a vertical file of a pair, or that a motion among pairs has none
-        set_by_motion = {k: v for k, v in self.keys[item.motion].items() if k != MOTION_FILE}
+        set_by_motion = {k: v for k, v in item.point.items() if k != MOTION_FILE}
         for key, value in {**set_by_motion, **values}.items():
             words += ["--set", f"{key}={value if isinstance(value, str) else toml_value(value)}"]
         return command_line(*words)
@@ -118,44 +121,41 @@ class Hall:
             CaseError, MeshError, RecordError: what a run would be refused for.
         """
         moved = any(key.startswith(("motion.", "vertical.")) for key in values)
-        first = self.make(HallItem(0, 0, values))
+        first = self.make.case(Item(0, 0, self.keys[0], values))
         if reasons := excluded_values(first):
             raise CaseError("\n".join(reasons))
         build_container(first)
-        for motion in range(len(self.keys) if moved else 1):
-            build_motions(self.make(HallItem(0, motion, values)))
+        for keys in self.keys if moved else self.keys[:1]:
+            build_motions(self.make.case(Item(0, 0, keys, values)))
         return case_hash(first)
 
-    def checked(self, hash_of: Callable[[Mapping[str, Any]], str], *, strict: bool) -> Self:
-        """With every row checked before any is computed; equal rows are one container.
 
-        Args:
-            hash_of: a hash of a container from the values of a row; raises a ValueError where it cannot be used.
-            strict: refuse the whole list for one bad row.
+def checked(hall: Hall, *, strict: bool) -> Hall:
+    """A list with every row checked before any is computed; equal rows are one container.
 
-        Raises:
-            CaseError: no good row; with `strict` any bad row.
-        """
-        containers: dict[str, HallRow] = {}
-        numbers: dict[str, int] = {}  #: of the containers, by hash
-        seen: dict[str, dict[str, Any]] = {}  #: by what a row sets: its container, or why it is refused
-        rows = []
-        for row in self.file.rows:
-            values = repr(sorted(row.values.items()))
-            if not row.reason and values not in seen:
-                try:
-                    digest = hash_of(row.values)
-                    containers.setdefault(digest, row)
-                    seen[values] = {"container": numbers.setdefault(digest, len(numbers))}
-                except ValueError as error:
-                    seen[values] = {"reason": _in_words_of_list(str(error), self.base)}
-            rows.append(row if row.reason else replace(row, **seen[values]))
-        bad = [f"{self.file.name}, line {row.line} ({row.name}): {row.reason}" for row in rows if row.reason]
-        if not containers or (strict and bad):
-            more = [f"and {len(bad) - MOST_NAMED} more rows"] * (len(bad) > MOST_NAMED)
-            none = ["no row can be computed"] * (not containers)
-            raise CaseError("\n".join([*bad[:MOST_NAMED], *more, *none]))
-        return replace(self, rows=tuple(rows), containers=containers)
+    Raises:
+        CaseError: no good row; with `strict`, which refuses the whole list for one bad row, any bad row.
+    """
+    containers: dict[str, HallRow] = {}
+    numbers: dict[str, int] = {}  #: of the containers, by hash
+    seen: dict[str, dict[str, Any]] = {}  #: by what a row sets: its container, or why it is refused
+    rows = []
+    for row in hall.file.rows:
+        values = repr(sorted(row.values.items()))
+        if not row.reason and values not in seen:
+            try:
+                digest = hall.hash_of(row.values)
+                containers.setdefault(digest, row)
+                seen[values] = {"container": numbers.setdefault(digest, len(numbers))}
+            except ValueError as error:
+                seen[values] = {"reason": _in_words_of_list(str(error), hall.base)}
+        rows.append(row if row.reason else replace(row, **seen[values]))
+    bad = [f"{hall.name}, line {row.line} ({row.name}): {row.reason}" for row in rows if row.reason]
+    if not containers or (strict and bad):
+        more = [f"and {len(bad) - MOST_NAMED} more rows"] * (len(bad) > MOST_NAMED)
+        none = ["no row can be computed"] * (not containers)
+        raise CaseError("\n".join([*bad[:MOST_NAMED], *more, *none]))
+    return replace(hall, rows=tuple(rows), containers=containers)
 
 
 def read_motions(base: Case, named: Sequence[str], runner: Runner) -> tuple[FloorMotionPair, ...]:
@@ -177,10 +177,6 @@ def with_files_of_the_command_line(base: Case) -> Case:
     origin = base.origin_with({})
     trusted = origin.trusted | {MOTION_FILE, VERTICAL_FILE}
     return base.from_origin(replace(origin, trusted=trusted, allow_outside=True))
-
-
-def _case_of(make: CaseMaker, keys: Sequence[Mapping[str, Any]], item: HallItem) -> Case:
-    return make({**keys[item.motion], **item.values})
 
 
 def say_time(file: HallFile, base: Case, motions: int, runner: Runner, *, force: bool) -> None:
@@ -210,15 +206,6 @@ def _in_words_of_list(reason: str, base: Case) -> str:
     return "; ".join(line for line in lines if line and not line.startswith("with --set "))
 
 
-TABLE = "hall.csv"
-WORST_FIRST = ("overturned", "invalid", "failed", "stood")  #: what a container counts as
-ROCKS = 0.01  #: rotation ratio up to which what stands is ranked by the static rule: nothing rocks
-
-
-#: the command that computes a row by itself, from the number of its container and what the row sets
-CommandOf = Callable[[int, Mapping[str, Any]], str]
-
-
 def ending_in(row: Row) -> str:
     """What a row counts as."""
     return REFUSED if row["status"] == REFUSED else COUNTED_AS[ending_of(row["status"], row["outcome"])]
@@ -234,111 +221,6 @@ def weakness(row: Row) -> tuple[float, ...]:
     if ending in WORST_FIRST[:3] or (static and turned <= ROCKS):
         turned = 0.0
     return WORST_FIRST.index(ending), margin is None, margin or 0.0, -turned, -static, -slip
-
-
-def study_of(
-    hall: Hall, compute: Callable[[HallResult, ResultFolder, Runner], HallResult], **fields: Any
-) -> Study[HallResult]:
-    """The study of a checked list; `fields` are of its result before any run, in one way of computing."""
-    rows, file, origin = hall.rows, hall.file, hall.base.origin_with({})
-    known = {"model": hall.base.solver.model, "allow_outside": origin.allow_outside or None}
-    begun = HallResult(
-        hall=file.name,
-        case=origin.place,
-        rows=len(rows),
-        containers=sum(row.count for row in rows),
-        distinct=len(hall.containers),
-        refused=sum(row.container is None for row in rows),
-        kept=tuple(column for column, meaning in file.meanings.items() if not meaning),
-        columns=tuple(file.meanings),
-        **(known | fields),
-    )
-    return Study(
-        kind=HALL,
-        request=begun.asked,
-        result=HallResult,
-        begun=begun,
-        compute=partial(compute, begun),
-        texts={"list.csv": file.table.text, "base.toml": toml_document(hall.base.given())},
-        subject=f"the hall ({begun.distinct} containers)",
-        way_out="take fewer rows",
-        progress=lambda results: "what was computed so far",
-        again=lambda results, finished: finished if finished.listed == begun.listed else None,
-    )
-
-
-def written(
-    results: ResultFolder, begun: HallResult, hall: Hall, found: Sequence[Row], command_of: CommandOf
-) -> HallResult:
-    """The finished result of a checked list, with the list written.
-
-    Args:
-        results: folder.
-        begun: what is known of the result.
-        hall: the list.
-        found: results of each container, by column; its rank is added.
-        command_of: the command of a row.
-    """
-    for rank, container in enumerate(sorted(found, key=weakness), start=1):
-        container["rank"] = rank
-    table = tuple(_rows(hall, found, command_of))
-    outcomes, tags = Counter[str](), dict[str, dict[str, Any]]()
-    for row in table:
-        ending = ending_in(row)
-        outcomes[row["outcome"] or ending] += row["count"]
-        empty = {"tag": row["tag"], "containers": 0, "counts": Counter[str](), "margin": None}
-        tag = tags.setdefault(row["tag"], empty)
-        tag["containers"] += row["count"]
-        tag["counts"][ending] += row["count"]
-        tag["margin"] = min(filter(None, (tag["margin"], row["margin"])), default=None)
-    result = replace(
-        begun,
-        status=FAILED if {row["status"] for row in found} == {FAILED} else COMPLETED,
-        outcomes=dict(sorted(outcomes.items())),
-        tags=tuple(tag for _, tag in sorted(tags.items())) if {*tags} != {""} else (),
-        table=table,
-    )
-    result = replace(result, answer=answer_of(result))
-    fields = ([*row["given"].values(), *(row[name] for name in RESULT_COLUMNS)] for row in table)
-    results.write_text(TABLE, table_text((*result.columns, *RESULT_COLUMNS), fields))
-    return result
-
-
-def _rows(hall: Hall, found: Sequence[Row], command_of: CommandOf) -> Iterator[Row]:
-    """The rows of the list with their results."""
-    for number, row in enumerate(hall.rows, start=1):
-        results: Row = {"status": REFUSED, "reason": row.reason}
-        if (k := row.container) is not None:
-            results = found[k] | {"command": command_of(k, row.values)}
-        own = {"row": number} | {name: getattr(row, name) for name in LISTED}
-        yield own | {name: results.get(name) for name in (*RESULT_COLUMNS, "command")}
-
-
-def answer_of(result: HallResult) -> str:
-    """How many containers did what, and which is the weakest, in one sentence."""
-    counts = dict(result.outcomes)
-    refused = counts.pop(REFUSED, 0)
-    computed = result.containers - refused
-    overturned, invalid, failed = (counts.get(word, 0) for word in ("overturned", "invalid", "failed"))
-    under = f" under at least one of {len(result.motions)} motions" if len(result.motions) > 1 else ""
-    words = f"{overturned or 'none'} of {computed} containers overturned{under if overturned else ''}"
-    words += f"; {invalid} destroyed a corner, which is not valid" if invalid else ""
-    words += f"; {failed} have no outcome" if failed else ""
-    words += f"; {result.refused} row{'s were' if result.refused != 1 else ' was'} refused" if refused else ""
-    weakest = result.ranked[0]
-    words += f"; the weakest is {weakest['name']}"
-    if (margin := weakest["margin"]) is not None:
-        words += f", which overturns from {margin:.3g} times its motion on"
-    return words
-
-
-RUNS, CHECKS = "runs.csv", "checks.csv"
-RUN_COLUMNS = {"container": int, "motion": int} | OF_A_RUN
-CHECK_COLUMNS = {"container": int} | CHECKED
-#: share of the containers, the weakest first, whose run is repeated under stronger motions and with other inputs; at
-#: least so many
-SHARE, LEAST = 0.1, 30
-Checks = Literal["weakest", "all", "none"]
 
 
 def run_hall(
@@ -365,39 +247,66 @@ def run_hall(
         if motions and (named := [key for key in file.keys if key in (MOTION_FILE, VERTICAL_FILE)]):
             raise CaseError(f"{file.name}: column {named[0]!r} and --motion both name the motion; use one")
         pairs = read_motions(base, motions, runner) if motions else ()
-        hall = Hall(file=file, base=base, motions=pairs, named=motions, containers={})
-        hall = hall.checked(hall.hash_of, strict=strict)
-        options["workers_of"] = runner.workers_of
-        study = study_of(
-            hall,
-            partial(_compute, hall),
-            asked=hash_of([[*hall.containers], [pair.case_hash for pair in pairs]]),
-            listed=hash_of([file.table.text, checks]),
-            motions=motions,
-            motion_covered=motions_left_out(base, pairs),
-            checks=checks,
+        hall = checked(
+            Hall(name=file.name, file=file, base=base, motions=pairs, named=motions), strict=strict
         )
-        size = 2.0 * table_bytes(len(hall.items), len(RUN_COLUMNS))
-        study = replace(
-            study, size=size, cases=[] if pairs else [base], motions=[pair.case for pair in pairs]
+        options["workers_of"] = runner.workers_of
+        begun = begun_list(hall, checks)
+        study = Study(
+            kind=HALL,
+            request=begun.asked,
+            result=HallResult,
+            begun=begun,
+            compute=partial(_compute, hall, begun),
+            texts={"list.csv": file.table.text, "base.toml": toml_document(base.given())},
+            subject=f"the hall ({begun.distinct} containers)",
+            way_out="take fewer rows",
+            progress=lambda results: "what was computed so far",
+            again=lambda results, finished: finished if finished.listed == begun.listed else None,
+            size=2.0 * table_bytes(len(hall.items), len(RUN_COLUMNS)),
+            cases=[] if pairs else [base],
+            motions=[pair.case for pair in pairs],
         )
         return run_study(study, folder, **options)
 
 
+def begun_list(hall: Hall, checks: Checks) -> HallResult:
+    """The part of `hall.json` that is known beforehand."""
+    file, origin = hall.file, hall.base.origin_with({})
+    return HallResult(
+        hall=hall.name,
+        case=origin.place,
+        model=hall.base.solver.model,
+        rows=len(hall.rows),
+        containers=sum(row.count for row in hall.rows),
+        distinct=len(hall.containers),
+        refused=sum(row.container is None for row in hall.rows),
+        kept=tuple(column for column, meaning in file.meanings.items() if not meaning),
+        columns=tuple(file.meanings),
+        asked=hash_of([[*hall.containers], [pair.case_hash for pair in hall.motions]]),
+        listed=hash_of([file.table.text, checks]),
+        motions=hall.named,
+        motion_covered=motions_left_out(hall.base, hall.motions),
+        checks=checks,
+        allow_outside=origin.allow_outside or None,
+    )
+
+
 def _compute(hall: Hall, begun: HallResult, results: ResultFolder, runner: Runner) -> HallResult:
-    """Compute what is missing, and write the list with its results, and its page."""
+    """Compute what is missing, and write the list with its results."""
     items, motions = hall.items, len(hall.keys)
-    logged = partial(LoggedRuns[HallItem], make=hall.make, model_of=hall.model_of)
+    logged = partial(LoggedRuns[Item], make=hall.make.case, model_of=hall.model_of)
     runs = logged(
         what="runs",
         path=results.path / RUNS,
         columns=RUN_COLUMNS,
         key=lambda item: item[:2],
-        items=items,
+        ids=2,
+        known={(item.cell, item.draw) for item in items},
     )
-    runs.run(runner, iter(runs.missing, []))
+    runs.run(runner, iter(partial(runs.missing, items), []))
     begun = replace(begun, runs=len(runs.lines))
-    if runs.missing():
+    if runs.missing(items):
         words = f"{begun.runs} of {len(items)} runs are computed"
         return replace(begun, status=INTERRUPTED, missing=words)
     found = [_governing(hall, items[k : k + motions], runs) for k in range(0, len(items), motions)]
@@ -409,7 +318,8 @@ def _compute(hall: Hall, begun: HallResult, results: ResultFolder, runner: Runne
         path=results.path / CHECKS,
         columns=CHECK_COLUMNS,
         key=lambda item: item[:1],
-        items=[item for item, _ in found],
+        ids=1,
+        known={(item.cell,) for item, _ in found},
         work=check_chunk,
     )
     to_check = partial(checks.missing, able[:count])
@@ -420,11 +330,12 @@ def _compute(hall: Hall, begun: HallResult, results: ResultFolder, runner: Runne
     results.check()
     results.write_text(RUNS, runs.table())
     results.write_text(CHECKS, checks.table())
-    rows = [row | checks.row(item) for item, row in found]
-    return written(results, begun, hall, rows, lambda number, values: hall.command(found[number][0], values))
+    for item, row in found:
+        row |= checks.row(item)
+    return written(results, begun, hall, found)
 
 
-def _governing(hall: Hall, items: Sequence[HallItem], runs: LoggedRuns[HallItem]) -> tuple[HallItem, Row]:
+def _governing(hall: Hall, items: Sequence[Item], runs: LoggedRuns[Item]) -> tuple[Item, Row]:
     """The run in which a container does worst, the first of equals; and the results of the container.
 
     These are those of that run, the static rule under its peak, and what all its motions do.
@@ -432,14 +343,71 @@ def _governing(hall: Hall, items: Sequence[HallItem], runs: LoggedRuns[HallItem]
     rows = [runs.row(item) for item in items]
     ranks = [*map(weakness, rows)]
     item = items[ranks.index(min(ranks))]
-    case = hall.make(item)
+    case = hall.make.case(item)
     peaks = peaks_in_run(case, *build_motions(case))
     ruling = static_checks_of(case, build_container(case), *peaks).ruling.to_result()
-    row = {name: rows[item.motion][name] for name in OF_A_RUN}
+    row = {name: rows[item.draw][name] for name in OF_A_RUN}
     row |= {name: getattr(ruling, name) for name in STATIC}
     if names := [pair.name for pair in hall.motions]:
         counts, slips = Counter(map(ending_in, rows)), [run[SLIPPED] or 0.0 for run in rows]
         slid = slips.index(max(slips))
-        under = names[item.motion], *(counts[word] for word in WORST_FIRST[:3]), slips[slid], names[slid]
+        under = names[item.draw], *(counts[word] for word in WORST_FIRST[:3]), slips[slid], names[slid]
         row |= zip(OF_MOTIONS, under, strict=True)
     return item, row
+
+
+def written(
+    results: ResultFolder, begun: HallResult, hall: Hall, found: Sequence[tuple[Item, Row]]
+) -> HallResult:
+    """The finished result of a checked list, with the list written; the governing run and the row of each container."""
+    for rank, (_, container) in enumerate(sorted(found, key=lambda pair: weakness(pair[1])), start=1):
+        container["rank"] = rank
+    table = tuple(_rows(hall, found))
+    outcomes, tags = Counter[str](), dict[str, dict[str, Any]]()
+    for row in table:
+        ending = ending_in(row)
+        outcomes[row["outcome"] or ending] += row["count"]
+        empty = {"tag": row["tag"], "containers": 0, "counts": Counter[str](), "margin": None}
+        tag = tags.setdefault(row["tag"], empty)
+        tag["containers"] += row["count"]
+        tag["counts"][ending] += row["count"]
+        tag["margin"] = min(filter(None, (tag["margin"], row["margin"])), default=None)
+    result = replace(
+        begun,
+        status=FAILED if {row["status"] for _, row in found} == {FAILED} else COMPLETED,
+        outcomes=dict(sorted(outcomes.items())),
+        tags=tuple(tag for _, tag in sorted(tags.items())) if {*tags} != {""} else (),
+        table=table,
+    )
+    fields = ([*row["given"].values(), *(row[name] for name in RESULT_COLUMNS)] for row in table)
+    results.write_text(TABLE, table_text((*result.columns, *RESULT_COLUMNS), fields))
+    return replace(result, answer=answer_of(result))
+
+
+def _rows(hall: Hall, found: Sequence[tuple[Item, Row]]) -> Iterator[Row]:
+    """The rows of the list with their results, and the command that computes each by itself."""
+    for number, row in enumerate(hall.rows, start=1):
+        results: Row = {"status": REFUSED, "reason": row.reason}
+        if row.container is not None:
+            item, results = found[row.container]
+            results = results | {"command": hall.command(item, row.values)}
+        own = {"row": number} | {name: getattr(row, name) for name in LISTED}
+        yield own | {name: results.get(name) for name in (*RESULT_COLUMNS, "command")}
+
+
+def answer_of(result: HallResult) -> str:
+    """How many containers did what, and which is the weakest, in one sentence."""
+    counts = dict(result.outcomes)
+    refused = counts.pop(REFUSED, 0)
+    computed = result.containers - refused
+    overturned, invalid, failed = (counts.get(word, 0) for word in ("overturned", "invalid", "failed"))
+    under = f" under at least one of {len(result.motions)} motions" if len(result.motions) > 1 else ""
+    words = f"{overturned or 'none'} of {computed} containers overturned{under if overturned else ''}"
+    words += f"; {invalid} destroyed a corner, which is not valid" if invalid else ""
+    words += f"; {failed} have no outcome" if failed else ""
+    words += f"; {result.refused} row{'s were' if result.refused != 1 else ' was'} refused" if refused else ""
+    weakest = result.ranked[0]
+    words += f"; the weakest is {weakest['name']}"
+    if (margin := weakest["margin"]) is not None:
+        words += f", which overturns from {margin:.3g} times its motion on"
+    return words

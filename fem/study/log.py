@@ -6,10 +6,10 @@ study.
 """
 
 import os
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Container, Iterable, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field
-from functools import cached_property
+from itertools import islice
 from pathlib import Path
 from typing import Any, Generic
 
@@ -17,7 +17,7 @@ from fem.case.case import Case
 from fem.results.errors import FolderError, FolderLostError
 from fem.results.files import write_atomically
 from fem.study.runner import ChunkWork, ItemT, Row, Runner
-from fem.study.table import Columns, is_row, line_of, read_lines, row_of, table_of_lines
+from fem.study.table import READERS, Columns, fields_of, is_row, line_of, read_lines, row_of, table_of_lines
 
 
 class RowLog:
@@ -66,50 +66,46 @@ class RowLog:
 
 
 @dataclass(frozen=True, kw_only=True)
-class LoggedRows(Generic[ItemT]):
-    """Rows that are kept in a log: none is computed twice, whatever interrupts the study."""
+class LoggedRuns(Generic[ItemT]):
+    """Runs of one kind whose rows are kept in a log: none is computed twice, whatever interrupts the study."""
 
+    what: str  #: they are, for the line of progress
     path: Path  #: of the log
     columns: Columns  #: of the log
-    #: values of the first columns; the others are of the row of an item
-    key: Callable[[ItemT], Iterable[Any]]
-    note: Callable[[str], None] = lambda line: None  #: called with every line of the log, old and new
+    key: Callable[
+        [ItemT], Iterable[Any]
+    ]  #: values of the first columns; the others are of the row of an item
+    ids: int = 0  #: of these, how many tell the items apart, whose lines are kept; 0: none are
+    known: Container[tuple[Any, ...]] | None = None  #: these, where they are known beforehand; None: any
+    make: Callable[[ItemT], Case]  #: the case of an item; picklable
+    model_of: Callable[[ItemT], str]
+    work: ChunkWork | None = None  #: what is done with some items in place of their runs
     logged: Callable[[Row], Row] = lambda row: row  #: a row as the log holds it
-    #: all that there may be, where they are known beforehand and their keys tell them apart: their lines are kept
-    items: Iterable[ItemT] = ()
-    lines: dict[tuple[Any, ...], str] = field(default_factory=dict, init=False)  #: by key
+    #: called with every line of the log, old and new; raises a LookupError for one of no item
+    note: Callable[[str], None] = lambda line: None
+    lines: dict[tuple[Any, ...], str] = field(
+        default_factory=dict, init=False
+    )  #: of the log, by what tells apart
 
-    @cached_property
-    def keys(self) -> dict[tuple[Any, ...], ItemT]:
-        """The items by key."""
-        return {tuple(self.key(item)): item for item in self.items}
-
-    def missing(self, among: Iterable[ItemT] | None = None) -> list[ItemT]:
-        """Those of the items, or of some, that have no row yet."""
-        chosen = self.keys.values() if among is None else among
-        return [item for item in chosen if tuple(self.key(item)) not in self.lines]
+    def missing(self, among: Iterable[ItemT]) -> list[ItemT]:
+        """Those of some items that have no row yet."""
+        return [item for item in among if self._id(item) not in self.lines]
 
     def row(self, item: ItemT) -> Row:
         """The row of an item, by column; empty where it has none."""
-        line = self.lines.get(tuple(self.key(item)))
+        line = self.lines.get(self._id(item))
         return {} if line is None else row_of(self.columns, line)
 
     def table(self) -> str:
-        """The rows in the order of their keys."""
+        """The rows in the order of their items."""
         return table_of_lines(self.columns, (line for _, line in sorted(self.lines.items())))
 
-    def compute(
-        self,
-        runner: Runner,
-        batches: Iterable[Sequence[ItemT]],
-        rows_of: Callable[[Sequence[ItemT]], Iterable[tuple[Sequence[ItemT], Sequence[Row]]]],
-    ) -> None:
-        """Note the rows of earlier attempts, then compute the items that are missing.
+    def run(self, runner: Runner, batches: Iterable[Sequence[ItemT]]) -> None:
+        """Note the rows of earlier attempts, then run the items that are missing.
 
         Args:
             runner: says when to stop.
             batches: of missing items; each is asked for when all rows before are noted.
-            rows_of: items and their rows, as they are ready.
 
         Raises:
             FolderError: the log holds a row of another study.
@@ -125,37 +121,27 @@ class LoggedRows(Generic[ItemT]):
             for items in batches:
                 if runner.stop():
                     break
-                for chunk, rows in rows_of(items):
+                for chunk, rows in runner.rows(self.what, items, self.make, self.model_of, self.work):
                     lines = [self._line(item, row) for item, row in zip(chunk, rows, strict=True)]
                     log.append(lines)
                     for line in lines:
                         self._note(line)
             log.sync()
 
+    def _id(self, item: ItemT) -> tuple[Any, ...]:
+        return tuple(islice(self.key(item), self.ids))
+
     def _note(self, line: str) -> None:
-        if self.keys:
-            key = tuple(row_of(self.columns, line).values())[: len(next(iter(self.keys)))]
-            self.lines[tuple(self.key(self.keys[key]))] = line  # a LookupError: of no item
+        if self.ids:
+            first = zip(islice(self.columns.values(), self.ids), fields_of(line), strict=False)
+            known = tuple(READERS[kind](field) for kind, field in first)
+            if self.known is not None and known not in self.known:
+                raise LookupError(line)
+            if known in self.lines:
+                return
+            self.lines[known] = line
         self.note(line)
 
     def _line(self, item: ItemT, row: Row) -> str:
         key, cells = tuple(self.key(item)), self.logged(row)
         return line_of((*key, *(cells[name] for name in [*self.columns][len(key) :])))
-
-
-@dataclass(frozen=True, kw_only=True)
-class LoggedRuns(LoggedRows[ItemT]):
-    """Runs of one kind whose rows are kept in a log."""
-
-    what: str  #: they are, for the line of progress
-    make: Callable[[ItemT], Case]  #: the case of an item; picklable
-    model_of: Callable[[ItemT], str]
-    work: ChunkWork | None = None  #: what is done with some items in place of their runs
-
-    def run(self, runner: Runner, batches: Iterable[Sequence[ItemT]]) -> None:
-        """Note the rows of earlier attempts, then run the items that are missing; see `compute`."""
-        self.compute(
-            runner,
-            batches,
-            lambda items: runner.rows(self.what, items, self.make, self.model_of, self.work),
-        )

@@ -37,7 +37,7 @@ from fem.run.solve import chosen_values
 from fem.runtime.arrays import BoolArray
 from fem.study.axes import Axis
 from fem.study.containers import container_key
-from fem.study.design import CopyItem, Sweep
+from fem.study.design import Item, Sweep
 from fem.study.log import LoggedRuns
 from fem.study.perturbation import SMALL, around, band_width, coarse_cells, near_cells
 from fem.study.runner import MARGIN, Runner, check_chunk
@@ -161,7 +161,6 @@ REACH = 2
 class PerturbedRow:
     """A perturbed copy of a cell."""
 
-    line: str  #: as in the log
     copy: Copy
     run: RunShown
     level: int  #: how it differs from the cell, see `fem.assessment.sureness`; a failed one as if it ended otherwise
@@ -174,6 +173,7 @@ class PerturbedRows:
         self._cells = cells
         self.copies = CellCopies(sweep)
         self.rows: dict[int, dict[int, PerturbedRow]] = {}  #: by cell and number of the copy
+        self.log: LoggedRuns[Item] | None = None
         #: by name: a change, and which cells' outcome it turns, (n_cells,)
         self.turned: dict[str, tuple[Copy, BoolArray]] = {}
 
@@ -186,16 +186,11 @@ class PerturbedRows:
         level = OTHER_END
         if run.outcome is not None:
             level = difference(own, run, self.copies.width(cell))
-        self.rows.setdefault(cell, {})[number] = PerturbedRow(line=line, copy=copy, run=run, level=level)
+        self.rows.setdefault(cell, {})[number] = PerturbedRow(copy=copy, run=run, level=level)
         # Draws are to find what overturns; half of them turn rest to sliding, by the start alone.
         if level == OTHER_END or (run.outcome != own.outcome and not copy.drawn):
             nowhere: BoolArray = np.zeros(self._cells.kind.size, dtype=bool)
             self.turned.setdefault(copy.name, (copy, nowhere))[1][cell] = True
-
-    def lines(self) -> Iterator[str]:
-        """The log, in the order of cells and copies."""
-        for _, copies in sorted(self.rows.items()):
-            yield from (copy.line for _, copy in sorted(copies.items()))
 
     def unsure(self, *, drawn: bool = True) -> BoolArray:
         """Which cells are unsure, (n_cells,): those that failed, or have a copy that ends otherwise or fails."""
@@ -288,19 +283,21 @@ def perturb_cells(runner: Runner, sweep: Sweep, cells: CellRows, log: Path) -> P
     if chosen == "none" or (chosen == "auto" and sweep.base.solver.model == "full"):
         return None
     perturbed = PerturbedRows(sweep, cells)
-    LoggedRuns(
+    perturbed.log = LoggedRuns(
         what="perturbed copies",
         path=log,
         columns=COLUMNS,
-        make=sweep.copy_case,
-        model_of=lambda item: sweep.model_of(item.cell),
+        make=sweep.make.case,
+        model_of=sweep.model_of,
         key=_key,
+        ids=2,
         note=perturbed.note,
-    ).run(runner, _missing(sweep, cells, perturbed))
+    )
+    perturbed.log.run(runner, _missing(sweep, cells, perturbed))
     return perturbed
 
 
-def _missing(sweep: Sweep, cells: CellRows, perturbed: PerturbedRows) -> Iterator[list[CopyItem]]:
+def _missing(sweep: Sweep, cells: CellRows, perturbed: PerturbedRows) -> Iterator[list[Item]]:
     """Copies that are not there yet: single changes and pairs, then draws."""
     axes, shape = sweep.axes, sweep.shape
     decided = cells.decided.reshape(shape)
@@ -324,7 +321,7 @@ def _closing_in(
     drawn: bool,
     begin: BoolArray,
     small: BoolArray,
-) -> Iterator[list[CopyItem]]:
+) -> Iterator[list[Item]]:
     """Missing copies of the cells to begin with, then of each change around the cells that it turns.
 
     Args:
@@ -362,19 +359,21 @@ def _closing_in(
 
 def _items(
     sweep: Sweep, perturbed: PerturbedRows, cells: BoolArray, wants: Callable[[int, Copy], bool]
-) -> list[CopyItem]:
+) -> list[Item]:
     """Copies of cells that are not there yet: of one container together, and within it of one change."""
     items = []
     for cell in np.flatnonzero(cells).tolist():
-        known, container = perturbed.rows.get(cell, {}), sweep.container_of(cell)
+        known, item = perturbed.rows.get(cell, {}), sweep.item(cell)
+        container = sweep.container_of(item)
         for number, copy in enumerate(perturbed.copies.of(cell)):
             if number not in known and wants(cell, copy):
-                items.append((container, copy.name, CopyItem(cell, number, copy.values, copy.change.values)))
+                made = item._replace(draw=number, unknown=copy.change.values, more=copy.values)
+                items.append((container, copy.name, made))
     return [item for _, _, item in sorted(items, key=lambda entry: (*entry[:2], entry[2].cell))]
 
 
-def _key(item: CopyItem) -> tuple[int, int, str]:
-    return item.cell, item.number, " ".join(f"{key}={value!r}" for key, value in item.change.items())
+def _key(item: Item) -> tuple[int, int, str]:
+    return item.cell, item.draw, " ".join(f"{key}={value!r}" for key, value in item.unknown.items())
 
 
 #: columns of `thresholds.csv` behind those of the other axes
@@ -393,28 +392,29 @@ def refine(runner: Runner, sweep: Sweep, cells: CellRows, log: Path) -> list[tup
     if wanted is None:
         return None
     lines = _lines_of(sweep, cells)
-    least = least_width(sweep.threshold_axis.values, wanted.resolution)
+    along, least = wanted.axis, least_width(sweep.threshold_axis.values, wanted.resolution)
 
     def note(line: str) -> None:
         row = row_of(TRIED_COLUMNS, line)
         lines[row["cell"]][row["value"]] = ending_of(row["status"], row["outcome"]).word
 
-    def between_cells() -> list[tuple[int, float]]:
+    def between_cells() -> list[Item]:
         return [
-            (first, value)
-            for first in sweep.by_container(lines)
+            item._replace(point={**item.point, along: value})
+            for item in sweep.by_container(map(sweep.item, lines))
             for value in values_to_try(
-                lines[first], resolution=wanted.resolution, inner=wanted.inner, least=least
+                lines[item.cell], resolution=wanted.resolution, inner=wanted.inner, least=least
             )
         ]
 
-    LoggedRuns(
+    LoggedRuns[Item](
         what="cases between cells",
         path=log,
         columns=TRIED_COLUMNS,
-        make=sweep.tried_case,
-        model_of=lambda item: sweep.model_of(item[0]),
-        key=lambda item: item,
+        make=sweep.make.case,
+        model_of=sweep.model_of,
+        key=lambda item: (item.cell, item.point[along]),
+        ids=2,
         note=note,
     ).run(runner, iter(between_cells, []))
     return [(first, change) for first in sorted(lines) for change in changes_of(lines[first])]
@@ -452,15 +452,16 @@ def find_margins(runner: Runner, sweep: Sweep, log: Path) -> dict[int, tuple[str
     """The fields of `MARGIN` by cell, none where none are asked for; what the log holds is not computed again."""
     if not sweep.margin:
         return {}
-    margins = LoggedRuns[int](
+    margins = LoggedRuns[Item](
         what="margins of cells",
         path=log,
         columns={"cell": int, **MARGIN},
-        make=sweep.case,
+        make=sweep.make.case,
         model_of=sweep.model_of,
-        key=lambda cell: (cell,),
-        items=sweep.by_container(range(sweep.count)),
+        key=lambda item: item[:1],
+        ids=1,
         work=partial(check_chunk, checks=CHECKS),
     )
-    margins.run(runner, iter(margins.missing, []))
+    items = sweep.by_container(map(sweep.item, range(sweep.count)))
+    margins.run(runner, iter(partial(margins.missing, items), []))
     return {cell: tuple(fields_of(line)[1:]) for (cell,), line in margins.lines.items()}

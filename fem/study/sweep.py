@@ -6,6 +6,7 @@ Every step is logged before the next begins, so an interrupted sweep continues w
 
 import time
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
@@ -22,8 +23,8 @@ from fem.results.folder import ResultFolder
 from fem.results.kinds import SWEEP
 from fem.run.expected import expected_s, expected_words
 from fem.runtime.threads import cores
-from fem.study.axes import AxisResult, with_following
-from fem.study.design import Sweep
+from fem.study.axes import AxisResult
+from fem.study.design import Item, Sweep
 from fem.study.draws import held_inputs
 from fem.study.driver import COMPLETED, FAILED, INTERRUPTED, Study, StudyOptions, hash_of, run_study
 from fem.study.log import LoggedRuns
@@ -32,7 +33,6 @@ from fem.study.motion_outcomes import write_set
 from fem.study.motions import FloorMotionPair, motion_cases, motions_left_out, read_motion_set
 from fem.study.runner import MARGIN, Runner
 from fem.study.sure import (
-    COLUMNS,
     PerturbedRows,
     band_rows,
     find_margins,
@@ -216,7 +216,7 @@ def _compute(
     result = replace(
         result,
         status=FAILED if set(rows.outcomes) == {"failed"} else COMPLETED,
-        **_write_table(place, sweep, rows, copies, margins),
+        **_write_table(place, sweep, cells, copies, margins),
     )
     place.remove(MARGINS)  # they are columns of the table
     if changes is not None:
@@ -238,7 +238,7 @@ def _compute(
 def _write_table(
     place: ResultFolder,
     sweep: Sweep,
-    cells: CellRows,
+    cells: "_Cells",
     copies: PerturbedRows | None,
     margins: Mapping[int, Sequence[str]],
 ) -> dict[str, Any]:
@@ -246,16 +246,21 @@ def _write_table(
     columns, added = band_columns(sweep.axes), dict[str, Any]()
     bands = [line_of([None] * len(columns))] * sweep.count
     if copies is not None:
-        counts, deciding, values = band_rows(sweep, cells, copies)
+        counts, deciding, values = band_rows(sweep, cells.rows, copies)
         bands = [line_of(values(cell)) for cell in range(sweep.count)]
         added = {
             "unsure": counts[UNSURE],
             "sure": {word: counts[word] for word in (SURE, REGIME_UNSURE, UNSURE)},
             "decided_by": dict(deciding.most_common()),
         }
-        place.write_text(MEMBERS, table_of_lines(COLUMNS, copies.lines()))
-    lines = (",".join([cells.lines[cell], band, *margins.get(cell, ())]) for cell, band in enumerate(bands))
-    place.write_text(TABLE, table_of_lines((*cells.columns, *columns, *(MARGIN if margins else ())), lines))
+        assert copies.log is not None
+        place.write_text(MEMBERS, copies.log.table())
+    lines = (
+        ",".join([cells.log.lines[cell,], band, *margins.get(cell, ())]) for cell, band in enumerate(bands)
+    )
+    place.write_text(
+        TABLE, table_of_lines((*cells.rows.columns, *columns, *(MARGIN if margins else ())), lines)
+    )
     return added
 
 
@@ -267,10 +272,21 @@ class _Cells:
     place: ResultFolder
     begun: SweepResult
     rows: CellRows = field(init=False)
+    log: LoggedRuns[Item] = field(init=False)
     updated: float = field(default=0.0, init=False)
 
     def __post_init__(self) -> None:
         self.rows = CellRows(self.sweep)
+        self.log = LoggedRuns[Item](
+            what="cells",
+            path=self.place.path / ROWS,
+            columns=self.rows.columns,
+            make=self.sweep.make.case,
+            model_of=self.sweep.model_of,
+            key=self._key,
+            ids=1,
+            note=self._note,
+        )
 
     def compute(self, runner: Runner) -> None:
         """The rows that are missing; those of a finished table whose band is to be another are kept."""
@@ -282,20 +298,12 @@ class _Cells:
             kept = (line_of(fields_of(line)[: len(columns)]) for line in lines)
             self.place.write_text(ROWS, table_of_lines(columns, kept))
         self.place.remove(TABLE)
-        LoggedRuns(
-            what="cells",
-            path=log,
-            columns=columns,
-            make=self.sweep.case,
-            model_of=self.sweep.model_of,
-            key=self._key,
-            note=self._note,
-        ).run(runner, self._missing())
+        self.log.run(runner, self._missing())
 
     def counted(self) -> SweepResult:
         """The result so far."""
         outcomes = dict(sorted(self.rows.outcomes.items()))
-        return replace(self.begun, rows=len(self.rows.lines), outcomes=outcomes)
+        return replace(self.begun, rows=len(self.rows.runs), outcomes=outcomes)
 
     def update(self) -> None:
         """Write how many rows there are."""
@@ -303,20 +311,18 @@ class _Cells:
         self.place.check()
         self.place.write_result(self.counted().to_json())
 
-    def _missing(self) -> Iterator[list[int]]:
-        yield self.sweep.by_container(set(range(self.sweep.count)) - self.rows.lines.keys())
+    def _missing(self) -> Iterator[list[Item]]:
+        left = sorted(set(range(self.sweep.count)) - self.rows.runs.keys())
+        yield self.sweep.by_container(map(self.sweep.item, left))
 
-    def _key(self, cell: int) -> Iterator[Any]:
-        point = self.sweep.point(cell)
-        following = with_following(self.sweep.axes, point)
-        yield cell
-        yield from point.values()
-        yield from (following.get(key) for axis in self.sweep.axes for key in axis.following)
+    def _key(self, item: Item) -> Iterator[Any]:
+        yield item.cell
+        yield from (item.point[axis.key] for axis in self.sweep.axes)
+        yield from (item.point.get(key) for axis in self.sweep.axes for key in axis.following)
         if self.sweep.derived:
-            try:
-                values = self.sweep.values(point)
-            except CaseError:  # the row has the reason
-                values = {}
+            values: Mapping[str, Any] = {}
+            with suppress(CaseError):  # the row has the reason
+                values = self.sweep.make.values(item.point)
             yield from (values.get(quantity.key) for quantity in self.sweep.derived)
 
     def _note(self, line: str) -> None:

@@ -390,7 +390,6 @@ class CellRows:
 
     def __init__(self, sweep: Sweep) -> None:
         self.columns = row_columns(sweep.axes, (quantity.key for quantity in sweep.derived))
-        self.lines: dict[int, str] = {}  #: row of each cell, as in the log
         self.runs: dict[int, RunShown] = {}
         self.kind: IntArray = np.full(sweep.count, Ending.UNKNOWN)  #: endings, (n_cells,)
         self.ratio: FloatArray = np.full(sweep.count, np.nan)  #: (n_cells,)
@@ -399,11 +398,8 @@ class CellRows:
     def note(self, line: str) -> None:
         """Add a line of the log."""
         row = row_of(self.columns, line)
-        cell = row["cell"]
-        if cell in self.lines:
-            return
-        run = shown_in(row)
-        self.lines[cell], self.runs[cell], self.kind[cell] = line, run, run.kind
+        cell, run = row["cell"], shown_in(row)
+        self.runs[cell], self.kind[cell] = run, run.kind
         if row[TURNED] is not None:
             self.ratio[cell] = row[TURNED]
         self.outcomes[run.outcome or "failed"] += 1

@@ -56,7 +56,7 @@ def changes_of(case: Case) -> dict[str, dict[str, Any]]:
 def flips(sweep: Sweep, table: SweepTable, cells: list[int]) -> list[list[tuple[str, str]]]:
     """For each cell the changes that flip it, by name and key."""
     asked = [(cell, name, values) for cell in cells for name, values in changes_of(sweep.case(cell)).items()]
-    rows = run_cases([sweep.case_at(sweep.point(cell), values) for cell, _, values in asked])
+    rows = run_cases([sweep.make.case(sweep.item(cell)._replace(more=values)) for cell, _, values in asked])
     found: dict[int, list[tuple[str, str]]] = {cell: [] for cell in cells}
     for (cell, name, values), row in zip(asked, rows, strict=True):
         own = ending_of(str(table["status"][cell]), str(table["outcome"][cell]))

@@ -52,20 +52,22 @@ def test_each_motion_is_drawn_equally_often(ensemble_of, sampling):
     ensemble = ensemble_of(sampling=sampling)
     assert ensemble.replicates == 3
     draws = ensemble.draws_at(1)
-    assert [draw.values[0] for draw in draws] == ["a_h.csv"] * 4 + ["b_h.csv"] * 4 + ["c_h.csv"] * 4
-    frictions = np.array([draw.values[1] for draw in draws])
+    assert [draw.drawn["motion.file"] for draw in draws] == ["a_h.csv"] * 4 + ["b_h.csv"] * 4 + [
+        "c_h.csv"
+    ] * 4
+    frictions = np.array([draw.drawn["contact.mu_static"] for draw in draws])
     assert len(np.unique(frictions)) == 12
     if sampling:  # one in each quarter of the range, for every motion
         quarters = np.sort(np.floor((frictions.reshape(3, 4) - 0.3) / 0.075), axis=1)
         assert (quarters == [0, 1, 2, 3]).all()
-    case = ensemble.case(draws[5])
+    case = ensemble.make.case(draws[5])
     assert (case.motion.file, case.vertical.file, case.motion.scale) == ("b_h.csv", "b_v.csv", 2.0)
-    assert ensemble.case(draws[11]).vertical.kind == "none"
+    assert ensemble.make.case(draws[11]).vertical.kind == "none"
 
 
 def test_a_list_is_drawn_evenly(ensemble_of):
     ensemble = ensemble_of(FRICTION + '"support.kind" = ["corners", "flat"]\n', sampling='sampling = "sobol"')
-    kinds = [ensemble.case(draw).support.kind for draw in ensemble.draws_at(0)]
+    kinds = [ensemble.make.case(draw).support.kind for draw in ensemble.draws_at(0)]
     assert [kinds[k : k + 4].count("flat") for k in (0, 4, 8)] == [2, 2, 2]
 
 

@@ -83,10 +83,10 @@ def test_unknown_inputs_are_drawn_beside_those_of_the_file(tmp_path):
     )
     assert unknown.held == ""
     draws = unknown.draws_at(1)
-    assert [draw.values for draw in draws] == [draw.values for draw in drawn.draws_at(1)]
+    assert [draw.drawn for draw in draws] == [draw.drawn for draw in drawn.draws_at(1)]
     assert {draw.unknown["motion.ramp_cycles"] for draw in draws} == {0.0, 0.74999999925}
     for draw in draws:
-        case = drawn.case(draw)
+        case = drawn.make.case(draw)
         assert case.motion.ramp_cycles == draw.unknown["motion.ramp_cycles"]
         assert 0.0 <= case.contact.weakening_m <= 5e-3
         assert 1.0 <= case.contact.damping_ratio <= 4.0
@@ -109,7 +109,7 @@ def test_joints_of_a_loose_stack_are_drawn_apart_from_the_floor(tmp_path):
     unknown = UnknownInputs(drawn)
     assert {"joints.mu_static", "joints.mu_kinetic", "joints.weakening_m"} < set(unknown.keys)
     for draw in unknown.draws_at(1):
-        between = drawn.case(draw).joint_friction
+        between = drawn.make.case(draw).joint_friction
         assert between == {key: draw.unknown[f"joints.{key}"] for key in between}
 
 
@@ -193,7 +193,7 @@ def test_a_draw_that_slides_beyond_the_limit_does_not_stand(tmp_path):
 def test_shipped_ensembles_can_be_read(name):
     ensemble = load_ensemble(name)
     assert isinstance(ensemble, Ensemble)
-    case = ensemble.case(ensemble.draws_at(0)[0])
+    case = ensemble.make.case(ensemble.draws_at(0)[0])
     assert case.contact.mu_kinetic < case.contact.mu_static
 
 

@@ -15,8 +15,8 @@ from fem.case.validation import CaseError
 from fem.cli.batch import page_of
 from fem.results.figures import SCALARS
 from fem.run.compute import compute
-from fem.study.hall import HallResult, run_hall, weakness
-from fem.study.list_file import read_hall
+from fem.study.hall import run_hall, weakness
+from fem.study.list_file import HallResult, read_hall
 from fem.study.table import table_text
 
 BASE = """

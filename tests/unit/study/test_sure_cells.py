@@ -12,7 +12,6 @@ from fem.run.changed_runs_file import key_of
 from fem.run.compute import compute
 from fem.run.outcome import run_without_history
 from fem.study.axes import Axis
-from fem.study.design import CopyItem
 from fem.study.draws import held_inputs
 from fem.study.file import load_sweep
 from fem.study.perturbation import around, coarse_cells
@@ -42,7 +41,11 @@ def test_every_copy_of_a_cell_is_another_case(sweep_of):
     sweep = sweep_of(SMALL)
     copies = CellCopies(sweep).of(7)
     assert len({copy.name for copy in copies}) == len(copies)
-    cases = [sweep.case_at(sweep.point(7), copy.change.values).contact for copy in copies if not copy.small]
+    cases = [
+        sweep.make.case(sweep.item(7)._replace(more=copy.change.values)).contact
+        for copy in copies
+        if not copy.small
+    ]
     assert all(case.mu_kinetic <= case.mu_static for case in cases)
     values = [dict(copy.change.values) for copy in copies]
     assert all(values.count(one) == 1 for one in values)
@@ -75,9 +78,9 @@ def test_a_copy_of_a_cell_is_the_member_of_the_band_of_its_run(sweep_of):
     band = compute(sweep.case(0), band=True, margin=False).verdict.band
     members = {key_of(one.values): one for one in band.members if one.kind == "one"}
     found = {}
-    for number, copy in enumerate(CellCopies(sweep).of(0)):
+    for copy in CellCopies(sweep).of(0):
         if key_of(copy.change.values) in members:
-            model = build_model(sweep.copy_case(CopyItem(0, number, copy.values, copy.change.values)))
+            model = build_model(sweep.make.case(sweep.item(0)._replace(more=copy.values)))
             found[key_of(copy.change.values)] = run_without_history(model, None)[0]
     assert {"contact.mu_static", "container.eccentricity_m"} <= {key for some in found for key, _ in some}
     for key, verdict in found.items():
@@ -94,8 +97,8 @@ def test_copies_of_a_loose_cell_change_floor_and_joints_apart(sweep_of):
     sweep = sweep_of(LOOSE.replace("count = 5", "count = 2"))
     copies = CellCopies(sweep).of(0)
     own = sweep.case(0).joint_friction
-    for number, copy in enumerate(copies):
-        case = sweep.copy_case(CopyItem(0, number, copy.values, copy.change.values))
+    for copy in copies:
+        case = sweep.make.case(sweep.item(0)._replace(more=copy.values))
         kept = not any(f"joints.{key}" in copy.change.values for key in own)
         assert (case.joint_friction == own) == kept
     assert keys_of(sweep) >= {*(f"joints.{key}" for key in own), "joints.damping_ratio"}

@@ -44,7 +44,7 @@ def test_a_cell_is_the_base_with_its_keys_set(sweep_of):
     )
     for cell in range(sweep.count):
         case = sweep.case(cell)
-        long_way = sweep.base.with_values(sweep.values(sweep.point(cell)) | {"output.fields_s": 0.0})
+        long_way = sweep.base.with_values(sweep.make.values(sweep.point(cell)) | {"output.fields_s": 0.0})
         assert case == long_way
         assert case.given() == long_way.given()
         assert case_hash(case) == case_hash(long_way)
@@ -59,7 +59,7 @@ def test_derived_keys_follow_axes_defaults_and_one_another(sweep_of):
     )
     # mu_kinetic is given by neither: its default follows mu_static, cell by cell
     assert sweep.base.contact.mu_kinetic == 0.2
-    values = sweep.values(sweep.point(3))
+    values = sweep.make.values(sweep.point(3))
     assert values["container.centroid_m"] == pytest.approx(0.8)
     assert values["initial.velocity_m_s"] == pytest.approx(1.6 + 0.2)
 

@@ -10,7 +10,7 @@ SCRIPT = dedent(
     """
     import os, sys, threading
     os.environ["OPENBLAS_NUM_THREADS"] = "1"
-    from fem.batch import workers
+    from fem.study import workers
 
     def told():
         return getattr(workers, "told", "nothing"), os.getpid() == int(os.environ["PARENT"])
