@@ -66,7 +66,7 @@ def batch(
     if result.state == "finished" and (
         not page.is_file() or page.stat().st_mtime_ns < mark.stat().st_mtime_ns
     ):
-        write_atomically(page, importlib.import_module("fem.report.hall_page").hall_report(folder))
+        write_atomically(page, importlib.import_module("fem.report.study_page").hall_report(folder))
     if pdf and result.status == "completed":
         print(print_to_pdf(folder / "report.html"))
     return print_result(result, HALL, folder, page_of(result, folder), as_json=flags.as_json)

@@ -32,7 +32,6 @@ from fem.study.axes import (
 )
 from fem.study.design import (
     FREE,
-    Derived,
     Ensemble,
     MapChoice,
     Sweep,
@@ -230,9 +229,12 @@ def require_once(changes: Mapping[str, Any], varied: Sequence[str], base: Case) 
             raise CaseError(f"{key!r} of a record is its {effect!r}, which varies as well; leave one out")
 
 
-MOST_AXES = 4
-#: cells that are built to find bad values before anything is computed
-TRIED = 64
+MOST_AXES, MOST_POINT_AXES, MOST_RANDOM = 4, 3, 8
+MOST_RUNS = 1_000_000  #: of an ensemble
+TRIED = 64  #: cases that are built to find bad values before anything is computed
+REPLICATES = 16
+SWEEP_TABLES = ("set", "axes", "derived", "perturbation", "threshold", "maps")
+ENSEMBLE_TABLES = ("set", "axes", "random", "derived")
 
 
 class SweepHeading(CaseTable):
@@ -246,150 +248,6 @@ class SweepHeading(CaseTable):
     margin: bool = Field(
         default=False, description="find the factor on the motion at which each cell overturns first"
     )
-
-
-SWEEP_TABLES = ("set", "axes", "derived", "perturbation", "threshold", "maps")
-
-
-def load_sweep(name_or_path: str | Path) -> Sweep:
-    """Read a sweep file, or a shipped sweep.
-
-    Raises:
-        CaseError: with one line for each reason why it cannot be used.
-    """
-    return read_study(SWEEPS.find(name_or_path), _read_sweep)
-
-
-def _read_sweep(data: Mapping[str, Any], origin: Origin) -> Sweep:
-    given, tables = split_tables(data, SWEEP_TABLES)
-    heading = read_as("", SweepHeading, given)
-    axes = read_axes(
-        flat("axes", tables.get("axes", {})),
-        MOST_AXES,
-        '"contact.mu_static" = [0.2, 0.3, 0.4]',
-        read_axis,
-    )
-    base = base_case(
-        heading.case, tables.get("set", {}), origin, first_motion(axes), [axis.key for axis in axes]
-    )
-    require_verticals(axes, [axis.key for axis in axes], base)
-    derived = _derived_sweep(tables.get("derived", {}), base, axes)
-    varied = [axis.key for axis in axes] + [quantity.key for quantity in derived]
-    require_once(tables.get("set", {}), varied, base)
-    sweep = Sweep(
-        name=origin.name,
-        text=origin.text,
-        title=heading.title,
-        base=base,
-        axes=axes,
-        derived=derived,
-        perturbation=read_as("perturbation", Perturbation, tables.get("perturbation", {})),
-        threshold=_threshold(tables, axes),
-        maps=_maps(tables.get("maps", {}), axes),
-        limit_slip_m=heading.limit_slip_m,
-        margin=heading.margin,
-    )
-    _try_cells(sweep)
-    return sweep
-
-
-def _derived_sweep(content: Mapping[str, Any], base: Case, axes: tuple[Axis, ...]) -> tuple[Derived, ...]:
-    values = {axis.key: axis.values for axis in axes}
-
-    def check_reference(name: str) -> None:
-        field_of(name)
-        if any(isinstance(value, str | bool) for value in values.get(name, ())):
-            raise AxisError("has values that are no numbers")
-        first = {key: axis_values[0] for key, axis_values in values.items()}
-        if name not in values and value_in(base, name, first) is None:
-            raise AxisError(
-                f"has no number in the base case {base.name!r}; set it under [set], or refer to a key that is "
-                "given there"
-            )
-
-    return read_derived(flat("derived", content), values, check_varied, check_reference)
-
-
-def _threshold(tables: Mapping[str, Any], axes: tuple[Axis, ...]) -> Threshold | None:
-    if "threshold" not in tables:
-        return None
-    threshold = read_as("threshold", Threshold, tables["threshold"])
-    known = {axis.key: axis for axis in axes}
-    if threshold.axis not in known:
-        raise CaseError(
-            f"[threshold] axis {threshold.axis!r} is none of the axes{hint(threshold.axis, known)} "
-            f"(axes: {', '.join(known)})"
-        )
-    if not known[threshold.axis].is_numeric:
-        raise CaseError(f"[threshold] axis {threshold.axis!r} needs two or more numbers that rise")
-    if any(isinstance(value, int) for value in known[threshold.axis].values):
-        raise CaseError(
-            f"[threshold] axis {threshold.axis!r} takes whole numbers: there is nothing between its cells"
-        )
-    return threshold
-
-
-def _maps(content: Mapping[str, Any], axes: tuple[Axis, ...]) -> MapChoice:
-    fixed = content.get("fixed", {})
-    given = dict(content) | ({"fixed": flat("maps.fixed", fixed)} if isinstance(fixed, dict) else {})
-    choice = read_as("maps", MapChoice, given)
-    known = {axis.key: axis.values for axis in axes}
-    for key in (choice.x, choice.y, *choice.fixed):
-        if key is not None and key not in known:
-            raise CaseError(
-                f"[maps] {key!r} is none of the axes{hint(key, known)} (axes: {', '.join(known)})"
-            )
-    for key, value in choice.fixed.items():
-        if value not in known[key]:
-            listed = ", ".join(map(str, known[key]))
-            raise CaseError(f"[maps] {key!r} has no value {value!r} (values: {listed})")
-        if key in (choice.x, choice.y):
-            raise CaseError(f"[maps] {key!r} cannot span the map and be fixed as well")
-    if len(axes) > 1 and len(axes) - len(choice.fixed) < 2:
-        raise CaseError("[maps] a map needs two axes that are not fixed")
-    if choice.x is not None and choice.x == choice.y:
-        raise CaseError(f"[maps] a map needs two axes, got {choice.x!r} twice")
-    return choice
-
-
-def _try_cells(sweep: Sweep) -> None:
-    """Make the cases at the corners of the grid, and those of every listed value.
-
-    Raises:
-        CaseError: one of them cannot be used, or an axis has no effect in any.
-    """
-    ends = [axis.values if axis.scale == "list" else (axis.values[0], axis.values[-1]) for axis in sweep.axes]
-    idle = [True] * len(sweep.axes)
-    for corner in islice(product(*ends), TRIED):
-        point = {axis.key: value for axis, value in zip(sweep.axes, corner, strict=True)}
-        try:
-            case = sweep.base.with_values(sweep.make.values(with_following(sweep.axes, point)))
-        except CaseError as error:
-            where = ", ".join(f"{key} = {value}" for key, value in point.items())
-            raise CaseError(f"{error}\n[axes] make this cell: {where}") from None
-        for k, axis in enumerate(sweep.axes):
-            idle[k] = idle[k] and _is_idle(case, axis.key)
-    for axis, unused in zip(sweep.axes, idle, strict=True):
-        if unused:
-            raise CaseError(
-                f"[axes] {axis.key!r} has no effect in this case, which has other options; "
-                "choose the option it belongs to under [set], or leave the axis out"
-            )
-
-
-def _is_idle(case: Case, key: str) -> bool:
-    (key,) = keys_in_effect({key: None}, case.kinds)
-    table, _, name = key.rpartition(".")
-    if key == "solver.elastic_modes":
-        return case.solver.model != "reduced"
-    return bool(table) and table not in ROWS and getattr(case, table).is_idle(name)
-
-
-ENSEMBLE_TABLES = ("set", "axes", "random", "derived")
-MOST_POINT_AXES, MOST_RANDOM = 3, 8
-MOST_RUNS = 1_000_000
-REPLICATES = 16
-EXAMPLE = '"motion.peak_acceleration_m_s2" = { from = 2.0, to = 10.0, count = 17 }'
 
 
 class EnsembleHeading(CaseTable):
@@ -419,6 +277,15 @@ class EnsembleHeading(CaseTable):
     )
 
 
+def load_sweep(name_or_path: str | Path) -> Sweep:
+    """Read a sweep file, or a shipped sweep.
+
+    Raises:
+        CaseError: with one line for each reason why it cannot be used.
+    """
+    return read_study(SWEEPS.find(name_or_path), _read_sweep)
+
+
 def load_ensemble(name_or_path: str | Path) -> Ensemble:
     """Read an ensemble file, or a shipped one.
 
@@ -428,50 +295,159 @@ def load_ensemble(name_or_path: str | Path) -> Ensemble:
     return read_study(ENSEMBLES.find(name_or_path), _read_ensemble)
 
 
-def _read_ensemble(data: Mapping[str, Any], origin: Origin) -> Ensemble:
-    heading_keys, tables = split_tables(data, ENSEMBLE_TABLES)
-    heading = read_as("", EnsembleHeading, heading_keys)
-    axes = read_axes(tables.get("axes", {}), MOST_POINT_AXES, EXAMPLE, _axis)
-    random = _random(tables.get("random", {}), axes)
-    sets = sets_among(random)
-    base = base_case(
-        heading.case, tables.get("set", {}), origin, first_motion(sets), [axis.key for axis in axes]
-    )
-    if base.solver.model == "full":
-        raise CaseError(
-            '[set] "solver.model" must be "rigid" or "reduced": an ensemble of the full model would take weeks'
-        )
-    varied_keys = [*(axis.key for axis in axes), *(quantity.key for quantity in random)]
-    require_verticals(sets, varied_keys, base)
-    drawn = [quantity.key for quantity in random if not quantity.relative]
-    replicates = 1 if heading.sampling == "independent" else heading.replicates
-    varied = [*(axis.key for axis in axes), *drawn, *tables.get("derived", {})]
-    require_once(tables.get("set", {}), varied, base)
-    ensemble = Ensemble(
+def _read_sweep(data: Mapping[str, Any], origin: Origin) -> Sweep:
+    given, tables = split_tables(data, SWEEP_TABLES)
+    heading = read_as("", SweepHeading, given)
+    example = '"contact.mu_static" = [0.2, 0.3, 0.4]'
+    axes = read_axes(flat("axes", tables.get("axes", {})), MOST_AXES, example, read_axis)
+    keys, values = [axis.key for axis in axes], {axis.key: axis.values for axis in axes}
+    base = base_case(heading.case, tables.get("set", {}), origin, first_motion(axes), keys)
+    require_verticals(axes, keys, base)
+
+    def check_reference(name: str) -> None:
+        field_of(name)
+        if any(isinstance(value, str | bool) for value in values.get(name, ())):
+            raise AxisError("has values that are no numbers")
+        if (
+            name not in values
+            and value_in(base, name, {key: some[0] for key, some in values.items()}) is None
+        ):
+            raise AxisError(
+                f"has no number in the base case {base.name!r}; set it under [set], or refer to a key that is "
+                "given there"
+            )
+
+    derived = read_derived(flat("derived", tables.get("derived", {})), values, check_varied, check_reference)
+    require_once(tables.get("set", {}), [*keys, *(quantity.key for quantity in derived)], base)
+    sweep = Sweep(
         name=origin.name,
         text=origin.text,
         title=heading.title,
         base=base,
         axes=axes,
+        derived=derived,
+        perturbation=read_as("perturbation", Perturbation, tables.get("perturbation", {})),
+        threshold=_threshold(tables, axes),
+        maps=_maps(tables.get("maps", {}), values),
+        limit_slip_m=heading.limit_slip_m,
+        margin=heading.margin,
+    )
+    _try_cells(sweep)
+    return sweep
+
+
+def _threshold(tables: Mapping[str, Any], axes: tuple[Axis, ...]) -> Threshold | None:
+    if "threshold" not in tables:
+        return None
+    threshold = read_as("threshold", Threshold, tables["threshold"])
+    named, known = f"[threshold] axis {threshold.axis!r}", {axis.key: axis for axis in axes}
+    if threshold.axis not in known:
+        raise CaseError(
+            f"{named} is none of the axes{hint(threshold.axis, known)} (axes: {', '.join(known)})"
+        )
+    if not known[threshold.axis].is_numeric:
+        raise CaseError(f"{named} needs two or more numbers that rise")
+    if any(isinstance(value, int) for value in known[threshold.axis].values):
+        raise CaseError(f"{named} takes whole numbers: there is nothing between its cells")
+    return threshold
+
+
+def _maps(content: Mapping[str, Any], known: Mapping[str, tuple[Any, ...]]) -> MapChoice:
+    fixed = content.get("fixed", {})
+    flattened = {"fixed": flat("maps.fixed", fixed)} if isinstance(fixed, dict) else {}
+    choice = read_as("maps", MapChoice, {**content, **flattened})
+    for key in (choice.x, choice.y, *choice.fixed):
+        if key is not None and key not in known:
+            raise CaseError(
+                f"[maps] {key!r} is none of the axes{hint(key, known)} (axes: {', '.join(known)})"
+            )
+    for key, value in choice.fixed.items():
+        if value not in known[key]:
+            listed = ", ".join(map(str, known[key]))
+            raise CaseError(f"[maps] {key!r} has no value {value!r} (values: {listed})")
+        if key in (choice.x, choice.y):
+            raise CaseError(f"[maps] {key!r} cannot span the map and be fixed as well")
+    if len(known) > 1 and len(known) - len(choice.fixed) < 2:
+        raise CaseError("[maps] a map needs two axes that are not fixed")
+    if choice.x is not None and choice.x == choice.y:
+        raise CaseError(f"[maps] a map needs two axes, got {choice.x!r} twice")
+    return choice
+
+
+def _try_cells(sweep: Sweep) -> None:
+    """Make the cases at the corners of the grid, and those of every listed value.
+
+    Raises:
+        CaseError: one of them cannot be used, or an axis has no effect in any.
+    """
+    ends = [axis.values if axis.scale == "list" else (axis.values[0], axis.values[-1]) for axis in sweep.axes]
+    idle = {axis.key for axis in sweep.axes}
+    for corner in islice(product(*ends), TRIED):
+        point = {axis.key: value for axis, value in zip(sweep.axes, corner, strict=True)}
+        try:
+            case = sweep.base.with_values(sweep.make.values(with_following(sweep.axes, point)))
+        except CaseError as error:
+            where = ", ".join(f"{key} = {value}" for key, value in point.items())
+            raise CaseError(f"{error}\n[axes] make this cell: {where}") from None
+        idle = {key for key in idle if _is_idle(case, key)}
+    for key in point:
+        if key in idle:
+            raise CaseError(
+                f"[axes] {key!r} has no effect in this case, which has other options; "
+                "choose the option it belongs to under [set], or leave the axis out"
+            )
+
+
+def _is_idle(case: Case, key: str) -> bool:
+    (key,) = keys_in_effect({key: None}, case.kinds)
+    table, _, name = key.rpartition(".")
+    if key == "solver.elastic_modes":
+        return case.solver.model != "reduced"
+    return bool(table) and table not in ROWS and getattr(case, table).is_idle(name)
+
+
+def _read_ensemble(data: Mapping[str, Any], origin: Origin) -> Ensemble:
+    given, tables = split_tables(data, ENSEMBLE_TABLES)
+    heading, derived = read_as("", EnsembleHeading, given), tables.get("derived", {})
+    example = '"motion.peak_acceleration_m_s2" = { from = 2.0, to = 10.0, count = 17 }'
+    axes = read_axes(tables.get("axes", {}), MOST_POINT_AXES, example, _point_axis)
+    keys = [axis.key for axis in axes]
+    random = _random(tables.get("random", {}), keys)
+    sets = sets_among(random)
+    base = base_case(heading.case, tables.get("set", {}), origin, first_motion(sets), keys)
+    if base.solver.model == "full":
+        raise CaseError(
+            '[set] "solver.model" must be "rigid" or "reduced": an ensemble of the full model would take weeks'
+        )
+    varied = [*keys, *(quantity.key for quantity in random)]
+    require_verticals(sets, varied, base)
+    drawn = [quantity.key for quantity in random if not quantity.relative]
+    require_once(tables.get("set", {}), [*keys, *drawn, *derived], base)
+
+    def check_reference(name: str) -> None:
+        _check_key(name)
+        if name.startswith(FREE) and name not in varied:
+            raise AxisError("is neither an axis nor drawn")
+
+    own = heading.model_dump(exclude={"case", "replicates"})
+    replicates = 1 if heading.sampling == "independent" else heading.replicates
+    ensemble = Ensemble(
+        name=origin.name,
+        text=origin.text,
+        base=base,
+        axes=axes,
         random=random,
         relative=frozenset(quantity.key for quantity in random if quantity.relative),
-        derived=_derived_ensemble(tables.get("derived", {}), varied_keys),
-        draws=heading.draws,
-        seed=heading.seed,
-        sampling=heading.sampling,
+        derived=read_derived(derived, varied, _check_key, check_reference),
         replicates=len(sets[0].values) if sets else replicates,
-        confidence=heading.confidence,
-        probability=heading.probability,
-        unknown_inputs=heading.unknown_inputs,
-        limit_slip_m=heading.limit_slip_m,
-        copy_motions=heading.copy_motions,
+        **own,
     )
     _check_draws(ensemble)
     _try_cases(ensemble)
     return ensemble
 
 
-def _axis(key: str, value: Any) -> Axis:
+def _point_axis(key: str, value: Any) -> Axis:
     # A free variable takes any number, as the scale of a table of motion does.
     axis = replace(read_axis("motion.scale" if key.startswith(FREE) else key, value), key=key)
     if not all(isinstance(number, float | int) and not isinstance(number, bool) for number in axis.values):
@@ -481,7 +457,12 @@ def _axis(key: str, value: Any) -> Axis:
     return axis
 
 
-def _random(content: Mapping[str, Any], axes: tuple[Axis, ...]) -> tuple[RandomQuantity | RandomChoice, ...]:
+def _check_key(key: str) -> None:
+    if not key.startswith(FREE):
+        check_varied(key)
+
+
+def _random(content: Mapping[str, Any], axes: Collection[str]) -> tuple[RandomQuantity | RandomChoice, ...]:
     if not 1 <= len(content) <= MOST_RANDOM:
         example = '"motion.phase_rad" = { distribution = "uniform", from = 0.0, to = 6.2832 }'
         raise CaseError(
@@ -491,30 +472,14 @@ def _random(content: Mapping[str, Any], axes: tuple[Axis, ...]) -> tuple[RandomQ
     for key, value in content.items():
         try:
             _check_key(key)
-            quantity = read_random(key, value)
+            quantities.append(read_random(key, value))
         except AxisError as error:
             raise CaseError(f"[random] {key!r} {error}") from None
-        if any(axis.key == key for axis in axes) and not quantity.relative:
+        if key in axes and not quantities[-1].relative:
             raise CaseError(
                 f"[random] {key!r} is an axis as well; give the scatter about its values with relative = true"
             )
-        quantities.append(quantity)
     return tuple(quantities)
-
-
-def _derived_ensemble(content: Mapping[str, Any], varied: Collection[str]) -> tuple[Derived, ...]:
-    def check_reference(name: str) -> None:
-        if not name.startswith(FREE):
-            check_varied(name)
-        elif name not in varied:
-            raise AxisError("is neither an axis nor drawn")
-
-    return read_derived(content, varied, _check_key, check_reference)
-
-
-def _check_key(key: str) -> None:
-    if not key.startswith(FREE):
-        check_varied(key)
 
 
 def _check_draws(ensemble: Ensemble) -> None:
@@ -537,8 +502,7 @@ def _check_draws(ensemble: Ensemble) -> None:
             f"draws = {draws} cannot show a probability of {ensemble.probability:g} with confidence "
             f"{ensemble.confidence:g}, even if nothing overturned: at least {needed} are needed"
         )
-    runs = ensemble.count * draws
-    if runs > MOST_RUNS:
+    if (runs := ensemble.count * draws) > MOST_RUNS:
         raise CaseError(
             f"[axes] make {ensemble.count} points x {draws} draws = {runs} runs; at most {MOST_RUNS}"
         )
@@ -547,13 +511,12 @@ def _check_draws(ensemble: Ensemble) -> None:
 def _try_cases(ensemble: Ensemble) -> None:
     """Make the cases at the ends of axes and distributions; raises a CaseError for one that cannot be used."""
     ends = [(axis.values[0], axis.values[-1]) for axis in ensemble.axes]
-    drawn = [quantity.ends for quantity in ensemble.random]
-    for corner in islice(product(*ends, *drawn), TRIED):
-        point = {axis.key: value for axis, value in zip(ensemble.axes, corner, strict=False)}
+    keys = [*(axis.key for axis in ensemble.axes), *(quantity.key for quantity in ensemble.random)]
+    for corner in islice(product(*ends, *(quantity.ends for quantity in ensemble.random)), TRIED):
+        point = dict(zip(keys, corner[: len(ends)], strict=False))
         try:
             ensemble.make.case(ensemble.drawn(point, corner[len(ends) :]))
         except CaseError as error:
-            keys = [*(axis.key for axis in ensemble.axes), *(quantity.key for quantity in ensemble.random)]
             where = ", ".join(
                 f"{key} = {value if isinstance(value, str) else format(value, 'g')}"
                 for key, value in zip(keys, corner, strict=True)

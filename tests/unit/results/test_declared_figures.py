@@ -8,7 +8,7 @@ import pytest
 from fem.assessment.ranges import in_words
 from fem.assessment.summary import result_rows
 from fem.case.case import load_case
-from fem.report.sweep_page import QUANTITIES
+from fem.report.sweep_map import QUANTITIES
 from fem.results.figures import (
     BOX_FIGURES,
     FIGURES,

@@ -9,7 +9,7 @@ import pytest
 from motion_files import write_motion, write_pair
 
 from fem.case.case import CaseError
-from fem.report.ensemble_page import ensemble_report
+from fem.report.study_page import ensemble_report
 from fem.runtime.intervals import binomial_interval, estimate
 from fem.study.ensemble import ensemble_hash, run_ensemble
 from fem.study.file import load_ensemble

@@ -11,7 +11,7 @@ from motion_files import write_pair
 
 from fem.case.case import CaseError, load_case
 from fem.cli.sweep import page_of
-from fem.report.sweep_page import sweep_report
+from fem.report.study_page import sweep_report
 from fem.study.file import load_sweep
 from fem.study.sweep import run_sweep, sweep_hash
 from fem.study.sweep_table import open_sweep
