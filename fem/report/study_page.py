@@ -36,7 +36,9 @@ from fem.results.outcome import COUNTED, ROCKING, SLIDING, Outcome
 from fem.runtime import units
 from fem.runtime.identity import command_line
 from fem.study.answers import (
-    EnsembleAnswer,
+    Answer,
+    HalfPoint,
+    StudyAnswer,
     ends_in_words,
     ensemble_answer,
     falling_in_words,
@@ -44,14 +46,14 @@ from fem.study.answers import (
     interval_in_words,
     ranges_in_words,
 )
-from fem.study.axes import axis_label, in_words, place_in_words, unit_in_words
+from fem.study.axes import axis_label, in_words, unit_in_words
 from fem.study.driver import StudyResult, read_study
 from fem.study.fragility import EnsembleResult
 from fem.study.list_file import HallResult
 from fem.study.motion_outcomes import MEAN_TURNED, WORST_TURNED, motions_at
 from fem.study.perturbation import input_in_words
 from fem.study.sure import CHANGES, change_columns
-from fem.study.sweep_table import SweepAnswer, SweepTable, open_sweep, shown_at, sweep_answer
+from fem.study.sweep_table import SweepTable, open_sweep, shown_at, sweep_answer
 from fem.study.table import read_rows
 
 A_ROW = Mapping[str, Any]
@@ -117,7 +119,7 @@ def sweep_report(folder: Path, *, signature: Signature | None = None) -> str:
     )
 
 
-def _answers_of_sweep(answer: SweepAnswer) -> list[Column]:
+def _answers_of_sweep(answer: StudyAnswer[Answer]) -> list[Column]:
     """Where, up to where it stood, where it first overturned, the slip, what else there is to say."""
     heads = ("stood up to", "first overturned at") if answer.rising else ("stood from", "overturned up to")
     unit, rows = unit_in_words(answer.axis), answer.rows
@@ -125,7 +127,7 @@ def _answers_of_sweep(answer: SweepAnswer) -> list[Column]:
         f"{head} [{unit}]" if unit else head for head in (*heads, "stood again", "no outcome", "unsure")
     )
     every = [": every motion" if len(row.point) < len(answer.others) else "" for row in rows]
-    found = [row.answer for row in rows]
+    found = [row.found for row in rows]
     ends = [ends_in_words(one, answer.axis, bare=True) for one in found]
     noted = [
         " (slid too far)" if one.slid else " (a corner destroyed)" if one.invalid else "" for one in found
@@ -235,21 +237,21 @@ def ensemble_report(folder: Path, *, signature: Signature | None = None) -> str:
     )
 
 
-def _answers_of_ensemble(answer: EnsembleAnswer, info: EnsembleResult) -> list[Column]:
+def _answers_of_ensemble(answer: StudyAnswer[HalfPoint], info: EnsembleResult) -> list[Column]:
     """Where half of the draws overturn, for all values of the other axes."""
 
     def in_axis(value: float | None) -> str:
         return ABSENT if value is None else in_words(answer.axis, [value])
 
     few = f"at most {100.0 * info.probability:g} % {'up to' if answer.rising else 'from'}"
-    fell, found = falling_in_words(info.limit_slip_m, past=True), [crossing for _, crossing, _ in answer.rows]
+    fell, found = falling_in_words(info.limit_slip_m, past=True), [row.found for row in answer.rows]
     intervals = [
         ABSENT if one.value is None else interval_in_words(answer.axis, one, rising=answer.rising)
         for one in found
     ]
     halves = [f"{in_axis(one.value)}{' or before' if one.at_once else ''}" for one in found]
     return [
-        ("", [place_in_words(answer.others, point) for point, *_ in answer.rows]),
+        ("", [answer.where(row) for row in answer.rows]),
         (f"half of the draws {fell} at", halves),
         (f"{100.0 * info.confidence:g} % interval", intervals),
         (few, [in_axis(one.few_to) for one in found]),

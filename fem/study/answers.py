@@ -8,7 +8,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby, pairwise, takewhile
-from typing import Any, NamedTuple
+from typing import Any, Generic, NamedTuple, TypeVar
 
 from fem.results.figures import SLIPPED
 from fem.results.outcome import NOT_STANDING, Ending
@@ -31,6 +31,7 @@ MOST_RANGES = 4  #: of values that a sentence names
 MOST_ROWS = 40  #: on a screen
 MOST_FIGURES = 17  #: of a number in double precision
 
+FoundT = TypeVar("FoundT")
 Range = tuple[float, float]  #: first and last of neighbouring values, from the safe side
 
 
@@ -66,6 +67,37 @@ class Answer:
     stood_again: tuple[Range, ...] = ()  #: beyond that value, where every line was tried and stood
     failed: tuple[Range, ...] = ()  #: where a run has no outcome
     unsure: tuple[Range, ...] = ()  #: where the outcome of a run is unsure
+
+
+@dataclass(frozen=True, kw_only=True)
+class AnswerRow(Generic[FoundT]):
+    """The answer of the runs that have some values of the other axes in common."""
+
+    #: these values; without the motion where the row is that of all motions of a set
+    point: Mapping[str, Any]
+    found: FoundT
+    sentence: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class StudyAnswer(Generic[FoundT]):
+    """What a study found along one axis: an `Answer` of a sweep, a `HalfPoint` of an ensemble."""
+
+    axis: Axis
+    rising: bool  #: the smaller values are the safe ones
+    sentence: str  #: of all rows together
+    others: tuple[Axis, ...]  #: the axes that distinguish the rows
+    rows: tuple[AnswerRow[FoundT], ...]  #: those of all motions of a set first
+
+    def lines(self) -> Iterator[tuple[str, str]]:
+        """Where, and the answer; of a set of motions the rows of all of them; nothing where there are no other axes."""
+        of_sets = [row for row in self.rows if len(row.point) < len(self.others)]
+        for row in of_sets or self.rows if self.others else ():
+            yield self.where(row), row.sentence
+
+    def where(self, row: AnswerRow[FoundT]) -> str:
+        """The values of the other axes in words."""
+        return place_in_words((axis for axis in self.others if axis.key in row.point), row.point)
 
 
 def answer_axis(axes: Sequence[Axis]) -> Axis | None:
@@ -266,22 +298,6 @@ class HalfPoint:
     few_to: float | None  #: up to here the upper end of the interval is at most the given probability
 
 
-@dataclass(frozen=True, kw_only=True)
-class EnsembleAnswer:
-    """The answer of an ensemble along one axis."""
-
-    axis: Axis
-    rising: bool  #: more overturn at larger values
-    sentence: str  #: of the line of points on which half overturn first
-    others: tuple[Axis, ...]  #: the axes that distinguish its lines
-    rows: tuple[tuple[Row, HalfPoint, str], ...]  #: a point of each line, its answer, and that in words
-
-    def lines(self) -> Iterator[tuple[str, str]]:
-        """The values of the other axes in words, and the answer; nothing where there are no other axes."""
-        for point, _, sentence in self.rows if self.others else ():
-            yield place_in_words(self.others, point), sentence
-
-
 def draws_in_words(result: EnsembleResult) -> str:
     """What is counted at a point: "128 draws", "7 motions", "70 draws of 7 motions"."""
     draws, motions = result.draws, len(result.random.get(MOTION_FILE, ()))
@@ -290,7 +306,7 @@ def draws_in_words(result: EnsembleResult) -> str:
     return f"{motions} motions" if motions == draws else f"{draws} draws of {motions} motions"
 
 
-def ensemble_answer(result: EnsembleResult) -> EnsembleAnswer | None:
+def ensemble_answer(result: EnsembleResult) -> StudyAnswer[HalfPoint] | None:
     """The answer along a strength, else along the axis with the most values.
 
     Returns:
@@ -307,17 +323,19 @@ def ensemble_answer(result: EnsembleResult) -> EnsembleAnswer | None:
     for point in sorted(result.points, key=lambda row: row[axis.key], reverse=not rising):
         lines[tuple(point[other.key] for other in others)].append(point)
     rows = []
-    for values in sorted(lines):
-        crossing = half_point(axis, lines[values])
-        rows.append(
-            (lines[values][0], crossing, _sentence(result, axis, lines[values], crossing, rising=rising))
-        )
+    for _, points in sorted(lines.items()):
+        crossing = half_point(axis, points)
+        words = _half(result, axis, points, crossing, rising=rising)
+        if crossing.few_to is not None:
+            words += _few(result, axis, crossing.few_to, rising=rising)
+        sentence = words + _slips(points, crossing)
+        rows.append(AnswerRow(point=points[0], found=crossing, sentence=sentence))
     safest = min if rising else max
-    reached = [(crossing.value, k) for k, (_, crossing, _) in enumerate(rows) if crossing.value is not None]
-    few = [crossing.few_to for _, crossing, _ in rows if crossing.few_to is not None]
-    sentence = rows[0][2]
+    reached = [(row.found.value, k) for k, row in enumerate(rows) if row.found.value is not None]
+    few = [row.found.few_to for row in rows if row.found.few_to is not None]
+    sentence = rows[0].sentence
     if others and reached:
-        point, crossing, _ = rows[safest(reached)[1]]
+        point, crossing = rows[safest(reached)[1]].point, rows[safest(reached)[1]].found
         half = _half(
             result, axis, lines[tuple(point[other.key] for other in others)], crossing, rising=rising
         )
@@ -327,7 +345,7 @@ def ensemble_answer(result: EnsembleResult) -> EnsembleAnswer | None:
         sentence = f"fewer than half of {draws_in_words(result)} {fell} at every point"
     if others and len(few) == len(rows):
         sentence += _few(result, axis, safest(few), rising=rising)
-    return EnsembleAnswer(
+    return StudyAnswer(
         axis=axis, rising=rising, sentence=f"{axis_name(axis)}: {sentence}", others=others, rows=tuple(rows)
     )
 
@@ -378,13 +396,6 @@ def interval_in_words(axis: Axis, crossing: HalfPoint, *, rising: bool) -> str:
     low, high = ("" if end is None else in_words(axis, [end]) for end in (crossing.low, crossing.high))
     words = [f"{before} {first}" if low == first else low, high or f"{after} {last}"]
     return " to ".join(words if rising else reversed(words))
-
-
-def _sentence(
-    result: EnsembleResult, axis: Axis, points: Sequence[Row], crossing: HalfPoint, *, rising: bool
-) -> str:
-    few = "" if crossing.few_to is None else _few(result, axis, crossing.few_to, rising=rising)
-    return _half(result, axis, points, crossing, rising=rising) + few + _slips(points, crossing)
 
 
 def _half(

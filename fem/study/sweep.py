@@ -41,7 +41,15 @@ from fem.study.sure import (
     refine,
     table_of_changes,
 )
-from fem.study.sweep_table import TRIED, CellRows, SweepResult, band_columns, open_sweep, sweep_answer
+from fem.study.sweep_table import (
+    TRIED,
+    CellRows,
+    SweepResult,
+    answers_csv,
+    band_columns,
+    open_sweep,
+    sweep_answer,
+)
 from fem.study.table import fields_of, line_of, read_lines, table_of_lines
 
 ROWS, TABLE, MEMBERS, MARGINS, CHANGES, ANSWERS = (
@@ -226,7 +234,7 @@ def _compute(
         result = replace(result, **write_set(place, sweep, motions, rows))
     answer = sweep_answer(open_sweep(place.path), place.path)
     if answer:
-        place.write_text(ANSWERS, answer.table())
+        place.write_text(ANSWERS, answers_csv(answer))
     return replace(
         result,
         answer=answer.sentence if answer else None,

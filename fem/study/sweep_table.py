@@ -27,7 +27,16 @@ from fem.results.kinds import SWEEP, read_result
 from fem.results.outcome import Ending, ending_of
 from fem.runtime.arrays import BoolArray, FloatArray, IntArray
 from fem.runtime.units import RATIO
-from fem.study.answers import Answer, Trial, answer_axis, answer_of, is_rising, sentence_of
+from fem.study.answers import (
+    Answer,
+    AnswerRow,
+    StudyAnswer,
+    Trial,
+    answer_axis,
+    answer_of,
+    is_rising,
+    sentence_of,
+)
 from fem.study.axes import (
     Axis,
     AxisResult,
@@ -228,45 +237,15 @@ COLUMNS: Columns = dict.fromkeys(("stood_to", f"stood_{SLIPPED}", "overturned_fr
 COLUMNS |= dict.fromkeys(("stood_again", "no_outcome", "unsure", "answer"), str)
 
 
-@dataclass(frozen=True, kw_only=True)
-class AnswerRow:
-    """The answer of the lines that have some values of the other axes in common."""
-
-    #: these values; without the motion where the row is that of all motions of a set
-    point: Mapping[str, Any]
-    answer: Answer
-    sentence: str
+def answers_csv(answer: StudyAnswer[Answer]) -> str:
+    """`answers.csv`: one row for each combination of values of the other axes."""
+    columns = dict.fromkeys((axis.key for axis in answer.others), str) | COLUMNS
+    return table_of_rows(columns, map(_cells, answer.rows))
 
 
-@dataclass(frozen=True, kw_only=True)
-class SweepAnswer:
-    """What a sweep found along one axis."""
-
-    axis: Axis
-    rising: bool  #: the smaller values are the safe ones
-    sentence: str  #: of all lines together
-    others: tuple[Axis, ...]  #: the axes that distinguish the rows
-    rows: tuple[AnswerRow, ...]  #: those of all motions of a set first
-
-    def table(self) -> str:
-        """`answers.csv`: one row for each combination of values of the other axes."""
-        columns = dict.fromkeys((axis.key for axis in self.others), str) | COLUMNS
-        return table_of_rows(columns, map(_cells, self.rows))
-
-    def lines(self) -> Iterator[tuple[str, str]]:
-        """Where, and the answer; of a set of motions the rows of all of them; nothing where there are no other axes."""
-        of_sets = [row for row in self.rows if len(row.point) < len(self.others)]
-        for row in of_sets or self.rows if self.others else ():
-            yield self.where(row), row.sentence
-
-    def where(self, row: AnswerRow) -> str:
-        """The values of the other axes in words."""
-        return place_in_words((axis for axis in self.others if axis.key in row.point), row.point)
-
-
-def _cells(row: AnswerRow) -> dict[str, Any]:
+def _cells(row: AnswerRow[Answer]) -> dict[str, Any]:
     """A row of `answers.csv`, by column."""
-    answer = row.answer
+    answer = row.found
     ranges = {"stood_again": answer.stood_again, "no_outcome": answer.failed, "unsure": answer.unsure}
     return {
         **row.point,
@@ -279,7 +258,7 @@ def _cells(row: AnswerRow) -> dict[str, Any]:
     }
 
 
-def sweep_answer(table: SweepTable, folder: Path) -> SweepAnswer | None:
+def sweep_answer(table: SweepTable, folder: Path) -> StudyAnswer[Answer] | None:
     """The answer of a sweep; None where no axis asks for one, or cells are missing.
 
     The signs of a motion are no rows of their own: a motion stands where it stands with either sign.
@@ -296,7 +275,7 @@ def sweep_answer(table: SweepTable, folder: Path) -> SweepAnswer | None:
     rising = is_rising(axis, [trial for line in lines.values() for trial in line])
     others = [other for other in table.axes if other is not axis and len(other.values) > 1]
 
-    def rows_of(kept: Sequence[Axis]) -> Iterator[AnswerRow]:
+    def rows_of(kept: Sequence[Axis]) -> Iterator[AnswerRow[Answer]]:
         """A row for each combination of values of some of the other axes."""
         groups: dict[tuple[Any, ...], list[Trial]] = defaultdict(list)
         for first, line in lines.items():
@@ -308,7 +287,7 @@ def sweep_answer(table: SweepTable, folder: Path) -> SweepAnswer | None:
             where = "" if answer.line is None else place_in_words(rest, point_of(table.axes, answer.line))
             yield AnswerRow(
                 point=dict(zip((other.key for other in kept), values, strict=True)),
-                answer=answer,
+                found=answer,
                 sentence=sentence_of(answer, axis, rising=rising, where=where),
             )
 
@@ -317,7 +296,7 @@ def sweep_answer(table: SweepTable, folder: Path) -> SweepAnswer | None:
     outer = [other for other in kept if other is not motions]
     rows = [*rows_of(outer), *rows_of(kept)] if motions and outer else list(rows_of(kept))
     (together,) = rows_of(())
-    return SweepAnswer(
+    return StudyAnswer(
         axis=axis,
         rising=rising,
         sentence=f"{axis_name(axis)}: {together.sentence}",

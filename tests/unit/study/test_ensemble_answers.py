@@ -84,13 +84,13 @@ def test_motions_of_a_set_are_counted_as_such(draws, words):
 
 
 def test_an_island_does_not_move_the_first_crossing():
-    found = ensemble_answer(result_of(*over(PEAK, 0.0, 0.8, 0.3))).rows[0][1]
+    found = ensemble_answer(result_of(*over(PEAK, 0.0, 0.8, 0.3))).rows[0].found
     assert found.value == pytest.approx((0.2 + 0.2 * 0.5 / 0.8) * G)
 
 
 def test_a_point_without_outcome_is_left_out():
     rows = over(PEAK, 0.0, None, 1.0)
-    assert ensemble_answer(result_of(*rows)).rows[0][1].value == pytest.approx(0.4 * G)
+    assert ensemble_answer(result_of(*rows)).rows[0].found.value == pytest.approx(0.4 * G)
 
 
 def test_a_boundary_has_a_row_for_each_value_of_the_other_axis():
@@ -100,7 +100,7 @@ def test_a_boundary_has_a_row_for_each_value_of_the_other_axis():
         "peak acceleration: half of 128 draws overturned at 0.4 g (95 % interval 0.36 g to 0.44 g), first with "
         "mu static 0.6; at most 5 % up to 0.2 g, by the upper end of the interval"
     )
-    assert [found.value for _, found, _ in answer.rows] == pytest.approx([0.5 * G, 0.4 * G])
+    assert [row.found.value for row in answer.rows] == pytest.approx([0.5 * G, 0.4 * G])
     none = [*over(PEAK, 0.0, 0.0, 0.0, **{MU: 0.3}), *over(PEAK, 0.0, 0.0, 0.4, **{MU: 0.6})]
     assert ensemble_answer(result_of(*none)).sentence == (
         "peak acceleration: fewer than half of 128 draws overturned at every point; at most 5 % up to 0.4 g, by the "

@@ -9,7 +9,7 @@ import pytest
 from fem.cli.console import print_result
 from fem.cli.sweep import page_of
 from fem.results.kinds import SWEEP
-from fem.study.sweep_table import BAND, FOUND, open_sweep, sweep_answer
+from fem.study.sweep_table import BAND, FOUND, answers_csv, open_sweep, sweep_answer
 
 PEAK, MU = "motion.peak_acceleration_m_s2", "contact.mu_static"
 G = 9.80665
@@ -55,7 +55,7 @@ def test_the_sentence_is_that_of_all_lines_and_a_row_is_that_of_one(folder):
             "64 mm); unsure at 0.4 to 0.6 g",
         ),
     ]
-    first, second = csv.DictReader(answer.table().splitlines())
+    first, second = csv.DictReader(answers_csv(answer).splitlines())
     assert (first[MU], float(first["stood_to"]), first["overturned_from"]) == ("0.3", 0.6 * G, "")
     assert float(second["stood_to"]) == 0.42 * G
     assert float(second["overturned_from"]) == 0.44 * G
@@ -103,7 +103,7 @@ def test_a_set_of_motions_is_told_as_one_and_motion_by_motion(tmp_path):
             "vertical scale -1)",
         ),
     ]
-    rows = list(csv.DictReader(answer.table().splitlines()))
+    rows = list(csv.DictReader(answers_csv(answer).splitlines()))
     assert [(row[MU], row["motion.file"]) for row in rows] == [
         *(("0.3", ""), ("0.5", "")),
         *(("0.3", "a.csv"), ("0.3", "b.csv"), ("0.5", "a.csv"), ("0.5", "b.csv")),
