@@ -71,11 +71,6 @@ class StudyResult(JsonBlock):
 ResultT = TypeVar("ResultT", bound=StudyResult)
 
 
-def as_it_is(place: ResultFolder, result: ResultT) -> ResultT | None:
-    """A finished result is never added to."""
-    return result
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Study(Generic[ResultT]):
     """A study that is asked for."""
@@ -94,7 +89,7 @@ class Study(Generic[ResultT]):
     motions: Sequence[Case] = ()  #: likewise; their motions were read
     begun: StudyResult = field(default_factory=StudyResult)  #: its marking file while it runs
     #: a finished result as it is asked for now; None: there is more to compute
-    again: Callable[[ResultFolder, ResultT], ResultT | None] = as_it_is
+    again: Callable[[ResultFolder, ResultT], ResultT | None] = lambda place, result: result
 
 
 def run_study(study: Study[ResultT], folder: Path, **options: Unpack[StudyOptions]) -> ResultT:

@@ -33,7 +33,7 @@ from fem.study.driver import (
     run_study,
     runner_of,
 )
-from fem.study.fragility import POINT_COLUMNS, EnsembleResult, PointRow, count_point, fragility_of
+from fem.study.fragility import POINT_COLUMNS, EnsembleResult, count_point, fragility_of
 from fem.study.log import LoggedRuns
 from fem.study.maps import ensemble_figures
 from fem.study.motions import (
@@ -156,7 +156,8 @@ def _compute(
     complete = (draws.codes != Ending.UNKNOWN).all(axis=1)
     points = [count_point(ensemble, int(k), draws.codes[k], draws.slips[k]) for k in np.flatnonzero(complete)]
     results.check()
-    results.write_text("points.csv", csv_of_points(ensemble, points))
+    columns = dict.fromkeys((axis.key for axis in ensemble.axes), float) | POINT_COLUMNS
+    results.write_text("points.csv", table_of_rows(columns, points))
     results.write_text(DRAWS, log.table())
     regions = [point["region"] for point in points]
     result = replace(
@@ -247,9 +248,3 @@ def begun_result(
         limit_slip_m=ensemble.limit_slip_m,
         **_counted(ensemble),
     )
-
-
-def csv_of_points(ensemble: Ensemble, points: Sequence[PointRow]) -> str:
-    """`points.csv`: a row a point of the axes."""
-    columns = dict.fromkeys((axis.key for axis in ensemble.axes), float) | POINT_COLUMNS
-    return table_of_rows(columns, points)

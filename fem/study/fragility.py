@@ -293,7 +293,10 @@ def fragility_of(ensemble: Ensemble, codes: np.ndarray, points: Sequence[PointRo
         return replace(fragility, no_lognormal="the axis goes through zero")
     if known.sum() < FEWEST_FITTED:
         return replace(fragility, no_lognormal=f"fewer than {FEWEST_FITTED} levels")
-    counts, sizes = _by_replicate(ensemble, codes[known])
+    # what does not stand, and draws with an outcome, in each replicate: (points, replicates)
+    blocks = codes[known].reshape(int(known.sum()), ensemble.replicates, -1)
+    counts = np.isin(blocks, NOT_STANDING).sum(axis=2).astype(float)
+    sizes = (blocks != Ending.FAILED).sum(axis=2).astype(float)
     fitted = _lognormal(ensemble, strengths[known], counts, sizes, low[known], high[known])
     return replace(fragility, lognormal=fitted, no_lognormal=None if fitted else NO_CURVE)
 
@@ -339,10 +342,3 @@ def _lognormal(
         deviation_interval=tuple(np.percentile(deviations, ends).tolist()),
         resampled=Resampled(median=tuple(medians.tolist()), deviation=tuple(deviations.tolist())),
     )
-
-
-def _by_replicate(ensemble: Ensemble, codes: np.ndarray) -> tuple[FloatArray, FloatArray]:
-    """What does not stand, and draws with an outcome, in each replicate, shapes (points, replicates)."""
-    blocks = codes.reshape(len(codes), ensemble.replicates, -1)
-    fallen, known = np.isin(blocks, NOT_STANDING), blocks != Ending.FAILED
-    return fallen.sum(axis=2).astype(float), known.sum(axis=2).astype(float)

@@ -120,7 +120,16 @@ def read_motion_set(
     contents: dict[str, str] = {}
     owners: dict[Path, str] = {}
     for names, facts in zip(keys, _each(runner, "motions read", keys, partial(_read, make)), strict=True):
-        pair = _pair_of(make(names), names, facts)
+        case = make(names)
+        horizontal, *rest = _components_of(case, facts.numbers)
+        pair = FloorMotionPair(
+            case=case,
+            keys=names,
+            horizontal=horizontal,
+            vertical=rest[0] if rest else None,
+            left_out=facts.left_out,
+            case_hash=facts.case_hash,
+        )
         for path in {real_path(pair.case.data_files[f"{part.table}.file"]) for part in pair.components}:
             if path in owners:
                 raise CaseError(
@@ -165,10 +174,18 @@ def write_motions(
     Args:
         measures: of each motion, with its outcomes by these columns.
     """
-    place.write_text("motions.csv", _motions_table(measures, outcomes))
+
+    def upward(numbers: Mapping[str, Any]) -> dict[str, Any]:
+        return {f"vertical_{name}": value for name, value in numbers.items()}
+
+    columns = MEASURED | outcomes
+    if any(measure["vertical"] for measure in measures):
+        columns |= upward(MEASURED)
+    rows = ({**measure, **upward(measure["vertical"] or {})} for measure in measures)
+    place.write_text("motions.csv", table_of_rows(columns, rows))
     periods, spectra = spectra_of(motions, runner)
-    rows = np.column_stack([periods, *spectra.values()]).tolist()
-    place.write_text("spectra.csv", table_text(["period_s", *spectra], rows))
+    samples = np.column_stack([periods, *spectra.values()]).tolist()
+    place.write_text("spectra.csv", table_text(["period_s", *spectra], samples))
     vertical = [motion.vertical.name for motion in motions if motion.vertical is not None]
     place.write_text(SPECTRA, svg_of(draw_spectra(periods, spectra, vertical=vertical)))
     return [SPECTRA]
@@ -187,18 +204,6 @@ def spectra_of(
         for motion, spectra in zip(motions, by_motion, strict=True)
         for component, values in zip(motion.components, spectra, strict=True)
     }
-
-
-def _motions_table(measures: Sequence[Mapping[str, Any]], outcomes: Columns) -> str:
-    """`motions.csv`: a row a motion, the numbers of its vertical component with `vertical_` before them."""
-
-    def upward(numbers: Mapping[str, Any]) -> dict[str, Any]:
-        return {f"vertical_{name}": value for name, value in numbers.items()}
-
-    columns = MEASURED | outcomes
-    if any(measure["vertical"] for measure in measures):
-        columns |= upward(MEASURED)
-    return table_of_rows(columns, ({**measure, **upward(measure["vertical"] or {})} for measure in measures))
 
 
 def _keys_of(axes: Iterable[Axis]) -> list[dict[str, Any]]:
@@ -227,18 +232,6 @@ def _components_of(case: Case, numbers: Iterable[Mapping[str, Any]]) -> tuple[Fl
     return tuple(
         FloorComponent(name=name or "", case=case, table=table, numbers=facts)
         for (table, name), facts in zip(tables, numbers, strict=False)
-    )
-
-
-def _pair_of(case: Case, keys: Mapping[str, Any], facts: MotionFacts) -> FloorMotionPair:
-    horizontal, *rest = _components_of(case, facts.numbers)
-    return FloorMotionPair(
-        case=case,
-        keys=keys,
-        horizontal=horizontal,
-        vertical=rest[0] if rest else None,
-        left_out=facts.left_out,
-        case_hash=facts.case_hash,
     )
 
 
