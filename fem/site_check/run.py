@@ -48,8 +48,7 @@ from fem.site_check.result import (
 from fem.site_check.runs import COLUMNS, HAZARD, RunCases, RunKey, motion_stem
 from fem.site_check.stages import Stages
 from fem.site_check.yearly import hazard_motions
-from fem.study.driver import COMPLETED, INTERRUPTED, Study, StudyOptions, hash_of, run_study
-from fem.study.log import LoggedRuns
+from fem.study.driver import COMPLETED, INTERRUPTED, LoggedRuns, Study, StudyOptions, hash_of, run_study
 from fem.study.runner import Runner
 
 RUNS, PAGE = "runs.csv", "report.html"

@@ -9,7 +9,7 @@ from fem.site_check.bodies import body_of
 from fem.site_check.bracket import SizeAxis, Wanted, spaced
 from fem.site_check.file import TABLES, SiteRequest
 from fem.study.axes import AxisError, field_of
-from fem.study.design import value_in
+from fem.study.derived import value_in
 from mesh.errors import MeshError
 
 COUNT = 13  #: values of the scan

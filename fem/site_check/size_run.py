@@ -36,8 +36,7 @@ from fem.site_check.run import site_hash
 from fem.site_check.runs import COLUMNS, RunCases, RunKey, RunRows, motion_stem
 from fem.site_check.size_axis import at, followers
 from fem.site_check.stages import Stages
-from fem.study.driver import INTERRUPTED, Study, StudyOptions, hash_of, run_study
-from fem.study.log import LoggedRuns
+from fem.study.driver import INTERRUPTED, LoggedRuns, Study, StudyOptions, hash_of, run_study
 from fem.study.runner import Row, Runner
 from fem.study.table import row_of, table_text
 

@@ -2,20 +2,25 @@
 
 A study says what it is (`Study`): its kind of folder, the hash of what is asked, what computes it. The driver leaves a
 finished result alone, refuses to overwrite an unfinished one, marks the folder, has the study computed and writes the
-result. What is logged on the way survives an interruption; the result then says that it is one.
+result. What is logged on the way survives an interruption; the result then says that it is one. A log
+is a table that grows by whole lines, in the order in which rows are ready; a kill leaves at most one broken line,
+which is cut off when the study is resumed.
 """
 
 import hashlib
 import json
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import ExitStack, contextmanager
+import os
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
+from contextlib import ExitStack, closing, contextmanager
 from dataclasses import dataclass, field, replace
+from itertools import islice
 from pathlib import Path
 from typing import Any, Generic, TypedDict, TypeVar, Unpack
 
 from fem.case.case import Case
 from fem.results.disk import BYTES_BESIDE
-from fem.results.errors import FolderError
+from fem.results.errors import FolderError, FolderLostError
+from fem.results.files import write_atomically
 from fem.results.folder import ResultFolder, open_result_folder, program_of_results
 from fem.results.json_block import JsonBlock
 from fem.results.kinds import ResultKind, read_result, typed_result
@@ -24,7 +29,8 @@ from fem.runtime.compilation import compilation_announced
 from fem.runtime.progress import Reporter, SilentReporter
 from fem.runtime.signals import interruptible
 from fem.runtime.threads import cores
-from fem.study.runner import Runner
+from fem.study.runner import ChunkWork, ItemT, Row, Runner
+from fem.study.table import READERS, Columns, fields_of, is_row, line_of, read_lines, row_of, table_of_lines
 from fem.study.workers import LocalWorkers, WorkersOf
 
 INTERRUPTED, FAILED, COMPLETED = "interrupted", "failed", "completed"
@@ -165,3 +171,130 @@ def runner_of(**options: Unpack[StudyOptions]) -> Iterator[Runner]:
 def hash_of(request: Any) -> str:
     """A hash of what is asked: equal for requests that are equal as JSON."""
     return hashlib.sha256(json.dumps(request, sort_keys=True, default=repr).encode()).hexdigest()
+
+
+class RowLog:
+    """Appends lines to a table, each as a whole.
+
+    Args:
+        path: of the table; continued behind its last whole line if it has these columns, else begun.
+        columns: of the table.
+        warn: receives a sentence where lines are no rows, as after a fault of the disk; they are removed.
+    """
+
+    def __init__(self, path: Path, columns: Columns, warn: Callable[[str], None]) -> None:
+        self._path = path
+        there = read_lines(path, columns)
+        self.lines = [line for line in there if is_row(columns, line)]  #: already there
+        kept = table_of_lines(columns, self.lines).encode()
+        if damaged := len(there) - len(self.lines):
+            warn(f"{path}: damaged rows, which are computed again: {damaged}")
+            write_atomically(path, kept)
+        self._file = open(path, "r+b" if self.lines else "wb", buffering=0)  # noqa: SIM115
+        if self.lines:
+            self._file.truncate(len(kept))
+            self._file.seek(len(kept))
+        else:
+            self._file.write(kept)
+
+    def append(self, lines: Iterable[str]) -> None:
+        """Write lines in one go.
+
+        Raises:
+            OSError: they cannot be written; FolderLostError: the log was removed.
+        """
+        if os.fstat(self._file.fileno()).st_nlink == 0:
+            raise FolderLostError(self._path.parent)
+        data = "".join(f"{line}\n" for line in lines).encode()
+        done = 0
+        while done < len(data):
+            done += self._file.write(data[done:])
+
+    def sync(self) -> None:
+        """Have what was written survive a power cut as well."""
+        os.fsync(self._file.fileno())
+
+    def close(self) -> None:
+        self._file.close()
+
+
+@dataclass(frozen=True, kw_only=True)
+class LoggedRuns(Generic[ItemT]):
+    """Runs of one kind whose rows are kept in a log: none is computed twice, whatever interrupts the study."""
+
+    what: str  #: they are, for the line of progress
+    path: Path  #: of the log
+    columns: Columns  #: of the log
+    key: Callable[
+        [ItemT], Iterable[Any]
+    ]  #: values of the first columns; the others are of the row of an item
+    ids: int = 0  #: of these, how many tell the items apart, whose lines are kept; 0: none are
+    known: Container[tuple[Any, ...]] | None = None  #: these, where they are known beforehand; None: any
+    make: Callable[[ItemT], Case]  #: the case of an item; picklable
+    model_of: Callable[[ItemT], str]
+    work: ChunkWork | None = None  #: what is done with some items in place of their runs
+    logged: Callable[[Row], Row] = lambda row: row  #: a row as the log holds it
+    #: called with every line of the log, old and new; raises a LookupError for one of no item
+    note: Callable[[str], None] = lambda line: None
+    lines: dict[tuple[Any, ...], str] = field(
+        default_factory=dict, init=False
+    )  #: of the log, by what tells apart
+
+    def missing(self, among: Iterable[ItemT]) -> list[ItemT]:
+        """Those of some items that have no row yet."""
+        return [item for item in among if self._id(item) not in self.lines]
+
+    def row(self, item: ItemT) -> Row:
+        """The row of an item, by column; empty where it has none."""
+        line = self.lines.get(self._id(item))
+        return {} if line is None else row_of(self.columns, line)
+
+    def table(self) -> str:
+        """The rows in the order of their items."""
+        return table_of_lines(self.columns, (line for _, line in sorted(self.lines.items())))
+
+    def run(self, runner: Runner, batches: Iterable[Sequence[ItemT]]) -> None:
+        """Note the rows of earlier attempts, then run the items that are missing.
+
+        Args:
+            runner: says when to stop.
+            batches: of missing items; each is asked for when all rows before are noted.
+
+        Raises:
+            FolderError: the log holds a row of another study.
+        """
+        with closing(RowLog(self.path, self.columns, runner.reporter.warning)) as log:
+            for line in log.lines:
+                try:
+                    self._note(line)
+                except (AttributeError, LookupError, TypeError, ValueError):
+                    raise FolderError(
+                        f"{self.path}: damaged, no run of this study has the row {line:.60}; start over with --force"
+                    ) from None
+            for items in batches:
+                if runner.stop():
+                    break
+                for chunk, rows in runner.rows(self.what, items, self.make, self.model_of, self.work):
+                    lines = [self._line(item, row) for item, row in zip(chunk, rows, strict=True)]
+                    log.append(lines)
+                    for line in lines:
+                        self._note(line)
+            log.sync()
+
+    def _id(self, item: ItemT) -> tuple[Any, ...]:
+        return tuple(islice(self.key(item), self.ids))
+
+    def _note(self, line: str) -> None:
+        if self.ids:
+            first = zip(islice(self.columns.values(), self.ids), fields_of(line), strict=False)
+            known = tuple(READERS[kind](field) for kind, field in first)
+            if self.known is not None and known not in self.known:
+                raise LookupError(line)
+            if known in self.lines:
+                return
+            self.lines[known] = line
+        self.note(line)
+
+    def _line(self, item: ItemT, row: Row) -> str:
+        key, cells = tuple(self.key(item)), self.logged(row)
+        return line_of((*key, *(cells[name] for name in [*self.columns][len(key) :])))

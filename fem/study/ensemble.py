@@ -27,6 +27,7 @@ from fem.study.driver import (
     COMPLETED,
     FAILED,
     INTERRUPTED,
+    LoggedRuns,
     Study,
     StudyOptions,
     hash_of,
@@ -34,7 +35,6 @@ from fem.study.driver import (
     runner_of,
 )
 from fem.study.fragility import POINT_COLUMNS, EnsembleResult, count_point, fragility_of
-from fem.study.log import LoggedRuns
 from fem.study.maps import ensemble_figures
 from fem.study.motions import (
     FloorMotionPair,

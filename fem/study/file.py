@@ -30,16 +30,14 @@ from fem.study.axes import (
     set_axis,
     with_following,
 )
+from fem.study.derived import FREE, read_derived, value_in
 from fem.study.design import (
-    FREE,
     Ensemble,
     MapChoice,
     Sweep,
     Threshold,
     Unknown,
-    read_derived,
     sets_among,
-    value_in,
 )
 from fem.study.draws import RandomChoice, RandomQuantity, Sampling, read_random
 from fem.study.perturbation import Perturbation

@@ -35,6 +35,7 @@ from fem.study.driver import (
     COMPLETED,
     FAILED,
     INTERRUPTED,
+    LoggedRuns,
     Study,
     StudyOptions,
     hash_of,
@@ -52,7 +53,6 @@ from fem.study.list_file import (
     HallResult,
     HallRow,
 )
-from fem.study.log import LoggedRuns
 from fem.study.motions import FloorMotionPair, motions_left_out, read_motion_set
 from fem.study.runner import CHECKED, Row, Runner, check_chunk
 from fem.study.table import table_text

@@ -38,7 +38,7 @@ from fem.runtime.arrays import BoolArray
 from fem.study.axes import Axis
 from fem.study.containers import container_key
 from fem.study.design import Item, Sweep
-from fem.study.log import LoggedRuns
+from fem.study.driver import LoggedRuns
 from fem.study.perturbation import SMALL, around, band_width, coarse_cells, near_cells
 from fem.study.runner import MARGIN, Runner, check_chunk
 from fem.study.sweep_table import SHOWN, TRIED_COLUMNS, CellRows, RunShown, shown_in

@@ -26,8 +26,16 @@ from fem.runtime.threads import cores
 from fem.study.axes import AxisResult
 from fem.study.design import Item, Sweep
 from fem.study.draws import held_inputs
-from fem.study.driver import COMPLETED, FAILED, INTERRUPTED, Study, StudyOptions, hash_of, run_study
-from fem.study.log import LoggedRuns
+from fem.study.driver import (
+    COMPLETED,
+    FAILED,
+    INTERRUPTED,
+    LoggedRuns,
+    Study,
+    StudyOptions,
+    hash_of,
+    run_study,
+)
 from fem.study.maps import draw_maps
 from fem.study.motion_outcomes import write_set
 from fem.study.motions import FloorMotionPair, motion_cases, motions_left_out, read_motion_set

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fem.runtime.expressions import ExpressionError, parse_expression
+from fem.study.derived import ExpressionError, parse_expression
 
 VALUES = {"contact.mu_static": 0.4, "gravity_m_s2": 9.81, "free.lambda": 3.0}
 
