@@ -112,7 +112,10 @@ class CellCopies:
     def _copies(self, case: Case) -> Iterator[Copy]:
         seen: list[object] = []
         count = Counter[str]()
-        mesh = self._mesh_of(case)
+        key = container_key(case)
+        if self._mesh is None or self._mesh[0] != key:
+            self._mesh = key, build_container(case)
+        mesh = self._mesh[1]
         chosen = chosen_values(case, mesh, build_motions(case))
         penalty = None if case.floor.is_slab else normal_penalty(case, mesh)
         for change in (*self._sweep.perturbation.changes(case), *self._over_ranges(case, penalty)):
@@ -122,12 +125,6 @@ class CellCopies:
                 values = chosen | as_changed(case, change.values)
                 yield Copy(name=f"{keys} {count[keys]}", change=change, values=values)
                 count[keys] += 1
-
-    def _mesh_of(self, case: Case) -> ContainerMesh:
-        key = container_key(case)
-        if self._mesh is None or self._mesh[0] != key:
-            self._mesh = key, build_container(case)
-        return self._mesh[1]
 
     def _over_ranges(self, case: Case, penalty: float | None) -> Iterator[InputChange]:
         """The changes of a run's band, without the inputs that are axes."""

@@ -7,7 +7,7 @@ Every step is logged before the next begins, so an interrupted sweep continues w
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any, Unpack
@@ -58,7 +58,7 @@ from fem.study.sweep_table import (
     open_sweep,
     sweep_answer,
 )
-from fem.study.table import fields_of, line_of, read_lines, table_of_lines
+from fem.study.table import Columns, fields_of, line_of, read_lines, table_of_lines
 
 ROWS, TABLE, MEMBERS, MARGINS, CHANGES, ANSWERS = (
     "rows.csv",
@@ -213,26 +213,57 @@ def _compute(
     began, stop = time.perf_counter(), runner.stop
     if (place.earlier or {}).get("band_hash") != begun.band_hash:
         place.remove(MEMBERS, MARGINS, TRIED, CHANGES, ANSWERS)
-    cells = _Cells(sweep=sweep, place=place, begun=begun)
-    cells.update()
-    cells.compute(runner)
-    rows = cells.rows
+    rows, updated = CellRows(sweep), 0.0
+
+    def counted() -> SweepResult:
+        """The result so far."""
+        return replace(begun, rows=len(rows.runs), outcomes=dict(sorted(rows.outcomes.items())))
+
+    def update() -> None:
+        """Write how many rows there are."""
+        nonlocal updated
+        updated = time.perf_counter()
+        place.check()
+        place.write_result(counted().to_json())
+
+    def note(line: str) -> None:
+        rows.note(line)
+        if time.perf_counter() - updated > UPDATE_S:
+            update()
+
+    def missing() -> Iterator[list[Item]]:
+        left = sorted(set(range(sweep.count)) - rows.runs.keys())
+        yield sweep.by_container(map(sweep.item, left))
+
+    log = LoggedRuns[Item](
+        what="cells",
+        path=place.path / ROWS,
+        columns=rows.columns,
+        make=sweep.make.case,
+        model_of=sweep.model_of,
+        key=partial(_key, sweep),
+        ids=1,
+        note=note,
+    )
+    update()
+    _rows_of_table(place, sweep, rows.columns)
+    log.run(runner, missing())
     copies = None if stop() else perturb_cells(runner, sweep, rows, place.path / MEMBERS)
     changes = None if stop() else refine(runner, sweep, rows, place.path / TRIED)
     margins = {} if stop() else find_margins(runner, sweep, place.path / MARGINS)
-    result = cells.counted()
+    result = counted()
     if copies is not None:
         result = replace(result, perturbed=len(copies.rows), copies=sum(map(len, copies.rows.values())))
     if stop():
-        missing = f"{result.rows} of {sweep.count} cells are computed"
+        words = f"{result.rows} of {sweep.count} cells are computed"
         if result.rows == sweep.count:
-            missing = "all cells are computed, their copies, margins or the changes between them are not"
-        return replace(result, status=INTERRUPTED, missing=missing, wall_s=time.perf_counter() - began)
+            words = "all cells are computed, their copies, margins or the changes between them are not"
+        return replace(result, status=INTERRUPTED, missing=words, wall_s=time.perf_counter() - began)
     place.check()
     result = replace(
         result,
         status=FAILED if set(rows.outcomes) == {"failed"} else COMPLETED,
-        **_write_table(place, sweep, cells, copies, margins),
+        **_write_table(place, sweep, rows, log, copies, margins),
     )
     place.remove(MARGINS)  # they are columns of the table
     if changes is not None:
@@ -254,7 +285,8 @@ def _compute(
 def _write_table(
     place: ResultFolder,
     sweep: Sweep,
-    cells: "_Cells",
+    cells: CellRows,
+    log: LoggedRuns[Item],
     copies: PerturbedRows | None,
     margins: Mapping[int, Sequence[str]],
 ) -> dict[str, Any]:
@@ -262,7 +294,7 @@ def _write_table(
     columns, added = band_columns(sweep.axes), dict[str, Any]()
     bands = [line_of([None] * len(columns))] * sweep.count
     if copies is not None:
-        counts, deciding, values = band_rows(sweep, cells.rows, copies)
+        counts, deciding, values = band_rows(sweep, cells, copies)
         bands = [line_of(values(cell)) for cell in range(sweep.count)]
         added = {
             "unsure": counts[UNSURE],
@@ -271,77 +303,29 @@ def _write_table(
         }
         assert copies.log is not None
         place.write_text(MEMBERS, copies.log.table())
-    lines = (
-        ",".join([cells.log.lines[cell,], band, *margins.get(cell, ())]) for cell, band in enumerate(bands)
-    )
-    place.write_text(
-        TABLE, table_of_lines((*cells.rows.columns, *columns, *(MARGIN if margins else ())), lines)
-    )
+    lines = (",".join([log.lines[cell,], band, *margins.get(cell, ())]) for cell, band in enumerate(bands))
+    place.write_text(TABLE, table_of_lines((*cells.columns, *columns, *(MARGIN if margins else ())), lines))
     return added
 
 
-@dataclass(kw_only=True, eq=False)
-class _Cells:
-    """The rows of the cells, while they are computed; `sweep.json` says now and then how many there are."""
+def _rows_of_table(place: ResultFolder, sweep: Sweep, columns: Columns) -> None:
+    """Take the table of a finished sweep, whose band is to be another, for its log."""
+    log, table = place.path / ROWS, place.path / TABLE
+    if table.exists() and not log.exists():
+        bands = (*columns, *band_columns(sweep.axes))
+        lines = [*read_lines(table, bands), *read_lines(table, (*bands, *MARGIN))]
+        kept = (line_of(fields_of(line)[: len(columns)]) for line in lines)
+        place.write_text(ROWS, table_of_lines(columns, kept))
+    place.remove(TABLE)
 
-    sweep: Sweep
-    place: ResultFolder
-    begun: SweepResult
-    rows: CellRows = field(init=False)
-    log: LoggedRuns[Item] = field(init=False)
-    updated: float = field(default=0.0, init=False)
 
-    def __post_init__(self) -> None:
-        self.rows = CellRows(self.sweep)
-        self.log = LoggedRuns[Item](
-            what="cells",
-            path=self.place.path / ROWS,
-            columns=self.rows.columns,
-            make=self.sweep.make.case,
-            model_of=self.sweep.model_of,
-            key=self._key,
-            ids=1,
-            note=self._note,
-        )
-
-    def compute(self, runner: Runner) -> None:
-        """The rows that are missing; those of a finished table whose band is to be another are kept."""
-        log, table = self.place.path / ROWS, self.place.path / TABLE
-        columns = self.rows.columns
-        if table.exists() and not log.exists():
-            bands = (*columns, *band_columns(self.sweep.axes))
-            lines = [*read_lines(table, bands), *read_lines(table, (*bands, *MARGIN))]
-            kept = (line_of(fields_of(line)[: len(columns)]) for line in lines)
-            self.place.write_text(ROWS, table_of_lines(columns, kept))
-        self.place.remove(TABLE)
-        self.log.run(runner, self._missing())
-
-    def counted(self) -> SweepResult:
-        """The result so far."""
-        outcomes = dict(sorted(self.rows.outcomes.items()))
-        return replace(self.begun, rows=len(self.rows.runs), outcomes=outcomes)
-
-    def update(self) -> None:
-        """Write how many rows there are."""
-        self.updated = time.perf_counter()
-        self.place.check()
-        self.place.write_result(self.counted().to_json())
-
-    def _missing(self) -> Iterator[list[Item]]:
-        left = sorted(set(range(self.sweep.count)) - self.rows.runs.keys())
-        yield self.sweep.by_container(map(self.sweep.item, left))
-
-    def _key(self, item: Item) -> Iterator[Any]:
-        yield item.cell
-        yield from (item.point[axis.key] for axis in self.sweep.axes)
-        yield from (item.point.get(key) for axis in self.sweep.axes for key in axis.following)
-        if self.sweep.derived:
-            values: Mapping[str, Any] = {}
-            with suppress(CaseError):  # the row has the reason
-                values = self.sweep.make.values(item.point)
-            yield from (values.get(quantity.key) for quantity in self.sweep.derived)
-
-    def _note(self, line: str) -> None:
-        self.rows.note(line)
-        if time.perf_counter() - self.updated > UPDATE_S:
-            self.update()
+def _key(sweep: Sweep, item: Item) -> Iterator[Any]:
+    """What the row of a cell begins with: the values of axes, of what follows them, of derived keys."""
+    yield item.cell
+    yield from (item.point[axis.key] for axis in sweep.axes)
+    yield from (item.point.get(key) for axis in sweep.axes for key in axis.following)
+    if sweep.derived:
+        values: Mapping[str, Any] = {}
+        with suppress(CaseError):  # the row has the reason
+            values = sweep.make.values(item.point)
+        yield from (values.get(quantity.key) for quantity in sweep.derived)

@@ -334,6 +334,17 @@ def test_a_result_may_be_the_list_of_the_next_hall(tmp_path, base):
     assert first == second
 
 
+def test_the_page_of_a_finished_list_is_left_alone_and_a_missing_one_is_made(tmp_path, base, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    command = ["batch", str(listed(tmp_path, LIST)), "--case", "base.toml", "--margins", "none", "-q"]
+    page = tmp_path / "outputs" / "hall" / "report.html"
+    assert main(command) == 0 and page.is_file()
+    page.write_text("signed", encoding="utf-8")
+    assert main(command) == 0 and page.read_text(encoding="utf-8") == "signed"
+    page.unlink()
+    assert main(command) == 0 and page.is_file()
+
+
 def test_of_an_unfinished_list_no_file_is_named_that_is_not_there():
     begun = HallResult(hall="h", case="c", asked="", model="rigid", rows=1, containers=1, distinct=1)
     assert [*page_of(begun, Path("out"))][-1] == "  files      out"
