@@ -79,7 +79,9 @@ GROUPS = {
 COMMANDS = [name for commands in GROUPS.values() for name in commands]
 READING = {"check", "init", "list", "completion", "schema", "doctor"}  #: commands that compute nothing
 #: import strings of commands that are not `fem.cli.NAME:NAME`
-PLACES = {"list": "fem.cli.list_cases:list_cases", "completion": "fem.__main__:completion"}
+PLACES = {"list": "fem.cli.list_cases:list_cases", "completion": "fem.__main__:completion"} | {
+    command: f"fem.cli.evidence:{command}" for command in ("verify", "validate", "study")
+}
 
 
 def build_app(name: str = "python -m fem") -> App:
@@ -153,7 +155,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except Exception as error:
         if interruptions() > before:
             return _interrupted(tokens)
-        if type(error).__module__.partition(".")[0] not in OWN_PACKAGES:
+        if OWN_PACKAGES.isdisjoint(kind.__module__.partition(".")[0] for kind in type(error).__mro__):
             raise  # not the user's fault: show where
         return _refuse(str(error), getattr(error, "exit_code", BAD_INPUT))
     return result if isinstance(result, int) else 0

@@ -161,7 +161,7 @@ class Collection:
 CASES = Collection("case", "case/shipped")
 SWEEPS = Collection("sweep", "study/sweeps")
 ENSEMBLES = Collection("ensemble", "study/ensembles")
-SITES = Collection("site", "site_check/shipped")
+SITES = Collection("site", "site/shipped")
 COLLECTIONS = (CASES, SWEEPS, ENSEMBLES, SITES)
 
 

@@ -5,8 +5,8 @@ from typing import Any
 from pydantic import Field
 
 from fem.case.tables.run_tables import DocumentTable
-from fem.site_check import tables
-from fem.site_check.file import SiteHeading
+from fem.site import tables
+from fem.site.request import SiteHeading
 from fem.study.axes import Range
 from fem.study.design import MapChoice, Threshold
 from fem.study.draws import Distribution

@@ -55,7 +55,6 @@ RUN = ResultKind(
         "figures/movie.mp4",
         "report.html",
         "report.pdf",
-        "variations.json",
     ),
     finished=frozenset({"completed", "overturned"}),
 )

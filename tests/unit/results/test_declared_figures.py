@@ -4,11 +4,11 @@ import json
 from dataclasses import fields
 
 import pytest
+from fem.report.sweep_map import QUANTITIES
 
 from fem.assessment.ranges import in_words
 from fem.assessment.summary import result_rows
 from fem.case.case import load_case
-from fem.report.sweep_map import QUANTITIES
 from fem.results.figures import (
     BOX_FIGURES,
     FIGURES,
@@ -20,8 +20,8 @@ from fem.results.figures import (
     summary_order,
 )
 from fem.results.run_result import Band, ChangedRun, RunResult, Verdict
-from fem.site_check.result import SiteRun
-from fem.site_check.runs import COLUMNS
+from fem.site.result import SiteRun
+from fem.site.runs import COLUMNS
 from fem.study.runner import run_chunk
 from fem.study.sweep_table import FOUND
 

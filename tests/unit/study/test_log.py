@@ -8,7 +8,7 @@ import pytest
 
 from fem.results.errors import FolderLostError
 from fem.results.figures import RUN_COLUMNS, types_of
-from fem.site_check.runs import RunKey
+from fem.site.result import RunKey
 from fem.study.driver import RowLog
 from fem.study.table import fields_of, line_of, row_of
 

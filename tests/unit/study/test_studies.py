@@ -20,10 +20,10 @@ from fem.response.run import run_response
 from fem.results import kinds
 from fem.results.errors import FolderError, OutputError
 from fem.runtime.progress import SilentReporter
-from fem.site_check.file import load_site
-from fem.site_check.run import run_site
-from fem.site_check.size_axis import size_axis
-from fem.site_check.size_run import run_size
+from fem.site.request import load_site
+from fem.site.run import run_site
+from fem.site.size import size_axis
+from fem.site.size_run import run_size
 from fem.study.ensemble import run_ensemble
 from fem.study.file import load_ensemble, load_sweep
 from fem.study.hall import run_hall
@@ -140,9 +140,9 @@ STUDIES = pytest.mark.parametrize(
 @pytest.fixture(autouse=True)
 def short(undrawn, monkeypatch):
     """Maps, pages and the repetition of deciding runs with another model are tested by themselves."""
-    monkeypatch.setattr("fem.site_check.run.confirmed", lambda *arguments: [])
-    monkeypatch.setattr("fem.site_check.run.site_report", lambda *arguments: "")
-    monkeypatch.setattr("fem.site_check.runs.SCANNED", (0.5,))
+    monkeypatch.setattr("fem.site.run.confirmed", lambda *arguments: [])
+    monkeypatch.setattr("fem.site.run.site_report", lambda *arguments: "")
+    monkeypatch.setattr("fem.site.stages.SCANNED", (0.5,))
 
 
 @pytest.fixture(scope="module")

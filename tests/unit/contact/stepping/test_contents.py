@@ -7,10 +7,10 @@ from functools import cache
 import numpy as np
 import pytest
 import scipy.signal
+from runs import run
 
 from contact.stepping.contents import ACCELERATION, begin_contents, filter_contents, shift_contents
 from fem.case.case import load_case
-from fem.evidence.verification.runs import run
 from fem.study.runner import run_cases
 
 CUTOFF, END = 2.0 * math.pi * 33.0, 0.3
