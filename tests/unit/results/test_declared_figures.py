@@ -4,11 +4,11 @@ import json
 from dataclasses import fields
 
 import pytest
-from fem.report.sweep_map import QUANTITIES
 
 from fem.assessment.ranges import in_words
 from fem.assessment.summary import result_rows
 from fem.case.case import load_case
+from fem.report.sweep_map import QUANTITIES
 from fem.results.figures import (
     BOX_FIGURES,
     FIGURES,
