@@ -19,6 +19,10 @@ from fem.study.design import CaseMaker
 from fem.study.runner import Row
 from fem.study.table import table_text
 
+CONFIRMING = (
+    "reduced"  #: model with which the deciding runs are repeated, and how many of them there are at most
+)
+MOST_DECIDING = 2
 NOT_COMPUTED = "below uplift and slip of a rigid body: not computed"
 #: the columns that tell which run a row is of
 KEYS = (

@@ -71,9 +71,7 @@ class CaseMaker:
         Raises:
             CaseError: an expression has no value, a relative quantity has none to scale, a bad case.
         """
-        values = self.values(item.point, item.drawn)
-        keys = {key: value for key, value in values.items() if not key.startswith(FREE)}
-        return self({**keys, **item.more})
+        return self({**self.values(item.point, item.drawn), **item.more})
 
     def values(self, point: Mapping[str, Any], drawn: Mapping[str, Any] = {}) -> dict[str, Any]:
         """All keys that a run sets before what is unknown, derived ones included; raises as `case`."""
@@ -83,7 +81,8 @@ class CaseMaker:
                 value *= number_of(key, values, self.base)
             if value is not None:
                 values[key] = value
-        return with_derived(values, self._derived, self.base)
+        complete = with_derived(values, self._derived, self.base)
+        return {key: value for key, value in complete.items() if not key.startswith(FREE)}
 
     def __call__(self, values: Mapping[str, Any]) -> Case:
         """The base with dotted keys set; alternatives are replaced.

@@ -297,13 +297,16 @@ def _read_sweep(data: Mapping[str, Any], origin: Origin) -> Sweep:
     given, tables = split_tables(data, SWEEP_TABLES)
     heading = read_as("", SweepHeading, given)
     example = '"contact.mu_static" = [0.2, 0.3, 0.4]'
-    axes = read_axes(flat("axes", tables.get("axes", {})), MOST_AXES, example, read_axis)
+    axes = read_axes(flat("axes", tables.get("axes", {})), MOST_AXES, example, _axis)
     keys, values = [axis.key for axis in axes], {axis.key: axis.values for axis in axes}
     base = base_case(heading.case, tables.get("set", {}), origin, first_motion(axes), keys)
     require_verticals(axes, keys, base)
 
     def check_reference(name: str) -> None:
-        field_of(name)
+        if not name.startswith(FREE):
+            field_of(name)
+        elif name not in values:
+            raise AxisError("is no axis")
         if any(isinstance(value, str | bool) for value in values.get(name, ())):
             raise AxisError("has values that are no numbers")
         if (
@@ -401,7 +404,7 @@ def _is_idle(case: Case, key: str) -> bool:
     table, _, name = key.rpartition(".")
     if key == "solver.elastic_modes":
         return case.solver.model != "reduced"
-    return bool(table) and table not in ROWS and getattr(case, table).is_idle(name)
+    return table not in ("", "free", *ROWS) and getattr(case, table).is_idle(name)
 
 
 def _read_ensemble(data: Mapping[str, Any], origin: Origin) -> Ensemble:
@@ -445,9 +448,13 @@ def _read_ensemble(data: Mapping[str, Any], origin: Origin) -> Ensemble:
     return ensemble
 
 
-def _point_axis(key: str, value: Any) -> Axis:
+def _axis(key: str, value: Any) -> Axis:
     # A free variable takes any number, as the scale of a table of motion does.
-    axis = replace(read_axis("motion.scale" if key.startswith(FREE) else key, value), key=key)
+    return replace(read_axis("motion.scale" if key.startswith(FREE) else key, value), key=key)
+
+
+def _point_axis(key: str, value: Any) -> Axis:
+    axis = _axis(key, value)
     if not all(isinstance(number, float | int) and not isinstance(number, bool) for number in axis.values):
         raise AxisError("must hold numbers; make a file for each of its words")
     if list(axis.values) != sorted(axis.values):
