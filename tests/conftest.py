@@ -29,4 +29,4 @@ def pytest_collection_finish(session: pytest.Session) -> None:
 @pytest.fixture
 def undrawn(monkeypatch):
     """Maps take four fifths of the time of so small a sweep, and are tested by themselves."""
-    monkeypatch.setattr("fem.sweep.run.draw_maps", lambda table, folder, choice: [])
+    monkeypatch.setattr("fem.study.sweep.draw_maps", lambda table, folder, choice: [])

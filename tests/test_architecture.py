@@ -34,12 +34,10 @@ LAYERS = (
     ("fem.html",),
     ("fem.figures",),
     ("fem.render", "fem.run"),
-    ("fem.batch",),
-    ("fem.sweep", "fem.response"),
-    ("fem.ensemble",),
+    ("fem.study",),
+    ("fem.response",),
     ("fem.report",),
     ("fem.site",),
-    ("fem.hall",),
     ("fem.cli",),
 )
 NESTED = {
@@ -67,7 +65,7 @@ NARROW = {
     },
     "fem.records": {"contact.arrays", "contact.jit", "contact.motion", "fem.runtime"},
     # what the package offers by name
-    "fem": {"fem.runtime", "fem.seismic", "fem.case", "fem.results", "fem.run", "fem.batch"},
+    "fem": {"fem.runtime", "fem.seismic", "fem.case", "fem.results", "fem.run", "fem.study"},
     "fem.__main__": {"fem.runtime", "fem.cli"},
 }
 MOST_FILES = 25  #: in one folder
@@ -84,8 +82,8 @@ DOORS = {
     },
     "pydantic": {"fem"},
     # optional, and slow to import: loaded where a cluster is asked for
-    "dask": {"fem/batch/cluster.py"},
-    "distributed": {"fem/batch/cluster.py"},
+    "dask": {"fem/study/cluster.py"},
+    "distributed": {"fem/study/cluster.py"},
     "jinja2": {"fem/html/page.py"},
 }
 
@@ -121,7 +119,7 @@ BUDGET = {
     "model": ("fem/model", 4_224, 124),
     "run": ("fem/run fem/assessment", 5_767, 192),
     "pages": ("fem/html fem/figures fem/render fem/report", 5_856, 180),
-    "study": ("fem/batch fem/sweep fem/ensemble fem/hall fem/response", 9_812, 279),
+    "study": ("fem/study fem/response", 9_812, 279),
     "site": ("fem/site", 4_812, 137),
     "cli": ("fem/cli fem/__init__.py fem/__main__.py", 1_980, 46),
     "product": ("mesh contact fem", 60_332, 1_813),

@@ -68,11 +68,11 @@ class Collection:
     """Files of one kind that come with the program, each commented."""
 
     kind: str  #: as messages call it
-    package: str  #: its folder `shipped` holds them
+    folder: str  #: of the program, which holds them
 
     @property
     def _folder(self) -> Traversable:
-        return resources.files("fem") / self.package / "shipped"
+        return resources.files("fem") / self.folder
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -158,10 +158,10 @@ class Collection:
         return f"{'; ' + near if near else ''} (shipped: {', '.join(self.names)})"
 
 
-CASES = Collection("case", "case")
-SWEEPS = Collection("sweep", "sweep")
-ENSEMBLES = Collection("ensemble", "ensemble")
-SITES = Collection("site", "site")
+CASES = Collection("case", "case/shipped")
+SWEEPS = Collection("sweep", "study/sweeps")
+ENSEMBLES = Collection("ensemble", "study/ensembles")
+SITES = Collection("site", "site/shipped")
 COLLECTIONS = (CASES, SWEEPS, ENSEMBLES, SITES)
 
 

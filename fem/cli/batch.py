@@ -7,15 +7,16 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
-from fem.batch.answers import table_lines
 from fem.case.case import load_case
 from fem.cli.console import STUDY, AllowOutside, StudyFlags, flag, print_result, print_to_pdf
 from fem.results.figures import TURNED, Place, figures_of
+from fem.results.files import write_atomically
 from fem.results.kinds import HALL
 from fem.results.outcome import Outcome
+from fem.study.answers import table_lines
 
 if TYPE_CHECKING:
-    from fem.hall.result import HallResult
+    from fem.study.list_file import HallResult
 
 
 def batch(
@@ -46,21 +47,26 @@ def batch(
 ) -> int:
     """Compute a list of containers: which rest, slide, rock or overturn, and which is the weakest?
 
-    The header names keys of a case (width_m, mass_kg, mu_static, container.wall_m), name, count, tag, x_m and y_m, or
-    lon and lat; other columns are kept. A bad row is a row with its reason. Writes hall.csv, hall.json, report.html.
+    The header names keys of a case (width_m, mass_kg, mu_static, container.wall_m), name, count, tag; other columns are
+    kept. A bad row is a row with its reason. Writes hall.csv, hall.json, report.html.
 
     Parameters
     ----------
     hall:
         The list, as CSV.
     """
-    listed = importlib.import_module("fem.hall.file").read_hall(hall)
+    listed = importlib.import_module("fem.study.list_file").read_hall(hall)
     base = load_case(case, allow_outside=allow_outside)
     folder = flags.folder(listed.name)
     with flags.options() as options:
-        result = importlib.import_module("fem.hall.run").run_hall(
+        result = importlib.import_module("fem.study.hall").run_hall(
             listed, base, folder, motions=motion, checks=margins, strict=strict, **options
         )
+    page, mark = folder / "report.html", folder / HALL.mark
+    if result.state == "finished" and (
+        not page.is_file() or page.stat().st_mtime_ns < mark.stat().st_mtime_ns
+    ):
+        write_atomically(page, importlib.import_module("fem.report.study_page").hall_report(folder))
     if pdf and result.status == "completed":
         print(print_to_pdf(folder / "report.html"))
     return print_result(result, HALL, folder, page_of(result, folder), as_json=flags.as_json)

@@ -16,7 +16,7 @@ from fem.runtime.progress import ScreenReporter
 from fem.runtime.signals import unheard
 
 if TYPE_CHECKING:
-    from fem.batch.study import StudyOptions, StudyResult
+    from fem.study.driver import StudyOptions, StudyResult
 
 ELSEWHERE_OUT = "run the command again, or choose another place with --out DIR"
 ELSEWHERE_TO = "run the command again, or choose another place with --to FILE"
@@ -96,7 +96,7 @@ def connected(scheduler: str | None) -> AbstractContextManager[Any]:
     if scheduler is None:
         return nullcontext()
     try:
-        module = importlib.import_module("fem.batch.cluster")
+        module = importlib.import_module("fem.study.cluster")
     except ModuleNotFoundError as error:
         if (error.name or "").partition(".")[0] not in ("dask", "distributed"):
             raise

@@ -5,13 +5,13 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fem.batch.answers import falling_in_words, table_lines
-from fem.batch.axes import MOTION_FILE
 from fem.cli.console import STUDY, StudyFlags, print_result
 from fem.results.kinds import ENSEMBLE
+from fem.study.answers import falling_in_words, table_lines
+from fem.study.axes import MOTION_FILE
 
 if TYPE_CHECKING:
-    from fem.ensemble.result import EnsembleResult
+    from fem.study.fragility import EnsembleResult
 
 
 def ensemble(ensemble: str, /, *, flags: StudyFlags = STUDY) -> int:
@@ -22,9 +22,9 @@ def ensemble(ensemble: str, /, *, flags: StudyFlags = STUDY) -> int:
     ensemble:
         An ensemble file or the name of a shipped one: fragility, boundary.
     """
-    plan = importlib.import_module("fem.ensemble.file").load_ensemble(ensemble)
+    plan = importlib.import_module("fem.study.file").load_ensemble(ensemble)
     folder = flags.folder(plan.name)
-    study = importlib.import_module("fem.ensemble.run")
+    study = importlib.import_module("fem.study.ensemble")
     with flags.options() as options:
         result = study.run_ensemble(plan, folder=folder, **options)
     return print_result(result, ENSEMBLE, folder, page_of(result, folder), as_json=flags.as_json)
@@ -32,7 +32,7 @@ def ensemble(ensemble: str, /, *, flags: StudyFlags = STUDY) -> int:
 
 def page_of(result: "EnsembleResult", folder: Path) -> Iterator[str]:
     """The lines of an ensemble, for people."""
-    words = importlib.import_module("fem.ensemble.answers")
+    words = importlib.import_module("fem.study.answers")
     yield f"{result.ensemble}: {result.title}" if result.title else result.ensemble
     each = "to rest" if isinstance(result.duration_s, str) else f"{result.duration_s:g} s"
     yield (

@@ -4,15 +4,14 @@ from typing import Any
 
 from pydantic import Field
 
-from fem.batch.axes import Range
 from fem.case.tables.run_tables import DocumentTable
-from fem.ensemble.distributions import Distribution
-from fem.ensemble.file import EnsembleHeading
 from fem.site import tables
 from fem.site.request import SiteHeading
-from fem.sweep.file import SweepHeading
-from fem.sweep.perturbation import Perturbation
-from fem.sweep.plan import MapChoice, Threshold
+from fem.study.axes import Range
+from fem.study.design import MapChoice, Threshold
+from fem.study.draws import Distribution
+from fem.study.file import EnsembleHeading, SweepHeading
+from fem.study.perturbation import Perturbation
 
 Axes = dict[str, list[float | bool | str] | Range]
 CHANGES = "keys changed in the base case"

@@ -16,12 +16,12 @@ PAGE = "report.html"
 SUFFIXES = (".html", ".htm")
 #: what makes the page of a study, by the file that marks its folder
 PAGES = {
-    "sweep.json": "fem.report.sweep_page:sweep_report",
-    "ensemble.json": "fem.report.ensemble_page:ensemble_report",
+    "sweep.json": "fem.report.study_page:sweep_report",
+    "ensemble.json": "fem.report.study_page:ensemble_report",
     "response.json": "fem.report.response_page:response_report",
     "study.json": "fem.cli.evidence:paper_report",
     "assess.json": "fem.site.page:site_report",
-    "hall.json": "fem.hall.page:hall_report",
+    "hall.json": "fem.report.study_page:hall_report",
 }
 
 #: the files that mark a folder whose report has a short form

@@ -5,13 +5,13 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fem.batch.answers import table_lines
 from fem.cli.console import STUDY, StudyFlags, print_result
 from fem.results.kinds import SWEEP
-from fem.sweep.file import load_sweep
+from fem.study.answers import table_lines
+from fem.study.file import load_sweep
 
 if TYPE_CHECKING:
-    from fem.sweep.result import SweepResult
+    from fem.study.sweep_table import SweepResult
 
 
 def sweep(sweep: str, /, *, flags: StudyFlags = STUDY) -> int:
@@ -24,7 +24,7 @@ def sweep(sweep: str, /, *, flags: StudyFlags = STUDY) -> int:
     """
     plan = load_sweep(sweep)
     folder = flags.folder(plan.name)
-    solver = importlib.import_module("fem.sweep.run")
+    solver = importlib.import_module("fem.study.sweep")
     with flags.options() as options:
         info = solver.run_sweep(plan, folder, **options)
     return print_result(info, SWEEP, folder, page_of(info, folder), as_json=flags.as_json)
@@ -55,6 +55,8 @@ def page_of(info: "SweepResult", folder: Path) -> Iterator[str]:
     sets = ((row["where"], row["in_words"]) for row in info.motion_set or ())
     yield from table_lines(sets, "motion_set.csv")
     if info.answer:
-        tables = importlib.import_module("fem.sweep.table")
-        answer = importlib.import_module("fem.sweep.answers").sweep_answer(tables.open_sweep(folder), folder)
+        tables = importlib.import_module("fem.study.sweep_table")
+        answer = importlib.import_module("fem.study.sweep_table").sweep_answer(
+            tables.open_sweep(folder), folder
+        )
         yield from table_lines(answer.lines() if answer else (), "answers.csv")

@@ -11,7 +11,7 @@ import datetime as dt
 import hashlib
 import json
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache, partial
 from importlib import metadata, resources
@@ -104,33 +104,38 @@ class Page:
     data: Mapping[str, Any] = field(default_factory=dict)
 
 
-def html_of(page: Page, template: str = "page.html.j2", **shown: Any) -> str:
+def html_of(
+    page: Page,
+    template: str = "page.html.j2",
+    filters: Mapping[str, Callable[..., Any]] | None = None,
+    **shown: Any,
+) -> str:
     """The text of the file.
 
     Args:
+        page: what it shows.
         template: of `fem/html/templates`.
+        filters: that it has beside `FILTERS`.
         shown: results and functions that it names.
     """
+    environment = _environment().overlay()
+    environment.filters = {**environment.filters, **(filters or {})}
     signed = ("signature.js",) if page.signature else ()
     scripts, version = (
         [template_text(name) for name in (*page.scripts, *signed)],
         metadata.version("unanchored"),
     )
-    return (
-        _environment()
-        .get_template(template)
-        .render(
-            shown,
-            page=page,
-            signature=page.signature,
-            style=template_text("page.css"),
-            scripts=scripts,
-            script_policy=_policy(scripts),
-            data={name: _json_in_page(value) for name, value in page.data.items()},
-            foot=f"unanchored {version}   {page.hash[:12]}".rstrip(),
-            version=version,
-            today=dt.date.today().isoformat(),
-        )
+    return environment.get_template(template).render(
+        shown,
+        page=page,
+        signature=page.signature,
+        style=template_text("page.css"),
+        scripts=scripts,
+        script_policy=_policy(scripts),
+        data={name: _json_in_page(value) for name, value in page.data.items()},
+        foot=f"unanchored {version}   {page.hash[:12]}".rstrip(),
+        version=version,
+        today=dt.date.today().isoformat(),
     )
 
 

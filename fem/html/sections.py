@@ -163,17 +163,6 @@ def in_order(*heads: str, look: str = "") -> list[Column[Sequence[str]]]:
     return [Column(head, itemgetter(k), look if k else "") for k, head in enumerate(heads)]
 
 
-def key_column(
-    head: str, key: str, look: str = "", *, empty: object = None, text: Callable[[Any], str] = str
-) -> Column[Mapping[str, Any]]:
-    """A column of a key of rows, left out where it says nothing: where each is None, or `empty`."""
-
-    def cell(row: Mapping[str, Any]) -> str:
-        return "" if row[key] in (None, empty) else text(row[key])
-
-    return Column(head, cell, look, optional=True)
-
-
 def figure_columns(
     figures: Mapping[str, Shown],
     *,

@@ -3,7 +3,6 @@
 from collections import Counter
 from pathlib import Path
 
-from fem.batch.study import read_study
 from fem.case.case import load_case
 from fem.html import sections as html
 from fem.html.page import Signature
@@ -14,6 +13,7 @@ from fem.response.answer import lasting_in_words, range_of, response_answer, sta
 from fem.response.result import ResponseResult
 from fem.results.kinds import RESPONSE
 from fem.runtime.identity import command_line
+from fem.study.driver import read_study
 
 FIGURES = ("figures/response_curve.svg", "figures/portraits.svg", "figures/sections.svg")
 METHOD = (

@@ -7,8 +7,6 @@ from typing import Any
 
 from markupsafe import escape
 
-from fem.batch.axes import Axis
-from fem.batch.study import COMPLETED, StudyResult
 from fem.case.case import Case
 from fem.html import sections as html
 from fem.html.page import Page, Signature, html_of, svg_element
@@ -16,6 +14,8 @@ from fem.html.units import short, typeset
 from fem.report.comparison import limits_section
 from fem.results.errors import FolderError
 from fem.runtime.identity import command_line
+from fem.study.axes import Axis
+from fem.study.driver import COMPLETED, StudyResult
 
 MOST_DRAWING_BYTES = 400_000  #: of a drawing, as SVG
 

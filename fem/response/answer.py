@@ -4,12 +4,12 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from fem.batch.answers import slip_in_words
 from fem.response.lasting import AtFrequency, Coexistence, DropOut
 from fem.response.records import PointRow
 from fem.response.result import ResponseResult
 from fem.results.outcome import Outcome
 from fem.runtime.units import MILLIMETRES
+from fem.study.answers import slip_in_words
 
 #: what stable means, as Knoedel and Hrabowski define Lyapunov stability
 STABLE = "amplitudes do not diverge, and without drive the motion dies out"

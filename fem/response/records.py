@@ -10,7 +10,6 @@ import numpy as np
 
 from contact.stepping.state import Control
 from fem.assessment.verdict import relative_rotation
-from fem.batch.table import table_text
 from fem.case.case import Case
 from fem.response.decay import Decay
 from fem.response.orbit import EXTREME_COLUMNS, SECTION_COLUMNS, Orbit
@@ -21,6 +20,7 @@ from fem.results.json_block import JsonBlock
 from fem.results.outcome import Outcome
 from fem.runtime import units
 from fem.runtime.arrays import FloatArray
+from fem.study.table import table_text
 
 PORTRAYED = 16  #: last periods whose phase portrait is kept; of a periodic motion, one of its periods
 PORTRAIT_COLUMNS = ("rotation_rad", "angular_velocity_rad_s")

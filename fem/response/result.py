@@ -3,9 +3,9 @@
 from dataclasses import dataclass, field
 from typing import Any
 
-from fem.batch.study import StudyResult
 from fem.response.lasting import AtFrequency, Coexistence, DropOut
 from fem.response.records import PointRow
+from fem.study.driver import StudyResult
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -12,8 +12,6 @@ from typing import Unpack
 
 import numpy as np
 
-from fem.batch.runner import Runner
-from fem.batch.study import COMPLETED, FAILED, INTERRUPTED, Study, StudyOptions, run_study
 from fem.case.case import to_toml
 from fem.model.container import discretise
 from fem.model.model import build_model
@@ -39,6 +37,8 @@ from fem.results.kinds import RESPONSE
 from fem.results.outcome import MODES
 from fem.run.checkpoint import changing, require_same
 from fem.run.expected import of_a_second, say_expected
+from fem.study.driver import COMPLETED, FAILED, INTERRUPTED, Study, StudyOptions, run_study
+from fem.study.runner import Runner
 
 STATE = "state.npz"
 #: numbers of a period and of a sample in their tables and twice in the state, of a point in its files

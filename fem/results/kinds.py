@@ -142,7 +142,6 @@ HALL = ResultKind(
     results="hall.csv",
     own=(
         "hall.csv",
-        "hall.geojson",
         "runs.csv",
         "checks.csv",
         "list.csv",

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from fem.batch.study import read_study
 from fem.html.page import Page, Signature, html_of
 from fem.html.units import ABSENT, number, short, typeset
 from fem.results.errors import FolderError
@@ -22,6 +21,7 @@ from fem.site.figures import draw_floor, draw_methods, draw_motion, draw_scan, d
 from fem.site.result import BY_RULE, RESULT_FILE, RuleRange, SiteAnswer, SiteMethod, SiteMotion, SiteResult
 from fem.site.rule import both_directions, groups_of
 from fem.site.tables import MotionsTable
+from fem.study.driver import read_study
 
 COPIES = ("site.toml", "container.toml")  #: in the folder, printed on the page
 MOST_DRAWN = 30  #: motions whose curves are on the page

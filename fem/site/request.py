@@ -9,7 +9,6 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, Strict
 
-from fem.batch.study_file import base_case, read_as, read_study, split_tables
 from fem.case.case import Case
 from fem.case.data_files import as_named_from
 from fem.case.files import SITES, Origin
@@ -39,6 +38,7 @@ from fem.site.tables import (
     SourcesTable,
     WindTable,
 )
+from fem.study.file import base_case, read_as, read_study, split_tables
 
 #: tables that must be given, and what is missing without them
 REQUIRED = {

@@ -6,12 +6,12 @@ Every field has the name of its key in the file, with its SI unit. Accelerations
 from dataclasses import dataclass
 from typing import Annotated
 
-from fem.batch.study import StudyResult
 from fem.html.page import Signature
 from fem.results import figures
 from fem.results.json_block import JsonBlock
 from fem.runtime import units
 from fem.runtime.units import RATIO
+from fem.study.driver import StudyResult
 
 RESULT_FILE = "assess.json"
 USUAL_BEHAVIOUR_FACTOR = 1.5

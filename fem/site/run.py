@@ -13,11 +13,6 @@ from pathlib import Path
 from typing import Unpack
 
 from fem.assessment.ranges import largest_bolt_forces
-from fem.batch.compute_many import compute_many
-from fem.batch.log import LoggedRuns
-from fem.batch.runner import Runner
-from fem.batch.study import COMPLETED, INTERRUPTED, Study, StudyOptions, hash_of, run_study
-from fem.batch.table import row_of
 from fem.case.case import case_hash
 from fem.html.page import Signature
 from fem.results.disk import table_bytes
@@ -56,6 +51,10 @@ from fem.site.result import (
 from fem.site.rule import governing_run
 from fem.site.runs import COLUMNS, CONFIRMING, RunCases, cells_of
 from fem.site.stages import Stages
+from fem.study.compute_many import compute_many
+from fem.study.driver import COMPLETED, INTERRUPTED, LoggedRuns, Study, StudyOptions, hash_of, run_study
+from fem.study.runner import Runner
+from fem.study.table import row_of
 
 RUNS, PAGE = "runs.csv", "report.html"
 OF_A_MOTION = 75_000  #: numbers, in three files

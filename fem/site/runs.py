@@ -6,9 +6,6 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from fem.batch.case_maker import CaseMaker
-from fem.batch.runner import Row
-from fem.batch.table import table_text
 from fem.case.case import Case, read_case
 from fem.case.data_files import FILE_KEYS
 from fem.case.tables.input_keys import TOLERANCE
@@ -18,6 +15,9 @@ from fem.results.outcome import Outcome
 from fem.run.changed_runs import tolerance_of_draws
 from fem.site.request import FULL, WIDTH, SiteRequest
 from fem.site.result import MOTIONS, REPEATED, SET, STAGES, RunKey, SiteRun
+from fem.study.design import CaseMaker
+from fem.study.runner import Row
+from fem.study.table import table_text
 
 CONFIRMING = (
     "reduced"  #: model with which the deciding runs are repeated, and how many of them there are at most

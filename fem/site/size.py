@@ -8,15 +8,15 @@ from typing import Literal
 
 import numpy as np
 
-from fem.batch.axes import AxisError, field_of
-from fem.batch.derived import value_in
-from fem.batch.study import COMPLETED, StudyResult
 from fem.case.tables.quantities import Quantity
 from fem.case.validation import CaseError, did_you_mean, known_keys, quantity_of
 from fem.run.bracket import least_width, values_to_try
 from fem.site.bodies import bodies_of
 from fem.site.request import TABLES, SiteRequest
 from fem.site.result import BY_RULE, ByRule, SiteAnswer
+from fem.study.axes import AxisError, field_of
+from fem.study.derived import value_in
+from fem.study.driver import COMPLETED, StudyResult
 from mesh.errors import MeshError
 
 RESOLUTION = 0.01  #: largest width of a bracket over the value

@@ -10,9 +10,6 @@ from functools import partial
 from pathlib import Path
 from typing import Unpack
 
-from fem.batch.runner import Runner
-from fem.batch.study import INTERRUPTED, Study, StudyOptions, hash_of, run_study
-from fem.batch.table import table_text
 from fem.results.folder import ResultFolder
 from fem.results.kinds import SIZE
 from fem.run.expected import expected_words
@@ -27,6 +24,9 @@ from fem.site.run import RUNS, Verification, site_hash
 from fem.site.runs import COLUMNS
 from fem.site.size import SizeAxis, SizeResult, at, followers, next_values, size_asked, size_result, so_far
 from fem.site.stages import Stages
+from fem.study.driver import INTERRUPTED, Study, StudyOptions, hash_of, run_study
+from fem.study.runner import Runner
+from fem.study.table import table_text
 
 FIGURE = "figures/size.svg"
 WORKING = ".motions"  #: of the sets, as long as they are computed

@@ -8,8 +8,6 @@ from pathlib import Path
 
 import numpy as np
 
-from fem.batch.runner import Runner
-from fem.batch.workers import hand_out
 from fem.results.outcome import Outcome
 from fem.run.bracket import values_to_try
 from fem.seismic.action import MotionTarget
@@ -45,6 +43,8 @@ from fem.site.result import (
 )
 from fem.site.rule import MotionSlips, RuleFound, RunGroup, governing_groups, groups_of, runs_by_factor
 from fem.site.runs import RunRows, key_of
+from fem.study.runner import Runner
+from fem.study.workers import hand_out
 
 #: factors on the motions beside 1, and values tried below the first that fails and below the first that overturns
 SCANNED = (0.5, 0.75, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0, 3.5, 4.0)

@@ -14,12 +14,12 @@ from typing import Any
 from distributed import LocalCluster
 from measuring import Figure, at_least, report
 
-from fem.batch.cluster import cluster
-from fem.batch.runner import CASES_AT_A_TIME, run_chunk
-from fem.batch.workers import hand_out
 from fem.case.case import Case, load_case
 from fem.results.figures import SCALARS
 from fem.runtime.threads import cores
+from fem.study.cluster import cluster
+from fem.study.runner import CASES_AT_A_TIME, run_chunk
+from fem.study.workers import hand_out
 
 WORKERS, REPEATS = (1, 2, 4), 3
 EFFICIENCY = 0.85

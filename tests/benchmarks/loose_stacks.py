@@ -12,11 +12,11 @@ from dataclasses import replace
 from measuring import Figure, at_most, report, stepped
 from outcome_map import seconds
 
-from fem.batch.axes import read_axis
-from fem.batch.runner import run_cases
 from fem.case.case import load_case
-from fem.sweep.file import load_sweep
-from fem.sweep.plan import Sweep
+from fem.study.axes import read_axis
+from fem.study.design import Sweep
+from fem.study.file import load_sweep
+from fem.study.runner import run_cases
 
 LIMITS = {"rigid": 0.15, "reduced": 1.0}  # CPU seconds
 FLOORS = ("rigid", "slab")

@@ -16,14 +16,14 @@ from typing import Any
 import numpy as np
 from measuring import Figure, at_most, report
 
-from fem.batch.axes import read_axis
-from fem.batch.runner import run_cases
 from fem.model.container import discretise
 from fem.model.equilibrium import find_equilibrium
 from fem.model.model import build_model
-from fem.sweep.file import load_sweep
-from fem.sweep.plan import Sweep
-from fem.sweep.run import run_sweep
+from fem.study.axes import read_axis
+from fem.study.design import Sweep
+from fem.study.file import load_sweep
+from fem.study.runner import run_cases
+from fem.study.sweep import run_sweep
 
 FREQUENCY, PEAK = "motion.angular_frequency_rad_s", "motion.peak_acceleration_m_s2"
 RIGID_CELLS, REDUCED_CELLS = 100, 50

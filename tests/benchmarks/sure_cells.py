@@ -19,15 +19,15 @@ from typing import Any
 import numpy as np
 from measuring import Figure, at_least, at_most, report
 
-from fem.batch.runner import run_cases
 from fem.case.case import Case
 from fem.model.geometry import build_container
 from fem.model.support import normal_penalty
 from fem.results.outcome import ending_of
-from fem.sweep.file import load_sweep
-from fem.sweep.plan import Sweep
-from fem.sweep.run import run_sweep
-from fem.sweep.table import SweepTable, open_sweep
+from fem.study.design import Sweep
+from fem.study.file import load_sweep
+from fem.study.runner import run_cases
+from fem.study.sweep import run_sweep
+from fem.study.sweep_table import SweepTable, open_sweep
 
 MOST_FLIPS, LEAST_FLIPS, LEAST_SURE = 0.01, 0.5, 0.4
 
@@ -56,7 +56,7 @@ def changes_of(case: Case) -> dict[str, dict[str, Any]]:
 def flips(sweep: Sweep, table: SweepTable, cells: list[int]) -> list[list[tuple[str, str]]]:
     """For each cell the changes that flip it, by name and key."""
     asked = [(cell, name, values) for cell in cells for name, values in changes_of(sweep.case(cell)).items()]
-    rows = run_cases([sweep.case_at(sweep.point(cell), values) for cell, _, values in asked])
+    rows = run_cases([sweep.make.case(sweep.item(cell)._replace(more=values)) for cell, _, values in asked])
     found: dict[int, list[tuple[str, str]]] = {cell: [] for cell in cells}
     for (cell, name, values), row in zip(asked, rows, strict=True):
         own = ending_of(str(table["status"][cell]), str(table["outcome"][cell]))

@@ -326,7 +326,7 @@ MUTATIONS = (
         name="a material damping of a member that stays the run's",
         old="damping = container.damping(case.container.damping_ratio)\n    placed",
         new="damping = container.damping(0.02)\n    placed",
-        tests=("unit/batch/test_runner.py", "-k", "damping"),
+        tests=("unit/study/test_runner.py", "-k", "damping"),
     ),
     Mutation(
         name="sure although changes were left out",

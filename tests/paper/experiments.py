@@ -15,15 +15,15 @@ from runs import Finished
 
 from contact.reference.rigid_block import RigidBlock
 from fem.assessment.rigid_check import block_of
-from fem.batch.case_maker import CaseMaker
-from fem.batch.container_cache import ContainerCache
-from fem.batch.runner import Row, run_cases
 from fem.case.case import Case
 from fem.model.model import Model, build_model
 from fem.model.support import normal_penalty
 from fem.results.outcome import ENDINGS, ROCKING
 from fem.run.recorder import Recorder
 from fem.run.simulation import simulate
+from fem.study.containers import ContainerCache
+from fem.study.design import CaseMaker
+from fem.study.runner import Row, run_cases
 
 #: contact penalty over the one that "auto" chooses, and contact damping ratio, of the variants with a shell
 PENALTY_FACTORS = (1.0 / 3.0, 1.0, 3.0)

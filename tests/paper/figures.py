@@ -11,7 +11,7 @@ from paper.maps import OutcomeMap
 from fem.figures.heat_map import MapCurve, Panel, draw_heat_map
 from fem.figures.style import GREY, WIDTH, house_style, svg_of
 from fem.runtime.arrays import FloatArray
-from fem.sweep.maps import OUTCOME_COLOURS
+from fem.study.maps import OUTCOME_COLOURS
 
 #: distinguishable without colour vision (Okabe and Ito) and dark enough on white
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#7a4d9f", "#333333", "#b8860b")

@@ -14,8 +14,8 @@ from paper.figures import curve, draw_curves
 from paper.maps import MapCell, pairs, stack_map
 from rigid_slider import RigidSlider, simulate_sliding
 
-from fem.batch.runner import Row
 from fem.results.outcome import Outcome
+from fem.study.runner import Row
 
 #: c/a of the stack is 3.636: below a/c = 0.275 it slides before it tilts
 WIDTH_OVER_HEIGHT = WIDTH / HEIGHT

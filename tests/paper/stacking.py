@@ -14,8 +14,8 @@ from paper.claims import Evidence, claim, table
 from paper.dimensions import ANGULAR_FREQUENCY, PLATEAU_PEAK, STATED_PEAK, WIDTH
 from paper.experiments import Experiments, capped_ratio, stands
 
-from fem.batch.runner import Row
 from fem.figures.heat_map import MapAxis
+from fem.study.runner import Row
 
 FLOOR_MU = 0.4
 SHARES = (0.5, 0.75, 1.0, 1.5)  #: friction between the boxes over that of the floor

@@ -1,6 +1,6 @@
 """A sweep of twenty cells that several tests compute, and its table for comparison."""
 
-from fem.batch.table import fields_of
+from fem.study.table import fields_of
 
 SMALL = """
 case = "seed_stack_plateau"

@@ -15,13 +15,13 @@ from validation.bodies import rigid_case
 from validation.experiments import Experiment, Predictor
 from validation.tables import measured_table
 
-from fem.ensemble.fragility import Lognormal, fit_lognormal
 from fem.model.container import discretise
 from fem.model.model import build_model
 from fem.run.outcome import run_without_history
 from fem.seismic.action import SiteAction, eurocode_shape
 from fem.seismic.artificial import artificial_motions
 from fem.seismic.ground_motion import GroundMotion
+from fem.study.fragility import Lognormal, fit_lognormal
 
 MOTIONS, STATIONARY_S = 12, 10.0
 GROUND = "C"

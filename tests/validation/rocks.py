@@ -26,8 +26,6 @@ from validation.vote import (
     with_neighbours,
 )
 
-from fem.batch.runner import Runner
-from fem.batch.workers import LocalWorkers
 from fem.case.case import Case
 from fem.case.validation import CaseError
 from fem.model.container import Container
@@ -37,6 +35,8 @@ from fem.results.outcome import Outcome
 from fem.run.outcome import run_without_history
 from fem.runtime.arrays import BoolArray, FloatArray
 from fem.runtime.threads import cores
+from fem.study.runner import Runner
+from fem.study.workers import LocalWorkers
 from mesh.errors import MeshError
 
 DENSITY = 2000.0  #: of a block, which is as deep as this asks [kg/m3]

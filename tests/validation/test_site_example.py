@@ -12,9 +12,9 @@ from running_example import SITE, k1
 from contact.motion.table import TableMotion
 from contact.reference.rocking import RockingOutcome, simulate_rocking
 from fem.assessment.rigid_check import floor_of
-from fem.batch.runner import run_cases
 from fem.case.case import case_from
 from fem.seismic.artificial import artificial_motions, artificial_set
+from fem.study.runner import run_cases
 
 CASE = case_from(
     {

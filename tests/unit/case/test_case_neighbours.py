@@ -2,7 +2,6 @@
 
 import pytest
 
-from fem.batch.container_cache import container_key
 from fem.case.case import CaseError, case_hash, load_case, read_case, to_toml
 from fem.case.columns import history_columns
 from fem.case.tables.neighbours import places_of
@@ -11,6 +10,7 @@ from fem.case.template import case_template
 from fem.cli.check import preview_of
 from fem.model.container import discretise
 from fem.model.model import build_model
+from fem.study.containers import container_key
 from mesh.errors import MeshError
 
 BESIDE = {"side": "right", "gap_m": 0.05, "stiffness_N_m": 1e8}

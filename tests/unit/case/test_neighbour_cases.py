@@ -5,12 +5,12 @@ import pickle
 import pytest
 
 import fem
-from fem.batch.case_maker import CaseMaker
-from fem.batch.container_cache import container_key
 from fem.case.case import CaseError, case_hash, load_case, to_toml
 from fem.results.kinds import RUN
 from fem.results.run_files import copy_data_files, require_free_names
 from fem.run.run import RunOptions, run_case
+from fem.study.containers import container_key
+from fem.study.design import CaseMaker
 
 ROW = """
 [container]

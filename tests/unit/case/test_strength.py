@@ -3,11 +3,11 @@
 import pytest
 from motion_files import write_pair
 
-from fem.batch.case_maker import CaseMaker
-from fem.batch.study_file import require_once
 from fem.case.case import CaseError, load_case
 from fem.case.strength import scaled_motion
 from fem.model.motion import build_motion, build_vertical
+from fem.study.design import CaseMaker
+from fem.study.file import require_once
 
 PEAK, TO = "motion.peak_acceleration_m_s2", "motion.scale_to_m_s2"
 HARMONIC = {"vertical.kind": "harmonic", "vertical.frequency_Hz": 2.0}

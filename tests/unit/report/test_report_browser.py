@@ -13,16 +13,15 @@ from matplotlib.image import imread
 from study_folders import ensemble_folder, response_folder
 
 from fem.case.case import load_case
-from fem.report.ensemble_page import ensemble_report
 from fem.report.response_page import response_report
 from fem.report.run_page import run_report
-from fem.report.sweep_page import sweep_report
+from fem.report.study_page import ensemble_report, sweep_report
 from fem.results.reader import open_run
 from fem.run.run import run_case
 from fem.runtime.progress import SilentReporter
-from fem.sweep.file import load_sweep
-from fem.sweep.run import run_sweep
-from fem.sweep.table import open_sweep
+from fem.study.file import load_sweep
+from fem.study.sweep import run_sweep
+from fem.study.sweep_table import open_sweep
 
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium: apt-get install chromium")
 

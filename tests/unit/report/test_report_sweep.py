@@ -10,10 +10,11 @@ import pytest
 from cases import HARMONIC
 
 from fem.__main__ import main
-from fem.report import sweep_page
-from fem.report.sweep_page import map_data, sweep_report
+from fem.report import sweep_map
+from fem.report.study_page import sweep_report
+from fem.report.sweep_map import map_data
 from fem.results.errors import FolderError
-from fem.sweep.table import BAND, FOUND, WIDTH, open_sweep
+from fem.study.sweep_table import BAND, FOUND, WIDTH, open_sweep
 
 SPEED, MU = "motion.peak_acceleration_m_s2", "contact.mu_static"
 BASE = HARMONIC.replace("amplitude_m = 0.05", "peak_acceleration_m_s2 = 4.0") + '[solver]\nmodel = "rigid"\n'
@@ -156,7 +157,7 @@ def test_names_stay_text_and_files_outside_the_folder_stay_out(folder):
 
 
 def test_more_cells_than_a_page_can_carry_are_refused_with_a_way_out(folder, monkeypatch):
-    monkeypatch.setattr(sweep_page, "MOST_BYTES", 50)
+    monkeypatch.setattr(sweep_map, "MOST_BYTES", 50)
     with pytest.raises(FolderError, match="6 cells are more than one page can carry"):
         sweep_report(folder)
 

@@ -7,9 +7,8 @@ import pytest
 
 from fem.assessment.ranges import in_words
 from fem.assessment.summary import result_rows
-from fem.batch.runner import run_chunk
 from fem.case.case import load_case
-from fem.report.sweep_page import QUANTITIES
+from fem.report.sweep_map import QUANTITIES
 from fem.results.figures import (
     BOX_FIGURES,
     FIGURES,
@@ -23,7 +22,8 @@ from fem.results.figures import (
 from fem.results.run_result import Band, ChangedRun, RunResult, Verdict
 from fem.site.result import SiteRun
 from fem.site.runs import COLUMNS
-from fem.sweep.table import FOUND
+from fem.study.runner import run_chunk
+from fem.study.sweep_table import FOUND
 
 BOX = BoxResult(max_rotation_rad=0.5, max_slip_m=0.5, max_opening_m=0.5)
 OF_FIELDS = [key for key in FIGURES if key in {one.name for one in fields(Verdict)}]

@@ -15,7 +15,7 @@ import fem.report.run_page
 import fem.results.disk
 import fem.results.folder
 import fem.run.run
-import fem.sweep.run
+import fem.study.sweep
 from fem.__main__ import main
 from fem.case.case import load_case
 from fem.model.geometry import build_container, node_count

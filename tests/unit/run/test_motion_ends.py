@@ -13,7 +13,6 @@ from contact.motion.base_motion import NoMotion, PulseMotion
 from fem.__main__ import main
 from fem.assessment.motion_words import covered_in_words
 from fem.assessment.warnings import warnings_for
-from fem.batch.runner import run_model
 from fem.case.case import CaseError, load_case, read_case
 from fem.cli.check import preview_of
 from fem.model.model import build_model
@@ -21,6 +20,7 @@ from fem.model.motion import build_motion, build_motions, motion_result
 from fem.results.reader import open_run
 from fem.results.run_result import RunResult, Verdict
 from fem.run.run import run_case
+from fem.study.runner import run_model
 
 PULSE = {
     "solver.model": "rigid",

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from fem.__main__ import main
-from fem.batch.runner import run_chunk
 from fem.case.validation import CaseError
 from fem.records.files import read_record
 from fem.seismic.artificial import artificial_motions
@@ -19,6 +18,7 @@ from fem.site.result import SiteResult
 from fem.site.run import run_site
 from fem.site.runs import NOT_COMPUTED, RunCases, key_of
 from fem.site.stages import SCANNED, Stages
+from fem.study.runner import run_chunk
 
 CONTAINER = """
 schema = 1

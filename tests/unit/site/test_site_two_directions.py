@@ -5,12 +5,12 @@ from dataclasses import replace
 import pytest
 from site_example import RUN, example
 
-from fem.batch.study import runner_of
 from fem.seismic.two_directions import largest_slip, largest_slips
 from fem.site.answer import answer_of
 from fem.site.request import load_site
 from fem.site.rule import groups_of
 from fem.site.stages import REPETITIONS, Stages
+from fem.study.driver import runner_of
 
 SITE = """
 container = "seed_stack"

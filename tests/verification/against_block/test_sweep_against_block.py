@@ -11,9 +11,9 @@ from contact.reference.planar_motion import PlanarMode
 from fem.assessment.rigid_check import block_of, floor_of
 from fem.model.model import build_model
 from fem.run.simulation import AFTERMATH
-from fem.sweep.file import load_sweep
-from fem.sweep.run import run_sweep
-from fem.sweep.table import open_sweep
+from fem.study.file import load_sweep
+from fem.study.sweep import run_sweep
+from fem.study.sweep_table import open_sweep
 
 MAP = """
 case = "seed_stack_plateau"

@@ -1,1 +1,0 @@
-"""Probability of overturning over random quantities: fragility curves and boundaries. It knows no reports."""

@@ -1,1 +1,0 @@
-"""A hall of containers: a list in, a list out."""

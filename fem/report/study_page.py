@@ -1,0 +1,512 @@
+"""The page of a sweep, an ensemble or a list of containers, by one template.
+
+`study.html.j2` reads like the page; here is what it is handed: the result, the columns of tables, and filters.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from markupsafe import Markup
+
+from fem.assessment.margin_words import FACTOR
+from fem.assessment.sure_words import deciding_in_words
+from fem.case.case import Case, load_case
+from fem.html import sections as html
+from fem.html.page import Page, Signature, html_of
+from fem.html.units import ABSENT, figure_cell, figure_head, millimetres, number, ratio, short, typeset
+from fem.records.units import STANDARD_GRAVITY
+from fem.report.comparison import case_rows, limits_section
+from fem.report.studies import (
+    Again,
+    again_from_files,
+    axes_table,
+    drawings,
+    repeat_section,
+    text_of,
+    unfinished,
+)
+from fem.report.sweep_map import cell_map, counts, map_data
+from fem.results.errors import FolderError
+from fem.results.figures import DURATION, PGA, PGD, PGV, SLIPPED, TURNED, Place, Shown, figures_of
+from fem.results.kinds import ENSEMBLE, HALL
+from fem.results.outcome import COUNTED, ROCKING, SLIDING, Outcome
+from fem.runtime import units
+from fem.runtime.identity import command_line
+from fem.study.answers import (
+    Answer,
+    HalfPoint,
+    StudyAnswer,
+    ends_in_words,
+    ensemble_answer,
+    falling_in_words,
+    fragility_lines,
+    interval_in_words,
+    ranges_in_words,
+)
+from fem.study.axes import axis_label, in_words, unit_in_words
+from fem.study.driver import StudyResult, read_study
+from fem.study.fragility import EnsembleResult
+from fem.study.list_file import HallResult
+from fem.study.motion_outcomes import MEAN_TURNED, WORST_TURNED, motions_at
+from fem.study.perturbation import input_in_words
+from fem.study.sure import CHANGES, change_columns
+from fem.study.sweep_table import SweepTable, open_sweep, shown_at, sweep_answer
+from fem.study.table import read_rows
+
+A_ROW = Mapping[str, Any]
+#: head, cells, look, and whether it is left out where all cells are empty; the last two may be missing
+Column = tuple[Any, ...]
+N = html.NUMBER
+MOST_POINTS = 12  #: beside one another in the table of outcomes
+STOOD = Shown("slip of those that stood", units.MILLIMETRES)
+SWATCH = Markup('<span class="swatch" style="background:{}"></span>{}')
+PEAK = "peak_acceleration_m_s2"
+#: what is shown of a motion
+MEASURES = {PEAK: PGA, "peak_velocity_m_s": PGV, "peak_displacement_m": PGD, "significant_s": DURATION}
+LOOKS = {"overturned": "bad", "invalid": "bad", "failed": "bad"}
+
+
+def sweep_report(folder: Path, *, signature: Signature | None = None) -> str:
+    """The page of a sweep, as the text of an HTML file.
+
+    Raises:
+        FolderError: it is no folder of a sweep, it is damaged, or it holds more than one page can carry.
+        CaseError: the base case in it cannot be read.
+    """
+    table = open_sweep(folder)
+    info, case = table.info, load_case(str(folder / "base.toml"))
+    answer, name = sweep_answer(table, folder), info.sweep or folder.name
+    data, tally = map_data(table, folder), counts(table)
+    counted = ", ".join(f"{count} {label}" for label, _, count, _ in tally)
+    computed = int((table["status"] != "").sum())
+    failed = np.flatnonzero(np.asarray(table["status"]).astype(str) == "failed")[:20].tolist()
+    return _html(
+        "sweep",
+        folder,
+        info,
+        case,
+        signature,
+        title=info.title or name,
+        name=name,
+        hash=info.sweep_hash,
+        scripts=["map.js"],
+        data={"sweep": data},
+        sentence=answer.sentence if answer else None,
+        count=f"{computed} of {info.cells} cells{unfinished(info)}: {counted}.",
+        drawings=drawings(folder, [name for name in info.maps if not name.endswith("_print.svg")], "sweep"),
+        deciding=sorted((info.decided_by or {}).items(), key=lambda pair: -pair[1]),
+        cells=cell_map(table, data),
+        rows=len(answer.rows) if answer else 0,
+        answers=_answers_of_sweep(answer) if answer and answer.others else [],
+        counts=[
+            ("outcome", [SWATCH.format(colour, label) for label, colour, *_ in tally]),
+            ("cells", [count for *_, count, _ in tally], N),
+            ("share", [f"{number(share, 100, 3)} %" for *_, share in tally], N),
+        ],
+        failures=[(cell, table["reason"][cell]) for cell in failed],
+        thresholds=_thresholds(folder, table),
+        axes_table=axes_table(table.axes, info.derived),
+        provenance=[
+            ("sweep", f"{name}, {info.status}, model {info.model}"),
+            ("sweep hash", info.sweep_hash),
+            ("base hash", info.base_hash),
+        ],
+        again=again_from_files(folder, study="sweep", name=name, case=case),
+        **(_motions_of_sweep(table) if info.motions else {}),
+    )
+
+
+def _answers_of_sweep(answer: StudyAnswer[Answer]) -> list[Column]:
+    """Where, up to where it stood, where it first overturned, the slip, what else there is to say."""
+    heads = ("stood up to", "first overturned at") if answer.rising else ("stood from", "overturned up to")
+    unit, rows = unit_in_words(answer.axis), answer.rows
+    up_to, first, again, failed, unsure = (
+        f"{head} [{unit}]" if unit else head for head in (*heads, "stood again", "no outcome", "unsure")
+    )
+    every = [": every motion" if len(row.point) < len(answer.others) else "" for row in rows]
+    found = [row.found for row in rows]
+    ends = [ends_in_words(one, answer.axis, bare=True) for one in found]
+    noted = [
+        " (slid too far)" if one.slid else " (a corner destroyed)" if one.invalid else "" for one in found
+    ]
+
+    def ranges(name: str) -> list[str]:
+        return [ranges_in_words(getattr(one, name), answer.axis, bare=True) for one in found]
+
+    def slips(name: str) -> list[str]:
+        return ["" if (slip := getattr(one, name)) is None else millimetres(slip) for one in found]
+
+    return [
+        ("", [f"{answer.where(row)}{more}" for row, more in zip(rows, every, strict=True)]),
+        (up_to, [stood or ABSENT for stood, _ in ends]),
+        ("slip up to there [mm]", slips("stood_slip"), "", True),
+        (first, [f"{fell or ABSENT}{more}" for (_, fell), more in zip(ends, noted, strict=True)]),
+        ("slip there [mm]", slips("slip"), "", True),
+        (again, ranges("stood_again"), "", True),
+        (failed, ranges("failed"), "", True),
+        (unsure, ranges("unsure"), "", True),
+    ]
+
+
+def _thresholds(folder: Path, table: SweepTable) -> list[Column]:
+    """The refined changes of outcome; nothing where they were not asked for."""
+    path, along = folder / "thresholds.csv", (table.info.threshold or {}).get("axis", "")
+    if not path.is_file():
+        return []
+    columns = change_columns(table.axes, along)
+    try:
+        rows = read_rows(path, columns)
+    except (OSError, ValueError) as error:
+        raise FolderError(f"{path}: cannot be read ({error}); repeat the sweep with --force") from None
+    unit = next((axis.unit for axis in table.axes if axis.key == along), "")
+    return [
+        (
+            f"{name} [{unit}]" if unit and CHANGES.get(name) is float else name,
+            [short(row[name], figures=5) if kind is float else row[name] or "" for row in rows],
+        )
+        for name, kind in columns.items()
+    ]
+
+
+def _motions_of_sweep(table: SweepTable) -> dict[str, Any]:
+    """What each motion of a set did at each point of the other axes, and all together."""
+    points = list(motions_at(table.axes, {cell: shown_at(table, cell) for cell in range(len(table["cell"]))}))
+    rows, outcomes = table.info.motion_set or (), list[Column]()
+    if len(points) <= MOST_POINTS:
+        outcomes = [("motion", [one.motion for one in points[0][1]])]
+        for row, (_, at_point) in zip(rows, points, strict=True):
+            words = [
+                _outcome(one.outcome, one.turned)
+                + (f", {millimetres(one.slipped)} mm" if one.outcome in SLIDING else "")
+                for one in at_point
+            ]
+            outcomes.append((row["where"] or "outcome", words))
+    return {"motion_set": rows, "outcomes": outcomes}
+
+
+def ensemble_report(folder: Path, *, signature: Signature | None = None) -> str:
+    """The page of an ensemble, as the text of an HTML file.
+
+    Raises:
+        FolderError: it is no folder of an ensemble, it is damaged, or nothing was counted yet.
+        CaseError: the base case in it cannot be read.
+    """
+    info = read_study(folder, ENSEMBLE, EnsembleResult)
+    case, answer, name = (
+        load_case(str(folder / "base.toml")),
+        ensemble_answer(info),
+        info.ensemble or folder.name,
+    )
+    limit, fell = f"{short(info.probability, 100.0)} %", falling_in_words(info.limit_slip_m, past=True)
+    words = {"below": f"at most {limit}", "undecided": "not decided", "above": f"more than {limit}"}
+    regions = ", ".join(f"{words[region]} at {count}" for region, count in info.regions.items() if count)
+    counted = f"{len(info.points)} points of {info.draws} draws{unfinished(info)}"
+    drawn = dict.fromkeys(info.drawn_over_uncertainty, "over its range as an unknown input")
+    random = {key: _drawn(spread) for key, spread in info.random.items()} | drawn
+    motions = info.motions or ()
+    return _html(
+        "ensemble",
+        folder,
+        info,
+        case,
+        signature,
+        title=info.title or name,
+        name=name,
+        hash=info.asked,
+        sentence=answer.sentence if answer else None,
+        count=counted + (f"; share that {fell}: {regions}." if regions else "."),
+        more=[typeset(f"{head}: {line}.") for head, line in fragility_lines(info)],
+        answers=_answers_of_ensemble(answer, info) if answer and answer.others else [],
+        drawings=drawings(folder, ("figures/fragility.svg", "figures/boundary.svg"), "ensemble"),
+        outcomes=[
+            ("motion", [motion["file"] for motion in motions]),
+            *((name, [motion.get(name, 0) for motion in motions], N) for name in COUNTED),
+        ],
+        axes_table=axes_table(info.point_axes, info.derived),
+        random=[("key", list(random)), ("drawn", list(random.values()))],
+        points=_points(info, words),
+        provenance=[
+            ("ensemble", f"{name}, {info.status}, model {info.model}"),
+            ("draws", f"{info.draws} at each point, {info.sampling}, seed {info.seed}"),
+            ("hash", info.asked),
+        ],
+        again=again_from_files(folder, study="ensemble", name=name, case=case),
+    )
+
+
+def _answers_of_ensemble(answer: StudyAnswer[HalfPoint], info: EnsembleResult) -> list[Column]:
+    """Where half of the draws overturn, for all values of the other axes."""
+
+    def in_axis(value: float | None) -> str:
+        return ABSENT if value is None else in_words(answer.axis, [value])
+
+    few = f"at most {100.0 * info.probability:g} % {'up to' if answer.rising else 'from'}"
+    fell, found = falling_in_words(info.limit_slip_m, past=True), [row.found for row in answer.rows]
+    intervals = [
+        ABSENT if one.value is None else interval_in_words(answer.axis, one, rising=answer.rising)
+        for one in found
+    ]
+    halves = [f"{in_axis(one.value)}{' or before' if one.at_once else ''}" for one in found]
+    return [
+        ("", [answer.where(row) for row in answer.rows]),
+        (f"half of the draws {fell} at", halves),
+        (f"{100.0 * info.confidence:g} % interval", intervals),
+        (few, [in_axis(one.few_to) for one in found]),
+    ]
+
+
+def _points(info: EnsembleResult, words: Mapping[str, str]) -> list[Column]:
+    """A row a point: the counts, the share that overturned, its interval, the region."""
+    points, share = info.points, partial(number, factor=100.0, figures=3)
+
+    def on_axis(value: Any) -> str:
+        return str(value) if isinstance(value, bool | str) else short(value)
+
+    shares = [ABSENT if (p := point["probability"]) is None else f"{share(p)} %" for point in points]
+    intervals = [f"{share(point['low'])} to {share(point['high'])} %" for point in points]
+    return [
+        *((axis_label(axis), [on_axis(point[axis.key]) for point in points], N) for axis in info.point_axes),
+        *((name, [point.get(name, 0) for point in points], N) for name in ("draws", *COUNTED)),
+        ("share", shares, N),
+        (f"{100.0 * info.confidence:g} % interval", intervals, N),
+        ("region", [words[point["region"]] for point in points]),
+        (figure_head(STOOD), [figure_cell(STOOD, point.get(SLIPPED)) for point in points], N),
+    ]
+
+
+def _drawn(spread: Mapping[str, Any] | Sequence[Any]) -> str:
+    """A distribution, or a list of values, in words."""
+    if not isinstance(spread, Mapping):
+        listed = (" + ".join(value) if isinstance(value, list) else str(value) for value in spread)
+        return f"one of, equally often: {', '.join(listed)}"
+    names = ("mean", "median", "deviation")
+    parts = [f"{short(spread['from'])} to {short(spread['to'])}"] if "from" in spread else []
+    parts += [f"{name} {short(spread[name])}" for name in names if name in spread]
+    if "deviation" in spread:
+        parts.append(f"cut at {short(spread['cut'])} deviations")
+    if spread.get("relative"):
+        parts.append("times the value of the key")
+    return f"{spread['distribution']}, {', '.join(parts)}"
+
+
+def hall_report(folder: Path, *, signature: Signature | None = None, brief: bool = False) -> str:
+    """The page of a list of containers, as the text of an HTML file.
+
+    Args:
+        folder: of the list.
+        signature: author, checker, revision.
+        brief: only the answer, the tags and the weakest.
+
+    Raises:
+        FolderError: it is not the folder of a list, it is damaged, or it is not finished.
+        CaseError: the base case in it cannot be read.
+    """
+    info = read_study(folder, HALL, HallResult)
+    case = load_case(str(folder / "base.toml"), allow_outside=True)
+    count = f"{info.extent}{unfinished(info)}."
+    if info.checked:
+        which = "all" if info.checked == info.distinct else f"the weakest {info.checked}"
+        count += f" Sure, deciding inputs and margin are those of {which}, each under its governing motion."
+    elif info.state == "finished":
+        count += " No run was repeated, so sureness and margins are not known."
+    outcomes = ", ".join(f"{word}: {number}" for word, number in info.outcomes.items())
+    words = dict.fromkeys(word for tag in info.tags for word in sorted(tag["counts"]))
+    asked = ["--motion", *info.motions] if info.motions else []
+    asked += ["--margins", info.checks] * (info.checks != "weakest")
+    again = Again(
+        words="With the two files of this folder, and the motions:",
+        command=command_line(
+            "batch", "list.csv", "--case", "base.toml", *asked, allow_outside=bool(info.allow_outside)
+        ),
+        files=[("base.toml", text_of(folder / "base.toml"))],
+    )
+    return _html(
+        "hall",
+        folder,
+        info,
+        case,
+        signature,
+        title=info.hall,
+        name=info.hall,
+        hash=info.asked,
+        sentence=info.answer,
+        count=count,
+        more=[f"{outcomes[0].upper()}{outcomes[1:]}."] if outcomes else [],
+        tag_counts=[(word, [tag["counts"].get(word, "") for tag in info.tags], N) for word in words],
+        weakest=_weakest(info.ranked, linked=not brief),
+        looks=[LOOKS.get(row["outcome"] or "failed", "") for row in info.ranked],
+        brief=brief,
+        provenance=[("hall", f"{info.hall}, {info.status}, model {info.model}"), ("hash", info.asked)],
+        again=None if brief else again,
+    )
+
+
+def _weakest(rows: Sequence[A_ROW], *, linked: bool) -> list[Column]:
+    """A row a container, the weakest first; its name leads to its command."""
+
+    def figure(row: A_ROW, name: str, shown: Shown) -> str:
+        fallen = name == TURNED and row["outcome"] == Outcome.OVERTURNED  # how far it fell says nothing
+        return figure_cell(shown, None if fallen else row[name])
+
+    def key(
+        head: str, name: str, look: str = "", text: Callable[[Any], str] = str, empty: Any = None
+    ) -> Column:
+        cells = ["" if row[name] in (None, empty) else text(row[name]) for row in rows]
+        return head, cells, look, True
+
+    outcomes = [row["outcome"] or (f"none: {row['reason']}" if row["reason"] else ABSENT) for row in rows]
+    return [
+        (
+            "container",
+            [html.link(row["name"], f"row-{row['row']}") if linked else row["name"] for row in rows],
+        ),
+        key("line", "line", N),
+        key("count", "count", N, empty=1),
+        key("tag", "tag"),
+        ("outcome", outcomes),
+        ("margin", [margin_words(row) for row in rows], N),
+        key("sure", "sure"),
+        key("decided by", "decided_by", text=lambda keys: deciding_in_words(keys.split())),
+        *(
+            (figure_head(shown), [figure(row, name, shown) for row in rows], N)
+            for name, shown in figures_of(Place.KEY).items()
+        ),
+        key("utilisation", "utilisation_overturning", N, partial(number, figures=3)),
+        key("motion", "motion"),
+        key("runs overturned", "motions_overturned", N),
+        key("runs not valid", "motions_invalid", N, empty=0),
+    ]
+
+
+def margin_words(row: A_ROW) -> str:
+    """A margin with its range: "1.8 (1.5 to 2.1)", "1.8 (from 1.5)" where not all overturn, "> 4"; empty without."""
+    margin, tried = row["margin"], row["margin_tried_to"]
+    if margin is None:
+        return "" if tried is None else f"> {FACTOR.text(tried)}"
+    low, high = (FACTOR.text(row[name]) for name in ("margin_low", "margin_high"))
+    if not low:
+        return FACTOR.text(margin)
+    return f"{FACTOR.text(margin)} ({f'{low} to {high}' if high else f'from {low}'})"
+
+
+def _html(
+    kind: str,
+    folder: Path,
+    info: StudyResult,
+    case: Case,
+    signature: Signature | None,
+    *,
+    title: str,
+    name: str,
+    hash: str,
+    sentence: str | None,
+    provenance: Sequence[tuple[str, str]],
+    again: Again | None,
+    scripts: Sequence[str] = (),
+    data: Mapping[str, Any] | None = None,
+    **context: Any,
+) -> str:
+    """The page: what the template is handed, and at its end the limits of the case and how to repeat it.
+
+    An unfinished study is not signed; without `again` it is a short page, without its end.
+    """
+    motions = () if kind == "hall" else getattr(info, "motions", None) or ()
+    figures = getattr(info, "motion_figures", ())
+    page = Page(
+        kind=f"Report of {'an' if kind == 'ensemble' else 'a'} {kind}",
+        title=title,
+        name=name,
+        signature=None if info.no_answer_yet else (signature or Signature()).completed(case.named),
+        sections=[] if again is None else [limits_section(case), repeat_section(provenance, info, again)],
+        hash=hash,
+        scripts=scripts,
+        data=data or {},
+    )
+    known = {"more": [], "answers": [], "rows": 0, "brief": False} | context
+    return html_of(
+        page,
+        "study.html.j2",
+        FILTERS,
+        kind=kind,
+        info=info,
+        base_rows=case_rows(case),
+        sentence=info.no_answer_yet or sentence,
+        measures=_measures(motions),
+        motion_drawings=drawings(folder, figures, kind, prefix="motion"),
+        **known,
+    )
+
+
+def _measures(motions: Sequence[A_ROW]) -> list[Column]:
+    """A row a component of a motion: peaks, significant duration, length, step."""
+    parts = [part for motion in motions for part in (motion, motion["vertical"]) if part]
+    return [
+        ("motion", [part["file"] + ("" if "vertical" in part else " (vertical)") for part in parts]),
+        ("PGA [g]", [number(part[PEAK], 1.0 / STANDARD_GRAVITY, 3) for part in parts], N),
+        *(
+            (figure_head(shown), [figure_cell(shown, part[key]) for part in parts], N)
+            for key, shown in MEASURES.items()
+        ),
+        ("length [s]", [short(part["duration_s"]) for part in parts], N),
+        ("step [s]", [short(part["step_s"]) for part in parts], N),
+    ]
+
+
+def _outcome(outcome: str | None, turned: float | None) -> str:
+    """An outcome, and the rotation ratio of what rocked."""
+    if outcome is None:
+        return "failed"
+    return f"{outcome}, {ratio(turned)}" if outcome in ROCKING else outcome
+
+
+def _shown(columns: Sequence[Column]) -> list[dict[str, Any]]:
+    """The columns of a table that show something, their cells as they are set."""
+    shown = []
+    for head, cells, *more in columns:
+        texts = [cell if isinstance(cell, Markup) else typeset(str(cell)) for cell in cells]
+        look, optional = (*more, "", False)[:2] if len(more) < 2 else more
+        if any(texts) or not optional:
+            attributes = Markup(' class="{}"').format(look) if look else ""
+            shown.append({"head": head, "cells": texts, "attributes": attributes})
+    return shown
+
+
+def _worst_motion(row: A_ROW) -> str:
+    if not row["worst_motion"]:
+        return ABSENT
+    return f"{row['worst_motion']}: {_outcome(row['worst_outcome'], row[WORST_TURNED])}"
+
+
+def _largest_slip(row: A_ROW) -> str:
+    largest = row["worst_slip_m"]
+    return f"{millimetres(largest)} mm, {row['worst_slip_motion']}" if largest else ABSENT
+
+
+def _mean_ratio(row: A_ROW) -> str:
+    return ratio(row[MEAN_TURNED]) + (f" (of {row['stood']})" if 0 < row["stood"] < row["motions"] else "")
+
+
+def _target(row: A_ROW) -> Markup:
+    """The name of a container, to which the table of the weakest leads."""
+    return Markup('<span id="row-{}">{}</span>').format(row["row"], row["name"])
+
+
+#: of `study.html.j2`
+FILTERS: dict[str, Callable[..., Any]] = {
+    "shown": _shown,
+    "typeset": typeset,
+    "millimetres": millimetres,
+    "number": number,
+    "code": html.code,
+    "input_in_words": input_in_words,
+    "share_interval": lambda row: f"{short(row['low'], 100.0, 3)} to {short(row['high'], 100.0, 3)} %",
+    "count": lambda row, name: str(row.get(name) or ""),
+    "worst_motion": _worst_motion,
+    "largest_slip": _largest_slip,
+    "mean_ratio": _mean_ratio,
+    "or_absent": lambda text: text or ABSENT,
+    "target": _target,
+}

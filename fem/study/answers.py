@@ -1,0 +1,458 @@
+"""The answer of a study in one sentence: up to which value everything stood, and where something first overturned.
+
+Along one axis the values are taken from the safe side: a strength from below, a width from above. Every statement is
+about what was tried: nothing is known between the values.
+"""
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import groupby, pairwise, takewhile
+from typing import Any, Generic, NamedTuple, TypeVar
+
+from fem.results.figures import SLIPPED
+from fem.results.outcome import NOT_STANDING, Ending
+from fem.runtime.units import MILLIMETRES, plain_number
+from fem.study.axes import MOTION_FILE, Axis, axis_name, in_words, place_in_words
+from fem.study.driver import COMPLETED
+from fem.study.fragility import EnsembleResult
+
+#: axes of the floor's strength, that first along which an answer is given where a study does not say
+STRENGTHS = (
+    "motion.peak_acceleration_m_s2",
+    "motion.scale_to_m_s2",
+    "motion.scale",
+    "motion.amplitude_m",
+)
+GAPS = ("stop.gap_m", "tie.slack_m", "neighbour.gap_m")  #: axes of an answer where none is a strength
+#: axes along which the larger value is the safer one
+LARGER_IS_SAFER = frozenset({"container.width_m"})
+MOST_RANGES = 4  #: of values that a sentence names
+MOST_ROWS = 40  #: on a screen
+MOST_FIGURES = 17  #: of a number in double precision
+
+FoundT = TypeVar("FoundT")
+Range = tuple[float, float]  #: first and last of neighbouring values, from the safe side
+
+
+class Trial(NamedTuple):
+    """One run: where it is, and what it showed."""
+
+    value: float  #: on the axis of the answer
+    line: int  #: runs of one line differ in that value alone
+    kind: Ending
+    slip: float | None = None  #: largest |slip| [m]
+    #: whether unknown inputs or small changes turn the outcome; None where not tried
+    unsure: bool | None = None
+    fell: str = ""  #: who overturned first, of a row of containers
+
+
+@dataclass(frozen=True, kw_only=True)
+class Answer:
+    """The result of the runs of one or more lines, from the safe side on.
+
+    With a limit on the slip, what slides further does not stand, and counts as what overturns; so does what destroys a
+    corner.
+    """
+
+    stood_to: float | None  #: up to here every run stood; None where one of the first value did not
+    overturned_from: float | None  #: the first value at which a run overturned
+    stood_slip: float | None = None  #: largest of the runs up to the first of these values [m]
+    slip: float | None = None  #: of the run that overturned [m]
+    line: int | None = None  #: of that run
+    fell: str = ""  #: who overturned first in it, of a row of containers
+    slid: bool = False  #: no run overturned at the second of these values: one slid beyond the limit
+    invalid: bool = False  #: .. or one destroyed a corner
+    limit_slip: float | None = None  #: [m]
+    stood_again: tuple[Range, ...] = ()  #: beyond that value, where every line was tried and stood
+    failed: tuple[Range, ...] = ()  #: where a run has no outcome
+    unsure: tuple[Range, ...] = ()  #: where the outcome of a run is unsure
+
+
+@dataclass(frozen=True, kw_only=True)
+class AnswerRow(Generic[FoundT]):
+    """The answer of the runs that have some values of the other axes in common."""
+
+    #: these values; without the motion where the row is that of all motions of a set
+    point: Mapping[str, Any]
+    found: FoundT
+    sentence: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class StudyAnswer(Generic[FoundT]):
+    """What a study found along one axis: an `Answer` of a sweep, a `HalfPoint` of an ensemble."""
+
+    axis: Axis
+    rising: bool  #: the smaller values are the safe ones
+    sentence: str  #: of all rows together
+    others: tuple[Axis, ...]  #: the axes that distinguish the rows
+    rows: tuple[AnswerRow[FoundT], ...]  #: those of all motions of a set first
+
+    def lines(self) -> Iterator[tuple[str, str]]:
+        """Where, and the answer; of a set of motions the rows of all of them; nothing where there are no other axes."""
+        of_sets = [row for row in self.rows if len(row.point) < len(self.others)]
+        for row in of_sets or self.rows if self.others else ():
+            yield self.where(row), row.sentence
+
+    def where(self, row: AnswerRow[FoundT]) -> str:
+        """The values of the other axes in words."""
+        return place_in_words((axis for axis in self.others if axis.key in row.point), row.point)
+
+
+def answer_axis(axes: Sequence[Axis]) -> Axis | None:
+    """The axis along which a study answers: a strength, else a gap, else the only one whose values are rising numbers.
+
+    An axis of two opposite signs is not a strength.
+    """
+    numeric = {
+        axis.key: axis for axis in axes if axis.is_numeric and len({abs(value) for value in axis.values}) > 1
+    }
+    for key in (*STRENGTHS, *GAPS):
+        if key in numeric:
+            return numeric[key]
+    return next(iter(numeric.values())) if len(numeric) == 1 else None
+
+
+def is_rising(axis: Axis, trials: Iterable[Trial]) -> bool:
+    """Whether the smaller values are the safe ones: by the key, else by what the ends of the axis show."""
+    if axis.key in LARGER_IS_SAFER:
+        return False
+    if axis.key in STRENGTHS:
+        return True
+    kinds: dict[float, set[Ending]] = defaultdict(set)
+    for trial in trials:
+        kinds[trial.value].add(trial.kind)
+    return not (Ending.OVERTURNED in kinds[axis.values[0]] and kinds[axis.values[-1]] == {Ending.STANDING})
+
+
+def answer_of(trials: Sequence[Trial], *, rising: bool, limit_slip: float | None = None) -> Answer:
+    """The answer of some lines together.
+
+    Args:
+        trials: of all these lines, in any order.
+        rising: the smaller values are the safe ones.
+        limit_slip: beyond which a run does not stand [m]; None: none.
+    """
+
+    def falls(trial: Trial) -> bool:
+        slid = limit_slip is not None and trial.kind == Ending.STANDING and (trial.slip or 0.0) > limit_slip
+        return slid or trial.kind in NOT_STANDING
+
+    lines = len({trial.line for trial in trials})
+    at: dict[float, list[Trial]] = defaultdict(list)
+    for trial in trials:
+        at[trial.value].append(trial)
+    values = sorted(at, reverse=not rising)
+    kinds = {value: {trial.kind for trial in at[value]} for value in values}
+    fallen = [value for value in values if any(map(falls, at[value]))]
+    stands = [kinds[value] == {Ending.STANDING} and value not in fallen for value in values]
+    first = values.index(fallen[0]) if fallen else len(values)
+    upright = stands.index(False) if False in stands else len(values)
+    fell = [trial for trial in at[fallen[0]] if falls(trial)] if fallen else []
+    overturned = [trial for trial in fell if trial.kind == Ending.OVERTURNED]
+    invalid = [trial for trial in fell if trial.kind == Ending.INVALID]
+    worst = max(overturned or invalid or fell, key=lambda run: (run.slip or 0.0, -run.line), default=None)
+    slips = [trial.slip for value in values[:upright] for trial in at[value] if trial.slip is not None]
+    # A value tried in some lines only is unknown for the others; where it did not stand, it ends a range.
+    beyond = [
+        (value, stood)
+        for value, stood in zip(values[first:], stands[first:], strict=True)
+        if not stood or len(at[value]) == lines
+    ]
+    sureness = [
+        (value, marks)
+        for value in values
+        if (marks := [trial.unsure for trial in at[value] if trial.unsure is not None])
+    ]
+    return Answer(
+        stood_to=values[upright - 1] if upright else None,
+        overturned_from=fallen[0] if fallen else None,
+        stood_slip=max(slips, default=None),
+        slip=worst.slip if worst else None,
+        line=worst.line if worst else None,
+        fell=worst.fell if worst else "",
+        slid=bool(fell) and not overturned and not invalid,
+        invalid=bool(invalid) and not overturned,
+        limit_slip=limit_slip,
+        stood_again=tuple(_ranges(beyond)),
+        failed=tuple(_ranges((value, Ending.FAILED in kinds[value]) for value in values)),
+        unsure=tuple(_ranges((value, any(marks)) for value, marks in sureness)),
+    )
+
+
+def sentence_of(answer: Answer, axis: Axis, *, rising: bool, where: str = "") -> str:
+    """An answer in words: "stood in every motion tried up to 0.42 g (slid up to 50 mm); first overturned at 0.44 g"."""
+    every = f"stood in every {'motion' if axis.key.startswith('motion.') else 'case'} tried"
+    limit = "" if answer.limit_slip is None else slip_in_words(answer.limit_slip)
+    overturned = (
+        f"slid beyond {limit}" if answer.slid else "destroyed a corner" if answer.invalid else "overturned"
+    )
+    stood, fell = ends_in_words(answer, axis)
+    if stood and answer.stood_slip is not None and answer.stood_slip >= MILLIMETRES.least:
+        there = f" (slid up to {slip_in_words(answer.stood_slip)})"
+    else:
+        there = ""
+    slip = ""
+    if fell and answer.slip is not None:
+        slip = (
+            f"slip there {slip_in_words(answer.slip)}"
+            if answer.slip >= MILLIMETRES.least
+            else "no slip there"
+        )
+    fell_first = f"first to overturn: {answer.fell}" if answer.fell else ""
+    noted = ", ".join(filter(None, (fell_first, slip, f"with {where}" if fell and where else "")))
+    noted = f" ({noted})" if noted else ""
+    at_once = fell and not stood and not answer.failed
+    if rising:
+        parts = [
+            f"{every} up to {stood}{there}" if stood else "",
+            f"{f'{overturned} at the least tried,' if at_once else f'first {overturned} at'} {fell}{noted}"
+            if fell
+            else "",
+        ]
+    else:
+        parts = [
+            f"{overturned} {'even at the largest tried,' if at_once else 'up to'} {fell}{noted}"
+            if fell
+            else "",
+            f"{every} from {stood} on{there}" if stood else "",
+        ]
+    none = f"none overturned or slid beyond {limit}" if limit else "none overturned"
+    parts.append(none if stood and not fell else "")
+    ranges = {
+        "stood again at" if rising else "stood below that at": answer.stood_again,
+        "no outcome at": answer.failed,
+        "unsure at": answer.unsure,
+    }
+    parts += [
+        f"{words} {ranges_in_words(stretches, axis)}" for words, stretches in ranges.items() if stretches
+    ]
+    return "; ".join(filter(None, parts))
+
+
+def ends_in_words(answer: Answer, axis: Axis, *, bare: bool = False) -> tuple[str, str]:
+    """Up to where it stood and where it first overturned, with enough figures to differ; empty for none.
+
+    Args:
+        answer, axis: what to say.
+        bare: without the unit.
+    """
+    ends = (answer.stood_to, answer.overturned_from)
+    words = ("", "")
+    for figures in range(3, MOST_FIGURES + 1):
+        stood, fell = ("" if end is None else in_words(axis, [end], figures, bare=bare) for end in ends)
+        words = stood, fell
+        if stood != fell:
+            break
+    return words
+
+
+def ranges_in_words(ranges: Sequence[Range], axis: Axis, *, bare: bool = False) -> str:
+    """Ranges of values: "0.5 to 0.55 g, 0.61 g"; those after the fourth are counted."""
+    texts = [in_words(axis, sorted({*span}), bare=bare) for span in ranges[:MOST_RANGES]]
+    more = len(ranges) - len(texts)
+    return ", ".join(texts) + (f" and {more} more" if more else "")
+
+
+def table_lines(rows: Iterable[tuple[str, str]], file: str = "") -> Iterator[str]:
+    """Lines for a screen, each a place and its answer; after the first forty, the number left and the file of all."""
+    listed = list(rows)
+    widest = max((len(where) for where, _ in listed), default=0)
+    yield from (f"  {where:{widest}}  {sentence}" for where, sentence in listed[:MOST_ROWS])
+    if more := len(listed[MOST_ROWS:]):
+        yield f"  {more} more rows" + (f" in {file}" if file else "")
+
+
+def falling_in_words(limit_slip: float | None, *, past: bool = False) -> str:
+    """What does not stand, with this limit of the slip [m]: "overturning or sliding beyond 100 mm"; or what it did."""
+    fell, slid = ("overturned", "slid") if past else ("overturning", "sliding")
+    return fell if limit_slip is None else f"{fell} or {slid} beyond {slip_in_words(limit_slip)}"
+
+
+def slip_in_words(slip: float) -> str:
+    """A slip [m]: "64 mm", "2.9 m"."""
+    return f"{plain_number(slip)} m" if slip >= 1.0 else f"{plain_number(1e3 * slip)} mm"
+
+
+def _ranges(marked: Iterable[tuple[float, bool]]) -> Iterator[Range]:
+    """Neighbouring values that are marked."""
+    for mark, group in groupby(marked, key=lambda pair: pair[1]):
+        if mark:
+            values = [value for value, _ in group]
+            yield values[0], values[-1]
+
+
+HALF = 0.5
+Row = Mapping[str, Any]  #: of a point, as `ensemble.json` holds it
+
+
+@dataclass(frozen=True, kw_only=True)
+class HalfPoint:
+    """Where half of the draws overturn along one line of points."""
+
+    value: float | None  #: None where fewer do at every point
+    low: float | None  #: end of its interval; None: not reached
+    high: float | None
+    at_once: bool  #: half or more do so at the first point already
+    few_to: float | None  #: up to here the upper end of the interval is at most the given probability
+
+
+def draws_in_words(result: EnsembleResult) -> str:
+    """What is counted at a point: "128 draws", "7 motions", "70 draws of 7 motions"."""
+    draws, motions = result.draws, len(result.random.get(MOTION_FILE, ()))
+    if not motions:
+        return f"{draws} draws"
+    return f"{motions} motions" if motions == draws else f"{draws} draws of {motions} motions"
+
+
+def ensemble_answer(result: EnsembleResult) -> StudyAnswer[HalfPoint] | None:
+    """The answer along a strength, else along the axis with the most values.
+
+    Returns:
+        None of an unfinished ensemble, and where no axis has several numbers.
+    """
+    axes = result.point_axes
+    numeric = sorted((axis for axis in axes if axis.is_numeric), key=lambda axis: -len(axis.values))
+    axis = answer_axis(axes) or next(iter(numeric), None)
+    if axis is None or result.status != COMPLETED:
+        return None
+    others = tuple(other for other in axes if other is not axis and len(other.values) > 1)
+    rising = _is_rising(axis, result.points)
+    lines: dict[tuple[Any, ...], list[Row]] = defaultdict(list)
+    for point in sorted(result.points, key=lambda row: row[axis.key], reverse=not rising):
+        lines[tuple(point[other.key] for other in others)].append(point)
+    rows = []
+    for _, points in sorted(lines.items()):
+        crossing = half_point(axis, points)
+        words = _half(result, axis, points, crossing, rising=rising)
+        if crossing.few_to is not None:
+            words += _few(result, axis, crossing.few_to, rising=rising)
+        sentence = words + _slips(points, crossing)
+        rows.append(AnswerRow(point=points[0], found=crossing, sentence=sentence))
+    safest = min if rising else max
+    reached = [(row.found.value, k) for k, row in enumerate(rows) if row.found.value is not None]
+    few = [row.found.few_to for row in rows if row.found.few_to is not None]
+    sentence = rows[0].sentence
+    if others and reached:
+        point, crossing = rows[safest(reached)[1]].point, rows[safest(reached)[1]].found
+        half = _half(
+            result, axis, lines[tuple(point[other.key] for other in others)], crossing, rising=rising
+        )
+        sentence = f"{half}, first with {place_in_words(others, point)}"
+    elif others:
+        fell = falling_in_words(result.limit_slip_m, past=True)
+        sentence = f"fewer than half of {draws_in_words(result)} {fell} at every point"
+    if others and len(few) == len(rows):
+        sentence += _few(result, axis, safest(few), rising=rising)
+    return StudyAnswer(
+        axis=axis, rising=rising, sentence=f"{axis_name(axis)}: {sentence}", others=others, rows=tuple(rows)
+    )
+
+
+def half_point(axis: Axis, points: Sequence[Row]) -> HalfPoint:
+    """Where half of the draws overturn along a line of points, sorted from the side where fewer do."""
+    known = [point for point in points if point["probability"] is not None]
+    values = [float(point[axis.key]) for point in known]
+    value, low, high = (
+        _crossing(values, [float(point[name]) for point in known]) for name in ("probability", "high", "low")
+    )
+    few = list(takewhile(lambda point: point["region"] == "below", points))
+    return HalfPoint(
+        value=value,
+        low=low,
+        high=high,
+        at_once=bool(known) and known[0]["probability"] >= HALF,
+        few_to=float(few[-1][axis.key]) if few else None,
+    )
+
+
+def _crossing(values: Sequence[float], shares: Sequence[float]) -> float | None:
+    """Where straight lines through the points first pass one half; the first value where it lies above already."""
+    if shares and shares[0] >= HALF:
+        return values[0]
+    for (before, less), (after, more) in pairwise(zip(values, shares, strict=True)):
+        if less < HALF <= more:
+            return before + (after - before) * (HALF - less) / (more - less)
+    return None
+
+
+def _is_rising(axis: Axis, points: Sequence[Row]) -> bool:
+    """Whether more overturn at larger values: by the key, else by the shares at the ends of the axis."""
+    if axis.key in LARGER_IS_SAFER:
+        return False
+    low, high = (
+        [point["probability"] or 0.0 for point in points if point[axis.key] == end]
+        for end in (axis.values[0], axis.values[-1])
+    )
+    return axis.key in STRENGTHS or sum(high) >= sum(low)
+
+
+def interval_in_words(axis: Axis, crossing: HalfPoint, *, rising: bool) -> str:
+    """The interval of the value in words; an end outside the points lies "beyond" them."""
+    ends = [axis.values[0], axis.values[-1]]
+    first, last = (in_words(axis, [end]) for end in (ends if rising else reversed(ends)))
+    before, after = ("below", "beyond") if rising else ("beyond", "below")
+    low, high = ("" if end is None else in_words(axis, [end]) for end in (crossing.low, crossing.high))
+    words = [f"{before} {first}" if low == first else low, high or f"{after} {last}"]
+    return " to ".join(words if rising else reversed(words))
+
+
+def _half(
+    result: EnsembleResult, axis: Axis, points: Sequence[Row], crossing: HalfPoint, *, rising: bool
+) -> str:
+    half = f"half of {draws_in_words(result)} {falling_in_words(result.limit_slip_m, past=True)}"
+    if crossing.at_once:
+        end = "least" if rising else "largest"
+        return f"{half} or more at the {end} tried, {in_words(axis, [points[0][axis.key]])}"
+    if crossing.value is None:
+        most = max(points, key=lambda point: point["probability"] or 0.0)
+        share = f"{100.0 * (most['probability'] or 0.0):.2g} %"
+        return (
+            f"fewer than {half} at every value tried, at most {share} at {in_words(axis, [most[axis.key]])}"
+        )
+    interval = interval_in_words(axis, crossing, rising=rising)
+    return (
+        f"{half} at {in_words(axis, [crossing.value])} ({100.0 * result.confidence:g} % interval {interval})"
+    )
+
+
+def _slips(points: Sequence[Row], crossing: HalfPoint) -> str:
+    """How far the draws slid that stood, at the points at which fewer than half did not."""
+    before = takewhile(lambda point: crossing.value is None or (point["probability"] or 0.0) < HALF, points)
+    slip = max((point.get(SLIPPED) or 0.0 for point in before), default=0.0)
+    return f"; those that stood there slid up to {slip_in_words(slip)}" if slip >= MILLIMETRES.least else ""
+
+
+def _few(result: EnsembleResult, axis: Axis, few_to: float, *, rising: bool) -> str:
+    few = in_words(axis, [few_to])
+    reach = f"up to {few}" if rising else f"from {few} on"
+    return f"; at most {100.0 * result.probability:g} % {reach}, by the upper end of the interval"
+
+
+def fragility_lines(result: EnsembleResult) -> Iterator[tuple[str, str]]:
+    """Where the curve falls, and the lognormal curve: name and words; nothing where there is no curve."""
+    fragility = result.fragility
+    if fragility is None:
+        return
+    for fall in fragility.falls:
+        yield (
+            "falls",
+            f"from {fall.probability_weaker:.3f} at {fall.weaker:g} to {fall.probability_stronger:.3f} at "
+            f"{fall.stronger:g}: a stronger motion overturns less often",
+        )
+    fitted = fragility.lognormal
+    if fitted is None:
+        yield "lognormal", f"none: {fragility.no_lognormal}"
+        return
+    parts = []
+    for name, unit in (("median", result.axes[0].unit), ("deviation", "")):
+        ends = fitted[f"{name}_interval"]
+        interval = f" ({ends[0]:.3g} to {ends[1]:.3g})" if ends else ""
+        parts.append(f"{name} {fitted[name]:.3g}{interval} {unit}".rstrip())
+    fit = "" if fitted.adequate else "; the lognormal curve does not describe the counts"
+    yield (
+        "lognormal",
+        f"{', '.join(parts)}; misses {fitted.levels_missed} of {fitted.levels} intervals of "
+        f"{100.0 * result.confidence:g} % ({fitted.missed_by_chance} by chance){fit}",
+    )

@@ -1,0 +1,321 @@
+"""Keys that follow others, by arithmetic: numbers, dotted keys, + - * / ^, parentheses, a few functions, nothing else.
+
+A key is `table.key`, or a key before the first table, such as `gravity_m_s2`; `pi` is the number; `**` is `^`. Python's
+own parser reads the text; only a white list of its nodes becomes a tree of tuples, and nothing is executed as code.
+"""
+
+import ast
+import math
+import operator
+import re
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from keyword import iskeyword
+from typing import Any
+
+from fem.case.case import Case
+from fem.case.overrides import keys_in_effect
+from fem.case.tables.all_tables import TABLES
+from fem.case.validation import CaseError, known_keys
+from fem.study.axes import AxisError
+
+Tree = tuple[Any, ...]
+
+FUNCTIONS: dict[str, tuple[Callable[..., float], int]] = {
+    "abs": (abs, 1),
+    "atan": (math.atan, 1),
+    "cos": (math.cos, 1),
+    "exp": (math.exp, 1),
+    "log": (math.log, 1),
+    "max": (max, 2),
+    "min": (min, 2),
+    "sin": (math.sin, 1),
+    "sqrt": (math.sqrt, 1),
+    "tan": (math.tan, 1),
+}
+OPERATORS: dict[type[ast.AST], str] = {
+    ast.Add: "+",
+    ast.Sub: "-",
+    ast.Mult: "*",
+    ast.Div: "/",
+    ast.Pow: "^",
+    ast.UAdd: "+",
+    ast.USub: "-",
+}
+ARITHMETIC: dict[str, Callable[[float, float], float]] = {
+    "+": operator.add,
+    "-": operator.sub,
+    "*": operator.mul,
+    "/": operator.truediv,
+    "^": math.pow,
+}
+NUMBER = re.compile(r"(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
+KEY = re.compile(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)?", re.ASCII)
+WORD = re.compile(r"[A-Za-z_]\w*", re.ASCII)
+#: what Python may read, and an expression may not hold
+FOREIGN = re.compile(r"[^\w\s.+\-*/^(),]|,(?=\s*\))", re.ASCII)
+LONGEST = 400  #: characters
+
+
+class ExpressionError(ValueError):
+    """A text that is no expression, or one that has no value; the message is a reason without a place."""
+
+
+@dataclass(frozen=True)
+class Expression:
+    """A parsed expression."""
+
+    text: str
+    tree: Tree
+
+    @property
+    def keys(self) -> frozenset[str]:
+        """The keys it refers to."""
+        return frozenset(_keys(self.tree))
+
+    def value(self, values: Mapping[str, float]) -> float:
+        """Its value where the keys have these values.
+
+        Raises:
+            ExpressionError: a division by zero, a root of a negative number, a value that is not finite.
+        """
+        try:
+            value = _value(self.tree, values)
+        except ZeroDivisionError:
+            reason = "it divides by zero"
+        except OverflowError:
+            reason = "it is too large for a number"
+        except (ArithmeticError, ValueError, TypeError) as error:
+            reason = str(error)
+        else:
+            if not isinstance(value, complex) and math.isfinite(value):
+                return float(value)
+            reason = f"it is {value}, not a finite number"
+        raise ExpressionError(
+            f"= {self.text!r} has no value: {reason}; change it, or the values of the keys that it refers to"
+        )
+
+
+def parse_expression(text: str) -> Expression:
+    """Parse a text.
+
+    Raises:
+        ExpressionError: it is no expression; says why and where.
+    """
+    if len(text) > LONGEST:
+        raise ExpressionError(f"is {len(text)} characters long; at most {LONGEST} are read")
+    return Expression(text, _Reader(text).tree())
+
+
+class _Reader:
+    """Turns a text into a tree."""
+
+    def __init__(self, text: str) -> None:
+        self._text = text
+
+    def tree(self) -> Tree:
+        text = self._text
+        if foreign := FOREIGN.search(text):
+            raise self._refused(f"unexpected {foreign[0]!r}", foreign.start())
+        # A key may be one of Python's words, such as free.lambda: in other letters it is none to Python.
+        other = WORD.sub(lambda word: word[0].swapcase() if iskeyword(word[0]) else word[0], text)
+        begin = len(text) - len(text.lstrip())
+        pieces = ["**" if sign == "^" else " " if sign.isspace() else sign for sign in other[begin:]]
+        #: position in the text of each character that Python reads
+        self._places = [begin + k for k, piece in enumerate(pieces) for _ in piece] + [len(text)]
+        try:
+            return self._tree(ast.parse("".join(pieces), mode="eval").body)
+        except SyntaxError as error:
+            position = min(error.offset or len(self._places), len(self._places)) - 1  # 0: the end
+            raise self._refused(re.split("[.;]", error.msg)[0], self._places[position]) from None
+        except (RecursionError, MemoryError):
+            raise ExpressionError("is nested too deeply") from None
+
+    def _tree(self, node: ast.expr) -> Tree:
+        source = self._source(node)
+        match node:
+            case ast.Constant() if NUMBER.fullmatch(source):
+                return ("number", float(source))
+            case ast.Name() | ast.Attribute() if KEY.fullmatch(source):
+                return ("number", math.pi) if source == "pi" else ("key", source)
+            case ast.UnaryOp(op=op, operand=part) if type(op) in OPERATORS:
+                return ("sign", OPERATORS[type(op)], self._tree(part))
+            case ast.BinOp(left=left, op=op, right=right) if type(op) in OPERATORS:
+                return (OPERATORS[type(op)], self._tree(left), self._tree(right))
+            case ast.Call(func=function, args=arguments, keywords=[]):
+                return self._call(self._source(function), arguments)
+        raise self._refused(f"{source!r} is no number, key, sum, product or power", self._begin(node))
+
+    def _call(self, name: str, arguments: list[ast.expr]) -> Tree:
+        if name not in FUNCTIONS:
+            raise ExpressionError(f"= {self._text!r}: no function {name!r} (known: {', '.join(FUNCTIONS)})")
+        wanted = FUNCTIONS[name][1]
+        if len(arguments) != wanted:
+            raise ExpressionError(
+                f"= {self._text!r}: {name} takes {wanted} argument{'s' * (wanted > 1)}, got {len(arguments)}"
+            )
+        return ("call", name, *map(self._tree, arguments))
+
+    def _begin(self, node: ast.expr) -> int:
+        return self._places[node.col_offset]
+
+    def _source(self, node: ast.expr) -> str:
+        return self._text[self._begin(node) : self._places[node.end_col_offset or 0]]
+
+    def _refused(self, reason: str, position: int) -> ExpressionError:
+        return ExpressionError(
+            f"= {self._text!r}: {reason} at character {position + 1}; it may hold numbers, keys such as "
+            "contact.mu_static, + - * / ^ ( ) and functions"
+        )
+
+
+def _keys(tree: Tree) -> Iterator[str]:
+    if tree[0] == "key":
+        yield tree[1]
+    for part in tree[1:]:
+        if isinstance(part, tuple):
+            yield from _keys(part)
+
+
+def _value(tree: Tree, values: Mapping[str, float]) -> float:
+    match tree:
+        case ("number", number):
+            return float(number)
+        case ("key", key):
+            return values[key]
+        case ("sign", sign, part):
+            return -_value(part, values) if sign == "-" else _value(part, values)
+        case ("call", name, *parts):
+            return FUNCTIONS[name][0](*(_value(part, values) for part in parts))
+    sign, left, right = tree
+    return ARITHMETIC[sign](_value(left, values), _value(right, values))
+
+
+FREE = "free."  #: begins the name of a variable that is no key of a case; derived keys refer to it
+
+
+@dataclass(frozen=True, kw_only=True)
+class Derived:
+    """A key that follows others."""
+
+    key: str  #: dotted
+    expression: Expression
+
+
+def read_derived(
+    content: Mapping[str, Any],
+    varied: Collection[str],
+    check_key: Callable[[str], object],
+    check_reference: Callable[[str], object],
+) -> tuple[Derived, ...]:
+    """The table [derived] of a study, in an order in which each key follows those it refers to.
+
+    Args:
+        content: of the table.
+        varied: keys that vary already.
+        check_key, check_reference: raise an `AxisError` for a key that cannot follow, or be referred to.
+
+    Raises:
+        CaseError: with the key and the reason.
+    """
+    expressions: dict[str, Expression] = {}
+    for key, text in content.items():
+        try:
+            if key in varied:
+                raise AxisError("varies already; it cannot follow another key as well")
+            check_key(key)
+            if not isinstance(text, str):
+                raise AxisError(
+                    f"must be an expression in quotes, got {text!r}; a fixed value goes under [set]"
+                )
+            expressions[key] = parse_expression(text)
+        except (AxisError, ExpressionError) as error:
+            raise CaseError(f"[derived] {key!r} {error}") from None
+    for key, expression in expressions.items():
+        for name in sorted(expression.keys - expressions.keys()):
+            try:
+                check_reference(name)
+            except AxisError as error:
+                raise CaseError(f"[derived] {key!r} refers to {name!r}, which {error}") from None
+    return tuple(Derived(key=key, expression=expressions[key]) for key in _in_order(expressions))
+
+
+def with_derived(values: Mapping[str, Any], derived: Iterable[Derived], base: Case) -> dict[str, Any]:
+    """Values by key, those of the derived keys added.
+
+    Raises:
+        CaseError: an expression has no value.
+    """
+    complete = dict(values)
+    for quantity in derived:
+        known = {key: number_of(key, complete, base) for key in quantity.expression.keys}
+        try:
+            value = quantity.expression.value(known)
+        except ExpressionError as error:
+            raise CaseError(f"[derived] {quantity.key} {error}") from None
+        complete[quantity.key] = int(value) if quantity.key in _WHOLE_KEYS and value == int(value) else value
+    return complete
+
+
+def number_of(key: str, values: Mapping[str, Any], base: Case) -> float:
+    """The number of a key: set in `values`, given in the base case, or a default.
+
+    Raises:
+        CaseError: it has none.
+    """
+    number = float(values[key]) if key in values else value_in(base, key, values)
+    if number is None:
+        raise CaseError(f"{key!r} has no number; set it under [set], or let it vary")
+    return number
+
+
+def value_in(base: Case, key: str, values: Mapping[str, Any]) -> float | None:
+    """The number that a key has in a case where others are set; None if it has none.
+
+    A default that follows another key of its table (`mu_kinetic` that of `mu_static`) follows it here too.
+    """
+    (key,) = keys_in_effect({key: None}, base.kinds)
+    table, dot, name = key.rpartition(".")
+    if not dot:
+        return _as_number(base.resolved().get(name))
+    if table not in TABLES:
+        return None
+    content = getattr(base, table) or TABLES[table]()
+    if name in content.model_fields_set:
+        return _as_number(getattr(content, name))
+    own = content.model_dump() | {
+        k.rpartition(".")[2]: v for k, v in values.items() if k.startswith(f"{table}.")
+    }
+    return _as_number(
+        known_keys(TABLES[table])[name].get_default(call_default_factory=True, validated_data=own)
+    )
+
+
+def _in_order(derived: Mapping[str, Expression]) -> list[str]:
+    """The derived keys so that each stands behind those it refers to.
+
+    Raises:
+        CaseError: some refer to one another in a circle.
+    """
+    done: list[str] = []
+    while len(done) < len(derived):
+        left = {key: expression for key, expression in derived.items() if key not in done}
+        ready = [key for key, expression in left.items() if not expression.keys & left.keys()]
+        if not ready:
+            own = [key for key, expression in left.items() if key in expression.keys]
+            circle = f"{own[0]} refers to itself" if own else f"{' and '.join(left)} refer to one another"
+            raise CaseError(f"[derived] {circle}; let one follow an axis, or set it under [set]")
+        done += ready
+    return done
+
+
+def _as_number(value: Any) -> float | None:
+    return float(value) if isinstance(value, int | float) and not isinstance(value, bool) else None
+
+
+_WHOLE_KEYS = frozenset(
+    f"{table}.{name}"
+    for table, model in TABLES.items()
+    for name, field in known_keys(model).items()
+    if field.annotation is int
+)

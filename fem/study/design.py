@@ -1,0 +1,365 @@
+"""What makes the cases of a study: points on axes times draws, and keys that follow others."""
+
+import math
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import product
+from typing import Annotated, Any, Literal, NamedTuple
+
+import numpy as np
+from pydantic import Field, ValidationError
+
+from fem.case.case import Case
+from fem.case.overrides import keys_in_effect, with_overrides
+from fem.case.tables.all_tables import TABLES
+from fem.case.tables.links import ROWS
+from fem.case.tables.quantities import Quantity
+from fem.case.tables.table import CaseTable
+from fem.case.tables.unknown_inputs import INPUTS, ranges_of
+from fem.case.uncertainty import as_changed, drawn_values
+from fem.case.validation import CaseError
+from fem.runtime.arrays import FloatArray
+from fem.study.axes import MOTION_FILE, Axis, point_of, shape_of, with_following
+from fem.study.containers import PenaltyCache
+from fem.study.derived import (
+    FREE,
+    Derived,
+    number_of,
+    with_derived,
+)
+from fem.study.draws import RandomChoice, RandomQuantity, Sampling, draw_shares, held_inputs
+from fem.study.perturbation import Perturbation
+
+
+class Item(NamedTuple):
+    """One run of a study."""
+
+    cell: int  #: of the grid, the last axis the fastest; or its number in a list
+    draw: int  #: at this point; of a cell its copy, of a container its motion
+    point: Mapping[str, Any]  #: what the axes or the list set
+    drawn: Mapping[
+        str, Any
+    ] = {}  #: what is random, relative quantities as factors; a key that is None is not set
+    unknown: Mapping[str, Any] = {}  #: the unknown inputs, or what a copy changes, as the log has them
+    more: Mapping[str, Any] = {}  #: that these set, over all other keys
+
+
+class CaseMaker:
+    """Makes `base.with_values(values)`, at a tenth of the cost, and the cases of a study.
+
+    Only the tables that change and the rules of the whole case are checked again; a case that breaks one is made the
+    long way, which names the error.
+
+    Args:
+        base: the case that is varied.
+        derived: keys that follow others.
+        relative: keys that are drawn as a factor on the value that they have anyway.
+    """
+
+    def __init__(self, base: Case, derived: tuple[Derived, ...] = (), relative: Collection[str] = ()) -> None:
+        self.base = base
+        self._derived, self._relative = derived, relative
+        self._kinds = base.kinds
+        #: by the keys that are set: what does not change, and the content of the tables that do
+        self._templates: dict[tuple[str, ...], tuple[dict[str, Any], dict[str, dict[str, Any]]]] = {}
+
+    def case(self, item: Item) -> Case:
+        """The case of a run.
+
+        Raises:
+            CaseError: an expression has no value, a relative quantity has none to scale, a bad case.
+        """
+        return self({**self.values(item.point, item.drawn), **item.more})
+
+    def values(self, point: Mapping[str, Any], drawn: Mapping[str, Any] = {}) -> dict[str, Any]:
+        """All keys that a run sets before what is unknown, derived ones included; raises as `case`."""
+        values = dict(point)
+        for key, value in drawn.items():
+            if key in self._relative:
+                value *= number_of(key, values, self.base)
+            if value is not None:
+                values[key] = value
+        complete = with_derived(values, self._derived, self.base)
+        return {key: value for key, value in complete.items() if not key.startswith(FREE)}
+
+    def __call__(self, values: Mapping[str, Any]) -> Case:
+        """The base with dotted keys set; alternatives are replaced.
+
+        Raises:
+            CaseError: as for a case file.
+        """
+        given = values
+        values = keys_in_effect(values, self._kinds)
+        keys = tuple(values)
+        if any(key.rpartition(".")[0] in ROWS for key in keys):  # all rows of a table change
+            return self.base.with_values(given)
+        if keys not in self._templates:
+            self._templates[keys] = self._template(values)
+        fixed, touched = self._templates[keys]
+        heading: dict[str, Any] = {}
+        content = {name: dict(given) for name, given in touched.items()}
+        for dotted, value in values.items():
+            table, _, key = dotted.rpartition(".")
+            (content[table] if table else heading)[key] = value
+        try:
+            tables = {name: TABLES[name].model_validate(given) for name, given in content.items()}
+            return Case.model_validate(fixed | heading | tables).from_origin(self.base.origin_with(given))
+        except ValidationError:
+            return self.base.with_values(given)
+
+    def _template(self, values: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, dict[str, Any]]]:
+        data = with_overrides(self.base.given(), values)
+        names = {key.rpartition(".")[0] for key in values} - {""}
+        fixed = {key: value for key, value in data.items() if key not in TABLES and key not in ROWS}
+        fixed |= {name: rows for name in ROWS if (rows := getattr(self.base, name))}
+        fixed |= {name: getattr(self.base, name) for name in TABLES if name not in names}
+        return fixed, {name: data[name] for name in names}
+
+
+#: tables and keys on which the container depends, or how it is computed: see `container_cache.container_key`
+OF_THE_CONTAINER = (
+    "gravity_m_s2",
+    "container.",
+    "support.",
+    "solver.model",
+    "solver.elastic_modes",
+    "solver.element_size_m",
+    "solver.order",
+    "output.stop_when_overturned",
+)
+
+
+class MapChoice(CaseTable):
+    """Which axes span the maps."""
+
+    x: str | None = Field(default=None, description="key of an axis; default: one with the most values")
+    y: str | None = Field(default=None, description="key of another axis")
+    fixed: dict[str, Any] = Field(
+        default={}, description="values at which further axes are held; the others have a panel each"
+    )
+
+
+RESOLUTION = Quantity(above=0.0, most=1.0, advice="0.01 is one per cent")
+
+
+class Threshold(CaseTable):
+    """Along which axis changes of outcome are located, and how precisely."""
+
+    axis: str = Field(description="the key of one of the axes", examples=["motion.peak_acceleration_m_s2"])
+    resolution: Annotated[float, RESOLUTION] = Field(
+        default=0.01, description="largest width of a bracket, relative to the value"
+    )
+    inner: Annotated[int, Quantity(least=1, most=100)] = Field(
+        default=3, description="values tried within a bracket at a time"
+    )
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Design:
+    """A base case, points on axes, and keys that follow; what is drawn at a point is of an `Ensemble`."""
+
+    name: str  #: stem of the file, or name of the shipped study
+    text: str = ""  #: of the file
+    title: str = ""
+    base: Case  #: with the keys of [set]
+    axes: tuple[Axis, ...] = ()
+    derived: tuple[Derived, ...] = ()  #: in an order in which each follows what it refers to
+    relative: frozenset[str] = frozenset()  #: keys that are drawn as factors
+    limit_slip_m: float | None = None  #: beyond which a run does not stand
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Values of each axis."""
+        return shape_of(self.axes)
+
+    @property
+    def count(self) -> int:
+        """Points."""
+        return math.prod(self.shape)
+
+    def point(self, cell: int) -> dict[str, Any]:
+        """Values of the axes at a point, by key."""
+        return point_of(self.axes, cell)
+
+    def item(self, cell: int) -> Item:
+        """The run of a point, where nothing is drawn."""
+        return Item(cell, 0, with_following(self.axes, self.point(cell)))
+
+    @cached_property
+    def make(self) -> CaseMaker:
+        """Makes the cases of runs; picklable, and small."""
+        return CaseMaker(self.base.without_fields(), self.derived, self.relative)
+
+    def case(self, cell: int) -> Case:
+        """The case of a point."""
+        return self.make.case(self.item(cell))
+
+    def ends(self) -> list[Case]:
+        """The cases at the ends of each axis, those that can be made."""
+        cases = []
+        for corner in product(*((axis.values[0], axis.values[-1]) for axis in self.axes)):
+            with suppress(CaseError):
+                point = dict(zip((axis.key for axis in self.axes), corner, strict=True))
+                cases.append(self.make.case(Item(0, 0, with_following(self.axes, point))))
+        return cases
+
+    def model_of(self, item: Item) -> str:
+        """The model of a run."""
+        return str({**item.point, **item.drawn}.get("solver.model", self.base.solver.model))
+
+    def by_container(self, items: Iterable[Item]) -> list[Item]:
+        """Runs in an order in which those of one container are neighbours."""
+        return sorted(items, key=lambda item: (self.container_of(item), item.cell))
+
+    def container_of(self, item: Item) -> str:
+        """Equal for runs that have the same container."""
+        if not self._varies_container:
+            return ""
+        values = item.point
+        with suppress(CaseError):  # a derived key without a value: the row will have the reason
+            values = self.make.values(values)
+        return repr([value for key, value in values.items() if key.startswith(OF_THE_CONTAINER)])
+
+    @cached_property
+    def _varies_container(self) -> bool:
+        moving = {axis.key for axis in self.axes} | {quantity.key for quantity in self.derived}
+        return any(key.startswith(OF_THE_CONTAINER) for key in moving)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Sweep(Design):
+    """What a sweep file asks for."""
+
+    perturbation: Perturbation
+    threshold: Threshold | None
+    maps: MapChoice
+    margin: bool = False  #: find the factor on the motion at which each cell overturns first
+
+    @property
+    def threshold_axis(self) -> Axis:
+        """The axis along which changes of outcome are located; only where that is asked for."""
+        assert self.threshold is not None
+        return next(axis for axis in self.axes if axis.key == self.threshold.axis)
+
+
+#: unknown inputs that the file does not vary: drawn over [uncertainty] of the case, or held
+Unknown = Literal["drawn", "held"]
+STREAM = 1  #: of random numbers of the unknown inputs
+
+
+def sets_among(random: Iterable[RandomQuantity | RandomChoice]) -> list[Axis]:
+    """The set of motions among what is random, as a list of one or none."""
+    choices = (quantity for quantity in random if isinstance(quantity, RandomChoice))
+    return [choice.axis for choice in choices if choice.key == MOTION_FILE]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Ensemble(Design):
+    """What an ensemble file asks for."""
+
+    random: tuple[RandomQuantity | RandomChoice, ...]
+    draws: int  #: at each point
+    seed: int
+    sampling: Sampling
+    replicates: int  #: 1 for independent draws; of a set of motions one for each
+    confidence: float
+    probability: float  #: of overturning, to which the points are compared
+    unknown_inputs: Unknown = "drawn"
+    copy_motions: bool | None = None  #: into the results; None: those of small sets
+
+    @property
+    def motions(self) -> Axis | None:
+        """The set of motions that are drawn; None where there is one motion."""
+        return next(iter(sets_among(self.random)), None)
+
+    def draws_at(self, cell: int) -> list[Item]:
+        """The draws of a point; each motion of a set is drawn equally often, and is a replicate."""
+        spread = [quantity for quantity in self.random if quantity.key != MOTION_FILE]
+        shares = self.shares(cell, len(spread)) if spread else np.empty((self.draws, 0))
+        columns: dict[str, Sequence[Any]] = {
+            quantity.key: np.asarray(quantity.values(shares[:, k]), dtype=object).tolist()
+            for k, quantity in enumerate(spread)
+        }
+        each = self.draws // self.replicates
+        for axis in sets_among(self.random):
+            sets = {axis.key: axis.values, **axis.following}
+            columns |= {key: [value for value in row for _ in range(each)] for key, row in sets.items()}
+        point, rows = self.point(cell), zip(*columns.values(), strict=True)
+        return [
+            Item(cell, number, point, dict(zip(columns, row, strict=True))) for number, row in enumerate(rows)
+        ]
+
+    def shares(self, cell: int, dimensions: int, stream: int = 0) -> FloatArray:
+        """Shares of probability of the draws of a point, (draws, dimensions)."""
+        return draw_shares(
+            self.sampling,
+            seed=self.seed,
+            cell=cell,
+            dimensions=dimensions,
+            draws=self.draws,
+            replicates=self.replicates,
+            stream=stream,
+        )
+
+    def drawn(self, point: Mapping[str, Any], values: Iterable[Any]) -> Item:
+        """The run at a point, of values of what is random."""
+        drawn: dict[str, Any] = {}
+        for quantity, value in zip(self.random, values, strict=True):
+            choice = [quantity.axis] if isinstance(quantity, RandomChoice) else []
+            drawn |= with_following(choice, {quantity.key: value})
+        return Item(0, 0, point, drawn)
+
+
+class UnknownInputs:
+    """The unknown inputs, drawn over their ranges at every draw of an ensemble.
+
+    What the file varies itself, by [axes], [random] or [derived], stays as it is there; the rest follows [uncertainty]
+    of the case. These draws have random numbers of their own, so those of [random] do not depend on them.
+    """
+
+    def __init__(self, ensemble: Ensemble) -> None:
+        self._ensemble = ensemble
+        self._penalties = PenaltyCache()
+        cases = list(_cases(ensemble))
+        varied = {axis.key for axis in ensemble.axes} | {quantity.key for quantity in ensemble.random}
+        fixed = varied | {derived.key for derived in ensemble.derived}
+        ranges = (interval for case in cases for interval in ranges_of(case, self._penalties.of(case)))
+        drawn = {interval.key for interval in ranges if interval.drawn is not None} - fixed
+        #: keys of the inputs that are drawn
+        self.keys = tuple(key for key in INPUTS if key in drawn) if ensemble.unknown_inputs == "drawn" else ()
+        #: what is held fixed of the others, in words
+        self.held = held_inputs(cases, varied | set(self.keys))
+
+    def draws_at(self, cell: int) -> list[Item]:
+        """The draws of a point, with the values of the unknown inputs."""
+        draws = self._ensemble.draws_at(cell)
+        if not self.keys:
+            return draws
+        shares = self._ensemble.shares(cell, len(self.keys), STREAM).tolist()
+        return [self._with_unknown(draw, row) for draw, row in zip(draws, shares, strict=True)]
+
+    def _with_unknown(self, draw: Item, shares: list[float]) -> Item:
+        """A draw with values at these shares of the ranges that it has; without any where it cannot be made."""
+        try:
+            case = self._ensemble.make.case(draw)
+            share = dict(zip(self.keys, shares, strict=True))
+            ranges = ranges_of(case, self._penalties.of(case))
+        except (CaseError, ValueError):
+            return draw
+        drawn = [interval for interval in ranges if interval.key in share]
+        unknown = drawn_values(drawn, [share[interval.key] for interval in drawn])
+        more = as_changed(case, unknown) if unknown and case.container.is_loose else unknown
+        return draw._replace(unknown=unknown, more=more)
+
+
+def _cases(ensemble: Ensemble) -> Iterator[Case]:
+    """The cases in the middle and at the ends of all distributions, at the ends of the axes, those that can be made."""
+    corners = product(*((axis.values[0], axis.values[-1]) for axis in ensemble.axes))
+    shares = np.array([0.5, 0.0, 1.0])
+    drawn = list(zip(*(quantity.values(shares) for quantity in ensemble.random), strict=True))
+    for corner, values in product(corners, drawn):
+        with suppress(CaseError):
+            point = {axis.key: value for axis, value in zip(ensemble.axes, corner, strict=True)}
+            yield ensemble.make.case(ensemble.drawn(point, values))

@@ -1,0 +1,230 @@
+"""Random quantities of an ensemble: their distributions, and the draws.
+
+A distribution maps a number between 0 and 1 to a value, so independent draws, a Latin hypercube and a Sobol sequence
+are treated alike. Normal and lognormal distributions are cut off a few deviations from their middle.
+"""
+
+import math
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field
+from scipy.special import ndtr, ndtri
+from scipy.stats import qmc
+
+from fem.case.case import Case
+from fem.case.tables.input_keys import MU_KINETIC, RAMP, START, STRIBECK, WEAKENING
+from fem.runtime.arrays import FloatArray
+from fem.study.axes import VERTICAL_FILE, Axis, AxisError, read_axis, read_inline
+
+Sampling = Literal["independent", "latin-hypercube", "sobol"]
+#: which keys each distribution needs
+NEEDS = {
+    "uniform": ("from", "to"),
+    "log-uniform": ("from", "to"),
+    "normal": ("mean", "deviation"),
+    "lognormal": ("median", "deviation"),
+}
+
+
+class Distribution(BaseModel):
+    """`{ distribution = "uniform", from = .., to = .. }` of an ensemble file."""
+
+    model_config = ConfigDict(strict=True, frozen=True, extra="forbid", allow_inf_nan=False)
+
+    distribution: Literal["uniform", "log-uniform", "normal", "lognormal"]
+    least: float | None = Field(default=None, alias="from")
+    most: float | None = Field(default=None, alias="to")
+    mean: float | None = None
+    median: float | None = None
+    deviation: float | None = None  #: standard deviation; of a lognormal quantity that of its logarithm
+    cut: float = 3.0  #: deviations from the middle beyond which there are no values
+    relative: bool = False  #: a factor on the value that the key has anyway
+
+    @property
+    def numbers(self) -> list[float]:
+        """Values of the keys that the distribution needs."""
+        values = self.model_dump(by_alias=True)
+        return [values[name] for name in NEEDS[self.distribution]]
+
+
+@dataclass(frozen=True, kw_only=True)
+class RandomQuantity:
+    """A key whose value is drawn."""
+
+    key: str  #: dotted; `free.NAME` for one that only derived keys refer to
+    spread: Distribution
+
+    @property
+    def relative(self) -> bool:
+        """Whether it is a factor on the value that the key has anyway."""
+        return self.spread.relative
+
+    @property
+    def definition(self) -> dict[str, Any]:
+        """As the file gives it."""
+        return self.spread.model_dump(by_alias=True, exclude_none=True)
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Least and largest value that can be drawn."""
+        low, high = self.values(np.array([0.0, 1.0]))
+        return float(low), float(high)
+
+    def values(self, shares: FloatArray) -> FloatArray:
+        """Values at given shares of probability, each between 0 and 1."""
+        kind, (first, second) = self.spread.distribution, self.spread.numbers
+        if kind == "uniform":
+            return first + (second - first) * shares
+        if kind == "log-uniform":
+            return np.asarray(first * (second / first) ** shares)
+        outside = ndtr(-self.spread.cut)
+        normal = ndtri(outside + (1.0 - 2.0 * outside) * shares)
+        return np.asarray(first + second * normal if kind == "normal" else first * np.exp(second * normal))
+
+
+@dataclass(frozen=True, kw_only=True)
+class RandomChoice:
+    """A key whose value is one of a list, each with the same probability: a set of motions, the signs of one."""
+
+    axis: Axis  #: the key, its values, and the keys that follow each
+    relative = False
+
+    @property
+    def key(self) -> str:
+        """Dotted."""
+        return self.axis.key
+
+    @property
+    def definition(self) -> list[Any]:
+        """As the file gives it; pairs of motions as pairs."""
+        verticals = self.axis.following.get(VERTICAL_FILE, (None,) * len(self.axis.values))
+        pairs = zip(self.axis.values, verticals, strict=True)
+        return [[value, vertical] if vertical else value for value, vertical in pairs]
+
+    @property
+    def ends(self) -> tuple[Any, Any]:
+        """First and last value."""
+        return self.axis.values[0], self.axis.values[-1]
+
+    def values(self, shares: FloatArray) -> list[Any]:
+        """Values at given shares of probability, each between 0 and 1."""
+        count = len(self.axis.values)
+        return [self.axis.values[min(int(share * count), count - 1)] for share in shares.tolist()]
+
+
+def read_random(key: str, entry: Any) -> RandomQuantity | RandomChoice:
+    """One entry of `[random]`: a distribution, or a list of values that are equally likely.
+
+    Raises:
+        AxisError: with the reason why it cannot be used.
+    """
+    if isinstance(entry, list):
+        return RandomChoice(axis=read_axis(key, entry))
+    example = 'for instance { distribution = "uniform", from = 0.3, to = 0.4 }'
+    if not isinstance(entry, dict):
+        raise AxisError(f"must be a distribution or a list of values, got {entry!r}; {example}")
+    spread = read_inline(Distribution, entry, example)
+    kind, needed = spread.distribution, NEEDS[spread.distribution]
+    missing = [name for name in needed if name not in entry]
+    idle = [name for name in entry if any(name in names for names in NEEDS.values()) and name not in needed]
+    if missing or idle:
+        problem = f"needs {' and '.join(missing)}" if missing else f"has no use for {' and '.join(idle)}"
+        raise AxisError(f"distribution = {kind!r} {problem}; {example}")
+    first, second = spread.numbers
+    if "from" in needed and not first < second:
+        raise AxisError(f"from = {first:g} must be less than to = {second:g}")
+    if kind == "log-uniform" and not first > 0.0:
+        raise AxisError(f"from must be positive for a log-uniform distribution, got {first:g}")
+    if kind == "lognormal" and not first > 0.0:
+        raise AxisError(f"median must be positive, got {first:g}")
+    if "deviation" in needed and not second > 0.0:
+        raise AxisError(f"deviation must be positive, got {second:g}; leave the key out of [random]")
+    if not 0.5 <= spread.cut <= 8.0:
+        raise AxisError(f"cut must lie between 0.5 and 8 deviations, got {spread.cut:g}; 3 is usual")
+    return RandomQuantity(key=key, spread=spread)
+
+
+def draw_shares(
+    sampling: Sampling, *, seed: int, cell: int, dimensions: int, draws: int, replicates: int, stream: int = 0
+) -> FloatArray:
+    """Points of the unit cube for one cell, shape (draws, dimensions), replicate after replicate.
+
+    Every cell and every replicate has a separate stream of random numbers, given by seed, cell and replicate alone: it
+    does not depend on what else is computed, in what order and on how many cores. A further stream has random numbers
+    of its own, and its points in random order: two scrambled sequences in their own order depend on each other.
+    """
+    if sampling == "independent":
+        return _generator(seed, cell, 0, stream).random((draws, dimensions))
+    size = draws // replicates
+    blocks = []
+    for replicate in range(replicates):
+        generator = _generator(seed, cell, replicate, stream)
+        if sampling == "sobol":
+            block = qmc.Sobol(dimensions, scramble=True, seed=generator).random(size)
+        else:
+            block = qmc.LatinHypercube(dimensions, seed=generator).random(size)
+        blocks.append(generator.permutation(block) if stream else block)
+    return np.concatenate(blocks)
+
+
+def _generator(seed: int, cell: int, replicate: int, stream: int) -> np.random.Generator:
+    key = (cell, replicate, stream) if stream else (cell, replicate)
+    return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=key))
+
+
+def held_inputs(cases: Sequence[Case], varied: Collection[str]) -> str:
+    """How friction falls and the motion begins in all cases: "with mu_k = mu_s/2 falling at once, no ramp".
+
+    Args:
+        cases: some of the study, such as those at the ends of its axes.
+        varied: keys that the study varies by themselves; they are not held.
+    """
+    parts = [*_friction(cases, varied), *_beginning(cases, varied)]
+    return f"with {', '.join(parts)}" if parts else ""
+
+
+def _friction(cases: Sequence[Case], varied: Collection[str]) -> Iterator[str]:
+    contacts = [case.contact for case in cases]
+    law = ""
+    if any(contact.mu_kinetic < contact.mu_static for contact in contacts) and not {
+        WEAKENING,
+        STRIBECK,
+    } & set(varied):
+        slips = [contact.weakening_m for contact in contacts]
+        speeds = [contact.stribeck_velocity_m_s for contact in contacts]
+        over = [f"{1e3 * slip:g} mm" for slip in slips[:1] if slip] + [f"{v:g} m/s" for v in speeds[:1] if v]
+        if len({*slips}) == len({*speeds}) == 1:
+            law = f" falling over {' and '.join(over)}" if over else " falling at once"
+    if MU_KINETIC in varied:
+        if law:
+            yield f"friction{law}"
+        return
+    ratios = [contact.mu_kinetic / contact.mu_static for contact in contacts if contact.mu_static > 0.0]
+    same = ratios and all(math.isclose(ratio, ratios[0], rel_tol=1e-9) for ratio in ratios)
+    if same:
+        inverse = 1.0 / ratios[0] if ratios[0] else 0.0
+        times = f"{ratios[0]:.3g} mu_s"
+        if ratios[0] == 1.0:
+            times = "mu_s"
+        elif inverse and math.isclose(inverse, round(inverse), rel_tol=1e-9):
+            times = f"mu_s/{round(inverse)}"
+        yield f"mu_k = {times}{law}"
+    elif len({contact.mu_kinetic for contact in contacts}) == 1:
+        yield f"mu_k = {contacts[0].mu_kinetic:g}{law}"
+    elif law:
+        yield f"friction{law}"
+
+
+def _beginning(cases: Sequence[Case], varied: Collection[str]) -> Iterator[str]:
+    motions = [case.motion for case in cases if case.motion.kind == "harmonic"]
+    if not motions:
+        return
+    ramps, starts = {motion.ramp_cycles for motion in motions}, {motion.start for motion in motions}
+    if START not in varied and starts == {"rest"}:
+        yield "a start at rest"
+    if RAMP not in varied and len(ramps) == 1:
+        cycles = ramps.pop()
+        yield f"a ramp of {cycles:g} cycles" if cycles else "no ramp"

@@ -1,0 +1,300 @@
+"""The driver of every study: from what is asked to a folder that holds the result.
+
+A study says what it is (`Study`): its kind of folder, the hash of what is asked, what computes it. The driver leaves a
+finished result alone, refuses to overwrite an unfinished one, marks the folder, has the study computed and writes the
+result. What is logged on the way survives an interruption; the result then says that it is one. A log
+is a table that grows by whole lines, in the order in which rows are ready; a kill leaves at most one broken line,
+which is cut off when the study is resumed.
+"""
+
+import hashlib
+import json
+import os
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
+from contextlib import ExitStack, closing, contextmanager
+from dataclasses import dataclass, field, replace
+from itertools import islice
+from pathlib import Path
+from typing import Any, Generic, TypedDict, TypeVar, Unpack
+
+from fem.case.case import Case
+from fem.results.disk import BYTES_BESIDE
+from fem.results.errors import FolderError, FolderLostError
+from fem.results.files import write_atomically
+from fem.results.folder import ResultFolder, open_result_folder, program_of_results
+from fem.results.json_block import JsonBlock
+from fem.results.kinds import ResultKind, read_result, typed_result
+from fem.results.run_files import copy_data_files, require_free_names
+from fem.runtime.compilation import compilation_announced
+from fem.runtime.progress import Reporter, SilentReporter
+from fem.runtime.signals import interruptible
+from fem.runtime.threads import cores
+from fem.study.runner import ChunkWork, ItemT, Row, Runner
+from fem.study.table import READERS, Columns, fields_of, is_row, line_of, read_lines, row_of, table_of_lines
+from fem.study.workers import LocalWorkers, WorkersOf
+
+INTERRUPTED, FAILED, COMPLETED = "interrupted", "failed", "completed"
+
+
+class StudyOptions(TypedDict, total=False):
+    """How a study is to be computed; its result does not depend on it."""
+
+    jobs: int | None  #: cores to use; None: all
+    workers_of: WorkersOf | None  #: who computes so many cases of a model; None: the cores of this machine
+    resume: bool  #: continue with what is there
+    force: bool  #: overwrite earlier results
+    reporter: Reporter | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class StudyResult(JsonBlock):
+    """What the marking file of every study holds."""
+
+    written_where_given = frozenset({"missing"})
+    status: str = "running"  #: running | interrupted | failed | completed
+    answer: str | None = None  #: in one sentence; None until the study is finished, or where it has none
+    missing: str | None = None  #: what an interrupted study has not come to, in words
+    program: str = field(default_factory=lambda: str(program_of_results()["program"]))
+    versions: dict[str, str] = field(default_factory=lambda: dict(program_of_results()["versions"]))
+
+    @property
+    def state(self) -> str:
+        """`finished` once every stage is done, else `interrupted`."""
+        return "finished" if self.status in (FAILED, COMPLETED) else "interrupted"
+
+    @property
+    def no_answer_yet(self) -> str | None:
+        """What stands in place of the answer of an unfinished study; None of a finished one."""
+        if self.state == "finished":
+            return None
+        return f"no answer yet: {self.missing or 'the study was interrupted'}; --resume continues"
+
+    def to_json(self) -> dict[str, Any]:
+        """As JSON types, with the state."""
+        return {"state": self.state} | super().to_json()
+
+
+ResultT = TypeVar("ResultT", bound=StudyResult)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Study(Generic[ResultT]):
+    """A study that is asked for."""
+
+    kind: ResultKind
+    request: str  #: hash of what is asked
+    result: type[ResultT]  #: what its marking file is read as
+    #: computes what is missing of it; the status of the result says how far it came
+    compute: Callable[[ResultFolder, Runner], ResultT]
+    texts: Mapping[str, str]  #: files that say what is asked, by name
+    subject: str  #: of a refusal, such as "the ensemble"
+    way_out: str  #: where the disk has too little room
+    progress: Callable[[Path], str]  #: of an unfinished one in a folder, in words; "" where nothing is lost
+    size: float = 0.0  #: of its folder, besides `BYTES_BESIDE` [bytes]
+    cases: Sequence[Case] = ()  #: whose mesh and motions its folder keeps
+    motions: Sequence[Case] = ()  #: likewise; their motions were read
+    begun: StudyResult = field(default_factory=StudyResult)  #: its marking file while it runs
+    #: a finished result as it is asked for now; None: there is more to compute
+    again: Callable[[ResultFolder, ResultT], ResultT | None] = lambda place, result: result
+
+
+def run_study(study: Study[ResultT], folder: Path, **options: Unpack[StudyOptions]) -> ResultT:
+    """Compute a study into a folder; a finished one is not computed again.
+
+    Raises:
+        CaseError: a record or mesh with the name of a result, a file that is no motion.
+        FolderError: the folder holds something else, or an unfinished study (without `resume` or `force`).
+        FolderLockedError: another process writes into it.
+        WorkersLostError: a worker died; what was computed is kept.
+        OutputError: the disk is full, the folder was removed; what was written is kept.
+    """
+    kind, force, resume = study.kind, options.get("force", False), options.get("resume", False)
+    for case in (*study.cases, *study.motions):
+        require_free_names(case, kind, study.texts)
+    with (
+        runner_of(**options) as runner,
+        open_result_folder(folder, kind, study.request, force=force, resume=resume) as place,
+        interruptible(runner.reporter) as stop,
+        compilation_announced(runner.reporter.message),
+    ):
+        if place.finished and place.earlier:
+            known = study.again(place, typed_result(study.result, place.earlier, folder / kind.mark))
+            if known is not None:
+                runner.reporter.message(f"{folder} holds this {kind.name} already; --force computes it again")
+                return known
+        if progress := study.progress(folder):
+            place.refuse_unfinished(progress)
+        place.require_same_program()
+        place.require_room(study.size + BYTES_BESIDE, study.subject, study.way_out)
+        mark = {kind.request: study.request}
+        place.begin(study.begun.to_json() | mark, study.texts, keep=place.earlier is not None)
+        for case in study.cases:
+            copy_data_files(case, place.path)
+        for case in study.motions:
+            copy_data_files(case, place.path, read=True)
+        result = study.compute(place, replace(runner, stop=stop))
+        place.check()
+        place.write_result(result.to_json() | mark)
+        if result.status in kind.finished:
+            place.remove(*kind.temporary)
+    return result
+
+
+def read_study(folder: Path, kind: ResultKind, result: type[ResultT]) -> ResultT:
+    """The result of a study in a folder, finished or interrupted.
+
+    Raises:
+        FolderError: there is none, it is damaged, or it was killed before it could say how far it came.
+    """
+    place = folder / kind.mark
+    content = read_result(place, kind)
+    if content.get("status") == "running":
+        raise FolderError(
+            f"{folder}: the {kind.name} is not finished; continue it with --resume, then report it"
+        )
+    return typed_result(result, content, place)
+
+
+@contextmanager
+def runner_of(**options: Unpack[StudyOptions]) -> Iterator[Runner]:
+    """What runs the cases of a study; nothing stops it."""
+    with ExitStack() as stack:
+        jobs = options.get("jobs") or cores()
+        given = options.get("workers_of")
+        yield Runner(
+            workers_of=given or stack.enter_context(LocalWorkers(jobs)),
+            reporter=options.get("reporter") or SilentReporter(),
+            jobs=jobs,
+        )
+
+
+def hash_of(request: Any) -> str:
+    """A hash of what is asked: equal for requests that are equal as JSON."""
+    return hashlib.sha256(json.dumps(request, sort_keys=True, default=repr).encode()).hexdigest()
+
+
+class RowLog:
+    """Appends lines to a table, each as a whole.
+
+    Args:
+        path: of the table; continued behind its last whole line if it has these columns, else begun.
+        columns: of the table.
+        warn: receives a sentence where lines are no rows, as after a fault of the disk; they are removed.
+    """
+
+    def __init__(self, path: Path, columns: Columns, warn: Callable[[str], None]) -> None:
+        self._path = path
+        there = read_lines(path, columns)
+        self.lines = [line for line in there if is_row(columns, line)]  #: already there
+        kept = table_of_lines(columns, self.lines).encode()
+        if damaged := len(there) - len(self.lines):
+            warn(f"{path}: damaged rows, which are computed again: {damaged}")
+            write_atomically(path, kept)
+        self._file = open(path, "r+b" if self.lines else "wb", buffering=0)  # noqa: SIM115
+        if self.lines:
+            self._file.truncate(len(kept))
+            self._file.seek(len(kept))
+        else:
+            self._file.write(kept)
+
+    def append(self, lines: Iterable[str]) -> None:
+        """Write lines in one go.
+
+        Raises:
+            OSError: they cannot be written; FolderLostError: the log was removed.
+        """
+        if os.fstat(self._file.fileno()).st_nlink == 0:
+            raise FolderLostError(self._path.parent)
+        data = "".join(f"{line}\n" for line in lines).encode()
+        done = 0
+        while done < len(data):
+            done += self._file.write(data[done:])
+
+    def sync(self) -> None:
+        """Have what was written survive a power cut as well."""
+        os.fsync(self._file.fileno())
+
+    def close(self) -> None:
+        self._file.close()
+
+
+@dataclass(frozen=True, kw_only=True)
+class LoggedRuns(Generic[ItemT]):
+    """Runs of one kind whose rows are kept in a log: none is computed twice, whatever interrupts the study."""
+
+    what: str  #: they are, for the line of progress
+    path: Path  #: of the log
+    columns: Columns  #: of the log
+    key: Callable[
+        [ItemT], Iterable[Any]
+    ]  #: values of the first columns; the others are of the row of an item
+    ids: int = 0  #: of these, how many tell the items apart, whose lines are kept; 0: none are
+    known: Container[tuple[Any, ...]] | None = None  #: these, where they are known beforehand; None: any
+    make: Callable[[ItemT], Case]  #: the case of an item; picklable
+    model_of: Callable[[ItemT], str]
+    work: ChunkWork | None = None  #: what is done with some items in place of their runs
+    logged: Callable[[Row], Row] = lambda row: row  #: a row as the log holds it
+    #: called with every line of the log, old and new; raises a LookupError for one of no item
+    note: Callable[[str], None] = lambda line: None
+    lines: dict[tuple[Any, ...], str] = field(
+        default_factory=dict, init=False
+    )  #: of the log, by what tells apart
+
+    def missing(self, among: Iterable[ItemT]) -> list[ItemT]:
+        """Those of some items that have no row yet."""
+        return [item for item in among if self._id(item) not in self.lines]
+
+    def row(self, item: ItemT) -> Row:
+        """The row of an item, by column; empty where it has none."""
+        line = self.lines.get(self._id(item))
+        return {} if line is None else row_of(self.columns, line)
+
+    def table(self) -> str:
+        """The rows in the order of their items."""
+        return table_of_lines(self.columns, (line for _, line in sorted(self.lines.items())))
+
+    def run(self, runner: Runner, batches: Iterable[Sequence[ItemT]]) -> None:
+        """Note the rows of earlier attempts, then run the items that are missing.
+
+        Args:
+            runner: says when to stop.
+            batches: of missing items; each is asked for when all rows before are noted.
+
+        Raises:
+            FolderError: the log holds a row of another study.
+        """
+        with closing(RowLog(self.path, self.columns, runner.reporter.warning)) as log:
+            for line in log.lines:
+                try:
+                    self._note(line)
+                except (AttributeError, LookupError, TypeError, ValueError):
+                    raise FolderError(
+                        f"{self.path}: damaged, no run of this study has the row {line:.60}; start over with --force"
+                    ) from None
+            for items in batches:
+                if runner.stop():
+                    break
+                for chunk, rows in runner.rows(self.what, items, self.make, self.model_of, self.work):
+                    lines = [self._line(item, row) for item, row in zip(chunk, rows, strict=True)]
+                    log.append(lines)
+                    for line in lines:
+                        self._note(line)
+            log.sync()
+
+    def _id(self, item: ItemT) -> tuple[Any, ...]:
+        return tuple(islice(self.key(item), self.ids))
+
+    def _note(self, line: str) -> None:
+        if self.ids:
+            first = zip(islice(self.columns.values(), self.ids), fields_of(line), strict=False)
+            known = tuple(READERS[kind](field) for kind, field in first)
+            if self.known is not None and known not in self.known:
+                raise LookupError(line)
+            if known in self.lines:
+                return
+            self.lines[known] = line
+        self.note(line)
+
+    def _line(self, item: ItemT, row: Row) -> str:
+        key, cells = tuple(self.key(item)), self.logged(row)
+        return line_of((*key, *(cells[name] for name in [*self.columns][len(key) :])))

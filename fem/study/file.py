@@ -1,0 +1,529 @@
+"""What the file of a study of many cases has: a heading, tables, the case it starts from, the keys that vary."""
+
+import re
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from dataclasses import replace
+from itertools import islice, product
+from pathlib import Path
+from typing import Annotated, Any, TypeVar
+
+from pydantic import Field, Strict
+
+from fem.case.case import Case, load_case
+from fem.case.files import CASES, DEFAULT_CASE, ENSEMBLES, SWEEPS, Origin, is_there, parse_case
+from fem.case.overrides import keys_in_effect
+from fem.case.tables.links import ROWS
+from fem.case.tables.quantities import SLIP_LIMIT
+from fem.case.tables.table import CaseTable
+from fem.case.validation import CaseError, problem_lines, read_table
+from fem.runtime.intervals import least_draws
+from fem.runtime.left import left_words
+from fem.study.axes import (
+    VERTICAL_FILE,
+    Axis,
+    AxisError,
+    check_varied,
+    field_of,
+    first_motion,
+    hint,
+    read_axis,
+    set_axis,
+    with_following,
+)
+from fem.study.derived import FREE, read_derived, value_in
+from fem.study.design import (
+    Ensemble,
+    MapChoice,
+    Sweep,
+    Threshold,
+    Unknown,
+    sets_among,
+)
+from fem.study.draws import RandomChoice, RandomQuantity, Sampling, read_random
+from fem.study.perturbation import Perturbation
+
+TableT = TypeVar("TableT", bound=CaseTable)
+StudyT = TypeVar("StudyT")
+
+
+def read_study(origin: Origin, read: Callable[[dict[str, Any], Origin], StudyT]) -> StudyT:
+    """Parse the file of a study, and have `read` make it from the data.
+
+    Raises:
+        CaseError: with one line for each reason why it cannot be used, each beginning with the file.
+    """
+    data = parse_case(origin)
+    try:
+        return read(data, origin)
+    except CaseError as error:
+        raise CaseError("\n".join(f"{origin.place}: {line}" for line in str(error).splitlines())) from None
+
+
+def read_as(name: str, model: type[TableT], content: Mapping[str, Any]) -> TableT:
+    """A table of the file; `name` is empty for the keys before the first one.
+
+    Raises:
+        CaseError: with one line for each reason why it cannot be used.
+    """
+    given, _, problems = read_table(name, model, content)
+    if problems:
+        raise CaseError("\n".join(problem_lines(problems)))
+    return model.model_validate(given)
+
+
+def split_tables(
+    data: Mapping[str, Any], known: Sequence[str]
+) -> tuple[dict[str, Any], dict[str, dict[str, Any]]]:
+    """The keys before the first table, and the tables; a missing one is empty.
+
+    Raises:
+        CaseError: an unknown table, or a table written as a value.
+    """
+    tables = {key: value for key, value in data.items() if isinstance(value, dict)}
+    heading = {key: value for key, value in data.items() if key not in tables}
+    for name in tables:
+        if words := left_words(f"[{name}]"):
+            raise CaseError(f"[{name}] {words}")
+        if name not in known:
+            raise CaseError(
+                f"[{name}] unknown table{hint(name, known)} (known: {', '.join(known)}); "
+                'dotted keys stand in quotes, such as "contact.mu_static"'
+            )
+    for key in heading:
+        if key in known:
+            raise CaseError(f"{key} must be a table; write [{key}] above its keys")
+    return heading, tables
+
+
+def flat(name: str, content: Mapping[str, Any]) -> dict[str, Any]:
+    """Dotted keys, whether they were written in quotes or, as TOML would have it, as tables in tables.
+
+    Raises:
+        CaseError: one is given in both ways.
+    """
+    keys: dict[str, Any] = {}
+    for key, value in content.items():
+        # A table is a range of one key, but for `vertical.scale = [1, -1]`, which TOML reads as a table, too.
+        is_range = isinstance(value, dict) and (
+            {"from", "to", "count"} & value.keys() or isinstance(value.get("scale"), str)
+        )
+        if isinstance(value, dict) and not is_range:
+            inner = {f"{key}.{part}": what for part, what in value.items()}
+        else:
+            inner = {key: value}
+        for dotted, what in inner.items():
+            if dotted in keys:
+                raise CaseError(f"[{name}] {dotted} is given twice")
+            keys[dotted] = what
+    return keys
+
+
+def base_case(
+    name: str,
+    changes: Mapping[str, Any],
+    origin: Origin,
+    motion: Mapping[str, Any] | None = None,
+    varied: Iterable[str] = (),
+) -> Case:
+    """The case that is varied, with the keys of [set] changed.
+
+    A file is looked for beside the one that names it, and wins over a shipped case.
+
+    Args:
+        name: of the case.
+        changes: the table [set].
+        origin: of the study.
+        motion: keys of the first of a set of motions; the files of a shipped case are then beside the study.
+        varied: keys of the table [axes].
+
+    Raises:
+        CaseError: there is neither, it is outside that folder, or it cannot be used.
+    """
+    CASES.beside(name, origin)
+    path = origin.folder / name
+    is_file = is_there(Path.is_file, path)
+    base = load_case(path if is_file else name)
+    values = flat("set", changes)
+    if motion:
+        values = {"motion.kind": "table"} | values | dict(motion)
+        if not is_file:
+            base = base.from_origin(replace(base.origin_with({}), folder=origin.folder))
+    try:
+        return base.with_values(values) if values else base
+    except CaseError as error:
+        raise CaseError(
+            "\n".join(_in_words_of_study(line, varied) for line in str(error).splitlines())
+        ) from None
+
+
+def _in_words_of_study(line: str, varied: Iterable[str]) -> str:
+    """What is wrong with a key of [set], in words of the file that has it."""
+    line = re.sub(r"\(--set (\S+?)=(.*)\)$", r'([set] "\1" = \2)', line)
+    for key in varied:
+        if re.search(rf"\b{key.rpartition('.')[2]}\b", line):
+            return (
+                f"{line}; {key!r} varies, and a key that must follow it stands in [derived] in place of [set]"
+            )
+    return line
+
+
+def read_axes(
+    content: Mapping[str, Any], most: int, example: str, read: Callable[[str, Any], Axis]
+) -> tuple[Axis, ...]:
+    """The table [axes].
+
+    Args:
+        content: of the table.
+        most: axes that there may be.
+        example: of an entry.
+        read: an axis from its key and what is given; may raise an `AxisError`.
+
+    Raises:
+        CaseError: with one line for each reason.
+    """
+    if not 1 <= len(content) <= most:
+        raise CaseError(f"[axes] must hold one to {most} keys, got {len(content)}; for instance {example}")
+    axes, problems = [], []
+    for key, value in content.items():
+        try:
+            axes.append(read(key, value))
+        except AxisError as error:
+            problems.append(f"[axes] {key!r} {error}")
+    if problems:
+        raise CaseError("\n".join(problems))
+    return tuple(axes)
+
+
+def require_verticals(axes: Iterable[Axis], varied: Iterable[str], base: Case) -> None:
+    """Refuse a motion alone in a set where a key of its vertical motion varies.
+
+    Raises:
+        CaseError: with the key and the motion.
+    """
+    motions = set_axis(axes)
+    key = next((key for key in varied if key.startswith("vertical.")), None)
+    if motions is None or key is None or (not motions.following and base.has_vertical):
+        return
+    verticals = motions.following.get(VERTICAL_FILE, (None,) * len(motions.values))
+    alone = [name for name, vertical in zip(motions.values, verticals, strict=True) if vertical is None]
+    if alone:
+        raise CaseError(
+            f"{key!r} varies, and {alone[0]!r} has no vertical motion; give it as a pair, "
+            f'["{alone[0]}", "its vertical file"]'
+        )
+
+
+def require_once(changes: Mapping[str, Any], varied: Sequence[str], base: Case) -> None:
+    """Refuse a key of [set] that varies, and two that are one in this case: one of the two would have no effect.
+
+    Raises:
+        CaseError: with the key.
+    """
+    effects = [next(iter(keys_in_effect({key: None}, base.kinds))) for key in varied]
+    for key, effect in zip(varied, effects, strict=True):
+        if {key, effect} & flat("set", changes).keys():
+            raise CaseError(f"[set] {key!r} varies as well; take it out of [set], or do not vary it")
+        if effects.count(effect) > 1 and key != effect:
+            raise CaseError(f"{key!r} of a record is its {effect!r}, which varies as well; leave one out")
+
+
+MOST_AXES, MOST_POINT_AXES, MOST_RANDOM = 4, 3, 8
+MOST_RUNS = 1_000_000  #: of an ensemble
+TRIED = 64  #: cases that are built to find bad values before anything is computed
+REPLICATES = 16
+SWEEP_TABLES = ("set", "axes", "derived", "perturbation", "threshold", "maps")
+ENSEMBLE_TABLES = ("set", "axes", "random", "derived")
+
+
+class SweepHeading(CaseTable):
+    """The keys of a sweep file that stand before its first table."""
+
+    case: str = Field(default=DEFAULT_CASE, description="a shipped case, or a file beside the sweep file")
+    title: str = Field(default="", max_length=500, description="for people")
+    limit_slip_m: Annotated[float, SLIP_LIMIT] | None = Field(
+        default=None, description="slip beyond which a cell does not stand in the answer"
+    )
+    margin: bool = Field(
+        default=False, description="find the factor on the motion at which each cell overturns first"
+    )
+
+
+class EnsembleHeading(CaseTable):
+    """The keys of an ensemble file that stand before its first table."""
+
+    case: str = Field(default=DEFAULT_CASE, description="a shipped case, or a file beside the ensemble file")
+    title: str = Field(default="", max_length=500, description="for people")
+    draws: Annotated[int, Strict()] = Field(default=128, ge=8, le=1_000_000, description="at each point")
+    seed: Annotated[int, Strict()] = Field(default=1, ge=0, le=2**63 - 1, description="of the draws")
+    sampling: Sampling = Field(default="independent", description="how the draws are spread")
+    replicates: Annotated[int, Strict()] = Field(
+        default=REPLICATES, ge=4, le=1000, description="of a Latin hypercube or Sobol sequence"
+    )
+    confidence: float = Field(default=0.95, ge=0.5, le=0.9999, description="of the intervals, two-sided")
+    probability: float = Field(
+        default=0.05, gt=0.0, lt=1.0, description="of overturning, to which the points are compared"
+    )
+    limit_slip_m: Annotated[float, SLIP_LIMIT] | None = Field(
+        default=None, description="slip beyond which a draw does not stand, and counts as one that overturned"
+    )
+    unknown_inputs: Unknown = Field(
+        default="drawn",
+        description='inputs that this file does not vary: "drawn" over [uncertainty] of the case | "held"',
+    )
+    copy_motions: bool | None = Field(
+        default=None, description="copy the motion files into the results; default: sets of up to 100"
+    )
+
+
+def load_sweep(name_or_path: str | Path) -> Sweep:
+    """Read a sweep file, or a shipped sweep.
+
+    Raises:
+        CaseError: with one line for each reason why it cannot be used.
+    """
+    return read_study(SWEEPS.find(name_or_path), _read_sweep)
+
+
+def load_ensemble(name_or_path: str | Path) -> Ensemble:
+    """Read an ensemble file, or a shipped one.
+
+    Raises:
+        CaseError: with one line for each reason why it cannot be used.
+    """
+    return read_study(ENSEMBLES.find(name_or_path), _read_ensemble)
+
+
+def _read_sweep(data: Mapping[str, Any], origin: Origin) -> Sweep:
+    given, tables = split_tables(data, SWEEP_TABLES)
+    heading = read_as("", SweepHeading, given)
+    example = '"contact.mu_static" = [0.2, 0.3, 0.4]'
+    axes = read_axes(flat("axes", tables.get("axes", {})), MOST_AXES, example, _axis)
+    keys, values = [axis.key for axis in axes], {axis.key: axis.values for axis in axes}
+    base = base_case(heading.case, tables.get("set", {}), origin, first_motion(axes), keys)
+    require_verticals(axes, keys, base)
+
+    def check_reference(name: str) -> None:
+        if not name.startswith(FREE):
+            field_of(name)
+        elif name not in values:
+            raise AxisError("is no axis")
+        if any(isinstance(value, str | bool) for value in values.get(name, ())):
+            raise AxisError("has values that are no numbers")
+        if (
+            name not in values
+            and value_in(base, name, {key: some[0] for key, some in values.items()}) is None
+        ):
+            raise AxisError(
+                f"has no number in the base case {base.name!r}; set it under [set], or refer to a key that is "
+                "given there"
+            )
+
+    derived = read_derived(flat("derived", tables.get("derived", {})), values, check_varied, check_reference)
+    require_once(tables.get("set", {}), [*keys, *(quantity.key for quantity in derived)], base)
+    sweep = Sweep(
+        name=origin.name,
+        text=origin.text,
+        title=heading.title,
+        base=base,
+        axes=axes,
+        derived=derived,
+        perturbation=read_as("perturbation", Perturbation, tables.get("perturbation", {})),
+        threshold=_threshold(tables, axes),
+        maps=_maps(tables.get("maps", {}), values),
+        limit_slip_m=heading.limit_slip_m,
+        margin=heading.margin,
+    )
+    _try_cells(sweep)
+    return sweep
+
+
+def _threshold(tables: Mapping[str, Any], axes: tuple[Axis, ...]) -> Threshold | None:
+    if "threshold" not in tables:
+        return None
+    threshold = read_as("threshold", Threshold, tables["threshold"])
+    named, known = f"[threshold] axis {threshold.axis!r}", {axis.key: axis for axis in axes}
+    if threshold.axis not in known:
+        raise CaseError(
+            f"{named} is none of the axes{hint(threshold.axis, known)} (axes: {', '.join(known)})"
+        )
+    if not known[threshold.axis].is_numeric:
+        raise CaseError(f"{named} needs two or more numbers that rise")
+    if any(isinstance(value, int) for value in known[threshold.axis].values):
+        raise CaseError(f"{named} takes whole numbers: there is nothing between its cells")
+    return threshold
+
+
+def _maps(content: Mapping[str, Any], known: Mapping[str, tuple[Any, ...]]) -> MapChoice:
+    fixed = content.get("fixed", {})
+    flattened = {"fixed": flat("maps.fixed", fixed)} if isinstance(fixed, dict) else {}
+    choice = read_as("maps", MapChoice, {**content, **flattened})
+    for key in (choice.x, choice.y, *choice.fixed):
+        if key is not None and key not in known:
+            raise CaseError(
+                f"[maps] {key!r} is none of the axes{hint(key, known)} (axes: {', '.join(known)})"
+            )
+    for key, value in choice.fixed.items():
+        if value not in known[key]:
+            listed = ", ".join(map(str, known[key]))
+            raise CaseError(f"[maps] {key!r} has no value {value!r} (values: {listed})")
+        if key in (choice.x, choice.y):
+            raise CaseError(f"[maps] {key!r} cannot span the map and be fixed as well")
+    if len(known) > 1 and len(known) - len(choice.fixed) < 2:
+        raise CaseError("[maps] a map needs two axes that are not fixed")
+    if choice.x is not None and choice.x == choice.y:
+        raise CaseError(f"[maps] a map needs two axes, got {choice.x!r} twice")
+    return choice
+
+
+def _try_cells(sweep: Sweep) -> None:
+    """Make the cases at the corners of the grid, and those of every listed value.
+
+    Raises:
+        CaseError: one of them cannot be used, or an axis has no effect in any.
+    """
+    ends = [axis.values if axis.scale == "list" else (axis.values[0], axis.values[-1]) for axis in sweep.axes]
+    idle = {axis.key for axis in sweep.axes}
+    for corner in islice(product(*ends), TRIED):
+        point = {axis.key: value for axis, value in zip(sweep.axes, corner, strict=True)}
+        try:
+            case = sweep.base.with_values(sweep.make.values(with_following(sweep.axes, point)))
+        except CaseError as error:
+            where = ", ".join(f"{key} = {value}" for key, value in point.items())
+            raise CaseError(f"{error}\n[axes] make this cell: {where}") from None
+        idle = {key for key in idle if _is_idle(case, key)}
+    for key in point:
+        if key in idle:
+            raise CaseError(
+                f"[axes] {key!r} has no effect in this case, which has other options; "
+                "choose the option it belongs to under [set], or leave the axis out"
+            )
+
+
+def _is_idle(case: Case, key: str) -> bool:
+    (key,) = keys_in_effect({key: None}, case.kinds)
+    table, _, name = key.rpartition(".")
+    if key == "solver.elastic_modes":
+        return case.solver.model != "reduced"
+    return table not in ("", "free", *ROWS) and getattr(case, table).is_idle(name)
+
+
+def _read_ensemble(data: Mapping[str, Any], origin: Origin) -> Ensemble:
+    given, tables = split_tables(data, ENSEMBLE_TABLES)
+    heading, derived = read_as("", EnsembleHeading, given), tables.get("derived", {})
+    example = '"motion.peak_acceleration_m_s2" = { from = 2.0, to = 10.0, count = 17 }'
+    axes = read_axes(tables.get("axes", {}), MOST_POINT_AXES, example, _point_axis)
+    keys = [axis.key for axis in axes]
+    random = _random(tables.get("random", {}), keys)
+    sets = sets_among(random)
+    base = base_case(heading.case, tables.get("set", {}), origin, first_motion(sets), keys)
+    if base.solver.model == "full":
+        raise CaseError(
+            '[set] "solver.model" must be "rigid" or "reduced": an ensemble of the full model would take weeks'
+        )
+    varied = [*keys, *(quantity.key for quantity in random)]
+    require_verticals(sets, varied, base)
+    drawn = [quantity.key for quantity in random if not quantity.relative]
+    require_once(tables.get("set", {}), [*keys, *drawn, *derived], base)
+
+    def check_reference(name: str) -> None:
+        _check_key(name)
+        if name.startswith(FREE) and name not in varied:
+            raise AxisError("is neither an axis nor drawn")
+
+    own = heading.model_dump(exclude={"case", "replicates"})
+    replicates = 1 if heading.sampling == "independent" else heading.replicates
+    ensemble = Ensemble(
+        name=origin.name,
+        text=origin.text,
+        base=base,
+        axes=axes,
+        random=random,
+        relative=frozenset(quantity.key for quantity in random if quantity.relative),
+        derived=read_derived(derived, varied, _check_key, check_reference),
+        replicates=len(sets[0].values) if sets else replicates,
+        **own,
+    )
+    _check_draws(ensemble)
+    _try_cases(ensemble)
+    return ensemble
+
+
+def _axis(key: str, value: Any) -> Axis:
+    # A free variable takes any number, as the scale of a table of motion does.
+    return replace(read_axis("motion.scale" if key.startswith(FREE) else key, value), key=key)
+
+
+def _point_axis(key: str, value: Any) -> Axis:
+    axis = _axis(key, value)
+    if not all(isinstance(number, float | int) and not isinstance(number, bool) for number in axis.values):
+        raise AxisError("must hold numbers; make a file for each of its words")
+    if list(axis.values) != sorted(axis.values):
+        raise AxisError("must rise; sort its values")
+    return axis
+
+
+def _check_key(key: str) -> None:
+    if not key.startswith(FREE):
+        check_varied(key)
+
+
+def _random(content: Mapping[str, Any], axes: Collection[str]) -> tuple[RandomQuantity | RandomChoice, ...]:
+    if not 1 <= len(content) <= MOST_RANDOM:
+        example = '"motion.phase_rad" = { distribution = "uniform", from = 0.0, to = 6.2832 }'
+        raise CaseError(
+            f"[random] must hold one to {MOST_RANDOM} keys, got {len(content)}; for instance {example}"
+        )
+    quantities: list[RandomQuantity | RandomChoice] = []
+    for key, value in content.items():
+        try:
+            _check_key(key)
+            quantities.append(read_random(key, value))
+        except AxisError as error:
+            raise CaseError(f"[random] {key!r} {error}") from None
+        if key in axes and not quantities[-1].relative:
+            raise CaseError(
+                f"[random] {key!r} is an axis as well; give the scatter about its values with relative = true"
+            )
+    return tuple(quantities)
+
+
+def _check_draws(ensemble: Ensemble) -> None:
+    draws, replicates = ensemble.draws, ensemble.replicates
+    if draws % replicates:
+        raise CaseError(
+            f"draws = {draws} do not make {replicates} "
+            f"{'replicates of one size' if ensemble.motions is None else 'motions equally likely'}; "
+            f"take {replicates * max(draws // replicates, 1)} draws"
+        )
+    size = draws // replicates
+    if ensemble.sampling == "sobol" and size & (size - 1):
+        raise CaseError(
+            f"draws = {draws} are {replicates} replicates of {size}: a Sobol sequence is balanced for powers of two; "
+            f"take {replicates * 2 ** max(size.bit_length() - 1, 1)} draws"
+        )
+    needed = least_draws(ensemble.probability, ensemble.confidence)
+    if draws < needed:
+        raise CaseError(
+            f"draws = {draws} cannot show a probability of {ensemble.probability:g} with confidence "
+            f"{ensemble.confidence:g}, even if nothing overturned: at least {needed} are needed"
+        )
+    if (runs := ensemble.count * draws) > MOST_RUNS:
+        raise CaseError(
+            f"[axes] make {ensemble.count} points x {draws} draws = {runs} runs; at most {MOST_RUNS}"
+        )
+
+
+def _try_cases(ensemble: Ensemble) -> None:
+    """Make the cases at the ends of axes and distributions; raises a CaseError for one that cannot be used."""
+    ends = [(axis.values[0], axis.values[-1]) for axis in ensemble.axes]
+    keys = [*(axis.key for axis in ensemble.axes), *(quantity.key for quantity in ensemble.random)]
+    for corner in islice(product(*ends, *(quantity.ends for quantity in ensemble.random)), TRIED):
+        point = dict(zip(keys, corner[: len(ends)], strict=False))
+        try:
+            ensemble.make.case(ensemble.drawn(point, corner[len(ends) :]))
+        except CaseError as error:
+            where = ", ".join(
+                f"{key} = {value if isinstance(value, str) else format(value, 'g')}"
+                for key, value in zip(keys, corner, strict=True)
+            )
+            raise CaseError(f"{error}\n[axes] and [random] make this case: {where}") from None

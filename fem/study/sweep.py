@@ -1,0 +1,331 @@
+"""A sweep, from its file to its folder.
+
+cells -> rows -> which are near a change of outcome -> these perturbed -> changes of outcome located -> table, maps.
+Every step is logged before the next begins, so an interrupted sweep continues where it was, to the same table.
+"""
+
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import Any, Unpack
+
+from fem.assessment.sureness import REGIME_UNSURE, SURE, UNSURE
+from fem.case.case import case_hash
+from fem.case.tables.duration import ends_at_rest, longest_time
+from fem.case.tables.uncertainty_table import UncertaintyTable
+from fem.case.toml import toml_document
+from fem.case.validation import CaseError
+from fem.results.disk import table_bytes
+from fem.results.folder import ResultFolder
+from fem.results.kinds import SWEEP
+from fem.run.expected import expected_s, expected_words
+from fem.runtime.threads import cores
+from fem.study.axes import AxisResult
+from fem.study.design import Item, Sweep
+from fem.study.draws import held_inputs
+from fem.study.driver import (
+    COMPLETED,
+    FAILED,
+    INTERRUPTED,
+    LoggedRuns,
+    Study,
+    StudyOptions,
+    hash_of,
+    run_study,
+)
+from fem.study.maps import draw_maps
+from fem.study.motion_outcomes import write_set
+from fem.study.motions import FloorMotionPair, motion_cases, motions_left_out, read_motion_set
+from fem.study.runner import MARGIN, Runner
+from fem.study.sure import (
+    PerturbedRows,
+    band_rows,
+    find_margins,
+    left_out,
+    perturb_cells,
+    refine,
+    table_of_changes,
+)
+from fem.study.sweep_table import (
+    TRIED,
+    CellRows,
+    SweepResult,
+    answers_csv,
+    band_columns,
+    open_sweep,
+    sweep_answer,
+)
+from fem.study.table import Columns, fields_of, line_of, read_lines, table_of_lines
+
+ROWS, TABLE, MEMBERS, MARGINS, CHANGES, ANSWERS = (
+    "rows.csv",
+    "table.csv",
+    "members.csv",
+    "margins.csv",
+    "thresholds.csv",
+    "answers.csv",
+)
+#: how often `sweep.json` is updated [s]
+UPDATE_S = 10.0
+#: cells that a sweep may have unless it is forced
+MOST_CELLS = 1_000_000
+OF_A_CELL = 250  #: numbers, in the log, the table, the copies and the maps
+
+
+def run_sweep(sweep: Sweep, folder: Path, **options: Unpack[StudyOptions]) -> SweepResult:
+    """Compute a sweep into a folder; raises as `run_study`, and CaseError for too many cells.
+
+    The rows of a finished sweep are kept where it is to be perturbed or refined in another way; maps over other axes
+    are drawn again. `force` also lifts the limit on the number of cells.
+    """
+    jobs = options.get("jobs") or cores()
+    check_size(sweep, jobs, options.get("force", False))
+    motions = read_motion_set(sweep.base, sweep.axes)
+    begun = asked_of(sweep, motions, jobs)
+    study = Study(
+        kind=SWEEP,
+        request=begun.sweep_hash,
+        result=SweepResult,
+        begun=replace(begun, band_hash=None),  # until the copies of another band are gone
+        cases=[sweep.base],
+        motions=[motion.case for motion in motions],
+        compute=partial(_compute, sweep, motions, begun),
+        texts={"sweep.toml": sweep.text, "base.toml": toml_document(sweep.base.given())},
+        size=table_bytes(sweep.count, OF_A_CELL),
+        subject=f"the sweep ({sweep.count} cells)",
+        way_out="take fewer values",
+        progress=partial(_progress, sweep),
+        again=partial(_again, sweep, begun),
+    )
+    return run_study(study, folder, **options)
+
+
+def sweep_hash(sweep: Sweep) -> str:
+    """Equal for sweeps whose rows are the same."""
+    base = sweep.base.model_copy(update={"uncertainty": UncertaintyTable()})  # of the copies alone
+    given = {key: value for key, value in base.given().items() if key not in ("title", "uncertainty")}
+    return hash_of(
+        [
+            case_hash(base),
+            toml_document(given),
+            [(axis.key, axis.values) for axis in sweep.axes],
+            [(quantity.key, repr(quantity.expression.tree)) for quantity in sweep.derived],
+            [case_hash(case) for case in motion_cases(sweep.base, sweep.axes)],
+        ]
+    )
+
+
+def band_hash(sweep: Sweep) -> str:
+    """Equal for sweeps that are perturbed, refined and answered in the same way."""
+    return hash_of(
+        repr((sweep.perturbation, sweep.base.uncertainty, sweep.threshold, sweep.limit_slip_m, sweep.margin))
+    )
+
+
+def check_size(sweep: Sweep, jobs: int, force: bool) -> None:
+    """Refuse more cells than anybody asks for on purpose.
+
+    Raises:
+        CaseError: says how many, and about how long and how much disk they would take.
+    """
+    if sweep.count <= MOST_CELLS or force:
+        return
+    corners = [expected_s(case) for case in sweep.ends()] or [expected_s(sweep.base)]
+    seconds = sweep.count * sum(corners) / len(corners) / jobs
+    sizes = " x ".join(str(size) for size in sweep.shape)
+    room = table_bytes(sweep.count, OF_A_CELL) / 1e9
+    raise CaseError(
+        f"{sweep.name}: [axes] make {sizes} = {sweep.count} cells, more than {MOST_CELLS}: "
+        f"{expected_words(seconds, jobs)}, {room:.1f} GB on the "
+        "disk; take fewer values, or say --force"
+    )
+
+
+def asked_of(sweep: Sweep, motions: Sequence[FloorMotionPair], jobs: int) -> SweepResult:
+    """The part of `sweep.json` that is known beforehand."""
+    return SweepResult(
+        sweep=sweep.name,
+        title=sweep.title,
+        case=sweep.base.name,
+        sweep_hash=sweep_hash(sweep),
+        band_hash=band_hash(sweep),
+        base_hash=case_hash(sweep.base),
+        model=sweep.base.solver.model,
+        duration_s=longest_time(sweep.base) if not ends_at_rest(sweep.base) else "auto",
+        motion_covered=motions_left_out(sweep.base, motions),
+        axes=tuple(
+            AxisResult(
+                key=axis.key,
+                values=axis.values,
+                scale=axis.scale,
+                unit=axis.unit,
+                following=dict(axis.following) or None,
+            )
+            for axis in sweep.axes
+        ),
+        derived={quantity.key: quantity.expression.text for quantity in sweep.derived},
+        held=held_inputs(sweep.ends(), [axis.key for axis in sweep.axes]),
+        perturbation=sweep.perturbation.model_dump(),
+        uncertainty=sweep.base.uncertainty.model_dump(),
+        left_out=left_out(sweep),
+        limit_slip_m=sweep.limit_slip_m,
+        threshold=sweep.threshold.model_dump() if sweep.threshold else None,
+        jobs=jobs,
+        cells=sweep.count,
+        map_axes=sweep.maps.model_dump(),
+    )
+
+
+def _progress(sweep: Sweep, folder: Path) -> str:
+    """How many rows an unfinished sweep has; one without any is no loss."""
+    log = folder / ROWS
+    rows = log.read_bytes().count(b"\n") - 1 if log.is_file() else 0
+    return f"{rows} of {sweep.count} rows" if rows > 0 else ""
+
+
+def _again(
+    sweep: Sweep, begun: SweepResult, place: ResultFolder, finished: SweepResult
+) -> SweepResult | None:
+    """A finished sweep, with maps over the axes that are asked for; None where its band is to be another."""
+    if finished.band_hash != begun.band_hash or not (place.path / TABLE).is_file():
+        return None
+    if finished.map_axes != begun.map_axes:
+        finished = replace(finished, map_axes=begun.map_axes, maps=_draw(place, sweep))
+        place.write_result(finished.to_json())
+    return finished
+
+
+def _draw(place: ResultFolder, sweep: Sweep) -> tuple[str, ...]:
+    return tuple(draw_maps(open_sweep(place.path), place.path / "maps", sweep.maps))
+
+
+def _compute(
+    sweep: Sweep,
+    motions: Sequence[FloorMotionPair],
+    begun: SweepResult,
+    place: ResultFolder,
+    runner: Runner,
+) -> SweepResult:
+    """Compute what is missing, and write tables and maps."""
+    began, stop = time.perf_counter(), runner.stop
+    if (place.earlier or {}).get("band_hash") != begun.band_hash:
+        place.remove(MEMBERS, MARGINS, TRIED, CHANGES, ANSWERS)
+    rows, updated = CellRows(sweep), 0.0
+
+    def counted() -> SweepResult:
+        """The result so far."""
+        return replace(begun, rows=len(rows.runs), outcomes=dict(sorted(rows.outcomes.items())))
+
+    def update() -> None:
+        """Write how many rows there are."""
+        nonlocal updated
+        updated = time.perf_counter()
+        place.check()
+        place.write_result(counted().to_json())
+
+    def note(line: str) -> None:
+        rows.note(line)
+        if time.perf_counter() - updated > UPDATE_S:
+            update()
+
+    def missing() -> Iterator[list[Item]]:
+        left = sorted(set(range(sweep.count)) - rows.runs.keys())
+        yield sweep.by_container(map(sweep.item, left))
+
+    log = LoggedRuns[Item](
+        what="cells",
+        path=place.path / ROWS,
+        columns=rows.columns,
+        make=sweep.make.case,
+        model_of=sweep.model_of,
+        key=partial(_key, sweep),
+        ids=1,
+        note=note,
+    )
+    update()
+    _rows_of_table(place, sweep, rows.columns)
+    log.run(runner, missing())
+    copies = None if stop() else perturb_cells(runner, sweep, rows, place.path / MEMBERS)
+    changes = None if stop() else refine(runner, sweep, rows, place.path / TRIED)
+    margins = {} if stop() else find_margins(runner, sweep, place.path / MARGINS)
+    result = counted()
+    if copies is not None:
+        result = replace(result, perturbed=len(copies.rows), copies=sum(map(len, copies.rows.values())))
+    if stop():
+        words = f"{result.rows} of {sweep.count} cells are computed"
+        if result.rows == sweep.count:
+            words = "all cells are computed, their copies, margins or the changes between them are not"
+        return replace(result, status=INTERRUPTED, missing=words, wall_s=time.perf_counter() - began)
+    place.check()
+    result = replace(
+        result,
+        status=FAILED if set(rows.outcomes) == {"failed"} else COMPLETED,
+        **_write_table(place, sweep, rows, log, copies, margins),
+    )
+    place.remove(MARGINS)  # they are columns of the table
+    if changes is not None:
+        place.write_text(CHANGES, table_of_changes(sweep, changes))
+        result = replace(result, changes=len(changes))
+    if motions:
+        result = replace(result, **write_set(place, sweep, motions, rows))
+    answer = sweep_answer(open_sweep(place.path), place.path)
+    if answer:
+        place.write_text(ANSWERS, answers_csv(answer))
+    return replace(
+        result,
+        answer=answer.sentence if answer else None,
+        maps=_draw(place, sweep),
+        wall_s=time.perf_counter() - began,
+    )
+
+
+def _write_table(
+    place: ResultFolder,
+    sweep: Sweep,
+    cells: CellRows,
+    log: LoggedRuns[Item],
+    copies: PerturbedRows | None,
+    margins: Mapping[int, Sequence[str]],
+) -> dict[str, Any]:
+    """Write `table.csv` and the copies; returns what they add to `sweep.json`."""
+    columns, added = band_columns(sweep.axes), dict[str, Any]()
+    bands = [line_of([None] * len(columns))] * sweep.count
+    if copies is not None:
+        counts, deciding, values = band_rows(sweep, cells, copies)
+        bands = [line_of(values(cell)) for cell in range(sweep.count)]
+        added = {
+            "unsure": counts[UNSURE],
+            "sure": {word: counts[word] for word in (SURE, REGIME_UNSURE, UNSURE)},
+            "decided_by": dict(deciding.most_common()),
+        }
+        assert copies.log is not None
+        place.write_text(MEMBERS, copies.log.table())
+    lines = (",".join([log.lines[cell,], band, *margins.get(cell, ())]) for cell, band in enumerate(bands))
+    place.write_text(TABLE, table_of_lines((*cells.columns, *columns, *(MARGIN if margins else ())), lines))
+    return added
+
+
+def _rows_of_table(place: ResultFolder, sweep: Sweep, columns: Columns) -> None:
+    """Take the table of a finished sweep, whose band is to be another, for its log."""
+    log, table = place.path / ROWS, place.path / TABLE
+    if table.exists() and not log.exists():
+        bands = (*columns, *band_columns(sweep.axes))
+        lines = [*read_lines(table, bands), *read_lines(table, (*bands, *MARGIN))]
+        kept = (line_of(fields_of(line)[: len(columns)]) for line in lines)
+        place.write_text(ROWS, table_of_lines(columns, kept))
+    place.remove(TABLE)
+
+
+def _key(sweep: Sweep, item: Item) -> Iterator[Any]:
+    """What the row of a cell begins with: the values of axes, of what follows them, of derived keys."""
+    yield item.cell
+    yield from (item.point[axis.key] for axis in sweep.axes)
+    yield from (item.point.get(key) for axis in sweep.axes for key in axis.following)
+    if sweep.derived:
+        values: Mapping[str, Any] = {}
+        with suppress(CaseError):  # the row has the reason
+            values = sweep.make.values(item.point)
+        yield from (values.get(quantity.key) for quantity in sweep.derived)

@@ -1,1 +1,0 @@
-"""Sweeps over the keys of a case: table, maps, thresholds. They know neither ensembles nor reports."""

@@ -1,0 +1,195 @@
+"""Motions as draws: each equally often, with intervals of a sample of motions."""
+
+import csv
+import hashlib
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from motion_files import write_motion, write_pair
+
+from fem.case.case import CaseError
+from fem.report.study_page import ensemble_report
+from fem.runtime.intervals import binomial_interval, estimate
+from fem.study.ensemble import ensemble_hash, run_ensemble
+from fem.study.file import load_ensemble
+from fem.study.fragility import bootstrap_fits
+
+HEAD = """
+case = "seed_stack_plateau"
+draws = 12
+probability = 0.5
+{sampling}
+[set]
+"solver.model" = "rigid"
+"solver.duration_s" = 1.2
+"motion.quantity" = "acceleration"
+"motion.unit" = "m/s2"
+"vertical.quantity" = "acceleration"
+"vertical.unit" = "m/s2"
+[axes]
+"motion.scale" = [1.0, 2.0]
+[random]
+"motion.file" = [["a_h.csv", "a_v.csv"], ["b_h.csv", "b_v.csv"], "c_h.csv"]
+"""
+FRICTION = '"contact.mu_static" = { distribution = "uniform", from = 0.3, to = 0.6 }\n'
+
+
+@pytest.fixture
+def ensemble_of(tmp_path):
+    for k, name in enumerate(("a", "b", "c")):
+        write_pair(tmp_path, name, frequency=2.0 + k)
+
+    def read(body=FRICTION, sampling=""):
+        (tmp_path / "try.toml").write_text(HEAD.format(sampling=sampling) + body, encoding="utf-8")
+        return load_ensemble(tmp_path / "try.toml")
+
+    return read
+
+
+@pytest.mark.parametrize("sampling", ["", 'sampling = "latin-hypercube"', 'sampling = "sobol"'])
+def test_each_motion_is_drawn_equally_often(ensemble_of, sampling):
+    ensemble = ensemble_of(sampling=sampling)
+    assert ensemble.replicates == 3
+    draws = ensemble.draws_at(1)
+    assert [draw.drawn["motion.file"] for draw in draws] == ["a_h.csv"] * 4 + ["b_h.csv"] * 4 + [
+        "c_h.csv"
+    ] * 4
+    frictions = np.array([draw.drawn["contact.mu_static"] for draw in draws])
+    assert len(np.unique(frictions)) == 12
+    if sampling:  # one in each quarter of the range, for every motion
+        quarters = np.sort(np.floor((frictions.reshape(3, 4) - 0.3) / 0.075), axis=1)
+        assert (quarters == [0, 1, 2, 3]).all()
+    case = ensemble.make.case(draws[5])
+    assert (case.motion.file, case.vertical.file, case.motion.scale) == ("b_h.csv", "b_v.csv", 2.0)
+    assert ensemble.make.case(draws[11]).vertical.kind == "none"
+
+
+def test_a_list_is_drawn_evenly(ensemble_of):
+    ensemble = ensemble_of(FRICTION + '"support.kind" = ["corners", "flat"]\n', sampling='sampling = "sobol"')
+    kinds = [ensemble.make.case(draw).support.kind for draw in ensemble.draws_at(0)]
+    assert [kinds[k : k + 4].count("flat") for k in (0, 4, 8)] == [2, 2, 2]
+
+
+@pytest.mark.parametrize(
+    ("body", "told"),
+    [
+        (
+            '"vertical.scale" = [1.0, -1.0]\n',
+            r"'vertical.scale' varies, and 'c_h.csv' has no vertical motion",
+        ),
+        ('"support.kind" = ["corners", "wheels"]\n', "'support.kind' must be"),
+        ('"contact.mu_static" = [0.3, 0.3]\n', "has the value 0.3 twice"),
+        ('"contact.mu_static" = 0.3\n', "must be a distribution or a list of values"),
+    ],
+)
+def test_what_cannot_be_drawn(ensemble_of, body, told):
+    with pytest.raises(CaseError, match=told):
+        ensemble_of(body)
+
+
+def test_draws_are_a_multiple_of_the_motions(ensemble_of, tmp_path):
+    ensemble_of()
+    text = (tmp_path / "try.toml").read_text(encoding="utf-8").replace("draws = 12", "draws = 14")
+    (tmp_path / "try.toml").write_text(text, encoding="utf-8")
+    with pytest.raises(CaseError, match=r"draws = 14 do not make 3 motions equally likely; take 12 draws"):
+        load_ensemble(tmp_path / "try.toml")
+
+
+def test_an_ensemble_tells_its_motions(ensemble_of, tmp_path):
+    folder = tmp_path / "results"
+    result = run_ensemble(ensemble_of(), folder=folder, jobs=1)
+    assert [one["file"] for one in result["motions"]] == ["a_h.csv", "b_h.csv", "c_h.csv"]
+    for one in result["motions"]:
+        assert one["stood"] + one["overturned"] + one["failed"] == 8  # four draws at each of two points
+    with (folder / "draws.csv").open(encoding="utf-8", newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    assert [rows[k]["vertical.file"] for k in (0, 4, 8)] == ["a_v.csv", "b_v.csv", ""]
+    fallen = sum(row["outcome"] == "overturned" for row in rows)
+    assert sum(one["overturned"] for one in result["motions"]) == fallen
+    assert (folder / "c_h.csv").is_file()
+    assert (folder / "spectra.csv").read_text(encoding="utf-8").startswith("period_s,a_h.csv,a_v.csv,b_h.csv")
+    # Nothing of three motions overturned at the first point, or everything: no narrower than three of three tell.
+    for point in result["points"]:
+        if point["overturned"] in (0, 12):
+            assert point["high"] - point["low"] >= binomial_interval(0, 3, 0.95)[1] - 1e-12
+    page = ensemble_report(folder)
+    assert "c_h.csv" in page and "sample of 3 motions" in page
+
+
+def test_the_result_depends_on_what_the_files_hold(ensemble_of, tmp_path):
+    before = ensemble_hash(ensemble_of())
+    assert before == ensemble_hash(ensemble_of())
+    write_pair(tmp_path, "b", frequency=5.0)
+    assert ensemble_hash(ensemble_of()) != before
+
+
+@pytest.fixture
+def large_set(tmp_path):
+    """An ensemble file of a hundred and four motions, a draw each."""
+    names = [write_motion(tmp_path, f"m{k:03d}.csv", frequency=1.0 + 0.05 * k) for k in range(104)]
+    text = HEAD.format(sampling="copy_motions = false").replace("draws = 12", "draws = 104")
+    text = text.replace("[1.0, 2.0]", "[2.0]").partition('"motion.file"')[0] + f'"motion.file" = {names}\n'
+    (tmp_path / "large.toml").write_text(text + FRICTION, encoding="utf-8")
+    return tmp_path / "large.toml"
+
+
+def test_a_large_set_is_the_same_on_any_number_of_cores(large_set, tmp_path):
+    ensemble = load_ensemble(large_set)
+    one = run_ensemble(ensemble, folder=tmp_path / "one", jobs=1)
+    two = run_ensemble(replace(ensemble, copy_motions=True), folder=tmp_path / "two", jobs=2)
+    for name in ("points.csv", "draws.csv", "motions.csv", "spectra.csv", "figures/spectra.svg"):
+        assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "two" / name).read_bytes()
+    assert one == two
+    assert one["asked"] == ensemble_hash(ensemble)
+    assert sum(one["motions"][k]["stood"] + one["motions"][k]["overturned"] for k in range(104)) == 104
+    # The base case's motion alone is copied unless the file says so; the others have their digest.
+    assert [path.name for path in (tmp_path / "one").glob("m0*.csv")] == ["m000.csv"]
+    assert len(list((tmp_path / "two").glob("m*.csv"))) == 104 + 1  # and motions.csv
+    for one_motion in one["motions"]:
+        content = (tmp_path / one_motion["file"]).read_bytes()
+        assert one_motion["sha256"] == hashlib.sha256(content).hexdigest()
+    assert "16 to 84 %" in (tmp_path / "one" / "figures" / "spectra.svg").read_text(encoding="utf-8")
+
+
+def test_of_several_bad_files_the_first_is_named(large_set, tmp_path):
+    for name in ("m090.csv", "m041.csv"):
+        (tmp_path / name).write_text("nothing\n", encoding="utf-8")
+    with pytest.raises(CaseError, match=r"m041\.csv: no numbers were found"):
+        run_ensemble(load_ensemble(large_set), folder=tmp_path / "results", jobs=2)
+    assert not (tmp_path / "results").exists()
+
+
+def test_draws_under_one_motion_are_no_sample_of_motions():
+    # Six motions, ten draws each; two motions overturn all, the others none: as much as two of six motions tell.
+    overturned = np.repeat([True, True, False, False, False, False], 10)
+    of_motions = estimate(overturned, ~overturned & overturned, replicates=6, confidence=0.95, independent=6)
+    low, high = binomial_interval(2, 6, 0.95)
+    assert of_motions.low <= low and of_motions.high >= high
+    assert of_motions.value == pytest.approx(1.0 / 3.0)
+
+
+@pytest.mark.parametrize(("count", "spread"), [(7, 0.0), (7, 4.0), (12, 1.0), (30, 0.3)])
+def test_intervals_of_motions_hold_the_truth_as_often_as_they_say(count, spread):
+    # Motions whose share of overturning draws differs: not at all (0), or by a beta distribution about 0.3.
+    generator = np.random.default_rng(7)
+    held, trials, draws, truth = 0, 400, 16, 0.3
+    for _ in range(trials):
+        shares = np.full(count, truth)
+        if spread:
+            shares = generator.beta(truth / spread, (1.0 - truth) / spread, size=count)
+        codes = (generator.random((count, draws)) < shares[:, None]).ravel()
+        found = estimate(codes, np.zeros_like(codes), replicates=count, confidence=0.95, independent=count)
+        held += found.low <= truth <= found.high
+    assert held / trials >= 0.93
+
+
+def test_one_motion_is_resampled_at_all_strengths_alike():
+    # Three motions, each overturned by all strengths beyond its own: the curves of resamples rise one after the other.
+    strengths = np.array([1.0, 2.0, 3.0, 4.0, 5.0])
+    own = np.array([1.5, 2.5, 3.5, 4.2, 2.2, 3.1])
+    counts = 10.0 * (strengths[:, None] > own)
+    sizes = np.full_like(counts, 10.0)
+    medians, _ = bootstrap_fits(strengths, counts, sizes, seed=1, independent=False, common=True)
+    scattered, _ = bootstrap_fits(strengths, counts, sizes, seed=1, independent=False)
+    assert np.std(np.log(medians)) > 1.2 * np.std(np.log(scattered))

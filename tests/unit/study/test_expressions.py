@@ -1,0 +1,76 @@
+"""Derived keys: arithmetic, and nothing that could be code."""
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from fem.study.derived import ExpressionError, parse_expression
+
+VALUES = {"contact.mu_static": 0.4, "gravity_m_s2": 9.81, "free.lambda": 3.0}
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("0.5 * contact.mu_static", 0.2),
+        ("1 + 2 * 3 - 4 / 2", 5.0),
+        ("-2^2", -4.0),
+        ("2^3^2", 512.0),
+        ("2 ** -1", 0.5),
+        ("10 - 4 - 3", 3.0),
+        ("(1 + 2) * 3", 9.0),
+        ("max(1e-3, min(gravity_m_s2, 2.))", 2.0),
+        ("sqrt(2) * sin(pi / 4)", 1.0),
+        ("\n2 *\tfree.lambda ^ 2", 18.0),  # a key may be one of Python's words
+    ],
+)
+def test_values(text, value):
+    assert parse_expression(text).value(VALUES) == pytest.approx(value, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", "invalid syntax at character 1"),
+        ("1 +", "at character 4; it may hold numbers, keys"),
+        ("2^3^(1", r"'\(' was never closed at character 5"),
+        ("1 2", "at character 3"),
+        ("1 if 2 else 3", "at character 3"),
+        ("contact.mu.static", "'contact.mu.static' is no number, key"),
+        ("2 ^ 10 // 3", "'2 \\^ 10 // 3' is no number"),
+        ("().__class__", r"'\(\).__class__' is no number"),
+        ("0x10 + 1_0", "'0x10' is no number"),
+        ("max(*contact.mu_static, 1)", "max takes|'.contact.mu_static' is no number"),
+        ("__import__('os')", 'unexpected "\'" at character 12'),
+        ("1 # 2", "unexpected '#' at character 3"),
+        ("sqrt(1,)", "unexpected ',' at character 7"),
+        ("eval(1)", "no function 'eval'"),
+        ("sqrt(1, 2)", "takes 1 argument, got 2"),
+        ("(" * 199 + "1" + ")" * 199 + "^2", "characters long|too"),
+        ("1+" * 500 + "1", "characters long"),
+    ],
+)
+def test_what_is_no_expression_is_refused(text, words):
+    with pytest.raises(ExpressionError, match=words):
+        parse_expression(text)
+
+
+@pytest.mark.parametrize("text", ["1 / 0", "sqrt(-1)", "(-8)^(1/3)", "exp(1e4)", "log(0)", "1e308 * 10"])
+def test_what_has_no_value_is_refused(text):
+    with pytest.raises(ExpressionError, match=r"no value|not a finite"):
+        parse_expression(text).value({})
+
+
+@given(st.text(alphabet="0123456789.eE+-*/^() ,abcdefg_pisqrtmuxn", max_size=60))
+def test_any_text_is_an_expression_or_refused(text):
+    try:
+        parsed = parse_expression(text)
+    except ExpressionError:
+        return
+    values = dict.fromkeys(parsed.keys, 0.7)
+    try:
+        assert math.isfinite(parsed.value(values))
+    except ExpressionError:
+        return

@@ -1,0 +1,350 @@
+"""A hall of containers: what a list may look like, what its rows show, and that each is the run by itself."""
+
+import csv
+import io
+import json
+import re
+import shlex
+from pathlib import Path
+
+import pytest
+
+from fem.__main__ import main
+from fem.case.case import load_case
+from fem.case.validation import CaseError
+from fem.cli.batch import page_of
+from fem.results.figures import SCALARS
+from fem.run.compute import compute
+from fem.study.hall import run_hall, weakness
+from fem.study.list_file import HallResult, read_hall
+from fem.study.table import table_text
+
+BASE = """
+[container]
+width_m = 1.0
+height_m = 3.0
+mass_kg = 2000.0
+[contact]
+mu_static = 0.5
+[motion]
+kind = "pulse"
+shape = "sine"
+peak_acceleration_m_s2 = 5.0
+pulse_s = 1.0
+[solver]
+model = "rigid"
+[uncertainty]
+draws = 2
+"""
+LIST = """name,count,tag,width_m,mass_kg,mu_static,owner
+A,2,north,1.0,2000,0.5,ACME
+=B,1,north,0.6,2000,,
+bad,1,south,-1,2000,,
+C,3,south,1.0,2000.0,0.5,x
+D,1,,2.4,,0.2,y
+"""
+
+
+@pytest.fixture
+def base(tmp_path):
+    path = tmp_path / "base.toml"
+    path.write_text(BASE, encoding="utf-8")
+    return path
+
+
+def listed(tmp_path, text, name="hall.csv", encoding="utf-8"):
+    path = tmp_path / name
+    path.write_bytes(text.encode(encoding))
+    return path
+
+
+def rows_of(path):
+    return list(csv.DictReader(io.StringIO(path.read_text(encoding="utf-8"))))
+
+
+def test_a_row_is_the_run_by_itself_bit_for_bit(tmp_path, base, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["batch", str(listed(tmp_path, LIST)), "--case", "base.toml", "--out", "out", "-q"]) == 0
+    said = capsys.readouterr().out
+    assert "1 row was refused" in said and "refused    1 of 5 rows" in said
+    found = json.loads((tmp_path / "out" / "hall.json").read_text(encoding="utf-8"))
+    assert (found["rows"], found["containers"], found["distinct"], found["refused"]) == (5, 8, 3, 1)
+    assert found["kept"] == ["owner"] and found["runs"] == 3
+    texts = rows_of(tmp_path / "out" / "hall.csv")
+    assert [one["name"] for one in texts] == ["A", "'=B", "bad", "C", "D"]
+    assert [one["owner"] for one in texts] == ["ACME", "", "", "x", "y"]
+    assert [one["status"] for one in texts] == [*["overturned"] * 2, "refused", "overturned", "completed"]
+    assert "[container] width_m must be" in texts[2]["reason"] and "--set" not in texts[2]["reason"]
+    for row, text in zip(found["table"], texts, strict=True):
+        if row["status"] == "refused":
+            assert not row["outcome"] and not row["rank"]
+            continue
+        *_, case = words = shlex.split(row["command"])[:5]
+        assert words[:4] == ["python", "-m", "fem", "run"] and case == "base.toml"
+        alone = compute(load_case(case, shlex.split(row["command"])[6::2])).verdict
+        for name in SCALARS:
+            assert row[name] == getattr(alone, name), name
+            if isinstance(row[name], float):
+                assert text[name] == repr(row[name])
+        assert row["sure"] == alone.sure and row["decided_by"] == (" ".join(alone.decided_by) or None)
+        assert row["margin"] == alone.margin.factor and row["margin_low"] == alone.margin.low
+        assert row["margin_high"] == alone.margin.high
+    ranks = {row["name"]: row["rank"] for row in found["table"]}
+    assert ranks == {"=B": 1, "A": 2, "C": 2, "D": 3, "bad": None}
+    tags = {one["tag"]: one["counts"] for one in found["tags"]}
+    assert (tags["north"]["overturned"], tags["south"]["overturned"], tags["south"]["refused"]) == (3, 3, 1)
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert "7 of 7" not in page and "6 of 7 containers overturned" in page and 'href="#row-2"' in page
+    assert main(["report", "out", "-q"]) == 0
+    assert main(["report", "out", "--short", "--to", "short.html", "-q"]) == 0
+    short = (tmp_path / "short.html").read_text(encoding="utf-8")
+    assert "6 of 7 containers overturned" in short and len(short) < len(page) and "row-2" not in short
+
+
+@pytest.mark.slow
+def test_columns_of_links_and_neighbours_are_keys(tmp_path, base):
+    links = '[[neighbour]]\nside = "right"\ngap_m = 0.05\nstiffness_N_m = 1e8\n'
+    base.write_text(base.read_text() + links)
+    (tmp_path / "list.csv").write_text("name,neighbour.gap_m,stop.gap_m\nnear,0.01,\nfar,5.0,\nwrong,,0.1\n")
+    case = load_case(base)
+    result = run_hall(read_hall(tmp_path / "list.csv"), case, tmp_path / "out", checks="none")
+    near, far, wrong = result.table
+    for row, gap in ((near, 0.01), (far, 5.0)):
+        alone = compute(case.replace({"neighbour.gap_m": gap}), band=False, margin=False).verdict
+        assert (row["rotation_ratio"], row["link_hits"]) == (alone.rotation_ratio, alone.link_hits)
+    assert near["link_hits"] > 0 == far["link_hits"]
+    assert wrong["status"] == "refused" and "stop" in wrong["reason"]
+
+
+def test_motions_that_destroy_a_corner_are_counted_by_themselves_and_are_worse_than_those_without_an_outcome(
+    tmp_path, base, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    motions = tuple(f"{number}.csv" for number in range(6))
+    for number, name in enumerate(motions):
+        samples = [f"{0.1 * k},{0.5 * (k % 2)}" for k in range(5 + number)]
+        listed(tmp_path, "\n".join(["time_s,acceleration_m_s2", *samples]), name)
+    out, options = tmp_path / "out", {"motions": motions, "checks": "none"}
+    run_hall(read_hall(listed(tmp_path, "name,width_m\na,3\n")), load_case("base.toml"), out, **options)
+    rows = rows_of(out / "runs.csv")
+    for row, outcome in zip(rows, ["rock", "", "invalid", "", "invalid", ""], strict=True):
+        row |= {"status": "completed" if outcome else "failed", "outcome": outcome}
+    (out / "runs.csv").write_text(table_text(rows[0], (row.values() for row in rows)), encoding="utf-8")
+    renamed = read_hall(listed(tmp_path, "name,width_m\nb,3\n"))
+    (row,) = run_hall(renamed, load_case("base.toml"), out, **options).table
+    assert (row["name"], row["outcome"], row["motion"]) == ("b", "invalid", "2.csv")
+    counts = (row["motions_overturned"], row["motions_invalid"], row["motions_failed"])
+    assert counts == (0, 2, 3)
+
+
+def test_of_what_stands_the_larger_rotation_is_weaker_and_what_does_not_rock_follows_the_static_rule():
+    rows = [
+        {"status": "completed", "outcome": outcome, "rotation_ratio": ratio, "utilisation_overturning": use}
+        for outcome, ratio, use in [
+            ("rest", 0.001, 0.8),
+            ("rock", 0.02, 1.2),
+            ("rest", 0.005, 0.9),
+            ("rock", 0.95, 1.1),
+            ("invalid", 0.3, 1.0),
+            ("overturned", 1.0, 1.0),
+        ]
+    ]
+    assert sorted(range(6), key=lambda row: weakness(rows[row])) == [5, 4, 3, 1, 2, 0]
+
+
+def test_equal_rows_are_computed_once_and_labels_cost_nothing(tmp_path, base):
+    """A list of which names alone changed is written again from the runs that are there."""
+    case = load_case(base)
+    text = "name,width_m,boxes\na,1,1\nb,1.00,\nc,,\nd,1.5,1\n"
+    result = run_hall(read_hall(listed(tmp_path, text)), case, tmp_path / "out", checks="none")
+    assert (result.distinct, result.runs, result.checked) == (2, 2, 0)
+    runs = (tmp_path / "out" / "runs.csv").stat().st_mtime_ns
+    again = run_hall(
+        read_hall(listed(tmp_path, text.replace("a,", "renamed,"))), case, tmp_path / "out", checks="none"
+    )
+    assert [row["name"] for row in again.table] == ["renamed", "b", "c", "d"]
+    lines = (tmp_path / "out" / "runs.csv").read_text(encoding="utf-8").splitlines()
+    assert len(lines) == 3 and runs
+    assert rows_of(tmp_path / "out" / "hall.csv")[0]["name"] == "renamed"
+
+
+def test_under_several_motions_the_worst_governs_and_the_largest_slip_is_told(tmp_path, base, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for name, half, peak in (("weak", 3, 2.0), ("strong", 8, 9.0), ("middle", 5, 2.5)):
+        samples = [
+            f"{0.1 * k},{peak if 1 <= k <= half else -peak if half < k <= 2 * half else 0.0}"
+            for k in range(20)
+        ]
+        listed(tmp_path, "\n".join(["time_s,acceleration_m_s2", *samples]), f"{name}.csv")
+    text = "name,width_m,mu_static\nwide,3,0.3\nslim,0.8,0.9\n"
+    motions = ("weak.csv", "strong.csv", "middle.csv")
+    result = run_hall(
+        read_hall(listed(tmp_path, text)), load_case("base.toml"), tmp_path / "out", motions=motions
+    )
+    assert (result.runs, result.motions) == (6, motions)
+    wide, slim = result.table
+    assert (slim["outcome"], slim["motions_overturned"]) == ("overturned", 1) and slim[
+        "motion"
+    ] == "strong.csv"
+    assert wide["largest_slip_motion"] == "strong.csv" and wide["largest_slip_m"] >= wide["max_slip_m"] > 0.1
+    assert (slim["rank"], wide["rank"]) == (1, 2)
+    words = shlex.split(slim["command"])
+    assert words[5:7] == ["--motion", "strong.csv"]
+    alone = compute(load_case("base.toml", words[8::2], motion="strong.csv")).verdict
+    assert slim["rotation_ratio"] == alone.rotation_ratio and slim["margin"] == alone.margin.factor
+    for pairs in (("strong.csv,weak.csv", "middle.csv"), ("strong.csv", "weak.csv,middle.csv")):
+        files = {"motions": pairs, "checks": "none", "force": True}
+        result = run_hall(
+            read_hall(tmp_path / "hall.csv"), load_case("base.toml"), tmp_path / "pairs", **files
+        )
+        words = shlex.split(result.table[0]["command"])
+        assert (
+            words[6] == "strong.csv" and words[8] == f"vertical.kind={'table' if ',' in pairs[0] else 'none'}"
+        )
+        alone = compute(load_case("base.toml", words[8::2], motion=words[6]), band=False).verdict
+        assert result.table[0]["max_slip_m"] == alone.max_slip_m
+
+
+@pytest.mark.parametrize(
+    ("text", "encoding"),
+    [
+        ("name;width_m;mass_kg\nBehälter;1,25;2000\n", "utf-8-sig"),
+        ("name;width_m;mass_kg\r\nBehälter;1,25;2000\r\n", "latin-1"),
+        ("sep=;\nName;WIDTH_M;mass_kg\nBehälter;1,25;2000\n", "utf-8"),
+        ("name\twidth_m\tmass_kg\t\nBehälter\t1.25\t2e3\t\n\n", "utf-16"),
+        ('name,container.width_m,mass_kg\n"Behälter","1,25",2000\n', "utf-8"),
+    ],
+)
+def test_lists_of_every_spreadsheet_are_read(tmp_path, text, encoding):
+    (row,) = read_hall(listed(tmp_path, text, encoding=encoding)).rows
+    assert row.name == "Behälter" and row.values == {"container.width_m": 1.25, "container.mass_kg": 2000.0}
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("1.0,2000\n2.0,3000\n", "so there is no header"),
+        ("", "the list is empty"),
+        ("name,width_m\n", "a header and no rows"),
+        ("name,widht_m\na,1\n", "'widht_m' is no key of a case; did you mean 'width_m'"),
+        ("name,width [mm]\na,1\n", "did you mean 'width_m'"),
+        ("name,Weight (kN)\na,1\n", "did you mean 'weight_N'"),
+        ("name,container.colour\na,1\n", "'container.colour' is no key of a case file"),
+        ("name,damping_ratio\na,1\n", "may be container.damping_ratio or contact.damping_ratio"),
+        ("name,width_m,container.width_m\na,1,1\n", "both set 'container.width_m'"),
+        ("name,width_m,width_m\na,1,1\n", "'width_m' occurs 2 times"),
+        ("name,margin,width_m\na,1,1\n", "'margin' has the name of a result"),
+        ("name,width_m,\na,1,lost\n", "line 2: column 3 has values and no name"),
+        ("name;width_m\na;1,5\nb;1.5\n", "decimal commas (line 2) and decimal points (line 3)"),
+        ("\0\1", "not a text file"),
+    ],
+)
+def test_a_list_that_cannot_be_read_is_refused_in_a_sentence(tmp_path, text, words):
+    with pytest.raises(CaseError) as error:
+        _ = read_hall(listed(tmp_path, text)).rows
+    assert words in str(error.value) and str(error.value).startswith(str(tmp_path / "hall.csv"))
+
+
+def test_the_terminal_says_of_a_container_what_the_summary_of_a_run_would(
+    tmp_path, base, monkeypatch, capsys
+):
+    monkeypatch.chdir(tmp_path)
+    path = listed(
+        tmp_path, "name,width_m,mu_static,motion.peak_acceleration_m_s2\nfalls,0.6,0.9,\nrests,2.4,0.9,0.01\n"
+    )
+    assert main(["batch", str(path), "--case", "base.toml", "-q"]) == 0
+    lines = {line.split()[0]: line for line in capsys.readouterr().out.splitlines() if line.startswith("  ")}
+    assert "overturned, overturns from " in lines["falls"] and "rotation ratio" not in lines["falls"]
+    assert "rest, does not overturn up to 4 times the motion, rotation ratio < 0.001, slip" in lines["rests"]
+
+
+def test_a_bad_row_has_its_reason_and_strict_refuses(tmp_path, base, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    text = (
+        "name,count,width_m,x_m,lat,wall_m,mass_kg\nfine,1,1,0,0,,\ncount,1.5,1,0,0,,\nplace,1,1,here,0,,\n"
+        "short,1,1\nunit,1,1 m,0,0,,\nheavy,1,1,0,0,0.2,100\n"
+    )
+    path = listed(tmp_path, text)
+    assert main(["batch", str(path), "--case", "base.toml", "--margins", "none", "-q"]) == 0
+    reasons = {one["name"]: one["reason"] for one in rows_of(tmp_path / "outputs" / "hall" / "hall.csv")}
+    for name, words in {
+        "fine": "",
+        "count": "count must be a whole number",
+        "place": "",  # a column that sets nothing is kept as it is
+        "short": "3 fields, and the header names 7 columns",
+        "unit": "width_m must be a number",
+        "heavy": "the walls of one box weigh",
+    }.items():
+        assert words in reasons[name] and bool(reasons[name]) == bool(words)
+    capsys.readouterr()
+    assert main(["batch", str(path), "--case", "base.toml", "--strict", "--out", "strict", "-q"]) == 2
+    assert "hall, line 3 (count): count must be" in capsys.readouterr().err
+    assert not (tmp_path / "strict").exists()
+    none = listed(tmp_path, "name,width_m\na,-1\n", "none.csv")
+    assert main(["batch", str(none), "--case", "base.toml", "--out", "none", "-q"]) == 2
+    assert "no row can be computed" in capsys.readouterr().err
+
+
+def test_too_many_rows_are_told_the_time_before_any_is_read(tmp_path, base):
+    file = read_hall(listed(tmp_path, "width_m,\n" + "1.0,without a name\n" * 250_000))
+    with pytest.raises(CaseError, match=r"250000 rows, 250000 runs: roughly \d+ .* or use --force"):
+        run_hall(file, load_case(base), tmp_path / "out")
+
+
+RECORD = "0 0\n0.1 1.5\n0.2 -2.5\n0.3 1\n0.4 0\n"
+
+
+def test_files_outside_the_folder_need_the_flag_in_all_commands(tmp_path, base, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "record.txt").write_text(RECORD, encoding="utf-8")
+    (tmp_path / "below").mkdir()
+    motion = '[motion]\nkind = "table"\nfile = "../record.txt"\nunit = "m/s2"\n['
+    text = re.sub(r"\[motion\].*?\[", motion, BASE, flags=re.DOTALL)
+    (tmp_path / "below" / "base.toml").write_text(text, encoding="utf-8")
+    words = ["batch", str(listed(tmp_path, LIST)), "--case", "below/base.toml", "--margins", "none", "-q"]
+    assert main([*words, "--out", "out"]) == 2
+    assert main([*words, "--out", "out", "--allow-outside"]) == 0
+    row = json.loads((tmp_path / "out" / "hall.json").read_text(encoding="utf-8"))["table"][0]
+    command = shlex.split(row["command"])[3:]
+    capsys.readouterr()
+    assert main([*command, "--out", "one", "--no-band", "--json", "-q"]) == 0
+    assert json.loads(capsys.readouterr().out)["verdict"]["max_slip_m"] == row["max_slip_m"]
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert "--case base.toml --margins none --allow-outside" in page
+
+
+@pytest.mark.parametrize("name", ["runs.csv", "list.csv", "figures"])
+def test_a_record_with_the_name_of_a_result_is_refused_before_anything_is_written(tmp_path, base, name):
+    (tmp_path / name).write_text(RECORD, encoding="utf-8")
+    motion = {"motion.kind": "table", "motion.file": name, "motion.unit": "m/s2"}
+    case = load_case(base).replace(motion)
+    with pytest.raises(CaseError, match="like a result of the hall"):
+        run_hall(read_hall(listed(tmp_path, LIST)), case, tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_result_may_be_the_list_of_the_next_hall(tmp_path, base):
+    case = load_case(base)
+    run_hall(read_hall(listed(tmp_path, LIST)), case, tmp_path / "out", checks="none")
+    again = read_hall(tmp_path / "out" / "hall.csv")
+    assert tuple(again.meanings) == tuple(LIST.splitlines()[0].split(","))
+    assert [row.name for row in again.rows] == ["A", "=B", "bad", "C", "D"]
+    run_hall(again, case, tmp_path / "next", checks="none")
+    first, second = ((tmp_path / name / "hall.csv").read_bytes() for name in ("out", "next"))
+    assert first == second
+
+
+def test_the_page_of_a_finished_list_is_left_alone_and_a_missing_one_is_made(tmp_path, base, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    command = ["batch", str(listed(tmp_path, LIST)), "--case", "base.toml", "--margins", "none", "-q"]
+    page = tmp_path / "outputs" / "hall" / "report.html"
+    assert main(command) == 0 and page.is_file()
+    page.write_text("signed", encoding="utf-8")
+    assert main(command) == 0 and page.read_text(encoding="utf-8") == "signed"
+    page.unlink()
+    assert main(command) == 0 and page.is_file()
+
+
+def test_of_an_unfinished_list_no_file_is_named_that_is_not_there():
+    begun = HallResult(hall="h", case="c", asked="", model="rigid", rows=1, containers=1, distinct=1)
+    assert [*page_of(begun, Path("out"))][-1] == "  files      out"

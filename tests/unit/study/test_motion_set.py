@@ -1,0 +1,173 @@
+"""Sets of motions: how they are written, what is refused, and what is told of each."""
+
+import numpy as np
+import pytest
+from motion_files import write_motion, write_pair
+
+from fem.case.case import CaseError, read_case
+from fem.records.intensity import intensity
+from fem.records.spectrum import response_spectrum
+from fem.study.axes import AxisError, first_motion, read_axis, with_following
+from fem.study.motions import motion_cases, read_motion_set, spectra_of
+
+CASE = """
+[container]
+width_m = 1.1
+height_m = 4.0
+weight_N = 98100.0
+[contact]
+mu_static = 0.4
+[motion]
+kind = "table"
+file = "a_h.csv"
+quantity = "acceleration"
+unit = "m/s2"
+[vertical]
+quantity = "acceleration"
+unit = "m/s2"
+[solver]
+model = "rigid"
+"""
+
+
+@pytest.fixture
+def base(tmp_path):
+    for k, name in enumerate(("a", "b", "c")):
+        write_pair(tmp_path, name, frequency=2.0 + k)
+    return read_case(CASE, folder=tmp_path)
+
+
+def test_names_and_pairs_stand_side_by_side():
+    axis = read_axis("motion.file", ["a.at2", ["b_h.at2", "b_v.at2"]])
+    assert axis.values == ("a.at2", "b_h.at2")
+    assert with_following([axis], {"motion.file": "a.at2"}) == {
+        "motion.file": "a.at2",
+        "vertical.kind": "none",
+    }
+    second = {"motion.file": "b_h.at2", "vertical.kind": "table", "vertical.file": "b_v.at2"}
+    assert with_following([axis], {"motion.file": "b_h.at2"}) == second
+    assert first_motion([axis]) == second  # the base case has a vertical motion if any motion has
+
+
+def test_names_alone_leave_the_vertical_motion_as_the_case_has_it():
+    axis = read_axis("motion.file", ["a.at2", "b.at2"])
+    assert first_motion([axis]) == {"motion.file": "a.at2"}
+
+
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        ([], "must be a list of files or pairs"),
+        ({"from": 1.0, "to": 2.0, "count": 2}, "must be a list of files or pairs"),
+        ([3], "must hold file names and pairs of file names, got 3"),
+        ([["a", "b", "c"]], "must hold file names and pairs"),
+        ([["a.at2"]], r"has a pair without its vertical motion, \['a.at2'\]; a pair is"),
+        ([["a.at2", " "]], "has a pair without its vertical motion"),
+        ([["", "v.at2"]], "has a vertical motion without a horizontal one"),
+        (
+            ["a.at2", ["b.at2", "c.at2"], "a.at2"],
+            "names 'a.at2' twice; the motions of a set are of different files",
+        ),
+        ([["a.at2", "v.at2"], ["b.at2", "v.at2"]], "names 'v.at2' twice"),
+        ([["a.at2", "b.at2"], "b.at2"], "names 'b.at2' twice"),
+    ],
+)
+def test_what_is_no_set_of_motions(given, told):
+    with pytest.raises(AxisError, match=told):
+        read_axis("motion.file", given)
+
+
+def test_one_file_may_hold_both_components():
+    assert read_axis("motion.file", [["a.csv", "a.csv"]]).following["vertical.file"] == ("a.csv",)
+
+
+def test_the_motions_are_read_as_the_case_takes_them(base):
+    axis = read_axis("motion.file", [["a_h.csv", "a_v.csv"], ["b_h.csv", "b_v.csv"]])
+    scaled = base.with_values({"motion.scale": 2.0, "vertical.scale": -1.0})
+    found = read_motion_set(scaled, [axis])
+    assert [one.name for one in found] == ["a_h.csv", "b_h.csv"]
+    numbers = found[1].numbers()
+    assert numbers["peak_acceleration_m_s2"] == pytest.approx(6.0)
+    assert numbers["vertical"]["peak_acceleration_m_s2"] == pytest.approx(2.0)
+    assert (numbers["duration_s"], numbers["step_s"], numbers["samples"]) == (1.0, pytest.approx(0.02), 51)
+    motion = found[1].horizontal.motion
+    assert numbers["significant_s"] == intensity(motion.times, motion.values).significant_s
+    assert [case.vertical.file for case in motion_cases(scaled, [axis])] == ["a_v.csv", "b_v.csv"]
+
+
+def test_one_factor_scales_both_components_of_a_recording(base):
+    axis = read_axis("motion.file", [["a_h.csv", "a_v.csv"]])  # peaks of 3 and 2 m/s2
+    for values, peaks in (
+        ({"motion.scale_to_m_s2": 6.0, "vertical.scale": -1.0}, (6.0, -4.0)),
+        ({"motion.scale_to_m_s2": 6.0, "vertical.scale_to_m_s2": 1.0}, (6.0, 1.0)),
+        ({"motion.scale": 2.0}, (6.0, 2.0)),
+    ):
+        (pair,) = read_motion_set(base.with_values(values), [axis])
+        (own,) = read_motion_set(base, [axis])
+        ratios = [
+            one.motion.values[k] / two.motion.values[k]
+            for one, two in zip(pair.components, own.components, strict=True)
+            for k in [np.abs(two.motion.values).argmax()]
+        ]
+        assert (3.0 * ratios[0], 2.0 * ratios[1]) == pytest.approx(peaks)
+
+
+def test_a_motion_alone_has_no_vertical_one(base):
+    axis = read_axis("motion.file", ["a_h.csv", ["b_h.csv", "b_v.csv"]])
+    assert [one.vertical is None for one in read_motion_set(base, [axis])] == [True, False]
+    assert read_motion_set(base, [read_axis("contact.mu_static", [0.3])]) == ()
+
+
+def test_spectra_are_those_of_each_motion(base):
+    axis = read_axis("motion.file", [["a_h.csv", "a_v.csv"], "b_h.csv"])
+    motions = read_motion_set(base, [axis])
+    periods, spectra = spectra_of(motions)
+    assert list(spectra) == ["a_h.csv", "a_v.csv", "b_h.csv"]
+    assert periods[0] == pytest.approx(0.04)  # two steps of 0.02 s
+    alone = response_spectrum(0.02, motions[1].horizontal.motion.values, periods)
+    assert spectra["b_h.csv"] == pytest.approx(alone.pseudo_acceleration_m_s2)
+
+
+def test_a_motion_of_uneven_steps_has_the_spectrum_of_its_straight_lines(base, tmp_path):
+    even = np.loadtxt(tmp_path / "a_h.csv", delimiter=",", skiprows=1)
+    kept = np.delete(even, [7, 20, 33], axis=0)
+    np.savetxt(tmp_path / "uneven.csv", kept, delimiter=",")
+    lines = np.interp(even[:, 0], kept[:, 0], kept[:, 1])
+    bridged = base.with_values({"motion.gaps": "bridge"})
+    motions = read_motion_set(bridged, [read_axis("motion.file", ["uneven.csv", "b_h.csv"])])
+    periods, spectra = spectra_of(motions)
+    wanted = response_spectrum(0.02, lines, periods).pseudo_acceleration_m_s2
+    assert spectra["uneven.csv"] == pytest.approx(wanted, rel=1e-3)
+
+
+def test_motions_that_are_one_are_refused(base, tmp_path):
+    # of a_h.csv: half as strong, of the other sign
+    write_motion(tmp_path, "copy.csv", frequency=2.0, peak=-1.5)
+    with pytest.raises(CaseError, match=r"'copy.csv' and 'a_h.csv' hold the same motion"):
+        read_motion_set(base, [read_axis("motion.file", ["a_h.csv", "b_h.csv", "copy.csv"])])
+    with pytest.raises(CaseError, match=r"a_h.csv: the file has one motion"):
+        read_motion_set(base, [read_axis("motion.file", [["a_h.csv", "a_h.csv"]])])
+
+
+def test_two_motions_of_one_file_are_refused(base, tmp_path):
+    columns = [np.loadtxt(tmp_path / f"{name}_h.csv", delimiter=",", skiprows=1).T for name in ("a", "b")]
+    rows = np.column_stack([columns[0][0], columns[0][1], columns[1][1]])
+    np.savetxt(tmp_path / "both.csv", rows, delimiter=",")
+    (pair,) = read_motion_set(base, [read_axis("motion.file", [["both.csv#1", "both.csv#2"]])])
+    assert pair.vertical is not None
+    with pytest.raises(CaseError, match=r"'both.csv#1' and 'both.csv#2' are motions of one file, both.csv"):
+        read_motion_set(base, [read_axis("motion.file", ["both.csv#1", "both.csv#2"])])
+    with pytest.raises(CaseError, match=r"'a_h.csv' and './a_h.csv' are motions of one file"):
+        read_motion_set(base, [read_axis("motion.file", ["a_h.csv", "./a_h.csv"])])
+
+
+@pytest.mark.parametrize(("length", "step"), [(1.2, 0.02), (0.5, 0.01)])
+def test_components_of_different_length_or_step_are_refused(base, tmp_path, length, step):
+    write_motion(tmp_path, "other.csv", frequency=3.0, length=length, step=step)
+    with pytest.raises(CaseError, match=r"a_h.csv and other.csv do not belong together"):
+        read_motion_set(base, [read_axis("motion.file", [["a_h.csv", "other.csv"]])])
+
+
+def test_a_missing_file_is_named(base):
+    with pytest.raises(CaseError, match=r"gone\.csv"):
+        read_motion_set(base, [read_axis("motion.file", ["a_h.csv", "gone.csv"])])

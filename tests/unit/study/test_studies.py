@@ -1,0 +1,320 @@
+"""Every kind of study in its folder: interrupted, killed, resumed, finished, refused, told and reported alike."""
+
+import json
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+
+import pytest
+from small_site import SITE
+from small_sweep import SMALL
+
+from fem.__main__ import main
+from fem.case.case import load_case
+from fem.cli.console import print_result
+from fem.response.request import ResponseRequest
+from fem.response.run import run_response
+from fem.results import kinds
+from fem.results.errors import FolderError, OutputError
+from fem.runtime.progress import SilentReporter
+from fem.site.request import load_site
+from fem.site.run import run_site
+from fem.site.size import size_axis
+from fem.site.size_run import run_size
+from fem.study.ensemble import run_ensemble
+from fem.study.file import load_ensemble, load_sweep
+from fem.study.hall import run_hall
+from fem.study.list_file import read_hall
+from fem.study.sweep import run_sweep
+
+ENSEMBLE = """
+case = "seed_stack_plateau"
+draws = 16
+confidence = 0.9
+probability = 0.5
+[set]
+"solver.model" = "rigid"
+"solver.duration_s" = 1.5
+[axes]
+"motion.peak_acceleration_m_s2" = [2.0, 6.0, 12.0]
+[random]
+"motion.phase_rad" = { distribution = "uniform", from = 0.0, to = 6.2 }
+"""
+HALL = "name,width_m,boxes\n" + "".join(f"{k},{0.6 + 0.02 * k:.2f},2\n" for k in range(40))
+RIGID = ("solver.model=rigid", "contact.mu_static=1", "contact.mu_kinetic=1", "solver.element_size_m=1")
+
+
+class Interrupting(SilentReporter):
+    """Interrupts at a report of progress: at once, or by Ctrl-C, at the next safe point."""
+
+    def __init__(self, reports, *, ctrl_c=False):
+        self.left, self.ctrl_c = reports, ctrl_c
+
+    def tell(self, line):
+        self.left -= 1
+        if self.left == 0 and self.ctrl_c:
+            os.kill(os.getpid(), signal.SIGINT)
+        elif self.left == 0:
+            raise KeyboardInterrupt
+
+    def update(self, time, rotation_ratio, mode):
+        self.tell(lambda: "")
+
+
+class Removing(SilentReporter):
+    """Removes the folder of the results at every report of progress."""
+
+    def __init__(self, folder):
+        self.folder = folder
+
+    def tell(self, line):
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+    def update(self, time, rotation_ratio, mode):
+        self.tell(lambda: "")
+
+
+def sweep(tmp_path, other=False):
+    path = tmp_path / "small.toml"
+    path.write_text(SMALL.replace("count = 5", "count = 4") if other else SMALL, encoding="utf-8")
+    asked = load_sweep(path)
+    return lambda folder, **options: run_sweep(asked, folder, **options)
+
+
+def ensemble(tmp_path, other=False):
+    path = tmp_path / "small.toml"
+    path.write_text(ENSEMBLE.replace("16", "24") if other else ENSEMBLE, encoding="utf-8")
+    asked = load_ensemble(path)
+    return lambda folder, **options: run_ensemble(asked, folder=folder, **options)
+
+
+def response(tmp_path, other=False):
+    case = load_case("seed_stack_plateau", RIGID)
+    asked = ResponseRequest(
+        case=case, first_Hz=0.6, last_Hz=1.4, count=3, settle=6, observe=9 if other else 8
+    )
+    return lambda folder, **options: run_response(asked, folder=folder, **options)
+
+
+def site_of(tmp_path, other):
+    path = tmp_path / "hall.toml"
+    path.write_text(SITE.replace("slip_m = 0.1", "slip_m = 0.2") if other else SITE, encoding="utf-8")
+    return load_site(path)
+
+
+def site(tmp_path, other=False):
+    asked = site_of(tmp_path, other)
+    return lambda folder, **options: run_site(asked, folder, **options)
+
+
+def size(tmp_path, other=False):
+    asked = site_of(tmp_path, other)
+    axis = size_axis(asked, "container.boxes", high=3.0)
+    return lambda folder, **options: run_size(asked, axis, folder, **options)
+
+
+def hall(tmp_path, other=False):
+    path = tmp_path / "hall.csv"
+    path.write_text(HALL.replace("0.60", "0.59") if other else HALL, encoding="utf-8")
+    asked, base = read_hall(path), load_case("seed_stack_plateau", (*RIGID, "solver.duration_s=1.5"))
+    return lambda folder, **options: run_hall(asked, base, folder, checks="none", **options)
+
+
+STUDIES = pytest.mark.parametrize(
+    ("study", "mark", "log"),
+    [
+        (sweep, "sweep.json", "rows.csv"),
+        (ensemble, "ensemble.json", "draws.csv"),
+        (response, "response.json", "state.npz"),
+        (site, "assess.json", "runs.csv"),
+        pytest.param(size, "size.json", "runs.csv", marks=pytest.mark.slow),  # several verifications
+        (hall, "hall.json", "runs.csv"),
+    ],
+    ids=["sweep", "ensemble", "response", "site", "size", "hall"],
+)
+
+
+@pytest.fixture(autouse=True)
+def short(undrawn, monkeypatch):
+    """Maps, pages and the repetition of deciding runs with another model are tested by themselves."""
+    monkeypatch.setattr("fem.site.run.confirmed", lambda *arguments: [])
+    monkeypatch.setattr("fem.site.run.site_report", lambda *arguments: "")
+    monkeypatch.setattr("fem.site.stages.SCANNED", (0.5,))
+
+
+@pytest.fixture(scope="module")
+def kept():
+    """Folders of studies that were computed in one go, which tests compare with and copy."""
+    return {}
+
+
+@pytest.fixture
+def whole(kept, tmp_path_factory):
+    def folder_of(study):
+        if study not in kept:
+            place = tmp_path_factory.mktemp("kept")
+            study(place)(place / "whole")
+            kept[study] = place / "whole"
+        return kept[study]
+
+    return folder_of
+
+
+def files_of(folder):
+    """Content of the files of a folder, without times, numbers of cores and where the input was."""
+    files = {path.relative_to(folder).as_posix(): path for path in folder.rglob("*") if path.is_file()}
+    found = {name: path.read_bytes() for name, path in files.items() if not path.name.startswith(".")}
+    found.pop("report.html", None)
+    times = rb'"(wall_s|jobs|command)": [^,]*|(?<=,)\d[^,]*(?=,\d+,(true|false),)'
+    for name in found.keys() & {"sweep.json", "table.csv", "assess.json", "size.json"}:
+        found[name] = re.sub(times, b"", found[name])
+    return found
+
+
+@STUDIES
+def test_an_interrupted_study_continues_to_the_same_files(tmp_path, whole, study, mark, log):
+    run, folder = study(tmp_path), tmp_path / "interrupted"
+    for reports in (1, 20, 30):  # of few chunks, the later ones come to the end
+        try:
+            run(folder, resume=True, reporter=Interrupting(reports))
+        except KeyboardInterrupt:
+            assert json.loads((folder / mark).read_text())["status"] == "running"
+            if log.endswith("csv"):
+                with (folder / log).open("ab") as stream:  # half a row, as a kill leaves it
+                    stream.write(b"2,7,0,0.")
+            if reports == 20 or mark != "sweep.json":  # a sweep needs rows
+                with pytest.raises(FolderError, match=r"unfinished, with .* --resume continues it"):
+                    run(folder)
+    run(folder, resume=True)
+    assert files_of(folder) == files_of(whole(study))
+
+
+@pytest.mark.parametrize("study", [ensemble, hall])
+def test_a_damaged_row_is_computed_again_and_one_of_no_run_is_refused(tmp_path, whole, study):
+    run, folder = study(tmp_path), tmp_path / "out"
+    with pytest.raises(KeyboardInterrupt):
+        run(folder, reporter=Interrupting(1))
+    path = folder / ("draws.csv" if study is ensemble else "runs.csv")
+    header, first, second, *others = path.read_text().splitlines()
+    path.write_text("\n".join([header, first, "777777" + second, *others, ""]))
+    with pytest.raises(FolderError, match=r"damaged, no run of this study has the row 777777.*--force"):
+        run(folder, resume=True)
+    path.write_text("\n".join([header, first, second[: len(second) // 2], *others, ""]))
+    run(folder, resume=True)
+    assert files_of(folder) == files_of(whole(study))
+
+
+@STUDIES
+def test_a_study_whose_folder_is_removed_ends_in_a_sentence(tmp_path, study, mark, log):
+    folder = tmp_path / "out"
+    with pytest.raises(
+        OutputError, match=r"out: the folder was removed during the run; run the command again"
+    ):
+        study(tmp_path)(folder, reporter=Removing(folder))
+    assert not folder.exists()
+
+
+@STUDIES
+def test_an_interrupted_study_says_what_is_missing_in_place_of_an_answer(tmp_path, capsys, study, mark, log):
+    run, folder = study(tmp_path), tmp_path / "out"
+    result = run(folder, reporter=Interrupting(1, ctrl_c=True), jobs=1)
+    kind = next(one for one in kinds.KINDS if one.mark == mark)
+    assert print_result(result, kind, folder, (), as_json=False) == 4
+    assert re.fullmatch("no answer yet: .*; --resume continues", capsys.readouterr().out.strip())
+    found = json.loads((folder / mark).read_text())
+    assert (found["status"], found["state"], found["answer"]) == ("interrupted", "interrupted", None)
+    if study is not size:  # has no page
+        assert main(["report", str(folder), "-q"]) == 0
+        page = (folder / "report.html").read_text()
+        sentence = re.search(r'class="sentence"[^>]*>([^<]*)<', page)[1]
+        assert sentence.startswith("No answer yet: ")
+        assert 'id="signature"' not in page and "signature</div>" not in page
+    assert run(folder, resume=True).state == "finished"
+    found = json.loads((folder / mark).read_text())
+    assert found["state"] == "finished" and found["answer"]
+
+
+@STUDIES
+def test_the_report_of_a_killed_study_gives_no_answer(tmp_path, capsys, study, mark, log):
+    """A map is drawn from the rows that there are; of the others nothing but the way on can be said."""
+    run, folder = study(tmp_path), tmp_path / "out"
+    with pytest.raises(KeyboardInterrupt):
+        run(folder, reporter=Interrupting(1))
+    code, said = main(["report", str(folder)]), capsys.readouterr()
+    if study is sweep:
+        page = (folder / "report.html").read_text()
+        assert code == 0 and 'class="sentence">No answer yet: ' in page
+        assert 'id="signature"' not in page and "signature</div>" not in page
+        return
+    ending = "is not finished; continue it with --resume"
+    assert code == 2 and len(said.err.splitlines()) == 1 and ending in said.err
+    assert not said.out and not (folder / "report.html").exists()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="process groups of POSIX")
+def test_sigterm_to_all_processes_of_an_assessment_ends_it_in_a_sentence(tmp_path):
+    """As a batch scheduler ends a job: the workers get the signal with the process that started them."""
+    (tmp_path / "hall.toml").write_text(SITE.replace("count = 3", "count = 7"), encoding="utf-8")
+    command = [sys.executable, "-m", "fem", "assess", "hall.toml", "-j", "2", "--out", "out"]
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+    with subprocess.Popen(command, cwd=tmp_path, text=True, start_new_session=True, **pipes) as process:
+        told = process.stderr.readline()
+        os.killpg(process.pid, signal.SIGTERM)
+        out, err = process.communicate(timeout=120)
+    assert process.returncode == 4 and told, err
+    assert out.splitlines()[-1].startswith("no answer yet: ")
+    assert "stopping after the current step" in err
+    assert not re.search("Traceback|Error|pool|worker|concurrent|multiprocessing|leaked", err)
+    found = json.loads((tmp_path / "out" / "assess.json").read_text())
+    assert (found["state"], found["answer"]) == ("interrupted", None)
+
+
+@STUDIES
+def test_a_finished_study_is_left_alone_and_another_is_refused(tmp_path, whole, study, mark, log):
+    run, folder = study(tmp_path), tmp_path / "out"
+    shutil.copytree(whole(study), folder)
+    before = {path: path.stat().st_mtime_ns for path in folder.rglob("*")}
+    run(folder)
+    with pytest.raises(FolderError, match=r"holds the results of another .*--out DIR.*--force"):
+        study(tmp_path, other=True)(folder)
+    assert {path: path.stat().st_mtime_ns for path in folder.rglob("*")} == before
+    study(tmp_path, other=True)(folder, force=True)
+
+
+@STUDIES
+def test_results_of_another_program_are_not_continued(tmp_path, study, mark, log):
+    run, folder = study(tmp_path), tmp_path / "out"
+    with pytest.raises(KeyboardInterrupt):
+        run(folder, reporter=Interrupting(1))
+    found = json.loads((folder / mark).read_text())
+    for change, words in (
+        ({"program": "other"}, "another version of the program"),
+        ({"versions": found["versions"] | {"numpy": "1.0"}}, r"another version of numpy \(1.0, here "),
+    ):
+        (folder / mark).write_text(json.dumps(found | change))
+        with pytest.raises(FolderError, match=rf"{words}.*--force"):
+            run(folder, resume=True)
+
+
+@pytest.mark.parametrize(
+    ("command", "words"),
+    [
+        (["sweep", "nowhere.toml"], "no sweep file"),
+        (["sweep", "outcome_map", "-j", "0"], "-j"),
+        (["sweep", "outcome_map", "--shard", "1/2"], "--shard is no longer there; give the address"),
+        (["ensemble", "boundary", "--slurm=job.toml"], "--slurm is no longer there; start workers"),
+        (["batch", "l.csv", "--site", "site.toml"], "batch --site is no longer there; verify each container"),
+        (["ensemble", "fragilty"], "did you mean 'fragility'"),
+        (["ensemble", "fragility", "-j", "0"], "-j"),
+        (["response", "--from", "2", "--to", "1"], "--from must be less than --to"),
+        (["response", "--from", "1", "--to", "2", "--count", "2.5"], "--count: a whole number is needed"),
+    ],
+)
+def test_bad_input_ends_with_2_and_no_folder(tmp_path, monkeypatch, capsys, command, words):
+    monkeypatch.chdir(tmp_path)
+    assert main(command) == 2
+    assert words in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []

@@ -1,0 +1,102 @@
+"""The case that a sweep or an ensemble varies: found beside its file, never outside."""
+
+import pytest
+
+from fem.case.files import CASES, ENSEMBLES, SWEEPS
+from fem.case.validation import CaseError
+from fem.study.file import flat, load_ensemble, load_sweep
+
+SWEEP = '[axes]\n"contact.mu_static" = [0.3, 0.4]\n'
+ENSEMBLE = (
+    'draws = 80\n[set]\n"solver.model" = "rigid"\n[axes]\n"contact.mu_static" = [0.3, 0.4]\n'
+    '[random]\n"motion.phase_rad" = { distribution = "uniform", from = 0.0, to = 6.2832 }\n'
+)
+READERS = pytest.mark.parametrize("read, text", [(load_sweep, SWEEP), (load_ensemble, ENSEMBLE)])
+
+
+def written(folder, text, case):
+    folder.mkdir(exist_ok=True)
+    path = folder / "many.toml"
+    path.write_text(f'case = "{case}"\n{text}', encoding="utf-8")
+    return path
+
+
+@READERS
+def test_a_file_beside_it_wins_over_a_shipped_case(tmp_path, read, text):
+    (tmp_path / "seed_box").write_text(
+        CASES.text("seed_box").replace("boxes = 1 ", "boxes = 2 "), encoding="utf-8"
+    )
+    assert read(written(tmp_path, text, "seed_box")).base.container.boxes == 2
+    (tmp_path / "seed_box").unlink()
+    assert read(written(tmp_path, text, "seed_box")).base.container.boxes == 1
+
+
+@READERS
+@pytest.mark.parametrize("case", ["../outside.toml", "/etc/hostname"])
+def test_a_path_out_of_the_folder_is_refused(tmp_path, read, text, case):
+    (tmp_path / "outside.toml").write_text("", encoding="utf-8")
+    with pytest.raises(CaseError, match="case"):
+        read(written(tmp_path / "inner", text, case))
+
+
+@READERS
+def test_a_link_out_of_the_folder_is_refused(tmp_path, read, text):
+    (tmp_path / "outside.toml").write_text("", encoding="utf-8")
+    path = written(tmp_path / "inner", text, "link.toml")
+    (tmp_path / "inner" / "link.toml").symlink_to(tmp_path / "outside.toml")
+    with pytest.raises(CaseError, match=r"leads out of the folder of .*many\.toml"):
+        read(path)
+
+
+@READERS
+@pytest.mark.parametrize("wrong", ["axes = 3\n", "derivd = {}\n"])
+def test_a_table_that_is_none_is_refused_by_name(tmp_path, read, text, wrong):
+    path = tmp_path / "many.toml"
+    path.write_text(
+        wrong + text.replace("[axes]", "[set.x]" if "axes" in wrong else "[axes]"), encoding="utf-8"
+    )
+    with pytest.raises(CaseError, match=r"axes must be a table|derivd"):
+        read(path)
+
+
+@pytest.mark.parametrize("collection, read", [(SWEEPS, load_sweep), (ENSEMBLES, load_ensemble)])
+def test_names_that_no_file_can_have_are_no_files(tmp_path, monkeypatch, collection, read):
+    monkeypatch.chdir(tmp_path)
+    for name in ("x" * 5000, "nul\0", "", "."):
+        with pytest.raises(CaseError, match=rf"no {collection.kind} file|is a folder"):
+            read(name)
+
+
+def test_dotted_keys_may_be_tables():
+    assert flat("set", {"contact": {"mu_static": 0.3}, "solver.model": "rigid"}) == {
+        "contact.mu_static": 0.3,
+        "solver.model": "rigid",
+    }
+    with pytest.raises(CaseError, match="given twice"):
+        flat("set", {"contact": {"mu_static": 0.3}, "contact.mu_static": 0.4})
+
+
+@READERS
+def test_a_key_that_is_set_and_varies_is_refused(tmp_path, read, text):
+    path = written(tmp_path, text, "seed_box")
+    changed = path.read_text(encoding="utf-8")
+    changed = (
+        changed.replace("[axes]", '"contact.mu_static" = 0.5\n[axes]')
+        if "[set]" in changed
+        else (changed + '[set]\n"contact.mu_static" = 0.5\n')
+    )
+    path.write_text(changed, encoding="utf-8")
+    with pytest.raises(CaseError, match=r"\[set\] 'contact\.mu_static' varies as well"):
+        read(path)
+
+
+def test_a_key_that_is_set_against_an_axis_is_refused_in_words_of_the_file(tmp_path):
+    (tmp_path / "a.toml").write_text(
+        'case = "seed_stack"\n[set]\n"contact.mu_kinetic" = 0.6\n[axes]\n"contact.mu_static" = [0.6, 0.7]\n',
+        encoding="utf-8",
+    )
+    with pytest.raises(CaseError) as found:
+        load_sweep(tmp_path / "a.toml")
+    said = str(found.value)
+    assert '([set] "contact.mu_kinetic" = 0.6)' in said and "--set" not in said
+    assert "'contact.mu_static' varies, and a key that must follow it stands in [derived]" in said

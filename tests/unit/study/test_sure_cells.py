@@ -1,0 +1,222 @@
+"""How sure the cells of a sweep are: which copies they have, what these say, and what a sweep holds fixed."""
+
+import csv
+
+import numpy as np
+import pytest
+from small_sweep import SMALL
+
+from fem.case.case import load_case
+from fem.model.model import build_model
+from fem.run.changed_runs_file import key_of
+from fem.run.compute import compute
+from fem.run.outcome import run_without_history
+from fem.study.axes import Axis
+from fem.study.draws import held_inputs
+from fem.study.file import load_sweep
+from fem.study.perturbation import around, coarse_cells
+from fem.study.sure import CellCopies, left_out
+from fem.study.sweep import run_sweep
+from fem.study.sweep_table import open_sweep
+
+pytestmark = pytest.mark.usefixtures("undrawn")
+
+
+@pytest.fixture
+def sweep_of(tmp_path):
+    def read(text):
+        path = tmp_path / "small.toml"
+        path.write_text(text, encoding="utf-8")
+        return load_sweep(path)
+
+    return read
+
+
+def keys_of(sweep, cell=0):
+    """The keys that the copies of a cell change, those of draws together."""
+    return {key for copy in CellCopies(sweep).of(cell) for key in copy.change.values}
+
+
+def test_every_copy_of_a_cell_is_another_case(sweep_of):
+    sweep = sweep_of(SMALL)
+    copies = CellCopies(sweep).of(7)
+    assert len({copy.name for copy in copies}) == len(copies)
+    cases = [
+        sweep.make.case(sweep.item(7)._replace(more=copy.change.values)).contact
+        for copy in copies
+        if not copy.small
+    ]
+    assert all(case.mu_kinetic <= case.mu_static for case in cases)
+    values = [dict(copy.change.values) for copy in copies]
+    assert all(values.count(one) == 1 for one in values)
+
+
+def test_the_copies_of_the_shipped_case_try_all_unknown_inputs(sweep_of):
+    assert keys_of(sweep_of(SMALL)) == {
+        "motion.peak_acceleration_m_s2",
+        "contact.mu_static",
+        "contact.mu_kinetic",
+        "contact.weakening_m",
+        "contact.stribeck_velocity_m_s",
+        "contact.normal_penalty_Pa_m",
+        "contact.damping_ratio",
+        "contact.restitution_over_housner",
+        "motion.phase_rad",
+        "motion.ramp_cycles",
+        "container.centroid_m",
+        "container.eccentricity_m",
+        "support.effective_width",
+        "floor.slope_percent",
+        "solver.energy_tolerance",
+    }
+
+
+def test_a_copy_of_a_cell_is_the_member_of_the_band_of_its_run(sweep_of):
+    # Kinetic friction follows the static one, and step and penalty are those chosen for the cell.
+    given = '"contact.mu_kinetic" = 0.4\n"contact.mu_static" = 0.4\n[axes]'
+    sweep = sweep_of(SMALL.split("[derived]")[0].replace("[axes]", given))
+    band = compute(sweep.case(0), band=True, margin=False).verdict.band
+    members = {key_of(one.values): one for one in band.members if one.kind == "one"}
+    found = {}
+    for copy in CellCopies(sweep).of(0):
+        if key_of(copy.change.values) in members:
+            model = build_model(sweep.make.case(sweep.item(0)._replace(more=copy.values)))
+            found[key_of(copy.change.values)] = run_without_history(model, None)[0]
+    assert {"contact.mu_static", "container.eccentricity_m"} <= {key for some in found for key, _ in some}
+    for key, verdict in found.items():
+        assert (verdict.outcome, verdict.rotation_ratio) == (
+            members[key].outcome,
+            members[key].rotation_ratio,
+        )
+
+
+LOOSE = SMALL.replace("[axes]", '"container.joints" = "loose"\n[axes]')
+
+
+def test_copies_of_a_loose_cell_change_floor_and_joints_apart(sweep_of):
+    sweep = sweep_of(LOOSE.replace("count = 5", "count = 2"))
+    copies = CellCopies(sweep).of(0)
+    own = sweep.case(0).joint_friction
+    for copy in copies:
+        case = sweep.make.case(sweep.item(0)._replace(more=copy.values))
+        kept = not any(f"joints.{key}" in copy.change.values for key in own)
+        assert (case.joint_friction == own) == kept
+    assert keys_of(sweep) >= {*(f"joints.{key}" for key in own), "joints.damping_ratio"}
+
+
+@pytest.mark.slow
+def test_cells_of_a_loose_stack_show_every_box(sweep_of, tmp_path):
+    text = LOOSE.replace("count = 5", "count = 2").replace("count = 4", "count = 2")
+    sweep = sweep_of(text + '[perturbation]\ncells = "all"\ndraws = 2\n')
+    run_sweep(sweep, tmp_path / "out")
+    table = open_sweep(tmp_path / "out")
+    with (tmp_path / "out" / "members.csv").open() as stream:
+        members = list(csv.DictReader(stream))
+    assert len(str(table["box_slips_m"][0]).split()) == 4
+    assert max(map(float, str(table["box_slips_m"][0]).split()[1:])) == table["max_joint_slip_m"][0]
+    for name in ("box_rotations_rad", "box_slips_m", "box_openings_m"):
+        assert {len(row[name].split()) for row in members if row["outcome"]} == {4}
+
+
+@pytest.mark.parametrize(
+    ("table", "gone"),
+    [
+        ('"uncertainty.slope_percent" = "held"', {"floor.slope_percent"}),
+        ('"uncertainty.damping_ratio" = "known"', {"contact.damping_ratio"}),
+        ('"uncertainty.normal_penalty_Pa_m" = "known"', {"contact.normal_penalty_Pa_m"}),
+    ],
+)
+def test_a_known_input_is_left_out(sweep_of, table, gone):
+    text = SMALL.replace("[axes]", f"{table}\n[axes]")
+    assert keys_of(sweep_of(SMALL)) - keys_of(sweep_of(text)) == gone
+
+
+def test_ratios_that_the_sweep_file_names_are_tried_even_if_damping_is_known(sweep_of):
+    text = SMALL.replace("[axes]", '"uncertainty.damping_ratio" = "known"\n[axes]')
+    text += "[perturbation]\ncontact_damping_ratios = [0.5]\n"
+    ratios = [copy.change.values.get("contact.damping_ratio") for copy in CellCopies(sweep_of(text)).of(0)]
+    assert [one for one in ratios if one is not None] == [0.5]
+
+
+def test_an_axis_is_not_varied_over_its_range(sweep_of):
+    text = SMALL.replace("[derived]\n", "").replace('"contact.mu_kinetic" = "0.5 * contact.mu_static"\n', "")
+    sweep = sweep_of(text + '"contact.weakening_m" = [0.0, 1e-3]\n')
+    assert "contact.weakening_m" not in keys_of(sweep)
+
+
+def test_a_deformable_container_leaves_out_what_takes_long(sweep_of):
+    sweep = sweep_of(SMALL.replace('model" = "rigid"', 'model" = "reduced"'))
+    copies = CellCopies(sweep).of(0)
+    assert {copy.change.kind for copy in copies} == {"one"}
+    assert "container.damping_ratio" in {key for copy in copies for key in copy.change.values}
+    assert "draws" in left_out(sweep)
+    assert left_out(sweep_of(SMALL)) == "contact of the base"
+    assert "away from a change" in left_out(sweep_of(SMALL + '[perturbation]\ncells = "near"\n'))
+
+
+def test_the_coarse_grid_leaves_no_cell_far_away():
+    axes = [Axis(key=name, values=tuple(map(float, range(count)))) for name, count in (("a", 43), ("b", 46))]
+    assert around(axes, coarse_cells(axes), 3).all()
+    assert coarse_cells(axes).sum() == 11 * 12
+    words = Axis(key="c", values=("rest", "moving"))
+    assert coarse_cells([words, axes[0]]).sum() == 2 * 11
+
+
+def test_a_cell_is_as_sure_as_its_copies_are(sweep_of, tmp_path):
+    sweep = sweep_of(SMALL + '[perturbation]\ncells = "all"\n')
+    info = run_sweep(sweep, tmp_path / "out")
+    table = open_sweep(tmp_path / "out")
+    with (tmp_path / "out" / "members.csv").open() as stream:
+        members = list(csv.DictReader(stream))
+    for cell in range(sweep.count):
+        own = str(table["outcome"][cell])
+        found = {row["outcome"] for row in members if int(row["cell"]) == cell}
+        fell = {one == "overturned" for one in (found | {own})}
+        expected = "unsure" if len(fell) > 1 else "sure" if found <= {own} else "regime unsure"
+        assert table["sure"][cell] == expected
+        assert bool(table["decided_by"][cell]) == (expected != "sure")
+    assert np.array_equal(table["sure"] == "unsure", table["unsure"] == 1.0)
+    assert sum(info["sure"].values()) == sweep.count
+    assert info["sure"]["unsure"] == info["unsure"] > 0
+
+
+def test_what_decides_a_cell_turns_it(sweep_of, tmp_path):
+    sweep = sweep_of(SMALL)
+    run_sweep(sweep, tmp_path / "out")
+    table = open_sweep(tmp_path / "out")
+    with (tmp_path / "out" / "members.csv").open() as stream:
+        members = list(csv.DictReader(stream))
+    for cell in np.flatnonzero(table["unsure"] == 1.0):
+        fell = str(table["outcome"][cell]) == "overturned"
+        turning = " ".join(
+            row["change"]
+            for row in members
+            if int(row["cell"]) == cell and (row["outcome"] == "overturned") != fell
+        )
+        assert all(f"{key}=" in turning for key in table["decided_by"][cell].split())
+
+
+def test_cells_that_are_not_tried_are_not_called_sure(sweep_of, tmp_path):
+    """Below 2.4 m/s2 nothing overturns, so no cell is near a change of outcome."""
+    text = SMALL.replace("to = 14.0", "to = 2.4") + '[perturbation]\ncells = "near"\n'
+    info = run_sweep(sweep_of(text), tmp_path / "out")
+    assert (info["perturbed"], info["unsure"]) == (0, 0)
+    assert set(open_sweep(tmp_path / "out")["sure"]) == {""}
+
+
+@pytest.mark.parametrize(
+    ("changes", "varied", "words"),
+    [
+        ([], (), "with mu_k = mu_s/2 falling at once, no ramp"),
+        (["contact.weakening_m=0.001"], ("motion.start",), "with mu_k = mu_s/2 falling over 1 mm, no ramp"),
+        (["contact.mu_kinetic=0.4"], ("motion.ramp_cycles",), "with mu_k = mu_s"),
+        (
+            ["motion.kind=pulse", "motion.shape=sine", "motion.pulse_s=1.0"],
+            ("contact.mu_kinetic",),
+            "falling",
+        ),
+    ],
+)
+def test_what_is_held_is_said(changes, varied, words):
+    held = held_inputs([load_case("seed_stack_plateau", changes)], varied)
+    assert words in held

@@ -1,0 +1,137 @@
+"""The answer of a sweep from its folder: cells, what a threshold tried between them, and a row for each line."""
+
+import csv
+import json
+from itertools import product
+
+import pytest
+
+from fem.cli.console import print_result
+from fem.cli.sweep import page_of
+from fem.results.kinds import SWEEP
+from fem.study.sweep_table import BAND, FOUND, answers_csv, open_sweep, sweep_answer
+
+PEAK, MU = "motion.peak_acceleration_m_s2", "contact.mu_static"
+G = 9.80665
+TRIED = "cell,value,status,outcome,rotation_ratio,reason,max_slip_m\n"
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """Two frictions under 0.2, 0.4, 0.6 g: the first stands throughout, the second overturns at 0.6 g."""
+    outcomes = {0.3: ("rest", "slide", "slide"), 0.5: ("rest", "rock", "overturned")}
+    columns = ["cell", MU, PEAK, *FOUND, *BAND]
+    lines, peaks = [",".join(columns)], [0.2 * G, 0.4 * G, 0.6 * G]
+    for cell, (mu, peak) in enumerate((mu, peak) for mu in outcomes for peak in peaks):
+        outcome = outcomes[mu][peaks.index(peak)]
+        row = dict.fromkeys(columns, "") | {"cell": cell, MU: mu, PEAK: peak, "outcome": outcome}
+        row |= {"status": "overturned" if outcome == "overturned" else "completed", "max_slip_m": 0.08}
+        row["unsure"] = "true" if cell in (4, 5) else "false"
+        lines.append(",".join(str(row[name]) for name in columns))
+    info = {"sweep": "s", "title": "", "status": "completed", "cells": 6, "rows": 6, "sweep_hash": "ab"}
+    info |= {"outcomes": {}, "maps": [], "changes": 1, "threshold": {"axis": PEAK}, "answer": "as kept"}
+    info["axes"] = [
+        {"key": MU, "values": [0.3, 0.5], "scale": "list", "unit": ""},
+        {"key": PEAK, "values": peaks, "scale": "linear", "unit": "m/s2"},
+    ]
+    (tmp_path / "sweep.json").write_text(json.dumps(info))
+    (tmp_path / "table.csv").write_text("\n".join(lines) + "\n")
+    between = f"3,{0.44 * G!r},overturned,overturned,2.0,,0.064\n3,{0.42 * G!r},completed,rock,0.9,,0.05\n"
+    (tmp_path / "tried.csv").write_text(TRIED + between)
+    return tmp_path
+
+
+def test_the_sentence_is_that_of_all_lines_and_a_row_is_that_of_one(folder):
+    answer = sweep_answer(open_sweep(folder), folder)
+    assert answer.sentence == (
+        "peak acceleration: stood in every motion tried up to 0.42 g (slid up to 80 mm); first overturned at 0.44 g "
+        "(slip there 64 mm, with mu static 0.5); unsure at 0.4 to 0.6 g"
+    )
+    assert list(answer.lines()) == [
+        ("mu static 0.3", "stood in every motion tried up to 0.6 g (slid up to 80 mm); none overturned"),
+        (
+            "mu static 0.5",
+            "stood in every motion tried up to 0.42 g (slid up to 80 mm); first overturned at 0.44 g (slip there "
+            "64 mm); unsure at 0.4 to 0.6 g",
+        ),
+    ]
+    first, second = csv.DictReader(answers_csv(answer).splitlines())
+    assert (first[MU], float(first["stood_to"]), first["overturned_from"]) == ("0.3", 0.6 * G, "")
+    assert float(second["stood_to"]) == 0.42 * G
+    assert float(second["overturned_from"]) == 0.44 * G
+    assert second["unsure"] == f"{0.4 * G!r} to {0.6 * G!r}"
+
+
+def test_what_was_tried_by_an_earlier_version_has_no_slip(folder):
+    text = (folder / "tried.csv").read_text().replace(",max_slip_m", "")
+    (folder / "tried.csv").write_text(
+        "\n".join(one.rpartition(",")[0] if ",0.0" in one else one for one in text.splitlines()) + "\n"
+    )
+    sentence = sweep_answer(open_sweep(folder), folder).sentence
+    assert "first overturned at 0.44 g (with mu static 0.5)" in sentence
+
+
+def test_a_set_of_motions_is_told_as_one_and_motion_by_motion(tmp_path):
+    """Two motions with both signs under two frictions; the second overturns at 0.4 g with the other sign alone."""
+    peaks = [0.2 * G, 0.4 * G]
+    axes = {MU: [0.3, 0.5], "motion.file": ["a.csv", "b.csv"], "vertical.scale": [-1.0, 1.0]}
+    axes[PEAK] = peaks
+    columns = ["cell", *axes, *FOUND, *BAND]
+    lines = [",".join(columns)]
+    for cell, values in enumerate(product(*axes.values())):
+        fell = values == (0.5, "b.csv", -1.0, peaks[1])
+        row = dict.fromkeys(columns, "") | {"cell": cell} | dict(zip(axes, values, strict=True))
+        row |= {"outcome": "overturned" if fell else "slide", "max_slip_m": 0.02}
+        row["status"] = "overturned" if fell else "completed"
+        lines.append(",".join(str(row[name]) for name in columns))
+    (tmp_path / "table.csv").write_text("\n".join(lines) + "\n")
+    listed = [{"key": key, "values": values, "scale": "list", "unit": ""} for key, values in axes.items()]
+    listed[-1]["unit"] = "m/s2"
+    info = {"sweep": "s", "status": "completed", "cells": 16, "sweep_hash": "ab", "axes": listed}
+    (tmp_path / "sweep.json").write_text(json.dumps(info))
+    answer = sweep_answer(open_sweep(tmp_path), tmp_path)
+    assert answer.sentence == (
+        "peak acceleration: stood in every motion tried up to 0.2 g (slid up to 20 mm); first overturned at 0.4 g "
+        "(slip there 20 mm, with mu static 0.5, motion b.csv, vertical scale -1)"
+    )
+    assert list(answer.lines()) == [
+        ("mu static 0.3", "stood in every motion tried up to 0.4 g (slid up to 20 mm); none overturned"),
+        (
+            "mu static 0.5",
+            "stood in every motion tried up to 0.2 g (slid up to 20 mm); first overturned at 0.4 g "
+            "(slip there 20 mm, with motion b.csv, "
+            "vertical scale -1)",
+        ),
+    ]
+    rows = list(csv.DictReader(answers_csv(answer).splitlines()))
+    assert [(row[MU], row["motion.file"]) for row in rows] == [
+        *(("0.3", ""), ("0.5", "")),
+        *(("0.3", "a.csv"), ("0.3", "b.csv"), ("0.5", "a.csv"), ("0.5", "b.csv")),
+    ]
+    assert [bool(row["overturned_from"]) for row in rows] == [False, True, False, False, False, True]
+
+
+def test_without_a_threshold_the_cells_answer_over_the_strength(folder):
+    info = json.loads((folder / "sweep.json").read_text())
+    (folder / "sweep.json").write_text(json.dumps(info | {"threshold": None}))
+    (folder / "tried.csv").unlink()
+    sentence = sweep_answer(open_sweep(folder), folder).sentence
+    assert "up to 0.4 g (slid up to 80 mm); first overturned at 0.6 g (slip there 80 mm" in sentence
+
+
+def test_missing_cells_give_no_answer(folder):
+    lines = (folder / "table.csv").read_text().splitlines()
+    (folder / "rows.csv").write_text("\n".join(lines[:-1]) + "\n")
+    (folder / "table.csv").unlink()
+    info = json.loads((folder / "sweep.json").read_text())
+    (folder / "sweep.json").write_text(json.dumps(info | {"status": "interrupted"}))
+    assert sweep_answer(open_sweep(folder), folder) is None
+
+
+def test_the_screen_ends_with_the_rows_and_the_sentence(folder, capsys):
+    info = open_sweep(folder).info
+    assert print_result(info, SWEEP, folder, page_of(info, folder), as_json=False) == 0
+    *_, first, second, last = capsys.readouterr().out.splitlines()
+    assert first.startswith("  mu static 0.3  stood in every motion tried")
+    assert second.startswith("  mu static 0.5  stood in every motion tried")
+    assert last == "as kept"

@@ -1,0 +1,199 @@
+"""A sweep from its file to its table: the same whatever the jobs, cut off or not."""
+
+import os
+import random
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from small_sweep import SMALL, rows_without_wall
+
+from fem.__main__ import main
+from fem.case.validation import CaseError
+from fem.run.compute import compute
+from fem.study.file import load_sweep
+from fem.study.sweep import check_size, run_sweep
+from fem.study.sweep_table import open_sweep
+
+ROOT = Path(__file__).parents[3]
+
+
+pytestmark = pytest.mark.usefixtures("undrawn")
+
+
+@pytest.fixture(scope="module")
+def small(tmp_path_factory):
+    path = tmp_path_factory.mktemp("file") / "small.toml"
+    path.write_text(SMALL, encoding="utf-8")
+    return load_sweep(path)
+
+
+@pytest.fixture(scope="module")
+def computed(small, tmp_path_factory):
+    """The folder of the sweep."""
+    folder = tmp_path_factory.mktemp("sweep")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("fem.study.sweep.draw_maps", lambda *arguments: [])
+        run_sweep(small, folder, jobs=1)
+    return folder
+
+
+@pytest.fixture
+def folder(computed, tmp_path):
+    """A copy of it."""
+    return shutil.copytree(computed, tmp_path / "out")
+
+
+def test_the_table_does_not_depend_on_the_jobs(small, computed, tmp_path):
+    one, two = open_sweep(computed).info, run_sweep(small, tmp_path / "two", jobs=2)
+    assert one["status"] == two["status"] == "completed"
+    assert rows_without_wall(computed) == rows_without_wall(tmp_path / "two")
+    assert one["outcomes"] == two["outcomes"]
+    assert one["answer"] == two["answer"]
+    assert one["answer"].startswith("peak acceleration: stood in every motion tried up to ")
+    answers = [(folder / "answers.csv").read_bytes() for folder in (computed, tmp_path / "two")]
+    assert answers[0] == answers[1]
+    assert answers[0].count(b"\n") == 1 + 4  # a row for each frequency
+    assert {"overturned", "rest"} <= set(one["outcomes"])
+    assert not (computed / "rows.csv").exists()
+
+
+def test_the_folder_opens_as_arrays(small, computed):
+    table = open_sweep(computed)
+    info = table.info
+    assert table.shape == small.shape
+    grid = table.grid("motion.peak_acceleration_m_s2")
+    assert np.array_equal(grid[2], small.axes[1].values)
+    assert np.array_equal(table["contact.mu_kinetic"], np.full(20, 0.2))
+    fallen = table.outcome == "overturned"
+    assert fallen.sum() == info["outcomes"]["overturned"]
+    assert np.all(np.isfinite(table["overturned_at_s"]) == fallen)
+    assert table["unsure"].sum() == info["unsure"]
+
+
+def test_another_band_keeps_the_rows(folder, tmp_path):
+    rows, walls = rows_without_wall(folder), open_sweep(folder)["wall_s"]
+    path = tmp_path / "small.toml"
+    path.write_text(SMALL + '[perturbation]\ncells = "none"\n', encoding="utf-8")
+    again = run_sweep(load_sweep(path), folder)
+    assert (again["unsure"], again["perturbed"]) == (None, 0)
+    kept = rows_without_wall(folder)
+    last = kept[0].index("perturbed")
+    assert [row[:last] for row in kept] == [row[:last] for row in rows]
+    # the wall times are the first computation's: nothing was computed again
+    assert np.array_equal(open_sweep(folder)["wall_s"], walls)
+
+
+def kill_in_the_middle(arguments, folder, pause):
+    """Start a sweep, and kill it with -9 some time after its first row."""
+    process = subprocess.Popen(
+        [sys.executable, "-m", "fem", "sweep", *arguments],
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        cwd=folder,
+        stderr=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+    )
+    deadline = time.monotonic() + 60.0
+    log = folder / "outputs" / "small" / "rows.csv"
+    size = log.stat().st_size if log.exists() else 0
+    while process.poll() is None and time.monotonic() < deadline:
+        if log.exists() and log.stat().st_size > size:
+            break
+        time.sleep(0.005)
+    time.sleep(pause)
+    process.kill()
+    process.wait()
+
+
+@pytest.mark.slow
+def test_a_sweep_killed_twenty_times_gives_the_same_table(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    text = SMALL.replace("count = 5", "count = 40")
+    (tmp_path / "small.toml").write_text(text, encoding="utf-8")
+    choice = random.Random(0)
+    for k in range(20):
+        kill_in_the_middle(["small.toml", *(["--resume"] if k else [])], tmp_path, choice.uniform(0.0, 0.3))
+    assert main(["sweep", "small.toml", "--resume", "-q"]) == 0
+    assert main(["sweep", "small.toml", "-q", "--out", "alone"]) == 0
+    assert rows_without_wall(tmp_path / "outputs" / "small") == rows_without_wall(tmp_path / "alone")
+    capsys.readouterr()
+
+
+@pytest.mark.parametrize(
+    ("derived", "words"),
+    [
+        (
+            ('"0.5 * contact.mu_static"', '"0.5 - 0.2 * abs(motion.angular_frequency_rad_s - 4)"'),
+            "mu_kinetic must be at most mu_static",
+        ),
+        (
+            ("[derived]", '[derived]\n"container.depth_m" = "1 / (motion.angular_frequency_rad_s - 4)^2"'),
+            "has no value: it divides by zero",
+        ),
+    ],
+)
+def test_a_failed_cell_has_a_reason_and_never_stands(tmp_path, derived, words):
+    # At 4 rad/s the expression is too large for a friction, or has no value; the ends of the range are fine.
+    path = tmp_path / "bad.toml"
+    path.write_text(SMALL.replace(*derived).replace("count = 4", "count = 5"), encoding="utf-8")
+    run_sweep(load_sweep(path), tmp_path / "out")
+    table = open_sweep(tmp_path / "out")
+    middle = table["motion.angular_frequency_rad_s"] == 4.0
+    assert np.array_equal(table.outcome == "failed", middle)
+    assert np.all(table["outcome"][middle] == "") and np.all(table["unsure"][middle] == 1.0)
+    assert all(words in reason for reason in table["reason"][middle])
+
+
+def test_a_million_cells_need_force_and_name_time_and_disk(tmp_path):
+    axes = """"solver.duration_s" = { from = 2.0, to = 6.0, count = 1100 }
+"solver.model" = ["rigid", "full"]
+"""
+    text = "\n".join(line for line in SMALL.splitlines() if not line.startswith('"solver.'))
+    text = text.replace("count = 4", "count = 30").replace("count = 5", "count = 20")
+    path = tmp_path / "huge.toml"
+    path.write_text(text.replace("[derived]", axes + "[derived]"))
+    with pytest.raises(CaseError, match="1320000 cells") as refused:
+        check_size(load_sweep(path), 1, False)
+    # half of the cells are of the full model: 660000 x (1 + 4 x 3) s, of which one figure is known
+    assert all(words in str(refused.value) for words in ("roughly 2500 h", "GB", "--force"))
+    check_size(load_sweep(path), 1, True)
+
+
+def test_a_kill_while_the_band_is_changed_leaves_no_copies_of_the_other(folder, tmp_path, monkeypatch):
+    path = tmp_path / "small.toml"
+    path.write_text(SMALL + "[perturbation]\namplitude_share = 0.1\n", encoding="utf-8")
+    other = load_sweep(path)
+
+    def killed(*arguments, **options):
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch:
+        patch.setattr("fem.results.folder.ResultFolder.begin", killed)
+        with pytest.raises(KeyboardInterrupt):
+            run_sweep(other, folder)
+    run_sweep(other, folder, resume=True)
+    run_sweep(other, tmp_path / "alone")
+    for name in ("table.csv", "members.csv"):
+        mine, alone = ((one / name).read_text().splitlines() for one in (folder, tmp_path / "alone"))
+        assert [line.split(",")[1:3] for line in mine] == [line.split(",")[1:3] for line in alone]
+    assert rows_without_wall(folder) == rows_without_wall(tmp_path / "alone")
+
+
+def test_the_margin_of_a_cell_is_that_of_its_run(tmp_path):
+    path = tmp_path / "two.toml"
+    motion = '"motion.angular_frequency_rad_s" = 3.0\n'
+    axes = '[axes]\n"motion.peak_acceleration_m_s2" = [4.0, 12.0]\n[perturbation]\ncells = "none"\n'
+    path.write_text("margin = true\n" + SMALL.split("[axes]")[0] + motion + axes, encoding="utf-8")
+    sweep = load_sweep(path)
+    run_sweep(sweep, tmp_path / "out", jobs=1)
+    table = open_sweep(tmp_path / "out")
+    for cell in range(2):
+        margin = compute(sweep.case(cell), band=False, margin=True).verdict.margin
+        found = None if np.isnan(table["margin"][cell]) else table["margin"][cell]
+        assert found == margin.factor
+        assert (table["margin_tried_to"][cell] == margin.largest_tried) == (margin.factor is None)
+    assert np.isfinite(table["margin"]).any()

@@ -1,0 +1,164 @@
+"""Maps from a table: the panels asked for, the same bytes for the same table."""
+
+from dataclasses import replace
+
+import matplotlib
+import numpy as np
+import pytest
+from matplotlib.colors import to_rgb, to_rgba
+
+from fem.figures.style import svg_of
+from fem.study.axes import Axis, axis_label
+from fem.study.design import MapChoice
+from fem.study.maps import PRINTED_SHARES, SHARE_COLOURS, draw_maps, sweep_map
+from fem.study.sweep_table import SweepResult, SweepTable
+
+FREQUENCY = Axis(
+    key="motion.angular_frequency_rad_s", values=(1.0, 2.0, 4.0, 8.0, 16.0), scale="log", unit="rad/s"
+)
+PEAK = Axis(key="motion.peak_acceleration_m_s2", values=(1.0, 2.0, 3.0, 4.0), scale="linear", unit="m/s2")
+MU = Axis(key="contact.mu_static", values=(0.2, 0.3, 0.4))
+OMEGA = Axis(key="motion.angular_frequency_rad_s", values=(4.0, 6.0, 8.0), scale="linear", unit="rad/s")
+MODEL = Axis(key="solver.model", values=("rigid", "reduced"))
+
+
+def table_of(*axes, copies=False):
+    count = int(np.prod([len(axis.values) for axis in axes]))
+    words = np.array(["rest", "rock", "overturned", "slide", "slide-rock"], dtype=object)
+    outcome = words[np.arange(count) % 5]
+    status = np.where(outcome == "overturned", "overturned", "completed").astype(object)
+    status[0] = "failed"
+    columns = {
+        "status": status,
+        "outcome": outcome,
+        "rotation_ratio": np.linspace(0.0, 1.0, count),
+        "max_slip_m": np.linspace(0.0, 0.1, count),
+        "unsure": (np.arange(count) % 3 == 0).astype(float),
+        "sure": np.array(["unsure", "regime unsure", "sure"], dtype=object)[np.arange(count) % 3],
+    }
+    if copies:
+        columns["overturned_share"] = np.linspace(0.0, 1.0, count)
+    info = SweepResult(
+        sweep_hash="", axes=(), title="A <title> & more", sweep="try", held="with mu_k = mu_s/2"
+    )
+    return SweepTable(info=info, axes=axes, columns=columns)
+
+
+def panels_of(figure):
+    return [axes for axes in figure.axes if axes.get_visible() and axes.patches and axes.get_label() == ""]
+
+
+def colours_of(axes):
+    """The colour of each cell, (rows, columns, 4): of the last rectangles over its middle."""
+    columns, rows = (round(max(limits) + 0.5) for limits in (axes.get_xlim(), axes.get_ylim()))
+    colours = np.zeros((rows, columns, 4))
+    for patch in axes.patches:
+        for row, column in np.ndindex(rows, columns):
+            if (
+                patch.get_fill()
+                and patch.get_hatch() is None
+                and patch.get_path().contains_point((column, row))
+            ):
+                colours[row, column] = patch.get_facecolor()
+    return colours
+
+
+def test_keys_are_named_for_people():
+    assert axis_label(PEAK) == "peak acceleration [m/s²]"
+    assert axis_label(MU) == "mu static [-]"
+    assert axis_label(MODEL) == "model"
+
+
+def words_of(axes):
+    return [text.get_text() for text in axes.get_legend().get_texts()]
+
+
+@pytest.mark.parametrize("kind", ["outcome", "outcome_print"])
+def test_a_map_shows_how_many_copies_overturn_beside_the_outcome(kind):
+    table = table_of(FREQUENCY, PEAK, copies=True)
+    figure = sweep_map(table, kind, MapChoice())
+    assert "with mu_k = mu_s/2" in figure.get_suptitle()
+    share, outcome = panels_of(figure)
+    assert words_of(share) == [
+        *("none overturns", "up to a quarter", "up to three quarters", "more", "all overturn")
+    ]
+    assert {"rest", "slide", "rock", "slide-rock", "overturned"} <= set(words_of(outcome))
+    shades = [to_rgba(one) for one in (SHARE_COLOURS if kind == "outcome" else PRINTED_SHARES).values()]
+    classes = [[shades.index(tuple(cell)) for cell in row] for row in colours_of(share)]
+    for cell, part in enumerate(table["overturned_share"]):
+        frequency, peak = divmod(cell, 4)
+        least = [0.0, 0.0, 0.25, 0.75, 1.0][classes[peak][frequency]]
+        most = [0.0, 0.25, 0.75, 1.0, 1.0][classes[peak][frequency]]
+        assert least <= part <= most
+
+
+def test_the_shades_get_darker_so_that_a_print_without_colours_shows_the_order():
+    for colours in (SHARE_COLOURS, PRINTED_SHARES):
+        red, green, blue = np.array([to_rgb(one) for one in colours.values()][:5]).T
+        brightness = 0.2126 * red + 0.7152 * green + 0.0722 * blue
+        assert np.all(np.diff(brightness) < -0.03)
+
+
+def test_two_axes_span_a_map_and_the_rest_has_panels():
+    table = table_of(FREQUENCY, MU, PEAK)
+    figure = sweep_map(table, "outcome", MapChoice())
+    assert [axes.get_title(loc="left") for axes in panels_of(figure)] == [
+        f"Outcome; mu static {mu}" for mu in (0.2, 0.3, 0.4)
+    ]
+    assert len(panels_of(sweep_map(table_of(FREQUENCY, MU, PEAK, copies=True), "outcome", MapChoice()))) == 6
+    fixed = sweep_map(table, "outcome", MapChoice(fixed={"contact.mu_static": 0.3}))
+    assert len(panels_of(fixed)) == 1
+    turned = sweep_map(table, "outcome", MapChoice(x="contact.mu_static", y="motion.peak_acceleration_m_s2"))
+    assert len(panels_of(turned)) == 5
+    assert colours_of(panels_of(turned)[0]).shape == (4, 3, 4)
+
+
+def test_a_cell_stands_where_its_axes_say():
+    table = table_of(FREQUENCY, PEAK)
+    colours = colours_of(panels_of(sweep_map(table, "rotation", MapChoice()))[0])
+    assert colours.shape == (4, 5, 4)
+    cell = 3 * 4 + 1  # frequency 8, peak 2
+    assert tuple(colours[1, 3]) == pytest.approx(
+        matplotlib.colormaps["viridis"](table["rotation_ratio"][cell])
+    )
+
+
+def test_cells_are_rectangles_and_no_image_that_a_viewer_blurs():
+    drawn = svg_of(sweep_map(table_of(FREQUENCY, PEAK, copies=True), "outcome", MapChoice()))
+    assert "<image" not in drawn and "crispEdges" in drawn
+
+
+@pytest.mark.parametrize("case", ["seed_stack_plateau", "my-stack"])
+def test_the_paper_is_marked_on_maps_of_its_containers_alone(case):
+    table = table_of(OMEGA, MU)
+    marked = replace(table, info=replace(table.info, case=case))
+    (axes,) = panels_of(sweep_map(marked, "rotation", MapChoice()))
+    crosses = [line for line in axes.lines if line.get_marker() == "+"]
+    assert len(crosses) == (case != "my-stack")
+    for line in crosses:  # between the frequencies 6 and 8, on mu 0.4
+        ((x, y),) = line.get_xydata()
+        values = sorted(zip((axes.get_xlabel(), axes.get_ylabel()), (x, y), strict=True))
+        assert [value for _, value in values] == pytest.approx([1.464, 2.0])
+
+
+def test_failed_cells_have_their_own_colour():
+    figure = sweep_map(table_of(FREQUENCY, PEAK), "outcome", MapChoice())
+    assert "failed" in words_of(panels_of(figure)[0])
+
+
+def test_maps_are_the_same_bytes_again(tmp_path):
+    table = table_of(FREQUENCY, PEAK)
+    names = draw_maps(table, tmp_path / "maps", MapChoice())
+    assert names == [f"maps/{kind}.svg" for kind in ("outcome", "outcome_print", "rotation", "slip")]
+    first = (tmp_path / names[0]).read_bytes()
+    draw_maps(table, tmp_path / "maps", MapChoice())
+    assert (tmp_path / names[0]).read_bytes() == first
+    assert b"A &lt;title&gt; &amp; more" in first
+    assert svg_of(sweep_map(table, "outcome", MapChoice())).encode() == first
+
+
+def test_one_axis_makes_a_curve(tmp_path):
+    assert draw_maps(table_of(FREQUENCY), tmp_path / "maps", MapChoice()) == ["maps/rotation.svg"]
+    assert draw_maps(table_of(MODEL), tmp_path / "words", MapChoice()) == [
+        "maps/rotation.svg".replace("maps", "words")
+    ]
