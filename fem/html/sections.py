@@ -284,6 +284,14 @@ class CellMap:
 
 
 #: a macro of `sections.html.j2` for each
+@dataclass(frozen=True)
+class Written:
+    """Sections that a template of their own writes."""
+
+    template: str  #: its file
+    values: Mapping[str, Any]  #: what it shows
+
+
 Block = (
     str
     | Paragraph
@@ -299,4 +307,5 @@ Block = (
     | Folded
     | PageSection
     | CellMap
+    | Written
 )

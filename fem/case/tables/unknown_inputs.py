@@ -56,7 +56,7 @@ RESTITUTIONS = (0.95, 1.06)  #: over Housner's, of sharp corners whose restituti
 #: container lies otherwise, and its draws move it
 LOSS_LEFT = 0.3
 WEAKENING_M, STRIBECK_M_S = 5e-3, 0.3  #: largest slip and velocity over which friction falls
-WEAKENINGS_BETWEEN_M = (1e-4, 1e-3)
+WEAKENINGS_BETWEEN_M = (1e-3, 3e-3)  #: a stack that rings changes from sliding to rocking there
 RAMP_CYCLES = 2.0
 #: of stops, ties and sides over those of the case
 GAPS, LINK_STIFFNESS, LINK_FRICTION = (
