@@ -36,15 +36,6 @@ class ColumnGroup:
         return tuple(column.name.format(number) for number in numbers for column in self.columns)
 
 
-def _is_loose(case: Any) -> bool:
-    return bool(case.container.joints == "loose")
-
-
-def _bolted_boxes(case: Any) -> int:
-    """Boxes of a bolted stack whose joint forces follow from their motion; 1 where they do not."""
-    return 1 if _is_loose(case) or held_above(case) else int(case.container.boxes)
-
-
 ALWAYS = ColumnGroup(
     lambda case: (0,),
     (
@@ -98,7 +89,10 @@ VERTICAL = ColumnGroup(
 )
 #: the joints between the boxes of a bolted stack, from the floor up, from 1 (`fem.model.joints`)
 JOINTS = ColumnGroup(
-    lambda case: range(1, _bolted_boxes(case)),
+    # of bolted boxes whose joint forces follow from their motion
+    lambda case: range(
+        1, 1 if case.container.joints == "loose" or held_above(case) else case.container.boxes
+    ),
     (
         HistoryColumn("joint_{}_normal_N", "N"),
         HistoryColumn("joint_{}_shear_N", "N"),
@@ -107,7 +101,7 @@ JOINTS = ColumnGroup(
 )
 #: the further boxes of a loose stack, from the floor up, from 2
 BOXES = ColumnGroup(
-    lambda case: range(2, case.container.boxes + 1 if _is_loose(case) else 2),
+    lambda case: range(2, case.container.boxes + 1 if case.container.joints == "loose" else 2),
     (
         HistoryColumn("box_{}_rotation_rad", "rad", GROUND),
         HistoryColumn("box_{}_slip_m", "m", BELOW),

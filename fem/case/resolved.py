@@ -21,7 +21,12 @@ def resolved_tables(case: Any) -> dict[str, Any]:
         table = getattr(case, name)
         if table is None or name in absent:
             continue
-        idle = table.idle_keys() | (_idle_on_slab(case) if name == "contact" else set())
+        idle = table.idle_keys()
+        if name == "contact" and case.floor.is_slab:
+            idle = idle | {
+                *PENALTY_KEYS,
+                *(() if case.contact_damping_ratio is not None else ("damping_ratio",)),
+            }
         document[name] = {
             key: value for key, value in table.model_dump().items() if value is not None and key not in idle
         }
@@ -56,13 +61,6 @@ def _absent(case: Any) -> set[str]:
     joints = case.container.is_loose and any(value is not None for value in vars(case.joints).values())
     absent = {"vertical": not case.has_vertical, "floor": level, "joints": not joints}
     return {name for name, says_nothing in absent.items() if says_nothing}
-
-
-def _idle_on_slab(case: Any) -> set[str]:
-    """Keys of [contact] that a slab does not use."""
-    if not case.floor.is_slab:
-        return set()
-    return {*PENALTY_KEYS} | ({"damping_ratio"} if case.contact_damping_ratio is None else set())
 
 
 def _boxes(case: Any) -> list[dict[str, float]]:

@@ -17,20 +17,15 @@ def toml_value(value: object) -> str:
     if isinstance(value, int):
         return str(int(value))
     if isinstance(value, float):
-        return _float(float(value))
+        # the shortest digits that read back to the same number; large ones with an exponent
+        large = 1e6 <= abs(value) < float("inf")
+        return format(Decimal(repr(float(value))).normalize(), "e") if large else repr(float(value))
     if isinstance(value, str):
         # JSON escapes what TOML wants escaped, except the delete character.
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
     if isinstance(value, list | tuple):
         return f"[{', '.join(map(toml_value, value))}]"
     raise TypeError(f"no TOML scalar: {type(value).__name__}")
-
-
-def _float(value: float) -> str:
-    """The shortest digits that read back to the same number; large ones with an exponent."""
-    if 1e6 <= abs(value) < float("inf"):
-        return format(Decimal(repr(value)).normalize(), "e")
-    return repr(value)
 
 
 def toml_document(tables: Mapping[str, Any]) -> str:

@@ -139,6 +139,11 @@ def html_of(
     )
 
 
+def markup_of(template: str, **shown: Any) -> Markup:
+    """A part of a page, by a template of its own; arguments as for `html_of`."""
+    return Markup(_environment().get_template(template).render(shown))
+
+
 @cache
 def template_text(name: str) -> Markup:
     """A style sheet or script of `fem/html/templates`, for a page."""

@@ -29,11 +29,6 @@ def strong(text: object) -> Markup:
     return Markup("<strong>{}</strong>").format(text)
 
 
-def marked(text: object, look: str) -> Markup:
-    """Words within a text that have a look of their own."""
-    return Markup('<span class="{}">{}</span>').format(look, text)
-
-
 def link(text: str, name: str) -> Markup:
     """A link to a section of the same page."""
     return Markup('<a href="#{}">{}</a>').format(name, text)
@@ -98,21 +93,6 @@ class Pairs:
     _: KW_ONLY
     caption: str = ""
     look: str = ""
-
-
-class Headline(NamedTuple):
-    """A value that is to be seen first."""
-
-    name: str
-    value: str
-    below: str = ""  #: in small print
-
-
-@dataclass(frozen=True)
-class Headlines:
-    """The values to be seen first, side by side."""
-
-    values: Sequence[Headline]
 
 
 class Cell(NamedTuple):
@@ -310,7 +290,6 @@ Block = (
     | Bullets
     | Listing
     | Pairs
-    | Headlines
     | Table
     | Figure
     | Group

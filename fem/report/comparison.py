@@ -1,4 +1,4 @@
-"""Rows of a report: the case as given, the static rules beside the run, assumptions."""
+"""Rows of a report: the case as given, the static rules beside the run; assumptions."""
 
 import math
 from typing import NamedTuple, assert_never
@@ -11,10 +11,11 @@ from fem.case.case import Case
 from fem.case.tables.boxes import Box
 from fem.case.tables.motion_tables import FloorMotionTable
 from fem.html import sections as html
+from fem.html.page import markup_of
 from fem.html.units import degrees, number, quantity, short, typeset
 from fem.model.container import modes_of_a_body
 from fem.model.static_checks import StaticChecks
-from fem.results.run_result import Numerics, RunResult, Verdict
+from fem.results.run_result import Verdict
 
 EDITION = "EN 1998-1:2004, "  #: of the clauses; the head of their column names it
 
@@ -164,123 +165,9 @@ def _duration(case: Case) -> str:
     return f"{short(case.solver.duration_s)} s"
 
 
-def _dashpot(case: Case, numerics: Numerics) -> str:
-    """The damping of the contact, and what the impacts are asked to leave."""
-    ratio = numerics.contact_damping_ratio or case.contact.damping_ratio
-    words = "damping" if ratio is None else f"damping ratio {short(ratio)}"
-    stated = case.contact.restitution_over_housner
-    if stated is None:
-        return words
-    return (
-        f"{words}, and every impact leaves {short(stated)} of the angular velocity that it would leave alone"
-    )
-
-
-def limits_section(
-    case: Case, result: RunResult | None = None, *, joints_below: bool = False
-) -> html.PageSection:
-    """What a result rests on, and what it leaves out; `joints_below`: the page lists the forces in the joints."""
-    lines = assumptions(case, result, joints_below=joints_below)
-    assumed = html.Group("", [html.Heading("Assumed"), html.Bullets(lines)])
-    missing = html.Group("", [html.Heading("Not covered"), html.Bullets(exclusions(case))])
-    return html.section(
-        "Assumptions and exclusions", "assumptions", html.Group("columns even", [assumed, missing])
-    )
-
-
-def assumptions(case: Case, result: RunResult | None = None, *, joints_below: bool = False) -> list[str]:
-    """What the result rests on; of a run, with its contact frequency."""
-    contact, numerics = case.contact, (result and result.numerics) or Numerics()
-    law = (
-        "regularised in displacement: a container at rest does not creep"
-        if contact.sticks
-        else "regularised in velocity: under load it creeps"
-    )
-    lines = [
-        f"Plane elevation; one horizontal{' and one vertical' * case.has_vertical} floor motion, the same under the "
-        "whole base.",
-        _floor(case, numerics),
-        f"Coulomb friction, static and kinetic, {law}.",
-        _material(case),
-    ]
-    if case.container.boxes > 1:
-        listed = "; the forces in the joints are listed below" if joints_below else ""
-        lines.append(
-            "The boxes stand on one another without bolts. Corners of a box meet the face of the next, with the laws "
-            "of the floor."
-            if case.container.is_loose
-            else f"The boxes are bolted and do not separate{listed}."
-        )
-    if case.stop:
-        lines.append("A stop moves with the floor, and meets the one point of the container beside it.")
-    if case.neighbour:
-        lines.append(
-            f"In the row stand {1 + len(case.neighbour)} containers on one floor. Corners of a side meet the side of "
-            "the next, with one coefficient of friction. The run ends when one of them has overturned; one at rest "
-            "that leans on the next beyond its slenderness angle counts as overturned."
-        )
-    if case.tie:
-        lines.append(
-            "A tie pulls straight down, or level to its wall, however far its point has moved, and from end to end "
-            "between containers; it is elastic until it breaks."
-        )
-    return lines
-
-
-def _floor(case: Case, numerics: Numerics) -> str:
-    """What the floor is, and how the contact stands for it."""
-    bounce, penalty = numerics.contact_frequency_Hz, case.contact.normal_penalty_Pa_m
-    slope = case.floor.slope_percent
-    lies = (
-        "level" if not slope else f"{short(abs(slope))} % falling to the {'right' if slope > 0.0 else 'left'}"
-    )
-    bounces = f" (contact frequency {quantity(bounce, 'Hz', figures=3)})" if bounce is not None else ""
-    if case.floor.is_slab:
-        return (
-            f"Floor {lies}: an elastic half-space under each corner{bounces} that crushes at its bearing strength and "
-            f"keeps the indentation, which does not change the strength; {_dashpot(case, numerics)}."
-        )
-    spring = "chosen by the program" if isinstance(penalty, str) else quantity(penalty, "GPa/m", 1e-9)
-    return (
-        f"Rigid, {lies} floor under a unilateral contact: penalty {spring}{bounces}, {_dashpot(case, numerics)}. "
-        "The penalty is a numerical input, not the stiffness of a concrete slab."
-    )
-
-
-def _material(case: Case) -> str:
-    if case.solver.model == "rigid":
-        if case.container.is_loose:
-            return "Every box is rigid: it turns and slides as one body, and has no stress."
-        return "The container is rigid: it turns and slides as one body, and has no stress."
-    if case.container.section == "solid":
-        return "A homogeneous block, linear elastic in plane stress (finite rotation)."
-    return (
-        "Walls linear elastic in plane stress (finite rotation); the fill is mass without stiffness that moves "
-        "with the walls."
-    )
-
-
-def exclusions(case: Case) -> list[str]:
-    """What a result leaves out."""
-    vertical = "" if case.has_vertical else "vertical floor motion, "
-    bolted = case.container.boxes > 1 and not case.container.is_loose
-    ground = (
-        "bending of the floor, compliance of the soil"
-        if case.floor.is_slab
-        else "compliance of floor and soil"
-    )
-    return [
-        f"{vertical}torsion, motion out of the plane, wind",
-        "sloshing, plasticity, buckling and bending of the sheets out of their plane",
-        *(["boxes without bolts, which open and slide on one another"] if bolted else []),
-        ", ".join([ground, *_not_beside(case)]),
-        "partial factors, and further ground motions: EN 1998-1:2004, 3.2.3.1.2 (4) asks for three or more",
-    ]
-
-
-def _not_beside(case: Case) -> list[str]:
-    """What may stand beside a container and does not here."""
-    return ["neighbouring containers"] * (not case.neighbour) + ["ropes or stops"] * (not case.links)
+def limits_section(case: Case) -> html.Html:
+    """What a study of a case rests on, and what it leaves out."""
+    return html.Html(markup_of("limits.html.j2", case=case, numerics=None, joints_below=False))
 
 
 def motion_in_words(motion: FloorMotionTable) -> str:

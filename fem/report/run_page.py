@@ -46,7 +46,7 @@ from fem.report.animation import (
     exaggerations,
     player_data,
 )
-from fem.report.comparison import Compared, assumptions, case_rows, compared_rows, exclusions
+from fem.report.comparison import Compared, case_rows, compared_rows
 from fem.report.sketch import sketch
 from fem.report.static_sheet import static_sheet
 from fem.results.errors import FolderError
@@ -77,10 +77,8 @@ SAID: dict[str, Any] = {
     "BOXES_NOTE": BOXES_NOTE,
     "DEGREES": math.degrees(1.0),
     "MARGIN_NOTE": MARGIN_NOTE,
-    "assumptions": assumptions,
     "band_note": band_note,
     "case_rows": case_rows,
-    "exclusions": exclusions,
     "governing": governing,
     "impact_note": impact_note,
     "joints_note": joints_note,

@@ -55,7 +55,9 @@ def study_html(
         again: how to repeat it; None: a short page, without its end.
         content: further fields of the page.
     """
-    end = [] if again is None else [limits_section(case), repeat_section(provenance, info, again)]
+    end: list[html.Block] = (
+        [] if again is None else [limits_section(case), repeat_section(provenance, info, again)]
+    )
     return html_of(
         Page(
             kind=f"Report of {kind}",

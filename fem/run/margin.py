@@ -104,11 +104,12 @@ def margin_of(model: Model, result: RunResult, *, drawn: bool, stop: Callable[[]
         return None
     factor = None if first is None else first.high
     factors = [end for end in ends if end is None or not math.isnan(end)]
+    reached = [end for end in (factor, *factors) if end is not None]
     return Margin(
         factor=factor,
         stands_up_to=None if first is None or first.low == 0.0 else first.low,
         low=lowest,
-        high=_highest([factor, *factors]) if factors else None,
+        high=max(reached) if factors and len(reached) == 1 + len(factors) else None,
         draws=len(factors),
         draws_standing=factors.count(None),
         draws_failed=len(ends) - len(factors),
@@ -306,12 +307,6 @@ def _lowest(
     return low
 
 
-def _highest(ends: Sequence[float | None]) -> float | None:
-    """The largest; None where there is none for one of them."""
-    known = [end for end in ends if end is not None]
-    return max(known) if len(known) == len(ends) else None
-
-
 def _draws(case: Case, result: RunResult) -> int:
     """How many draws the time allows."""
     runs = DRAWN_S / max(cost_of(result.numerics or Numerics()), 1e-9)
@@ -334,19 +329,17 @@ def _trial(model: Model, values: Mapping[str, Value], stop: Callable[[], bool]) 
         if stop():
             raise StoppedError
         try:
-            case = own.with_values(as_changed(own, {**values, **_scaled(own, factor, values), **coarse}))
+            scaled = {  # with the sign of the motion that the values choose
+                key: math.copysign(value, float(values.get(key, value)))
+                for key, value in scaled_motion(own, factor).items()
+            }
+            case = own.with_values(as_changed(own, {**values, **scaled, **coarse}))
             shared = model.equilibrium if same_equilibrium(case, own) else None
             return _ending(build_model(case, container(), shared), stop)
         except (ValueError, ArithmeticError, RuntimeError):  # a motion too strong for its key, no equilibrium
             return Ending.FAILED
 
     return ending
-
-
-def _scaled(own: Case, factor: float, values: Mapping[str, Value]) -> dict[str, float]:
-    """`scaled_motion` with the sign of the motion that the values choose."""
-    scaled = scaled_motion(own, factor)
-    return {key: math.copysign(value, float(values.get(key, value))) for key, value in scaled.items()}
 
 
 def _ending(model: Model, stop: Callable[[], bool]) -> Ending:

@@ -4,7 +4,7 @@ A key carries its unit. The type, range and unit of one key are checked by its `
 rules (`fem.case.tables.rules`, `fem.case.case_rules`). Keys of an option that is not chosen are checked and not used.
 """
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Field, Strict, ValidationInfo, field_validator
 
@@ -80,7 +80,13 @@ class ContainerTable(CaseTable):
     )
     section: Literal["shell", "solid"] = case_key(
         '"shell" | "solid"; default: shell where wall_m is given',
-        follows=lambda values: "shell" if _has_walls(values) else "solid",
+        follows=lambda values: (
+            "shell"
+            if any(
+                wall is not None for wall in (values["wall_m"], *(box.wall_m for box in values["box"] or ()))
+            )
+            else "solid"
+        ),
     )
     youngs_modulus_Pa: Annotated[float, q.STIFFNESS] = case_key("Young's modulus", 2.1e11)
     poisson_ratio: Annotated[float, q.POISSON] = case_key("Poisson's ratio", 0.3)
@@ -155,11 +161,6 @@ class ContainerTable(CaseTable):
         if self.box is None:
             return self.boxes * self.height_m
         return sum(self.height_m if box.height_m is None else box.height_m for box in self.box)
-
-
-def _has_walls(values: dict[str, Any]) -> bool:
-    """Whether [container] or one of its boxes has a wall."""
-    return values["wall_m"] is not None or any(value.wall_m is not None for value in values["box"] or ())
 
 
 class SupportTable(CaseTable):

@@ -167,12 +167,6 @@ def _neighbours(case: Any) -> Sequence[NeighbourTable]:
     return neighbours
 
 
-def _uneven(case: Any) -> bool:
-    """Whether the sides of the stack are not straight from the floor to its top."""
-    boxes = boxes_of(case.container, case.gravity_m_s2)
-    return any(box.width != boxes[0].width or box.axis != boxes[0].axis for box in boxes)
-
-
 def _alone(place: str, applies: Any, reason: str) -> Rule:
     """What cannot stand beside neighbours."""
     return Rule(place, lambda case: not _neighbours(case) or not applies(case), reason)
@@ -203,7 +197,7 @@ NEIGHBOUR_RULES = (
     ),
     _alone(
         "container.box",
-        _uneven,
+        lambda case: len({(box.width, box.axis) for box in boxes_of(case.container, case.gravity_m_s2)}) > 1,
         "cannot stand beside [[neighbour]] unless all boxes have one width and no offset_m: a side must be straight",
     ),
     _alone(

@@ -20,11 +20,6 @@ def _masses(box: Any) -> dict[str, float]:
     return {key: value for key in MASSES if (value := getattr(box, key)) is not None}
 
 
-def _needs_mass(box: Any) -> bool:
-    """Whether a box takes its mass from [container]."""
-    return box.box is None or any(own.mass_kg is None for own in box.box)
-
-
 def _not_one_mass(box: Any) -> str:
     given = [f"{key} = {value:g} {MASSES[key].unit}" for key, value in _masses(box).items()]
     rule = ", mass_kg, density_kg_m3: exactly one of the three must be given, "
@@ -34,7 +29,10 @@ def _not_one_mass(box: Any) -> str:
 CONTAINER_RULES = (
     Rule(
         "container.weight_N",
-        lambda box: len(_masses(box)) == 1 or not (_masses(box) or _needs_mass(box)),
+        lambda box: (
+            len(_masses(box)) == 1
+            or not (_masses(box) or box.box is None or any(own.mass_kg is None for own in box.box))
+        ),
         _not_one_mass,
     ),
     Rule(

@@ -94,13 +94,9 @@ class OutputTable(CaseTable):
     )
 
 
-def _as_text(value: object) -> object:
-    """A number as text: a document may have the number 2417."""
-    return str(value) if isinstance(value, int) and not isinstance(value, bool) else value
-
-
 Text = Annotated[str | None, Field(max_length=200)]
-Mark = Annotated[Text, BeforeValidator(_as_text)]
+#: a document may have the number 2417
+Mark = Annotated[Text, BeforeValidator(lambda mark: str(mark) if type(mark) is int else mark)]
 
 
 class DocumentTable(CaseTable):

@@ -13,6 +13,7 @@ its fall as on the floor.
 
 import math
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any
 
 from contact.reference.rigid_block import RigidBlock
@@ -108,37 +109,18 @@ def _other_ramp(case: Any) -> Value | None:
 
 def _is_lopsided(case: Any) -> bool:
     """Whether left and right of a container, or what is beside it, differ: a mirrored motion is then another one."""
-    start, box = case.initial, case.container
-    return bool(
-        start.rotation_rad
-        or start.angular_velocity_rad_s
-        or start.velocity_m_s
-        or box.eccentricity_m
-        or box.mesh_file
-        or case.floor.slope_percent
-        or case.links
-        or case.neighbour
-        or any(stacked.axis for stacked in case.stack)
-    )
+    own, beside = case.container, (case.links, case.neighbour, case.floor.slope_percent)
+    axes = (stacked.axis for stacked in case.stack)
+    return any((case.initial.is_pushed, own.eccentricity_m, own.mesh_file, *beside, *axes))
 
 
-def _mirrored(key: str) -> Callable[[Any], Value | None]:
+def _other_sign(case: Any, key: str) -> Value | None:
     """The other sign of a record or a pulse by its key, where that makes a difference."""
-
-    def other(case: Any) -> Value | None:
-        motion, name = case.motion, key.partition(".")[2]
-        peak = motion.scale_to_m_s2 is not None
-        of_a_table = "scale_to_m_s2" if peak else "scale"
-        used = {"table": of_a_table, "pulse": "peak_acceleration_m_s2"}.get(motion.kind)
-        return (
-            -getattr(motion, name) if name == used and getattr(motion, name) and _is_lopsided(case) else None
-        )
-
-    return other
-
-
-def _other_vertical(case: Any) -> Value | None:
-    return -case.vertical.scale if case.vertical.kind in ("table", "pulse") else None
+    motion = case.motion
+    of_a_table = "motion.scale" if motion.scale_to_m_s2 is None else "motion.scale_to_m_s2"
+    used = {"table": of_a_table, "pulse": "motion.peak_acceleration_m_s2"}.get(motion.kind)
+    own = getattr(motion, key.partition(".")[2]) if key == used and _is_lopsided(case) else None
+    return -own if own else None
 
 
 def _joints_mu_static(case: Any, own: float) -> Ends:
@@ -252,10 +234,6 @@ def _beside(case: Any, own: float) -> Ends:
     return short(own - distance), short(own + distance)
 
 
-def _slopes(case: Any, own: float) -> Ends:
-    return max(q.SLOPE.least or 0.0, own - SLOPE_PERCENT), min(q.SLOPE.most or 0.0, own + SLOPE_PERCENT)
-
-
 def _has_columns(case: Any) -> bool:
     """Whether every box has two columns of elements, which a mass centre beside the axis needs."""
     widest = case.solver.element_size_m
@@ -287,14 +265,6 @@ def _other_support(case: Any) -> Value | None:
     return kind
 
 
-def _any_falls(case: Any) -> bool:
-    return _falls(case) or _joints_fall(case)
-
-
-def _any_may_fall(case: Any) -> bool:
-    return _may_fall(case) or _joints_may_fall(case)
-
-
 Number, Choice = UnknownNumber, UnknownChoice
 #: every input that may vary, those first that decide most often
 # fmt: off
@@ -306,7 +276,8 @@ UNKNOWN: tuple[UnknownNumber | UnknownChoice, ...] = (
            _reaching(0.0, WEAKENING_M), matters=_may_fall, power=3.0, between=lambda low, high: WEAKENINGS_BETWEEN_M,
            alone=_falls),
     Number(keys.STRIBECK, "stribeck_velocity_m_s", "fall of friction with velocity", q.STRIBECK_VELOCITY,
-           _reaching(0.0, STRIBECK_M_S), matters=_any_may_fall, power=2.0, alone=_any_falls),
+           _reaching(0.0, STRIBECK_M_S), matters=lambda case: _may_fall(case) or _joints_may_fall(case), power=2.0,
+           alone=lambda case: _falls(case) or _joints_fall(case)),
     Number(keys.JOINTS_MU_STATIC, "joints_mu_static", "static friction of the joints", q.FRICTION, _joints_mu_static,
            matters=lambda case: case.container.is_loose),
     Number(keys.JOINTS_MU_KINETIC, "joints_mu_kinetic", "kinetic friction of the joints", q.FRICTION,
@@ -328,15 +299,18 @@ UNKNOWN: tuple[UnknownNumber | UnknownChoice, ...] = (
            matters=_has_columns, power=1.0),
     Number(keys.EFFECTIVE, "effective_width", "effective width of the base", q.EFFECTIVE_WIDTH, (EFFECTIVE_WIDTH, 1.0),
            matters=lambda case: case.solver.model != "full", power=1.0),
-    Number(keys.SLOPE, "slope_percent", "slope of the floor", q.SLOPE, _slopes, power=1.0),
+    Number(keys.SLOPE, "slope_percent", "slope of the floor", q.SLOPE, power=1.0,
+           ends=lambda case, own: (max(q.SLOPE.least or 0.0, own - SLOPE_PERCENT),
+                                   min(q.SLOPE.most or 0.0, own + SLOPE_PERCENT))),
     Number(keys.VERTICAL_PHASE, "vertical_phase_rad", "phase of the vertical motion", q.PHASE,
            lambda case, own: (short(own - math.pi), short(own + math.pi)),
            matters=lambda case: case.motion.kind == case.vertical.kind == "harmonic", power=1.0,
            between=_shares(0.25, 0.75), same=lambda value: short(math.pi - (math.pi - value) % (2.0 * math.pi))),
     Number(keys.PHASE, "phase_rad", "phase of the motion", q.PHASE, lambda case, own: (own, own),
            matters=lambda case: case.motion.kind == "harmonic", power=1.0, between=_shares(0.25, 0.5, 0.75)),
-    *(Choice(key, "sign", "sign of the motion", _mirrored(key)) for key in keys.SIGNS),
-    Choice(keys.VERTICAL_SIGN, "vertical_sign", "sign of the vertical motion", _other_vertical, unless_stated=False),
+    *(Choice(key, "sign", "sign of the motion", partial(_other_sign, key=key)) for key in keys.SIGNS),
+    Choice(keys.VERTICAL_SIGN, "vertical_sign", "sign of the vertical motion", unless_stated=False,
+           other=lambda case: -case.vertical.scale if case.vertical.kind in ("table", "pulse") else None),
     Choice(keys.START, "start", "start", _other_start, unless_stated=False),
     Choice(keys.RAMP, "ramp", "cycles of the ramp", _other_ramp),
     Number(keys.STOP_GAP, "stop_gap_m", "gap of the stops", q.GAP, GAPS, power=1.0),

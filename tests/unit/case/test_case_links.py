@@ -69,7 +69,7 @@ STRAP = {"from": "right", "height_m": 0.5, "stiffness_N_m": 1e6}
 @pytest.mark.parametrize(
     ("keys", "reason"),
     [
-        ({"to": "neighbour"}, 'tie 1: to must be "floor" or "wall", got the text "neighbour"'),
+        ({"to": "neighbour"}, 'tie 1: to must be "floor" or "wall", got the text .neighbour.'),
         ({"to_height_m": 0.5}, "tie 1: 'to_height_m' is no longer there; ties run to the floor or to a wall"),
         ({"neighbour": 2}, r"neighbour must be the number of a \[\[neighbour\]\]; the case has 1"),
         ({"to": "wall"}, 'to must be "floor" on the right of the container: neighbour 1 stands before'),

@@ -19,7 +19,6 @@ from fem.html.sections import (
     Cell,
     Choice,
     Column,
-    Headline,
     PageSection,
     Table,
     TableRow,
@@ -62,9 +61,8 @@ def test_only_the_scripts_of_the_page_may_run_and_nothing_may_be_loaded(page, mo
 @pytest.mark.parametrize("block", typing.get_args(sections.Block), ids=lambda kind: kind.__name__)
 def test_every_kind_of_block_is_set_and_its_texts_are_escaped(page, block):
     texts = {"title": "<t>", "text": "<t>", "label": "<t>", "note": "<t>", "svg": Markup("<svg></svg>")}
-    texts |= {"rows": [("<t>", "a")], "lines": ["<t>"], "values": [Headline("<t>", "a")], "blocks": ["<t>"]}
-    texts |= {"quantities": [Choice(1, "<t>")], "across": (), "exaggerations": (), "start": "<t>"}
-    texts |= {"end": "", "colours": (), "name": "n", "look": "", "loose": False, "meshed": False}
+    texts |= {"rows": [("<t>", "a")], "lines": ["<t>"], "blocks": ["<t>"]}
+    texts |= {"quantities": [Choice(1, "<t>")], "across": (), "name": "n", "look": ""}
     texts |= {"head": [Cell("<t>")], "summary": "<t>"}
     if block is str:
         made = "<t>"

@@ -215,13 +215,6 @@ class TestTheAnimation:
         finally:
             run_page.call("Emulation.setEmulatedMedia", features=[])
 
-    def test_paper_does_not_show_it(self, run_page):
-        run_page.call("Emulation.setEmulatedMedia", media="print")
-        try:
-            assert run_page.evaluate("getComputedStyle(document.getElementById('player')).display") == "none"
-        finally:
-            run_page.call("Emulation.setEmulatedMedia", media="")
-
 
 def test_assumptions_and_exclusions_stand_on_the_first_page(run_page, tmp_path):
     pdf = tmp_path / "run.pdf"
