@@ -72,7 +72,7 @@ def numerics_lines(numerics: Mapping[str, Any]) -> list[str]:
     """The numerical settings, for people."""
     modes = f", {numerics['elastic_modes']} elastic modes" if numerics["elastic_modes"] else ""
     pascals = numerics["normal_penalty_Pa_m"]
-    penalty = "" if pascals is None else f"penalty {pascals:.4g} Pa/m, "
+    penalty = "" if pascals is None else f"{pascals:.4g} Pa/m, "
     most = "at most " if numerics["ends_at_rest"] else ""
     return [
         f"  model       {numerics['model']}{modes}, {numerics['scheme']}",
