@@ -125,7 +125,7 @@ BUDGET = {
     "site": ("fem/site", 4_812, 137),
     "cli": ("fem/cli fem/__init__.py fem/__main__.py", 1_980, 46),
     "product": ("mesh contact fem", 60_583, 1_823),
-    "tests": ("tests", 51_146, 3_061),
+    "tests": ("tests", 51_148, 3_061),
 }
 
 
