@@ -111,7 +111,7 @@ BUDGET = {
     "mesh": ("mesh", 1_719, 44),
     "contact": ("contact", 9_730, 344),
     "runtime": ("fem/runtime", 814, 40),
-    "records": ("fem/records", 2_826, 74),
+    "records": ("fem/records", 2_827, 74),
     "case": ("fem/case", 5_643, 132),
     "results": ("fem/results", 2_881, 96),
     "seismic": ("fem/seismic", 2_289, 61),

@@ -261,6 +261,7 @@ def _labels(text: str, count: int, separator: str | None) -> list[str] | None:
         len(words) == count
         and not BRACKETED.search(text)
         and all(named(word) != Name() or unit_spelled(word) for word in words)
+        and not 0 < sum(map(_is_unit, words)) < count
     )
     return words if says else None
 
