@@ -1,0 +1,145 @@
+"""What the program says, beside what it said when that was last read.
+
+A file of texts is a transcript: a line that begins with `$` is what is asked, the indented lines under it are what is
+said. `python -m pytest --say tests/said` writes what is said now; the difference is read like one of a program. A new
+text needs a line with `$` alone.
+"""
+
+import difflib
+import json
+import re
+import shlex
+import shutil
+import tempfile
+import tomllib
+from html import unescape
+from pathlib import Path
+from textwrap import fill
+
+import pytest
+from cases import TEXTS, named_case
+from site_example import write_example
+from study_folders import ensemble_folder, response_folder
+from typed_results import told
+
+from fem.__main__ import main
+from fem.case.case import CaseError, load_case
+from fem.case.overrides import parse_override
+from fem.report.ensemble_page import ensemble_report
+from fem.report.response_page import response_report
+from fem.site_check.page.site_page import site_report
+
+HERE = Path(__file__).parent
+#: what differs between two runs of the same bits: times, dates, versions, hashes, free room
+FLEETING = (
+    (r"(computing time +|computed \| ).*(\n {20,}.*)?", r"\1TIME"),
+    (r"(versions|case hash) \| .*", r"\1 |"),
+    (r"unanchored \d+\.\d+\.\d+( on [\d-]+)?", "unanchored"),
+    (r"room for [\d.]+ .B", "room for SOME"),
+    (r"\b[\d.]+ × 10⁻¹\d", "ROUNDING"),
+)
+
+
+def refused(asked):
+    """A named case with changes as `--set` takes them, separated by ` & `, or a text: the reasons against it."""
+    try:
+        if asked.startswith('"'):
+            Path("case.toml").write_text(json.loads(asked), encoding="utf-8")
+            load_case("case.toml")
+        else:
+            name, _, changes = asked.partition(" | ")
+            named_case(
+                name.strip(), dict(parse_override(change) for change in changes.split(" & ") if change)
+            )
+    except CaseError as error:
+        return str(error)
+    return "nothing is said against it"
+
+
+def commanded(asked, capsys):
+    """A command in the folder of this transcript: what it prints, its exit code, the text of a page it writes."""
+    words = shlex.split(asked)
+    code = main(words)
+    printed = capsys.readouterr()
+    said = printed.out + printed.err + (f"[{code}]" if code else "")
+    pages = [Path(line) for line in printed.out.splitlines() if line.endswith(".html")]
+    return said + "\n".join(text_of_page(page.read_text(encoding="utf-8")) for page in pages)
+
+
+def paged(asked):
+    """The page of a known result of a study, with changes as in TOML."""
+    kind, _, changes = asked.partition(" ")
+    folder = Path(tempfile.mkdtemp(dir="."))
+    make, report = {
+        "ensemble": (ensemble_folder, ensemble_report),
+        "response": (response_folder, response_report),
+        "site": (write_example, site_report),
+    }[kind]
+    make(folder, **tomllib.loads(f"x = {{{changes}}}")["x"])
+    return text_of_page(report(folder)).replace(str(folder), "FOLDER")
+
+
+def text_of_page(page):
+    """What is read of a page: no style, no script, no drawing; a line for each block."""
+    for hidden in ("style", "script", "svg", "head"):
+        page = re.sub(rf"<{hidden}\b.*?</{hidden}>", "", page, flags=re.DOTALL)
+    page = re.sub(r"</(p|h\d|li|tr|pre|dt|dd|figcaption|summary|div|option|label)>", "\n", page)
+    page = re.sub(r"</t[dh]>", " | ", page)
+    lines = (" ".join(line.split()) for line in unescape(re.sub(r"<[^>]*>", "", page)).splitlines())
+    return "\n".join(line for line in lines if line)
+
+
+def steady(said, folder):
+    """Without what differs between two runs of the same bits."""
+    for pattern, word in ((re.escape(str(folder)), "FOLDER"), *FLEETING):
+        said = re.sub(pattern, word, said)
+    return said
+
+
+def asked_in(file):
+    return [line[2:] for line in file.read_text(encoding="utf-8").splitlines() if line.startswith("$ ")]
+
+
+def transcript(pairs, *, differing):
+    """The text of a file; where texts differ little, of all but the first only the lines that differ, each once."""
+    first, parts = None, []
+    for asked, said in pairs:
+        shown = lines = wrapped(said).splitlines()
+        if differing and first is not None:
+            found = difflib.unified_diff(*([*map(narrow, one)] for one in (first, lines)), n=0, lineterm="")
+            shown = dict.fromkeys(line for line in found if line[:2] not in ("--", "++", "@@"))
+        first = first or lines
+        parts += [f"$ {asked}", *(f"    {line}".rstrip() for line in shown)]
+    return "\n".join(parts) + "\n"
+
+
+def narrow(line):
+    """A line of a table whatever the width of its columns."""
+    return re.sub(r"─+", "─", re.sub(r"(?<=\S)  +", "  ", line))
+
+
+def wrapped(said):
+    return "\n".join(
+        fill(line, 110, subsequent_indent="  ", drop_whitespace=False) if len(line) > 110 else line.rstrip()
+        for line in said.splitlines()
+    )
+
+
+@pytest.mark.parametrize("name", sorted(file.stem for file in HERE.glob("*.txt")))
+def test_the_program_says_what_it_said_when_that_was_last_read(name, request, tmp_path, monkeypatch, capsys):
+    file = HERE / f"{name}.txt"
+    shutil.copytree(HERE / "files", tmp_path, dirs_exist_ok=True)
+    for case, text in TEXTS.items():
+        (tmp_path / f"{case}.toml").write_text(text, encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    say = {"refusals": refused, "results": told, "pages": paged}.get(
+        name, lambda asked: commanded(asked, capsys)
+    )
+    pairs = [(asked, steady(say(asked), tmp_path)) for asked in asked_in(file)]
+    text = transcript(pairs, differing=name == "results")
+    if request.config.getoption("--say"):
+        file.write_text(text, encoding="utf-8")
+    before = file.read_text(encoding="utf-8")
+    assert not list(
+        difflib.unified_diff(before.splitlines(), text.splitlines(), "read", "said", lineterm="", n=0)
+    )
