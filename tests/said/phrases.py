@@ -45,7 +45,9 @@ def main() -> int:
         found = {("", one) for one in deleted(sys.stdin.read())}
     wanted = [(name, one) for name, one in sorted(found) if len(one.split()) >= LEAST]
     missing = [
-        (name, one) for name, one in wanted if any(part not in held for part in plain(one).split(".*"))
+        (name, one)
+        for name, one in wanted
+        if any(part not in held for part in re.split(r"\.\*|\{[^}]*\}", plain(one)))
     ]
     for name, one in missing:
         print(f"{name}: {one!r}")

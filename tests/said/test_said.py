@@ -32,8 +32,8 @@ from fem.site_check.page.site_page import site_report
 HERE = Path(__file__).parent
 #: what differs between two runs of the same bits: times, dates, versions, hashes, free room
 FLEETING = (
-    (r"(computing time +|computed \| ).*(\n {20,}.*)?", r"\1TIME"),
-    (r"(versions|case hash) \| .*", r"\1 |"),
+    (r"(computing time +|computed \| |computed in \| ).*(\n {20,}.*)?", r"\1TIME"),
+    (r"(versions|hash) \| .*", r"\1 |"),
     (r"unanchored \d+\.\d+\.\d+( on [\d-]+)?", "unanchored"),
     (r"room for [\d.]+ .B", "room for SOME"),
     (r"\b[\d.]+ × 10⁻¹\d", "ROUNDING"),
@@ -80,9 +80,9 @@ def paged(asked):
 
 
 def text_of_page(page):
-    """What is read of a page: no style, no script, no drawing; a line for each block."""
-    for hidden in ("style", "script", "svg", "head"):
-        page = re.sub(rf"<{hidden}\b.*?</{hidden}>", "", page, flags=re.DOTALL)
+    """What is read of a page: no style, script, drawing or copy of a file; a line for each block."""
+    for hidden in ("style", "script", "svg", "head", 'pre class="case"'):
+        page = re.sub(rf"<{hidden}\b.*?</{hidden.split()[0]}>", "", page, flags=re.DOTALL)
     page = re.sub(r"</(p|h\d|li|tr|pre|dt|dd|figcaption|summary|div|option|label)>", "\n", page)
     page = re.sub(r"</t[dh]>", " | ", page)
     lines = (" ".join(line.split()) for line in unescape(re.sub(r"<[^>]*>", "", page)).splitlines())
@@ -97,19 +97,23 @@ def steady(said, folder):
 
 
 def asked_in(file):
-    return [line[2:] for line in file.read_text(encoding="utf-8").splitlines() if line.startswith("$ ")]
+    """Each line that asks, and each remark."""
+    return [line for line in file.read_text(encoding="utf-8").splitlines() if line.startswith(("$ ", "#"))]
 
 
 def transcript(pairs, *, differing):
     """The text of a file; where texts differ little, of all but the first only the lines that differ, each once."""
     first, parts = None, []
     for asked, said in pairs:
+        if asked.startswith("#"):
+            parts.append(asked)
+            continue
         shown = lines = wrapped(said).splitlines()
         if differing and first is not None:
             found = difflib.unified_diff(*([*map(narrow, one)] for one in (first, lines)), n=0, lineterm="")
             shown = dict.fromkeys(line for line in found if line[:2] not in ("--", "++", "@@"))
         first = first or lines
-        parts += [f"$ {asked}", *(f"    {line}".rstrip() for line in shown)]
+        parts += [asked, *(f"    {line}".rstrip() for line in shown)]
     return "\n".join(parts) + "\n"
 
 
@@ -135,7 +139,9 @@ def test_the_program_says_what_it_said_when_that_was_last_read(name, request, tm
     say = {"refusals": refused, "results": told, "pages": paged}.get(
         name, lambda asked: commanded(asked, capsys)
     )
-    pairs = [(asked, steady(say(asked), tmp_path)) for asked in asked_in(file)]
+    pairs = [
+        (asked, "" if asked.startswith("#") else steady(say(asked[2:]), tmp_path)) for asked in asked_in(file)
+    ]
     text = transcript(pairs, differing=name == "results")
     if request.config.getoption("--say"):
         file.write_text(text, encoding="utf-8")

@@ -1,6 +1,6 @@
 """One known result of a run, changed as a line of a transcript says, and what is said of it.
 
-A line holds keys of `run.json` with values as in TOML; "none" takes one away. Beside them: `case`, changes of the case
+A line holds keys of `run.json` with values as in TOML; "null" takes one away. Beside them: `case`, changes of the case
 as `--set` takes them; `own` and `others`, figures of the run and of the members of its band, each with its change.
 """
 
@@ -68,10 +68,16 @@ RESULT = RunResult(
 )
 
 
+def changes_asked():
+    """All changes of which something is said."""
+    lines = (Path(__file__).parent / "results.txt").read_text(encoding="utf-8").splitlines()
+    return [line[2:] for line in lines if line.startswith("$ ")]
+
+
 def merged(block, changes):
     """JSON with changes at any depth."""
     if not isinstance(changes, dict):
-        return None if changes == "none" else changes
+        return None if changes == "null" else changes
     block = block if isinstance(block, dict) else {}
     return {**block, **{key: merged(block.get(key), value) for key, value in changes.items()}}
 
