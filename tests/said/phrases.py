@@ -29,9 +29,10 @@ def phrases(source: str) -> Iterator[str]:
 
 
 def deleted(difference: str) -> Iterator[str]:
-    """Strings on deleted lines of a difference."""
-    lines = [line[1:] for line in difference.splitlines() if re.match(r"-(?!--)", line)]
-    yield from re.findall(r'r?f?"((?:[^"\\]|\\.)*)"', "\n".join(lines))
+    """Strings on deleted lines of a difference, and what stands between the bars of a table there."""
+    lines = "\n".join(line[1:] for line in difference.splitlines() if re.match(r"-(?!--)", line))
+    for text in re.findall(r'r?f?"((?:[^"\\\n]|\\.)*)"|^ *(?:\w+ +)?\|([^"\n]*)$', lines, re.MULTILINE):
+        yield from re.split(r"\\n| \| ", "".join(text))
 
 
 def main() -> int:

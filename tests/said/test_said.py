@@ -30,6 +30,7 @@ from fem.report.response_page import response_report
 from fem.site_check.page.site_page import site_report
 
 HERE = Path(__file__).parent
+BAD_INPUT = 2  #: exit code; then nothing is printed but the reason, and nothing is written
 #: what differs between two runs of the same bits: times, dates, versions, hashes, free room
 FLEETING = (
     (r"(computing time +|computed \| |computed in \| ).*(\n {20,}.*)?", r"\1TIME"),
@@ -58,9 +59,11 @@ def refused(asked):
 
 def commanded(asked, capsys):
     """A command in the folder of this transcript: what it prints, its exit code, the text of a page it writes."""
-    words = shlex.split(asked)
-    code = main(words)
+    before = sorted(Path().rglob("*"))
+    code = main(shlex.split(asked))
     printed = capsys.readouterr()
+    if code == BAD_INPUT:
+        assert (printed.out, sorted(Path().rglob("*"))) == ("", before)
     said = printed.out + printed.err + (f"[{code}]" if code else "")
     pages = [Path(line) for line in printed.out.splitlines() if line.endswith(".html")]
     return said + "\n".join(text_of_page(page.read_text(encoding="utf-8")) for page in pages)

@@ -132,46 +132,6 @@ def test_another_support_does_not_stand_on_the_patch_of_the_former_one():
     assert load_case(BASE, [*SLAB, "support.kind=feet"]).floor.corner_patch_m == [0.1, 0.2]
 
 
-def test_overrides_go_through_the_same_checks_and_are_named():
-    said = refused("container.width_m=1100")
-    assert "[container] width_m" in said
-    assert "looks like millimetres: 1.1 m?" in said
-    assert "(--set container.width_m=1100)" in said
-
-
-def test_an_override_that_breaks_a_rule_of_another_key_is_named():
-    said = refused("contact.mu_static=0.1")
-    assert "mu_kinetic must be at most mu_static = 0.1" in said
-    assert "with --set contact.mu_static=0.1" in said
-
-
-@pytest.mark.parametrize(
-    ("override", "expected"),
-    [
-        ("contact.mu_static", "not of the form table.key=value"),
-        ("contact.mu_static=", "not of the form table.key=value"),
-        ("=0.4", "not of the form table.key=value"),
-        ("a.b.c=1", "not of the form table.key=value"),
-        ("contact mu=1", "not of the form table.key=value"),
-        ("contac.mu_static=0.4", "unknown table [contac]; did you mean 'contact'?"),
-        ("contact=1", "[contact] is a table; set one of its keys"),
-        ("contact.mu=1", "unknown key 'mu'; did you mean 'mu_static'?"),
-        ("mu_static=1", "unknown key 'mu_static'; it belongs into [contact]"),
-        ("contact.mu_static=.4", "got the text '.4'; write 0.4"),
-        ("contact.mu_static=0.4\n[motion]", "must be a number, got the text"),
-        ("contact.mu_static=0.4\nmu_kinetic=0.3", "must be a number, got the text"),
-        ("contact.mu_static=[0.4]", "must be a number, got a list"),
-        ("support.casting_m=0.1", "must be a list in brackets, got 0.1"),
-        ("container.post_m=0.1", "must be a list in brackets, got 0.1"),
-        ("contact.mu_static={a=1}", "must be a number, got a table"),
-        ("contact.mu_static=" + "[" * 2000, "must be a number, got the text"),
-        ("solver.duration_s=0", "duration_s must be between"),
-    ],
-)
-def test_a_setting_that_cannot_be_is_refused(override, expected):
-    assert expected in refused(override)
-
-
 def test_with_values_leaves_the_case_as_it_was_and_says_what_changed():
     case = load_case(BASE)
     changed = case.with_values({"contact.mu_static": 0.5, "solver.model": "rigid"})
