@@ -39,7 +39,7 @@ class Mutation:
     file: str  #: from the root of the project
     old: str
     new: str
-    tests: Sequence[str]  #: files from the folder of the tests, and options of pytest
+    tests: tuple[str, ...]  #: files from the folder of the tests, and options of pytest
 
     def broken(self, root: Path) -> str:
         """The file with the fault; empty where the text does not stand there just once."""
@@ -49,7 +49,8 @@ class Mutation:
 
 
 FAULTS = [
-    Mutation(**one) for one in tomllib.loads((Path(__file__).parent / "faults.toml").read_text())["fault"]
+    Mutation(**one | {"tests": tuple(one["tests"])})
+    for one in tomllib.loads((Path(__file__).parent / "faults.toml").read_text(encoding="utf-8"))["fault"]
 ]
 
 

@@ -1,4 +1,4 @@
-"""The faults keep up with the code; the verdict on one is its own: nothing computed before, or by chance, takes part."""
+"""The faults keep up with the code; the verdict on one is its own: nothing computed before or by chance takes part."""
 
 import ast
 

@@ -180,16 +180,6 @@ MARGIN = Margin(
 )
 
 
-@pytest.mark.parametrize(
-    ("low", "high", "words"), [(1.26, 1.49, "1.26 to 1.49"), (1.21, 1.26, "1.21 to 1.26")]
-)
-def test_the_range_of_the_margin_holds_the_margin_as_printed(low, high, words):
-    margin = replace(MARGIN, factor=1.26, low=low, high=high, draws=16)
-    assert f"at 1.26 times this motion ({words} over" in margin_in_words(
-        Verdict(outcome="rock", margin=margin)
-    )
-
-
 def test_the_margin_is_written_and_read():
     margin = replace(MARGIN, islands=((1.6, 1.7),))
     assert Verdict.from_json(Verdict(margin=margin).to_json()).margin == margin
