@@ -18,6 +18,7 @@ from textwrap import fill
 
 import pytest
 from cases import TEXTS, named_case
+from site_answers import answered
 from site_example import write_example
 from study_folders import ensemble_folder, response_folder
 from typed_results import told
@@ -66,6 +67,10 @@ def commanded(asked, capsys):
         assert (printed.out, sorted(Path().rglob("*"))) == ("", before)
     said = printed.out + printed.err + (f"[{code}]" if code else "")
     pages = [Path(line) for line in printed.out.splitlines() if line.endswith(".html")]
+    if asked.startswith("init ") and code == 0:
+        said += "".join(
+            path.read_text(encoding="utf-8") for path in Path().glob("*.toml") if path not in before
+        )
     return said + "\n".join(text_of_page(page.read_text(encoding="utf-8")) for page in pages)
 
 
@@ -105,17 +110,18 @@ def asked_in(file):
 
 
 def transcript(pairs, *, differing):
-    """The text of a file; where texts differ little, of all but the first only the lines that differ, each once."""
-    first, parts = None, []
+    """The text of a file; where texts differ little, of all but the first of a kind only the lines that differ."""
+    firsts, parts = {}, []
     for asked, said in pairs:
         if asked.startswith("#"):
             parts.append(asked)
             continue
         shown = lines = wrapped(said).splitlines()
-        if differing and first is not None:
+        kind = asked.split()[1] if differing == "pages" else differing
+        first = firsts.setdefault(kind, lines) if kind else lines
+        if first is not lines:
             found = difflib.unified_diff(*([*map(narrow, one)] for one in (first, lines)), n=0, lineterm="")
             shown = dict.fromkeys(line for line in found if line[:2] not in ("--", "++", "@@"))
-        first = first or lines
         parts += [asked, *(f"    {line}".rstrip() for line in shown)]
     return "\n".join(parts) + "\n"
 
@@ -139,13 +145,13 @@ def test_the_program_says_what_it_said_when_that_was_last_read(name, request, tm
     for case, text in TEXTS.items():
         (tmp_path / f"{case}.toml").write_text(text, encoding="utf-8")
     monkeypatch.chdir(tmp_path)
-    say = {"refusals": refused, "results": told, "pages": paged}.get(
+    say = {"refusals": refused, "results": told, "answers": answered, "pages": paged}.get(
         name, lambda asked: commanded(asked, capsys)
     )
     pairs = [
         (asked, "" if asked.startswith("#") else steady(say(asked[2:]), tmp_path)) for asked in asked_in(file)
     ]
-    text = transcript(pairs, differing=name == "results")
+    text = transcript(pairs, differing=name if name in ("results", "pages") else "")
     if request.config.getoption("--say"):
         file.write_text(text, encoding="utf-8")
     before = file.read_text(encoding="utf-8")
