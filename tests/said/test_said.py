@@ -38,6 +38,7 @@ FLEETING = (
     (r"(versions|hash) \| .*", r"\1 |"),
     (r"unanchored \d+\.\d+\.\d+( on [\d-]+)?", "unanchored"),
     (r"room for [\d.]+ .B", "room for SOME"),
+    (r"roughly\s+[\d.]+\s+(s|min|h)(\s+on\s+\d+\s+cores)?", "roughly SOME"),
     (r"\b[\d.]+ × 10⁻¹\d", "ROUNDING"),
 )
 
@@ -145,6 +146,7 @@ def test_the_program_says_what_it_said_when_that_was_last_read(name, request, tm
     for case, text in TEXTS.items():
         (tmp_path / f"{case}.toml").write_text(text, encoding="utf-8")
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "80")
     say = {"refusals": refused, "results": told, "answers": answered, "pages": paged}.get(
         name, lambda asked: commanded(asked, capsys)
     )

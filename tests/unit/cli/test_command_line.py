@@ -90,18 +90,21 @@ def run_in_shell(command):
     return done.returncode, done.stdout, done.stderr
 
 
+@pytest.mark.slow
 def test_an_output_stream_that_lacks_some_signs_gets_others():
     said = "from fem import __main__ as m; m.build_app = lambda: lambda *_, **__: print('a ─'); m.program()"
     code, out, err = run_in_shell(f'PYTHONIOENCODING=cp1252 {{python}} -c "{said}" list')
     assert (code, err) == (0, "") and out.endswith(" ?\n")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("closed", [">&-", "2>&-", ">&- 2>&-", "<&- >&- 2>&-"])
 def test_streams_that_are_closed_are_no_error(closed):
     code, _, err = run_in_shell(f"{{python}} -m fem list {closed}")
     assert (code, err) == (0, "")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("words", ["list", "--help", "run --help"])
 def test_a_reader_that_has_seen_enough_is_no_error(words):
     reader, writer = os.pipe()
@@ -191,6 +194,7 @@ def test_a_place_that_cannot_be_written_is_refused_before_anything_is_computed(
     assert [path.name for path in tmp_path.iterdir()] == ["hall.csv"]
 
 
+@pytest.mark.slow
 def test_work_goes_on_when_nobody_reads_its_progress_any_more():
     said = (
         "import sys; from fem.runtime.progress import ScreenReporter as R; r = R();"
@@ -199,6 +203,7 @@ def test_work_goes_on_when_nobody_reads_its_progress_any_more():
     assert run_in_shell(f'{{python}} -c "{said}" 2> >(head -n 1 > /dev/null)')[:2] == (0, "done\n")
 
 
+@pytest.mark.slow
 def test_a_reader_that_leaves_early_is_no_error():
     command = f"{sys.executable} -m fem schema | head -n 1; exit ${{PIPESTATUS[0]}}"
     result = subprocess.run(["bash", "-c", command], capture_output=True, text=True, check=False)
