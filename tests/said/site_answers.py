@@ -51,6 +51,6 @@ def answer(*stages, **beside):
 
 
 def answered(asked):
-    """The sentence, and the reasons against."""
+    """The sentence, the reasons against, and the rule."""
     found = eval(f"answer({asked})")  # a line of this folder
-    return "\n".join([f"{found.answer}: {found.sentence}", *found.reasons])
+    return "\n".join([f"{found.answer}: {found.sentence}", *found.reasons, f"rule: {found.rule}"])

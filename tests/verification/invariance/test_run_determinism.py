@@ -26,7 +26,11 @@ THREADED = (FLAT, (*COARSE, "solver.duration_s=0.1"), ("solver.model=rigid", "so
 
 @pytest.mark.parametrize(
     "overrides",
-    [pytest.param(FLAT, marks=pytest.mark.slow), pytest.param(THREADED[1], marks=pytest.mark.slow), THREADED[2]],
+    [
+        pytest.param(FLAT, marks=pytest.mark.slow),
+        pytest.param(THREADED[1], marks=pytest.mark.slow),
+        THREADED[2],
+    ],
     ids=["reduced", "full", "rigid"],
 )
 def test_the_number_of_threads_changes_no_byte(tmp_path, overrides):
