@@ -4,10 +4,11 @@ from dataclasses import replace
 
 from site_example import RUN, example
 
-from fem.site_check.answer import Beside, answer_of
-from fem.site_check.file import load_site
-from fem.site_check.result import ConfirmedRun, TwoDirections
-from fem.site_check.runs import FURTHER, REPEATED, REPETITIONS, key_of
+from fem.site.answer import Beside, answer_of
+from fem.site.request import load_site
+from fem.site.result import FURTHER, REPEATED, ConfirmedRun, TwoDirections
+from fem.site.runs import key_of
+from fem.site.stages import REPETITIONS
 
 MOTIONS = example()[0].set
 

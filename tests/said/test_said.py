@@ -28,7 +28,7 @@ from fem.case.case import CaseError, load_case
 from fem.case.overrides import parse_override
 from fem.report.ensemble_page import ensemble_report
 from fem.report.response_page import response_report
-from fem.site_check.page.site_page import site_report
+from fem.site.page import site_report
 
 HERE = Path(__file__).parent
 BAD_INPUT = 2  #: exit code; then nothing is printed but the reason, and nothing is written

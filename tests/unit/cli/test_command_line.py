@@ -210,6 +210,17 @@ def test_a_reader_that_leaves_early_is_no_error():
     assert (result.returncode, result.stderr) == (0, "")
 
 
+@pytest.mark.parametrize("command", ["verify --quick", "validate", "study seed", "report ."])
+def test_what_needs_the_clone_says_so_without_its_tests(tmp_path, monkeypatch, capsys, command):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("fem.cli.evidence.TESTS", tmp_path / "tests")
+    (tmp_path / "study.json").write_text("{}")
+    assert command_line.main(command.split()) == 2
+    said = capsys.readouterr()
+    assert said.out == "" and "the checks are in the folder tests of a clone" in said.err
+    assert [path.name for path in tmp_path.iterdir()] == ["study.json"]
+
+
 SLOW_PACKAGES = ("numba", "skfem", "scipy", "pyvista", "matplotlib", "meshio", "numpy")
 
 

@@ -14,7 +14,6 @@ from fem.figures.run import figures_of
 from fem.model.model import build_model
 from fem.report.animation import animation_of
 from fem.report.run_page import run_report
-from fem.report.variations import further_changes
 from fem.response.request import ResponseRequest
 from fem.results.reader import open_run
 from fem.run.run import RunOptions, run_case
@@ -136,17 +135,6 @@ def test_a_response_curve_has_no_vertical_motion():
         CaseError, match=r'\[vertical\] kind must be "none" for a response curve, got "harmonic"'
     ):
         ResponseRequest(case=case, first_Hz=0.5, last_Hz=1.0, count=3)
-
-
-def test_variations_try_the_other_sign_and_strengthen_both_motions():
-    changed = [one.values for one in further_changes(load_case("seed_stack_plateau", VERTICAL))]
-    assert {"vertical.scale": 1.0} in changed
-    assert {"vertical.kind": "none"} in changed
-    (stronger,) = (one for one in changed if one.get("vertical.peak_acceleration_m_s2", 0.0) > 3.0)
-    assert stronger["motion.peak_acceleration_m_s2"] == pytest.approx(1.1 * 4.0)
-    assert stronger["vertical.peak_acceleration_m_s2"] == pytest.approx(1.1 * 3.0)
-    plain = [one.values for one in further_changes(load_case("seed_stack_plateau"))]
-    assert not [values for values in plain if any(key.startswith("vertical") for key in values)]
 
 
 def test_a_container_that_leaves_its_floor_hops_and_its_verdict_is_tried():

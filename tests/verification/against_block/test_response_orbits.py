@@ -4,13 +4,13 @@ import math
 
 import numpy as np
 import pytest
+from closed_forms_rocking import symmetric_orbit_slender
+from closed_forms_sliding import steady_stroke
+from runs import STACK
 
-from contact.reference.closed_forms_rocking import symmetric_orbit_slender
-from contact.reference.closed_forms_sliding import steady_stroke
 from contact.reference.floor_acceleration import sine_floor, still_floor
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
-from fem.evidence.verification.runs import STACK
 from fem.model.container import discretise
 from fem.response.branches import coexistences, drop_outs, jumps
 from fem.response.curve import follow_point, sweep_points
