@@ -13,6 +13,10 @@ settings.load_profile("suite")
 WHOLE = 1000  #: tests, from which a run is one of the whole suite
 
 
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--say", action="store_true", help="write the texts of tests/said as they are said now")
+
+
 @pytest.hookimpl(tryfirst=True)
 def pytest_configure(config: pytest.Config) -> None:
     """Give a file to one worker: what its tests share is then made once."""

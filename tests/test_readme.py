@@ -200,5 +200,5 @@ def test_links_within_the_repository_lead_somewhere(page):
 
 def test_files_and_scripts_named_in_the_readme_exist():
     named = re.findall(r"`(?:python )?((?:tests|\.ci)/[\w/.]+)`", README)
-    assert {"tests/benchmarks/full_box.py", ".ci/run"} <= set(named)
+    assert {"tests/benchmarks/bench.py", ".ci/run"} <= set(named)
     assert [name for name in named if not (ROOT / name).exists()] == []

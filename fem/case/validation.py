@@ -101,7 +101,7 @@ def read_case_tables(data: Mapping[str, Any]) -> tuple[dict[str, Any], list[Prob
         partial[name] = _ReadInPart(**part)
         if not faults:
             read[name] = model.model_validate(given)
-    for name in ROWS.keys() & data.keys():
+    for name in (one for one in ROWS if one in data):
         rows, faults = _read_rows(name, ROWS[name], data[name], range(MOST_ROWS + 1))
         problems += faults
         if not faults:

@@ -2,7 +2,7 @@
 
     python tests/mutations/break_the_physics.py [-j JOBS] [--only WORDS]
 
-Each fault of `mutations` is put into a copy of the project, and the fast tests named beside it are run there. Every
+Each fault of `faults.toml` is put into a copy of the project, and the fast tests named beside it are run there. Every
 fault has a copy and an empty kernel cache of its own, and random tests draw the same examples in every run, so that a
 verdict does not depend on the faults before it, nor on chance. A fault that no test notices survives; then the script
 ends with 1. It ends with 2 where a fault cannot be judged: its text is no longer there, or the tests do not pass
@@ -17,6 +17,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import tomllib
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
@@ -24,12 +25,33 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from mutation import ROOT, SOURCES, Mutation
-from mutations import MUTATIONS
-
+ROOT = Path(__file__).parents[2]
 COPIED = ("fem", "mesh", "contact", "tests")
 TESTS_PASSED, TESTS_FAILED = 0, 1  #: exit codes of pytest; all others are no verdict
 LONGEST = 900.0  #: [s] for the tests of one fault
+
+
+@dataclass(frozen=True, kw_only=True)
+class Mutation:
+    """One fault: a piece of text that stands once in a file, and what it becomes."""
+
+    name: str  #: what is wrong then
+    file: str  #: from the root of the project
+    old: str
+    new: str
+    tests: tuple[str, ...]  #: files from the folder of the tests, and options of pytest
+
+    def broken(self, root: Path) -> str:
+        """The file with the fault; empty where the text does not stand there just once."""
+        path = root / self.file
+        text = path.read_text(encoding="utf-8") if path.is_file() else ""
+        return text.replace(self.old, self.new) if text.count(self.old) == 1 else ""
+
+
+FAULTS = [
+    Mutation(**one | {"tests": tuple(one["tests"])})
+    for one in tomllib.loads((Path(__file__).parent / "faults.toml").read_text(encoding="utf-8"))["fault"]
+]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,7 +72,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     )
     parser.add_argument("--only", default="", help="faults whose name or file contains these words")
     options = parser.parse_args(arguments)
-    chosen = [m for m in MUTATIONS if options.only in f"{m.file}: {m.name}"]
+    chosen = [m for m in FAULTS if options.only in f"{m.file}: {m.name}"]
     with tempfile.TemporaryDirectory(prefix="broken-physics-") as name:
         folder = Path(name)
         sound = soundness(folder, chosen)
@@ -81,11 +103,11 @@ def soundness(folder: Path, mutations: Sequence[Mutation]) -> str:
 def judge(mutation: Mutation, folder: Path) -> Finding:
     """Put one fault into a copy of its own and run its tests."""
     began = time.perf_counter()
-    if not mutation.file:
-        verdict, by = "no verdict", "its text does not stand once in the sources"
+    broken = mutation.broken(ROOT)
+    if not broken:
+        verdict, by = "no verdict", "its text does not stand once in its file"
     else:
         with copied_tree(folder) as tree:
-            broken = SOURCES[mutation.file].replace(mutation.old, mutation.new)
             (tree / mutation.file).write_text(broken, encoding="utf-8")
             code, by = run_tests(tree, mutation.tests)
         verdict = {TESTS_PASSED: "SURVIVES", TESTS_FAILED: "noticed"}.get(code, "no verdict")

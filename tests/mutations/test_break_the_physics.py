@@ -1,9 +1,10 @@
-"""The verdict on a fault is that of the fault: nothing computed for another one, or by chance, takes part in it."""
+"""The faults keep up with the code; the verdict on one is its own: nothing computed before or by chance takes part."""
+
+import ast
 
 import break_the_physics
 import pytest
-from break_the_physics import SOURCES, judge, soundness
-from mutation import Mutation
+from break_the_physics import FAULTS, ROOT, Mutation, judge, soundness
 
 #: a law, and what computes with it once and then keeps the result by the place of its file, as numba keeps a kernel
 PROJECT = {
@@ -41,6 +42,23 @@ def test_examples_are_the_same_every_time():
 }
 
 
+def test_there_are_enough_faults_and_no_two_alike():
+    assert len(FAULTS) >= 150
+    assert len({(m.file, m.old) for m in FAULTS}) == len({m.name for m in FAULTS}) == len(FAULTS)
+    assert {m.file.split("/")[0] for m in FAULTS} == {"fem", "mesh", "contact"}
+
+
+@pytest.mark.parametrize("mutation", FAULTS, ids=lambda mutation: mutation.name)
+def test_a_fault_stands_once_in_its_file_leaves_code_and_has_tests(mutation):
+    text = (ROOT / mutation.file).read_text(encoding="utf-8")
+    assert ast.dump(ast.parse(mutation.broken(ROOT))) not in (
+        ast.dump(ast.parse(text)),
+        ast.dump(ast.parse("")),
+    )
+    files = [test for test in mutation.tests if test.endswith(".py")]
+    assert files and all((ROOT / "tests" / name).is_file() for name in files)
+
+
 @pytest.fixture
 def project(tmp_path, monkeypatch):
     """A project of two modules; the folder for its copies."""
@@ -49,14 +67,13 @@ def project(tmp_path, monkeypatch):
         path = tmp_path / "project" / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text)
-        monkeypatch.setitem(SOURCES, name, text)
     copies = tmp_path / "copies"
     copies.mkdir()
     return copies
 
 
-def fault(new: str) -> Mutation:
-    return Mutation(name=new, old="FACTOR = 2.0", new=new, tests=("test_law.py",))
+def fault(new: str, old: str = "FACTOR = 2.0") -> Mutation:
+    return Mutation(name=new, file="contact/law.py", old=old, new=new, tests=("test_law.py",))
 
 
 def test_no_fault_is_judged_by_what_was_computed_before_it(project):
@@ -67,7 +84,4 @@ def test_no_fault_is_judged_by_what_was_computed_before_it(project):
 
 
 def test_a_fault_that_has_no_place_is_not_judged(project):
-    assert (
-        judge(Mutation(name="lost", old="FACTOR = 7", new="", tests=("test_law.py",)), project).verdict
-        == "no verdict"
-    )
+    assert judge(fault("", old="FACTOR = 7"), project).verdict == "no verdict"

@@ -6,37 +6,11 @@ import pytest
 from cases import LEAST
 
 from fem.__main__ import main
-from fem.assessment.code_note import code_note
-from fem.assessment.summary import plain_summary
 from fem.case.case import load_case, read_case
 from fem.case.template import case_template
-from fem.model.geometry import build_container
-from fem.model.static_checks import static_checks_of
-from fem.results.run_result import RunResult, StaticResult
 
 STATIC = "[static]\nground_acceleration_m_s2 = 0.8\nsoil_factor = 1.2\ncorner_period_s = 0.3\n"
 APPLIES_NOT = "does not apply"
-
-
-def summary_of(text, folder):
-    case = read_case(text)
-    static = static_checks_of(case, build_container(case), 2.0).to_result()
-    return plain_summary(RunResult(status="completed", static=static), folder=folder)
-
-
-def test_the_summary_names_whose_values_the_codes_rows_take(tmp_path):
-    text = " ".join(summary_of(LEAST + STATIC, tmp_path).split())
-    assert "code, q" in text and "q = 1" in text
-    assert "a_gR = 0.8 m/s2, S = 1.2, q = 1.5, gamma_I = 1, T_C = 0.3 s" in text
-    assert text.count(APPLIES_NOT) == 1
-    assert "the rocking period, 2 s, is above min(4 T_C, 2 s) = 1.2 s (EN 1998-1:2004, 4.3.3.2.1 (2))" in text
-
-
-def test_without_static_only_the_own_peak_is_compared(tmp_path):
-    text = summary_of(LEAST, tmp_path)
-    assert "own peak" in text
-    for word in ("code", "q = 1", "4.3.3.2", APPLIES_NOT):
-        assert word not in text
 
 
 def test_an_empty_table_takes_the_defaults_and_is_kept():
@@ -64,16 +38,6 @@ def test_check_shows_the_codes_rows_where_they_are_given(tmp_path, capsys, given
     assert main(["check", str(path), "--json"]) == 0
     static = json.loads(capsys.readouterr().out)["static"]
     assert (static["code"] is not None, static["code_q1"] is not None) == (given, given)
-
-
-def test_a_result_of_before_names_no_values():
-    old = {
-        "code": {"base_shear_N": 1.0},
-        "method_applicable": False,
-        "clause": "EN 1998-1:2004, 4.3.3.2.1 (2)",
-    }
-    note = code_note(StaticResult.from_json(old))
-    assert "take the values of the case. They" in note and note.count(APPLIES_NOT) == 1
 
 
 @pytest.mark.parametrize("name", ["seed_box", "rocking", "sliding", "overturning", "free_rocking"])

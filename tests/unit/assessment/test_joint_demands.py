@@ -1,7 +1,5 @@
 """What bolts and friction in a joint must carry, against statics by hand; and what the summary says of it."""
 
-from dataclasses import replace
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -9,11 +7,8 @@ import pytest
 from cases import named_case
 
 from fem.assessment.joint_demands import edge_forces, joint_demands
-from fem.assessment.joint_tables import unbolted
-from fem.assessment.summary import plain_summary
 from fem.case.columns import ALWAYS, JOINTS
 from fem.results.history import History, numbers_of
-from fem.results.run_result import RunResult, Verdict
 
 #: normal, shear, moment at 0, 1, 2 and 3 s: pressed in the middle; beyond a sixth of the width; beyond its edge, the
 #: left one open; lifted off
@@ -72,26 +67,3 @@ def test_the_impact_of_an_overturned_stack_does_not_count():
 
 def test_a_single_box_has_no_joints():
     assert joint_demands(stack(), History.empty()) is None
-
-
-def page(joints, **verdict) -> str:
-    result = RunResult(status="completed", joints=tuple(joints), verdict=Verdict(**verdict))
-    return " ".join(plain_summary(result, folder=Path("outputs")).split())
-
-
-def test_the_page_names_what_an_unbolted_joint_would_do():
-    assert unbolted(demands(FORCES)[0]) == "opens at 2 s, slides at 1 s"
-    assert unbolted(demands(FORCES[:1])[0]) == "stays closed, sticks"
-    assert "no mu" in page(demands(FORCES))
-
-
-def test_the_table_warns_of_elastic_impacts_and_names_the_loose_run():
-    bolted, loose = demands(FORCES[:1]), "with loose joints"
-    assert "overstate" in page(bolted, impacts=3) and loose in page(bolted, impacts=3)
-    assert "overstate" not in page(bolted, impacts=0) and loose in page(bolted, impacts=0)
-
-
-def test_of_many_joints_the_page_shows_those_that_decide():
-    one, worse = demands(FORCES[:1])[0], demands(FORCES)[0]
-    text = page([*[replace(one, height_m=float(k)) for k in range(1, 12)], replace(worse, height_m=12.0)])
-    assert "12 m" in text and "11 more joints are in run.json" in text

@@ -1,21 +1,14 @@
 """How sure a verdict is, which inputs decide, a range across zero, and the static rule or the run."""
 
-from dataclasses import replace
-
 import pytest
 
-from fem.assessment.ranges import IMPACT, largest_stress, of_band
-from fem.assessment.rule_or_run import governing
 from fem.assessment.sure_words import sureness_in_words
 from fem.assessment.sureness import judged
 from fem.case.uncertainty import InputChange
 from fem.results.figures import BoxResult
 from fem.results.run_result import (
-    ActionResult,
-    Band,
     ChangedRun,
     RunResult,
-    StaticResult,
     Verdict,
 )
 
@@ -202,111 +195,7 @@ def test_draws_that_overturn_are_counted_with_their_interval_and_the_value_that_
     assert each.endswith(" Pa/m, or with one of 2 other changes.")
 
 
-@pytest.mark.parametrize(
-    ("found", "own", "said"),
-    [
-        ([(HALF, {}), (STIFF, {})], {}, "Sure: stands in all 2 variations."),
-        ([(HALF, FELL)], FELL, "Sure: overturns in the one variation."),
-        (
-            [(HALF, {"outcome": "slide", "max_slip_m": 0.5, "rotation_ratio": 1e-4}), (STIFF, {})],
-            {"outcome": "rock", "max_slip_m": 6e-4},
-            "Stands in all 2 variations. It may slide instead of rock, depending on kinetic friction. Slip is 0.60 to "
-            "500 mm, the rotation ratio up to 0.20.",
-        ),
-        (
-            [(HALF, {"max_slip_m": 0.032}), (STIFF, {})],
-            {"max_slip_m": 6e-4},
-            "Stands in all 2 variations. How far it moves depends on kinetic friction. Slip is 0.60 to 32 mm, the "
-            "rotation ratio 0.200.",
-        ),
-        (
-            [(FINE, FELL), (HALF, {})],
-            {},
-            "Unsure: numerically: it overturns with steps ten times as accurate.",
-        ),
-    ],
-)
-def test_the_words_say_what_the_variations_showed(found, own, said):
-    assert words(*found, **own) == said
-    assert not any(key in said for key in ("contact.", "mu_", "solver."))
-
-
-@pytest.mark.parametrize(
-    ("own", "others", "may"),
-    [
-        ("slide-rock", ["rock"], "rock without sliding"),
-        ("slide-rock", ["rest", "rock"], "rock without sliding or rest"),
-        ("slide-rock", ["slide"], "slide without rocking"),
-        ("rest", ["rock", "slide"], "slide or rock"),
-        ("rest", ["hop"], "hop"),
-        ("slide", ["rock"], "rock instead of slide"),
-        ("slide", ["slide-rock"], "rock"),
-        ("rock", ["slide", "rest"], "slide instead of rock"),
-        ("rock", ["rest"], "rest"),
-    ],
-)
-def test_what_it_may_do_is_what_the_variations_did(own, others, may):
-    changes = [HALF, EQUAL][: len(others)]
-    found = [(one, {"outcome": word}) for one, word in zip(changes, others, strict=True)]
-    assert f" It may {may}, depending on kinetic friction. Slip is " in words(*found, outcome=own)
-
-
 def test_a_step_that_decides_is_no_input():
     found = verdict((FINE, FELL), (HALF, {}))
     assert (found.sure, found.numerically_unsure, found.decided_by) == ("unsure", True, ())
     assert not verdict((FINE, {}), (HALF, FELL)).numerically_unsure
-
-
-def test_a_slip_whose_sign_changes_is_told_with_its_range():
-    known = Verdict(residual_slip_m=-0.184, band=Band(residual_slip_m=(-0.339, 0.008)))
-    assert of_band(known, "residual_slip_m") == "-180 (-340 to 8.0) mm"
-    one_way = replace(known, band=Band(residual_slip_m=(-0.339, -0.008)))
-    assert of_band(one_way, "residual_slip_m") == "-180 (-340 to -8.0) mm"
-
-
-def test_an_elastic_stress_beyond_yield_is_no_bare_number():
-    beyond = Verdict(
-        max_von_mises_Pa=1107e6, yield_strength_Pa=235e6, impacts=3, band=Band(max_von_mises_Pa=(7e8, 1.3e9))
-    )
-    assert largest_stress(beyond) == (
-        f"beyond yield (235 MPa); the shell stays elastic and has 1100 (700 to 1300) MPa; {IMPACT}"
-    )
-    within = replace(beyond, max_von_mises_Pa=1e8, band=Band(max_von_mises_Pa=(5e7, 3e8)), impacts=0)
-    assert largest_stress(within).startswith("beyond yield within the band (235 MPa)")
-    assert largest_stress(replace(within, band=None)) == "100 MPa"
-
-
-@pytest.mark.parametrize(
-    ("own", "members", "words"),
-    [
-        ({"outcome": "slide"}, None, "only the band can tell"),
-        ({"outcome": "slide"}, [(EQUAL, RESTS)], "The rule governs: with kinetic friction 0.4"),
-        (
-            {"outcome": "slide"},
-            [(EQUAL, {})],
-            "The run governs: it slides with every friction law tried (1)",
-        ),
-        ({"outcome": "slide"}, [(STIFF, {})], "The run governs: its friction does not drop"),
-        ({"outcome": "rock"}, None, "only the band can tell"),
-        (
-            {"outcome": "rock"},
-            [(FLOOR, RESTS)],
-            "The rule governs: the motion is below uplift of a rigid block",
-        ),
-        ({"outcome": "rock"}, [(FLOOR, {})], "Inconclusive: the motion is below uplift"),
-        ({"outcome": "rock"}, [(STIFF, {})], "The run governs: it rocks with every single change"),
-        (
-            {"outcome": "rock"},
-            [(STIFF, RESTS)],
-            "Inconclusive: rocking depends on stiffness of the contact",
-        ),
-        ({"outcome": "rest"}, [(STIFF, {})], None),
-    ],
-)
-def test_where_rule_and_run_disagree_it_is_said_which_governs(own, members, words):
-    static = StaticResult(own_motion=ActionResult(utilisation_sliding=0.8, utilisation_overturning=0.95))
-    given = Verdict(**own) if members is None else verdict(*members, **own)
-    said = governing(RunResult(status="completed", verdict=given, static=static))
-    assert [words in one for one in said] == ([] if words is None else [True])
-    over = replace(static, own_motion=ActionResult(utilisation_sliding=1.1, utilisation_overturning=1.1))
-    assert governing(RunResult(status="completed", verdict=given, static=over)) == ()

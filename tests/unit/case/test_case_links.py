@@ -45,23 +45,6 @@ def test_the_rows_given_stay_as_they_are():
         RIGID.with_values({"stop": [1.0], "stop.gap_m": 0.3})
 
 
-@pytest.mark.parametrize(
-    ("keys", "reason"),
-    [
-        ({"gap_m": -0.01}, r"stop 1: gap_m must be between 0 and .* would overlap at the start"),
-        ({"strength_N": 0.0}, "stop 1: strength_N must be .* holds nothing"),
-        ({"height_m": 4.5}, "stop. height_m must be at most the height of the container, 4 m, got 4.5 m"),
-        ({"from": "top"}, 'tie 1: from must be "left" or "right"'),
-        ({"stiffness_N_m": 0.0}, "tie 1: stiffness_N_m must be"),
-        ({"restitution": 0.5, "damping_ratio": 1.0}, "restitution and damping_ratio say the same"),
-        ({"heigth_m": 1.0}, "unknown key 'heigth_m'; did you mean 'height_m'"),
-    ],
-)
-def test_what_holds_nothing_or_overlaps_is_refused(keys, reason):
-    with pytest.raises(CaseError, match=reason):
-        held(**keys)
-
-
 BESIDE = {"side": "right", "gap_m": 0.1, "stiffness_N_m": 1e8}
 STRAP = {"from": "right", "height_m": 0.5, "stiffness_N_m": 1e6}
 
@@ -81,12 +64,6 @@ def test_a_tie_in_a_row_runs_to_the_floor_or_to_a_wall(keys, reason):
     low = {**BESIDE, "boxes": 1, "height_m": 0.7, "centroid_m": 0.35}
     with pytest.raises(CaseError, match=reason):
         RIGID.with_values({"neighbour": [low], "tie": [STRAP | keys]})
-
-
-def test_what_is_no_row_of_tables_is_refused():
-    for wrong in ("right", {"side": "right"}, [1.0]):
-        with pytest.raises(CaseError, match=r"must be 0 to 20 tables \[\[stop\]\]"):
-            RIGID.with_values({"stop": wrong})
 
 
 def test_gap_stiffness_and_friction_are_unknown_of_different_stops_in_proportion():

@@ -83,43 +83,6 @@ def test_no_container_of_a_row_gains_at_an_impact_but_by_its_own_case():
             refuse(stated)
 
 
-@pytest.mark.parametrize(
-    ("keys", "reason"),
-    [
-        ({"gap_m": -0.01}, "neighbour 1: gap_m must be between 0 and"),
-        ({"side": "top"}, 'neighbour 1: side must be "left" or "right"'),
-        ({"stiffness_N_m": 0.0}, "neighbour 1: stiffness_N_m must be"),
-        ({"restitution": 0.5, "damping_ratio": 1.0}, "restitution and damping_ratio say the same"),
-        ({"mu_static": 0.1}, "unknown key 'mu_static'"),
-    ],
-)
-def test_a_neighbour_that_cannot_be_is_refused(keys, reason):
-    with pytest.raises(CaseError, match=reason):
-        RIGID.with_values({"neighbour": [{**BESIDE, **keys}]})
-
-
-@pytest.mark.parametrize(
-    ("changes", "reason"),
-    [
-        (
-            {"solver.model": "reduced"},
-            r'model must be "rigid" with \[\[neighbour\]\]: containers in a row are rigid',
-        ),
-        ({"container.joints": "loose"}, 'joints must be "bolted"'),
-        ({"support.kind": "flat"}, 'kind must be "corners"'),
-        ({"output.stop_when_overturned": False}, "what a fallen container strikes is not modelled"),
-        (
-            {"neighbour": [{**BESIDE, "boxes": 1}], "stop": [{**BESIDE, "height_m": 2.0}]},
-            r"\[stop\] height_m must be at most the height of neighbour 1, 1 m, got 2 m",
-        ),
-        ({"neighbour": [BESIDE] * 6}, "six containers at most"),
-    ],
-)
-def test_what_does_not_go_with_a_row_is_refused_with_its_reason(changes, reason):
-    with pytest.raises(CaseError, match=reason):
-        RIGID.with_values({"neighbour": [BESIDE], **changes})
-
-
 def test_a_mass_beside_the_axis_needs_two_columns_in_every_container_of_a_row():
     wide = RIGID.with_values(
         {"container.width_m": 4.0, "container.wall_m": None, "solver.element_size_m": 1.0}

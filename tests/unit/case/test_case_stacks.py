@@ -7,7 +7,6 @@ from fem.case.case import Case, CaseError, case_hash, read_case, to_toml
 from fem.case.tables.unknown_inputs import ranges_of
 from fem.case.template import case_template
 
-LOOSE = "joints = 'loose'"
 BOX = "[[container.box]]\n"
 LIGHT = f"{BOX}width_m = 0.8\nheight_m = 0.6\nmass_kg = 800.0\noffset_m = 0.1\n"
 
@@ -101,46 +100,3 @@ def test_joints_of_a_bolted_stack_play_no_part():
 def test_a_number_of_boxes_replaces_tables_of_boxes():
     case = stack().with_values({"container.boxes": 3})
     assert (case.container.box, len(case.stack)) == (None, 3)
-
-
-@pytest.mark.parametrize(
-    ("boxes", "more", "expected"),
-    [
-        (f"boxes = 2\n{BOX}{BOX}", "", "[container] boxes cannot stand beside [[container.box]], of which each"),
-        ("joints = 'loose'", "", '[container] joints = "loose" needs two boxes or more: a stack of one has no joints'),
-        ("", "[joints]\nmu_static = 0.3", "[joints] is friction between boxes, but a stack of one has no joints"),
-        ("boxes = 2\njoints = 'glued'", "", '[container] joints must be "bolted" or "loose", got the text \'glued\''),
-        (
-            "boxes = 2\njoints = 'loose'",
-            "[joints]\nmu_static = 0.3\nmu_kinetic = 0.4",
-            "[joints] mu_kinetic must be at most mu_static = 0.3 of the joints, got 0.4",
-        ),
-        (f"boxes = 2\n{LOOSE}", "[support]\nkind = 'flat'", "[support] kind must be \"corners\" with container.joints"),
-        (f"boxes = 2\n{LOOSE}", "[initial]\nrotation_rad = 0.1", "[initial] rotation_rad does not apply to container"),
-        (f"boxes = 2\n{LOOSE}", "[initial]\nangular_velocity_rad_s = 0.1", "[initial] angular_velocity_rad_s does not"),
-        (f"boxes = 2\n{LOOSE}", "[output]\nstop_when_overturned = false", "[output] stop_when_overturned must be true"),
-        ("boxes = 2", "[joints]\nmu_static = 30.0", "[joints] mu_static must be between 0 and 5, got 30"),
-        (
-            f"{BOX}{BOX}offset_m = 0.6\n",
-            "",
-            "[container] box 2: the mass centre of what stands on box 1 is at x = 0.6 m, outside the face that "
-            "carries it, which reaches from x = 0.05 to 0.55 m",
-        ),
-        (f"{BOX}{BOX}offset_m = 1.2\n", "", "outside the face that carries it, which has no width"),
-        (
-            f"{BOX}width_m = 0.4\n{BOX}offset_m = 0.15\n{BOX}offset_m = 0.4\nmass_kg = 3000.0\n",
-            "",
-            "[container] box 2: the mass centre of what stands on box 1 is at x = 0.368",
-        ),
-        (f"{BOX}offset_m = 0.1\n{BOX}", "", "[container] box 1: offset_m is measured from the axis of the box below"),
-        (f"{BOX}{BOX}widht_m = 1.0", "", "[container] box 2: unknown key 'widht_m'; did you mean 'width_m'?"),
-        (f"{BOX}{BOX}width_m = 1100.0", "", "box 2: width_m must be between 0.001 and 100 m, got 1100 m; looks like m"),
-        (f"{BOX}{BOX}mass_kg = '3 t'", "", "[container] box 2: mass_kg must be a number"),
-        (f"{BOX}{BOX}centroid_m = 1.2", "", "box 2: centroid_m must be less than its height_m = 1 m, got 1.2 m"),
-        (f"{BOX}{BOX}mass_kg = 2.5", "", "box 2: 2.5 kg on 1.1 x 1.1 x 1 m is a mean density of 2.07 kg/m3"),
-        (f"{BOX}{BOX}height_m = 0.05", "", "box 2: width_m over height_m must lie between 0.02 and 20"),
-        (f"wall_m = 0.01\n{BOX}{BOX}wall_m = 0.5", "", "box 2: wall_m must be less than half its smallest outer"),
-    ],
-)  # fmt: skip
-def test_a_stack_that_cannot_be_is_refused_in_words(boxes, more, expected):
-    assert expected in refused(boxes, more=more)

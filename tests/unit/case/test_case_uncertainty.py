@@ -381,32 +381,6 @@ def test_a_stiff_floor_is_thirty_times_as_stiff():
     }
 
 
-@pytest.mark.parametrize(
-    ("key", "value", "said"),
-    [
-        (
-            "mu_kinetic",
-            [0.3, 0.2],
-            "must be [low, high] with low at most high, got [0.3, 0.2]; write [0.2, 0.3]",
-        ),
-        ("mu_kinetic", [-0.1, 0.2], "must be between 0 and 5, got -0.1; steel on concrete has 0.3 to 0.4"),
-        ("mu_kinetic", 0.3, 'must be [low, high] or "held", got 0.3'),
-        ("mu_kinetic", [0.3], 'must be [low, high] or "held", got a list'),
-        ("mu_kinetic", ["a", 0.3], 'must be [low, high] or "held", got a list'),
-        ("mu_kinetic", "unknown", "must be [low, high] or \"held\", got the text 'unknown'"),
-        ("weakening_m", [0.0, 5.0], "must be between 0 and 0.1 m, got 5 m; looks like micrometres: 5e-06 m?"),
-        ("damping_ratio", [0.0, 1e9], "must be between 0 and 1000, got 1e+09; 2 is usual"),
-        ("start", "rest", "must be true, false or \"held\", got the text 'rest'"),
-        ("draws", -1, "must be between 0 and 1024, got -1; 32 is usual"),
-        ("mu", [0.1, 0.2], "unknown key 'mu'; did you mean 'mu_static'?"),
-    ],
-)
-def test_bad_ranges_are_refused_with_a_way_out(key, value, said):
-    with pytest.raises(CaseError) as refused:
-        named_case("harmonic", {f"uncertainty.{key}": value})
-    assert said in str(refused.value) and "[uncertainty] " in str(refused.value)
-
-
 @pytest.mark.parametrize("width", [0.4, 1.1, 1.35, 1.41, 1.45, 1.6, 2.5])
 @pytest.mark.parametrize("ratio", [None, 0.95])
 def test_the_impacts_of_a_squat_box_make_cases_that_can_be_read(width, ratio):

@@ -44,6 +44,7 @@ def test_kernels_are_compiled_in_pieces(tmp_path):
     assert printed(tmp_path) == ["False", RESULT, "True"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "change",
     [
@@ -57,5 +58,6 @@ def test_numbas_own_passes_compile_where_what_the_pieces_use_has_changed(tmp_pat
     assert printed(tmp_path, change) == ["True", RESULT, "True"]
 
 
+@pytest.mark.slow
 def test_the_environment_asks_for_numbas_own_passes(tmp_path):
     assert printed(tmp_path, UNANCHORED_COMPILER="plain") == ["True", RESULT, "True"]

@@ -12,8 +12,6 @@ from fem.model.floor import slab_of
 from fem.model.model import build_model
 from fem.model.peaks import counted_nodes
 
-CASTINGS = "support.casting_m=[0.162, 0.178, 0.0]"
-
 
 def test_castings_and_posts_say_what_a_corner_bears():
     case = fem.load_case("iso_20ft")
@@ -100,27 +98,3 @@ def test_the_bolts_of_locked_containers_have_a_utilisation():
     (joint,) = fem.compute(case).result["joints"]
     tension = max(joint["bolt_tension_left_N"], joint["bolt_tension_right_N"])
     assert tension > 0.0 and joint["bolt_utilisation"] == pytest.approx(tension / 500e3)
-
-
-@pytest.mark.parametrize(
-    ("values", "says"),
-    [
-        (["support.casting_m=[0.162, 0.178]"], "casting_m"),
-        (["support.casting_m=[1.3, 0.178, 0.0]"], "does not fit under the base"),
-        (["support.casting_m=[162, 178, 0]"], "looks like millimetres"),
-        (["support.kind=flat", CASTINGS], 'belongs to support.kind = "corners"'),
-        (["floor.corner_patch_m=[0.1, 0.2]", CASTINGS], "keep one of them"),
-        (["container.corner_post_N=0"], "corner_post_N"),
-        (["container.post_m=[0.15, 0.1]"], "a wall of at most half the width"),
-        (["container.post_m=[1.3, 0.01]"], r"two posts must leave room in 2.438 m"),
-        (["container.post_m=[150, 6]"], "looks like millimetres"),
-        (["container.joints=loose", "container.boxes=2", "joints.bolt_capacity_N=5e5"], "have no bolts"),
-        (
-            ["support.casting_m=[0.162, 0.178, 0.1]", "solver.model=full"],
-            "the full model bears where its nodes are",
-        ),
-    ],
-)
-def test_castings_that_make_no_sense_are_refused(values, says):
-    with pytest.raises(CaseError, match=says):
-        fem.load_case("iso_20ft", values)

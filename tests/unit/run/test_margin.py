@@ -11,12 +11,11 @@ from floors import half_sine_pulse
 import fem
 from contact.reference.rigid_block import RigidBlock
 from fem.assessment.margin_words import margin_in_words
-from fem.assessment.summary import outcome_sentence
 from fem.case.strength import scaled_motion
 from fem.case.uncertainty import as_changed, draws_of
 from fem.model.model import build_model
 from fem.results.outcome import Ending
-from fem.results.run_result import Band, ChangedRun, Margin, MotionResult, RunResult, Verdict
+from fem.results.run_result import Band, ChangedRun, Margin, Verdict
 from fem.run import changed_runs
 from fem.run import margin as search
 from fem.run.compute import Run
@@ -180,147 +179,6 @@ def test_a_request_to_stop_ends_the_search():
 MARGIN = Margin(
     factor=1.504, stands_up_to=1.487, least_tried=0.25, largest_tried=4.0, runs=20, draws_tried_to=4.0
 )
-
-
-@pytest.mark.parametrize(
-    ("changes", "outcome", "words"),
-    [
-        ({}, "rock", "Stands; overturns first at 1.50 times this motion."),
-        (
-            {"low": 1.29, "high": 1.72, "draws": 16},
-            "rock",
-            "Stands; overturns first at 1.50 times this motion (1.29 to 1.72 over what is not known).",
-        ),
-        (
-            {"low": 1.29, "draws": 16, "draws_standing": 3},
-            "rock",
-            "Stands; overturns first at 1.50 times this motion. Over what is not known it overturns from 1.29 times "
-            "on; of 16 draws 3 stand at 4 times.",
-        ),
-        (
-            {"islands": ((1.62, 1.68), (2.0, 2.0))},
-            "rock",
-            "Stands; overturns first at 1.50 times this motion, stands again at 1.62 to 1.68 and at 2.00.",
-        ),
-        (
-            {"factor": None, "stands_up_to": None, "runs": 16},
-            "slide",
-            "Stands; 16 multiples of this motion, up to 4 times, do not overturn it.",
-        ),
-        (
-            {"factor": None, "stands_up_to": None, "low": 1.9, "draws": 16, "draws_standing": 15},
-            "slide",
-            "Stands; 20 multiples of this motion, up to 4 times, do not overturn it. Over what is not known it "
-            "overturns from 1.90 times on; of 16 draws 15 stand at 4 times.",
-        ),
-        (
-            {"factor": None, "stands_up_to": None, "draws": 16, "draws_standing": 16},
-            "slide",
-            "Stands; 20 multiples of this motion, up to 4 times, do not overturn it, nor does the strongest overturn "
-            "any of 16 draws of what is not known.",
-        ),
-        (
-            {"factor": 0.81, "stands_up_to": 0.799, "largest_tried": 1.0},
-            "overturned",
-            "Overturns; stands up to 0.799 times this motion, overturns first at 0.810.",
-        ),
-        (
-            {
-                "factor": 0.81,
-                "stands_up_to": 0.799,
-                "low": 0.72,
-                "draws": 16,
-                "draws_standing": 3,
-                "draws_failed": 2,
-            },
-            "overturned",
-            "Overturns; stands up to 0.799 times this motion, overturns first at 0.810. Over what is not known it "
-            "overturns from 0.720 times on; of 18 draws 3 stand at 4 times and 2 destroy a corner or fail "
-            "at some factor.",
-        ),
-        (
-            {"destroyed_from": 2.9},
-            "rock",
-            "Stands; overturns first at 1.50 times this motion; at 2.90 times it a corner is destroyed.",
-        ),
-        (
-            {"destroyed_from": 1.24, "low": 1.0, "draws": 0, "draws_failed": 16},
-            "rock",
-            "Stands; at 1.24 times this motion a corner is destroyed, and it overturns first at 1.50 times this "
-            "motion. Over what is not known it overturns from 1.00 times on; all 16 draws destroy a corner or fail "
-            "at some factor.",
-        ),
-        (
-            {"factor": None, "stands_up_to": None, "destroyed_from": 2.42},
-            "rock",
-            "Stands; at 2.42 times this motion a corner is destroyed, and 20 multiples of this motion, up to 4 "
-            "times, do not overturn it.",
-        ),
-        (
-            {"factor_without_links": 2.0, "without_links_tried_to": 4.0},
-            "rock",
-            "Stands; overturns first at 1.50 times this motion; without its stops it overturns first at 2.00.",
-        ),
-        (
-            {"without_links_tried_to": 4.0},
-            "rock",
-            "Stands; overturns first at 1.50 times this motion; without its stops it does not "
-            "overturn up to 4 times.",
-        ),
-        (
-            {"factor": None, "stands_up_to": None, "runs": 1},
-            "rest",
-            "Stands; 1 multiple of this motion, up to 4 times, does not overturn it.",
-        ),
-        (
-            {"factor": None, "stands_up_to": None, "destroyed_from": 1.15, "runs": 0},
-            "rock",
-            "Stands; at 1.15 times this motion a corner is destroyed, and no multiple of this motion above 1 shows "
-            "whether it overturns.",
-        ),
-        (
-            {"factor": None, "stands_up_to": None, "destroyed_from": 1.15, "runs": 11, "largest_tried": 1.0},
-            "rock",
-            "Stands; at 1.15 times this motion a corner is destroyed, and no multiple of this motion above 1 shows "
-            "whether it overturns.",
-        ),
-        (
-            {"low": 1.501, "high": 1.504, "draws": 16},
-            "rock",
-            "Stands; overturns first at 1.50 times this motion (1.50 over what is not known).",
-        ),
-        (
-            {"factor": 0.05, "stands_up_to": None, "largest_tried": 1.0},
-            "overturned",
-            "Overturns; still does at 0.05 times this motion, the weakest tried.",
-        ),
-    ],
-)
-def test_the_sentence_says_what_was_tried(changes, outcome, words):
-    verdict = Verdict(outcome=outcome, margin=replace(MARGIN, **changes), stop_force_N=0.0)
-    assert margin_in_words(verdict) == words
-
-
-def test_the_margin_of_a_run_that_ends_before_its_motion_is_that_of_the_part():
-    motion = MotionResult(kind="table", duration_s=15.0, covered=4.0 / 15.0)
-    margin = replace(MARGIN, factor=None, stands_up_to=None)
-    assert margin_in_words(Verdict(outcome="rest", margin=margin), motion) == (
-        "Stands under the first 4 of 15 s; 20 multiples of this part of the motion, up to 4 times, do not overturn it."
-    )
-    result = RunResult(status="completed", verdict=Verdict(outcome="rest", margin=MARGIN), motion=motion)
-    assert outcome_sentence(result).startswith(
-        "Stands under the first 4 of 15 s; overturns first at 1.50 times this part of the motion. Result: rested"
-    )
-
-
-@pytest.mark.parametrize(
-    ("low", "high", "words"), [(1.26, 1.49, "1.26 to 1.49"), (1.21, 1.26, "1.21 to 1.26")]
-)
-def test_the_range_of_the_margin_holds_the_margin_as_printed(low, high, words):
-    margin = replace(MARGIN, factor=1.26, low=low, high=high, draws=16)
-    assert f"at 1.26 times this motion ({words} over" in margin_in_words(
-        Verdict(outcome="rock", margin=margin)
-    )
 
 
 def test_the_margin_is_written_and_read():

@@ -12,13 +12,11 @@ from runs import finish
 from contact.motion.base_motion import NoMotion, PulseMotion
 from fem.__main__ import main
 from fem.assessment.motion_words import covered_in_words
-from fem.assessment.warnings import warnings_for
 from fem.case.case import CaseError, load_case, read_case
 from fem.cli.check import preview_of
 from fem.model.model import build_model
 from fem.model.motion import build_motion, build_motions, motion_result
 from fem.results.reader import open_run
-from fem.results.run_result import RunResult, Verdict
 from fem.run.run import run_case
 from fem.study.runner import run_model
 
@@ -135,47 +133,12 @@ def test_a_record_cut_short_says_so_in_its_first_line(tmp_path, monkeypatch):
     assert open_run(tmp_path / "cut").typed_result.motion.peak_in_run_m_s2 == 0.0
 
 
-def test_a_container_that_never_rests_is_reported():
-    case = named_case("seed_box", PULSE | {"motion.peak_acceleration_m_s2": 3.0})
-    moving, resting = Verdict(outcome="slide"), Verdict(outcome="slide", at_rest_s=2.0)
-    said = [
-        [
-            text
-            for text in warnings_for(RunResult(status="completed", verdict=one), case)
-            if "still moves" in text
-        ]
-        for one in (moving, resting)
-    ]
-    assert len(said[0]) == 1 and "60 s after the end of the motion" in said[0][0] and said[1] == []
-
-
 def test_a_sweep_over_a_record_cut_short_says_so(tmp_path, capsys, monkeypatch):
     record_case(tmp_path, more="duration_s = 2.0")
     (tmp_path / "sweep.toml").write_text('case = "case.toml"\n[axes]\n"contact.mu_static" = [0.3, 0.5]\n')
     monkeypatch.chdir(tmp_path)
     assert main(["sweep", "sweep.toml", "-j", "1", "-q"]) == 0
     assert "  under the first 2 of 4 s; the record's peak of 1.75 g is not in it\n" in capsys.readouterr().out
-
-
-def test_a_record_run_whole_is_under_this_motion(tmp_path):
-    case = record_case(tmp_path)
-    result = run_case(case, case_text=case.text, folder=tmp_path / "whole").typed_result
-    assert "under this motion" in result.verdict.first_line
-    assert (
-        result.motion.covered == 1.0 and 4.0 <= result.verdict.at_rest_s < result.numerics.simulated_s < 20.0
-    )
-
-
-@pytest.mark.parametrize(
-    ("duration", "words"),
-    [(3.5, "the first 3.5 of 4 s"), (2.9, "the first 2.9 of 4 s; the record's peak of 1.75 g is not in it")],
-)
-def test_check_says_what_a_run_leaves_out(tmp_path, capsys, duration, words):
-    record_case(tmp_path, more=f"duration_s = {duration}")
-    assert main(["check", str(tmp_path / "case.toml")]) == 0
-    page = capsys.readouterr().out
-    assert words + "\n" in page
-    assert "4 s, 401 samples of 0.01 s; peaks 17.16 m/s2 = 1.75 g, 0.172 m/s" in page
 
 
 def test_a_record_of_negative_times_is_covered_from_zero_on(tmp_path):

@@ -74,6 +74,7 @@ def torture(tmp_path: Path, overrides: tuple[str, ...], cuts: int, seed: int, st
     assert not (cut / "checkpoint.npz").exists()
 
 
+@pytest.mark.slow
 def test_a_rigid_run_killed_twice_comes_to_the_same_bits(tmp_path):
     torture(tmp_path, RIGID, cuts=2, seed=1, step=20)
 

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from fem import compute
-from fem.__main__ import main
 from fem.assessment.summary import plain_summary
 from fem.case.case import CaseError, load_case
 from fem.figures.run import figures_of
@@ -117,18 +116,6 @@ def test_what_a_floor_without_vertical_motion_writes_stays(tmp_path):
     assert "vertical" not in (tmp_path / "run" / "resolved.toml").read_text()
 
 
-def test_check_tells_both_motions_and_both_rules(capsys):
-    assert (
-        main(
-            ["check", "seed_stack_plateau", *(part for one in (*RIGID, *VERTICAL) for part in ("--set", one))]
-        )
-        == 0
-    )
-    lines = [" ".join(line.split()) for line in capsys.readouterr().out.splitlines()]
-    assert "vertical A = 0.03704 m, Omega = 9 rad/s, peak 3 m/s2" in lines
-    assert any(line.startswith("own, vertical overturning 80.000 37.455 kNm 2.136") for line in lines)
-
-
 def test_a_run_on_two_motions_lasts_as_long_as_the_longer_one():
     pulse = {"kind": "pulse", "shape": "sine", "peak_acceleration_m_s2": 1.0}
     case = load_case("seed_box").with_values(
@@ -148,14 +135,6 @@ def test_a_response_curve_has_no_vertical_motion():
         CaseError, match=r'\[vertical\] kind must be "none" for a response curve, got "harmonic"'
     ):
         ResponseRequest(case=case, first_Hz=0.5, last_Hz=1.0, count=3)
-
-
-def test_a_floor_that_falls_away_and_a_jerk_are_told_before_the_run(capsys):
-    changes = (*RIGID, *VERTICAL, "vertical.peak_acceleration_m_s2=12.0", "motion.start=rest")
-    assert main(["check", "seed_stack_plateau", *(part for one in changes for part in ("--set", one))]) == 0
-    page = " ".join(capsys.readouterr().out.split())
-    assert "the vertical acceleration of the floor reaches 12 m/s2, gravity or more" in page
-    assert "a jerk of 0.577 m/s along x and 1.17 m/s vertically" in page
 
 
 def test_a_container_that_leaves_its_floor_hops_and_its_verdict_is_tried():

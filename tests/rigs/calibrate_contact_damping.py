@@ -1,7 +1,7 @@
 """Contact damping ratio against apparent restitution of slender blocks: computes
 fem/model/data/contact_damping_restitution.csv.
 
-    python tests/benchmarks/calibrate_contact_damping.py
+    python tests/rigs/calibrate_contact_damping.py
 
 A homogeneous block is released at rest from half its slenderness angle. Its apparent restitution is the square
 root of the ratio of the potential energies above rest at the turning points after and before the first impact:
@@ -55,7 +55,7 @@ fields_s = 0.0
 """)
 HEADER = """\
 # Apparent restitution of homogeneous blocks, by contact damping ratio c/(2 sqrt(k m)), support and slenderness.
-# Made by tests/benchmarks/calibrate_contact_damping.py; all values computed by this program (no measurement).
+# Made by tests/rigs/calibrate_contact_damping.py; all values computed by this program (no measurement).
 # Released at rest from half the slenderness angle, friction 2, steps of at most 0.1 ms, peaks before and after the
 # first impact: restitution = sqrt(potential energy above rest after / before). housner: 1 - 1.5 sin^2(slenderness
 # angle). rigid: rigid model, default penalty; rigid_stiffer_contact: three times that penalty; solid: elastic,

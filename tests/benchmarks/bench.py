@@ -1,0 +1,598 @@
+"""What the program costs and what its words are worth: one table, one function a measurement.
+
+    python tests/benchmarks/bench.py [--list] [NAME ...]
+
+Without a name all are measured, which takes an hour; a name is that of a row, or its beginning. Measured values stand
+beside their targets and those of November 2026 on two cores; exit code 1 if a target is missed. CPU time is that of a
+process with its children; compilation is not included but where it is named. It is not part of the test suite: a slow
+machine fails no test. Needs psutil, which comes with the extra `cluster`.
+"""
+
+import argparse
+import csv
+import math
+import os
+import statistics
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
+from functools import cache, partial
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import psutil
+from distributed import LocalCluster
+from fem.study.axes import read_axis
+from fem.study.cluster import cluster
+from fem.study.runner import CASES_AT_A_TIME, run_cases
+from fem.study.workers import hand_out
+from fem.sweep.file import load_sweep
+from fem.sweep.run import run_sweep
+
+import fem
+from contact.stepping.outcome import run_to_end
+from contact.stepping.state import make_samples
+from fem.assessment.rigid_check import block_of
+from fem.case.case import Case, load_case
+from fem.case.strength import scaled_motion
+from fem.figures.cache import write_figures
+from fem.model.container import discretise
+from fem.model.model import Model, build_model
+from fem.records.spectrum import log_spaced_periods, response_spectrum
+from fem.render.movie import write_movie
+from fem.results.figures import SCALARS
+from fem.results.outcome import ending_of
+from fem.run.band import with_band
+from fem.run.recorder import Recorder
+from fem.run.run import RunOptions, run_case
+from fem.run.simulation import simulate
+from fem.seismic.action import SiteAction, eurocode_shape
+from fem.seismic.artificial import artificial_motions
+from fem.solid.nodal_body import advance_body
+
+sys.path.append(str(Path(__file__).parents[1] / "rigs"))
+from moreau import slide_and_rock_batch
+
+Measured = float | tuple[float, str]  #: the number of the table, and what else was found
+
+
+def cpu_seconds(work: Callable[[], object]) -> float:
+    """CPU time that a call takes in this process [s]."""
+    began = time.process_time()
+    work()
+    return time.process_time() - began
+
+
+def median_of(repeats: int, measure: Callable[[], float]) -> float:
+    return statistics.median(measure() for _ in range(repeats))
+
+
+@cache
+def place() -> Path:
+    """A folder for files, of this process."""
+    return Path(tempfile.mkdtemp(prefix="bench-"))
+
+
+# Commands, as whole processes with their workers
+
+
+class Cost(NamedTuple):
+    """Of a command: wall time, CPU time [s], and the largest sum of memory over its processes [MB]."""
+
+    wall: float
+    cpu: float
+    peak: float
+
+
+def cost_of(*arguments: str, cache: str | None = None) -> Cost:
+    """Of `python -m fem` with these arguments, memory by twenty samples a second."""
+    began, peak, done = time.perf_counter(), 0, threading.Event()
+    process = subprocess.Popen(
+        [sys.executable, "-m", "fem", *arguments],
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        env=os.environ | ({"NUMBA_CACHE_DIR": str(place() / cache)} if cache else {}),
+    )
+
+    def watch() -> None:
+        nonlocal peak
+        root = psutil.Process(process.pid)
+        while not done.wait(0.05):
+            try:
+                peak = max(peak, sum(one.memory_info().rss for one in (root, *root.children(recursive=True))))
+            except psutil.Error:  # one of them has just ended
+                continue
+
+    watcher = threading.Thread(target=watch)
+    watcher.start()
+    _, status, usage = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    done.set()
+    watcher.join()
+    if process.returncode:
+        raise RuntimeError(f"{' '.join(arguments)}: exit code {process.returncode}")
+    return Cost(time.perf_counter() - began, usage.ru_utime + usage.ru_stime, peak / 1e6)
+
+
+def out(*arguments: str, **options: str) -> Cost:
+    return cost_of(*arguments, "-q", "--force", "--out", str(place() / "out"), **options)
+
+
+SHORT_RUN = ("run", "rocking", "--no-band")
+
+
+def compiling() -> Measured:
+    return out(*SHORT_RUN, cache="a run").cpu - out(*SHORT_RUN, cache="a run").cpu
+
+
+def memory_of(*arguments: str) -> Measured:
+    found = out(*arguments)
+    return found.peak, f"{found.wall:.0f} s, {found.cpu:.0f} CPU s"
+
+
+# Runs, stepped without files
+
+
+def stepped(case: Case, container: Any = None) -> tuple[Model, float]:
+    """A case at its end, and the CPU time of the stepping alone [s]; kernels are compiled before the clock starts."""
+    model = build_model(case, container)
+    warm = build_model(case, model.container)
+    advance_body(warm.body, warm.run, min(0.002, case.solver.duration_s))
+    ending = simulate(model, Recorder(model))
+    if ending.status == "failed":
+        raise RuntimeError(f"{case.name}: {ending.error}")
+    return model, ending.stepping_cpu_s
+
+
+def full_box(step: str) -> Measured:
+    """A solid box of 22 x 20 bilinear quads, E = 2.1e9 Pa, released from a quarter of its slenderness angle.
+
+    General finite-element codes need 10 to 25 CPU seconds a simulated second with small strain, 60 to 95 with finite
+    rotation.
+    """
+    changes = ("container.boxes=1", "container.section=solid", "container.youngs_modulus_Pa=2.1e9")
+    changes += ("solver.model=full", "solver.order=1", "solver.element_size_m=0.05", "solver.duration_s=1")
+    tilt = 0.25 * math.atan(1.1)
+    case = load_case("free_rocking", [*changes, f"initial.rotation_rad={tilt}", f"solver.step_s={step}"])
+    return median_of(3, lambda: stepped(case)[1])
+
+
+def full_stack() -> Measured:
+    """Milliseconds a step of the shell stack with all nodes, in free rocking."""
+    changes = ("solver.model=full", "floor.kind=rigid", "motion.kind=none", "initial.rotation_rad=0.05")
+    model, cpu = stepped(load_case("rocking", [*changes, "solver.duration_s=1.5"]))
+    return 1e3 * cpu / int(model.run.clock[0].steps)
+
+
+def reduced(kind: str, **changes: Any) -> float:
+    """CPU seconds of stepping, median."""
+    given = {"floor.kind": "rigid", "support.kind": kind, "solver.duration_s": 20.0} | changes
+    case = load_case("rocking").with_values(given)
+    container = discretise(case)
+    return median_of(5, lambda: stepped(case, container)[1])
+
+
+def growth(key: str, sizes: tuple[float, ...]) -> Measured:
+    """Exponent of the cost as a power of the size."""
+    costs = [reduced("corners", **{key: size}) for size in sizes]
+    return float(np.polyfit(np.log(sizes), np.log(costs), 1)[0]), ", ".join(f"{one:.3f}" for one in costs)
+
+
+def loose_stack(model: str) -> Measured:
+    """Median over five strengths of the motion, because loose boxes that rock are chaotic."""
+    base = load_case("seed_stack_plateau", ["container.joints=loose", f"solver.model={model}"])
+    base = base.with_values({"floor.kind": "rigid", "solver.duration_s": 20.0})
+    cases = [base.replace(scaled_motion(base, factor)) for factor in (0.92, 0.96, 1.0, 1.04, 1.08)]
+    return statistics.median(stepped(case)[1] for case in cases)
+
+
+ROWS, MOREAU_STEP = 200, 1e-3
+
+
+def over_moreau(name: str) -> Measured:
+    """CPU time of a kernel that does nothing but this over that of runs for their outcome alone, in turns.
+
+    20 s on a floor x = 0.05 m sin(6.93 t) that starts with a jerk, in the settings of maps. The kernel: one rigid
+    block, plastic impacts, steps of 1 ms, no springs, no ledger, no choice of steps.
+    """
+    changes = (
+        "solver.model=rigid",
+        "container.section=solid",
+        "contact.mu_static=0.4",
+        "contact.mu_kinetic=0.4",
+    )
+    changes += ("motion.amplitude_m=0.05", "motion.angular_frequency_rad_s=6.93", "motion.start=rest")
+    changes += ("solver.energy_tolerance=30", "solver.step_s=0.026", "contact.normal_penalty_Pa_m=1.2e9")
+    case = load_case(name, [*changes, "solver.duration_s=20"])
+    container = build_model(case).container
+
+    def fresh() -> list[Model]:
+        models = [build_model(case, container) for _ in range(ROWS)]
+        none = make_samples(math.inf, 4, models[0].run.old.point.shape[0])
+        return [
+            replace(one, run=one.run._replace(buffers=one.run.buffers._replace(history=none)))
+            for one in models
+        ]
+
+    def own(models: list[Model]) -> None:
+        for one in models:
+            run_to_end(one.body, one.run, 20.0)
+
+    def moreau() -> None:
+        block, contact, motion = block_of(model), case.contact, case.motion
+        inertia = (block.inertia_ratio - 1.0) * block.radius**2
+        slide_and_rock_batch(
+            np.tile([block.half_width, block.centroid_height, 1.0 / inertia], (ROWS, 1)),
+            np.tile([contact.mu_static, contact.mu_kinetic], (ROWS, 1)),
+            case.gravity_m_s2,
+            np.full(ROWS, motion.amplitude_m),
+            np.full(ROWS, motion.angular_frequency_rad_s),
+            True,
+            MOREAU_STEP,
+            round(20.0 / MOREAU_STEP),
+            np.zeros((ROWS, 3)),
+        )
+
+    model = build_model(case)
+    own(fresh())
+    moreau()  # compiled
+    batches = [fresh() for _ in range(5)]
+    costs = [(cpu_seconds(lambda: own(batches.pop())), cpu_seconds(moreau)) for _ in range(5)]
+    rate = ROWS / statistics.median(mine for mine, _ in costs)
+    return statistics.median(other / mine for mine, other in costs), f"{rate:.0f} runs a second and core"
+
+
+def band(*changes: str) -> Measured:
+    """CPU seconds of the band of a run of 20 s, without the run."""
+    quick = ["floor.kind=rigid", "output.figures=false", "output.fields_s=0"]
+    for duration in (0.2, 20.0):  # the first compiles
+        case = load_case("seed_stack_plateau", [*changes, *quick, f"solver.duration_s={duration}"])
+        options = RunOptions(band=False, force=True)
+        run = run_case(case, case_text=case.text, folder=place() / "band", options=options).typed_result
+        model, began = build_model(case), time.process_time()
+        judged = with_band(model, run, stop=lambda: False)
+        spent = time.process_time() - began
+    return spent, f"{len(judged.band.members)} runs, {judged.sure}" if judged and judged.band else ""
+
+
+# Pictures
+
+
+def run_of(name: str, *changes: str) -> Any:
+    case = load_case(name, ["output.figures=false", *changes])
+    run_case(case, case_text=case.text, folder=place() / name, options=RunOptions(band=False, force=True))
+    return fem.open_run(place() / name)
+
+
+def figures() -> Measured:
+    run = run_of("seed_stack_plateau", "output.fields_s=0")
+    container = discretise(run.case)
+    write_figures(run, container)  # loads the fonts
+    return median_of(3, lambda: cpu_seconds(lambda: write_figures(fem.open_run(run.folder), container)))
+
+
+def film() -> Measured:
+    run = run_of("rocking", "solver.duration_s=4.95", "output.fields_s=0.05")
+    began = time.perf_counter()
+    path = write_movie(run)
+    return time.perf_counter() - began, f"{path.stat().st_size / 1e6:.1f} MB"
+
+
+# Studies
+
+PEAK = "motion.peak_acceleration_m_s2"
+
+
+def grid_of(
+    name: str, base: dict[str, Any], first: tuple[str, dict[str, Any]], second: tuple[str, dict[str, Any]]
+):
+    """A shipped sweep on other axes, without copies."""
+    shipped = load_sweep(name)
+    alone = shipped.perturbation.model_copy(update={"cells": "none"})
+    axes = (read_axis(*first), read_axis(*second))
+    return replace(shipped, base=shipped.base.with_values(base), axes=axes, perturbation=alone)
+
+
+def map_seconds(sweep: Any, jobs: int = 2) -> Measured:
+    """Wall time of a whole sweep into a folder; compiled and loaded before."""
+    run_cases([sweep.case(0), sweep.case(sweep.count - 1)], jobs=2)
+    began, cpu = time.perf_counter(), time.process_time()
+    info = run_sweep(sweep, Path(tempfile.mkdtemp(dir=place())) / "map", jobs=jobs)
+    found = ", ".join(f"{word} {count}" for word, count in info["outcomes"].items())
+    return time.perf_counter() - began, f"CPU {time.process_time() - cpu:.1f} s; {found}"
+
+
+def outcome_map(model: str, cells: int) -> Any:
+    frequency = {"from": 1.5, "to": 12.0, "count": cells, "scale": "log"}
+    peak = {"from": 1.0, "to": 16.0, "count": cells}
+    axes = (("motion.angular_frequency_rad_s", frequency), (PEAK, peak))
+    return grid_of("outcome_map", {"solver.model": model}, *axes)
+
+
+def loose_map() -> Measured:
+    peak, friction = {"from": 2.0, "to": 10.0, "count": 50}, {"from": 0.1, "to": 0.7, "count": 50}
+    return map_seconds(
+        grid_of("loose_stack", {"container.joints": "loose"}, (PEAK, peak), ("joints.mu_static", friction))
+    )
+
+
+def speedup() -> Measured:
+    sweep = outcome_map("rigid", 60)
+    one, two = (map_seconds(sweep, jobs) for jobs in (1, 2))
+    return one[0] / two[0], f"{one[0]:.1f} s on one core"  # type: ignore[index]
+
+
+def random_motion(seed: int) -> np.ndarray:
+    """Times and a random acceleration of 40 s whose spectrum falls beyond 3 Hz, peak 1, shape (n, 2)."""
+    generator, times = np.random.default_rng(seed), np.arange(0.0, 40.0025, 0.005)
+    frequencies = np.fft.rfftfreq(times.size, 0.005)
+    size = np.where(frequencies > 0.3, 1.0 / (1.0 + (frequencies / 3.0) ** 2), 0.0)
+    noise = np.fft.irfft(size * np.exp(2j * np.pi * generator.random(frequencies.size)), times.size)
+    envelope = np.clip(times / 3.0, 0.0, 1.0) * np.clip((40.0 - times) / 10.0, 0.0, 1.0)
+    return np.column_stack([times, noise * envelope / np.abs(noise).max()])
+
+
+def ensemble_of(count: int) -> Cost:
+    """An ensemble of so many motions of 20 to 40 s, each with a friction of its own, on two cores."""
+    names = [f"m{seed}.csv" for seed in range(count)]
+    for seed, name in enumerate(names):
+        header, columns = "time_s,acceleration_m_s2", random_motion(seed)[: 4000 + 40 * (37 * seed % 101)]
+        np.savetxt(place() / name, columns, "%.6g", ",", header=header, comments="")
+    friction = '{ distribution = "uniform", from = 0.3, to = 0.6 }'
+    (place() / "many.toml").write_text(
+        f'case = "seed_stack_plateau"\ndraws = {count}\nprobability = 0.5\n'
+        '[set]\n"solver.model" = "rigid"\n"floor.kind" = "rigid"\n[axes]\n"motion.scale_to_m_s2" = [3.8]\n'
+        f'[random]\n"motion.file" = {names}\n"contact.mu_static" = {friction}\n',
+        encoding="utf-8",
+    )
+    return out("ensemble", str(place() / "many.toml"), "-j", "2")
+
+
+@cache
+def ten_thousand() -> tuple[float, float]:
+    """Wall time [s] and memory [MB] of ten thousand motions, from the difference of two ensembles."""
+    _, few, many = ensemble_of(100), ensemble_of(100), ensemble_of(300)
+    more = (10_000 - 300) / 200
+    return many.wall + more * (many.wall - few.wall), many.peak + more * max(0.0, many.peak - few.peak)
+
+
+ACTION = SiteAction(shape=eurocode_shape(1, "D"), reference_acceleration=1.6)
+
+
+def artificial() -> Measured:
+    artificial_motions(ACTION, count=1, seed=1)
+    return median_of(5, lambda: cpu_seconds(lambda: artificial_motions(ACTION, count=5, seed=2)) / 5)
+
+
+def spectrum() -> Measured:
+    record, periods = np.random.default_rng(1).normal(size=8001), log_spaced_periods(0.005)
+    return median_of(3, lambda: cpu_seconds(lambda: response_spectrum(0.005, record, periods)))
+
+
+# What words are worth: verdicts under changes that an engineer would not call another case
+
+
+def ordinary_changes(case: Case) -> dict[str, dict[str, Any]]:
+    contact, box = case.contact, case.container
+    both = ("contact.mu_static", "contact.mu_kinetic")
+    values = (contact.mu_static, contact.mu_kinetic)
+    changes = {f"friction x {f}": {k: f * v for k, v in zip(both, values, strict=True)} for f in (0.9, 1.1)}
+    changes |= {f"kinetic friction x {f}": {both[1]: f * contact.mu_kinetic} for f in (0.75, 0.9)}
+    changes |= {f"width x {f}": {"container.width_m": f * box.width_m} for f in (0.99, 1.01)}
+    changes |= {f"mass centre x {f}": {"container.centroid_m": f * box.centroid_m} for f in (0.98, 1.02)}
+    changes |= {f"motion x {f}": scaled_motion(case, f) for f in (0.95, 1.05)}
+    changes |= {"step": {"solver.energy_tolerance": 0.1}, "reduced": {"solver.model": "reduced"}}
+    if case.motion.kind == "harmonic":
+        changes |= {"phase + 0.5": {"motion.phase_rad": 0.5}}
+    return changes
+
+
+def random_case(seed: int) -> Case:
+    """A container on any base and floor, under a motion of 0.9 to 3 times its static limit."""
+    generator = np.random.default_rng(seed)
+    draw, pick = generator.uniform, generator.choice
+    boxes, width, static = int(pick([1, 2, 3, 4])), float(draw(0.5, 2.5)), float(draw(0.25, 0.7))
+    height = float(draw(0.8, 2.5)) * width * (1.0 if boxes == 1 else 0.6)
+    peak = float(draw(0.9, 3.0)) * 9.81 * min(static, width / (boxes * height))
+    support = str(pick(["corners", "feet", "flat"]))
+    mass = {"mass_kg": 1000.0 * width * width * height, "centroid_m": float(draw(0.42, 0.52)) * height}
+    tables: dict[str, Any] = {
+        "container": {"width_m": width, "height_m": height, "boxes": boxes, "wall_m": 0.008} | mass,
+        "support": {"kind": support} | ({"foot_m": 0.12 * width} if support == "feet" else {}),
+        "contact": {"mu_static": static, "mu_kinetic": static * float(pick([0.7, 0.9, 1.0]))},
+        "motion": {"kind": "harmonic", "peak_acceleration_m_s2": peak, "frequency_Hz": float(draw(0.8, 4.0))},
+        "solver": {"model": "rigid", "element_size_m": 0.25 * width, "order": 1, "duration_s": 8.0},
+        "output": {"fields_s": 0.0, "figures": False},
+        "floor": {"kind": "rigid"},
+    }
+    if pick([True, False]):
+        return fem.case_from(tables)
+    times, along = random_motion(seed).T
+    return fem.case_from(tables | {"motion": {"kind": "none"}}).with_motion(times, peak * along)
+
+
+def turned_over(seed: int) -> tuple[str, list[str]]:
+    """How sure the verdict of a random case is, and the changes that turn it over."""
+    try:
+        case = random_case(seed)
+        verdict = fem.compute(case, band=True, margin=False).verdict
+    except ValueError:
+        return "refused", []
+    turned = []
+    for name, values in ordinary_changes(case).items() if verdict.sure != "unsure" else ():
+        try:
+            other = fem.compute(case.with_values(values), band=False, margin=False).verdict.outcome
+        except ValueError:
+            continue
+        if other is not None and (other == "overturned") != (verdict.outcome == "overturned"):
+            turned.append(name)
+    return str(verdict.sure), turned
+
+
+def wrong_verdicts() -> Measured:
+    """Share of the sure verdicts of 200 random cases that an ordinary change turns over."""
+    with ProcessPoolExecutor(2) as pool:
+        found = list(pool.map(turned_over, range(20261123, 20261323)))
+    sure = [turned for word, turned in found if word == "sure"]
+    decided = sum(word in ("sure", "regime unsure") for word, _ in found)
+    return sum(map(bool, sure)) / max(1, len(sure)), f"{len(sure)} sure, {decided} of {len(found)} decided"
+
+
+def flipping_cells() -> Measured:
+    """Share of 150 cells of `outcome_map` that are not unsure which any ordinary change flips."""
+    sweep, folder = load_sweep("outcome_map"), place() / "cells"
+    run_sweep(sweep, folder)
+    with (folder / "table.csv").open(encoding="utf-8") as stream:
+        table = list(csv.DictReader(stream))
+    sure = [cell for cell, row in enumerate(table) if row["sure"] != "unsure"]
+    cells = np.random.default_rng(1).choice(sure, min(150, len(sure)), replace=False).tolist()
+    asked = [(cell, values) for cell in cells for values in ordinary_changes(sweep.case(cell)).values()]
+    rows = run_cases([sweep.case_at(sweep.point(cell), values) for cell, values in asked])
+    flipped = {
+        cell
+        for (cell, _), row in zip(asked, rows, strict=True)
+        if ending_of(row["status"], row["outcome"])
+        != ending_of(table[cell]["status"], table[cell]["outcome"])
+    }
+    return len(flipped) / len(cells), f"{len(sure)} of {len(table)} cells are not unsure"
+
+
+# Workers of a scheduler: draws that wait need no core, so they show what scheduler and main process cost
+
+
+def wait_for(draws: Any) -> list[dict[str, float]]:
+    """Rows of draws, as large as those of runs, after as long as a rigid one under a record takes."""
+    time.sleep(0.025 * len(draws))
+    return [dict.fromkeys(SCALARS, float(draw)) for draw in draws]
+
+
+def scheduler(count: int) -> Measured:
+    """Efficiency of `--scheduler`: the time of one local worker over so many times that of so many."""
+    walls = []
+    for workers in (1, count):
+        with LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None) as local:
+            times = []
+            for _ in range(3):  # in the first turn workers load the program
+                began = time.perf_counter()
+                with cluster(local.scheduler_address) as workers_of:
+                    pools = workers_of("rigid", 600)
+                    list(hand_out(range(600), wait_for, pools, at_a_time=CASES_AT_A_TIME["rigid"]))
+                times.append(time.perf_counter() - began)
+            walls.append(min(times[1:]))
+    return walls[0] / (count * walls[1])
+
+
+def command(*arguments: str) -> Callable[[], Measured]:
+    """Memory of a command on two cores."""
+    return partial(memory_of, *arguments, "-j", "2")
+
+
+DURATION, MODES = "solver.duration_s", "solver.elastic_modes"
+#: name, target, value of November 2026 on two cores, what is measured
+TABLE = """
+page             <= 70    31     first page: `run`, empty cache, without pip [s]
+compiling        <= 15    15.3   compiling for a run without its band [CPU s]
+run              <= 2.5   2.1    `run rocking --no-band` [CPU s]
+check            <= 0.4   0.28   `check` [CPU s]
+full-box         <= 0.6   0.35   `full`, 966 unknowns, a simulated second [CPU s]
+full-box-fine    <= 5     -      the same in steps of 1 ms [CPU s]
+full-stack       <= 4     1.3    `full`, 5238 unknowns, a step [ms]
+corners          <= 0.06  0.05   `reduced`, 20 s on two corners [CPU s]
+flat             <= 0.5   0.38   `reduced`, 20 s on a flat base [CPU s]
+in-time          <= 1.25  -      power of the cost over 5 to 40 s
+in-modes         <= 1.25  -      power of the cost over 10 to 80 modes
+moreau-stack     >= 1.5   1.76   runs of the `rigid` stack over those of a Moreau kernel
+moreau-box       >= 1.5   1.64   of the `rigid` box
+loose-rigid      <= 0.15  0.14   20 s of a loose stack of four, `rigid` [CPU s]
+loose-reduced    <= 1     0.8    the same, `reduced` [CPU s]
+band-rigid       <= 1.5   1.6    band of the default case, `rigid` [CPU s]
+band             <= 6     8.6    band of the default case [CPU s]
+figures          <= 5     -      figures of a run of 20 s [CPU s]
+film             <= 60    -      film of 100 frames [s]
+map              <= 30    -      100 x 100 rigid cells, two cores [s]
+map-reduced      <= 300   -      50 x 50 reduced cells [s]
+map-loose        <= 120   58     50 x 50 loose rigid stacks, two cores [s]
+speedup          >= 1.8   -      60 x 60 rigid cells, one core over two
+motions          <= 300   -      ten thousand motions, two cores, extrapolated [s]
+motions-memory   <= 1000  -      their memory, extrapolated [MB]
+artificial       <= 0.02  0.019  an artificial motion with its vertical one [CPU s]
+spectrum         <= 0.1   -      100 periods of a spectrum of 40 s [CPU s]
+scheduler-2      >= 0.85  0.98   efficiency of `--scheduler`, 2 local workers
+scheduler-4      >= 0.85  0.93   the same, 4 workers
+memory-run       <= 1000  247    memory of a run with its band [MB]
+memory-sweep     <= 1000  491    of the sweep `outcome_map` [MB]
+memory-ensemble  <= 1000  499    of the ensemble `fragility` [MB]
+memory-site      <= 1000  639    of `assess site` [MB]
+site             <= 15    -      `assess site` on two cores [s]
+words            <= 0.02  0      random sure verdicts that an ordinary change turns over
+cells            <= 0.01  -      sure cells of `outcome_map` that an ordinary change flips
+"""
+MEASURES: dict[str, Callable[[], Measured]] = {
+    "page": lambda: out("run", cache="page").wall,
+    "compiling": compiling,
+    "run": lambda: median_of(5, lambda: out(*SHORT_RUN).cpu),
+    "check": lambda: median_of(5, lambda: cost_of("check").cpu),
+    "full-box": partial(full_box, "auto"),
+    "full-box-fine": partial(full_box, "1e-3"),
+    "full-stack": full_stack,
+    "corners": partial(reduced, "corners"),
+    "flat": partial(reduced, "flat"),
+    "in-time": partial(growth, DURATION, (5.0, 10.0, 20.0, 40.0)),
+    "in-modes": partial(growth, MODES, (10, 20, 40, 80)),
+    "moreau-stack": partial(over_moreau, "seed_stack"),
+    "moreau-box": partial(over_moreau, "seed_box"),
+    "loose-rigid": partial(loose_stack, "rigid"),
+    "loose-reduced": partial(loose_stack, "reduced"),
+    "band-rigid": partial(band, "solver.model=rigid"),
+    "band": band,
+    "figures": figures,
+    "film": film,
+    "map": lambda: map_seconds(outcome_map("rigid", 100)),
+    "map-reduced": lambda: map_seconds(outcome_map("reduced", 50)),
+    "map-loose": loose_map,
+    "speedup": speedup,
+    "motions": lambda: ten_thousand()[0],
+    "motions-memory": lambda: ten_thousand()[1],
+    "artificial": artificial,
+    "spectrum": spectrum,
+    "scheduler-2": partial(scheduler, 2),
+    "scheduler-4": partial(scheduler, 4),
+    "memory-run": partial(memory_of, "run", "rocking"),
+    "memory-sweep": command("sweep", "outcome_map"),
+    "memory-ensemble": command("ensemble", "fragility"),
+    "memory-site": command("assess", "site"),
+    "site": lambda: out("assess", "site", "-j", "2").wall,
+    "words": wrong_verdicts,
+    "cells": flipping_cells,
+}
+
+
+def main() -> int:
+    """Measure and print; 1 if a target is missed."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
+    parser.add_argument("names", nargs="*", help="of rows, or how they begin")
+    parser.add_argument("--list", action="store_true", help="print the table without measuring")
+    given = parser.parse_args()
+    chosen = [row for row in TABLE.strip().splitlines() if row.startswith(tuple(given.names) or "")]
+    missed = 0
+    for row in chosen:
+        print(row, end="" if not given.list else "\n", flush=True)
+        if given.list:
+            continue
+        name, sign, target, *_ = row.split()
+        found = MEASURES[name]()
+        value, details = found if isinstance(found, tuple) else (found, "")
+        reached = value >= float(target) if sign == ">=" else value <= float(target)
+        missed += not reached
+        print(f": {value:.3g}{'' if reached else ' MISSED'}  {details}")
+    return int(missed > 0 or not chosen)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,127 @@
+"""One known result of a run, changed as a line of a transcript says, and what is said of it.
+
+A line holds keys of `run.json` with values as in TOML; "null" takes one away. Beside them: `case`, changes of the case
+as `--set` takes them; `own` and `others`, figures of the run and of the members of its band, each with its change.
+"""
+
+import tomllib
+from dataclasses import replace
+from pathlib import Path
+
+from fem.assessment.link_words import links_in_words
+from fem.assessment.rule_or_run import governing
+from fem.assessment.summary import brief_summary, outcome_sentence, plain_summary
+from fem.assessment.sure_words import sureness_in_words
+from fem.assessment.sureness import judged
+from fem.assessment.warnings import warnings_for
+from fem.case.case import load_case
+from fem.case.uncertainty import InputChange
+from fem.model.geometry import build_container
+from fem.model.model import static_checks_of
+from fem.results.run_result import ChangedRun, Energy, Numerics, RunResult, Verdict
+
+# The stack of four under 4.0 m/s2: 40 kN against 39.24 kN, 80 kNm against 53.955 kNm (the paper, g = 9.81).
+CASE = load_case("seed_stack_plateau")
+RESULT = RunResult(
+    status="completed",
+    title="Stack",
+    static=replace(static_checks_of(CASE, build_container(CASE), 4.0).to_result(), method_applicable=True),
+    verdict=Verdict(
+        outcome="rock",
+        modes=("rest", "rock"),
+        max_rotation_rad=0.1071,
+        rotation_ratio=0.3989,
+        max_slip_m=2.0e-5,
+        residual_slip_m=-1.0e-5,
+        slip_travel_m=3.0e-5,
+        max_uplift_m=0.1176,
+        impacts=17,
+        first_opening_s=0.1,
+        first_uplift_s=0.12,
+        restored=True,
+        restitution_first=0.895,
+        max_corner_force_N=210.5e3,
+        max_top_displacement_m=0.43,
+        max_acceleration_m_s2=12.0,
+        max_von_mises_Pa=9.0e7,
+        yield_strength_Pa=235e6,
+    ),
+    energy=Energy(
+        reference_J=7300.0,
+        closure_error=1.0e-5,
+        friction_J=1.0,
+        contact_damping_J=900.0,
+        material_damping_J=20.0,
+        numerical_J=0.05,
+        base_work_J=400.0,
+    ),
+    numerics=Numerics(
+        unknowns=23,
+        steps=12000,
+        rejected=100,
+        stepping_cpu_s=0.06,
+        contact_frequency_Hz=20.0,
+        max_penetration_m=2.0e-4,
+        elastic_frequencies_Hz=(120.0, 300.0),
+    ),
+    wall_s=1.9,
+)
+
+
+def changes_asked():
+    """All changes of which something is said."""
+    lines = (Path(__file__).parent / "results.txt").read_text(encoding="utf-8").splitlines()
+    return [line[2:] for line in lines if line.startswith("$ ")]
+
+
+def merged(block, changes):
+    """JSON with changes at any depth."""
+    if not isinstance(changes, dict):
+        return None if changes == "null" else changes
+    block = block if isinstance(block, dict) else {}
+    return {**block, **{key: merged(block.get(key), value) for key, value in changes.items()}}
+
+
+def changed(asked):
+    """The result and its case with the changes of a line."""
+    given = tomllib.loads(f"x = {{{asked}}}")["x"]
+    case = load_case("seed_stack_plateau", given.pop("case", ()))
+    own, others = given.pop("own", {}), given.pop("others", None)
+    result = RunResult.from_json(merged(RESULT.to_json(), given))
+    if others is not None:
+        result = replace(result, verdict=judged_of(own, others))
+    return result, case
+
+
+def judged_of(own, others):
+    """The verdict of a run among others: `kind`, `values`, `share` and `place` of a change, and figures found."""
+    figures = {
+        "outcome": "slide-rock",
+        "rotation_ratio": 0.2,
+        "max_slip_m": 0.2,
+        "residual_slip_m": -0.2,
+    } | own
+    changes, members = [], [ChangedRun.from_json({"status": "completed"} | figures)]
+    for found in others:
+        parts = {key: found.pop(key) for key in ("values", "kind", "share", "place") if key in found}
+        parts["place"] = tuple(parts.get("place", ()))
+        changes.append(change := InputChange(**({"kind": "one", "share": 1.0} | parts)))
+        block = {"status": "completed", "change": change.label, "kind": change.kind, "values": change.values}
+        members.append(ChangedRun.from_json(block | figures | merged({}, found)))
+    return judged(Verdict.from_json(figures), members, changes, (), width=1.1)
+
+
+def told(asked):
+    """First line, summary, terminal, warnings and all else that is said of a result."""
+    result, case = changed(asked)
+    folder = Path("outputs/stack")
+    parts = {
+        "first line": outcome_sentence(result),
+        "how sure": sureness_in_words(result) if result.verdict else "",
+        "rule or run": "\n".join(governing(result)) if result.verdict else "",
+        "links": links_in_words(result) if result.verdict else "",
+        "warnings": "\n".join(warnings_for(result, case)),
+        "terminal": brief_summary(result, folder=folder),
+        "summary": plain_summary(result, folder=folder),
+    }
+    return "\n".join(f"# {part}\n{words}" for part, words in parts.items() if words)
