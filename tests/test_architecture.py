@@ -120,7 +120,7 @@ BUDGET = {
     "solid": ("fem/solid", 1_979, 64),
     "model": ("fem/model", 4_224, 124),
     "run": ("fem/run fem/assessment", 5_767, 192),
-    "pages": ("fem/html fem/figures fem/render fem/report", 5_726, 180),
+    "pages": ("fem/html fem/figures fem/render fem/report", 5_727, 180),
     "study": ("fem/batch fem/sweep fem/ensemble fem/hall fem/response", 9_812, 279),
     "site": ("fem/site", 4_812, 137),
     "cli": ("fem/cli fem/__init__.py fem/__main__.py", 1_980, 46),
