@@ -127,7 +127,7 @@ def draw_heat_map(
         for k, (axes, panel) in enumerate(zip(subplots, panels, strict=False)):
             look = panel.look or shared
             scale = ScalarMappable(
-                cmap=ListedColormap(list(look.colours.values())) if look else colours,
+                cmap=ListedColormap(list(look.colours.values())) if look else colours,  # type: ignore[arg-type]
                 norm=Normalize(-0.5, len(look.colours) - 0.5) if look else norm,
             )
             _fill_cells(axes, scale.to_rgba(np.ma.masked_invalid(panel.values)))
