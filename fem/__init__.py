@@ -3,14 +3,14 @@
 In a script or a notebook, `fem.load_case(name)` and `fem.case_from(mapping)` give a case, `case.replace({key: value})`
 changes it, `fem.compute(case)` and `fem.compute_many(cases)` run it in memory, and `fem.open_run(folder)` opens the
 results of `python -m fem run`. Without a case, `fem.slide_in_plane(..)` gives the path of a sliding body under two
-horizontal components, and `fem.annual_rate(..)` how often a year a fragility is met under a hazard curve. What is wrong
-with the input is a `ValueError` in words (`fem.case.case.CaseError`).
+horizontal components. What is wrong with the input is a `ValueError` in words (`fem.case.case.CaseError`).
 """
 
 import importlib
 import sys
 from typing import TYPE_CHECKING, Any
 
+from fem.runtime.left import left_words
 from fem.runtime.signals import exit_on_signal
 
 if TYPE_CHECKING:
@@ -18,14 +18,12 @@ if TYPE_CHECKING:
     from fem.case.case import case_from, load_case
     from fem.run.compute import compute
     from fem.run.opened import open_run
-    from fem.seismic.hazard import annual_rate
     from fem.seismic.two_directions import slide_in_plane
 
-__all__ = ["annual_rate", "case_from", "compute", "compute_many", "load_case", "open_run", "slide_in_plane"]
+__all__ = ["case_from", "compute", "compute_many", "load_case", "open_run", "slide_in_plane"]
 
 #: name -> where it is
 PLACES = {
-    "annual_rate": "fem.seismic.hazard",
     "case_from": "fem.case.case",
     "compute": "fem.run.compute",
     "compute_many": "fem.batch.compute_many",
@@ -42,7 +40,10 @@ if sys.argv[:1] == ["-m"]:
 def __getattr__(name: str) -> Any:
     """What the package gives away, loaded when it is first asked for: the command line answers without it."""
     if name not in PLACES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        left = left_words(f"fem.{name}")
+        raise AttributeError(
+            f"fem.{name} {left}" if left else f"module {__name__!r} has no attribute {name!r}"
+        )
     return getattr(importlib.import_module(PLACES[name]), name)
 
 

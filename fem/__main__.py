@@ -13,7 +13,7 @@ import os
 import re
 import sys
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from importlib import metadata
 from typing import Literal, NoReturn
@@ -21,6 +21,7 @@ from typing import Literal, NoReturn
 from cyclopts import App, CycloptsError, Group, MissingArgumentError, UnusedCliTokensError
 
 from fem.runtime.late_modules import load_late
+from fem.runtime.left import left_words
 from fem.runtime.memory import shortage
 from fem.runtime.signals import INTERRUPTED, NO_ANSWER, interruptions, raise_on_signal
 from fem.runtime.threads import use_one_blas_thread
@@ -78,7 +79,9 @@ GROUPS = {
 COMMANDS = [name for commands in GROUPS.values() for name in commands]
 READING = {"check", "init", "list", "completion", "schema", "doctor"}  #: commands that compute nothing
 #: import strings of commands that are not `fem.cli.NAME:NAME`
-PLACES = {"list": "fem.cli.list_cases:list_cases", "completion": "fem.__main__:completion"}
+PLACES = {"list": "fem.cli.list_cases:list_cases", "completion": "fem.__main__:completion"} | {
+    command: f"fem.cli.evidence:{command}" for command in ("verify", "validate", "study")
+}
 
 
 def build_app(name: str = "python -m fem") -> App:
@@ -120,6 +123,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     use_one_blas_thread()
     before = interruptions()
     tokens = list(sys.argv[1:] if arguments is None else arguments)
+    for name in _names_of(tokens):
+        if words := left_words(name):
+            return _refuse(f"{name} {words}")
     if tokens and tokens[0] not in COMMANDS and tokens[0] not in FLAGS:
         return _refuse(_unknown_command(tokens[0]))
     if tokens and (short := shortage(tokens[0] in set(COMMANDS) - READING, _jobs_of(tokens))):
@@ -149,10 +155,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except Exception as error:
         if interruptions() > before:
             return _interrupted(tokens)
-        if type(error).__module__.partition(".")[0] not in OWN_PACKAGES:
+        if OWN_PACKAGES.isdisjoint(kind.__module__.partition(".")[0] for kind in type(error).__mro__):
             raise  # not the user's fault: show where
         return _refuse(str(error), getattr(error, "exit_code", BAD_INPUT))
     return result if isinstance(result, int) else 0
+
+
+def _names_of(tokens: Sequence[str]) -> Iterator[str]:
+    """The command, and its options by themselves and behind its name, as `LEFT` has them."""
+    yield from tokens[:1]
+    for token in tokens[1:]:
+        if token.startswith("--"):
+            option = token.partition("=")[0]
+            yield from (option, f"{tokens[0]} {option}")
 
 
 def _unknown_command(name: str) -> str:

@@ -28,7 +28,6 @@ from mesh.region import Region
 from mesh.stack import StackedBox, joined, placed_apart, require_apart
 from mesh.tags import CellTags, cell_regions
 from mesh.tiling import TOLERANCE, place_on_floor, require_tiling
-from mesh.untrusted import FORMATS, bounded_memory, require_harmless
 
 if TYPE_CHECKING:
     import meshio
@@ -40,8 +39,11 @@ BYSTANDERS = ("vertex", "line", "line3")
 #: Largest distance of a mid-side node from the middle of its side, as a share of the side.
 STRAIGHT_SHARE = 1e-3
 
-#: modules of the readers
+#: formats with plain numbers (no pickles, no links to other files): names, and modules of the readers
+FORMATS = {".msh": "Gmsh", ".vtu": "VTU", ".vtk": "legacy VTK", ".inp": "Abaqus"}
 _READERS = {".msh": "meshio.gmsh", ".vtu": "meshio.vtu", ".vtk": "meshio.vtk", ".inp": "meshio.abaqus"}
+
+MOST_BYTES = 400_000_000  #: of a file; two million cells in ASCII take about this much
 
 
 def read_container_mesh(path: Path | str, geometry: ContainerGeometry, fill: MassFill) -> ContainerMesh:
@@ -57,7 +59,7 @@ def read_container_mesh(path: Path | str, geometry: ContainerGeometry, fill: Mas
         MeshQualityError: distorted cells.
     """
     path = Path(path)
-    require_harmless(path)
+    _require_file(path)
     try:
         return _container(*_parse(path), geometry, fill)
     except MeshError as error:
@@ -74,7 +76,7 @@ def read_stack_mesh(path: Path | str, boxes: Sequence[StackedBox], *, loose: boo
         MeshError: as `read_container_mesh`; boxes in other places; nodes that are shared or not as they must be.
     """
     path = Path(path)
-    require_harmless(path)
+    _require_file(path)
     try:
         points, quads, tags = _parse(path)
         points = _plane(points)
@@ -132,13 +134,29 @@ def _require_places(points: FloatArray, used: Sequence[IntArray], boxes: Sequenc
             )
 
 
+def _require_file(path: Path) -> None:
+    """Refuse what is no mesh file by its suffix, or too large to be read."""
+    suffix = path.suffix.lower()
+    if suffix not in FORMATS:
+        known = ", ".join(f"{each} ({name})" for each, name in FORMATS.items())
+        raise MeshError(
+            f"mesh file {path}: format {suffix or 'without suffix'} is not read; known are {known}"
+        )
+    if not path.is_file():
+        raise MeshError(f"mesh file {path}: no such file")
+    if (
+        not 0 < (size := path.stat().st_size) <= MOST_BYTES
+    ):  # files of the kernel have no size, and may never end
+        raise MeshError(f"mesh file {path}: {size} bytes; 1 to {MOST_BYTES} are read; take larger elements")
+
+
 def _parse(path: Path) -> tuple[FloatArray, IntArray, CellTags]:
     """Points (n, 2 or 3) [m], corners (m, 4) and tags; every error of a reader becomes a MeshError."""
     chatter = io.StringIO()
     suffix = path.suffix.lower()
     reader = importlib.import_module(_READERS[suffix])
     try:
-        with contextlib.redirect_stdout(chatter), contextlib.redirect_stderr(chatter), bounded_memory(path):
+        with contextlib.redirect_stdout(chatter), contextlib.redirect_stderr(chatter):
             mesh = reader.read(str(path))
         return _checked(mesh)
     except MeshError:

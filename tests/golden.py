@@ -107,7 +107,6 @@ ITEMS = (
     study("response", "rocking", "--from", "0.8", "--to", "1.6", "--count", "5"),
     study("assess", "site", long=True),
     study("batch", "list.csv", "--case", "rocking.toml"),
-    Item("batch at a site", (("batch", "list.csv", "--site", "site.toml", "--out", "out"),), long=True),
     Item(
         "size width",
         (

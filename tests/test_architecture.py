@@ -6,6 +6,8 @@ from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).parents[1]
 PACKAGES = ("mesh", "contact", "fem")
 SOURCES = sorted(path for package in PACKAGES for path in (ROOT / package).rglob("*.py"))
@@ -36,11 +38,8 @@ LAYERS = (
     ("fem.sweep", "fem.response"),
     ("fem.ensemble",),
     ("fem.report",),
-    ("fem.site_check",),
+    ("fem.site",),
     ("fem.hall",),
-    ("fem.evidence",),
-    ("fem.evidence.verification",),
-    ("fem.evidence.paper", "fem.evidence.validation"),
     ("fem.cli",),
 )
 NESTED = {
@@ -86,7 +85,6 @@ DOORS = {
     "pydantic": {"fem"},
     # optional, and slow to import: loaded where a cluster is asked for
     "dask": {"fem/batch/cluster.py"},
-    "dask_jobqueue": {"fem/batch/slurm.py"},
     "distributed": {"fem/batch/cluster.py"},
     "jinja2": {"fem/html/page.py"},
 }
@@ -103,8 +101,31 @@ LOADING_LATE = {
     "fem/results/history.py",
     "fem/results/reader.py",
     "fem/run/checks.py",
-    "fem/site_check/motions.py",
+    "fem/site/motions.py",
     "mesh/files.py",
+}
+
+#: what `verify`, `validate` and `study` compute, from the ground up: a folder of the tests imports those above it here
+EVIDENCE = (("rigs",), ("evidence",), ("verification",), ("validation", "paper"))
+
+#: room -> its folders, most lines of Python, most public names; what needs more in a room takes as much out of it
+BUDGET = {
+    "mesh": ("mesh", 1_848, 46),
+    "contact": ("contact", 9_860, 355),
+    "runtime": ("fem/runtime", 814, 40),
+    "records": ("fem/records", 2_149, 58),
+    "case": ("fem/case", 5_490, 135),
+    "results": ("fem/results", 2_859, 96),
+    "seismic": ("fem/seismic", 2_289, 92),
+    "solid": ("fem/solid", 1_979, 64),
+    "model": ("fem/model", 4_193, 124),
+    "run": ("fem/run fem/assessment", 5_582, 187),
+    "pages": ("fem/html fem/figures fem/render fem/report", 6_243, 206),
+    "study": ("fem/batch fem/sweep fem/ensemble fem/hall fem/response", 9_594, 291),
+    "site": ("fem/site", 4_888, 172),
+    "cli": ("fem/cli fem/__init__.py fem/__main__.py", 1_963, 47),
+    "product": ("mesh contact fem", 59_610, 1_912),
+    "tests": ("tests", 50_000, 3_139),
 }
 
 
@@ -190,6 +211,64 @@ def test_no_folder_imports_itself_by_way_of_others():
             names = of_this_project(MODULES[module])
             graph[module] = {name_of(folder) if name in inside else name for name in names}
         TopologicalSorter(graph).prepare()  # raises CycleError with the circle
+
+
+@cache
+def tree_of(path: Path) -> ast.Module:
+    return TREES[path] if path in TREES else ast.parse(path.read_text(encoding="utf-8"))
+
+
+def folders_of_tests(path: Path) -> set[str]:
+    """Folders of the tests that a file imports; modules of the rigs go by their bare names."""
+    rooms = {rig.stem: "rigs" for rig in (ROOT / "tests/rigs").glob("*.py")}
+    rooms |= {folder: folder for floor in EVIDENCE for folder in floor}
+    names = {
+        (node.module or "") if isinstance(node, ast.ImportFrom) else alias.name
+        for node in ast.walk(tree_of(path))
+        if isinstance(node, ast.Import | ast.ImportFrom)
+        for alias in node.names
+    }
+    return {rooms[name.partition(".")[0]] for name in names if name.partition(".")[0] in rooms}
+
+
+def test_evidence_goes_one_way_and_the_program_imports_nothing_of_it():
+    wrong = [(name_of(path), above) for path in SOURCES if (above := folders_of_tests(path))]
+    below: set[str] = set()
+    for floor in EVIDENCE:
+        for folder in floor:
+            files = [f for f in in_folder(f"tests/{folder}") if not f.name.startswith("test_")]
+            assert files
+            wrong += [(name_of(f), above) for f in files if (above := folders_of_tests(f) - below - {folder})]
+        below |= set(floor)
+    assert not wrong
+
+
+@pytest.mark.parametrize("room", BUDGET)
+def test_a_room_keeps_to_its_budget(room):
+    """A public name is a function or class at the top of a module that has no leading underscore."""
+    folders, most_lines, most_names = BUDGET[room]
+    files = [path for folder in folders.split() for path in in_folder(folder)]
+    assert files
+    lines = sum(len(path.read_text(encoding="utf-8").splitlines()) for path in files)
+    names = sum(
+        isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef)
+        and not node.name.startswith("_")
+        for path in files
+        for node in tree_of(path).body
+    )
+    assert lines <= most_lines, f"{lines} lines"
+    assert names <= most_names, f"{names} names"
+
+
+def in_folder(name: str) -> list[Path]:
+    """The Python files of a folder, or one file."""
+    return [ROOT / name] if name.endswith(".py") else sorted((ROOT / name).rglob("*.py"))
+
+
+def test_every_file_has_one_room():
+    rooms = [folders for room, (folders, *_) in BUDGET.items() if room not in ("product", "tests")]
+    found = Counter(path for folders in rooms for folder in folders.split() for path in in_folder(folder))
+    assert found == Counter(SOURCES)
 
 
 def test_no_folder_is_crowded():

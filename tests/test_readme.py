@@ -16,7 +16,7 @@ from fem.case.case import load_case
 from fem.case.files import CASES, DEFAULT_CASE
 from fem.render.opengl import MEND_PICTURES, probe_rendering
 from fem.run.run import RunOptions, run_case
-from fem.site_check.file import load_site
+from fem.site.request import load_site
 
 ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / "README.md", *sorted(ROOT.glob("*/README.md")), *sorted(ROOT.glob("fem/**/README.md"))]

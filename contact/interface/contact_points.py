@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from contact.arrays import FloatArray, IntArray
-from contact.interface.faces import CORNERS, ENDS, LOWER, RIGHT, UPPER, Faces
+from contact.interface.faces import CORNERS, LOWER, OF_A_POINT, UPPER, Faces
 
 BOTTOM_LEFT, BOTTOM_RIGHT, TOP_LEFT, TOP_RIGHT = range(CORNERS)
 EDGE = 1e-3  #: half of the length over which a corner leaves a face, over the shorter of the two faces of the joint
@@ -25,17 +25,6 @@ class SidePoint(NamedTuple):
     place: float  #: from the foot of the side to its top: 0 to 1
 
 
-class Between(NamedTuple):
-    """What is between a point on a side of a box and one on a side of another: a tie."""
-
-    of: SidePoint
-    to: SidePoint
-    slack: float  #: what its ends may move apart before it holds [m]
-
-
-Held = SidePoint | Between
-
-
 def points_of_joint(joint: int) -> slice:
     """The contact points of a joint."""
     return slice(0, 2) if joint == 0 else slice(4 * joint - 2, 4 * joint + 2)
@@ -45,7 +34,7 @@ def make_faces(
     corner: FloatArray,
     normal_stiffness: FloatArray,
     tangential_stiffness: FloatArray,
-    held: Sequence[Held] = (),
+    held: Sequence[SidePoint] = (),
 ) -> Faces:
     """The contact points of boxes that stand on one another.
 
@@ -64,7 +53,7 @@ def make_faces(
         for upper in range(1, boxes)
     ]
     floor = [_on_floor(0, 0.0), _on_floor(0, 1.0)]
-    return _faces([*floor, *joints, *_links(held, {})], normal_stiffness, tangential_stiffness)
+    return _faces([*floor, *joints, *_links(held)], normal_stiffness, tangential_stiffness)
 
 
 def make_row(
@@ -74,7 +63,7 @@ def make_row(
     inset: FloatArray,
     normal_stiffness: FloatArray,
     tangential_stiffness: FloatArray,
-    held: Sequence[Held] = (),
+    held: Sequence[SidePoint] = (),
 ) -> Faces:
     """The contact points of bodies beside one another: two of each on the floor, then four of each pair.
 
@@ -84,7 +73,7 @@ def make_row(
         distance: (g,) how much further to the right the frame of the right one is [m].
         inset: (N,) of the points over the floor from the sides, over the width of the base.
         normal_stiffness, tangential_stiffness: (2 N + 4 g + k,) springs of the points at full weight [N/m].
-        held: the k points of sides, or ties between bodies that face each other, that come last.
+        held: the k points of sides that come last.
     """
     floor = [
         _on_floor(b, end + (1.0 - 2.0 * end) * inset[b]) for b in range(len(inset)) for end in (0.0, 1.0)
@@ -97,8 +86,7 @@ def make_row(
         # points across their faces are told from those on the floor and of other pairs by it
         own["origin"] = [end + number * ASIDE * float(np.abs(corner).max()) for end in own["origin"]]
         joints.append(own)
-    further = {(left, right): along for (left, right), along in zip(pairs, distance, strict=True)}
-    return _faces([*floor, *joints, *_links(held, further)], normal_stiffness, tangential_stiffness)
+    return _faces([*floor, *joints, *_links(held)], normal_stiffness, tangential_stiffness)
 
 
 def _on_floor(box: int, place: float) -> dict[str, Any]:
@@ -106,37 +94,14 @@ def _on_floor(box: int, place: float) -> dict[str, Any]:
     return _between(box, BOTTOM_LEFT, BOTTOM_RIGHT, place)
 
 
-def _ends_of(point: SidePoint) -> tuple[int, int]:
-    """Foot and top of the side of a point, among the corners of its box."""
-    foot, top = (BOTTOM_RIGHT, TOP_RIGHT) if point.right else (BOTTOM_LEFT, TOP_LEFT)
-    return foot, top
-
-
-def _links(held: Sequence[Held], further: dict[tuple[int, int], float]) -> list[dict[str, Any]]:
-    """Points of sides, and ties.
-
-    Args:
-        held: they.
-        further: how much further to the right the frame of the right one of two bodies is than that of the left [m].
-    """
+def _links(held: Sequence[SidePoint]) -> list[dict[str, Any]]:
+    """Points of sides, each between foot and top of its side."""
     return [
-        _between(link.box, *_ends_of(link), link.place)
-        if isinstance(link, SidePoint)
-        else _between_sides(link, further)
-        for link in held
+        _between(
+            point.box, *((BOTTOM_RIGHT, TOP_RIGHT) if point.right else (BOTTOM_LEFT, TOP_LEFT)), point.place
+        )
+        for point in held
     ]
-
-
-def _between_sides(tie: Between, further: dict[tuple[int, int], float]) -> dict[str, Any]:
-    forth, back = (tie.of.box, tie.to.box), (tie.to.box, tie.of.box)
-    return _point(
-        corner=[CORNERS * end.box + corner for end in (tie.of, tie.to) for corner in _ends_of(end)],
-        bodies=forth,
-        parts=ENDS,
-        place=(tie.of.place, tie.to.place),
-        apart=further[forth] if forth in further else -further[back],
-        length=tie.slack,
-    )
 
 
 def _between(box: int, first: int, last: int, place: float) -> dict[str, Any]:
@@ -144,32 +109,14 @@ def _between(box: int, first: int, last: int, place: float) -> dict[str, Any]:
     at_corner = place in (0.0, 1.0)
     left, right = CORNERS * box + first, CORNERS * box + last
     nearest = left if place < 0.5 else right
-    return _point(
-        corner=[nearest] * ENDS if at_corner else [nearest, left, right, right],
-        bodies=(-1, box),
-        parts=1 if at_corner else 3,
-        place=(0.0 if at_corner else place, 0.0),
-    )
-
-
-def _point(
-    *,
-    corner: list[int],
-    bodies: tuple[int, int],
-    parts: int,
-    place: tuple[float, float],
-    apart: float = 0.0,
-    length: float = 1.0,
-) -> dict[str, Any]:
-    """A point that is on no face."""
     return {
-        "corner": [corner],
-        "bodies": [bodies],
-        "parts": [parts],
-        "place": [place],
-        "apart": [apart],
+        "corner": [[nearest] * OF_A_POINT if at_corner else [nearest, left, right]],
+        "bodies": [(-1, box)],
+        "parts": [1 if at_corner else OF_A_POINT],
+        "place": [0.0 if at_corner else place],
+        "apart": [0.0],
         "side": [1.0],
-        "length": [length],
+        "length": [1.0],
         "origin": [0.0],
         "edge": [0.0],
     }
@@ -179,12 +126,10 @@ def _joint(corner: FloatArray, face: list[int], other: list[int], apart: float =
     """The four points of two faces: that of the lower box and that of the upper one, by their corners."""
     of_face, of_other = (float(np.linalg.norm(corner[b] - corner[a])) for a, b in (face, other))
     return {
-        "corner": [
-            [*ends, ends[RIGHT]] for end in range(2) for ends in ([other[end], *face], [face[end], *other])
-        ],
+        "corner": [ends for end in range(2) for ends in ([other[end], *face], [face[end], *other])],
         "bodies": 4 * [[face[0] // CORNERS, other[0] // CORNERS]],
-        "parts": 4 * [3],
-        "place": 4 * [(0.0, 0.0)],
+        "parts": 4 * [OF_A_POINT],
+        "place": 4 * [0.0],
         "apart": 2 * [apart, -apart],
         "side": 2 * [1.0, -1.0],
         "length": 2 * [of_face, of_other],
@@ -208,6 +153,6 @@ def _faces(
         tangential_stiffness=np.array(tangential_stiffness, dtype=float),
         weight=np.ones(n),
         placed=np.zeros((n, 2)),
-        gradient=np.zeros((n, 2, ENDS, 2)),
+        gradient=np.zeros((n, 2, OF_A_POINT, 2)),
         moved=np.zeros((2 * n, 2, 2 * CORNERS)),
     )

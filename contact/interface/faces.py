@@ -15,8 +15,7 @@ normal forces there balances the moment of friction across the gap. Forces are t
 are in equilibrium exactly, and their power is that of the point.
 
 Behind these may stand points of sides, which stops and ties hold (`contact.stepping.links`): like a point over the
-floor each belongs to one box, and is between two of its corners. A tie between two boxes is a point too: its gap is
-its length less the distance of a point on a side of the one from a point on a side of the other.
+floor each belongs to one box, and is between two of its corners.
 
 The weight of a point, a factor of its stiffness, falls from 1 to 0 where its corner leaves the face: linearly from
 `contact_points.EDGE` of the face inside the end to as much outside. Two corners that face each other have a half each,
@@ -35,8 +34,7 @@ from contact.structs import struct
 CORNERS = 4  #: of a box
 #: corners of a contact point: the one on the face, and the left and right end of the face
 TOUCHING, LEFT, RIGHT = 0, 1, 2
-#: how many corners a tie between two boxes has: foot and top of a side of the one, and of the other
-ENDS = 4
+OF_A_POINT = 3  #: corners at most
 LOWER, UPPER = 0, 1  #: boxes of a contact point
 
 
@@ -44,19 +42,17 @@ LOWER, UPPER = 0, 1  #: boxes of a contact point
 class Faces(NamedTuple):
     """The contact points of N boxes, n, and scratch."""
 
-    #: (n, 4) TOUCHING, LEFT and RIGHT corner of a point; a point of one box is between the latter; or the `ENDS`
-    corner: IntArray
+    corner: IntArray  #: (n, 3) TOUCHING, LEFT and RIGHT corner of a point; a point of one box is between the latter
     bodies: IntArray  #: (n, 2) lower and upper box of a point; -1, and its box, of a point of one box
     parts: IntArray  #: (n,) how many of its corners move a point
-    owner: IntArray  #: (n, 4) which box of a point each of its corners belongs to, LOWER or UPPER
+    owner: IntArray  #: (n, 3) which box of a point each of its corners belongs to, LOWER or UPPER
     #: (n, n, 2) which box of the second point the LOWER or UPPER one of the first is; -1: none
     shared: IntArray
     reach: IntArray  #: (n,) behind the last point that shares a box with it
-    #: (n, 2) of a point of one box, between its LEFT and RIGHT corner: 0 to 1; of a tie on both sides, from the foot
-    place: FloatArray
+    place: FloatArray  #: (n,) of a point of one box, between its LEFT and RIGHT corner: 0 to 1
     apart: FloatArray  #: (n,) how much further along x the frame of the corner is than that of the face [m]
     side: FloatArray  #: (n,) 1: a corner of the upper box on the face below; -1: of the lower box on the face above
-    length: FloatArray  #: (n,) of the face, undeformed, or of a tie with its slack [m]
+    length: FloatArray  #: (n,) of the face, undeformed [m]
     #: (n,) coordinate of its left end, so that corners that face each other have the same [m]
     origin: FloatArray
     edge: FloatArray  #: (n,) half of the length over which the weight falls [m]
@@ -65,7 +61,7 @@ class Faces(NamedTuple):
     weight: FloatArray  #: (n,) in this step
     #: scratch, of the linearisation about positions of the corners
     placed: FloatArray  #: (n, 2) the points at these positions
-    gradient: FloatArray  #: (n, 2, 4, 2) derivatives of x and gap by x and z of the point's corners
+    gradient: FloatArray  #: (n, 2, 3, 2) derivatives of x and gap by x and z of the point's corners
     #: (2 n, 2, 8) displacement of the corners of lower and upper box under a unit force [m/N]
     moved: FloatArray
 
@@ -74,30 +70,6 @@ class Faces(NamedTuple):
 def is_of_one_box(faces: Faces, i: int) -> bool:
     """Whether a contact point is one over the floor or held by a link, and not a corner on the face of a box."""
     return bool(faces.bodies[i, LOWER] < 0)
-
-
-@inlined
-def is_on_face(faces: Faces, i: int) -> bool:
-    """Whether a contact point is a corner on the face of a box."""
-    return bool(faces.bodies[i, LOWER] >= 0 and faces.parts[i] < ENDS)
-
-
-@inlined
-def place_of_end(faces: Faces, i: int, end: int, corner: FloatArray, k: int) -> float:
-    """Coordinate x or z of the end of a tie, on its lower or upper box, in the frame of that [m]."""
-    foot, top = corner[faces.corner[i, 2 * end], k], corner[faces.corner[i, 2 * end + 1], k]
-    return float(foot + faces.place[i, end] * (top - foot))
-
-
-@compiled(inline=True)
-def stretch_of_tie(faces: Faces, i: int, corner: FloatArray) -> tuple[float, float, float]:
-    """Direction of a tie between two boxes from its lower to its upper one, x and z, and its length [m]."""
-    x = place_of_end(faces, i, UPPER, corner, 0) - place_of_end(faces, i, LOWER, corner, 0) + faces.apart[i]
-    z = place_of_end(faces, i, UPPER, corner, 1) - place_of_end(faces, i, LOWER, corner, 1)
-    length = np.sqrt(x * x + z * z)
-    if length == 0.0:  # slack, so that its direction does not matter
-        return 1.0, 0.0, 0.0
-    return x / length, z / length, length
 
 
 @compiled(inline=True)
@@ -116,13 +88,6 @@ def place_on_face(faces: Faces, i: int, corner: FloatArray) -> tuple[float, floa
     return share, faces.side[i] * (z * along_x - x * along_z), along_x, along_z, length
 
 
-def lengthen_ties(faces: Faces, corner: FloatArray) -> None:
-    """Give the ties between boxes with these corners (4 N, 2) the lengths at which they have their slack left [m]."""
-    for i in range(faces.weight.size):
-        if not is_of_one_box(faces, i) and not is_on_face(faces, i):
-            faces.length[i] += stretch_of_tie(faces, i, corner)[2]
-
-
 @compiled(inline=True)
 def place_points(faces: Faces, corner: FloatArray, point: FloatArray) -> None:
     """Contact points (n, 2) from the corners (4 N, 2), both relative to the floor [m]."""
@@ -132,10 +97,7 @@ def place_points(faces: Faces, corner: FloatArray, point: FloatArray) -> None:
             for k in range(2):
                 point[i, k] = corner[left, k]
                 if faces.parts[i] > 1:
-                    point[i, k] += faces.place[i, 0] * (corner[right, k] - corner[left, k])
-            continue
-        if not is_on_face(faces, i):
-            point[i, 0], point[i, 1] = 0.0, faces.length[i] - stretch_of_tie(faces, i, corner)[2]
+                    point[i, k] += faces.place[i] * (corner[right, k] - corner[left, k])
             continue
         share, gap, _, _, _ = place_on_face(faces, i, corner)
         point[i, 0] = faces.origin[i] + faces.side[i] * share * faces.length[i]
@@ -158,7 +120,7 @@ def weigh_points(faces: Faces, corner: FloatArray, point: FloatArray, contact: C
     from other springs where it is: were it taken for open, the energy of its spring would come from nowhere.
     """
     for i in range(faces.weight.size):
-        if not is_on_face(faces, i):
+        if is_of_one_box(faces, i):
             continue
         share, gap, _, _, _ = place_on_face(faces, i, corner)
         inside = min(share, 1.0 - share) * faces.length[i] / faces.edge[i]
@@ -184,20 +146,13 @@ def linearise_points(faces: Faces, corner: FloatArray, point: FloatArray) -> Non
                 if faces.parts[i] == 1:
                     faces.gradient[i, k, TOUCHING, k] = 1.0
                 else:
-                    faces.gradient[i, k, LEFT, k] = 1.0 - faces.place[i, 0]
-                    faces.gradient[i, k, RIGHT, k] = faces.place[i, 0]
-            continue
-        if not is_on_face(faces, i):
-            along_x, along_z, _ = stretch_of_tie(faces, i, corner)
-            for k in range(ENDS):
-                place = faces.place[i, k // 2]
-                part = (1.0 if k < 2 else -1.0) * (place if k % 2 == 1 else 1.0 - place)
-                faces.gradient[i, 1, k, 0], faces.gradient[i, 1, k, 1] = part * along_x, part * along_z
+                    faces.gradient[i, k, LEFT, k] = 1.0 - faces.place[i]
+                    faces.gradient[i, k, RIGHT, k] = faces.place[i]
             continue
         share, gap, along_x, along_z, length = place_on_face(faces, i, corner)
         stretch, leaning = faces.side[i] * faces.length[i] / length, gap * faces.side[i] / length
         gradient = faces.gradient[i]
-        for k in range(3):
+        for k in range(OF_A_POINT):
             part = 1.0 if k == TOUCHING else (share - 1.0 if k == LEFT else -share)
             turning = 0.0 if k == TOUCHING else (-leaning if k == LEFT else leaning)
             # along (x, z) the face, across it (-z, x)

@@ -67,7 +67,7 @@ def close_step(run: RunState, step: float, iterations: int) -> None:
         clock.most_imbalance = max(clock.most_imbalance, run.ledger[IMBALANCE])
         clock.dissipated = dissipation(run.ledger)
     for j in range(run.joints.shape[0]):
-        run.joints[j].slip += run.joints[j].slip_step
+        run.joints[j].slip += run.joints[j].shift
     clock.rolling_before = clock.rolling
     clock.time += step
     clock.steps += 1

@@ -11,7 +11,7 @@ from contact.interface.laws import ELASTIC_STICK, REGULARISED, relaxed_stick, we
 from contact.jit import compiled, inlined
 from contact.stepping.body import ANGULAR_VELOCITY, CENTRE_X, CENTRE_Z, ROTATION, VELOCITY_X, VELOCITY_Z
 from contact.stepping.links import LinkedBody, load_of_links
-from contact.stepping.observables import SLIDING
+from contact.stepping.observables import SLIDING, bearing_place
 from contact.stepping.state import RunState
 
 NO_POINT, SOME, ALL, AIRBORNE = 0, 1, 2, 3  #: sliding of the loaded points of a joint
@@ -457,6 +457,7 @@ def rub_apart(run: RunState, loose: bool | None, links: LinkedBody | None) -> No
 @compiled(inline=True)
 def update_joints(run: RunState, step: float) -> None:
     """Update the joints from the step about to be accepted; `integrator.close_step` adds its sliding."""
+    old, new = run.old, run.attempt.new
     for j in range(run.joints.shape[0]):
         joint = run.joints[j]
         joint.slip_since_break = (
@@ -465,18 +466,25 @@ def update_joints(run: RunState, step: float) -> None:
             else 0.0
         )
         joint.sliding = joint.slides
-        tangential, normal = 0.0, 0.0
+        tangential, normal, before = 0.0, 0.0, 0.0
         begin, end = points_of(run, j)
         for i in range(begin, end):
-            tangential += run.attempt.new.force[i, 0]
-            normal += run.attempt.new.force[i, 1]
+            tangential += new.force[i, 0]
+            normal += new.force[i, 1]
+            before += old.force[i, 1]
         limit = run.problem.contact.mu_static[begin] * normal
         utilisation = abs(tangential) / limit if limit > 0.0 else 0.0
         joint.utilisation_rate = (utilisation - joint.utilisation) / step
         joint.utilisation = utilisation
         joint.slip_acceleration = (joint.velocity - joint.slip_velocity) / step
         joint.slip_velocity = joint.velocity
-        joint.max_slip = max(joint.max_slip, abs(joint.slip + joint.slip_step))
+        stood = joint.stood_at + joint.slip
+        place = bearing_place(run.problem.contact, run.problem.along, new, begin, end, stood)
+        joint.shift = place - stood
         joint.slip_travel += abs(joint.slip_step)
+        if before <= 0.0 or normal <= 0.0:
+            joint.slip_in_air += joint.shift
+            joint.slip_travel += abs(joint.shift)
+        joint.max_slip = max(joint.max_slip, abs(joint.slip + joint.shift))
         if joint.sliding == 1:
             joint.max_slip_velocity = max(joint.max_slip_velocity, abs(joint.slip_velocity))

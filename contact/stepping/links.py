@@ -5,7 +5,7 @@ and a place across it. A stop is a wall that moves with the floor; its line is h
 A tie pulls down, so its line leads down: its gap is the slack that is left, and it holds the point from above as a wall
 would. All laws, the solver and the ledger are then those of the floor: spring and dashpot that never pull, and Coulomb
 friction across the line. The points of the links are the last of a body; of a loose stack or a row each is on a side
-of one box (`contact.interface.contact_points.SidePoint`), or a tie between two (`Between`), which turns with its ends.
+of one box (`contact.interface.contact_points.SidePoint`).
 
 The cap of a link is its strength. A link that reaches it breaks at the end of the step: its point gets the indentation
 `BROKEN`, and never touches again. What its springs held is part of the contact damping.
@@ -33,7 +33,6 @@ from contact.structs import struct
 #: box of a loose stack or the body of a row that has it
 ALONG_X, ALONG_Z, ACROSS, GAP, BOX = 0, 1, 2, 3, 4
 BROKEN = 1e6  #: indentation of the point of a broken link [m]
-OF_LENGTH = (0.0, 1.0)  #: direction of the line of a tie between two bodies
 #: distance of the points of links from those of the base, and from those before and behind, in widths of the container:
 #: near ones close as one (`contact.stepping.control`), further ones would be less precise
 APART = 4.0
@@ -221,8 +220,8 @@ def shift_links(
 ) -> None:
     """Subtract the velocity of a turn [rad/s] about a place over the floor from the points, which have no indentation.
 
-    Of a loose stack or a row, from those of the boxes from `begin` on, up to the one before `end`; the next step finds
-    the velocity of a tie between two of them. Called between `complete` and `indent`.
+    Of a loose stack or a row, from those of the boxes from `begin` on, up to the one before `end`. Called between
+    `complete` and `indent`.
     """
     if links is not None:
         line = links.line
@@ -230,7 +229,7 @@ def shift_links(
         first = new.point.shape[0] - line.shape[0]
         for k in range(line.shape[0]):
             i, own = first + k, line[k]
-            if own[BOX] < begin or own[BOX] >= end or own[ALONG_Z] == OF_LENGTH[1]:
+            if own[BOX] < begin or own[BOX] >= end:
                 continue
             place, gap = new.point[i, 0] - own[ACROSS], new.point[i, 1] - own[GAP]
             speed_x = turn * (own[ALONG_Z] * gap - own[ALONG_X] * place - z)

@@ -12,7 +12,6 @@ from contact.interface.faces import (
     Faces,
     condense_points,
     is_of_one_box,
-    is_on_face,
     linearise_points,
     move_corners,
     open_unweighted,
@@ -101,11 +100,9 @@ def respond(stack: LooseStack, scheme: Scheme, step: float, old: State, new: Sta
     for i in range(work.trial.shape[0]):
         if is_of_one_box(stack.faces, i) or stack.faces.weight[i] == 0.0:
             continue
-        if not is_on_face(stack.faces, i):  # a tie that broke is indented
-            work.trial[i, 1] += old.crushed[i]
         apart = stack.in_a_row and work.trial[i, 1] > 0.0 and work.point[i, 1] > 0.0
         if not apart:  # the sides of a row are seldom where it matters how far they are from each other
-            for k in range(0 if is_on_face(stack.faces, i) else 1, 2):  # nothing is along a tie
+            for k in range(2):
                 error = max(error, abs(work.trial[i, k] - work.point[i, k]) / stack.tolerance)
     return error
 

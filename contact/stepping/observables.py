@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from contact.arrays import FloatArray
+from contact.interface.workspace import Contact
 from contact.jit import compiled, inlined
 from contact.stepping.body import ANGULAR_VELOCITY, CENTRE_X, POTENTIAL, ROTATION, State
 from contact.stepping.ledger import work_of_lift
@@ -29,8 +30,6 @@ IMPACT_GAP = 1e-3
 #: angular velocity over that at the landing of a corner, at least, with which the other corner leaves the floor; a
 #: container that turns less has come to lie on its base
 TURNING_ON = 0.05
-#: averaging time of corner forces, over 1/p: dashpots make the instantaneous force meaningless
-FORCE_WINDOW = 0.01
 #: outer part of the base about which the body turns when the rest is open, over the width
 PIVOT = 0.15
 ROLLING_PIVOT = 0.5  #: .. of a base that rolls: the side away from where it touches carries nothing
@@ -55,13 +54,18 @@ OBSERVABLES = np.dtype(
         ("max_uplift", "f8"),
         ("max_flight", "f8"),  # largest gap of the base point nearest to the floor
         ("max_penetration", "f8"),
-        ("max_corner_force", "f8"),  # mean over a short time
+        ("max_corner_force", "f8"),  # largest mean over `Control.force_window`
         ("peak_corner_force", "f8"),  # the instantaneous one
         ("left_force", "f8"),  # at the end of the last step
         ("right_force", "f8"),
-        ("impulse_time", "f8"),  # over which the impulses were integrated
+        ("impulse_time", "f8"),  # over which the impulses were integrated: half a window
         ("left_impulse", "f8"),
         ("right_impulse", "f8"),
+        ("last_impulse_time", "f8"),  # .. and those of the half before
+        ("last_left_impulse", "f8"),
+        ("last_right_impulse", "f8"),
+        ("rocking_time", "f8"),  # with a rotation beyond `ROCKING`
+        ("flight_time", "f8"),  # .. and no contact force
         ("max_top_displacement", "f8"),
         ("max_acceleration", "f8"),
         ("first_opening", "f8"),
@@ -94,6 +98,35 @@ def make_observables() -> Any:
     for name in ("restitution", "turning_energy"):
         track[name] = np.nan
     return track.view(np.recarray)
+
+
+@inlined
+def bearing_place(
+    contact: Contact, along: FloatArray, state: State, begin: int, end: int, otherwise: float
+) -> float:
+    """Where a base stands on what is below it: the slip is how far this has moved [m].
+
+    The place of a point is how far it is from where it is along the undeformed base, less what its stuck spring has
+    given way. They are weighted by the normal forces; in the air the point nearest to the ground counts. So rocking
+    from corner to corner moves nothing, a flight moves what the base moves, and an upright container has moved as far
+    as its mass centre.
+
+    Args:
+        contact: its properties; along: (n,) `RunProblem.along`; state: of the run.
+        begin, end: the first point of the joint, and the one behind its last.
+        otherwise: returned where no point is on its face, as of a box that has fallen off.
+    """
+    total, place, lowest, nearest = 0.0, 0.0, math.inf, otherwise
+    for i in range(begin, end):
+        if contact.normal_stiffness[i] <= 0.0:
+            continue
+        moved = state.point[i, 0] - along[i]
+        if state.force[i, 1] > 0.0:
+            total += state.force[i, 1]
+            place += state.force[i, 1] * (moved - state.stick[i])
+        if state.point[i, 1] < lowest:
+            lowest, nearest = state.point[i, 1], moved
+    return place / total if total > 0.0 else nearest
 
 
 @compiled(inline=True)
@@ -199,10 +232,18 @@ def update_observables(
     track.left_force, track.right_force = left_force, right_force
     track.peak_corner_force = max(track.peak_corner_force, max(left_force, right_force))
     track.impulse_time += step
-    if track.impulse_time >= FORCE_WINDOW / control.frequency_parameter:
-        mean = max(track.left_impulse, track.right_impulse) / track.impulse_time
+    if track.impulse_time >= 0.5 * control.force_window:
+        left = track.left_impulse + track.last_left_impulse
+        right = track.right_impulse + track.last_right_impulse
+        mean = max(left, right) / (track.impulse_time + track.last_impulse_time)
         track.max_corner_force = max(track.max_corner_force, mean)
+        track.last_left_impulse, track.last_right_impulse = track.left_impulse, track.right_impulse
+        track.last_impulse_time = track.impulse_time
         track.left_impulse, track.right_impulse, track.impulse_time = 0.0, 0.0, 0.0
+    if abs(rotation) > ROCKING * control.slenderness_angle:
+        track.rocking_time += step
+        if left_force + right_force <= 0.0:
+            track.flight_time += step
     if left_open + right_open == 1 and time < track.first_uplift:
         track.first_uplift = time
     open_side = left_open + right_open > 0

@@ -62,7 +62,7 @@ def write_columns(
     lift, _, _ = floor_motion(run.problem.vertical, time)
     row[ROW_ROTATION] = hermite(s, step, a[ROTATION], a[ANGULAR_VELOCITY], b[ROTATION], b[ANGULAR_VELOCITY])
     row[ROW_ANGULAR_VELOCITY] = (1.0 - s) * a[ANGULAR_VELOCITY] + s * b[ANGULAR_VELOCITY]
-    row[ROW_SLIP] = run.joints[0].slip + s * run.joints[0].slip_step
+    row[ROW_SLIP] = run.joints[0].slip + s * run.joints[0].shift
     row[ROW_CENTRE_X] = hermite(s, step, a[CENTRE_X], a[VELOCITY_X], b[CENTRE_X], b[VELOCITY_X]) - floor
     row[ROW_CENTRE_Z] = hermite(s, step, a[CENTRE_Z], a[VELOCITY_Z], b[CENTRE_Z], b[VELOCITY_Z]) - lift
     row[ROW_UPLIFT], row[ROW_NORMAL], row[ROW_SHEAR] = 0.0, 0.0, 0.0
@@ -90,7 +90,7 @@ def write_boxes(run: RunState, row: FloatArray, s: float, step: float, floor: fl
         row[first + BOX_ROTATION] = hermite(
             s, step, a[ROTATION], a[ANGULAR_VELOCITY], b[ROTATION], b[ANGULAR_VELOCITY]
         )
-        row[first + BOX_SLIP] = joint.slip + s * joint.slip_step
+        row[first + BOX_SLIP] = joint.slip + s * joint.shift
         row[first + BOX_OPENING] = (1.0 - s) * joint.opening + s * joint.opens
         for k in range(2):
             x, v = CENTRE_X + k, VELOCITY_X + k

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from contact.arrays import FloatArray, IntArray
-from contact.interface.contact_points import Held, make_faces, make_row
+from contact.interface.contact_points import SidePoint, make_faces, make_row
 from contact.interface.faces import CORNERS, Faces, linearise_points, weigh_points
 from contact.interface.laws import ELASTIC_STICK
 from contact.interface.stacking import StackedStances, stacked
@@ -53,7 +53,7 @@ def make_stack(
     normal_stiffness: FloatArray,
     tangential_stiffness: FloatArray,
     row: tuple[IntArray, FloatArray, FloatArray] | None = None,
-    held: Sequence[Held] = (),
+    held: Sequence[SidePoint] = (),
 ) -> LooseStack:
     """A loose stack of boxes, from the floor up; or bodies beside one another.
 
@@ -62,7 +62,7 @@ def make_stack(
             the undeformed stack. Monitored points are those of the uppermost box first, then downwards.
         normal_stiffness, tangential_stiffness: of the contact points at full weight [N/m].
         row: of bodies beside one another what `make_row` says of them: pairs, distance, inset.
-        held: points of sides that come last, or ties between bodies beside one another.
+        held: points of sides that come last.
     """
     n, most = len(boxes), max(box.stiffness.size for box in boxes)
     # A mode without shape stays at rest.

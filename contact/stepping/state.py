@@ -5,6 +5,7 @@ in place, and is all that a checkpoint holds. The `attempt` is scratch of one st
 caller takes them.
 """
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,10 +16,10 @@ from contact.arrays import FloatArray, IntArray
 from contact.interface.laws import require_known_friction
 from contact.interface.workspace import Contact, Workspace, make_workspace
 from contact.motion.kernel import UNIFORM, FloorMotion, as_floor_motion, floor_motion
-from contact.stepping.body import State, make_state
+from contact.stepping.body import CENTRE_X, CENTRE_Z, ROTATION, State, make_state
 from contact.stepping.ledger import ROWS as LEDGER_ROWS
 from contact.stepping.ledger import spring_energy
-from contact.stepping.observables import NEVER, make_observables
+from contact.stepping.observables import NEVER, bearing_place, make_observables
 from contact.stepping.scheme import Scheme
 from contact.structs import struct
 
@@ -73,6 +74,8 @@ class Control(NamedTuple):
     gravity: float  #: toward the floor [m/s2]
     downhill: float  #: along a floor that falls toward +x [m/s2]
     frequency_parameter: float  #: of rocking [1/s]
+    #: averaging time of corner forces [s]: dashpots of a numerical penalty make the instantaneous force meaningless
+    force_window: float
     resting_energy: float  #: gravity potential of the container at rest where it was placed [J]
     slowest_rocking: float  #: frequency parameter, of a row the least of all [1/s]
     slenderness_angle: float  #: [rad]
@@ -155,7 +158,12 @@ JOINT_RECORD = np.dtype(
         # friction
         ("sliding", "i8"),  # 1 while every loaded point slides: kinetic friction
         ("slip_since_break", "f8"),  # path since the joint broke loose
-        ("slip", "f8"),  # force-weighted sliding of the box over what is below, signed
+        (
+            "slip",
+            "f8",
+        ),  # displacement of the base over what is below since the start, signed, see `bearing_place`
+        ("stood_at", "f8"),  # `bearing_place` at the start
+        ("slip_in_air", "f8"),  # the part of `slip` that was moved without a contact force
         ("slip_velocity", "f8"),  # force-weighted
         ("slip_acceleration", "f8"),
         ("utilisation", "f8"),  # tangential force over mu_s times the normal force
@@ -177,7 +185,8 @@ JOINT_RECORD = np.dtype(
         # the attempted step
         ("mu", "f8"),  # coefficient of friction at no velocity
         ("motion", "i8"),  # sliding of the loaded points, see `contact.stepping.joints`
-        ("slip_step", "f8"),  # sliding in the step
+        ("slip_step", "f8"),  # force-weighted sliding of the points in the step, as friction takes it
+        ("shift", "f8"),  # change of `slip` in the step
         ("velocity", "f8"),  # slip velocity at its end
         ("slides", "i8"),  # `sliding` after it
         ("opens", "f8"),  # `opening` after it
@@ -304,6 +313,7 @@ class RunProblem(NamedTuple):
     breaks: FloatArray  #: instants at which a step must end [s], sorted, the last one infinite
     control: Control
     stress: Stresses
+    along: FloatArray  #: (n,) where a point is along the undeformed base, see `observables.bearing_place` [m]
 
 
 @struct
@@ -364,6 +374,21 @@ class RunState(NamedTuple):
         return arrays
 
 
+def places_along_base(
+    point: FloatArray, pose: FloatArray, floor: tuple[float, float], on_floor: bool
+) -> FloatArray:
+    """Where the points of a joint are along the base of the upright box on it, (n,) from below its mass centre [m].
+
+    Args:
+        point: (n, 2) of the joint; pose: of the box; floor: its place along x and upward [m].
+        on_floor: the box stands on the floor; on another box the points are along that already.
+    """
+    if not on_floor:
+        return point[:, 0].copy()
+    x, z = point[:, 0] + floor[0] - pose[CENTRE_X], point[:, 1] + floor[1] - pose[CENTRE_Z]
+    return x * math.cos(pose[ROTATION]) - z * math.sin(pose[ROTATION])
+
+
 def make_run(
     *,
     scheme: Scheme,
@@ -402,6 +427,15 @@ def make_run(
     clock["attempt_limit"] = UNLIMITED
     clock["rest_since"] = NEVER
     clock["spring_energy"] = spring_energy(contact, old.point, old.stick)
+    if joints is None:
+        joints = make_joints(control.mass, control.inertia, control.width, control.slenderness_angle)
+    floor, lift = floor_motion(motion, 0.0), floor_motion(vertical, 0.0)
+    along = np.zeros(n)
+    for j, joint in enumerate(joints):
+        points = slice(joint.begin, joint.end) if len(joints) > 1 else slice(0, n - links)
+        pose = old.boxes[j] if len(old.boxes) else old.pose
+        along[points] = places_along_base(old.point[points], pose, (floor[0], lift[0]), joint.below < 0)
+        joint.stood_at = bearing_place(contact, along, old, points.start, points.stop, 0.0)
     return RunState(
         problem=RunProblem(
             scheme=scheme,
@@ -411,6 +445,7 @@ def make_run(
             breaks=np.append(np.asarray(breaks, dtype=float), NEVER),
             control=control,
             stress=stress,
+            along=along,
         ),
         attempt=AttemptedStep(
             new=make_state(old.position.size, n, monitors, len(old.boxes)),
@@ -420,13 +455,11 @@ def make_run(
         buffers=Buffers(history=history, frames=frames),
         old=old,
         work=make_workspace(n),
-        floor=np.tile(floor_motion(motion, 0.0), (2, 1)),
-        lift=np.tile(floor_motion(vertical, 0.0), (2, 1)),
+        floor=np.tile(floor, (2, 1)),
+        lift=np.tile(lift, (2, 1)),
         ledger=np.zeros(LEDGER_ROWS),
         clock=clock.view(np.recarray),
-        joints=make_joints(control.mass, control.inertia, control.width, control.slenderness_angle)
-        if joints is None
-        else joints,
+        joints=joints,
         links=make_links(links),
         track=make_observables(),
         contents=np.zeros((8, 2 * (monitors - control.top_monitors))),

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from fem.case.case import Case
-from fem.case.tables.links import StopTable, faced_by, holder_of
-from fem.case.tables.neighbours import gap_beside, places_of
-from fem.model.tied_capacity import side_of
+from fem.case.tables.links import StopTable, holder_of
+from fem.case.tables.neighbours import places_of
+from fem.model.link_places import side_of
 from fem.runtime.arrays import FloatArray, IntArray
 
 WALL = 0.03  #: thickness of a stop over the height of the container
@@ -27,7 +27,6 @@ class DrawnLink:
     height: float  #: of its point [m]
     anchor: float | None = None  #: height of the anchor of a tie [m]
     outward: float  #: along x, 1 or -1
-    joins: bool = False  #: its anchor is on another container, and moves with that
     until: float = math.inf  #: when it broke [s]
 
     @property
@@ -50,11 +49,8 @@ def drawn_links(case: Case, broken_s: Sequence[float] = ()) -> tuple[DrawnLink, 
         side = axes[holder_of(case, link)] + side_of(case, link)
         outward = -1.0 if link.side == "left" else 1.0
         if not isinstance(link, StopTable):
-            outer, anchor, other = side, 0.0, faced_by(case, link)
-            if other is not None:
-                outer = side + outward * gap_beside(case, holder_of(case, link), other)
-                anchor = link.other_height
-            elif link.to == "wall":
+            outer, anchor = side, 0.0
+            if link.to == "wall":
                 outer, anchor = side + outward * TO_WALL * tallest, link.height_m
             drawn.append(
                 DrawnLink(
@@ -63,7 +59,6 @@ def drawn_links(case: Case, broken_s: Sequence[float] = ()) -> tuple[DrawnLink, 
                     height=link.height_m,
                     anchor=anchor,
                     outward=outward,
-                    joins=other is not None,
                     until=until,
                 )
             )
@@ -75,19 +70,6 @@ def drawn_links(case: Case, broken_s: Sequence[float] = ()) -> tuple[DrawnLink, 
 
 
 def held_nodes(links: Sequence[DrawnLink], nodes: FloatArray) -> IntArray:
-    """The nodes nearest to the ends of each link, (k, 2): to its point, and to its anchor on another container or -1.
-
-    `nodes`: of the undeformed containers, (n, 2) [m].
-    """
-
-    def nearest(x: float, height: float) -> int:
-        return int(np.hypot(*(nodes - (x, height)).T).argmin())
-
-    ends = [
-        (
-            nearest(link.x - link.outward * INWARD, link.height),
-            nearest(link.outer + link.outward * INWARD, link.anchor or 0.0) if link.joins else -1,
-        )
-        for link in links
-    ]
-    return np.array(ends, dtype=np.int64).reshape(-1, 2)
+    """The node nearest to the point of each link, (k,); `nodes`: of the undeformed containers, (n, 2) [m]."""
+    points = ((link.x - link.outward * INWARD, link.height) for link in links)
+    return np.array([np.hypot(*(nodes - point).T).argmin() for point in points], dtype=np.int64)

@@ -1,7 +1,7 @@
 """Stops, ties and neighbours of a case in words, without a model."""
 
 from fem.case.case import Case
-from fem.case.tables.links import StopTable, TieTable, faced_by, name_of
+from fem.case.tables.links import StopTable, TieTable
 from fem.case.tables.neighbours import NeighbourTable
 
 
@@ -9,7 +9,7 @@ def link_rows(case: Case) -> list[tuple[str, str]]:
     """Each stop, tie and neighbour of a case: name and what it is."""
     return [
         *(("stop", _stop(stop)) for stop in case.stop),
-        *(("tie", _tie(tie, faced_by(case, tie))) for tie in case.tie),
+        *(("tie", _tie(tie)) for tie in case.tie),
         *(("neighbour", _beside(*pair)) for pair in zip(case.neighbour, case.row[1:], strict=True)),
     ]
 
@@ -19,11 +19,8 @@ def _stop(stop: StopTable) -> str:
     return where + _stiffness(stop) + _friction(stop) + _strength(stop)
 
 
-def _tie(tie: TieTable, other: int | None) -> str:
-    """A tie; `other`: the container to which it runs."""
+def _tie(tie: TieTable) -> str:
     to = "level to a wall" if tie.to == "wall" else "down to the floor"
-    if other is not None:
-        to = f"to {name_of(other)} at {tie.other_height:g} m"
     of = f"of neighbour {tie.neighbour} " if tie.neighbour else ""
     damping = f", damping ratio {tie.damping_ratio:g}" if tie.damping_ratio else ""
     where = f"{of}on the {tie.side} from {tie.height_m:g} m {to}, slack {1e3 * tie.slack_m:g} mm"

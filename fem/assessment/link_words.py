@@ -3,12 +3,12 @@
 import math
 
 from fem.assessment.loose_boxes import leaning_in_words
-from fem.case.tables.links import TieTable, faced_by, name_of
+from fem.case.tables.links import TieTable
 from fem.model.links import heights_of_links
 from fem.model.model import Model
 from fem.results.outcome import SLIDING, Outcome
 from fem.results.run_result import LinkResult, NeighbourResult, RunResult, Verdict
-from fem.runtime.units import KILONEWTONS, MEGAPASCALS, SHORT_MILLIMETRES
+from fem.runtime.units import KILONEWTONS, SHORT_MILLIMETRES
 
 
 def link_results(model: Model) -> tuple[tuple[LinkResult, ...] | None, tuple[LinkResult, ...] | None]:
@@ -21,7 +21,6 @@ def link_results(model: Model) -> tuple[tuple[LinkResult, ...] | None, tuple[Lin
             side=link.side,
             height_m=height,
             neighbour=link.neighbour if isinstance(link, TieTable) else None,
-            to=None if (other := faced_by(case, link)) is None else name_of(other),
             max_force_N=float(record.max_force),
             hits=int(record.hits),
             largest_closing_velocity_m_s=float(record.largest_closing_velocity),
@@ -71,13 +70,8 @@ def _neighbour(number: int, neighbour: NeighbourResult) -> str:
 def _of_neighbour(number: int, neighbour: NeighbourResult) -> str:
     ratio = f", rotation ratio {neighbour.rotation_ratio:.3f}" if neighbour.overturned_at_s is None else ""
     slip = f", slip {1e3 * neighbour.max_slip_m:.3g} mm" if Outcome(neighbour.outcome) in SLIDING else ""
-    stress = ""
-    if neighbour.max_von_mises_Pa is not None:
-        stress = (
-            f", von Mises stress {MEGAPASCALS.text(neighbour.max_von_mises_Pa, figures=3)} (reduced model)"
-        )
     did = Outcome(neighbour.outcome).verb.replace(", ", " and ")
-    moved = f"{_neighbour(number, neighbour)} {did}{ratio}{slip}{stress}"
+    moved = f"{_neighbour(number, neighbour)} {did}{ratio}{slip}"
     if neighbour.hits == 0:
         return f"{moved}, not touched{_left(neighbour, 'gap')}"
     hits = "once" if neighbour.hits == 1 else f"{neighbour.hits} times"
@@ -95,8 +89,8 @@ def _of_stop(stop: LinkResult) -> str:
 
 
 def _of_tie(tie: LinkResult) -> str:
-    of, to = f" of neighbour {tie.neighbour}" if tie.neighbour else "", f" to {tie.to}" if tie.to else ""
-    name = f"the tie{of} on the {tie.side} at {tie.height_m:g} m{to}"
+    of = f" of neighbour {tie.neighbour}" if tie.neighbour else ""
+    name = f"the tie{of} on the {tie.side} at {tie.height_m:g} m"
     if tie.max_force_N == 0.0:
         return f"{name} stayed slack{_left(tie, 'slack')}"
     return f"{name} carried up to {_force(tie)}{_broken(tie)}"

@@ -221,7 +221,7 @@ def reasons_against(model: Model, history: History, verdict: Verdict, reference:
         reasons.append(
             f"squat container: Housner's restitution is {static.housner_restitution:.3f}, below 0.5"
         )
-    if kind != "corners" or model.case.foot is not None:
+    if kind != "corners":
         what = f"support {kind!r}" if kind != "corners" else "castings"
         reasons.append(f"{what}: the container turns about a moving region, the block about its corners")
     if (moved := joints_in_words(verdict, static.to_result())) not in ("", AS_ONE):

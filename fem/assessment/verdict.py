@@ -21,8 +21,9 @@ from contact.stepping.ledger import (
     LOSS_SHARE_LIMIT,
     MATERIAL_DAMPING,
 )
-from contact.stepping.observables import FORCE_WINDOW, HOPPING, ROCKING
+from contact.stepping.observables import HOPPING, ROCKING
 from fem.case.case import Case
+from fem.model.bounce import bounce_of
 from fem.model.floor import YIELD_STRENGTH, is_steel_shell, post_strength, slab_of, steel_capacity
 from fem.model.floor_numbers import plastic_work
 from fem.model.model import Model
@@ -96,7 +97,7 @@ def relative_rotation(rotation: RotationT, slenderness_angle: float) -> Rotation
     return abs(rotation) / slenderness_angle
 
 
-def verdict_of(model: Model, history: History, largest_von_mises: Sequence[float] | None) -> Verdict:
+def verdict_of(model: Model, history: History, largest_von_mises: float | None) -> Verdict:
     """The `verdict` of a result; what was not reached is None."""
     time, slip = history["time_s"], history["slip_m"]
     end = float(time[-1]) if time.size else None
@@ -108,7 +109,7 @@ def verdict_from(
     end: float | None,
     time: np.ndarray,
     slip: np.ndarray,
-    largest_von_mises: Sequence[float] | None,
+    largest_von_mises: float | None,
 ) -> Verdict:
     """The `verdict` of a model that was stepped to its end.
 
@@ -116,7 +117,7 @@ def verdict_from(
         model: only the record of its run is used.
         end: time of the last sample [s]; None if there is none.
         time, slip: of the samples, as far back as a cycle of the drive at least [s], [m].
-        largest_von_mises: of the container, and of each neighbour [Pa].
+        largest_von_mises: of the container [Pa].
     """
     run, angle, outcome = model.run, model.static.slenderness_angle, _motion_of(model)
     destroyed = destroyed_corner(model)
@@ -124,7 +125,7 @@ def verdict_from(
     capacity = steel_capacity(model.case)
     boxes = box_results(model)
     rotation = max((box.max_rotation_rad for box in boxes), default=track.max_rotation)
-    neighbours = neighbour_results(model, (largest_von_mises or ())[1:])
+    neighbours = neighbour_results(model)
     followed = end is not None and end > 0.0 and not model.case.output.stop_when_still
     rocked = outcome in (Outcome.ROCK, Outcome.SLIDE_ROCK)
     return Verdict(
@@ -136,6 +137,7 @@ def verdict_from(
         modes=_modes_seen(track.modes | _hops(model) << Outcome.HOP.code, outcome, slides=_slides(model)),
         max_rotation_rad=rotation,
         rotation_ratio=relative_rotation(rotation, angle),
+        flight_share=track.flight_time / track.rocking_time if track.rocking_time > 0.0 else None,
         slip_peak_to_peak_m=_peak_to_peak(model, end, time, slip),
         max_indentation_m=_indentation(model),
         tilt_rad=None if outcome == Outcome.OVERTURNED else _tilt(run.old, track),
@@ -144,7 +146,7 @@ def verdict_from(
         restitution_first=None if model.container.row else _restitution(track),
         max_top_displacement_m=track.max_top_displacement if followed else None,
         max_acceleration_m_s2=track.max_acceleration if followed else None,
-        max_von_mises_Pa=None if largest_von_mises is None else largest_von_mises[0],
+        max_von_mises_Pa=largest_von_mises,
         yield_strength_Pa=YIELD_STRENGTH if is_steel_shell(model.case) else None,
         stress_from_corner_m=None if largest_von_mises is None else casting_length(model.case),
         corner_capacity_N=capacity,
@@ -179,11 +181,8 @@ def _is_loose(model: Model) -> bool:
     return bool(model.container.boxes) and not model.container.row
 
 
-def neighbour_results(model: Model, stresses: Sequence[float]) -> tuple[NeighbourResult, ...]:
-    """What each neighbour in a row did, and what happened across the gap before it, in the order of the case.
-
-    `stresses`: the largest of each, of a reduced model [Pa].
-    """
+def neighbour_results(model: Model) -> tuple[NeighbourResult, ...]:
+    """What each neighbour in a row did, and what happened across the gap before it, in the order of the case."""
     neighbours = []
     for number, neighbour in enumerate(model.case.neighbour, 1):
         joint, gap = _numbers(model.run.joints[number:]), _numbers(model.run.links[number - 1 :])
@@ -201,7 +200,6 @@ def neighbour_results(model: Model, stresses: Sequence[float]) -> tuple[Neighbou
                 max_force_N=gap.max_force,
                 largest_closing_velocity_m_s=gap.largest_closing_velocity,
                 gap_left_m=gap.least_gap,
-                max_von_mises_Pa=stresses[number - 1] if stresses else None,
             )
         )
     return tuple(neighbours)
@@ -335,6 +333,7 @@ def numerics_of(model: Model, stepping_cpu: float) -> Numerics:
     # Rayleigh and Ritz: the modes of the free container come first, then the attachment modes of its contact points.
     elastic = model.elastic_modes if model.case.solver.model == "reduced" else 1
     spectra = model.spectra
+    bounce = bounce_of(model.case, container, model.equilibrium.contact)
     return Numerics(
         unknowns=int(run.old.position.size),
         contact_nodes=int(
@@ -357,7 +356,10 @@ def numerics_of(model: Model, stepping_cpu: float) -> Numerics:
         attachment_frequencies_Hz=tuple(
             sorted(f for spectrum in spectra for f in spectrum[elastic:].tolist())
         ),
-        corner_force_window_s=FORCE_WINDOW / run.problem.control.frequency_parameter,
+        corner_force_window_s=run.problem.control.force_window,
+        bounce_frequency_Hz=bounce.frequency,
+        bounce_container_damping_ratio=bounce.container_damping_ratio,
+        bounce_contact_damping_ratio=bounce.contact_damping_ratio,
         contents_filter=CONTENTS_FILTER,
         contents_filter_Hz=model.case.output.contents_filter_Hz,
     )

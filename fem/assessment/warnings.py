@@ -168,23 +168,15 @@ def rest_proves_nothing(result: run_result.RunResult, case: Case) -> str | None:
     )
 
 
-def _largest_stress(verdict: run_result.Verdict) -> tuple[float | None, str]:
-    """Largest von Mises stress of all that stands in the row [Pa], and in which neighbour."""
-    every = [(verdict.max_von_mises_Pa, "")]
-    for number, neighbour in enumerate(verdict.neighbours or (), 1):
-        every.append((neighbour.max_von_mises_Pa, f" in neighbour {number}"))
-    return max(every, key=lambda stress: stress[0] or 0.0)
-
-
 def stress_is_beyond_yield(result: run_result.RunResult, case: Case) -> str | None:
     """The model is elastic; a steel shell past its yield strength is not."""
-    (stress, where), limit = _largest_stress(_verdict(result)), _verdict(result).yield_strength_Pa
+    stress, limit = _verdict(result).max_von_mises_Pa, _verdict(result).yield_strength_Pa
     if limit is None or stress is None or stress <= limit:
         return None
     peak = ", and stress at a corner that carries the weight grows as the mesh is refined"
     corner = plastic_corner(_verdict(result))
     return (
-        f"von Mises stress reached {stress / 1e6:.0f} MPa{where}, beyond the yield strength of S235 (235 MPa): the "
+        f"von Mises stress reached {stress / 1e6:.0f} MPa, beyond the yield strength of S235 (235 MPa): the "
         f"model is elastic{peak if _verdict(result).stress_from_corner_m is None else ''}"
         + (f"; {corner}" if corner else "")
     )
@@ -192,14 +184,14 @@ def stress_is_beyond_yield(result: run_result.RunResult, case: Case) -> str | No
 
 def strain_is_not_small(result: run_result.RunResult, case: Case) -> str | None:
     """The reduced model is linear elasticity in a turning frame: it leaves out what grows with the strain."""
-    stress, where = _largest_stress(_verdict(result))
+    stress = _verdict(result).max_von_mises_Pa
     if case.solver.model != "reduced" or stress is None:
         return None
     strain = stress / case.container.youngs_modulus_Pa
     if strain <= SMALL_STRAIN:
         return None
     return (
-        f"strain reached {100.0 * strain:.2g} %{where} (von Mises stress over Young's modulus; "
+        f"strain reached {100.0 * strain:.2g} % (von Mises stress over Young's modulus; "
         f"{100.0 * SMALL_STRAIN:g} % is small): the reduced model is linear in strain and differs from the full one by "
         "5 % and more" + ("" if case.neighbour else '; use solver.model = "full"')
     )

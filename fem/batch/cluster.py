@@ -23,19 +23,17 @@ class SchedulerError(ValueError):
 
 
 @contextmanager
-def cluster(address: str, *, named: str = "", worker_s: float = WORKER_S) -> Iterator[WorkersOf]:
+def cluster(address: str) -> Iterator[WorkersOf]:
     """Connect to a scheduler; yields the pools that compute the cases of a model.
 
     Args:
         address: of the scheduler.
-        named: how messages call it; default: as `--scheduler` does.
-        worker_s: within which it has a worker [s].
 
     Raises:
         SchedulerError: it does not answer, has no workers, or they run another version of this program.
         WorkersLostError: the workers died.
     """
-    named = named or f"--scheduler {address}"
+    named = f"--scheduler {address}"
     for name in ("distributed", "distributed.client"):  # what matters is raised here
         logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
@@ -50,7 +48,7 @@ def cluster(address: str, *, named: str = "", worker_s: float = WORKER_S) -> Ite
         ) from None
     with client:
         try:
-            client.wait_for_workers(1, timeout=worker_s)
+            client.wait_for_workers(1, timeout=WORKER_S)
         except TimeoutError:
             raise SchedulerError(
                 f"{named}: it has no workers; start some with 'dask worker {address}'"

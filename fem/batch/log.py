@@ -14,7 +14,6 @@ from pathlib import Path
 from typing import Any, Generic
 
 from fem.batch.runner import ChunkWork, ItemT, Row, Runner
-from fem.batch.shard import number_of
 from fem.batch.table import Columns, is_row, line_of, read_lines, row_of, table_of_lines
 from fem.case.case import Case
 from fem.results.errors import FolderError, FolderLostError
@@ -76,7 +75,6 @@ class LoggedRows(Generic[ItemT]):
     key: Callable[[ItemT], Iterable[Any]]
     note: Callable[[str], None] = lambda line: None  #: called with every line of the log, old and new
     logged: Callable[[Row], Row] = lambda row: row  #: a row as the log holds it
-    number: Callable[[ItemT], int] = number_of  #: of an item, by which it has its shard
     #: all that there may be, where they are known beforehand and their keys tell them apart: their lines are kept
     items: Iterable[ItemT] = ()
     lines: dict[tuple[Any, ...], str] = field(default_factory=dict, init=False)  #: by key
@@ -109,7 +107,7 @@ class LoggedRows(Generic[ItemT]):
         """Note the rows of earlier attempts, then compute the items that are missing.
 
         Args:
-            runner: says what is shared, and when to stop.
+            runner: says when to stop.
             batches: of missing items; each is asked for when all rows before are noted.
             rows_of: items and their rows, as they are ready.
 
@@ -127,14 +125,11 @@ class LoggedRows(Generic[ItemT]):
             for items in batches:
                 if runner.stop():
                     break
-                mine = runner.share.of(items, map(self.number, items)) if runner.share else items
-                for chunk, rows in rows_of(mine):
+                for chunk, rows in rows_of(items):
                     lines = [self._line(item, row) for item, row in zip(chunk, rows, strict=True)]
                     log.append(lines)
                     for line in lines:
                         self._note(line)
-                if runner.share and len(mine) < len(items) and not runner.stop():
-                    runner.share.waits = True
             log.sync()
 
     def _note(self, line: str) -> None:

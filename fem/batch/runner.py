@@ -15,7 +15,6 @@ from typing import Any, NamedTuple
 from fem.assessment.motion_words import covered_in_words, is_cut, missing_peak
 from fem.assessment.verdict import verdict_of
 from fem.batch.container_cache import ContainerCache, container_key
-from fem.batch.shard import Share
 from fem.batch.workers import FoundT, ItemT, LocalWorkers, Pool, WorkersOf, hand_out, never
 from fem.case.case import Case, CaseError
 from fem.model.container import Container
@@ -68,9 +67,6 @@ class Runner:
     reporter: Reporter = field(default_factory=SilentReporter)
     stop: Callable[[], bool] = never  #: asked repeatedly; true ends the work
     jobs: int = 1  #: cores of this machine that it may use
-    #: told what runs cost in CPU time [s] before they are handed out; may refuse with a CaseError
-    approve: Callable[[str, float], None] = field(default=lambda what, seconds: None)
-    share: Share | None = None  #: of the items of a study that is shared with other machines; None: all
 
     def rows(
         self,
@@ -133,8 +129,6 @@ class Runner:
         for group in by_model.values():
             with suppress(ValueError):  # a case that cannot be computed is told in its row
                 seconds += len(group) * cost(make(group[0]))
-        if any(by_model.values()):
-            self.approve(what, seconds)
         say_expected(self.reporter, what, seconds / self.jobs, self.jobs)
 
     def each(self, what: str, items: Sequence[ItemT], work: Callable[[ItemT], FoundT]) -> list[FoundT]:

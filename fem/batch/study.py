@@ -14,11 +14,10 @@ from pathlib import Path
 from typing import Any, Generic, TypedDict, TypeVar, Unpack
 
 from fem.batch.runner import Runner
-from fem.batch.shard import Shard, Share, join_logs, lines_of_logs, read_shards
 from fem.batch.workers import LocalWorkers, WorkersOf
 from fem.case.case import Case
 from fem.results.disk import BYTES_BESIDE
-from fem.results.errors import OTHER_FOLDER, FolderError
+from fem.results.errors import FolderError
 from fem.results.folder import ResultFolder, open_result_folder, program_of_results
 from fem.results.json_block import JsonBlock
 from fem.results.kinds import ResultKind, read_result, typed_result
@@ -39,19 +38,16 @@ class StudyOptions(TypedDict, total=False):
     resume: bool  #: continue with what is there
     force: bool  #: overwrite earlier results
     reporter: Reporter | None
-    shard: Shard | None  #: compute this part alone
-    merge: Sequence[Path]  #: folders of all shards, whose rows are taken
 
 
 @dataclass(frozen=True, kw_only=True)
 class StudyResult(JsonBlock):
     """What the marking file of every study holds."""
 
-    written_where_given = frozenset({"missing", "shard"})
+    written_where_given = frozenset({"missing"})
     status: str = "running"  #: running | interrupted | failed | completed
     answer: str | None = None  #: in one sentence; None until the study is finished, or where it has none
     missing: str | None = None  #: what an interrupted study has not come to, in words
-    shard: Shard | None = None  #: the part that it is
     program: str = field(default_factory=lambda: str(program_of_results()["program"]))
     versions: dict[str, str] = field(default_factory=lambda: dict(program_of_results()["versions"]))
 
@@ -65,8 +61,6 @@ class StudyResult(JsonBlock):
         """What stands in place of the answer of an unfinished study; None of a finished one."""
         if self.state == "finished":
             return None
-        if self.shard is not None and self.shard.done:
-            return f"shard {self.shard} is done: {self.missing}; --merge with the folders of all shards continues"
         return f"no answer yet: {self.missing or 'the study was interrupted'}; --resume continues"
 
     def to_json(self) -> dict[str, Any]:
@@ -122,14 +116,6 @@ def run_study(study: Study[ResultT], folder: Path, **options: Unpack[StudyOption
         interruptible(runner.reporter) as stop,
         compilation_announced(runner.reporter.message),
     ):
-        shard, merge = options.get("shard"), options.get("merge") or ()
-        part = (place.earlier or {}).get("shard")
-        before = typed_result(Shard, part, folder / kind.mark) if part else None
-        if before and shard and (before.number, before.count) != (shard.number, shard.count):
-            raise FolderError(f"{folder} holds shard {before} of this {kind.name}; {OTHER_FOLDER}")
-        if before and before.done and shard and not merge and not before.lost(folder, kind):
-            runner.reporter.message(f"{folder} holds shard {shard} of this {kind.name} already")
-            return typed_result(study.result, place.earlier or {}, folder / kind.mark)
         if place.finished and place.earlier:
             known = study.again(place, typed_result(study.result, place.earlier, folder / kind.mark))
             if known is not None:
@@ -140,25 +126,15 @@ def run_study(study: Study[ResultT], folder: Path, **options: Unpack[StudyOption
         place.require_same_program()
         place.require_room(study.size + BYTES_BESIDE, study.subject, study.way_out)
         mark = {kind.request: study.request}
-        parts = read_shards(place, study.request, merge) if merge else []
-        share = Share(shard) if shard else None
-        place = replace(place, beside={"shard": shard.to_json()} if shard else {})
         place.begin(study.begun.to_json() | mark, study.texts, keep=place.earlier is not None)
-        if parts:
-            join_logs(folder, kind, merge)
-            place = replace(place, earlier=place.earlier or dict(parts[0]))
-        halted = (lambda: stop() or share.waits) if share else stop
         for case in study.cases:
             copy_data_files(case, place.path)
         for case in study.motions:
             copy_data_files(case, place.path, read=True)
-        result = study.compute(place, replace(runner, stop=halted, share=share))
-        if shard and share:
-            done, lines = share.waits or result.status in kind.finished, lines_of_logs(folder, kind)
-            result = replace(result, shard=replace(shard, done=done, lines=lines))
+        result = study.compute(place, replace(runner, stop=stop))
         place.check()
-        replace(place, beside={}).write_result(result.to_json() | mark)
-        if result.status in kind.finished and not shard:
+        place.write_result(result.to_json() | mark)
+        if result.status in kind.finished:
             place.remove(*kind.temporary)
     return result
 
@@ -184,10 +160,8 @@ def runner_of(**options: Unpack[StudyOptions]) -> Iterator[Runner]:
     with ExitStack() as stack:
         jobs = options.get("jobs") or cores()
         given = options.get("workers_of")
-        approve = getattr(given, "approve", None)
         yield Runner(
             workers_of=given or stack.enter_context(LocalWorkers(jobs)),
-            **({"approve": approve} if approve else {}),
             reporter=options.get("reporter") or SilentReporter(),
             jobs=jobs,
         )

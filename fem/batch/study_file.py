@@ -12,6 +12,7 @@ from fem.case.files import CASES, Origin, is_there, parse_case
 from fem.case.overrides import keys_in_effect
 from fem.case.tables.table import CaseTable
 from fem.case.validation import CaseError, problem_lines, read_table
+from fem.runtime.left import left_words
 
 TableT = TypeVar("TableT", bound=CaseTable)
 StudyT = TypeVar("StudyT")
@@ -53,6 +54,8 @@ def split_tables(
     tables = {key: value for key, value in data.items() if isinstance(value, dict)}
     heading = {key: value for key, value in data.items() if key not in tables}
     for name in tables:
+        if words := left_words(f"[{name}]"):
+            raise CaseError(f"[{name}] {words}")
         if name not in known:
             raise CaseError(
                 f"[{name}] unknown table{hint(name, known)} (known: {', '.join(known)}); "

@@ -7,7 +7,6 @@ from pydantic import Field
 
 from fem.case.tables.all_tables import OPTIONAL, TABLES, CaseHeading
 from fem.case.tables.boxes import Box, boxes_of, joint_friction
-from fem.case.tables.castings import bear_as_plates
 from fem.case.tables.contact_tables import ContactTable, JointsTable
 from fem.case.tables.container_tables import ContainerTable, SupportTable
 from fem.case.tables.floors import FloorTable
@@ -65,10 +64,8 @@ class CaseContent(CaseHeading):
 
     @property
     def foot(self) -> float | None:
-        """Length along x of what bears at each end of the base: a foot, or a casting that bears as a plate [m]."""
-        if self.support.kind == "feet":
-            return self.support.foot_m
-        return self.casting_length if bear_as_plates(self.support) else None
+        """Length along x of the feet at the ends of the base [m]."""
+        return self.support.foot_m if self.support.kind == "feet" else None
 
     @property
     def casting_length(self) -> float | None:

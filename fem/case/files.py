@@ -161,7 +161,7 @@ class Collection:
 CASES = Collection("case", "case")
 SWEEPS = Collection("sweep", "sweep")
 ENSEMBLES = Collection("ensemble", "ensemble")
-SITES = Collection("site", "site_check")
+SITES = Collection("site", "site")
 COLLECTIONS = (CASES, SWEEPS, ENSEMBLES, SITES)
 
 

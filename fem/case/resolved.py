@@ -33,8 +33,6 @@ def resolved_tables(case: Any) -> dict[str, Any]:
         del document["container"]["eccentricity_m"]
     if case.support.camber_m == 0.0:
         del document["support"]["camber_m"], document["support"]["rocking_damping_ratio"]
-    if case.support.casting_tilt_m == 0.0 and "casting_tilt_m" in document["support"]:
-        del document["support"]["casting_tilt_m"]
     if case.support.effective_width == 1.0:
         del document["support"]["effective_width"]
     if case.container.box is not None:

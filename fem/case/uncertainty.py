@@ -32,7 +32,7 @@ from fem.case.tables.input_keys import (
 )
 from fem.case.tables.input_ranges import InputRange, Value, short
 from fem.case.tables.links import ROWS
-from fem.case.tables.unknown_inputs import QUANTITIES, WORDS, other_patch, ranges_of, value_in_words
+from fem.case.tables.unknown_inputs import QUANTITIES, other_patch, ranges_of
 
 #: static and kinetic friction of the same surfaces
 FRICTIONS = ((MU_STATIC, MU_KINETIC), (JOINTS_MU_STATIC, JOINTS_MU_KINETIC))
@@ -44,14 +44,12 @@ SWEEPS = 5  #: over all pairs of inputs, to remove their correlation
 
 @dataclass(frozen=True, kw_only=True)
 class InputChange:
-    """A changed case: what one member of a band, one copy of a cell, or one line of a report does differently."""
+    """A changed case: what one member of a band or one copy of a cell does differently."""
 
-    kind: Literal["one", "floor", "pair", "draw", "further"]
+    kind: Literal["one", "floor", "pair", "draw"]
     values: Mapping[str, Value]  #: dotted key -> value
     share: float  #: how far it goes from the case to the end of the range; of a draw 1
     place: tuple[float, ...] = ()  #: of a draw in the ranges of `inputs`, 0 to 1
-    subject: str = ""  #: what a further one changes, in words, and to what
-    to: str = ""
 
     @property
     def inputs(self) -> tuple[str, ...]:
@@ -64,19 +62,6 @@ class InputChange:
         return ", ".join(
             f"{key} = {value:.4g}" if isinstance(value, float) else f'{key} = "{value}"'
             for key, value in self.values.items()
-        )
-
-    @property
-    def in_words(self) -> tuple[str, str]:
-        """What it changes and to what, for people."""
-        if self.subject:
-            return self.subject, self.to
-        return (
-            ", ".join(WORDS[key] for key in self.values),
-            ", ".join(
-                value if isinstance(value, str) else value_in_words(key, value)
-                for key, value in self.values.items()
-            ),
         )
 
 

@@ -22,6 +22,7 @@ from fem.case.tables.links import MOST_ROWS, ROWS
 from fem.case.tables.problem import Problem, broken
 from fem.case.tables.quantities import Quantity, with_unit
 from fem.case.tables.table import CaseTable
+from fem.runtime.left import left_words
 
 
 class CaseError(ValueError):
@@ -298,6 +299,8 @@ def _shown(value: object) -> str:
 
 
 def _unknown_key(table: str, key: str, known: Mapping[str, FieldInfo]) -> str:
+    if words := left_words(f"{table}.{key}"):
+        return f"{key!r} {words}"
     elsewhere = [f"[{name}]" for name, model in TABLES.items() if name != table and key in known_keys(model)]
     if elsewhere:
         way_out = f"it belongs into {' or '.join(elsewhere)}"
@@ -309,5 +312,7 @@ def _unknown_key(table: str, key: str, known: Mapping[str, FieldInfo]) -> str:
 
 
 def _unknown_table(name: str) -> str:
+    if words := left_words(f"[{name}]"):
+        return words
     near = did_you_mean(name, TABLES)
     return f"unknown table{'; ' + near if near else ''} (known: {', '.join(TABLES)})"

@@ -10,7 +10,7 @@ from fem.results.kinds import SITE
 from fem.runtime.progress import ScreenReporter
 
 if TYPE_CHECKING:
-    from fem.site_check.result import SiteResult
+    from fem.site.result import SiteResult
 
 
 def assess(
@@ -44,11 +44,11 @@ def assess(
     site:
         A site file or the name of a shipped one: site, cologne.
     """
-    request = importlib.import_module("fem.site_check.file").load_site(
+    request = importlib.import_module("fem.site.request").load_site(
         site, motion, allow_baseline=allow_baseline
     )
     folder = flags.folder(request.name)
-    study = importlib.import_module("fem.site_check.run")
+    study = importlib.import_module("fem.site.run")
     with flags.options() as options:
         result = study.run_site(
             request, folder, allow_outside=allow_outside or bool(motion), quick=quick, **options
@@ -99,14 +99,5 @@ def page_of(result: "SiteResult", folder: Path) -> Iterator[str]:
             f"{further.beyond_limits} go beyond a limit of one motion ({further.mass}, friction "
             f"{further.mu_static:.3g}/{further.mu_kinetic:.3g})"
         )
-    if rates := answer.hazard:
-        low, high = rates.interval
-        yield (
-            f"  a year     overturns {rates.overturning_per_year:.2g} times ({low:.2g} to {high:.2g}), "
-            f"{100.0 * rates.in_50_years:.2g} % in 50 years"
-        )
-        if rates.slip_per_year is not None:
-            low, high = rates.slip_interval
-            yield f"  a year     slides beyond the limit {rates.slip_per_year:.2g} times ({low:.2g} to {high:.2g})"
     yield f"  rule       {answer.rule}"
     yield f"  files      {folder}"

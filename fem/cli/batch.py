@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from cyclopts import Parameter
 
 from fem.batch.answers import table_lines
-from fem.case.case import CaseError, load_case
-from fem.cli.console import SHARED, AllowOutside, SharedFlags, flag, print_result, print_to_pdf
+from fem.case.case import load_case
+from fem.cli.console import STUDY, AllowOutside, StudyFlags, flag, print_result, print_to_pdf
 from fem.results.figures import TURNED, Place, figures_of
 from fem.results.kinds import HALL
 from fem.results.outcome import Outcome
@@ -22,16 +22,7 @@ def batch(
     hall: Path,
     /,
     *,
-    case: Annotated[
-        str | None,
-        Parameter(
-            show_default=False, help="The case that the rows change; at a site its container if left out."
-        ),
-    ] = None,
-    site: Annotated[
-        str | None,
-        Parameter(show_default=False, help="Verify each container at a site, by a site file as of assess."),
-    ] = None,
+    case: Annotated[str, Parameter(show_default=False, help="The case that the rows change.")],
     motion: Annotated[
         tuple[str, ...],
         Parameter(
@@ -51,7 +42,7 @@ def batch(
     strict: Annotated[bool, flag("Refuse the list if one of its rows is bad.")] = False,
     allow_outside: AllowOutside = False,
     pdf: Annotated[bool, flag("Print the page to report.pdf, by Chromium or Chrome.")] = False,
-    flags: SharedFlags = SHARED,
+    flags: StudyFlags = STUDY,
 ) -> int:
     """Compute a list of containers: which rest, slide, rock or overturn, and which is the weakest?
 
@@ -63,24 +54,13 @@ def batch(
     hall:
         The list, as CSV.
     """
-    if (case is None and site is None) or (site is not None and motion):
-        words = "--case is missing: the case that the rows change"
-        raise CaseError("--site and --motion contradict each other; give one of them" if site else words)
     listed = importlib.import_module("fem.hall.file").read_hall(hall)
-    base = load_case(case, allow_outside=allow_outside) if case is not None else None
+    base = load_case(case, allow_outside=allow_outside)
     folder = flags.folder(listed.name)
     with flags.options() as options:
-        if site is not None:
-            request = importlib.import_module("fem.site_check.file").load_site(site)
-            study = importlib.import_module("fem.hall.site")
-            result = study.run_hall_at_site(
-                listed, request, base, folder, strict=strict, allow_outside=allow_outside, **options
-            )
-        else:
-            study = importlib.import_module("fem.hall.run")
-            result = study.run_hall(
-                listed, base, folder, motions=motion, checks=margins, strict=strict, **options
-            )
+        result = importlib.import_module("fem.hall.run").run_hall(
+            listed, base, folder, motions=motion, checks=margins, strict=strict, **options
+        )
     if pdf and result.status == "completed":
         print(print_to_pdf(folder / "report.html"))
     return print_result(result, HALL, folder, page_of(result, folder), as_json=flags.as_json)
@@ -89,8 +69,7 @@ def batch(
 def page_of(result: "HallResult", folder: Path) -> Iterator[str]:
     """The lines of a hall, for people."""
     yield result.hall
-    model = "" if result.site else f", model {result.model}"
-    yield f"  {result.extent}{model}, {result.status}"
+    yield f"  {result.extent}, model {result.model}, {result.status}"
     if result.kept:
         yield f"  kept       {', '.join(result.kept)}"
     for outcome, count in result.outcomes.items():
@@ -107,10 +86,9 @@ def page_of(result: "HallResult", folder: Path) -> Iterator[str]:
 
 def _row_in_words(row: dict[str, object]) -> str:
     """A container in a line."""
-    words = [str(row["answer"] or row["outcome"] or row["reason"])]
+    words = [str(row["outcome"] or row["reason"])]
     if isinstance(row["margin"], float):
-        does = "fails the rule" if row["answer"] else "overturns"
-        words.append(f"{does} from {row['margin']:.3g} times the motion on")
+        words.append(f"overturns from {row['margin']:.3g} times the motion on")
     elif isinstance(row["margin_tried_to"], float):
         words.append(f"does not overturn up to {row['margin_tried_to']:.3g} times the motion")
     for key, figure in figures_of(Place.KEY).items():

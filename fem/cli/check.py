@@ -40,8 +40,8 @@ def check(
     if case is not None and is_site(case):
         if overrides or motion is not None:
             raise CaseError(f"{case}: a site file takes neither --set nor --motion; edit the file")
-        files = importlib.import_module("fem.site_check.file")
-        previews = importlib.import_module("fem.site_check.preview")
+        files = importlib.import_module("fem.site.request")
+        previews = importlib.import_module("fem.site.preview")
         request = files.load_site(case, allow_baseline=allow_baseline)
         outlook = previews.preview_of(request, allow_outside=allow_outside)
         lines = previews.preview_lines(outlook, request)
@@ -131,12 +131,6 @@ def _page(preview: Preview, document: dict[str, Any]) -> str:
                 f"    {action:<14} {kind:<12} {rule.demand / 1e3:8.3f}   {rule.capacity / 1e3:8.3f} "
                 f"{'k' + rule.unit:<4} {rule.utilisation:8.3f}{verdict}"
             )
-    for tied in preview.tied:
-        breaks = ", where a tie breaks" if tied.broken else ""
-        lines.append(
-            f"    with its ties  to the {tied.side:<5}  resists up to {tied.moment / 1e3:.3f} kNm, at "
-            f"{math.degrees(tied.rotation):.3g} deg{breaks}; without {tied.free / 1e3:.3f} kNm"
-        )
     lines += ["", *numerics_lines(numerics)]
     for note in document["notes"]:
         lines.append(

@@ -2,7 +2,7 @@
 
 import importlib
 from collections.abc import Iterable, Iterator, Sequence
-from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -95,26 +95,16 @@ def connected(scheduler: str | None) -> AbstractContextManager[Any]:
     """
     if scheduler is None:
         return nullcontext()
-    workers: AbstractContextManager[Any] = _optional("fem.batch.cluster", "--scheduler", "cluster").cluster(
-        scheduler
-    )
-    return workers
-
-
-def _optional(module: str, option: str, extra: str) -> Any:
-    """A module that needs an extra.
-
-    Raises:
-        CaseError: it is not installed.
-    """
     try:
-        return importlib.import_module(module)
+        module = importlib.import_module("fem.batch.cluster")
     except ModuleNotFoundError as error:
-        if (error.name or "").partition(".")[0] not in ("dask", "distributed", "dask_jobqueue"):
+        if (error.name or "").partition(".")[0] not in ("dask", "distributed"):
             raise
         raise CaseError(
-            f'{option} needs the extra {extra!r}: python -m pip install "unanchored[{extra}]"'
+            "--scheduler needs the extra 'cluster': python -m pip install \"unanchored[cluster]\""
         ) from None
+    workers: AbstractContextManager[Any] = module.cluster(scheduler)
+    return workers
 
 
 @Parameter(name="*")
@@ -153,48 +143,6 @@ class StudyFlags:
             }
 
 
-@Parameter(name="*")
-@dataclass(frozen=True, kw_only=True)
-class SharedFlags(StudyFlags):
-    """Options of a study that several machines can compute together."""
-
-    shard: Annotated[
-        str | None, Parameter(show_default=False, help="Compute one part alone, such as 3/64.")
-    ] = None
-    merge: Annotated[
-        tuple[Path, ...],
-        Parameter(
-            consume_multiple=True,
-            negative=(),
-            show_default=False,
-            help="Folders of all shards, to merge; with --shard, to share the next stage.",
-        ),
-    ] = ()
-
-    slurm: Annotated[
-        Path | None, Parameter(show_default=False, help="Compute by jobs of Slurm, as this TOML file says.")
-    ] = None
-    yes: Annotated[bool, flag("Submit them without asking.")] = False
-
-    def folder(self, name: str) -> Path:
-        """As for any study; every shard has a folder of its own."""
-        return super().folder(f"{name}-shard-{self.shard.replace('/', '-of-')}" if self.shard else name)
-
-    @contextmanager
-    def options(self) -> "Iterator[StudyOptions]":
-        """For `run_study`."""
-        shards = importlib.import_module("fem.batch.shard")
-        shard = shards.Shard.parse(self.shard) if self.shard else None
-        if self.slurm and self.scheduler:
-            raise CaseError("--slurm and --scheduler contradict each other; give one of them")
-        with ExitStack() as held:
-            options = held.enter_context(super().options())
-            if self.slurm is not None:
-                jobs = _optional("fem.batch.slurm", "--slurm", "slurm")
-                options = {**options, "workers_of": held.enter_context(jobs.slurm(self.slurm, yes=self.yes))}
-            yield {**options, "shard": shard, "merge": self.merge}
-
-
 def print_to_pdf(page: Path) -> str:
     """Print a page: the name of the PDF, or how to print it by hand where there is no browser."""
     printing = importlib.import_module("fem.report.printing")
@@ -202,7 +150,6 @@ def print_to_pdf(page: Path) -> str:
 
 
 STUDY = StudyFlags()
-SHARED = SharedFlags()
 
 
 def print_json(text: str) -> None:
@@ -223,4 +170,4 @@ def print_result(
         print_json((folder / kind.mark).read_text(encoding="utf-8"))
     else:
         print("\n".join([*page, *filter(None, [result.no_answer_yet or result.answer])]))
-    return 0 if result.shard is not None and result.shard.done else EXIT_CODES[result.status]
+    return EXIT_CODES[result.status]

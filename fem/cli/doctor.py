@@ -24,6 +24,7 @@ DISTRIBUTIONS = (
     "cyclopts",
     "rich",
     "jinja2",
+    "imageio",
     "filelock",
 )
 INSTALL_PACKAGES = "python -m pip install --upgrade unanchored"

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 
 from fem.batch.answers import falling_in_words, table_lines
 from fem.batch.axes import MOTION_FILE
-from fem.cli.console import SHARED, SharedFlags, print_result
+from fem.cli.console import STUDY, StudyFlags, print_result
 from fem.results.kinds import ENSEMBLE
 
 if TYPE_CHECKING:
     from fem.ensemble.result import EnsembleResult
 
 
-def ensemble(ensemble: str, /, *, flags: SharedFlags = SHARED) -> int:
+def ensemble(ensemble: str, /, *, flags: StudyFlags = STUDY) -> int:
     """Sample the uncertain parameters and count how often the container overturns, with confidence intervals.
 
     Parameters

@@ -1,26 +1,149 @@
-"""What `verify` and `validate` share: a suite computed into a document and a page, and its table printed."""
+"""`verify`, `validate` and `study`: what the folder `tests` of a clone computes, as document, page and table.
 
+The program knows nothing else of its tests: this is the one door, and it opens where there is a clone.
+"""
+
+import importlib
+import json
+import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
-from fem.cli.console import ELSEWHERE_OUT
+from cyclopts import Parameter
+
+from fem.case.validation import CaseError, did_you_mean
+from fem.cli.console import ELSEWHERE_OUT, EXIT_CODES, AsJson, Force, Jobs, Quiet, flag, print_json
 from fem.results.disk import BYTES_BESIDE
 from fem.results.errors import require_writable, writing_into
 from fem.results.files import to_json, write_atomically
+from fem.runtime.progress import ScreenReporter
 
+TESTS = Path(__file__).parents[2] / "tests"  #: beside the program in a clone
 FAILED = 3
+OUTPUTS = Path("outputs")
+STUDIES = ("seed",)
+Out = Annotated[Path | None, Parameter(help="Folder of document and page; default: outputs/COMMAND.")]
 
 
-def compute_into(out: Path, name: str, compute: Callable[[], Any], pages: Any, *, as_json: bool) -> int:
-    """Write NAME.json and NAME.html, print the document or the table; the exit code, 3 where a finding fails."""
-    require_writable(out, ELSEWHERE_OUT, BYTES_BESIDE)
-    with writing_into(out, ELSEWHERE_OUT):
-        out.mkdir(parents=True, exist_ok=True)
-    result = compute()
-    document, page = to_json(result.to_dict()), out / f"{name}.html"
-    with writing_into(out, ELSEWHERE_OUT):
-        write_atomically(out / f"{name}.json", document)
-        write_atomically(page, pages.page_of(result))
-    print(document.rstrip() if as_json else "\n".join([*pages.lines_of(result), f"{page} {pages.SHOWS}"]))
-    return FAILED if result.failures else 0
+def from_clone(name: str) -> Any:
+    """A module of the clone's tests, by the name that it has in pytest.
+
+    Raises:
+        CaseError: the program is installed without them.
+    """
+    if not (TESTS / "evidence").is_dir():
+        raise CaseError(
+            "the checks are in the folder tests of a clone, and not in the installed program; "
+            "clone the project, `python -m pip install -e .` there, and call the command again"
+        )
+    sys.path[:0] = [path for path in (str(TESTS), str(TESTS / "rigs")) if path not in sys.path]
+    return importlib.import_module(name)
+
+
+def paper_report(folder: Path, **options: Any) -> str:
+    """The page of a checked paper.
+
+    Raises:
+        CaseError: as for `from_clone`.
+    """
+    return str(from_clone("paper.run").paper_report(folder, **options))
+
+
+def verify(
+    *,
+    quick: Annotated[bool, flag("Leave out long checks: half a minute once compiled, else two.")] = False,
+    topic: Annotated[tuple[str, ...], flag("Only this topic; may be repeated.", "--topic", "--room")] = (),
+    out: Out = None,
+    as_json: AsJson = False,
+    quiet: Quiet = False,
+) -> int:
+    """Compute the verification checks of the clone; writes verify.json, verify.html; ends with 3 if a row fails."""
+    suite = from_clone("verification.suite")
+    chosen = suite.chosen_checks(
+        quick=quick, topics=topic
+    )  # refuses an unknown topic before a folder is made
+
+    def compute() -> tuple[dict[str, Any], dict[str, Any]]:
+        return suite.run_suite(chosen, quick=quick, reporter=ScreenReporter(quiet=quiet)), {}
+
+    return _written("verify", out, compute, as_json=as_json)
+
+
+def validate(
+    *,
+    data: Annotated[
+        Path | None, Parameter(help="Folder of shake-table tests: of the rocks, or your own.")
+    ] = None,
+    out: Out = None,
+    as_json: AsJson = False,
+    quiet: Quiet = False,
+) -> int:
+    """Predict the experiments of the clone; writes validate.json, validate.html; ends with 3 if one is missed."""
+    suite = from_clone("validation.suite")
+    suite.require(data)  # refused before a folder is made
+
+    def compute() -> tuple[dict[str, Any], dict[str, Any]]:
+        experiments = suite.run_validation(data, reporter=ScreenReporter(quiet=quiet))
+        return suite.document_of(experiments), {one.name: one.figures for one in experiments}
+
+    return _written("validate", out, compute, as_json=as_json)
+
+
+def _written(
+    name: str,
+    out: Path | None,
+    compute: Callable[[], tuple[dict[str, Any], dict[str, Any]]],
+    *,
+    as_json: bool,
+) -> int:
+    """Write NAME.json and NAME.html, print the document or its table; the exit code, 3 where a finding fails."""
+    folder = out if out is not None else OUTPUTS / name
+    pages = from_clone("evidence.pages")
+    require_writable(folder, ELSEWHERE_OUT, BYTES_BESIDE)
+    with writing_into(folder, ELSEWHERE_OUT):
+        folder.mkdir(parents=True, exist_ok=True)
+    computed, pictures = compute()
+    text = to_json(computed)
+    document, page = json.loads(text), folder / f"{name}.html"
+    with writing_into(folder, ELSEWHERE_OUT):
+        write_atomically(folder / f"{name}.json", text)
+        write_atomically(page, pages.page_of(name, document, pictures))
+    shown = f"{page} shows the tables and drawings"
+    print(text.rstrip() if as_json else "\n".join([*pages.LINES[name](document), shown]))
+    return 0 if document["passed"] else FAILED
+
+
+def study(
+    name: str = "seed",
+    /,
+    *,
+    out: Annotated[Path | None, Parameter(help="Folder of the results; default: outputs/study_NAME.")] = None,
+    jobs: Jobs = None,
+    only: Annotated[tuple[str, ...], flag("Only this claim; may be repeated.")] = (),
+    force: Force = False,
+    as_json: Annotated[bool, flag("Print study.json.", "--json")] = False,
+    quiet: Quiet = False,
+) -> int:
+    """Check every claim of the paper: confirmed, confirmed within stated bounds, or refuted.
+
+    The paper is Knoedel and Hrabowski, A simple stick-slip model for the overturning stability of unanchored
+    containers. The claims are in the clone. Writes study.html, one page with the run, figure and number behind each
+    conclusion, and study.json. A claim that the same version of the program has decided is not checked again.
+
+    Parameters
+    ----------
+    name:
+        The study: seed.
+    """
+    if name not in STUDIES:
+        near = did_you_mean(name, STUDIES)
+        raise CaseError(f"no study {name!r}{f'; {near}' if near else ''} (known: {', '.join(STUDIES)})")
+    folder = out if out is not None else OUTPUTS / f"study_{name}"
+    document = from_clone("paper.run").check_paper(folder, only=only, jobs=jobs, force=force, quiet=quiet)
+    if as_json:
+        print_json(to_json(document))
+    else:
+        print("\n".join(from_clone("evidence.pages").LINES["study"](document)))
+        print(f"{folder / 'study.html'} shows the runs, figures and numbers behind them")
+    return EXIT_CODES[document["status"]]

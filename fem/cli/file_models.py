@@ -8,8 +8,8 @@ from fem.batch.axes import Range
 from fem.case.tables.run_tables import DocumentTable
 from fem.ensemble.distributions import Distribution
 from fem.ensemble.file import EnsembleHeading
-from fem.site_check import tables
-from fem.site_check.file import SiteHeading
+from fem.site import tables
+from fem.site.request import SiteHeading
 from fem.sweep.file import SweepHeading
 from fem.sweep.perturbation import Perturbation
 from fem.sweep.plan import MapChoice, Threshold

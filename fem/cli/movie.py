@@ -2,7 +2,6 @@
 
 import importlib
 import math
-import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -23,39 +22,20 @@ def movie(
     run: RunFolder,
     /,
     *,
-    to: Annotated[
-        Path | None, Parameter(help="The file, .gif or .mp4; default: figures/movie.gif of the run.")
-    ] = None,
+    to: Annotated[Path | None, Parameter(help="A .gif or .mp4; default: its figures/movie.gif.")] = None,
     begin: Annotated[float, Parameter(name="--from", help="Begin at this time of the run [s].")] = 0.0,
-    until: Annotated[
-        float, Parameter(help="End at this time [s]; default: the end of the run.", show_default=False)
-    ] = math.inf,
+    until: Annotated[float, Parameter(help="End at this time of the run [s].")] = math.inf,
     fps: Annotated[float, Parameter(help="Most frames a second.")] = 25.0,
-    width: Annotated[
-        int | None, Parameter(help="Width of the movie in pixels; default: as rendered.")
-    ] = None,
     quiet: Quiet = False,
 ) -> None:
     """Animate the frames of a run in real time; MP4 needs imageio-ffmpeg."""
-    opened = open_run(run)
-    _ = opened.fields  # raises where there are no frames to draw
+    opened, path = open_run(run), to or run / "figures/movie.gif"
+    count = len(opened.fields)  # raises where there are no frames to draw
     require_writable(to.parent if to else run, ELSEWHERE_TO, BYTES_BESIDE)
     require_rendering()
-    # Loads pyvista.
-    film = importlib.import_module("fem.render.movie")
-    with writing_into(to.parent if to else run, ELSEWHERE_TO):
-        cut = film.Cut(begin=begin, until=until, rate=fps, width=width)
-        count = len(cut.frames(opened.fields.times)[0])
-        if not quiet:
-            say_expected(ScreenReporter(), f"{count} frames", OF_A_FRAME_S * count)
-        print(film.write_movie(opened, path=to, cut=cut, progress=_ignore if quiet else _show))
-
-
-def _show(done: int, count: int) -> None:
-    """Progress on a terminal, nothing elsewhere."""
-    if sys.stderr.isatty():
-        print(f"\r{done} of {count} frames", end="" if done < count else "\n", file=sys.stderr, flush=True)
-
-
-def _ignore(done: int, count: int) -> None:
-    pass
+    say_expected(ScreenReporter(quiet=quiet), f"up to {count} frames", OF_A_FRAME_S * count)
+    path.parent.mkdir(exist_ok=True)
+    with writing_into(path.parent, ELSEWHERE_TO):
+        film = importlib.import_module("fem.render.movie")  # loads pyvista
+        film.write_movie(opened, path, begin=begin, until=until, rate=fps)
+    print(path)

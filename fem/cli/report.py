@@ -19,8 +19,8 @@ PAGES = {
     "sweep.json": "fem.report.sweep_page:sweep_report",
     "ensemble.json": "fem.report.ensemble_page:ensemble_report",
     "response.json": "fem.report.response_page:response_report",
-    "study.json": "fem.evidence.paper.page:paper_report",
-    "assess.json": "fem.site_check.page.site_page:site_report",
+    "study.json": "fem.cli.evidence:paper_report",
+    "assess.json": "fem.site.page:site_report",
     "hall.json": "fem.hall.page:hall_report",
 }
 
@@ -36,9 +36,6 @@ def report(
     author: Annotated[str, Parameter(show_default=False, help="Author; may be filled in later.")] = "",
     checker: Annotated[str, Parameter(show_default=False, help="Checker.")] = "",
     revision: Annotated[str, Parameter(show_default=False, help="Revision.")] = "",
-    all_variations: Annotated[
-        bool, flag("Compute every variation of a run, even if that takes long.")
-    ] = False,
     short: Annotated[
         bool, flag("At most three printed pages, of a run; two, of a verification at a site.")
     ] = False,
@@ -66,7 +63,6 @@ def report(
     target = _target(to if to is not None else folder / PAGE)
     require_writable(target.parent, ELSEWHERE_TO, BYTES_BESIDE)
     reporter = ScreenReporter(quiet=quiet)
-    interrupts = importlib.import_module("fem.runtime.signals")
     pages = importlib.import_module("fem.report.run_page")
     signature = pages.Signature(author=author, checker=checker, revision=revision)
     marks = [mark for mark in PAGES if (folder / mark).is_file()]
@@ -76,15 +72,7 @@ def report(
         page = getattr(importlib.import_module(module), name)(folder, signature=signature, **brief)
     else:
         opened = importlib.import_module("fem.results.reader").open_run(folder)
-        with interrupts.interruptible(reporter) as stop:
-            page = pages.run_report(
-                opened,
-                signature=signature,
-                every_variation=all_variations,
-                brief=short,
-                message=reporter.message,
-                stop=stop,
-            )
+        page = pages.run_report(opened, signature=signature, brief=short, message=reporter.message)
     with writing_into(target.parent, ELSEWHERE_TO):
         write_atomically(target, page)
     print(target)

@@ -11,7 +11,7 @@ from fem.cli.console import STUDY, AllowOutside, StudyFlags, print_result, whole
 from fem.results.kinds import SIZE
 
 if TYPE_CHECKING:
-    from fem.site_check.bracket import SizeResult
+    from fem.site.size import SizeResult
 
 
 def size(
@@ -37,12 +37,10 @@ def size(
     site:
         A site file or the name of a shipped one: site, cologne.
     """
-    request = importlib.import_module("fem.site_check.file").load_site(site)
-    axis = importlib.import_module("fem.site_check.size_axis").size_axis(
-        request, over, low=low, high=high, count=count
-    )
+    request = importlib.import_module("fem.site.request").load_site(site)
+    axis = importlib.import_module("fem.site.size").size_axis(request, over, low=low, high=high, count=count)
     folder = flags.folder(f"{request.name}_size")
-    study = importlib.import_module("fem.site_check.size_run")
+    study = importlib.import_module("fem.site.size_run")
     with flags.options() as options:
         result = study.run_size(request, axis, folder, allow_outside=allow_outside, **options)
     return print_result(result, SIZE, folder, page_of(result, folder), as_json=flags.as_json)

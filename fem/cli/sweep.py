@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fem.batch.answers import table_lines
-from fem.cli.console import SHARED, SharedFlags, print_result
+from fem.cli.console import STUDY, StudyFlags, print_result
 from fem.results.kinds import SWEEP
 from fem.sweep.file import load_sweep
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from fem.sweep.result import SweepResult
 
 
-def sweep(sweep: str, /, *, flags: SharedFlags = SHARED) -> int:
+def sweep(sweep: str, /, *, flags: StudyFlags = STUDY) -> int:
     """Compute the cases of a sweep: where does the container rest, slide, rock or overturn?
 
     Parameters

@@ -150,7 +150,6 @@ def _compute(
         key=draws.key,
         note=draws.note,
         logged=draw_row,
-        number=lambda draw: draw.cell * ensemble.draws + draw.number,
     ).run(runner, iter(draws.missing, []))
     complete = (draws.codes != Ending.UNKNOWN).all(axis=1)
     points = [count_point(ensemble, int(k), draws.codes[k], draws.slips[k]) for k in np.flatnonzero(complete)]

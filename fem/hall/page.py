@@ -12,7 +12,7 @@ from fem.assessment.sure_words import deciding_in_words
 from fem.batch.study import read_study
 from fem.case.case import load_case
 from fem.hall.places import PICTURE
-from fem.hall.result import NO_ANSWER, HallResult
+from fem.hall.result import HallResult
 from fem.html import sections as html
 from fem.html.page import Signature
 from fem.html.units import ABSENT, number
@@ -28,10 +28,6 @@ LOOKS = {"overturned": "bad", "invalid": "bad", "failed": "bad"}
 MARGIN = (
     "Margin: the factor on the whole motion of the run from which it overturns, with the range that all unknown inputs "
     "together give it. Utilisation: of the static rule for overturning, under the peak of the motion."
-)
-AT_SITE = (
-    "By the rule of each page, to which the answers lead: rotation and slip that count, and as margin the least of the "
-    "factors tried on the motions at which the rule fails. The outcome is that of the run that governs."
 )
 OF_SEVERAL = (
     "Of several motions the worst governs: one that overturns the container, else one that destroys a corner, else the "
@@ -68,7 +64,7 @@ def hall_report(
         html.section("One container by itself", "commands", commands_table(info.ranked)),
     ]
     again = studies.Again(
-        words="With the two files of this folder, and the motions or the site:",
+        words="With the two files of this folder, and the motions:",
         command=command_again(info),
         files=[("base.toml", studies.text_of(folder / "base.toml"))],
     )
@@ -84,9 +80,7 @@ def hall_report(
             found_section(info),
             html.section("In plan", "plan", *studies.drawings(folder, [PICTURE], "batch")),
             html.section("By tag", "tags", *([tags_table(info)] if info.tags else [])),
-            html.section(
-                "The weakest first", "weakest", weakest, html.Note(AT_SITE if info.site else MARGIN)
-            ),
+            html.section("The weakest first", "weakest", weakest, html.Note(MARGIN)),
             html.section("Refused rows", "refused", *([refused_table] if info.not_computed else [])),
             *([] if brief else whole),
         ],
@@ -97,7 +91,7 @@ def hall_report(
 
 def command_again(info: HallResult) -> str:
     """The command that computes the hall."""
-    words = ["--motion", *info.motions] if info.motions else ["--site", info.site] if info.site else []
+    words = ["--motion", *info.motions] if info.motions else []
     words += ["--margins", info.checks] * (info.checks != "weakest")
     outside = bool(info.allow_outside)
     return command_line("batch", "list.csv", "--case", "base.toml", *words, allow_outside=outside)
@@ -109,7 +103,7 @@ def found_section(info: HallResult) -> html.PageSection:
     if info.checked:
         which = "all" if info.checked == info.distinct else f"the weakest {info.checked}"
         count += f" Sure, deciding inputs and margin are those of {which}, each under its governing motion."
-    elif not info.site and info.state == "finished":
+    elif info.state == "finished":
         count += " No run was repeated, so sureness and margins are not known."
     outcomes = ", ".join(f"{word}: {number}" for word, number in info.outcomes.items())
     return studies.answer_section(
@@ -147,17 +141,11 @@ def weakest_table(rows: Sequence[A_ROW], most: int, *, linked: bool) -> html.Tab
     def name(row: A_ROW) -> html.Cell:
         return html.Cell(html.link(row["name"], f"row-{row['row']}") if linked else row["name"])
 
-    def answer(row: A_ROW) -> html.Cell:
-        words = row["answer"] or (NO_ANSWER if row["reasons"] else "")
-        page = Markup('<a href="{}">{}</a>')
-        return html.Cell(page.format(row["page"], words) if row["page"] else words)
-
     columns: list[html.Column[A_ROW]] = [
         html.Column("container", name),
         html.key_column("line", "line", html.NUMBER),
         html.key_column("count", "count", html.NUMBER, empty=1),
         html.key_column("tag", "tag"),
-        html.Column("answer", answer, optional=True),
         html.Column(
             "outcome", lambda row: row["outcome"] or (f"none: {row['reason']}" if row["reason"] else ABSENT)
         ),

@@ -165,8 +165,7 @@ def say_time(file: HallFile, base: Case, motions: int, runner: Runner, *, force:
     words = f"{file.name}: {rows} rows" + (f" under {motions} motions" if motions > 1 else "")
     if rows * motions > MOST_RUNS and not force:
         raise CaseError(
-            f"{words}, {rows * motions} runs: {expected_words(seconds, jobs)}; take fewer rows, split them with "
-            "--shard, or use --force"
+            f"{words}, {rows * motions} runs: {expected_words(seconds, jobs)}; take fewer rows, or use --force"
         )
     say_expected(runner.reporter, words, seconds, jobs)
 

@@ -9,7 +9,6 @@ from fem.batch.table import Columns
 from fem.results.figures import RUN_COLUMNS, SLIPPED, TURNED
 
 REFUSED = "refused"  #: status of a row that cannot be computed
-NO_ANSWER = "no answer"  #: of a container at a site
 #: columns of a run, as in its log
 OF_A_RUN = {"status": str} | RUN_COLUMNS | {"reason": str}
 STATIC = dict.fromkeys(("utilisation_sliding", "utilisation_overturning"), float)
@@ -17,9 +16,7 @@ STATIC = dict.fromkeys(("utilisation_sliding", "utilisation_overturning"), float
 OF_MOTIONS: Columns = {"motion": str}
 OF_MOTIONS |= dict.fromkeys(("motions_overturned", "motions_invalid", "motions_failed"), int)
 OF_MOTIONS |= {"largest_slip_m": float, "largest_slip_motion": str}
-#: of a container at a site, by the rule of `assess`
-AT_SITE = {"answer": str, "reasons": str, "factor_at_first_overturning": float}
-COLUMNS = OF_A_RUN | CHECKED | STATIC | OF_MOTIONS | AT_SITE | {"page": str, "rank": int}
+COLUMNS = OF_A_RUN | CHECKED | STATIC | OF_MOTIONS | {"rank": int}
 FIRST = ("status", "reason", "outcome", *[*CHECKED][:3], TURNED, SLIPPED, "tilt_rad")
 #: behind the columns of the list
 RESULT_COLUMNS = {name: COLUMNS[name] for name in (*FIRST, *STATIC, *OF_MOTIONS, *CHECKED, *COLUMNS)}
@@ -36,7 +33,6 @@ class HallResult(StudyResult):
     listed: str = ""  #: hash of the list
     model: str
     motions: tuple[str, ...] = ()  #: files, of pairs both, as they were named; empty: the motion of the case
-    site: str = ""  #: its file; empty: none
     motion_covered: str | None = None
     rows: int  #: of the list
     containers: int  #: rows times their counts
@@ -45,23 +41,20 @@ class HallResult(StudyResult):
     runs: int = 0
     checks: str = "weakest"  #: which runs are repeated: weakest | all | none
     checked: int = 0  #: containers whose run was repeated
-    #: of containers, by count; at a site their answers
+    #: of containers, by count
     outcomes: dict[str, int] = field(default_factory=dict)
-    #: what the containers of each tag did: stood, overturned, invalid, failed, refused; at a site by answer
+    #: what the containers of each tag did: stood, overturned, invalid, failed, refused
     tags: tuple[dict[str, Any], ...] = ()
     kept: tuple[str, ...] = ()  #: columns of the list that set nothing
     columns: tuple[str, ...] = ()  #: of the list
-    allow_outside: bool | None = None  #: files of the case or the site may lie outside its folder
+    allow_outside: bool | None = None  #: files of the case may lie outside its folder
     table: tuple[dict[str, Any], ...] = ()  #: rows of `hall.csv`, with `row`, `name`, `count`, `command`
 
     @property
     def extent(self) -> str:
         """How much there is of it, in words."""
         under = f" under {len(self.motions)} motions" if len(self.motions) > 1 else ""
-        computed = f"verified at {self.site}" if self.site else f"{self.runs} runs"
-        return (
-            f"{self.rows} rows, {self.containers} containers, {self.distinct} that differ{under}: {computed}"
-        )
+        return f"{self.rows} rows, {self.containers} containers, {self.distinct} that differ{under}: {self.runs} runs"
 
     @property
     def ranked(self) -> list[dict[str, Any]]:

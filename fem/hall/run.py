@@ -93,7 +93,6 @@ def _compute(hall: Hall, begun: HallResult, results: ResultFolder, runner: Runne
         columns=RUN_COLUMNS,
         key=lambda item: item[:2],
         items=items,
-        number=lambda item: item.container * motions + item.motion,
     )
     runs.run(runner, iter(runs.missing, []))
     begun = replace(begun, runs=len(runs.lines))

@@ -14,17 +14,14 @@ from fem.hall.file import LISTED
 from fem.hall.page import hall_report
 from fem.hall.places import PICTURE, draw_places, geojson
 from fem.hall.plan import Hall
-from fem.hall.result import NO_ANSWER, REFUSED, RESULT_COLUMNS, HallResult
+from fem.hall.result import REFUSED, RESULT_COLUMNS, HallResult
 from fem.results.figures import SLIPPED, TURNED
 from fem.results.folder import ResultFolder
 from fem.results.kinds import HALL
 from fem.results.outcome import COUNTED_AS, ending_of
 
 TABLE, PAGE, GEOJSON = "hall.csv", "report.html", "hall.geojson"
-#: what a container counts as, the worst first: by its run, or by its answer at a site
-WORST_FIRST = ("overturned", "invalid", "failed", "stood")
-WORST_ANSWER_FIRST = ("not fulfilled", NO_ANSWER, "not sure", "fulfilled")
-RANKS = {word: rank for words in (WORST_FIRST, WORST_ANSWER_FIRST) for rank, word in enumerate(words)}
+WORST_FIRST = ("overturned", "invalid", "failed", "stood")  #: what a container counts as
 ROCKS = 0.01  #: rotation ratio up to which what stands is ranked by the static rule: nothing rocks
 
 
@@ -33,12 +30,8 @@ CommandOf = Callable[[int, Mapping[str, Any]], str]
 
 
 def ending_in(row: Row) -> str:
-    """What a row counts as; at a site each has an answer or reasons."""
-    if row["status"] == REFUSED:
-        return REFUSED
-    if row.get("answer") or row.get("reasons"):
-        return row["answer"] or NO_ANSWER
-    return COUNTED_AS[ending_of(row["status"], row["outcome"])]
+    """What a row counts as."""
+    return REFUSED if row["status"] == REFUSED else COUNTED_AS[ending_of(row["status"], row["outcome"])]
 
 
 def weakness(row: Row) -> tuple[float, ...]:
@@ -50,7 +43,7 @@ def weakness(row: Row) -> tuple[float, ...]:
     turned, static, slip = (row.get(name) or 0.0 for name in (TURNED, "utilisation_overturning", SLIPPED))
     if ending in WORST_FIRST[:3] or (static and turned <= ROCKS):
         turned = 0.0
-    return RANKS[ending], margin is None, margin or 0.0, -turned, -static, -slip
+    return WORST_FIRST.index(ending), margin is None, margin or 0.0, -turned, -static, -slip
 
 
 def study_of(
@@ -102,7 +95,7 @@ def written(
     outcomes, tags = Counter[str](), dict[str, dict[str, Any]]()
     for row in table:
         ending = ending_in(row)
-        outcomes[ending if begun.site else row["outcome"] or ending] += row["count"]
+        outcomes[row["outcome"] or ending] += row["count"]
         empty = {"tag": row["tag"], "containers": 0, "counts": Counter[str](), "margin": None}
         tag = tags.setdefault(row["tag"], empty)
         tag["containers"] += row["count"]
@@ -141,18 +134,14 @@ def answer_of(result: HallResult) -> str:
     counts = dict(result.outcomes)
     refused = counts.pop(REFUSED, 0)
     computed = result.containers - refused
-    if result.site:
-        words = f"of {computed} containers: " + ", ".join(f"{count} {word}" for word, count in counts.items())
-    else:
-        overturned, invalid, failed = (counts.get(word, 0) for word in ("overturned", "invalid", "failed"))
-        under = f" under at least one of {len(result.motions)} motions" if len(result.motions) > 1 else ""
-        words = f"{overturned or 'none'} of {computed} containers overturned{under if overturned else ''}"
-        words += f"; {invalid} destroyed a corner, which is not valid" if invalid else ""
-        words += f"; {failed} have no outcome" if failed else ""
+    overturned, invalid, failed = (counts.get(word, 0) for word in ("overturned", "invalid", "failed"))
+    under = f" under at least one of {len(result.motions)} motions" if len(result.motions) > 1 else ""
+    words = f"{overturned or 'none'} of {computed} containers overturned{under if overturned else ''}"
+    words += f"; {invalid} destroyed a corner, which is not valid" if invalid else ""
+    words += f"; {failed} have no outcome" if failed else ""
     words += f"; {result.refused} row{'s were' if result.refused != 1 else ' was'} refused" if refused else ""
     weakest = result.ranked[0]
     words += f"; the weakest is {weakest['name']}"
     if (margin := weakest["margin"]) is not None:
-        does, what = ("fails the rule", "the motions") if result.site else ("overturns", "its motion")
-        words += f", which {does} from {margin:.3g} times {what} on"
+        words += f", which overturns from {margin:.3g} times its motion on"
     return words

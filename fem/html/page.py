@@ -1,6 +1,7 @@
 """Pages: one self-contained HTML file each, without network and without other files.
 
-A page is a list of sections, set by `page.html.j2` and `sections.html.j2`. Text from users is escaped everywhere: in
+A page has a template that reads like it and extends `page.html.j2`, or is a list of sections, set by
+`sections.html.j2`. Text from users is escaped everywhere: in
 the page, in JSON inside a script element, in a style sheet. The content security policy of the page forbids the
 browser to load anything and to run any script but those of the page.
 """
@@ -12,7 +13,7 @@ import json
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cache
+from functools import cache, partial
 from importlib import metadata, resources
 from typing import Any
 
@@ -20,11 +21,47 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 
 from fem.html.drawing import require_drawing
+from fem.html.formula import formula_markup
 from fem.html.sections import Block, Written
-from fem.html.units import millimetres, ratio, short, typeset
+from fem.html.units import (
+    ABSENT,
+    figure_cell,
+    figure_head,
+    millimetres,
+    number,
+    quantity,
+    ratio,
+    short,
+    typeset,
+)
+from fem.results.figures import FIGURES, Shown
 from fem.results.json_block import JsonBlock
 
 TEMPLATES = "templates"
+
+
+def _two_figures(value: float | None, figure: Shown) -> str:
+    """A figure of a run as far as it is known."""
+    return ABSENT if value is None else typeset(figure.unit.text(value, figures=2, bare=True))
+
+
+#: what templates set values with: numbers and units of `fem.html.units`, symbols, and columns of declared figures
+FILTERS = {
+    "cell": lambda value, figure: figure_cell(figure, value),
+    "figure_of": FIGURES.__getitem__,
+    "formula": formula_markup,
+    "head": lambda figure: f"#{figure_head(figure)}",
+    "mm": millimetres,
+    "number": number,
+    "quantity": quantity,
+    "ratio": ratio,
+    "short": short,
+    "svg": lambda text, name: svg_element(text, label=name.replace("-", " "), prefix=name),
+    "symbols": partial(formula_markup, prose=True),
+    "two": _two_figures,
+    "typeset": typeset,
+    "used": lambda value, figures: "∞" if value is None else number(value, figures=figures),
+}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,7 +94,7 @@ class Page:
     kind: str  #: above the title
     title: str
     name: str  #: of what it shows; a copy of the page is named after it
-    sections: Sequence[Block]
+    sections: Sequence[Block] = ()  #: of a page without a template of its own
     introduction: Sequence[Block] = ()  #: under the title
     signature: Signature | None = None  #: None of a page that nobody signs
     hash: str = ""  #: of what it shows, at the foot of every printed sheet
@@ -66,8 +103,13 @@ class Page:
     data: Mapping[str, Any] = field(default_factory=dict)
 
 
-def html_of(page: Page) -> str:
-    """The text of the file."""
+def html_of(page: Page, template: str = "page.html.j2", **shown: Any) -> str:
+    """The text of the file.
+
+    Args:
+        template: of `fem/html/templates`.
+        shown: results and functions that it names.
+    """
     signed = ("signature.js",) if page.signature else ()
     scripts, version = (
         [template_text(name) for name in (*page.scripts, *signed)],
@@ -75,8 +117,9 @@ def html_of(page: Page) -> str:
     )
     return (
         _environment()
-        .get_template("page.html.j2")
+        .get_template(template)
         .render(
+            shown,
             page=page,
             signature=page.signature,
             style=template_text("page.css"),
@@ -123,8 +166,7 @@ def _environment() -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters |= {"css_string": _css_string, "short": short, "ratio": ratio}
-    environment.filters |= {"millimetres": millimetres, "typeset": typeset}
+    environment.filters |= FILTERS | {"css_string": _css_string}
     environment.globals["draw"] = _draw
     return environment
 

@@ -60,10 +60,10 @@ class Note:
 
 
 @dataclass(frozen=True)
-class Quote:
-    """A quotation."""
+class Html:
+    """Blocks that a template has set."""
 
-    text: str
+    text: Markup
 
 
 @dataclass(frozen=True)
@@ -338,7 +338,7 @@ Block = (
     str
     | Paragraph
     | Note
-    | Quote
+    | Html
     | Heading
     | Bullets
     | Listing

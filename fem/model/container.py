@@ -71,10 +71,6 @@ class Container:
         corners = [nodes[box.corners] for box, nodes in zip(self.boxes, self.box_nodes, strict=True)]
         return np.concatenate(corners)
 
-    def damping(self, ratio: float) -> float:
-        """a of C = a K [s], with this damping ratio of the first elastic mode."""
-        return 2.0 * ratio / self.first
-
     def lowest_modes(self, count: int) -> ElasticModes:
         """The lowest elastic modes of the free container: those of a reduced model, or computed.
 
@@ -108,13 +104,12 @@ def modes_of_a_body(case: Case) -> int:
     return math.ceil(case.solver.elastic_modes / case.container.bodies)
 
 
-def discretise(case: Case, mesh: ContainerMesh | None = None, struck: FloatArray | None = None) -> Container:
+def discretise(case: Case, mesh: ContainerMesh | None = None) -> Container:
     """Build elements, contact nodes and elastic modes of a case's container.
 
     Args:
         case: its container.
         mesh: where it is built already.
-        struck: (k, 2) further points on its sides for whose forces a reduced model has attachment modes [m].
 
     Raises:
         CaseError, MeshError: bad input.
@@ -132,11 +127,8 @@ def discretise(case: Case, mesh: ContainerMesh | None = None, struck: FloatArray
     if not case.output.stop_when_overturned:  # lying on its side it touches with the upper corners, too
         nodes = np.concatenate([nodes, _upper_corners(elements)])
     nodes = np.concatenate([nodes, nodes_of_links(case, elements.nodes)])
-    attached = nodes
-    if struck is not None and case.solver.model == "reduced":
-        attached = np.concatenate([nodes, nodes_at(struck, elements.nodes)])
     rigid = case.solver.model == "rigid"
-    response = _no_response(elements) if rigid else static_response(elements, attached)
+    response = _no_response(elements) if rigid else static_response(elements, nodes)
     basis, first = _elastic(case, elements, response, modes_of_a_body(case))
     return Container(
         mesh=mesh,
@@ -144,7 +136,7 @@ def discretise(case: Case, mesh: ContainerMesh | None = None, struck: FloatArray
         support=support,
         nodes=nodes,
         monitors=_monitors(elements),
-        response=response.of_first(nodes.size),
+        response=response,
         basis=basis,
         free_modes=case.solver.elastic_modes if case.solver.model == "reduced" else 0,
         first=first,
@@ -195,7 +187,7 @@ def adapted_container(case: Case, container: Container, own: Case) -> Container 
 def _touching(case: Case) -> tuple[object, ...]:
     """What says which points of a base touch, and how high they stand."""
     support = case.support
-    return support.kind, case.foot, support.casting_tilt_m, support.camber_m
+    return support.kind, case.foot, support.camber_m
 
 
 def without_links(case: Case, container: Container) -> Container:
@@ -280,11 +272,11 @@ def _loose(case: Case, mesh: ContainerMesh, elements: FiniteElements, support: S
 def _in_a_row(case: Case, mesh: ContainerMesh | None) -> Container:
     """The containers of a row, of which equal ones are built once."""
     known: dict[str, Container] = {}
-    row, cases = [], case.row
-    for number, (alone, struck) in enumerate(zip(cases, _struck(case, cases), strict=True)):
-        key = repr((alone.container, alone.support, struck[:, 1]))
+    row = []
+    for number, alone in enumerate(case.row):
+        key = repr((alone.container, alone.support))
         if key not in known:
-            known[key] = _neighbour(number, alone, struck) if number else discretise(alone, mesh, struck)
+            known[key] = _neighbour(number, alone) if number else discretise(alone, mesh)
         row.append(known[key])
     return _beside_one_another(case, row)
 
@@ -346,15 +338,9 @@ def facing(places: Places) -> tuple[IntArray, FloatArray]:
     return np.array(places.pairs, dtype=np.int64), np.array(places.distance)
 
 
-def _struck(case: Case, row: Sequence[Case]) -> FloatArray:
-    """Where the sides of each container of a row are struck, left and right, (N, 2, 2) [m]; `row`: `Case.row`."""
-    size = [(alone.stack[0].width, alone.stack[-1].top) for alone in row]
-    return np.array(places_of(case, [width for width, _ in size]).struck(size))
-
-
-def _neighbour(number: int, alone: Case, struck: FloatArray) -> Container:
+def _neighbour(number: int, alone: Case) -> Container:
     try:
-        return discretise(alone, struck=struck)
+        return discretise(alone)
     except MeshError as error:
         raise MeshError(f"[[neighbour]] {number}, as a container: {error}") from error
 

@@ -15,13 +15,13 @@ from contact.stepping.links import LinkedBody
 from contact.stepping.loose_stack import LooseStack
 from contact.stepping.modal_body import ModalBody, make_modal_body
 from fem.case.case import Case, CaseError
+from fem.model.bounce import bounce_of
 from fem.model.container import Container
-from fem.model.edge_springs import edge_factors
 from fem.model.floor import slab_of
 from fem.model.links import lines_at, places_of_links, shapes_at_links, with_links
 from fem.model.loose_stack import make_stack_state, own_stiffness, settle, stack_of, with_joints
 from fem.model.row import body_of_row, contact_of_row, corners_at_rest, measure_gaps, require_no_jam
-from fem.model.support import Rolling, base_points, normal_penalty, steel_penalty
+from fem.model.support import Rolling, base_points, edge_factors, normal_penalty, steel_penalty
 from fem.model.validity import require_bearing, require_stiff_contact, require_stiff_container
 from fem.runtime.arrays import FloatArray
 from fem.solid.assembly import FiniteElements
@@ -122,7 +122,7 @@ def _of_row(case: Case, container: Container, gravity: float) -> Equilibrium:
         None if alone.initial.rotation_rad != 0.0 else settled.stance
         for alone, settled in zip(case.row, row, strict=True)
     ]
-    standing = corners_at_rest(body, bodies, upright)
+    standing = corners_at_rest(body, upright)
     measure_gaps(body, standing, own_stiffness(contact))
     place = np.zeros((contact.cap.size, 2))
     place_points(body.faces, standing.reshape(-1, 2), place)
@@ -168,6 +168,7 @@ def same_equilibrium(case: Case, other: Case) -> bool:
         and case.container.centroid_m == other.container.centroid_m
         and case.container.eccentricity_m == other.container.eccentricity_m
         and case.container.damping_ratio == other.container.damping_ratio
+        and case.container.fill_damping_ratio == other.container.fill_damping_ratio
         and case.gravity_m_s2 == other.gravity_m_s2
         and case.solver.model == other.solver.model
     )
@@ -237,7 +238,7 @@ def _body(
     elements, mesh = container.elements, container.mesh
     gravity, downhill = case.gravity_toward_floor, case.gravity_downhill
     nodes, monitors = container.nodes, container.monitors
-    damping = container.damping(case.container.damping_ratio)
+    damping = bounce_of(case, container, contact).material_damping
     placed = base_points(case, mesh, elements.nodes[nodes], container.support.index.size)
     links = slice(len(nodes) - len(case.links), None)
     if case.links and case.solver.model != "full":  # it has points wherever they are asked for

@@ -163,9 +163,9 @@ def _widening(case: Case, out_of_plane: float) -> float:
     An edge over the whole depth is a wedge between wall and base. The rocking container stands on it, turned by at most
     its slenderness angle, and where the edge has sunk in by d, the base bears over d/tan of that angle: height over
     width for a mass centre in the middle. Beside a narrower patch the frame clears the floor; what it heaps up before
-    it has about the slope 1. Feet, castings that bear as plates and a flat base have no edge that grows.
+    it has about the slope 1. Feet and a flat base have no edge that grows.
     """
-    if case.support.kind != "corners" or case.foot is not None:
+    if case.support.kind != "corners":
         return 0.0
     if out_of_plane < WHOLE_DEPTH * case.container.depth_m:
         return 1.0

@@ -6,15 +6,15 @@ from typing import Any
 
 import numpy as np
 
-from contact.interface.contact_points import Between, Held, SidePoint
+from contact.interface.contact_points import SidePoint
 from contact.interface.penalty import damping_ratio_of
 from contact.interface.workspace import Contact
 from contact.stepping.body import State
-from contact.stepping.links import OF_LENGTH, make_lines, place_links
+from contact.stepping.links import make_lines, place_links
 from fem.case.case import Case
-from fem.case.tables.links import StopTable, TieTable, faced_by, holder_of
+from fem.case.tables.links import StopTable, TieTable, holder_of
 from fem.case.tables.neighbours import USUAL_DAMPING, StruckTable, top_of
-from fem.model.tied_capacity import box_at, direction_of, overlapped, side_of
+from fem.model.link_places import box_at, direction_of, overlapped, side_of
 from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid.sides import nodes_at, shapes_at
 
@@ -42,20 +42,6 @@ def side_points(case: Case) -> tuple[SidePoint, ...]:
         place = min((link.height_m - bottom) / height, 1.0)
         places.append(SidePoint(box=number, right=link.side == "right", place=place))
     return tuple(places)
-
-
-def held_in_row(case: Case) -> tuple[Held, ...]:
-    """The points of links in a row, and the ties between its containers, one for each link."""
-    held: list[Held] = []
-    for link, point in zip(case.links, side_points(case), strict=True):
-        other = faced_by(case, link)
-        if isinstance(link, TieTable) and other is not None:
-            place = min(link.other_height / top_of(case, other), 1.0)
-            end = SidePoint(box=other, right=not point.right, place=place)
-            held.append(Between(of=point, to=end, slack=link.slack))
-        else:
-            held.append(point)
-    return tuple(held)
 
 
 def nodes_of_links(case: Case, nodes: FloatArray) -> IntArray:
@@ -97,12 +83,6 @@ def dashpot_of(link: StruckTable | TieTable, mass: float) -> float:
     return 2.0 * ratio * math.sqrt(mass / link.stiffness_N_m)
 
 
-def _mass_at(case: Case, link: StopTable | TieTable, masses: Sequence[float]) -> float:
-    """The mass that a link holds, between two containers the reduced one; `masses`: of the containers of a row [kg]."""
-    mass, other = masses[holder_of(case, link)], faced_by(case, link)
-    return mass if other is None else mass * masses[other] / (mass + masses[other])
-
-
 def with_links(case: Case, contact: Contact, masses: Sequence[float]) -> Contact:
     """The contact of a container, or a row, of these masses [kg] with the points of its links behind all others."""
     links = case.links
@@ -116,7 +96,7 @@ def with_links(case: Case, contact: Contact, masses: Sequence[float]) -> Contact
         "tangential_stiffness": stiffness,
         "cap": [math.inf if link.strength_N is None else link.strength_N for link in links],
         "cap_growth": nothing,
-        "relaxation_time": [dashpot_of(link, _mass_at(case, link, masses)) for link in links],
+        "relaxation_time": [dashpot_of(link, masses[holder_of(case, link)]) for link in links],
         "mu_static": mu,
         "mu_kinetic": mu,
         "weakening": nothing,
@@ -137,10 +117,7 @@ def lines_at(case: Case, place: FloatArray, width: float) -> FloatArray | None:
     """
     if not case.links:
         return None
-    ties = [faced_by(case, link) is not None for link in case.links]
-    direction = np.array(
-        [OF_LENGTH if tie else direction_of(link) for link, tie in zip(case.links, ties, strict=True)]
-    )
+    direction = np.array([direction_of(link) for link in case.links])
     box = None
     if case.bodies > 1:
         box = np.array([point.box for point in side_points(case)])

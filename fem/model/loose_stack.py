@@ -18,6 +18,7 @@ from contact.stepping.modal_body import ModalBody, make_modal_body
 from contact.stepping.stack_body import make_stack, settle_stack
 from fem.case.case import Case
 from fem.case.tables.boxes import shared_face
+from fem.model.bounce import bounce_of
 from fem.model.container import BoxModel, Container
 from fem.model.links import side_points
 from fem.model.support import base_points
@@ -73,15 +74,16 @@ def stack_of(case: Case, container: Container, contact: Contact, tolerance: floa
     """
     numbers = range(len(container.boxes))
     springs = contact.normal_stiffness.copy(), contact.tangential_stiffness.copy()
+    damping = bounce_of(case, container, contact).material_damping
     if case.solver.model == "full":
-        bodies = [_nodal_body(case, container, number) for number in numbers]
+        bodies = [_nodal_body(case, container, number, damping) for number in numbers]
         responses = [box.response for box in container.boxes]
         return FullStack(bodies, responses, *springs, tolerance, side_points(case))
-    boxes = [_modal_body(case, container, number, tolerance) for number in numbers]
+    boxes = [_modal_body(case, container, number, damping, tolerance) for number in numbers]
     return make_stack(boxes, *springs, held=side_points(case))
 
 
-def _nodal_body(case: Case, container: Container, number: int) -> FullBody:
+def _nodal_body(case: Case, container: Container, number: int, damping: float) -> FullBody:
     box = container.boxes[number]
     return FullBody(
         replace(box.elements, nodes=container.elements.nodes[container.box_nodes[number]]),
@@ -89,7 +91,7 @@ def _nodal_body(case: Case, container: Container, number: int) -> FullBody:
         _watched(container, number),
         gravity=case.gravity_toward_floor,
         downhill=case.gravity_downhill,
-        damping=container.damping(case.container.damping_ratio),
+        damping=damping,
     )
 
 
@@ -99,10 +101,9 @@ def _watched(container: Container, number: int) -> IntArray:
     return monitors if number == len(container.boxes) - 1 else monitors[2:]
 
 
-def _modal_body(case: Case, container: Container, number: int, tolerance: float) -> ModalBody:
+def _modal_body(case: Case, container: Container, number: int, damping: float, tolerance: float) -> ModalBody:
     box, place = container.boxes[number], case.stack[number]
     centroid = np.asarray(box.mesh.centroid)
-    damping = container.damping(case.container.damping_ratio)
     watched = _watched(container, number)
     corner = base_points(case, container.mesh, box.elements.nodes[box.corners], 2 if number == 0 else 0)
     return make_modal_body(

@@ -281,8 +281,8 @@ def _watched_stresses(case: Case, container: Container) -> Stresses:
     return Stresses(
         first=3 + (3 + modes) * np.arange(len(bases)),
         of_modes=of_modes.reshape(len(bases), modes, 3 * points),
-        group=np.arange(len(bases) + 1) if container.row else np.array([0, len(bases)]),
-        bound=bounds if container.row else np.array([bounds.max()]),
+        group=np.array([0, len(bases)]),
+        bound=np.array([bounds.max()]),
         sums=np.zeros(3 * points),
     )
 

@@ -106,7 +106,6 @@ class Recovery:
     elements: FiniteElements  #: of the container
     full: bool
     bodies: tuple[PlacedBody, ...]
-    in_a_row: bool = False  #: the stress of each body is its own
 
     def frame(self, position: FloatArray, velocity: FloatArray) -> NodalFields:
         """Fields for one row of coordinates and their rates."""
@@ -129,16 +128,12 @@ class Recovery:
         """Largest counted one of the nodal stresses (n,) of a frame [Pa]."""
         return max(float(stress[body.nodes][body.body.counted].max()) for body in self.bodies)
 
-    def largest_of_steps(self, strained: FloatArray) -> tuple[float, ...] | None:
-        """Largest counted nodal von Mises stress of a reduced run over the steps of `RunState.strained` [Pa].
-
-        Of a row that of each container, the case's own first; else of all bodies together. None without steps.
-        """
+    def largest_of_steps(self, strained: FloatArray) -> float | None:
+        """Largest counted von Mises stress of a reduced run over the steps of `RunState.strained`, if any [Pa]."""
         rows = strained[strained[:, :, 0] >= 0.0, 1:] if strained.size else strained
         if not rows.size:
             return None
-        largest = tuple(body.body.largest_von_mises(rows[:, body.coordinates]) for body in self.bodies)
-        return largest if self.in_a_row else (max(largest),)
+        return max(body.body.largest_von_mises(rows[:, body.coordinates]) for body in self.bodies)
 
 
 def recovery_of(model: Model) -> Recovery:
@@ -172,9 +167,7 @@ def recovery_of(model: Model) -> Recovery:
             )
         )
         start += own if full else size
-    return Recovery(
-        elements=container.elements, full=full, bodies=tuple(bodies), in_a_row=bool(container.row)
-    )
+    return Recovery(elements=container.elements, full=full, bodies=tuple(bodies))
 
 
 def _of_body(case: Case, elements: FiniteElements, basis: ReducedBasis, centroid: FloatArray) -> BodyRecovery:

@@ -38,8 +38,7 @@ class BodyAtRest:
     def of(cls, case: Case, mesh: ContainerMesh, static: StaticChecks) -> Self | None:
         """That of one rigid body on corners; None of anything else, and where its floor gives way."""
         alone = case.bodies == 1 and not (case.links or case.neighbour or case.rolls)
-        inside = case.foot is not None and case.support.casting_tilt_m > 0.0  # it stands on the inner edges
-        if case.solver.model != "rigid" or not alone or inside or gives_way(case, mesh, static):
+        if case.solver.model != "rigid" or not alone or gives_way(case, mesh, static):
             return None
         slenderness = math.tan(static.slenderness_angle)
         return cls(gravity=static.gravity, slenderness=slenderness, slope=static.slope)

@@ -2,10 +2,6 @@
 
 Each is built and settled alone, by its own case. The first is that of the case itself; behind it stand the neighbours
 in the order of the case. Its coordinates are in a frame of its own, so that a gap that nothing uses up changes no bit.
-
-The sides of a container are straight between the corners of its elevation. Of a reduced one each is the line through
-the two points where forces act: of the base over the floor, and where the next container strikes the side. Its corners
-move on that line, so that floor and blow find exactly the motion of the shell at these points.
 """
 
 import math
@@ -16,7 +12,7 @@ import numpy as np
 
 from contact.interface.contact_points import ASIDE
 from contact.interface.equilibrium import Stance
-from contact.interface.faces import lengthen_ties, place_points, weigh_points
+from contact.interface.faces import place_points, weigh_points
 from contact.interface.laws import ELASTIC_STICK
 from contact.interface.workspace import Contact
 from contact.stepping.body import State
@@ -27,11 +23,10 @@ from contact.stepping.stack_body import make_stack, start_stack
 from fem.case.case import Case, CaseError
 from fem.case.tables.neighbours import places_of
 from fem.model.container import Container, facing
-from fem.model.links import OVERLAP, dashpot_of, held_in_row
+from fem.model.links import OVERLAP, dashpot_of, side_points
 from fem.model.loose_stack import make_stack_state
 from fem.runtime.arrays import FloatArray
 from fem.solid.nodal_body import rotation_matrix
-from fem.solid.sides import shapes_at
 from mesh.container import ContainerMesh
 
 
@@ -102,12 +97,11 @@ def body_of_row(
     """
     meshes = [container.mesh for container in containers]
     places = places_of(case, [mesh.width for mesh in meshes])
-    struck = np.array(places.struck([(mesh.width, mesh.height) for mesh in meshes]))
     inset = [
         max(round(0.5 * (1.0 - float(np.ptp(body.point[:, 0])) / mesh.width), 12), 0.0)
         for body, mesh in zip(bodies, meshes, strict=True)
     ]
-    corners = [_with_corners(*standing) for standing in zip(bodies, containers, struck, inset, strict=True)]
+    corners = [_with_corners(*standing) for standing in zip(bodies, meshes, strict=True)]
     # of the neighbours no point is watched
     watched = [
         corners[0],
@@ -117,51 +111,34 @@ def body_of_row(
         ),
     ]
     springs = contact.normal_stiffness.copy(), contact.tangential_stiffness.copy()
-    return make_stack(watched, *springs, (*facing(places), np.array(inset)), held=held_in_row(case))
+    return make_stack(watched, *springs, (*facing(places), np.array(inset)), held=side_points(case))
 
 
-def _with_corners(body: ModalBody, container: Container, struck: FloatArray, inset: float) -> ModalBody:
-    """The body with the corners of its elevation in place of its points over the floor.
-
-    Args:
-        body: alone.
-        container: it.
-        struck: (2, 2) points of its left and right side that are struck, where it stands on x = 0 [m].
-        inset: of its points over the floor from its sides, over the width.
-    """
-    mesh, foot = container.mesh, body.shape
+def _with_corners(body: ModalBody, mesh: ContainerMesh) -> ModalBody:
+    """The rigid body with the corners of its elevation in place of its points over the floor."""
     corner = [(x, z) for z in (0.0, mesh.height) for x in (-0.5 * mesh.width, 0.5 * mesh.width)]
-    head = np.moveaxis(shapes_at(struck, container.elements.nodes, container.basis.shapes), 0, -1)
-    low = foot + inset / (1.0 - 2.0 * inset) * (foot - foot[::-1])
-    high = low + (head - low) * (mesh.height / struck[:, 1])[:, None, None]
-    return body._replace(point=np.array(corner) - body.rest, shape=np.concatenate([low, high]))
+    return body._replace(point=np.array(corner) - body.rest, shape=np.zeros((len(corner), 2, 0)))
 
 
-def corners_at_rest(
-    body: LooseStack, bodies: Sequence[ModalBody], stances: Sequence[Stance | None]
-) -> FloatArray:
+def corners_at_rest(body: LooseStack, stances: Sequence[Stance | None]) -> FloatArray:
     """Corners of the containers of a row at rest, each in its own frame, (N, 4, 2) [m].
 
     Args:
         body: of the row.
-        bodies: of the containers alone, with their points over the floor.
         stances: of the containers at rest; None of one that starts tilted, which counts as undeformed.
     """
     boxes = body.body.boxes
     standing: FloatArray = boxes.rest[:, None] + boxes.point
-    for b, (alone, stance) in enumerate(zip(bodies, stances, strict=True)):
+    for b, stance in enumerate(stances):
         if stance is not None:
-            turn = rotation_matrix(stance.rotation)
-            amplitude = np.einsum("ij,ijk->k", stance.force @ turn, alone.shape) / alone.stiffness
-            strained = boxes.point[b] + boxes.shape[b, :, :, : amplitude.size] @ amplitude
-            standing[b] = np.asarray(stance.centre) + strained @ turn.T
+            standing[b] = np.asarray(stance.centre) + boxes.point[b] @ rotation_matrix(stance.rotation).T
     return standing
 
 
 def measure_gaps(body: LooseStack, standing: FloatArray, contact: Contact) -> None:
-    """Place the containers of a row so that its gaps, and the lengths of its ties, are those at rest.
+    """Place the containers of a row so that its gaps are those at rest.
 
-    Shells bulge, and all lean on uneven springs.
+    All lean on uneven springs.
 
     Args:
         body: of the row with undeformed containers at its gaps, which is changed.
@@ -173,10 +150,7 @@ def measure_gaps(body: LooseStack, standing: FloatArray, contact: Contact) -> No
     before, at_rest = (_least_gaps(body, corners, contact) for corners in (undeformed, standing))
     pairs = faces.bodies[floor : floor + POINTS_OF_GAP * before.size : POINTS_OF_GAP]
     for pair, change in zip(pairs, before - at_rest, strict=True):
-        forth, back = (np.all(faces.bodies == order, axis=1) for order in (pair, pair[::-1]))
-        # back from the right to the left run only ties
-        faces.apart[:] += change * (forth * faces.side - back)
-    lengthen_ties(faces, standing.reshape(-1, 2))
+        faces.apart[:] += change * np.all(faces.bodies == pair, axis=1) * faces.side
 
 
 def _least_gaps(body: LooseStack, corners: FloatArray, contact: Contact) -> FloatArray:

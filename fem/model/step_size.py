@@ -10,6 +10,7 @@ from contact.motion.base_motion import BaseMotion, TableMotion
 from contact.stepping.scheme import Scheme, generalised_alpha, newmark
 from contact.stepping.state import Control
 from fem.case.case import Case, CaseError
+from fem.model.bounce import bounce_of
 from fem.model.container import Container
 from fem.model.frames import INTERVALS
 from fem.model.loose_stack import struck_mass
@@ -185,6 +186,7 @@ def control_of(
         gravity=case.gravity_toward_floor,
         downhill=case.gravity_downhill,
         frequency_parameter=rate,
+        force_window=bounce_of(case, container, contact).force_window(rate),
         resting_energy=sum(body.mass * case.gravity_toward_floor * body.centroid[1] for body in bodies),
         slowest_rocking=min(checks.frequency_parameter for checks in (static, *row)),
         slenderness_angle=static.slenderness_angle,

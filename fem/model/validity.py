@@ -64,7 +64,7 @@ def require_bearing(case: Case, mesh: ContainerMesh, use: float = 0.0) -> None:
         return
     slab = slab_of(case, mesh.mass)
     inset = pivot_inset(case, mesh)
-    if inset > 0.0 and case.support.kind == "corners" and case.foot is None and case.solver.model == "full":
+    if inset > 0.0 and case.support.kind == "corners" and case.solver.model == "full":
         raise CaseError(
             f'[solver] model = "full": on this floor a corner turns {1e3 * inset:.3g} mm inside its edge, and the '
             'full model bears where its nodes are; take "reduced" or "rigid", or feet of the length of the patch'

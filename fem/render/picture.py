@@ -54,9 +54,9 @@ class Scene:
         # Of a usual frame: at the stress of an impact all other frames would be pale.
         self._stress_limit = _round_up(summary.usual_stress)
         pyvista.vtk_verbosity("error")  # VTK warns of a missing display, and renders without one
-        self._plotter = pyvista.Plotter(off_screen=True, window_size=list(self.view.size))
-        self._plotter.set_background("white")  # type: ignore[arg-type]
-        self._plotter.enable_anti_aliasing("msaa", multi_samples=SMOOTH)
+        self.plotter = pyvista.Plotter(off_screen=True, window_size=list(self.view.size))
+        self.plotter.set_background("white")  # type: ignore[arg-type]
+        self.plotter.enable_anti_aliasing("msaa", multi_samples=SMOOTH)
         self._body, self._links, self._outline = body_of(first), links_of(first), outline_of(first)
         self._arrows = arrows(len(self._pressed))
         moving = hatches_of(self.view), mark_of(self.view)
@@ -64,11 +64,11 @@ class Scene:
         self._on_floor = [(mesh, mesh.points.copy(), 1.0) for mesh in moving]
         self._on_floor += [(mesh, mesh.points.copy(), 0.0) for mesh in rising]
         colours = self._add_meshes(*moving, *rising)
-        self._captions = Captions(self._plotter, self.view, colours, self._stress_limit)
+        self._captions = Captions(self.plotter, self.view, colours, self._stress_limit)
         self._set_camera()
 
-    def image(self, frame: Frame) -> Image.Image:
-        """The picture of a frame."""
+    def show(self, frame: Frame) -> None:
+        """Set the scene to a frame."""
         places = spatial(frame.points + frame.displacement)
         self._body.points = places
         self._links.points = places - np.array([0.0, 0.0, 0.5])  # behind the body
@@ -84,12 +84,16 @@ class Scene:
         )
         self._captions.title.input, self._captions.lines.input = caption(self._run, frame)
         self._captions.symbols.input = symbols(frame)
-        self._plotter.render()
-        return Image.fromarray(np.asarray(self._plotter.screenshot(return_img=True)))
+        self.plotter.render()
+
+    def image(self, frame: Frame) -> Image.Image:
+        """The picture of a frame."""
+        self.show(frame)
+        return Image.fromarray(np.asarray(self.plotter.screenshot(return_img=True)))
 
     def close(self) -> None:
         """Release the renderer."""
-        self._plotter.close()
+        self.plotter.close()
 
     def _add_meshes(
         self,
@@ -99,7 +103,7 @@ class Scene:
         surface: pyvista.PolyData,
     ) -> Any:
         """Add all meshes, back to front; return the mapper of the stresses, if any."""
-        plotter = self._plotter
+        plotter = self.plotter
         plotter.add_mesh(slab, color=SLAB, lighting=False)
         plotter.add_mesh(hatches, color=HATCH, line_width=1.5, lighting=False)
         plotter.add_mesh(mark, color=MARK, lighting=False)
@@ -127,7 +131,7 @@ class Scene:
         """Look at the elevation from the front, at the scale of the view."""
         left, right, low, high = self.view.edges
         centre = (0.5 * (left + right), 0.5 * (low + high))
-        camera = self._plotter.camera
+        camera = self.plotter.camera
         camera.parallel_projection = True
         camera.focal_point = (*centre, 0.0)
         camera.position = (*centre, 10.0)

@@ -91,8 +91,8 @@ class Animation:
     frames: list[AnimationFrame]  #: those sent; of the drawn nodes only
     in_a_row: bool = False  #: each body stands on the floor
     links: tuple[DrawnLink, ...] = ()  #: stops and ties
-    #: (k, 2) their points, into `points`, and their anchors on another container, or -1
-    held: IntArray = field(default_factory=lambda: np.zeros((0, 2), dtype=np.int64))
+    #: (k,) their points, into `points`
+    held: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
 
     @property
     def largest_stress(self) -> float:
@@ -274,9 +274,8 @@ def player_data(animation: Animation, history: History, *, model: Model) -> dict
                 "anchor": link.anchor,
                 "until": min(link.until, LASTING),
                 "node": int(node),
-                "other": int(other),
             }
-            for link, (node, other) in zip(animation.links, animation.held, strict=True)
+            for link, node in zip(animation.links, animation.held, strict=True)
         ],
         "row": animation.in_a_row,
         "follow": journey > WIDE_JOURNEY * mesh.width,

@@ -104,8 +104,7 @@ def _corners(case: Case) -> str:
     casting = case.support.casting_m
     if casting is None:
         return "two bottom corners"
-    where = "at their outer edges" if case.foot is None else "over all their length"
-    return f"castings of {short(casting[0], 1e3)} × {short(casting[1], 1e3)} mm, {where}"
+    return f"castings of {short(casting[0], 1e3)} × {short(casting[1], 1e3)} mm, at their outer edges"
 
 
 def case_rows(case: Case) -> list[tuple[str, str]]:

@@ -1,10 +1,9 @@
-"""The motion of a run on its page: animation, curves, and stills for paper."""
+"""The motion of a run on its page: animation and curves."""
 
 from fem.html import sections as html
 from fem.html.units import quantity, short
 from fem.report.animation import COLOURS, colour_scale, exaggeration, exaggerations
 from fem.report.run_view import RunView
-from fem.report.stills import stills
 
 #: figures beside the animation, in the order of reading; the others have their own sections
 MOTION = ("rotation", "slip", "base_motion", "spectrum", "uplift", "forces", "phase_portrait", "energy")
@@ -16,7 +15,7 @@ KEYS = (
 
 
 def motion_section(view: RunView) -> html.PageSection:
-    """The animation, the curves beside it, and stills for paper."""
+    """The animation and the curves beside it."""
     moves = view.case.motion.kind != "none" or view.case.has_vertical
     names = SHORT_MOTION if view.brief else MOTION
     curves = view.figures(*(name for name in names if name != "base_motion" or moves))
@@ -24,8 +23,7 @@ def motion_section(view: RunView) -> html.PageSection:
         return html.section("The motion", "motion-title", "There are no samples to show.")
     player = [_player(view)] if view.played else []
     motion = html.Group("motion brief" if view.brief else "motion", [*player, html.Group("curves", curves)])
-    stills = _stills(view)  # first: on paper they fill the sheet of the results, which no curve does
-    return html.section("The motion", "motion-title", *stills, motion)
+    return html.section("The motion", "motion-title", motion)
 
 
 def _player(view: RunView) -> html.Player:
@@ -61,31 +59,9 @@ def _what_is_played(view: RunView) -> str:
     return "No fields were written: the container is shown without deformation."
 
 
-def _legend(view: RunView, more: str = "") -> html.Legend | None:
+def _legend(view: RunView) -> html.Legend | None:
     """The colours of the stress, where there is any."""
     if not view.animation.stress_scale:
         return None
     most = quantity(view.animation.stress_scale, "MPa", 1e-6, 3)
-    return html.Legend("von Mises stress 0", f"{most} and more{more}", colour_scale("YlGnBu", COLOURS))
-
-
-def _stills(view: RunView) -> list[html.Block]:
-    mesh, angle = view.model.container.mesh, view.model.static.slenderness_angle
-    pictures = stills(
-        view.animation, view.history, view.verdict, angle=angle, width=mesh.width, height=mesh.height
-    )
-    if not pictures:
-        return []
-    legend = _legend(view, f"; elastic part × {short(exaggeration(view.animation, mesh.height))}")
-    level = view.note_on_level
-    return [
-        html.Group(
-            "whole",
-            [
-                html.Heading("Stills"),
-                html.Group("stills", [html.Figure(still.svg, caption=still.caption) for still in pictures]),
-                *([legend] if legend else []),
-                *([html.Note(f"In these drawings {level}.")] if level else []),
-            ],
-        )
-    ]
+    return html.Legend("von Mises stress 0", f"{most} and more", colour_scale("YlGnBu", COLOURS))

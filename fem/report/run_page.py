@@ -30,11 +30,10 @@ from fem.report.run_sections import (
     joints_section,
     modes_section,
     sheet_section,
-    variations_section,
+    sureness_section,
 )
 from fem.report.run_view import RunView
 from fem.report.sketch import sketch
-from fem.report.variations import VariationTable, variation_table
 from fem.results.errors import FolderError
 from fem.results.fields import Fields
 from fem.results.history import History
@@ -65,20 +64,16 @@ def run_report(
     run: OpenedRun,
     *,
     signature: Signature | None = None,
-    every_variation: bool = False,
     brief: bool = False,
     message: Callable[[str], None] = lambda text: None,
-    stop: Callable[[], bool] = lambda: False,
 ) -> str:
     """The page, as the text of an HTML file.
 
     Args:
         run: opened; finished or not.
         signature: author, checker, revision; an unfinished run is not signed.
-        every_variation: compute also those that take long.
         brief: three printed pages at most: answer, inputs, static rule and run, rotation and slip, limits.
-        message: receives a sentence for the user where something takes time or is missing.
-        stop: asked repeatedly; true leaves out what has not been computed.
+        message: receives a sentence for the user where something is missing.
 
     Raises:
         FolderError: the folder does not hold what a report needs.
@@ -87,9 +82,6 @@ def run_report(
     if run.typed_result.static is None:
         raise FolderError(f"{run.place.result}: the run has not begun; run the case, then report it")
     model = build_model(run.case)
-    varied = None
-    if run.status in RUN.finished and not brief:
-        varied = variation_table(run, every=every_variation, message=message, stop=stop)
     view = RunView(
         run=run,
         model=model,
@@ -100,7 +92,7 @@ def run_report(
         drawn=drawings_of(run, model.container),
         brief=brief,
     )
-    return html_of(_page(view, signature, varied))
+    return html_of(_page(view, signature))
 
 
 def _broken(result: RunResult) -> list[float]:
@@ -109,14 +101,14 @@ def _broken(result: RunResult) -> list[float]:
     return [math.inf if link.broken_at_s is None else link.broken_at_s for link in links]
 
 
-def _page(view: RunView, signature: Signature | None, varied: VariationTable | None) -> Page:
+def _page(view: RunView, signature: Signature | None) -> Page:
     """The sections in the order of reading."""
     further = [] if view.brief else [modes_section, block_section, joints_section, sheet_section]
     behind = [part(view) for part in (motion_section, boxes_section)]
     proof = [part(view) for part in (*further, numerics_section, provenance_section)]
     finished = view.run.status in RUN.finished
     first = [
-        verdict_section(view, varied),
+        verdict_section(view),
         case_section(view),
         limits_section(view.case, view.result, joints_below=bool(view.result.joints) and not view.brief),
     ]
@@ -131,7 +123,7 @@ def _page(view: RunView, signature: Signature | None, varied: VariationTable | N
             html.Group("first", first),
             static_section(view),
             *behind,
-            variations_section(view, varied),
+            sureness_section(view),
             *proof,
         ],
         scripts=["player.js"] if view.played else [],
@@ -147,7 +139,7 @@ def _changes(view: RunView) -> list[html.Block]:
     return [html.Paragraph(html.joined("Changed on the command line: ", keys), "changed")]
 
 
-def verdict_section(view: RunView, variations: VariationTable | None) -> html.PageSection:
+def verdict_section(view: RunView) -> html.PageSection:
     """The answer: one sentence, the first figures, and where to read on."""
     verdict = view.verdict
     first, _, further = outcome_sentence(view.result).partition(". ")
@@ -157,7 +149,7 @@ def verdict_section(view: RunView, variations: VariationTable | None) -> html.Pa
         html.Paragraph(typeset(f"{first}." if further else first), "sentence"),
         *([html.Paragraph(typeset(further))] if further else []),
         *([html.Headlines(list(_headlines(view)))] if verdict.outcome else []),
-        html.Note(html.joined(*_reading(view, variations))),
+        html.Note(html.joined(*_reading(view))),
         look=f"answer {_standing(view.run.status, verdict)}",
     )
 
@@ -208,7 +200,7 @@ def _sure(verdict: Verdict) -> tuple[str, str]:
     return "not computed", html.joined(html.code("run --band"), " computes it")
 
 
-def _reading(view: RunView, variations: VariationTable | None) -> Iterator[str]:
+def _reading(view: RunView) -> Iterator[str]:
     """How the answer is to be read, and where there is more."""
     under = (
         "What happened under this motion" if view.run.status in RUN.finished else "What has happened so far"
@@ -219,16 +211,6 @@ def _reading(view: RunView, variations: VariationTable | None) -> Iterator[str]:
     )
     if lacks_margin(view.result):
         yield f"{MARGIN_NOTE} "
-    if variations is not None and (count := len(variations.lines) - 1):
-        yield html.link(f"{variations.changed} of {count} variations of one input", "variations")
-        yield f" change{'s' if variations.changed == 1 else ''} the outcome"
-        members = view.verdict.band.members if view.verdict.band else ()
-        together = [
-            member
-            for member in members
-            if member.kind in ("pair", "draw") and member.outcome not in (members[0].outcome, None)
-        ]
-        yield "; changes of several at once do. " if together and not variations.changed else ". "
     if warnings := len(view.result.warnings or ()):
         yield f"{warnings} warning{'' if warnings == 1 else 's'}: see "
         yield html.link("numerics", "numerics")

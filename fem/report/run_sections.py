@@ -10,15 +10,12 @@ from fem.assessment.ranges import impact_note
 from fem.assessment.rigid_check import check_against_rigid_block
 from fem.assessment.summary import band_note
 from fem.html import sections as html
-from fem.html.units import number, quantity, ratio, short, typeset
+from fem.html.units import number, quantity, short
 from fem.model.model import Model
 from fem.report.run_view import RunView
 from fem.report.static_sheet import SheetLine, static_sheet
-from fem.report.variations import VariationTable, Varied
-from fem.results.figures import JOINT_SLIP, TURNED, Place, figures_of
 from fem.results.history import History
 from fem.results.kinds import RUN
-from fem.results.outcome import Outcome
 from fem.results.reader import OpenedRun
 from fem.results.run_result import JointDemand, RigidCheckResult
 from fem.solid.modes import FEW, elastic_mode_table
@@ -48,87 +45,21 @@ def boxes_section(view: RunView) -> html.PageSection:
     )
 
 
-def variations_section(view: RunView, variations: VariationTable | None) -> html.PageSection:
-    """The outcome under changed assumptions, and over the unknown inputs."""
-    title, band = "How the outcome changes", view.figures("band")
-    note = band_note(view.verdict.band)
-    noted: list[html.Block] = [*band, *([html.Note(note)] if note else [])]
-    if view.brief:
-        return html.section(title, "variations", *noted, look="brief")
-    if variations is None:
-        return html.section(title, "variations", f"Not computed: the run is {view.run.status}.", *noted)
-    model, other = variations.model, ""
-    if model != view.case.solver.model:
-        other = f" (the run itself used the {view.case.solver.model} model)"
-    starred = "* the outcome differs from the first line. " if variations.changed else ""
-    harmless = f" {NOT_WORSE}" if view.case.motion.kind != "none" else ""
+def sureness_section(view: RunView) -> html.PageSection:
+    """The outcome over the unknown inputs."""
+    band, note = view.figures("band"), band_note(view.verdict.band)
+    if not (band or note):
+        return html.section("", "band")
+    counted = "Sliding counts from 1 mm and 10⁻⁴ of the width, rocking from 10⁻² of the slenderness angle."
+    if view.case.motion.kind != "none":
+        counted = f"{counted} {NOT_WORSE}"
     return html.section(
-        title,
-        "variations",
-        html.joined(
-            "Each line is a separate run with the ",
-            html.strong(model),
-            f" model{other}; one thing is changed. {variations.sentence}",
-        ),
-        _varied_table(variations, loose=bool(view.boxes)),
-        html.Note(
-            f"{starred}Sliding counts from 1 mm and 10⁻⁴ of the width, rocking from 10⁻² of the slenderness "
-            f"angle.{harmless}"
-        ),
-        *_left_out(variations),
-        *noted,
+        "How sure it is",
+        "band",
+        *band,
+        html.Note(f"{note} {counted}".lstrip()),
+        look="brief" if view.brief else "",
     )
-
-
-def _varied_table(variations: VariationTable, *, loose: bool) -> html.Table:
-    def outcome(line: Varied) -> str:
-        if line.run.outcome:
-            return f"{line.run.outcome}{' *' if line.changed else ''}"
-        return html.joined(
-            html.marked("no outcome", "fail"), f": {(line.run.error or '').partition(chr(10))[0]}"
-        )
-
-    def turned(line: Varied) -> str:
-        fell = line.run.outcome == Outcome.OVERTURNED
-        return "≥ 1, fell" if fell else ratio(line.run[TURNED])
-
-    _, *lengths = figures_of(Place.RUNS).items()
-    between = {"max_joint_slip_m": JOINT_SLIP} if loose else {}
-    columns: list[html.Column[Varied]] = [
-        html.Column("changed", lambda line: line.change.in_words[0]),
-        html.Column("to", lambda line: typeset(line.change.in_words[1])),
-        html.Column("outcome", outcome),
-        html.Column("rotation ratio", turned, html.NUMBER),
-        *html.figure_columns(dict(lengths) | between, value=lambda line, key: getattr(line.run, key)),
-    ]
-    first = variations.lines[0]
-    return html.table_of(
-        "variations of the run",
-        columns,
-        variations.lines,
-        row_look=lambda line: "given" if line is first else "changed" if line.changed else "",
-        look="long",
-    )
-
-
-def _left_out(variations: VariationTable) -> list[html.Block]:
-    """Which variations were left out, where there are any."""
-    if not variations.left_out:
-        return []
-    price = quantity(variations.price, "s", figures=2)
-    listed = "; ".join(" ".join(change.in_words) for change in variations.left_out)
-    return [
-        html.Note(
-            html.joined(
-                html.strong("Left out"),
-                f" to save time (a line takes about {price}): {listed}. ",
-                html.code("python -m fem report"),
-                " with ",
-                html.code("--all-variations"),
-                " computes them.",
-            )
-        )
-    ]
 
 
 def modes_section(view: RunView) -> html.PageSection:

@@ -172,10 +172,7 @@ def _draw_beside(axes: Axes, case: Case, unit: float) -> tuple[float, float]:
         if link.anchor is not None:
             outer = link.outer
             axes.plot((x, outer), (height, link.anchor), color=BLUE, linewidth=1.2, linestyle=":", zorder=6)
-            marked = ((x, height), (outer, link.anchor))[: 1 + link.joins]
-            axes.plot(
-                *zip(*marked, strict=True), color=BLUE, marker="o", markersize=3, linestyle="", zorder=6
-            )
+            axes.plot(x, height, color=BLUE, marker="o", markersize=3, linestyle="", zorder=6)
         else:
             outer = x + math.copysign(2 * unit, link.outer - x)
             wall = Rectangle((min(x, outer), 0.0), 2 * unit, height, hatch="////", fill=False, ec=GREY, lw=0)

@@ -25,7 +25,7 @@ class Place(Flag):
     """Where a figure stands."""
 
     KEY = auto()  #: every row of a run that a study compares
-    RUNS = auto()  #: the rows of the runs of a site, and of variations
+    RUNS = auto()  #: the rows of the runs of a site
     COLUMN = auto()  #: the tables of sweeps, the rows of `run_cases`
     BAND = auto()  #: the members of a band, and its ranges
     SUMMARY = auto()  #: a row of the summary and the page of a run
@@ -115,6 +115,15 @@ class Figures(JsonBlock, Generic[ValueT]):
             map_words="slip left at the end",
             lowest=True,
         ),
+    ] = None
+    #: the part of the slip at the end that was moved while nothing touched the floor
+    slip_in_air_m: Annotated[
+        ValueT | None,
+        Shown("slip moved in the air", MM, COLUMN | BAND | SUMMARY, "joint.slip_in_air", lowest=True),
+    ] = None
+    #: of the time with a rotation above 0.01 of the slenderness angle, the share without any contact force
+    flight_share: Annotated[
+        ValueT | None, Shown("in the air while it rocks", units.RATIO, COLUMN | BAND | READ)
     ] = None
     #: over the last full cycle of a harmonic drive
     slip_peak_to_peak_m: Annotated[ValueT | None, Shown("slip, peak to peak", MM, COLUMN)] = None

@@ -7,7 +7,7 @@ replaced whole, one process writes at a time, and only files of results are ever
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -59,7 +59,6 @@ class ResultFolder:
     lock: FolderLock
     earlier: dict[str, Any] | None  #: an earlier result of the same request, unless --force is given
     resume: bool  #: --resume was given
-    beside: Mapping[str, Any] = field(default_factory=dict)  #: what its marking file holds besides the result
 
     @property
     def finished(self) -> bool:
@@ -107,7 +106,7 @@ class ResultFolder:
 
     def write_result(self, mark: Mapping[str, Any]) -> None:
         """Replace the marking file; numbers that are not finite become null."""
-        write_atomically(self.path / self.kind.mark, to_json({**mark, **self.beside}))
+        write_atomically(self.path / self.kind.mark, to_json(mark))
 
     def write_text(self, name: str, text: str) -> None:
         """Replace a file, in a subfolder if its name says so."""

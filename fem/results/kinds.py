@@ -30,8 +30,6 @@ class ResultKind:
     own: tuple[str, ...]
     #: those of them that serve to continue, and go when it is finished
     temporary: tuple[str, ...] = ()
-    logs: tuple[str, ...] = ()  #: those of them that shards of the study are merged from
-    later: str = ""  #: key of a hash of what its later stages depend on, besides the request
     #: statuses after which there is nothing left to compute
     finished: frozenset[str] = frozenset({"completed"})
 
@@ -57,7 +55,6 @@ RUN = ResultKind(
         "figures/movie.mp4",
         "report.html",
         "report.pdf",
-        "variations.json",
     ),
     finished=frozenset({"completed", "overturned"}),
 )
@@ -81,8 +78,6 @@ SWEEP = ResultKind(
         *("motions.csv", "motion_set.csv", "spectra.csv", "figures/*.svg"),
     ),
     temporary=("rows.csv",),
-    logs=("rows.csv", "members.csv", "margins.csv", "tried.csv"),
-    later="band_hash",
 )
 ENSEMBLE = ResultKind(
     name="ensemble",
@@ -100,7 +95,6 @@ ENSEMBLE = ResultKind(
         "state.npz",
         "figures/*.svg",
     ),
-    logs=("draws.csv",),
 )
 RESPONSE = ResultKind(
     name="response curve",
@@ -108,14 +102,8 @@ RESPONSE = ResultKind(
     mark="response.json",
     results="response.csv",
     own=(
-        "response.csv",
-        "starts.csv",
-        "shell.csv",
-        "sections.csv",
-        "portraits.csv",
-        "case.toml",
-        "state.npz",
-        "figures/*.svg",
+        *("response.csv", "starts.csv", "shell.csv", "sections.csv", "portraits.csv"),
+        *("case.toml", "state.npz", "figures/*.svg"),
     ),
     temporary=("state.npz",),
 )
@@ -151,15 +139,12 @@ HALL = ResultKind(
         "hall.geojson",
         "runs.csv",
         "checks.csv",
-        "sites.csv",
-        "sites/*/assess.json",
         "list.csv",
         "base.toml",
         "report.html",
         "report.pdf",
         "figures/*.svg",
     ),
-    logs=("runs.csv", "checks.csv", "sites.csv"),
 )
 PAPER = ResultKind(
     name="study",

@@ -28,7 +28,6 @@ class RunFiles:
         self.figures = path / "figures"  #: folder of the figures
         self.drawn = self.figures / "drawn.json"  #: what the figures were drawn from
         self.report = path / "report.html"  #: unless it was asked for elsewhere
-        self.variations = path / "variations.json"  #: the run under other assumptions, from a report
         self.checkpoint = path / "checkpoint.npz"  #: of an unfinished run
         self.band = path / "band.json"  #: finished members of an unfinished band
 

@@ -221,7 +221,6 @@ class NeighbourResult(JsonBlock):
     max_force_N: float  #: across the gap
     largest_closing_velocity_m_s: float
     gap_left_m: float  #: least gap that was left
-    max_von_mises_Pa: float | None = None  #: of the reduced model; None of the rigid one
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -316,6 +315,11 @@ class Numerics(JsonBlock):
     normal_penalty_Pa_m: float | None = None
     contact_damping_ratio: float | None = None
     contact_frequency_Hz: float | None = None
+    bounce_frequency_Hz: float | None = None  #: of the container on one corner, shell and floor in series
+    bounce_container_damping_ratio: float | None = None  #: what steel and fill take of it
+    bounce_contact_damping_ratio: float | None = (
+        None  #: .. and the floor, or the dashpot of the numerical penalty
+    )
     static_penetration_m: float | None = None
     max_penetration_m: float | None = None
     elastic_frequencies_Hz: tuple[float, ...] = ()
@@ -333,7 +337,6 @@ class LinkResult(JsonBlock):
     side: str  #: of the container: left | right
     height_m: float  #: of its point; of a full model that of the nearest node of the mesh
     neighbour: int | None = None  #: that has its point; None: the container
-    to: str | None = None  #: of a tie between containers: to which it runs
     max_force_N: float  #: along its line
     hits: int  #: how often it began to hold
     largest_closing_velocity_m_s: float  #: with which it did

@@ -73,7 +73,7 @@ def plan_of(model: Model, result: RunResult) -> Plan:
     case, penalty = model.case, model.penalty
     own = (result.static or StaticResult()).ruling
     low, high = BELOW_UPLIFT
-    bears = case.support.kind != "corners" or case.foot is not None
+    bears = case.support.kind != "corners"
     soft = bears and low <= (own.utilisation_overturning or 0.0) <= high
     floor = (stiff_floor(case, penalty),) if soft else ()
     singles, pairs, draws = all_changes(case, penalty)

@@ -1,6 +1,6 @@
 """Runs of a case with some inputs changed, side by side on the container of the run.
 
-A member of a band and a variation in a report are both such a run. Those of rigid and reduced models that take seconds
+A member of a band is such a run. Those of rigid and reduced models that take seconds
 run without a history; of a bolted stack those that change one unknown input have one, for the forces in its joints.
 Long ones and those of the `full` model have one. How many fit a budget follows from the sizes and steps of the run,
 not from the clock, so that a resumed or repeated study is the same.

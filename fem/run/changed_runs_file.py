@@ -1,4 +1,4 @@
-"""The finished runs of changed cases, kept in a folder: those of an unfinished band, and those of a report.
+"""The finished runs of changed cases, kept in a folder while a band is not finished.
 
 The file is replaced whole with each further run. It holds for the case and the program that wrote it. What is damaged
 or foreign is reported and computed again: the run itself is finished by then, and refusing it would lose more.

@@ -18,7 +18,7 @@ BAND_RUNS, MOST_OF_BAND_S = 130, 45.0  #: of band and margin; processor time
 def of_a_second(case: Case) -> float:
     """Processor time of a simulated second, within a factor of three or so [s]."""
     model = case.solver.model
-    factor = 1.0 if model == "full" else OF_A_BASE[case.support.kind if case.foot is None else "feet"]
+    factor = 1.0 if model == "full" else OF_A_BASE[case.support.kind]
     if case.container.joints == "loose":
         factor *= OF_LOOSE_BOXES
     return factor * OF_A_SECOND[model]

@@ -44,17 +44,14 @@ class LinkCells:
         if not self._share.size:
             return frame
         links = drawn_links(self._case, _broken(run, len(self._case.links)))
-        (held, other), nothing = np.repeat(self._held, self._count, axis=0).T, np.zeros(self._share.size)
-        floor = np.array((frame.floor_displacement, frame.floor_lift))
-        far_end = np.where(other[:, None] < 0, floor, frame.displacement[other])
+        held, nothing = np.repeat(self._held, self._count), np.zeros(self._share.size)
+        far_end = np.array((frame.floor_displacement, frame.floor_lift))
         moved = far_end + self._share * (frame.displacement[held] - far_end)
         first = len(frame.displacement)
         for k, link in enumerate(links):
             if link.until <= frame.time:
                 own = slice(k * self._count, (k + 1) * self._count)
-                moved[own] = far_end[own] + (
-                    (link.outer, link.anchor or 0.0) - self.mesh["points"][first:][own]
-                )
+                moved[own] = far_end + ((link.outer, link.anchor or 0.0) - self.mesh["points"][first:][own])
         return replace(
             frame,
             displacement=np.concatenate([frame.displacement, moved]),

@@ -12,10 +12,10 @@ from fem.case.case import Case
 from fem.case.tables.duration import ends_at_rest
 from fem.model.floor_numbers import floor_result
 from fem.model.geometry import build_container, node_count
+from fem.model.link_places import require_room
 from fem.model.restitution import contact_restitution, require_loss
 from fem.model.static_checks import StaticChecks, static_checks_of
 from fem.model.support import build_support, normal_penalty
-from fem.model.tied_capacity import TiedCapacity, require_room, tied_capacities
 from fem.model.validity import require_bearing, require_stiff_contact
 from fem.results.run_result import FloorNumbers, MotionResult
 from fem.run.size import frames_of, required_disk, samples_of
@@ -99,11 +99,6 @@ class Preview:
             "output_bytes": required_disk(case, nodes, self.duration),
         }
 
-    @property
-    def tied(self) -> list[TiedCapacity]:
-        """What its ties add to the static capacity, toward each side."""
-        return tied_capacities(self.case, self.mesh)
-
     @cached_property
     def floor(self) -> FloorNumbers:
         """What the floor amounts to; of a rigid one its slope alone."""
@@ -132,11 +127,6 @@ class Preview:
             (
                 static.own_motion.sliding.utilisation > 1.0 and self.peak == 0.0,
                 "the floor is steeper than static friction holds: the container slides from the beginning",
-            ),
-            (
-                any(tie.to == "neighbour" for tie in case.tie),
-                "a tie to a neighbour has no static capacity: the floor moves the neighbour as well, and what it can "
-                "hold depends on how; the run shows it",
             ),
             (static.by_code is not None, code_note(static.to_result())),
             *((True, note) for note in doubts(self.motion, case.gravity_m_s2)),
@@ -168,7 +158,6 @@ class Preview:
             "motion": self.motion.to_json(),
             "floor": self.floor.to_json(),
             "static": self.static.to_result().to_json(),
-            **({"tied": [tie.to_json() for tie in self.tied]} if self.case.tie else {}),
             "contact_restitution": contact_restitution(self.case, self.static),
             "numerics": self.numerics,
             "notes": self.notes,

@@ -92,13 +92,10 @@ class Recorder:
         return History(numbers=self._numbers, values=values, modes=tuple(self._modes))
 
     @property
-    def largest_von_mises(self) -> tuple[float, ...] | None:
-        """Largest von Mises stress over the most strained steps, of a full model also over its frames, if any [Pa].
-
-        Of a row that of each container, the case's own first.
-        """
+    def largest_von_mises(self) -> float | None:
+        """Largest von Mises stress over the most strained steps, of a full model also over its frames, if any [Pa]."""
         if self._recovery is None or self._recovery.full:
-            return None if self._stress is None else (self._stress,)
+            return self._stress
         return self._recovery.largest_of_steps(self._model.run.strained)
 
     def memory(self) -> dict[str, FloatArray]:

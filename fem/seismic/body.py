@@ -1,4 +1,4 @@
-"""The input of the simplified methods: a loose body, the motion below it, and the limits.
+"""The input of the simplified methods: a loose body, and the motion below it.
 
 Lengths in m, accelerations in m/s2, magnitudes throughout. The motion is that of the floor below the body: on
 the ground that of the site, in a building that of the floor.
@@ -13,11 +13,11 @@ import numpy as np
 
 from contact.reference.rigid_block import RigidBlock
 from fem.runtime.arrays import FloatArray
-from fem.seismic.action import DAMPING_RATIO, LAST_PERIOD_S, SiteAction
+from fem.seismic.action import LAST_PERIOD_S, SiteAction
 
-#: periods (n,) [s] and damping ratio [-] -> elastic pseudo-accelerations (n,) [m/s2]
-Spectrum = Callable[[FloatArray, float], FloatArray]
-#: periods over which the largest spectral velocity and displacement are looked for [s]
+#: periods (n,) [s] -> elastic pseudo-accelerations at 5 % damping (n,) [m/s2]
+Spectrum = Callable[[FloatArray], FloatArray]
+#: periods over which the largest spectral velocity is looked for [s]
 PERIODS = np.geomspace(0.02, LAST_PERIOD_S, 800)
 
 
@@ -57,10 +57,8 @@ class FloorAction:
     vertical_peak: float  #: of the floor; on the ground gamma_a a_vg [m/s2]
     peak_velocity: float  #: of the floor, horizontal [m/s]
     spectrum: Spectrum  #: of the floor, elastic, horizontal
-    vertical_spectrum: Spectrum  #: of the floor, elastic
     ground_peak: float  #: gamma_a a_g S of the site [m/s2]
     in_building: bool = False  #: filtered by a building, and so nearly harmonic
-    second_component: float = 0.0  #: of a second horizontal component over the first; 0: motion in a plane
 
     def __post_init__(self) -> None:
         for name in ("peak", "vertical_peak", "peak_velocity", "ground_peak"):
@@ -74,8 +72,7 @@ class FloorAction:
             peak=factor * self.peak,
             vertical_peak=factor * self.vertical_peak,
             peak_velocity=factor * self.peak_velocity,
-            spectrum=lambda periods, damping: factor * self.spectrum(periods, damping),
-            vertical_spectrum=lambda periods, damping: factor * self.vertical_spectrum(periods, damping),
+            spectrum=lambda periods: factor * self.spectrum(periods),
             ground_peak=factor * self.ground_peak,
         )
 
@@ -87,30 +84,10 @@ class FloorAction:
             vertical_peak=site.vertical_acceleration,
             peak_velocity=peak_velocity,
             spectrum=site.horizontal,
-            vertical_spectrum=site.vertical,
             ground_peak=site.surface_acceleration,
         )
 
     @property
     def spectral_velocity(self) -> float:
         """Largest pseudo-velocity, 5 % damping, up to 4 s [m/s]."""
-        return float(np.max(self.spectrum(PERIODS, DAMPING_RATIO) * PERIODS / (2.0 * math.pi)))
-
-    @property
-    def spectral_displacement(self) -> float:
-        """Largest spectral displacement, 5 % damping, up to 4 s [m]."""
-        return float(np.max(self.spectrum(PERIODS, DAMPING_RATIO) * (PERIODS / (2.0 * math.pi)) ** 2))
-
-
-@dataclass(frozen=True, kw_only=True)
-class Limits:
-    """The limits that the user gives."""
-
-    rotation: float = 0.5  #: largest |rotation| over the slenderness angle [-]
-    slip: float  #: [m]
-
-    def __post_init__(self) -> None:
-        if not 0.0 < self.rotation <= 1.0:
-            raise ValueError(f"limit of rotation must be above 0 and at most 1, got {self.rotation}")
-        if not 0.0 < self.slip < math.inf:
-            raise ValueError(f"slip must be positive and finite, got {self.slip} m")
+        return float(np.max(self.spectrum(PERIODS) * PERIODS / (2.0 * math.pi)))

@@ -46,13 +46,7 @@ class FloorMode(NamedTuple):
 
 
 def one_mode(*, height_ratio: float, period: float) -> list[FloorMode]:
-    """A building as one oscillator, its mode linear over the height z/H; none at the foundation.
-
-    Raises:
-        ValueError: a height outside the building.
-    """
-    if not 0.0 <= height_ratio <= 1.0:
-        raise ValueError(f"z/H must lie between 0 and 1, got {height_ratio:g}")
+    """A building as one oscillator, its mode linear over the height z/H; none at the foundation."""
     return [FloorMode(period, MODE_AT_TOP * height_ratio)] if height_ratio else []
 
 
@@ -62,18 +56,8 @@ def storey_modes(*, storeys: int, kind: BuildingKind, height_ratio: float, perio
     Args:
         storeys: equal masses at equal heights.
         kind: "shear": equal storeys that shear; "cantilever": bending of one stiffness.
-        height_ratio: z/H of one of its floors; period: the longest [s].
-
-    Raises:
-        ValueError: no storey, or a height at which there is no floor.
+        height_ratio: z/H of one of its floors, see `is_a_floor`; period: the longest [s].
     """
-    if storeys < 1:
-        raise ValueError(f"a building has one storey or more, got {storeys}")
-    if not is_a_floor(storeys, height_ratio):
-        raise ValueError(
-            f"there is no floor at z/H = {height_ratio:g} of {storeys} storeys; one is at "
-            f"{nearest_floor(storeys, height_ratio):.4g}"
-        )
     floor = round(height_ratio * storeys)
     if floor == 0:
         return []

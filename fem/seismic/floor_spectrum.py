@@ -11,13 +11,16 @@ from pathlib import Path
 
 import numpy as np
 
+from fem.records.source import decoded
+from fem.records.table import UserTable
 from fem.runtime.arrays import FloatArray
+from fem.runtime.user_files import read_regular
 from fem.seismic.action import DAMPING_RATIO, SiteAction, damping_correction
-from fem.seismic.point_files import read_points
 
 PERIOD, HORIZONTAL, VERTICAL = "period_s", "acceleration_m_s2", "vertical_acceleration_m_s2"
 #: the first period, at which the spectrum is taken for the peak of the floor, and the last, at least [s]
 LATEST_FIRST_S, LEAST_LAST_S = 0.05, 1.0
+LARGEST_FILE = 1_000_000  #: [bytes]; a spectrum has some tens of points
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,9 +77,37 @@ class FloorSpectrum:
 
 
 def read_spectrum(path: Path) -> dict[str, tuple[float, ...]]:
-    """The columns of a CSV file, by name: period_s, acceleration_m_s2 and, if it has one, vertical_acceleration_m_s2.
+    """The columns of a CSV file by name, as any spreadsheet writes them: a line that names them, and lines of numbers.
+
+    period_s, acceleration_m_s2 and, if it has one, vertical_acceleration_m_s2.
 
     Raises:
-        ValueError: as `read_points`.
+        ValueError: it cannot be read, has other columns, or a line without a number for each.
     """
-    return read_points(path, [(PERIOD, HORIZONTAL), (PERIOD, HORIZONTAL, VERTICAL)])
+    table, choices = (
+        UserTable(path.name, text_of(path)),
+        ([PERIOD, HORIZONTAL], [PERIOD, HORIZONTAL, VERTICAL]),
+    )
+    names = table.header
+    if names not in choices:
+        actual = f"got {','.join(names)[:80]!r}" if names else "and the file is empty"
+        raise ValueError(
+            f"{path.name}: the first line must be {' or '.join(map(','.join, choices))}, {actual}"
+        )
+    table.require_one_decimal_mark(range(len(names)))
+    rows = [line.numbers() for line in table.lines if len(line.fields) == len(names)]
+    if not rows or [len(row) for row in rows] != [len(names)] * len(table.lines):
+        raise ValueError(f"{path.name}: every further line must hold {len(names)} numbers")
+    return dict(zip(names, zip(*rows, strict=True), strict=True))
+
+
+def text_of(path: Path) -> str:
+    """The text of such a file.
+
+    Raises:
+        ValueError: it cannot be read.
+    """
+    try:
+        return decoded(read_regular(path, LARGEST_FILE)) or ""
+    except ValueError as error:
+        raise ValueError(f"{path.name} {error}") from None

@@ -5,15 +5,6 @@ from dataclasses import KW_ONLY, dataclass
 from enum import StrEnum
 
 
-class SourceStanding(StrEnum):
-    """How far a formula may be cited."""
-
-    CLAUSE = "clause"  #: a clause of a standard
-    LITERATURE = "literature"  #: published, as cited
-    DERIVED = "derived"  #: derived here, or filled in where the source is incomplete
-    UNCHECKED = "unchecked"  #: after a source whose text was not seen
-
-
 class MethodQuantity(StrEnum):
     """What a method is about."""
 
@@ -22,25 +13,9 @@ class MethodQuantity(StrEnum):
     SLIP = "slip"  #: how far it slides
 
 
-@dataclass(frozen=True, kw_only=True)
-class MethodSource:
-    """The source of a method. Only a clause that was checked is cited as one."""
-
-    work: str  #: standard with its year, or authors with the year
-    clause: str = ""  #: only with SourceStanding.CLAUSE
-    standing: SourceStanding
-
-    def __post_init__(self) -> None:
-        if (self.standing is SourceStanding.CLAUSE) != bool(self.clause):
-            raise ValueError(f"{self.work}: a clause is given where, and only where, it may be cited")
-
-    def __str__(self) -> str:
-        return {
-            SourceStanding.CLAUSE: f"{self.work}, {self.clause}",
-            SourceStanding.LITERATURE: self.work,
-            SourceStanding.DERIVED: f"after {self.work}; derived here, not the text of a clause",
-            SourceStanding.UNCHECKED: f"after {self.work}; not checked against its text",
-        }[self.standing]
+def derived(work: str) -> str:
+    """A source after which something was derived here; only a clause that was checked is cited as one."""
+    return f"after {work}; derived here, not the text of a clause"
 
 
 def length_in_words(length: float) -> str:
@@ -66,7 +41,7 @@ class MethodRow:
     capacity: float
     unit: str
     says: str
-    source: MethodSource
+    source: str  #: standard and clause, authors with the year, or `derived` from these
     validity: str
     _: KW_ONLY
     quantity: MethodQuantity

@@ -1,15 +1,12 @@
-"""All simplified methods side by side, and the factor on the action that each allows."""
+"""All simplified methods side by side, each with the factor on the action that it allows."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from functools import partial
 
-from fem.seismic.asce_43 import rocking_row, sliding_row
-from fem.seismic.body import FloorAction, Limits, LooseBody
-from fem.seismic.method import MethodQuantity, MethodRow
-from fem.seismic.sliding_rules import sliding_rows
+from fem.seismic.body import FloorAction, LooseBody
+from fem.seismic.hand_rules import housner_row, newmark_row
+from fem.seismic.method import MethodRow
 from fem.seismic.static_rules import COMBINATIONS, both_directions_rows, element_rows, peak_rows, plateau_rows
-from fem.seismic.velocity_rules import velocity_rows
 
 #: factors on the action between which a capacity is looked for
 SMALLEST_FACTOR, LARGEST_FACTOR = 0.01, 100.0
@@ -18,67 +15,44 @@ BISECTIONS = 30
 Method = Callable[[FloorAction], Sequence[MethodRow]]
 
 
-@dataclass(frozen=True, kw_only=True)
-class MethodCapacity:
-    """The action at which the utilisation of a method is 1, over the action given: capacity over strength."""
-
-    name: str
-    quantity: MethodQuantity
-    factor: float  #: SMALLEST_FACTOR where it is used up by less, LARGEST_FACTOR where not by that
-
-
 def methods_of(
-    body: LooseBody, limits: Limits, *, behaviour_factor: float, height_ratio: float | None = 0.0
+    body: LooseBody, slip_limit: float, *, behaviour_factor: float, height_ratio: float | None = 0.0
 ) -> list[Method]:
     """Every method but the wind, for one body on one floor.
 
     Args:
+        slip_limit: the clearance [m].
         behaviour_factor: q of the plateau of the design spectrum; q = 1 stands beside it.
         height_ratio: z/H of the floor in its building; 0: on the ground; None: the motion of the floor is given, which
             no formula for elements on floors may raise again, and to which the plateau of the ground says nothing.
     """
-    pairs = [partial(peak_rows, body, horizontal=h, vertical=v) for h, v in COMBINATIONS]
-    elements = [
-        partial(element_rows, body, height_ratio=height_ratio, period_ratio=period_ratio)
-        for period_ratio in ((0.0, 1.0) if height_ratio else (0.0,))
-        if height_ratio is not None
+    methods: list[Method] = [
+        partial(peak_rows, body, horizontal=horizontal, vertical=vertical)
+        for horizontal, vertical in COMBINATIONS
     ]
-    plateaus = [
-        partial(plateau_rows, body, behaviour_factor=q, height_ratio=height_ratio)
-        for q in sorted({behaviour_factor, 1.0})[::-1]
-        if height_ratio is not None
-    ]
-    rocking = [partial(rocking_row, body, limits, vertical=vertical) for vertical in (False, True)]
-    return [
-        *pairs,
-        partial(both_directions_rows, body),
-        *elements,
-        *plateaus,
-        *(lambda action, row=row: [row(action)] for row in rocking),
-        partial(velocity_rows, body),
-        lambda action: [sliding_row(body, limits, action)],
-        partial(sliding_rows, body, limits),
-    ]
+    methods.append(partial(both_directions_rows, body))
+    if height_ratio is not None:
+        methods += [
+            partial(element_rows, body, height_ratio=height_ratio, period_ratio=period_ratio)
+            for period_ratio in ((0.0, 1.0) if height_ratio else (0.0,))
+        ]
+        methods += [
+            partial(plateau_rows, body, behaviour_factor=q, height_ratio=height_ratio)
+            for q in sorted({behaviour_factor, 1.0})[::-1]
+        ]
+    return [*methods, lambda action: [housner_row(body, action), newmark_row(body, slip_limit, action)]]
 
 
-def method_rows(methods: Sequence[Method], action: FloorAction) -> list[MethodRow]:
-    """The rows of all methods for an action."""
-    return [row for method in methods for row in method(action)]
+def rows_with_factors(methods: Sequence[Method], action: FloorAction) -> list[tuple[MethodRow, float]]:
+    """The rows of all methods, each with the factor on the action at which its utilisation reaches 1.
 
-
-def method_capacities(methods: Sequence[Method], action: FloorAction) -> list[MethodCapacity]:
-    """For each row of `method_rows`, the factor on the action at which its utilisation reaches 1.
-
-    A method that is fulfilled under a motion is fulfilled under a weaker one, so bisection finds it.
+    A method that is fulfilled under a motion is fulfilled under a weaker one, so bisection finds it. The factor is
+    `SMALLEST_FACTOR` where a method is used up by less, `LARGEST_FACTOR` where not by that.
     """
-    return [
-        MethodCapacity(name=row.name, quantity=row.quantity, factor=_limit(method, k, action))
-        for method in methods
-        for k, row in enumerate(method(action))
-    ]
+    return [(row, _factor(method, k, action)) for method in methods for k, row in enumerate(method(action))]
 
 
-def _limit(method: Method, row: int, action: FloorAction) -> float:
+def _factor(method: Method, row: int, action: FloorAction) -> float:
     def fulfilled(factor: float) -> bool:
         return method(action.scaled(factor))[row].fulfilled
 

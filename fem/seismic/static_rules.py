@@ -8,7 +8,7 @@ import math
 from dataclasses import replace
 
 from fem.seismic.body import FloorAction, LooseBody
-from fem.seismic.method import MethodQuantity, MethodRow, MethodSource, SourceStanding
+from fem.seismic.method import MethodQuantity, MethodRow, derived
 
 #: shares of the horizontal and vertical peak: by itself, two of EN 1998-1:2004, 4.3.3.5.2, and both at once, more than
 #: that clause asks for
@@ -16,24 +16,12 @@ COMBINATIONS = ((1.0, 0.0), (1.0, 0.3), (1.0, 1.0), (0.3, 1.0))
 ACROSS = 0.3  #: share of the other horizontal component, EN 1998-1:2004, 4.3.3.5.1 (3)
 ELEMENT_BEHAVIOUR_FACTOR = 1.0  #: q_a: no row of table 4.4 is for an unanchored body
 
-STATIC = "EN 1998-1:2004, 4.4.2.4 (1)P, with the peak as a static force"
-PEAK = MethodSource(work=STATIC, standing=SourceStanding.DERIVED)
-COMBINED = MethodSource(
-    work="EN 1998-1:2004, 4.4.2.4 (1)P and 4.3.3.5.2, with the peak as a static force",
-    standing=SourceStanding.DERIVED,
-)
-DIRECTIONS = MethodSource(
-    work="EN 1998-1:2004, 4.4.2.4 (1)P and 4.3.3.5.1, with the peak as a static force",
-    standing=SourceStanding.DERIVED,
-)
+PEAK = derived("EN 1998-1:2004, 4.4.2.4 (1)P, with the peak as a static force")
+COMBINED = derived("EN 1998-1:2004, 4.4.2.4 (1)P and 4.3.3.5.2, with the peak as a static force")
+DIRECTIONS = derived("EN 1998-1:2004, 4.4.2.4 (1)P and 4.3.3.5.1, with the peak as a static force")
 #: no clause gives a loose body the plateau and the behaviour factor of a building
-PLATEAU = MethodSource(
-    work="EN 1998-1:2004, 4.4.2.4 (1)P, 4.3.3.2.2 and 3.2.2.5 (4)P, Eq. (3.14)",
-    standing=SourceStanding.DERIVED,
-)
-ELEMENT = MethodSource(
-    work="EN 1998-1:2004", clause="4.3.5.2, Eqs. (4.24) and (4.25)", standing=SourceStanding.CLAUSE
-)
+PLATEAU = derived("EN 1998-1:2004, 4.4.2.4 (1)P, 4.3.3.2.2 and 3.2.2.5 (4)P, Eq. (3.14)")
+ELEMENT = "EN 1998-1:2004, 4.3.5.2, Eqs. (4.24) and (4.25)"
 
 
 def peak_rows(body: LooseBody, action: FloorAction, *, horizontal: float, vertical: float) -> list[MethodRow]:
@@ -146,7 +134,7 @@ def _rows(
     *,
     acceleration: float,
     put_in: str,
-    source: MethodSource,
+    source: str,
     validity: str,
     lift: float = 0.0,
     lift_put_in: str = "",

@@ -7,7 +7,6 @@ Rocking is not in it: a body that rocks or turns about its vertical axis slides 
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -47,50 +46,14 @@ def slide_in_plane(
     return slip
 
 
-@dataclass(frozen=True, kw_only=True)
-class SlipInTwoDirections:
-    """Largest slips over a set of motions with two horizontal components."""
-
-    mean: float  #: of the largest slips of the motions, for the friction with the largest mean [m]
-    largest: float  #: of all [m]
-    mu_static: float  #: friction with the largest slip
-    mu_kinetic: float
-    motion: int  #: with the largest slip, from 1
-    mean_in_plane: float  #: as `mean`, for the same friction without the second component [m]
-
-
-def slip_in_two_directions(
-    motions: Sequence[GroundMotion],
-    frictions: Iterable[tuple[float, float]],
-    *,
-    gravity: float = GRAVITY,
-) -> SlipInTwoDirections | None:
-    """Mean and largest slip of a set: for each motion the worse sign of its vertical, then the worst friction.
-
-    Args:
-        motions: of the floor, with a second horizontal component.
-        frictions: pairs of static and kinetic friction.
-
-    Returns:
-        None where a motion has no second component.
-    """
-    if any(motion.second is None for motion in motions):
-        return None
-    slips = {
+def largest_slips(
+    motions: Sequence[GroundMotion], frictions: Iterable[tuple[float, float]], *, gravity: float = GRAVITY
+) -> dict[tuple[float, float], FloatArray]:
+    """By pairs of static and kinetic friction, `largest_slip` under each of n motions, shape (n,) [m]."""
+    return {
         pair: np.array([largest_slip(motion, pair, gravity=gravity) for motion in motions])
         for pair in frictions
     }
-    longest = max(slips, key=lambda pair: float(slips[pair].mean()))
-    worst = max(slips, key=lambda pair: float(slips[pair].max()))
-    in_plane = [replace(motion, second=None) for motion in motions]
-    return SlipInTwoDirections(
-        mean=float(slips[longest].mean()),
-        largest=float(slips[worst].max()),
-        mu_static=worst[0],
-        mu_kinetic=worst[1],
-        motion=1 + int(np.argmax(slips[worst])),
-        mean_in_plane=float(np.mean([largest_slip(motion, longest, gravity=gravity) for motion in in_plane])),
-    )
 
 
 def largest_slip(motion: GroundMotion, friction: tuple[float, float], *, gravity: float = GRAVITY) -> float:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fem.seismic.body import LooseBody
-from fem.seismic.method import MethodQuantity, MethodRow, MethodSource, SourceStanding
+from fem.seismic.method import MethodQuantity, MethodRow
 
 AIR_DENSITY = 1.25  #: [kg/m3]
 STABILISING, DESTABILISING = 0.9, 1.5  #: of permanent weight and of wind, EN 1990, table A1.2(A), EQU
@@ -34,11 +34,7 @@ GERMAN_PRESSURES = {
     (4, "coast"): (1250.0, 1400.0, 1550.0),
     (4, "North Sea islands"): (1400.0,),
 }
-SOURCE = MethodSource(
-    work="EN 1991-1-4:2005",
-    clause="7.6, with EN 1990:2002, table A1.2(A), EQU",
-    standing=SourceStanding.CLAUSE,
-)
+SOURCE = "EN 1991-1-4:2005, 7.6, with EN 1990:2002, table A1.2(A), EQU"
 
 
 def terrain_pressure(*, category: str, basic_velocity: float, height: float) -> float:

@@ -13,15 +13,18 @@ event-driven rigid slider, set-valued Coulomb friction without creep.
 
 import math
 import sys
+from pathlib import Path
 
 import numpy as np
 from measuring import BENCHMARK_BOX, Figure, Stepped, at_most, median_of, near, report, stepped
 
-from contact.reference.closed_forms_rocking import quarter_period
 from contact.reference.floor_acceleration import sine_floor
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.sliding import RigidSlider, simulate_sliding
 from fem.case.case import load_case
+
+sys.path.append(str(Path(__file__).parents[1] / "rigs"))
+from closed_forms_rocking import quarter_period
 
 REPEATS = 3
 DURATION = 1.0  # s: the first impact at 0.26 s, then the small ones that follow at a restitution of 0.18

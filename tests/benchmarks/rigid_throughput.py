@@ -18,18 +18,18 @@ from pathlib import Path
 import numpy as np
 from measuring import Figure, at_least, at_most, cpu_seconds, report, stepped
 
-from contact.reference.closed_forms_rocking import peak_after_impacts
 from contact.reference.rigid_block import RigidBlock
 from contact.stepping.integrator import FAILED
 from contact.stepping.outcome import run_to_end
 from contact.stepping.state import make_samples
 from fem.assessment.rigid_check import block_of
 from fem.case.case import Case, load_case
-from fem.evidence.verification.rocking import turning_points
 from fem.model.model import Model, build_model
 
-sys.path.append(str(Path(__file__).parents[1] / "rigs"))
+sys.path.extend(str(Path(__file__).parents[1] / name) for name in ("", "rigs"))
+from closed_forms_rocking import peak_after_impacts
 from moreau import slide_and_rock_batch
+from verification.rocking import turning_points
 
 REPEATS, ROWS = 5, 200
 DURATION = 20.0  # s

@@ -19,10 +19,12 @@ from measuring import Figure, at_least, at_most, report
 
 import fem
 from fem.case.case import Case
-from fem.evidence.validation.bodies import LAYERS, layer_shares, rigid_case
-from fem.evidence.validation.rocks import DENSITY
-from fem.evidence.validation.shake_tests import Body, Series, read_series
 from fem.results.outcome import Outcome
+
+sys.path.extend(str(Path(__file__).parents[1] / name) for name in ("", "rigs"))
+from validation.bodies import LAYERS, layer_shares, rigid_case
+from validation.rocks import DENSITY
+from validation.shake_tests import Body, Series, read_series
 
 MOST_WRONG, LEAST_DECIDED = 0.02, 0.55
 Fit = tuple[float, float | None]  #: slenderness angle [rad], restitution over Housner's

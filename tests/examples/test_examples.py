@@ -87,9 +87,3 @@ def test_two_components_of_a_circle_slide_on_a_circle(example):
     both, alone = example("slide_in_two_directions")["across"]
     assert both == pytest.approx(2.0 * math.sqrt(0.1**2 - (0.2 * GRAVITY / 49.0) ** 2), rel=1e-3)
     assert alone < 0.9 * both
-
-
-def test_the_annual_rate_is_that_of_the_closed_form(example):
-    k = math.log(2475 / 475) / math.log(3.0 / 1.6)
-    expected = (3.2 / 1.6) ** -k / 475 * math.exp(0.5 * (0.4 * k) ** 2)
-    assert example("annual_rate_of_overturning")["rate"] == pytest.approx(expected, rel=1e-12)

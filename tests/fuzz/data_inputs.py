@@ -15,7 +15,7 @@ from small_sweep import SMALL
 
 from fem.case.toml import toml_value
 from fem.records.source import MOST_SAMPLES
-from mesh.untrusted import FORMATS
+from mesh.files import FORMATS
 
 Draw = Any
 #: a rigid block on a motion that is put in, for a moment
@@ -176,7 +176,6 @@ NAMED: dict[str, tuple[tuple[str, ...], dict[str, str]]] = {
     "ensemble.toml": (("ensemble", "ensemble.toml"), {}),
     "site.toml": (("assess", "site.toml"), {}),
     "hall.csv": (("batch", "hall.csv", "--case", "seed_stack"), {}),
-    "jobs.toml": (("sweep", "sweep.toml", "--slurm", "jobs.toml"), {"sweep.toml": SMALL}),
     "motion.at2": (("check", "seed_stack", "--motion", "motion.at2"), {}),
     "drawn.at2": (("picture", "drawn.at2"), {}),
     "outcomes.csv": (("validate", "--data", "."), {"body.toml": (
@@ -189,14 +188,13 @@ NAMED: dict[str, tuple[tuple[str, ...], dict[str, str]]] = {
     )}),
     "base.toml": (("sweep", "sweep.toml"), {"sweep.toml": SMALL.replace("seed_stack_plateau", "base.toml")}),
     "container.toml": (("assess", "site.toml"), {"site.toml": SITE.replace("seed_stack", "container.toml")}),
-    "hazard.csv": (("assess", "site.toml"), {"site.toml": f'{SITE}[hazard]\nfile = "hazard.csv"\n'}),
     "floor.csv": (("assess", "site.toml"), {"site.toml": f'{SITE}[floor_spectrum]\nfile = "floor.csv"\n'}),
     "record.at2": (("assess", "site.toml"), {"site.toml": SITE.replace(
         "count = 3", 'vertical = false\nsource = "records"\nfiles = [["record.at2"], ["b.at2"], ["c.at2"]]'
     )}),
 }  # fmt: skip
 #: of these, those that are named by a file: a link may not lead out of its folder
-BY_A_FILE = ("mesh.vtu", "base.toml", "container.toml", "hazard.csv", "floor.csv", "record.at2")
+BY_A_FILE = ("mesh.vtu", "base.toml", "container.toml", "floor.csv", "record.at2")
 
 
 def large(path: Path) -> None:

@@ -3,7 +3,6 @@
 from mutation import Mutation
 
 ROWS = "verification/closed_forms/test_rows.py"
-REDUCED = "verification/closed_forms/test_reduced_rows.py"
 
 ROW_FAULTS = (
     Mutation(
@@ -53,30 +52,6 @@ ROW_FAULTS = (
         old="        if record.away > apart:\n            record.hits += 1\n        record.away = 0.0\n\n\n@inlined\n",
         new="        record.away = 0.0\n\n\n@inlined\n",
         tests=(ROWS, "-k", "chain"),
-    ),
-    Mutation(
-        name="a higher side struck at its top",
-        old="lower = min(size[left][1], size[right][1])",
-        new="lower = max(size[left][1], size[right][1])",
-        tests=(REDUCED, "-k", "compliance"),
-    ),
-    Mutation(
-        name="sides of a shell that lean as a rigid one",
-        old="high = low + (head - low) * (mesh.height / struck[:, 1])[:, None, None]",
-        new="high = head",
-        tests=(REDUCED, "-k", "compliance"),
-    ),
-    Mutation(
-        name="corners that move as the points beside them",
-        old="low = foot + inset / (1.0 - 2.0 * inset) * (foot - foot[::-1])",
-        new="low = foot",
-        tests=(REDUCED, "-k", "compliance"),
-    ),
-    Mutation(
-        name="the stress of the first container alone",
-        old="group=np.arange(len(bases) + 1) if container.row",
-        new="group=np.minimum(np.arange(len(bases) + 1), 1) if container.row",
-        tests=(REDUCED, "-k", "blow"),
     ),
     Mutation(
         name="steps for the first container of a row",

@@ -272,6 +272,7 @@ def limits_of(block: Block, largest_step: float, fixed_step: bool, energy_scale:
         inertia=block.inertia,
         gravity=GRAVITY * math.cos(block.slope),
         downhill=GRAVITY * math.sin(block.slope),
+        force_window=0.01 / rigid.frequency_parameter,
         frequency_parameter=rigid.frequency_parameter,
         resting_energy=block.mass * block.gravity * math.cos(block.slope) * 0.5 * block.height,
         slowest_rocking=rigid.frequency_parameter,

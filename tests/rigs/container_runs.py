@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from runs import STACK, Finished
 
 from fem.case.case import Case
-from fem.evidence.verification.runs import STACK, Finished
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -5,13 +5,13 @@ K1: 1.1 m wide and deep, 4 m high, homogeneous, 10 t, mu 0.4 static, 0.2 kinetic
 
 from contact.reference.rigid_block import RigidBlock
 from fem.seismic.action import SiteAction, eurocode_shape
-from fem.seismic.body import FloorAction, Limits, LooseBody
+from fem.seismic.body import FloorAction, LooseBody
 
 SITE = SiteAction(shape=eurocode_shape(1, "D"), reference_acceleration=2.4 / 1.35)
 #: 0.06 (S_alpha S_beta)^0.55 with the plateau and the value at 1 s
 PEAK_VELOCITY = 0.06 * (6.0 * 4.8) ** 0.55
 ACTION = FloorAction.on_ground(SITE, PEAK_VELOCITY)
-LIMITS = Limits(rotation=0.5, slip=0.1)
+SLIP = 0.1  #: the clearance [m]
 
 
 def k1(*, mu_static: float = 0.4, mu_kinetic: float = 0.2) -> LooseBody:

@@ -10,8 +10,8 @@ from running_example import SITE, k1
 from fem.records.intensity import intensity
 from fem.records.spectrum import response_spectrum
 from fem.results.files import to_json
-from fem.site_check.methods import site_methods
-from fem.site_check.result import (
+from fem.site.methods import site_methods
+from fem.site.result import (
     MOTIONS,
     RESULT_FILE,
     ActionAnswer,

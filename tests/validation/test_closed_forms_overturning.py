@@ -3,10 +3,11 @@
 import math
 from collections import Counter
 
+import closed_forms_overturning
 import numpy as np
 import pytest
+from verification.overturning import initiation_grid
 
-from contact.reference import closed_forms_overturning
 from contact.reference.floor_acceleration import (
     Acceleration,
     half_sine_pulse,
@@ -20,7 +21,6 @@ from contact.reference.planar_equations import rock
 from contact.reference.planar_motion import PlanarMode
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import RockingOutcome, first_swing_threshold, simulate_rocking
-from fem.evidence.verification.overturning import initiation_grid
 
 STACK = RigidBlock.homogeneous(width=1.1, height=4.0)
 BOX = RigidBlock.homogeneous(width=1.1, height=1.0)

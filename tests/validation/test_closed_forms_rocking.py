@@ -4,9 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
-
-from contact.reference.closed_forms_rocking import (
+from closed_forms_rocking import (
     damped_drop_restitution,
     holding_acceleration,
     impact_friction_need,
@@ -14,6 +12,8 @@ from contact.reference.closed_forms_rocking import (
     quarter_period,
     symmetric_orbit_slender,
 )
+from scipy.integrate import solve_ivp
+
 from contact.reference.floor_acceleration import rectangular_pulse, sine_floor, still_floor
 from contact.reference.planar_block import PlanarBlock, simulate_planar_block
 from contact.reference.rigid_block import RigidBlock

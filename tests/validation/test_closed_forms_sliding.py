@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 import pytest
+from closed_forms_sliding import never_stops_ratio, pulse_slip, steady_stroke
 
-from contact.reference.closed_forms_sliding import never_stops_ratio, pulse_slip, steady_stroke
 from contact.reference.floor_acceleration import rectangular_pulse, sine_floor
 from contact.reference.sliding import RigidSlider, simulate_sliding
 

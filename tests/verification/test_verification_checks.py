@@ -3,8 +3,7 @@
 from pathlib import Path
 
 import pytest
-
-from fem.evidence.verification.suite import CHECKS
+from verification.suite import CHECKS
 
 README = Path(__file__).parents[1] / "README.md"
 SLOW = {

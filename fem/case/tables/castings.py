@@ -1,22 +1,9 @@
-"""Corner castings below the base: how they bear, and the rules of [support] for them."""
+"""Corner castings below the base: the rules of [support] for them."""
 
 from typing import Any
 
 from fem.case.tables.boxes import base_width
-from fem.case.tables.problem import Rule, refused
-
-
-def bear_as_plates(support: Any) -> bool:
-    """Whether castings bear over all their length; those that are tilted do unless the case says otherwise."""
-    return support.casting_bears == "plate" or (
-        support.casting_bears is None and support.casting_tilt_m != 0.0
-    )
-
-
-def may_bear_as_plates(case: Any) -> bool:
-    """Whether the castings of a case could bear over all their length."""
-    alone = case.container.joints != "loose" and not getattr(case, "neighbour", ())
-    return bool(alone and case.floor.kind == "slab" and case.support.camber_m == 0.0)
+from fem.case.tables.problem import refused
 
 
 def _casting_does_not_fit(case: Any) -> str:
@@ -39,12 +26,4 @@ def _casting_does_not_fit(case: Any) -> str:
     return ""
 
 
-CASTING_RULES = (
-    refused("support.casting_m", _casting_does_not_fit),
-    Rule(
-        "support.casting_bears",
-        lambda case: not bear_as_plates(case.support) or may_bear_as_plates(case),
-        '= "plate" and casting_tilt_m need floor.kind = "slab", one body and no camber_m: on a rigid floor, in a '
-        "loose stack and in a row castings touch with their outer edges; leave it out",
-    ),
-)
+CASTING_RULES = (refused("support.casting_m", _casting_does_not_fit),)

@@ -12,6 +12,14 @@ from fem.case.tables import quantities as q
 from fem.case.tables.rules import CONTAINER_RULES
 from fem.case.tables.table import CaseTable, case_key, optional_key
 
+#: damping ratio of a mode in which the fill alone moved, by kind of fill. Grains in a container that is not full take
+#: all of a rebound from 1.5 times the container's own mass on (Pacheco-Vazquez and Dorbolo, Sci. Rep. 3 (2013) 2158);
+#: 6 % of mass as particles alone give 0.04 (Friend and Kinra, J. Sound Vib. 233 (2000) 93); a landing on a fill that
+#: does not pull and rebounds with 0 to 0.3 leaves a corner as much as a ratio of 0.2 does. Packed or set: half of it.
+#: A liquid follows the walls; 0.5 % is usual for what sloshes (API 650, Annex E). The sources give no more than this
+#: order, so the band tries a quarter to two and a half times.
+FILL_DAMPING = {"none": 0.0, "granular": 0.2, "liquid": 0.005, "solid": 0.1}
+
 
 class BoxTable(CaseTable):
     """One box of a stack whose boxes differ, from the floor up, in place of boxes."""
@@ -79,6 +87,16 @@ class ContainerTable(CaseTable):
     damping_ratio: Annotated[float, q.MATERIAL_DAMPING] = case_key(
         "of the first elastic mode; it grows with frequency, zeta_n = zeta f_n/f_1", 0.02
     )
+    fill: Literal["none", "granular", "liquid", "solid"] = case_key(
+        '"granular" | "liquid" | "solid" (packed or set) | "none": what takes of elastic vibration, shell only',
+        "granular",
+        only=("section", "shell"),
+    )
+    fill_damping_ratio: Annotated[float, q.MATERIAL_DAMPING] = case_key(
+        "of a mode in which the fill alone moved, at the bounce of one corner; default: by fill",
+        follows=lambda values: FILL_DAMPING[values["fill"]],
+        only=("section", "shell"),
+    )
     post_m: Annotated[
         tuple[Annotated[float, q.POST], Annotated[float, q.POST]] | None, BeforeValidator(_as_tuple)
     ] = optional_key(
@@ -110,6 +128,11 @@ class ContainerTable(CaseTable):
     def post_section(self) -> tuple[float, float] | None:
         """Width and wall of the posts of a shell [m]; None without."""
         return self.post_m if self.section == "shell" else None
+
+    @property
+    def is_filled_shell(self) -> bool:
+        """Whether it is a box of plates whose fill takes of elastic vibration."""
+        return self.section == "shell" and self.mesh_file is None and self.fill_damping_ratio > 0.0
 
     @property
     def is_loose(self) -> bool:
@@ -158,16 +181,6 @@ class SupportTable(CaseTable):
             [0.162, 0.178, 0.0],
             only=("kind", "corners"),
         )
-    )
-    casting_bears: Literal["plate", "edge"] | None = optional_key(
-        '"plate" | "edge": over all its length, or at its outer edge; default: edge, plate where it is tilted',
-        "plate",
-        only=("kind", "corners"),
-    )
-    casting_tilt_m: Annotated[float, q.TILT] = case_key(
-        "how far the outer edge of a casting stands higher than its inner one; < 0: lower",
-        0.0,
-        only=("kind", "corners"),
     )
     camber_m: Annotated[float, q.CAMBER] = case_key(
         "how far the edges of the base stand higher than its middle, along a parabola; 0: sharp corners", 0.0

@@ -14,8 +14,8 @@ PENALTY, DASHPOT, RESTITUTION, MATERIAL = (
     "contact.restitution_over_housner",
     "container.damping_ratio",
 )
+FILL = "container.fill_damping_ratio"
 CAMBER, ROCKING = "support.camber_m", "support.rocking_damping_ratio"
-CASTING_TILT = "support.casting_tilt_m"
 STOP_GAP, STOP_STIFFNESS, STOP_FRICTION = "stop.gap_m", "stop.stiffness_N_m", "stop.mu"
 TIE_SLACK, TIE_STIFFNESS = "tie.slack_m", "tie.stiffness_N_m"
 SIDE_GAP, SIDE_STIFFNESS, SIDE_FRICTION = "neighbour.gap_m", "neighbour.stiffness_N_m", "neighbour.mu"

@@ -1,18 +1,16 @@
 """Stops and ties of a container: tables [[stop]] and [[tie]], of which a case may have several, and their rules.
 
 A stop is a wall or a kerb that moves with the floor and stands beside a point of a side; a tie runs from such a point
-down to the floor below it, level to a wall of that side, or to a point of the container that faces it in a row. Both
-hold nothing until their gap or slack is used up. In a row a stop stands at its end, and a tie holds the container of
-the case or a neighbour.
+down to the floor below it, or level to a wall of that side. Both hold nothing until their gap or slack is used up. In a
+row a stop stands at its end, and a tie holds the container of the case or a neighbour.
 """
 
-import math
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, Strict
 
 from fem.case.tables import quantities as q
-from fem.case.tables.neighbours import NeighbourTable, StruckTable, beside_of, gap_beside, outermost, top_of
+from fem.case.tables.neighbours import NeighbourTable, StruckTable, beside_of, outermost, top_of
 from fem.case.tables.problem import Rule, either, refused
 from fem.case.tables.table import CaseTable, case_key, optional_key
 
@@ -35,14 +33,11 @@ class StopTable(StruckTable):
         return self.gap_m
 
 
-LEAST_LENGTH = 1e-3  #: of a tie between containers, which has no direction without one [m]
-
-
 class TieTable(CaseTable):
     """A strap from a point of a side of the container, or of a neighbour; it pulls.
 
     Straight down to the floor, or level to a wall that stands on that side and moves with the floor, it pulls always in
-    one direction; to the container that faces that side, from end to end, wherever these move.
+    one direction.
     """
 
     from_: Literal["left", "right"] = Field(
@@ -54,39 +49,20 @@ class TieTable(CaseTable):
     height_m: Annotated[float, q.LINK_HEIGHT] = case_key(
         "of its point; at a joint of loose boxes that of the lower box", example=0.5
     )
-    to: Literal["floor", "wall", "neighbour"] = case_key(
-        '"floor": straight down | "wall": level, on that side | "neighbour": to what faces that side in a row',
-        "floor",
-    )
-    to_height_m: Annotated[float, q.LINK_HEIGHT] | None = optional_key(
-        'of its point on what faces that side, with to = "neighbour"; default: height_m', 0.5
-    )
+    to: Literal["floor", "wall"] = case_key('"floor": straight down | "wall": level, on that side', "floor")
     slack_m: Annotated[float, q.GAP] = case_key("how far its point moves away before it holds", 0.0)
     stiffness_N_m: Annotated[float, q.LINK_STIFFNESS] = case_key("of the strap", example=1e6)
     damping_ratio: Annotated[float, q.CONTACT_DAMPING] = case_key(
-        "c/(2 sqrt(k m)), m the mass that it holds, of two containers the reduced one", 0.0
+        "c/(2 sqrt(k m)), m the mass that it holds", 0.0
     )
     strength_N: Annotated[float, q.LINK_FORCE] | None = optional_key(
         "force at which it breaks, for good; default: it does not", 5e4
-    )
-
-    rules = (
-        Rule(
-            "tie.to_height_m",
-            lambda tie: tie.to_height_m is None or tie.to == "neighbour",
-            'is the height of a point of a neighbour; it needs to = "neighbour"',
-        ),
     )
 
     @property
     def side(self) -> str:
         """The side from which it runs."""
         return self.from_
-
-    @property
-    def other_height(self) -> float:
-        """Height of its point on what faces its side [m]."""
-        return self.height_m if self.to_height_m is None else self.to_height_m
 
     @property
     def slack(self) -> float:
@@ -121,13 +97,6 @@ def holder_of(case: Any, link: Any) -> int:
     return outermost(case, link.side) if isinstance(link, StopTable) else link.neighbour or 0
 
 
-def faced_by(case: Any, link: Any) -> int | None:
-    """The container of a row to which a link runs; None where it does not run to one."""
-    if isinstance(link, StopTable) or link.to != "neighbour":
-        return None
-    return beside_of(case, holder_of(case, link), link.side)
-
-
 def name_of(number: int) -> str:
     """A container of a row in words."""
     return f"neighbour {number}" if number else "the container"
@@ -150,55 +119,23 @@ def _above(name: str) -> Rule:
             number = holder_of(case, link)
             top = top_of(case, number)
             if link.height_m > top * (1.0 + 1e-9):
-                return _above_it(number, top, link.height_m)
+                return (
+                    f"must be at most the height of {name_of(number)}, {top:g} m, got {link.height_m:g} m; "
+                    "above it there is nothing to hold"
+                )
         return ""
 
     return refused(f"{name}.height_m", too_high)
 
 
-def _above_it(number: int, top: float, height: float) -> str:
-    return (
-        f"must be at most the height of {name_of(number)}, {top:g} m, got {height:g} m; "
-        "above it there is nothing to hold"
-    )
-
-
-def _too_high_there(case: Any) -> str:
-    """Why a tie ends above what it runs to."""
-    for tie in _held(case, "tie"):
-        number = faced_by(case, tie)
-        if number is not None and tie.other_height > (top := top_of(case, number)) * (1.0 + 1e-9):
-            return _above_it(number, top, tie.other_height)
-    return ""
-
-
-def _ends_nowhere(case: Any) -> str:
-    """Why there is nothing to which a tie could run."""
+def _before_the_wall(case: Any) -> str:
+    """Why there is no wall to which a tie could run."""
     for tie in _held(case, "tie"):
         number = holder_of(case, tie)
         beside = beside_of(case, number, tie.side)
         if tie.to == "wall" and beside is not None:
-            return (
-                f'must be "floor" or "neighbour" on the {tie.side} of {name_of(number)}: {name_of(beside)} stands '
-                "before the wall there"
-            )
-        if tie.to == "neighbour" and beside is None:
-            return f'= "neighbour" runs to nothing: on the {tie.side} of {name_of(number)} stands no [[neighbour]]'
-    return ""
-
-
-def _without_length(case: Any) -> str:
-    """Why a tie between two containers has no direction."""
-    for tie in _held(case, "tie"):
-        number = holder_of(case, tie)
-        other = faced_by(case, tie)
-        if other is not None:
-            length = math.hypot(gap_beside(case, number, other), tie.other_height - tie.height_m)
-            if length < LEAST_LENGTH:
-                return (
-                    f"must be further from height_m over a gap so narrow: the tie is {1e3 * length:g} mm long, and "
-                    "without a length of 1 mm it has no direction"
-                )
+            before = name_of(beside)
+            return f'must be "floor" on the {tie.side} of {name_of(number)}: {before} stands before the wall there'
     return ""
 
 
@@ -210,9 +147,7 @@ LINK_RULES = (
     ),
     _above("stop"),
     _above("tie"),
-    refused("tie.to", _ends_nowhere),
-    refused("tie.to_height_m", _too_high_there),
-    refused("tie.to_height_m", _without_length),
+    refused("tie.to", _before_the_wall),
     Rule(
         "container.mesh_file",
         lambda case: case.container.mesh_file is None or not links_of_case(case),

@@ -151,11 +151,6 @@ def beside_of(case: Any, number: int, side: str) -> int | None:
     return row[place] if 0 <= place < len(row) else None
 
 
-def gap_beside(case: Any, number: int, other: int) -> float:
-    """Gap between two containers of a row that face each other [m]: that of the one further out."""
-    return float(case.neighbour[max(number, other) - 1].gap_m)
-
-
 def top_of(case: Any, number: int) -> float:
     """Height of a container of the row of a case above the floor, of 0 that of its own [m]."""
     own, neighbour = case.container, case.neighbour[number - 1] if number else None
@@ -193,9 +188,8 @@ NEIGHBOUR_RULES = (
     ),
     _alone(
         "solver.model",
-        lambda case: case.solver.model == "full",
-        'must be "rigid" or "reduced" with [[neighbour]]: the full model steps one container, or boxes on one another, '
-        "and has no contact points on the sides of its meshes",
+        lambda case: case.solver.model != "rigid",
+        'must be "rigid" with [[neighbour]]: containers in a row are rigid; an elastic one is computed alone',
     ),
     _alone(
         "container.joints",

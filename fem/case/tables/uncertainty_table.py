@@ -29,9 +29,6 @@ class UncertaintyTable(CaseTable):
     )
     joints_weakening_m: Unknown = optional_key("loose joints: default: 0 to 5 mm", [0.0, 0.005])
     joints_damping_ratio: Unknown = optional_key("loose joints: default: 0.1 to 2, and as given", [0.1, 2.0])
-    casting_tilt_m: Unknown = optional_key(
-        "of castings that bear as plates; default: 0.5 mm less to 0.5 mm more", [-0.001, 0.001]
-    )
     camber_m: Unknown = optional_key(
         "of the support; default: half to twice, of a level base flat or on feet 0 to 2 mm", [0.0, 0.002]
     )
@@ -54,6 +51,9 @@ class UncertaintyTable(CaseTable):
         "of the contact, where it is given; default: a loss 1 - e of 0.8 to 1.5 times", [0.9, 1.0]
     )
     material_damping_ratio: Unknown = optional_key("of the container; default: half to twice", [0.01, 0.04])
+    fill_damping_ratio: Unknown = optional_key(
+        "of the container; default: a quarter to two and a half times", [0.05, 0.5]
+    )
     stop_gap_m: Unknown = optional_key(
         "of the stops, where they differ the largest, and all in proportion; default: 0.8 to 1.2 times",
         [0.04, 0.06],

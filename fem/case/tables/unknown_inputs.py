@@ -18,7 +18,6 @@ from typing import Any
 from contact.reference.rigid_block import RigidBlock
 from fem.case.tables import input_keys as keys
 from fem.case.tables import quantities as q
-from fem.case.tables.castings import may_bear_as_plates
 from fem.case.tables.duration import longest_time
 from fem.case.tables.input_ranges import (
     HELD,
@@ -35,6 +34,7 @@ from fem.case.tables.problem import refused
 
 SOFTEST, STIFFEST = 1.0 / 9.0, 3.0  #: contact stiffness over that of the case
 DAMPING = (0.5, 2.0)  #: contact and material damping over those of the case
+FILL_DAMPINGS = (0.25, 2.5)  #: damping of the fill over that of the case: 0.05 to 0.5 of a granular one
 SLAB = (0.5, 2.0)  #: Young's modulus and bearing strength of a slab over those of the case
 JOINTS = (0.5, 2.0)  #: static friction between loose boxes over that of the case, where this has the floor's
 JOINTS_DASHPOTS = (0.1, 2.0)  #: damping ratio between loose boxes, as far as the case has none beyond
@@ -48,8 +48,6 @@ SLOPE_PERCENT = 0.5  #: more or less than that of the case
 CAMBERS = (0.5, 2.0)  #: camber of a base over that of the case
 #: camber of a base that is given as level: no base and no floor is [m]; a share of it is tried, too
 LEVEL_CAMBER_M, BETWEEN_CAMBERS = 0.002, 0.25
-#: to either side of that of the case: what steel and a trowelled floor keep over the length of a casting
-CASTING_TILT_M = 5e-4
 ROCKING_DAMPING = (0.02, 0.1)  #: damping of small rocking on it, as far as the case has none beyond
 LOSS = (0.8, 1.5)  #: loss at an impact, 1 - e, over that of the case where its restitution is given
 RESTITUTIONS = (0.95, 1.06)  #: over Housner's, of sharp corners whose restitution is not given
@@ -195,7 +193,7 @@ def _restitutions(case: Any, ratio: float) -> Ends:
         low, high = ((1.0 - share * (1.0 - ratio * housner)) / housner for share in (LOSS[1], LOSS[0]))
     else:
         high = min(high, (1.0 - LOSS_LEFT * (1.0 - housner)) / housner)
-        if case.casting_length is not None and case.foot is None:  # it may land on their inner edges
+        if case.casting_length is not None:  # it may land on their inner edges
             high = max(high, block.restitution_on_plates(case.casting_length) / housner)
         high = min(high, 0.999 / housner)
     least, most = limits.least or 0.0, limits.most or math.inf
@@ -254,17 +252,6 @@ def _other_support(case: Any) -> Value | None:
     return kind
 
 
-def _on_plates(case: Any) -> bool:
-    return case.support.kind == "corners" and case.foot is not None
-
-
-def _may_stand_on_plates(case: Any) -> bool:
-    """Whether castings bear over all their length, or would, where nobody says that they do not."""
-    return _on_plates(case) or (
-        case.casting_length is not None and case.support.casting_bears is None and may_bear_as_plates(case)
-    )
-
-
 def _any_falls(case: Any) -> bool:
     return _falls(case) or _joints_fall(case)
 
@@ -295,9 +282,6 @@ UNKNOWN: tuple[UnknownNumber | UnknownChoice, ...] = (
            between=lambda low, high: WEAKENINGS_BETWEEN_M, alone=_joints_fall),
     Number(keys.JOINTS_DASHPOT, "joints_damping_ratio", "damping of the joints", q.CONTACT_DAMPING,
            _reaching(*JOINTS_DASHPOTS), matters=lambda case: case.container.is_loose),
-    Number(keys.CASTING_TILT, "casting_tilt_m", "tilt of the castings", q.TILT,
-           lambda case, own: (short(own - CASTING_TILT_M), short(own + CASTING_TILT_M)), matters=_may_stand_on_plates,
-           varies=_on_plates, power=1.0),
     Number(keys.CAMBER, "camber_m", "camber of the base", q.CAMBER, _cambers, matters=_may_be_cambered,
            between=lambda low, high: () if low > 0.0 else (short(BETWEEN_CAMBERS * high),), varies=_is_cambered),
     Number(keys.ROCKING, "rocking_damping_ratio", "damping of rocking", q.ROCKING_DAMPING,
@@ -332,6 +316,8 @@ UNKNOWN: tuple[UnknownNumber | UnknownChoice, ...] = (
            matters=_has_impacts, power=1.0),
     Number(keys.MATERIAL, "material_damping_ratio", "damping of the container", q.MATERIAL_DAMPING, DAMPING,
            matters=lambda case: case.solver.model != "rigid"),
+    Number(keys.FILL, "fill_damping_ratio", "damping of the fill", q.MATERIAL_DAMPING, FILL_DAMPINGS,
+           matters=lambda case: case.solver.model != "rigid" and case.container.is_filled_shell),
 )
 # fmt: on
 INPUTS = (*(unknown.key for unknown in UNKNOWN), keys.TOLERANCE)
@@ -349,7 +335,7 @@ UNCERTAINTY_RULES = tuple(
 
 
 def in_words(values: Mapping[str, Value]) -> str:
-    """Values of inputs by dotted key, for people: "kinetic friction 0.3, tilt of the castings 0.5 mm"."""
+    """Values of inputs by dotted key, for people: "kinetic friction 0.3, camber of the base 0.5 mm"."""
     return ", ".join(f"{WORDS.get(key, key)} {value_in_words(key, value)}" for key, value in values.items())
 
 

@@ -130,9 +130,9 @@
   };
   const drawTies = (X, Z, origin) => {
     pen.strokeStyle = INK; pen.lineWidth = 2.5;
-    for (const { outer, anchor, node, other } of links(true)) {
+    for (const { outer, anchor, node } of links(true)) {
       pen.beginPath();
-      if (other < 0) pen.moveTo(X(origin + outer), Z(anchor)); else pen.moveTo(placed[2 * other], placed[2 * other + 1]);
+      pen.moveTo(X(origin + outer), Z(anchor));
       pen.lineTo(placed[2 * node], placed[2 * node + 1]); pen.stroke();
     }
   };

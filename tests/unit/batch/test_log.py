@@ -10,7 +10,7 @@ from fem.batch.log import RowLog
 from fem.batch.table import fields_of, line_of, row_of
 from fem.results.errors import FolderLostError
 from fem.results.figures import RUN_COLUMNS, types_of
-from fem.site_check.runs import RunKey
+from fem.site.result import RunKey
 
 ROOT = Path(__file__).parents[3]
 

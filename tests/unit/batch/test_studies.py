@@ -13,7 +13,6 @@ from small_site import SITE
 from small_sweep import SMALL
 
 from fem.__main__ import main
-from fem.batch.shard import Shard
 from fem.case.case import load_case
 from fem.cli.console import print_result
 from fem.ensemble.file import load_ensemble
@@ -25,10 +24,10 @@ from fem.response.run import run_response
 from fem.results import kinds
 from fem.results.errors import FolderError, OutputError
 from fem.runtime.progress import SilentReporter
-from fem.site_check.file import load_site
-from fem.site_check.run import run_site
-from fem.site_check.size_axis import size_axis
-from fem.site_check.size_run import run_size
+from fem.site.request import load_site
+from fem.site.run import run_site
+from fem.site.size import size_axis
+from fem.site.size_run import run_size
 from fem.sweep.file import load_sweep
 from fem.sweep.run import run_sweep
 
@@ -142,9 +141,9 @@ STUDIES = pytest.mark.parametrize(
 @pytest.fixture(autouse=True)
 def short(undrawn, monkeypatch):
     """Maps, pages and the repetition of deciding runs with another model are tested by themselves."""
-    monkeypatch.setattr("fem.site_check.run.confirmed", lambda *arguments: [])
-    monkeypatch.setattr("fem.site_check.run.site_report", lambda *arguments: "")
-    monkeypatch.setattr("fem.site_check.runs.SCANNED", (0.5,))
+    monkeypatch.setattr("fem.site.run.confirmed", lambda *arguments: [])
+    monkeypatch.setattr("fem.site.run.site_report", lambda *arguments: "")
+    monkeypatch.setattr("fem.site.stages.SCANNED", (0.5,))
 
 
 @pytest.fixture(scope="module")
@@ -293,7 +292,6 @@ def test_results_of_another_program_are_not_continued(tmp_path, study, mark, log
         run(folder, reporter=Interrupting(1))
     found = json.loads((folder / mark).read_text())
     for change, words in (
-        ({"shard": 7}, "damaged, cannot be read as Shard"),
         ({"program": "other"}, "another version of the program"),
         ({"versions": found["versions"] | {"numpy": "1.0"}}, r"another version of numpy \(1.0, here "),
     ):
@@ -302,99 +300,14 @@ def test_results_of_another_program_are_not_continued(tmp_path, study, mark, log
             run(folder, resume=True)
 
 
-SHARED = pytest.mark.parametrize("study", [ensemble, hall])
-
-
-@SHARED
-def test_shards_in_any_order_make_the_same_files_as_one_machine(tmp_path, whole, study):
-    run, parts = study(tmp_path), [tmp_path / f"part-{k}" for k in range(3)]
-    for number in (3, 1, 2):
-        result = run(parts[number - 1], shard=Shard(number, 3))
-        assert result.status == "interrupted" and result.shard == Shard(number, 3, done=True)
-        assert result.no_answer_yet.startswith(f"shard {number}/3 is done: ")
-    run(parts[0], shard=Shard(1, 3))  # is there already
-    with pytest.raises(FolderError, match=r"missing shards 2/3$"):
-        run(tmp_path / "merged", merge=[parts[0], parts[2]])
-    with pytest.raises(FolderError, match=r"holds shard 2/3 of this .*--out DIR"):
-        run(parts[1], shard=Shard(3, 3))
-    result = run(tmp_path / "merged", merge=[parts[1], parts[2], parts[0]])
-    assert result.state == "finished" and result.shard is None
-    assert files_of(tmp_path / "merged") == files_of(whole(study))
-
-
-@SHARED
-def test_a_shard_is_resumed_and_an_unfinished_one_is_not_merged(tmp_path, whole, study):
-    run, parts = study(tmp_path), [tmp_path / f"part-{k}" for k in range(2)]
-    run(parts[0], shard=Shard(1, 2))
-    with pytest.raises(KeyboardInterrupt):
-        run(parts[1], shard=Shard(2, 2), reporter=Interrupting(1))
-    with pytest.raises(FolderError, match="shard 2/2 is not finished; --shard 2/2 --resume continues it"):
-        run(tmp_path / "merged", merge=parts)
-    run(parts[1], shard=Shard(2, 2), resume=True)
-    log = parts[0] / ("draws.csv" if study is ensemble else "runs.csv")
-    log.write_bytes(log.read_bytes()[:-9])  # as a disk that was full leaves it
-    with pytest.raises(
-        FolderError, match=r"damaged, .*: \d+ of \d+ lines; --shard 1/2 --resume computes what"
-    ):
-        run(tmp_path / "merged", merge=parts)
-    run(parts[0], shard=Shard(1, 2), resume=True)
-    run(tmp_path / "merged", merge=parts)
-    assert files_of(tmp_path / "merged") == files_of(whole(study))
-
-
-def test_later_stages_are_shared_by_shards_of_a_merge(tmp_path, whole):
-    """The copies of a sweep depend on its cells: shards of the merged cells share them."""
-    run, first = sweep(tmp_path), [tmp_path / f"first-{k}" for k in (1, 2)]
-    for number, folder in enumerate(first, start=1):
-        run(folder, shard=Shard(number, 2))
-        assert not (folder / "members.csv").exists()
-    second = [tmp_path / f"second-{k}" for k in (1, 2)]
-    for number, folder in enumerate(second, start=1):
-        assert run(folder, shard=Shard(number, 2), merge=first).shard == Shard(number, 2, done=True)
-    shared = [len((folder / "members.csv").read_text().splitlines()) - 1 for folder in second]
-    assert min(shared) > 10
-    with pytest.raises(FolderError, match="it is the folder of the result"):
-        run(second[0], shard=Shard(1, 2), merge=second, resume=True)
-    run(tmp_path / "of second", merge=second)
-    with pytest.raises(KeyboardInterrupt):
-        run(tmp_path / "of first", merge=first[::-1], reporter=Interrupting(3))
-    run(tmp_path / "of first", resume=True)
-    for name in ("of first", "of second"):
-        assert files_of(tmp_path / name) == files_of(whole(sweep))
-
-
-def test_shards_of_something_else_and_damaged_ones_are_not_merged(tmp_path, whole):
-    run = hall(tmp_path)
-    run(tmp_path / "one", shard=Shard(1, 1))
-    hall(tmp_path, other=True)(tmp_path / "other", shard=Shard(1, 1))
-    run(tmp_path / "half", shard=Shard(1, 2))
-    shutil.copytree(whole(hall), tmp_path / "whole")
-    run(tmp_path / "binary", shard=Shard(2, 2))
-    (tmp_path / "binary" / "runs.csv").write_bytes(20 * bytes(range(256)))
-    for folders, words in (
-        (["other"], "results of another hall"),
-        (["one", "half"], "shards of 1 and of 2"),
-        (["nowhere"], "cannot be read"),
-        (["whole"], "no shard of a hall"),
-        (["half", "binary"], "runs.csv: damaged, its columns are not those"),
-    ):
-        with pytest.raises(FolderError, match=words):
-            run(tmp_path / "merged", merge=[tmp_path / name for name in folders])
-
-
-@pytest.mark.parametrize("text", ["0/3", "4/3", "3", "1/0", "a/b", "1/999999999", "../1/2"])
-def test_a_shard_that_cannot_be_is_refused(text, tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    assert main(["sweep", "outcome_map", "--shard", text]) == 2
-    assert "from 1/64 to 64/64" in capsys.readouterr().err
-    assert list(tmp_path.iterdir()) == []
-
-
 @pytest.mark.parametrize(
     ("command", "words"),
     [
         (["sweep", "nowhere.toml"], "no sweep file"),
         (["sweep", "outcome_map", "-j", "0"], "-j"),
+        (["sweep", "outcome_map", "--shard", "1/2"], "--shard is no longer there; give the address"),
+        (["ensemble", "boundary", "--slurm=job.toml"], "--slurm is no longer there; start workers"),
+        (["batch", "l.csv", "--site", "site.toml"], "batch --site is no longer there; verify each container"),
         (["ensemble", "fragilty"], "did you mean 'fragility'"),
         (["ensemble", "fragility", "-j", "0"], "-j"),
         (["response", "--from", "2", "--to", "1"], "--from must be less than --to"),

@@ -3,7 +3,6 @@
 import pytest
 
 from fem.case.case import CaseError, case_hash, load_case, read_case, to_toml
-from fem.case.tables.links import faced_by
 from fem.case.tables.unknown_inputs import ranges_of
 from fem.case.template import case_template
 from fem.case.uncertainty import as_changed
@@ -64,49 +63,24 @@ def test_what_holds_nothing_or_overlaps_is_refused(keys, reason):
 
 
 BESIDE = {"side": "right", "gap_m": 0.1, "stiffness_N_m": 1e8}
-ACROSS = {"from": "right", "height_m": 0.5, "to": "neighbour", "stiffness_N_m": 1e6}
+STRAP = {"from": "right", "height_m": 0.5, "stiffness_N_m": 1e6}
 
 
 @pytest.mark.parametrize(
     ("keys", "reason"),
     [
-        (
-            {"from": "left"},
-            r'tie. to = "neighbour" runs to nothing: on the left of the container stands no \[\[neigh',
-        ),
-        ({"neighbour": 1}, "runs to nothing: on the right of neighbour 1 stands no"),
+        ({"to": "neighbour"}, 'tie 1: to must be "floor" or "wall", got the text "neighbour"'),
+        ({"to_height_m": 0.5}, "tie 1: 'to_height_m' is no longer there; ties run to the floor or to a wall"),
         ({"neighbour": 2}, r"neighbour must be the number of a \[\[neighbour\]\]; the case has 1"),
-        (
-            {"to": "wall"},
-            'to must be "floor" or "neighbour" on the right of the container: neighbour 1 stands before',
-        ),
-        ({"to_height_m": 0.8}, "to_height_m must be at most the height of neighbour 1, 0.7 m, got 0.8 m"),
-        (
-            {"neighbour": 1, "from": "left", "height_m": 0.9},
-            "height_m must be at most the height of neighbour 1, 0.7",
-        ),
-        ({"to": "floor", "to_height_m": 0.5}, 'to_height_m is the height .* it needs to = "neighbour"'),
+        ({"to": "wall"}, 'to must be "floor" on the right of the container: neighbour 1 stands before'),
+        ({"neighbour": 1, "height_m": 0.9}, "height_m must be at most the height of neighbour 1, 0.7"),
         ({"strength_N": 0.0}, "tie 1: strength_N must be .* holds nothing"),
     ],
 )
-def test_a_tie_between_containers_ends_where_one_is(keys, reason):
+def test_a_tie_in_a_row_runs_to_the_floor_or_to_a_wall(keys, reason):
     low = {**BESIDE, "boxes": 1, "height_m": 0.7, "centroid_m": 0.35}
     with pytest.raises(CaseError, match=reason):
-        RIGID.with_values({"neighbour": [low], "tie": [ACROSS | keys]})
-
-
-def test_a_tie_between_containers_has_a_length_and_two_ends():
-    touching = {**BESIDE, "gap_m": 0.0}
-    with pytest.raises(
-        CaseError, match="the tie is 0 mm long, and without a length of 1 mm it has no direction"
-    ):
-        RIGID.with_values({"neighbour": [touching], "tie": [ACROSS]})
-    tie, back = {**ACROSS, "to_height_m": 0.4}, {**ACROSS, "from": "left", "neighbour": 1, "height_m": 0.3}
-    case = RIGID.with_values({"neighbour": [touching, BESIDE], "tie": [tie, {**back, "to_height_m": 0.5}]})
-    assert [faced_by(case, one) for one in case.tie] == [1, 0]
-    assert read_case(to_toml(case)).links == case.links
-    with pytest.raises(CaseError, match='must be "rigid" or "reduced" with'):
-        case.with_values({"solver.model": "full"})
+        RIGID.with_values({"neighbour": [low], "tie": [STRAP | keys]})
 
 
 def test_what_is_no_row_of_tables_is_refused():

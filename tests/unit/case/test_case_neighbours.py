@@ -101,7 +101,10 @@ def test_a_neighbour_that_cannot_be_is_refused(keys, reason):
 @pytest.mark.parametrize(
     ("changes", "reason"),
     [
-        ({"solver.model": "full"}, r'model must be "rigid" or "reduced" .* no contact points on the sides'),
+        (
+            {"solver.model": "reduced"},
+            r'model must be "rigid" with \[\[neighbour\]\]: containers in a row are rigid',
+        ),
         ({"container.joints": "loose"}, 'joints must be "bolted"'),
         ({"support.kind": "flat"}, 'kind must be "corners"'),
         ({"output.stop_when_overturned": False}, "what a fallen container strikes is not modelled"),

@@ -53,6 +53,7 @@ BAD_INPUT = [
     (["run", "--set", "solver.duration_s=0", "--dry-run"], "duration_s must be between"),
     (["run", "-q", "-v"], "contradict each other"),
     (["run", "--band", "--bandd"], "--bandd"),
+    (["report", "out", "--all-variations"], "report --all-variations is no longer there; run --band"),
     (["modes", "--set", "solver.order=3"], "order must be between 1 and 2"),
     (["modes", "--count", "2.5"], "a whole number is needed, not '2.5'"),
     (["init", "seed_stak"], "did you mean 'seed_stack'?"),
@@ -254,6 +255,17 @@ def test_a_reader_that_leaves_early_is_no_error():
     command = f"{sys.executable} -m fem schema | head -n 1; exit ${{PIPESTATUS[0]}}"
     result = subprocess.run(["bash", "-c", command], capture_output=True, text=True, check=False)
     assert (result.returncode, result.stderr) == (0, "")
+
+
+@pytest.mark.parametrize("command", ["verify --quick", "validate", "study seed", "report ."])
+def test_what_needs_the_clone_says_so_without_its_tests(tmp_path, monkeypatch, capsys, command):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("fem.cli.evidence.TESTS", tmp_path / "tests")
+    (tmp_path / "study.json").write_text("{}")
+    assert command_line.main(command.split()) == 2
+    said = capsys.readouterr()
+    assert said.out == "" and "the checks are in the folder tests of a clone" in said.err
+    assert [path.name for path in tmp_path.iterdir()] == ["study.json"]
 
 
 SLOW_PACKAGES = ("numba", "skfem", "scipy", "pyvista", "matplotlib", "meshio", "numpy")

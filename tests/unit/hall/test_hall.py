@@ -9,10 +9,8 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from small_site import SITE
 
 from fem.__main__ import main
-from fem.batch.shard import Shard
 from fem.batch.table import table_text
 from fem.case.case import load_case
 from fem.case.validation import CaseError
@@ -21,12 +19,9 @@ from fem.hall.file import read_hall
 from fem.hall.places import INVALID, UNKNOWN, class_of, draw_places, plan_of
 from fem.hall.result import HallResult
 from fem.hall.run import run_hall
-from fem.hall.site import run_hall_at_site
 from fem.hall.study import weakness
 from fem.results.figures import SCALARS
 from fem.run.compute import compute
-from fem.site_check.file import load_site
-from fem.site_check.run import run_site
 
 BASE = """
 [container]
@@ -52,7 +47,6 @@ bad,1,south,-1,2000,,
 C,3,south,1.0,2000.0,0.5,x
 D,1,,2.4,,0.2,y
 """
-OF_BASE = SITE.replace('"seed_stack"', '"base.toml"')
 
 
 @pytest.fixture
@@ -124,41 +118,6 @@ def test_columns_of_links_and_neighbours_are_keys(tmp_path, base):
         assert (row["rotation_ratio"], row["link_hits"]) == (alone.rotation_ratio, alone.link_hits)
     assert near["link_hits"] > 0 == far["link_hits"]
     assert wrong["status"] == "refused" and "stop" in wrong["reason"]
-
-
-def test_every_container_is_verified_at_a_site_as_by_assess(tmp_path, base, monkeypatch, capsys):
-    monkeypatch.setattr("fem.site_check.run.confirmed", lambda *arguments: [])
-    monkeypatch.setattr("fem.site_check.run.site_report", lambda *arguments: "")  # tested by itself
-    monkeypatch.setattr("fem.site_check.runs.SCANNED", (0.5,))
-    monkeypatch.chdir(tmp_path)
-    listed(tmp_path, OF_BASE, "site.toml")
-    listed(tmp_path, "name,width_m,mu_static,tag\nslim,0.5,,a\nwide,3,0.9,b\nbad,-1,,b\nagain,3.0,0.9,b\n")
-    command = ["batch", "hall.csv", "--case", "base.toml", "--site", "site.toml", "--out", "out", "-q"]
-    assert main(command) == 0
-    assert "of 3 containers: " in capsys.readouterr().out
-    found = json.loads((tmp_path / "out" / "hall.json").read_text(encoding="utf-8"))
-    slim, wide, bad, again = found["table"]
-    assert (
-        slim["answer"] == "not fulfilled"
-        and bad["status"] == "refused"
-        and (found["distinct"], slim["rank"]) == (2, 1)
-    )
-    assert wide["answer"] == again["answer"] is not None
-    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
-    assert (tmp_path / "out" / slim["page"]).is_file() and slim["page"] in page
-    alone = run_site(load_site(shlex.split(wide["command"])[4]), tmp_path / "alone").result
-    assert (alone.answer, alone.margin_factor) == (wide["answer"], wide["margin"])
-    assert (alone.rotation_ratio, alone.slip_m) == (wide["rotation_ratio"], wide["max_slip_m"])
-    shards = [tmp_path / f"shard {number}" for number in (1, 2)]
-    asked = read_hall(tmp_path / "hall.csv"), load_site("site.toml"), load_case("base.toml")
-    for number, folder in enumerate(shards, start=1):
-        run_hall_at_site(*asked, folder, shard=Shard(number, 2))
-    merged = run_hall_at_site(*asked, tmp_path / "merged", merge=shards[::-1])
-    assert [row["answer"] for row in merged.table] == [row["answer"] for row in found["table"]]
-    assert main([*command[:-3], "--motion", "x.csv"]) == 2
-    listed(tmp_path, "name,motion.scale\na,2\n", "moved.csv")
-    assert main(["batch", "moved.csv", "--site", "site.toml"]) == 2
-    assert "'motion.scale' has no effect at a site" in capsys.readouterr().err
 
 
 def test_motions_that_destroy_a_corner_are_counted_by_themselves_and_are_worse_than_those_without_an_outcome(

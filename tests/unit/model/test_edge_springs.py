@@ -7,9 +7,9 @@ import pytest
 
 from contact.interface.support import choose_support
 from fem.case.case import load_case
-from fem.model.edge_springs import edge_factors
 from fem.model.half_space import HalfSpace
 from fem.model.model import build_model
+from fem.model.support import edge_factors
 
 CONCRETE = HalfSpace(youngs_modulus=31e9, poisson_ratio=0.2)
 

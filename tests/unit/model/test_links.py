@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
+from runs import SOLID, STACK
 
 from contact.stepping.links import LinkedBody
 from fem.case.case import load_case
 from fem.case.columns import history_columns
-from fem.evidence.verification.runs import SOLID, STACK
 from fem.model.joints import joints_of
 from fem.model.links import side_points
 from fem.model.model import build_model

@@ -61,7 +61,7 @@ def test_the_stress_of_a_run_is_that_of_its_steps_whatever_is_sampled(changes):
             frame_sink=lambda frame, of=recovery: frames.append(of.largest_in(frame.von_mises)),
         )
         simulate(model, recorder)
-        found.append(*recorder.largest_von_mises)
+        found.append(recorder.largest_von_mises)
     assert found[0] == found[1]
     assert 0.99 * max(frames) < found[0] < 1.1 * max(frames)  # a peak of 0.1 ms falls between frames
     assert run_without_history(build_model(case), recovery)[0].max_von_mises_Pa == found[0]

@@ -16,10 +16,8 @@ from fem.assessment.rigid_check import block_of
 from fem.case.case import CaseError, load_case
 from fem.cli.check import preview_of
 from fem.model.model import build_model
-from fem.model.tied_capacity import tied_capacities
 from fem.run.outcome import run_without_history
-from fem.site_check.bodies import body_of
-from fem.site_check.file import Variant
+from fem.site.bodies import body_of
 
 WEIGHT, LENGTH, EDGE = 98.1e3, 0.1, 0.55
 STRENGTH = 5e6  #: of asphalt [Pa]
@@ -93,20 +91,15 @@ def test_it_turns_about_the_edge_of_a_firm_floor_and_nothing_jumps_between():
 
 
 def test_all_that_follows_from_the_width_follows_it():
-    case = on_asphalt(
-        1.25, tie=[{"from": "left", "height_m": 0.0, "slack_m": 9.0, "stiffness_N_m": 1e6, "strength_N": 1e5}]
-    )
+    case = on_asphalt(1.25)
     model, half = build_model(case), EDGE - 0.04
     static = model.static
     assert static.slenderness_angle == pytest.approx(math.atan(half / 2.0))
     assert static.uplift_acceleration == pytest.approx(9.81 * half / 2.0)
     assert static.own_motion.overturning.capacity == pytest.approx(WEIGHT * half)
     assert block_of(model).half_width == pytest.approx(half)
-    assert [one.moment for one in tied_capacities(case, model.container.mesh)] == pytest.approx(
-        [WEIGHT * half] * 2
-    )
     assert preview_of(case).floor.pivot_inset_m == pytest.approx(0.04)
-    at_a_site = body_of(Variant(mass="full", elevation="width", case=case))
+    at_a_site = body_of("full", "width", case)
     assert at_a_site.support_width_m == pytest.approx(2.0 * half)
 
 
@@ -206,7 +199,6 @@ def test_it_rocks_as_an_event_driven_block_of_that_width(times, shape, seconds, 
 @pytest.mark.parametrize(("peak", "outcome"), [(3.6, "invalid"), (3.8, "overturned")])
 def test_a_fall_before_the_floor_is_destroyed_is_a_fall(peak, outcome):
     # 6.5 mm deep as it passes its slenderness angle, and no deeper; where it stands it falls back on that floor, 24 mm.
-    # A block on 21 elastoplastic points a casting (`block_on_plates`) turns 0.63 of the angle under 3.6, and falls.
     keys = {"kind": "pulse", "shape": "sine", "pulse_s": 1.0, "peak_acceleration_m_s2": peak}
     case = on_asphalt(1.5, **{f"motion.{key}": value for key, value in keys.items()})
     verdict, error = run_without_history(build_model(case), None)

@@ -5,8 +5,8 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from meshes import PlainMesh
 
-from fem.evidence.verification.meshes import PlainMesh
 from fem.report.animation import animation_of, bodies_of, hull
 from fem.results.fields import Fields, FrameFields, FrameKeeper
 from fem.solid.assembly import assemble

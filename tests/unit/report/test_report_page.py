@@ -4,26 +4,20 @@ import html
 import json
 import re
 import shutil
-from dataclasses import replace
 
 import pytest
-from markupsafe import escape
 
 from fem.__main__ import main
 from fem.assessment.joint_tables import unbolted
-from fem.assessment.sureness import numerical
 from fem.case.case import load_case, read_case
 from fem.html.units import typeset
 from fem.model.model import build_model
-from fem.report import variations
 from fem.report.animation import animation_of
 from fem.report.run_page import Signature, run_report
-from fem.report.variations import variation_table
 from fem.results.reader import open_run
-from fem.results.run_result import ChangedRun
 from fem.run.run import RunOptions, run_case
 
-SECTIONS = """verdict-title asked assumptions static motion-title variations modes block joints sheet
+SECTIONS = """verdict-title asked assumptions static motion-title band modes block joints sheet
 numerics provenance"""
 HOSTILE = "</title><script>alert(1)</script> & co"
 COARSE = ("solver.duration_s=1.2", "solver.element_size_m=0.5", "solver.order=1", "solver.elastic_modes=4")
@@ -42,7 +36,7 @@ def folder(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def page(folder):
-    return run_report(open_run(folder), signature=Signature(author="A. Author <a@b>"), every_variation=True)
+    return run_report(open_run(folder), signature=Signature(author="A. Author <a@b>"))
 
 
 def test_the_page_has_every_part_in_the_order_of_reading(page):
@@ -81,26 +75,6 @@ def test_the_animation_of_a_rigid_run_has_no_stress(tmp_path):
     assert shown.frames[0].von_mises is None and len(shown.frames) == 25
 
 
-def test_variations_are_kept_beside_the_run(folder, page):
-    said, run = [], open_run(folder)
-    table = variation_table(run, message=said.append)
-    assert said == [] and table.left_out == ()
-    shown = [typeset(word) for line in table.lines for word in line.change.in_words]
-    assert all(escape(word) in page for word in shown)
-
-
-@pytest.mark.parametrize("differs", [True, False])
-def test_a_star_is_explained_where_a_line_has_one(folder, monkeypatch, differs):
-    run = open_run(folder)
-    table = variation_table(run, every=True)
-    lines = [replace(line, changed=line is table.lines[1] and differs) for line in table.lines]
-    monkeypatch.setattr(
-        "fem.report.run_page.variation_table", lambda *given, **options: replace(table, lines=tuple(lines))
-    )
-    page = run_report(run, every_variation=True)
-    assert (" *</td>" in page) == ("* the outcome differs" in page) == differs
-
-
 def rows_of(page, label):
     """The texts of the cells of a table."""
     table = re.search(rf'aria-label="{label}">.*?</table>', page, re.DOTALL)[0]
@@ -124,20 +98,6 @@ def test_no_note_of_the_page_names_a_key(page):
     assert not [note for note in notes if re.search(r"\[[a-z]+\]|[a-z]_[a-z]+\b|\b[a-z]+\.[a-z]+\b", note)]
 
 
-def test_a_variation_that_failed_has_no_outcome_that_could_differ(folder, monkeypatch):
-    run, computed = open_run(folder), variations.run_changes
-
-    def one_fails(*given, **options):
-        _, *others = computed(*given, **options)
-        return [ChangedRun(status="failed", error="no equilibrium"), *others]
-
-    before = variation_table(run, every=True)
-    monkeypatch.setattr(variations, "run_changes", one_fails)
-    table = variation_table(run, every=True)
-    assert not table.lines[1].changed and table.changed == before.changed - before.lines[1].changed
-    assert "There is no outcome in 1." in table.sentence and "in all" not in table.sentence
-
-
 def test_only_a_page_with_the_forces_in_the_joints_says_that_they_are_below(page, folder):
     listed = "the forces in the joints are listed below"
     short = run_report(open_run(folder), brief=True)
@@ -153,59 +113,6 @@ def test_a_run_of_which_no_input_was_varied_is_not_called_sure(folder, tmp_path)
     (copied / "run.json").write_text(json.dumps(result))
     page = run_report(open_run(copied), brief=True)
     assert "No input was varied" in page and "no input varied" in page and ">sure<" not in page
-
-
-def test_what_is_not_known_and_what_is_chosen_have_ranges_of_their_own(folder):
-    table = variation_table(open_run(folder), every=True)
-    own, *others = table.lines
-    chosen = [line.run.rotation_ratio for line in others if line.change.kind == "further"]
-    varied = [line for line in others if line.change.kind == "one" and not numerical(line.change)]
-    unknown = [line.run.rotation_ratio for line in (own, *varied)]
-    said = re.search(
-        r"is (\S+) to (\S+) with one unknown input .* and (\S+) to (\S+) with another floor", table.sentence
-    )
-    expected = [min(unknown), max(unknown), min(chosen), max(chosen)]
-    assert [float(one) for one in said.groups()] == pytest.approx(expected, abs=5e-4)
-
-
-def test_variations_that_take_long_are_named_and_computed_when_asked_for(folder, tmp_path, monkeypatch):
-    copied = shutil.copytree(folder, tmp_path / "copied")
-    (copied / "variations.json").unlink(missing_ok=True)
-    run, said = open_run(copied), []
-    monkeypatch.setattr(variations, "BUDGET_S", 0.0)
-    short = variation_table(run, message=said.append)
-    known = [line.run for line in short.lines]
-    assert known[1].kind == "one"  # of the band
-    assert (
-        len(short.left_out) >= 3 and f"left out, because they take longer: {len(short.left_out)}" in said[-1]
-    )
-    full = variation_table(run, every=True)
-    assert full.left_out == () and {one.change for one in known} < {line.run.change for line in full.lines}
-    assert variation_table(run).lines == full.lines  # kept
-    # A run without a band gets the same ones.
-    (copied / "variations.json").unlink()
-    result = json.loads((copied / "run.json").read_text())
-    result["verdict"]["band"] = None
-    (copied / "run.json").write_text(json.dumps(result))
-    fresh = variation_table(open_run(copied), every=True)
-    assert [one.run for one in fresh.lines[1:]] == [one.run for one in full.lines[1:]]
-
-
-def test_variations_of_a_full_run_begin_with_the_run_as_reduced(folder, tmp_path, monkeypatch):
-    copied = shutil.copytree(folder, tmp_path / "copied")
-    (copied / "variations.json").unlink(missing_ok=True)
-    resolved = (copied / "resolved.toml").read_text().replace('model = "reduced"', 'model = "full"')
-    (copied / "resolved.toml").write_text(resolved)
-    monkeypatch.setattr(variations, "BUDGET_S", 0.0)
-    table = variation_table(open_run(copied))
-    assert table.model == "reduced" and [line.change.subject for line in table.lines[:1]] == ["as computed"]
-    assert table.lines[0].run.outcome == open_run(folder).verdict.outcome and len(table.lines) == 2
-
-
-def test_a_report_that_is_stopped_has_no_variations(folder, tmp_path):
-    copied = shutil.copytree(folder, tmp_path / "copied")
-    (copied / "variations.json").unlink(missing_ok=True)
-    assert variation_table(open_run(copied), every=True, stop=lambda: True) is None
 
 
 @pytest.mark.parametrize(

@@ -100,7 +100,7 @@ def test_the_command_writes_its_tables_and_figures(tmp_path, capsys):
         with (tmp_path / "r" / f"{name}.csv").open() as file:
             assert {row["model"] for row in csv.DictReader(file)} == models
     names = {path.name for path in (tmp_path / "r" / "figures").iterdir()}
-    assert names == {"response_curve.svg", "sections.svg", "portraits.svg"}
+    assert names == {"response_curve.svg", "portraits.svg"}
 
 
 CRUSHING = (

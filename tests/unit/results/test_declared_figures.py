@@ -21,8 +21,8 @@ from fem.results.figures import (
     summary_order,
 )
 from fem.results.run_result import Band, ChangedRun, RunResult, Verdict
-from fem.site_check.result import SiteRun
-from fem.site_check.runs import COLUMNS
+from fem.site.result import SiteRun
+from fem.site.runs import COLUMNS
 from fem.sweep.table import FOUND
 
 BOX = BoxResult(max_rotation_rad=0.5, max_slip_m=0.5, max_opening_m=0.5)

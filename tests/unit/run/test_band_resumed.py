@@ -30,7 +30,7 @@ SHORT = (
 HELD = (
     *("centroid_m", "eccentricity_m", "effective_width", "slope_percent", "mu_static"),
     *("ramp", "weakening_m", "stribeck_velocity_m_s", "support", "normal_penalty_Pa_m"),
-    *("casting_tilt_m", "bearing_strength_Pa", "floor_youngs_modulus_Pa", "restitution_over_housner"),
+    *("bearing_strength_Pa", "floor_youngs_modulus_Pa", "restitution_over_housner"),
 )
 FEW = tuple(f"uncertainty.{name}=held" for name in HELD)
 MODELS = {

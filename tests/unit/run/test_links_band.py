@@ -15,7 +15,7 @@ KERBS = [
 ]
 TIES = [
     {"from": "left", "height_m": 0.5, "slack_m": 0.01, "stiffness_N_m": 1e6},
-    {"from": "right", "to": "neighbour", "height_m": 2.0, "slack_m": 0.02, "stiffness_N_m": 2e6},
+    {"from": "right", "height_m": 2.0, "slack_m": 0.02, "stiffness_N_m": 2e6},
 ]
 LINKS = {
     *("stop_gap_m", "stop_stiffness_N_m", "stop_mu", "tie_slack_m", "tie_stiffness_N_m"),

@@ -54,36 +54,6 @@ def test_the_summary_says_what_each_of_them_did(folder):
     assert "the tie on the left at 0.5 m carried up to 1.00 kN, and broke at t = " in first
 
 
-def test_check_prints_the_static_capacity_with_the_tie(capsys, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    check("rocking", overrides=list(KEYS))
-    printed = capsys.readouterr().out
-    assert "with its ties  to the right" in printed
-    assert "where a tie breaks" in printed
-
-
-def test_check_says_why_a_tie_to_a_neighbour_has_no_static_capacity(capsys):
-    across = "tie=[{from = 'right', height_m = 0.5, to = 'neighbour', stiffness_N_m = 1e6}]"
-    beside = "neighbour=[{side = 'right', gap_m = 0.05, stiffness_N_m = 1e8}]"
-    check("rocking", overrides=["solver.model=rigid", beside, across])
-    printed = " ".join(capsys.readouterr().out.split())
-    assert "with its ties" not in printed
-    assert "a tie to a neighbour has no static capacity: the floor moves the neighbour as well" in printed
-
-
-def test_a_tilt_that_overstretches_a_tie_to_a_neighbour_is_refused():
-    across = "tie=[{from = 'left', height_m = 0.9, to = 'neighbour', to_height_m = 0.5, stiffness_N_m = 1e6}]"
-    beside = "neighbour=[{side = 'left', gap_m = 0.05, stiffness_N_m = 1e8}]"
-    case = load_case("rocking", ["solver.model=rigid", beside, across, "initial.rotation_rad=0.2"])
-    said = r"tie 1: slack_m = 0 m is overlapped by (0\.\d+) m"
-    with pytest.raises(CaseError, match=said) as built:
-        build_model(case)
-    with pytest.raises(CaseError, match=said) as checked:
-        check("rocking", overrides=["solver.model=rigid", beside, across, "initial.rotation_rad=0.2"])
-    first, other = (float(re.search(said, str(one.value)).group(1)) for one in (built, checked))
-    assert first == pytest.approx(other, abs=1e-3)
-
-
 def test_a_tilt_that_overlaps_a_stop_is_refused():
     case = load_case("rocking", [*KEYS, "initial.rotation_rad=0.1", "stop.height_m=1.0"])
     said = r"stop 1: gap_m = 0\.02 m is overlapped by (0\.0\d+) m"

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from cases import TABLE, named_case
+from runs import finish
 
 from contact.motion.base_motion import NoMotion, PulseMotion
 from fem.__main__ import main
@@ -15,7 +16,6 @@ from fem.assessment.warnings import warnings_for
 from fem.batch.runner import run_model
 from fem.case.case import CaseError, load_case, read_case
 from fem.cli.check import preview_of
-from fem.evidence.verification.runs import finish
 from fem.model.model import build_model
 from fem.model.motion import build_motion, build_motions, motion_result
 from fem.results.reader import open_run

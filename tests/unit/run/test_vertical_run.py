@@ -15,7 +15,6 @@ from fem.figures.run import figures_of
 from fem.model.model import build_model
 from fem.report.animation import animation_of
 from fem.report.run_page import run_report
-from fem.report.variations import further_changes
 from fem.response.request import ResponseRequest
 from fem.results.reader import open_run
 from fem.run.run import RunOptions, run_case
@@ -157,17 +156,6 @@ def test_a_floor_that_falls_away_and_a_jerk_are_told_before_the_run(capsys):
     page = " ".join(capsys.readouterr().out.split())
     assert "the vertical acceleration of the floor reaches 12 m/s2, gravity or more" in page
     assert "a jerk of 0.577 m/s along x and 1.17 m/s vertically" in page
-
-
-def test_variations_try_the_other_sign_and_strengthen_both_motions():
-    changed = [one.values for one in further_changes(load_case("seed_stack_plateau", VERTICAL))]
-    assert {"vertical.scale": 1.0} in changed
-    assert {"vertical.kind": "none"} in changed
-    (stronger,) = (one for one in changed if one.get("vertical.peak_acceleration_m_s2", 0.0) > 3.0)
-    assert stronger["motion.peak_acceleration_m_s2"] == pytest.approx(1.1 * 4.0)
-    assert stronger["vertical.peak_acceleration_m_s2"] == pytest.approx(1.1 * 3.0)
-    plain = [one.values for one in further_changes(load_case("seed_stack_plateau"))]
-    assert not [values for values in plain if any(key.startswith("vertical") for key in values)]
 
 
 def test_a_container_that_leaves_its_floor_hops_and_its_verdict_is_tried():

@@ -10,7 +10,7 @@ from scipy.linalg import expm
 from contact.motion.samples import sampled_motion
 from fem.seismic.action import SiteAction, eurocode_shape
 from fem.seismic.artificial import artificial_motions
-from fem.seismic.floor import floor_motion, one_mode, storey_modes
+from fem.seismic.floor import floor_motion, is_a_floor, one_mode, storey_modes
 from fem.seismic.ground_motion import GroundMotion
 
 ACTION = SiteAction(shape=eurocode_shape(1, "D"), reference_acceleration=2.4 / 1.35)
@@ -68,7 +68,6 @@ def test_the_floor_of_a_resonant_building_amplifies_and_ends_at_rest(ground):
     ("given", "message"),
     [
         ({"period": 0.0}, "period of the building"),
-        ({"height_ratio": 1.2}, "z/H"),
         ({"damping_ratio": 0.0}, "damping ratio"),
     ],
 )
@@ -106,10 +105,11 @@ def test_modes_beyond_33_hz_follow_the_ground():
     assert min(mode.period for mode in modes) >= 1.0 / 33.0
 
 
-@pytest.mark.parametrize(("storeys", "level"), [(5, 0.5), (10, 0.33), (0, 1.0)])
-def test_between_floors_nothing_stands(storeys, level):
-    with pytest.raises(ValueError, match=r"no floor|one storey"):
-        storey_modes(storeys=storeys, kind="shear", height_ratio=level, period=0.5)
+@pytest.mark.parametrize(
+    ("storeys", "level", "stands"), [(5, 0.5, False), (10, 0.33, False), (3, 0.667, True)]
+)
+def test_between_floors_nothing_stands(storeys, level, stands):
+    assert is_a_floor(storeys, level) == stands
 
 
 @pytest.mark.parametrize(("kind", "period"), [("shear", 0.6), ("cantilever", 3.0)])

@@ -6,8 +6,8 @@ import meshio
 import numpy as np
 import pytest
 import pyvista
+from meshes import grid_mesh
 
-from fem.evidence.verification.meshes import grid_mesh
 from fem.solid.assembly import assemble
 from fem.solid.modes import elastic_modes, rigid_modes, write_modes
 

@@ -13,7 +13,6 @@ import pytest
 from small_sweep import SMALL, rows_without_wall
 
 from fem.__main__ import main
-from fem.batch.shard import Shard
 from fem.case.validation import CaseError
 from fem.run.compute import compute
 from fem.sweep.file import load_sweep
@@ -198,12 +197,3 @@ def test_the_margin_of_a_cell_is_that_of_its_run(tmp_path):
         assert found == margin.factor
         assert (table["margin_tried_to"][cell] == margin.largest_tried) == (margin.factor is None)
     assert np.isfinite(table["margin"]).any()
-    first, second = ([tmp_path / f"{name} {k}" for k in (1, 2)] for name in ("cells", "margins"))
-    for number, folder in enumerate(first, start=1):
-        run_sweep(sweep, folder, jobs=1, shard=Shard(number, 2))
-    for number, folder in enumerate(second, start=1):
-        run_sweep(sweep, folder, jobs=1, shard=Shard(number, 2), merge=first)
-        assert len((folder / "margins.csv").read_text().splitlines()) == 2
-        (folder / "margins.csv").write_text(f"cell,margin,margin_tried_to\n{number - 1},{number}.25,\n")
-    run_sweep(sweep, tmp_path / "merged", jobs=1, merge=second)
-    assert list(open_sweep(tmp_path / "merged")["margin"]) == [1.25, 2.25]  # taken, not computed again

@@ -1,10 +1,10 @@
 """Restitution of the first impact, by the energy of rocking: a number where there is one, else None."""
 
 import pytest
+from runs import run
 
 from fem.assessment.verdict import verdict_of
 from fem.case.case import load_case
-from fem.evidence.verification.runs import run
 from fem.results.run_result import Verdict
 
 HOUSNER = 0.8945

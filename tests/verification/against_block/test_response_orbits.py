@@ -4,13 +4,13 @@ import math
 
 import numpy as np
 import pytest
+from closed_forms_rocking import symmetric_orbit_slender
+from closed_forms_sliding import steady_stroke
+from runs import STACK
 
-from contact.reference.closed_forms_rocking import symmetric_orbit_slender
-from contact.reference.closed_forms_sliding import steady_stroke
 from contact.reference.floor_acceleration import sine_floor, still_floor
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
-from fem.evidence.verification.runs import STACK
 from fem.model.container import discretise
 from fem.model.model import build_model
 from fem.response.curve import Task, computed, follow_point, plan_of

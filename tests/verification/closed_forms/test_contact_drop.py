@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from block_on_floor import Block, Rig, rig
+from closed_forms_rocking import damped_drop_restitution
 
-from contact.reference.closed_forms_rocking import damped_drop_restitution
 from contact.stepping.ledger import IMBALANCE
 
 SPEED = 0.5  #: of the approach [m/s]

@@ -4,13 +4,13 @@ import math
 
 import numpy as np
 import pytest
+from runs import BOX, GRAVITY, STACK, harmonic, pulse
 
 from contact.stepping.body import CENTRE_X, POTENTIAL
 from contact.stepping.control import most_attempts
 from contact.stepping.integrator import REACHED, enter_floor_frame_compiled
 from contact.stepping.ledger import BASE_WORK, CONTACT_DAMPING, CRUSHING, FRICTION, IMBALANCE
 from contact.stepping.outcome import FREE, is_over
-from fem.evidence.verification.runs import BOX, GRAVITY, STACK, harmonic, pulse
 from fem.model.model import Model, build_model
 from fem.run.checkpoint import CheckpointWriter, read_state
 from fem.run.recorder import Recorder

@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 from container_runs import SLENDERNESS_ANGLE, first_impact, stack, times
+from runs import Finished
 
 import fem.model.model
 from fem.case import columns
-from fem.evidence.verification.runs import Finished
 from fem.model.joints import joints_of
 from fem.model.model import Model, build_model
 from fem.results.history import History

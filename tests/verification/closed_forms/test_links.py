@@ -8,13 +8,11 @@ import math
 import numpy as np
 import pytest
 from block_at_wall import SETTLED, fall_back
+from runs import SOLID, STACK, Finished, harmonic, pulse, run
 
 from contact.interface.penalty import damping_ratio_of, restitution_of
 from contact.stepping.ledger import BASE_WORK, CONTACT_DAMPING, FRICTION, IMBALANCE
 from fem.case.case import Case
-from fem.evidence.verification.runs import SOLID, STACK, Finished, harmonic, pulse, run
-from fem.model.geometry import build_container
-from fem.model.tied_capacity import tied_capacities
 
 MASS, WIDTH, MIDDLE = 1e4, 1.1, 2.0
 GRAVITY, SPEED = 9.81, 0.5
@@ -201,34 +199,6 @@ def test_a_strap_that_breaks_takes_the_energy_of_its_strength_and_stays_broken()
     assert record.hits == 1
 
 
-@pytest.mark.parametrize("stiffness", [1e6, 1e9])  # a stiff one breaks before the next rotation tried
-def test_the_static_capacity_with_a_strap_is_that_of_weight_and_spring(stiffness):
-    case = with_links(STACK, tie=({**STRAP, "stiffness_N_m": stiffness, "slack_m": 0.02, "strength_N": 2e4},))
-    left, right = tied_capacities(case, build_container(case))
-    rotation = math.asin((2e4 / stiffness + 0.02) / WIDTH)
-    radius, angle = math.hypot(0.55, MIDDLE), math.atan2(0.55, MIDDLE)
-    weight = MASS * GRAVITY * radius * math.sin(angle - rotation)
-    assert right.moment == pytest.approx(weight + 2e4 * WIDTH * math.cos(rotation), rel=1e-9)
-    assert right.rotation == pytest.approx(rotation, rel=1e-9)
-    assert right.broken
-    assert left.moment == left.free == right.free == pytest.approx(MASS * GRAVITY * 0.55, rel=1e-9)
-
-
-def test_a_tie_to_a_wall_adds_its_force_times_the_height_of_its_point():
-    tie = {**STRAP, "to": "wall", "height_m": 3.0, "stiffness_N_m": 1e6, "slack_m": 0.02, "strength_N": 2e4}
-    case = with_links(STACK, tie=(tie,))
-    left, right = tied_capacities(case, build_container(case))
-    rotation = math.radians(0.76)  # where 3 sin + 1.1 (1 - cos) is 0.04
-    for _ in range(20):
-        rotation = math.asin((0.04 - WIDTH * (1.0 - math.cos(rotation))) / 3.0)
-    radius, angle = math.hypot(0.55, MIDDLE), math.atan2(0.55, MIDDLE)
-    height = 3.0 * math.cos(rotation) + WIDTH * math.sin(rotation)
-    weight = MASS * GRAVITY * radius * math.sin(angle - rotation)
-    assert right.moment == pytest.approx(weight + 2e4 * height, rel=1e-9)
-    assert (right.rotation, right.broken) == (pytest.approx(rotation, rel=1e-9), True)
-    assert left.moment == left.free  # toward its wall it is slack
-
-
 def test_a_tie_to_a_wall_holds_what_slides_away_and_returns_its_energy():
     tie = {"from": "left", "to": "wall", "height_m": MIDDLE, "slack_m": 0.1, "stiffness_N_m": 1e6}
     found = run(with_links(SLIDER, tie=(tie,)), {"solver.duration_s": 1.0})
@@ -240,18 +210,6 @@ def test_a_tie_to_a_wall_holds_what_slides_away_and_returns_its_energy():
     other = run(with_links(SLIDER, tie=({**tie, "from": "right"},)))
     assert other.model.run.links[0].max_force == 0.0  # toward its wall it is slack
     assert velocity_at_end(other) == pytest.approx(SPEED, rel=1e-9)
-
-
-def test_on_a_slope_the_static_capacity_is_less_downhill():
-    case = with_links(
-        STACK.with_values({"floor.slope_percent": 10.0}), tie=({**STRAP, "stiffness_N_m": 1.0},)
-    )
-    left, right = tied_capacities(case, build_container(case))
-    slope = math.atan(0.1)
-    for found, toward in ((left, -1.0), (right, 1.0)):
-        by_hand = MASS * GRAVITY * (0.55 * math.cos(slope) - toward * MIDDLE * math.sin(slope))
-        assert found.free == pytest.approx(by_hand, rel=1e-9)
-        assert found.moment == pytest.approx(by_hand, rel=1e-4)
 
 
 def test_a_wedge_that_carries_load_is_hit_and_named():

@@ -4,12 +4,12 @@ import math
 
 import numpy as np
 import pytest
+from runs import BOX, SOLID, STACK, Finished, harmonic, pulse, run
 
 from contact.stepping.ledger import CONTACT_DAMPING, FRICTION
 from fem.assessment.summary import outcome_sentence
 from fem.assessment.verdict import verdict_of
 from fem.case.case import Case
-from fem.evidence.verification.runs import BOX, SOLID, STACK, Finished, harmonic, pulse, run
 from fem.results.run_result import RunResult
 
 MASS, SPEED, GRAVITY = 2500.0, 0.5, 9.81  # of a box of 1.1 x 1.0 m

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from block_on_floor import Block, Rig, rig
 from container_runs import stack
+from runs import STACK, pulse, run
 from stack_on_floor import Box, stack_rig
 
 from contact.motion.base_motion import PulseMotion
@@ -22,7 +23,6 @@ from contact.stepping.body import ANGULAR_VELOCITY, CENTRE_X, CENTRE_Z, VELOCITY
 from contact.stepping.ledger import BASE_WORK, FRICTION, IMBALANCE, IMPACTS
 from contact.stepping.outcome import advance_compiled
 from fem.case.case import CaseError
-from fem.evidence.verification.runs import STACK, pulse, run
 from fem.model.model import build_model
 
 HELD = Block(mu_static=3.0, mu_kinetic=3.0)

@@ -8,6 +8,7 @@ import math
 import numpy as np
 import pytest
 from moreau import slide_in_a_row
+from runs import STACK, Finished, harmonic, pulse, run
 
 from contact.stepping.body import stands_loose
 from contact.stepping.joints import holding_force
@@ -16,7 +17,6 @@ from contact.stepping.links import links_of
 from fem.assessment.verdict import verdict_of
 from fem.case.case import Case, CaseError, load_case
 from fem.case.tables.neighbours import case_of
-from fem.evidence.verification.runs import STACK, Finished, harmonic, pulse, run
 from fem.model.geometry import build_container
 from fem.model.model import build_model
 from fem.model.motion import build_motions

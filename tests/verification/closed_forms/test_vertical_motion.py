@@ -11,10 +11,10 @@ import pytest
 from block_on_floor import GRAVITY, Block, rig
 from cases import LEAST
 from container_runs import difference, first_impact, stack, times
+from runs import Finished, run
 
 from contact.motion.base_motion import HarmonicMotion
 from fem.case.case import Case, CaseError, read_case
-from fem.evidence.verification.runs import Finished, run
 from fem.model.model import build_model
 from fem.run.outcome import run_without_history
 

@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-
-from fem.evidence.verification.manufactured import (
+from verification.manufactured import (
     gradient_of,
     static_source,
     textbook_stress,

@@ -10,8 +10,7 @@ from functools import cache
 import numpy as np
 import pytest
 from container_runs import SECTIONS, difference, first_impact, stack, times, velocity_ratio
-
-from fem.evidence.verification.runs import Finished, run
+from runs import Finished, run
 
 CASES = [(section, kind) for section in SECTIONS for kind in ("corners", "feet", "flat")]
 

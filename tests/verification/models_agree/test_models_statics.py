@@ -11,8 +11,8 @@ import scipy.linalg
 import scipy.sparse
 import scipy.sparse.linalg
 from container_runs import stack
+from runs import run
 
-from fem.evidence.verification.runs import run
 from fem.model.container import Container
 from fem.model.model import Model, build_model
 from fem.model.recovery import NodalFields, recovery_of

@@ -4,6 +4,16 @@ import math
 
 import numpy as np
 import pytest
+from two_block_motion import select, simulate_two_blocks
+from two_blocks import (
+    Footing,
+    Pattern,
+    StackedBlock,
+    TwoBlockStack,
+    contact_normals,
+    energy,
+    velocities,
+)
 
 from contact.reference.floor_acceleration import (
     Acceleration,
@@ -14,16 +24,6 @@ from contact.reference.floor_acceleration import (
 )
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
-from contact.reference.two_block_motion import select, simulate_two_blocks
-from contact.reference.two_blocks import (
-    Footing,
-    Pattern,
-    StackedBlock,
-    TwoBlockStack,
-    contact_normals,
-    energy,
-    velocities,
-)
 
 G = 9.81
 BOX = StackedBlock.homogeneous(width=1.1, height=2.0, mass=5000.0)

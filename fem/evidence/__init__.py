@@ -1,1 +1,0 @@
-"""Evidence for the program: its checks, the claims of the paper, and experiments, each number beside its reference."""

@@ -1,1 +1,0 @@
-"""The paper by Knoedel and Hrabowski, claim by claim: runs, figures, conclusions. Nothing depends on it."""

@@ -1,0 +1,221 @@
+"""The motions of a site: made or read, on the ground and on the floor of a building."""
+
+import importlib
+import math
+from collections.abc import Iterable, Sequence
+from itertools import combinations
+
+import numpy as np
+
+from fem.case.data_files import split_channel
+from fem.case.tables.problem import outside_the_folder, stays_in_the_folder
+from fem.case.validation import CaseError
+from fem.records.files import read_record
+from fem.records.processing import Processing, stated_baseline
+from fem.records.record import Component, Direction, Record, RecordError, require_together
+from fem.records.spectrum import response_spectrum
+from fem.runtime.arrays import FloatArray
+from fem.runtime.user_files import leads_out, real_path
+from fem.seismic.action import LAST_PERIOD_ANNEX_A_S, LAST_PERIOD_S, MotionTarget
+from fem.seismic.artificial import artificial_set
+from fem.seismic.floor import PERIOD_FACTORS, floor_motion, one_mode, storey_modes
+from fem.seismic.floor_spectrum import FloorSpectrum
+from fem.seismic.ground_motion import GroundMotion
+from fem.seismic.motion_set import periods_of_check
+from fem.site.request import SiteRequest
+from fem.site.result import SiteBody
+from fem.site.tables import BuildingTable
+
+#: largest difference of two intervals of a record that is sampled evenly, over the interval
+UNEVEN = 1e-3
+RIGID_PERIOD_S = 0.01  #: of an oscillator that moves with its floor
+MATCHED = Processing(baseline="zero-end")  #: what matching does to a record besides
+BASELINE = "take another record, or set allow_baseline = true"  #: where one is refused
+
+
+def longest_period(bodies: Sequence[SiteBody]) -> float:
+    """End of the band of periods: 4 s, or 2 pi/p of the largest body where that is longer, up to 10 s."""
+    periods = (2.0 * math.pi / body.frequency_parameter_1_s for body in bodies)
+    return min(max(LAST_PERIOD_S, *periods), LAST_PERIOD_ANNEX_A_S)
+
+
+def ground_motions(
+    request: SiteRequest, longest: float, *, allow_outside: bool = False
+) -> list[GroundMotion]:
+    """The set of motions of the ground, scaled or matched where it is recorded; or of a given floor.
+
+    Raises:
+        CaseError: a record that is missing, outside the folder, no motion, or not independent of another.
+    """
+    table, target = request.motions, request.floor_target or request.action
+    if table.source == "artificial":
+        try:
+            return artificial_set(
+                target,
+                count=table.count,
+                seed=table.seed,
+                stationary=table.stationary_s,
+                longest=longest,
+                vertical=table.vertical,
+                second=table.second_component,
+            )
+        except ValueError as error:
+            raise CaseError(f"[motions] {error}") from None
+    records = [
+        _record(request, number, names, allow_outside)
+        for number, names in enumerate(table.files or [], start=1)
+    ]
+    _require_independent(records)
+    if table.source == "floor":
+        return records
+    # loaded where it is used: its import of scipy.signal takes as long as thirty runs
+    matched = importlib.import_module("fem.seismic.matched")
+    fitted: list[GroundMotion] = (
+        matched.scaled_records(records, target, longest=longest)
+        if table.source == "records"
+        else matched.matched_records(records, target, longest=longest, second=table.second_component)
+    )
+    return fitted
+
+
+def motion_target(request: SiteRequest, motions: Sequence[GroundMotion], longest: float) -> MotionTarget:
+    """What the set is compared with, and what further motions fit: the site, a given floor, or its motions' mean.
+
+    Args:
+        motions: of the set; longest: end of the band of periods [s].
+    """
+    if request.motions.source != "floor":
+        return request.floor_target or request.action
+    periods = periods_of_check(longest)
+
+    def mean(components: Sequence[tuple[float, FloatArray]]) -> tuple[float, ...]:
+        peak = float(np.mean([np.abs(values).max() for _, values in components]))
+        spectra = [
+            response_spectrum(step, values, periods).pseudo_acceleration_m_s2 for step, values in components
+        ]
+        return peak, *np.mean(spectra, axis=0).tolist()
+
+    upward = [(motion.step, motion.vertical) for motion in motions if motion.vertical is not None]
+    return FloorSpectrum(
+        periods=(RIGID_PERIOD_S, *periods.tolist()),
+        accelerations=mean([(motion.step, motion.horizontal) for motion in motions]),
+        vertical_accelerations=mean(upward) if upward else (),
+        ground=request.action,
+    )
+
+
+def floor_motions(
+    request: SiteRequest, ground: Sequence[GroundMotion]
+) -> dict[float | None, list[GroundMotion]]:
+    """Motions of the floor on which the container stands, by the period of the building; None: the ground."""
+    building = request.building
+    if building is None or building.z_over_h == 0.0:
+        return {None: list(ground)}
+    return {
+        period: [on_floor(building, motion, period) for motion in ground]
+        for period in (float(f"{factor * building.building_period_s:.9g}") for factor in PERIOD_FACTORS)
+    }
+
+
+def on_floor(building: BuildingTable | None, ground: GroundMotion, period: float | None) -> GroundMotion:
+    """A motion of the ground on the floor of a building of this longest period; None: on the ground."""
+    if building is None or period is None:
+        return ground
+    height, storeys = building.z_over_h, building.storeys
+    if storeys is None:
+        modes = one_mode(height_ratio=height, period=period)
+    else:
+        modes = storey_modes(storeys=storeys, kind=building.kind, height_ratio=height, period=period)
+    return floor_motion(ground, modes, damping_ratio=building.damping_ratio)
+
+
+def _record(request: SiteRequest, number: int, names: Sequence[str], allow_outside: bool) -> GroundMotion:
+    records, components = list[Record](), list[Component]()
+    given = dict(zip("hvt", names, strict=False))
+    if not request.motions.vertical:
+        given.pop("v", None)
+    try:
+        for letter, name in given.items():
+            record, channel = _read(request, name, allow_outside)
+            records.append(record)
+            direction: Direction = "vertical" if letter == "v" else "horizontal"
+            components.append(record.component(direction, quantity="acceleration", channel=channel))
+        for record, component in zip(records, components, strict=True):
+            component.require_no_gap(record.name)
+        require_together(components, [record.name for record in records])
+    except RecordError as error:
+        raise CaseError(f"[motions] files: {error}") from None
+    notes = _baselines_in_words(request, given, records, components)
+    if len(set(map(id, components))) < len(components):
+        raise CaseError(f"[motions] files: a component of {records[0].name} is named for two directions")
+    step, values = _even(components)
+    by_letter = dict(zip(given, values, strict=True))
+    return GroundMotion(
+        name=f"motion_{number:02d}",
+        step=step,
+        horizontal=by_letter["h"],
+        vertical=by_letter.get("v"),
+        second=by_letter.get("t"),
+        origin=", ".join(dict.fromkeys(record.name for record in records)),
+        notes=notes,
+        event=" ".join(f"{records[0].event} {records[0].date}".split()),
+    )
+
+
+def _baselines_in_words(
+    request: SiteRequest, letters: Iterable[str], records: Sequence[Record], components: Sequence[Component]
+) -> tuple[str, ...]:
+    """What the baseline that matching removes changes in a record, component by component.
+
+    Raises:
+        CaseError: it changes a peak too much and is not allowed.
+    """
+    table, notes = request.motions, dict[str, None]()
+    if table.source != "matched":
+        return ()
+    for letter, record, component in zip(letters, records, components, strict=True):
+        if letter == "t" and table.second_component == 0.0:
+            continue
+        try:
+            change = stated_baseline(
+                record.name, component, MATCHED, allowed=bool(table.allow_baseline), way_out=BASELINE
+            )
+        except RecordError as error:
+            raise CaseError(f"[motions] files: {error}") from None
+        if change:
+            notes[f"{record.name}: matching removes a baseline; {change}"] = None
+    return tuple(notes)
+
+
+def _read(request: SiteRequest, name: str, allow_outside: bool) -> tuple[Record, str]:
+    if not allow_outside and not stays_in_the_folder(name):
+        raise CaseError(f"[motions] files {outside_the_folder(name)}; or allow it with --allow-outside")
+    path, channel = split_channel(request.origin.folder, name)
+    if not allow_outside and leads_out(request.origin.folder, path):
+        raise CaseError(
+            f"[motions] files: {name!r} leads out of {real_path(request.origin.folder)}; allow it with --allow-outside"
+        )
+    table = request.motions
+    return read_record(path, unit=table.unit, sample_interval=table.sample_interval_s), channel
+
+
+def _even(components: Sequence[Component]) -> tuple[float, list[FloatArray]]:
+    """Step and values of components at even times; linear between samples where they are not even."""
+    times = components[0].times
+    steps = np.diff(times)
+    step = float(np.median(steps))
+    if np.ptp(steps) <= UNEVEN * step:
+        return step, [component.values for component in components]
+    step = float(steps.min())
+    even = times[0] + np.arange(math.floor((times[-1] - times[0]) / step * (1.0 + 1e-12)) + 1) * step
+    return step, [np.asarray(np.interp(even, component.times, component.values)) for component in components]
+
+
+def _require_independent(records: Sequence[GroundMotion]) -> None:
+    """Refuse two records of one event: the motions of a set count as independent of one another."""
+    for one, other in combinations(records, 2):
+        if one.event and one.event.casefold() == other.event.casefold():
+            raise CaseError(
+                f"[motions] files: {one.origin} and {other.origin} are records of one event, {one.event}; the motions "
+                "of a set must be independent, so take one of them"
+            )

@@ -1,0 +1,153 @@
+"""What can be said of a site before any run: action, motions, what they move, and what a verification would take."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from fem.results.json_block import JsonBlock
+from fem.run.expected import of_a_record_s, of_its_band_s
+from fem.runtime.progress import clock_time
+from fem.runtime.threads import cores
+from fem.seismic.motion_set import check_set
+from fem.site.bodies import bodies_of
+from fem.site.confirm import MODEL, MOST_DECIDING
+from fem.site.copies import inputs_of
+from fem.site.methods import wind_utilisation
+from fem.site.motion_results import GIVEN_FLOORS
+from fem.site.motions import floor_motions, ground_motions, longest_period
+from fem.site.request import SiteRequest
+from fem.site.result import SiteBody
+from fem.site.runs import still
+from fem.site.stages import Stages
+
+OF_A_MOTION_S = 0.03  #: processor time of making an artificial motion of three components, tests/README.md
+
+
+@dataclass(frozen=True, kw_only=True)
+class Forecast(JsonBlock):
+    """How many runs a verification takes, and how long."""
+
+    of_set: int
+    of_set_still: int  #: of these, below uplift and slip of a rigid body: not computed
+    most: int  #: of all stages, without the deciding runs
+    seconds: float  #: of them and of making further motions, on these cores, roughly
+    deciding_seconds: float  #: of the deciding runs, likewise; 0 where there are none
+    cores: int
+    quick: bool = False
+
+    @property
+    def words(self) -> str:
+        """In one sentence."""
+        on = f"{self.cores} core{'s' if self.cores > 1 else ''}"
+        moving, rest = self.of_set - self.of_set_still, ""
+        if self.of_set_still:
+            rest = f"{self.of_set_still} of {self.of_set} runs of the set rest below uplift and slip; "
+        more = "" if self.quick else ", further motions and other factors"
+        after = ""
+        if self.deciding_seconds:
+            after = f"; then the deciding runs with their bands, roughly {_rounded(self.deciding_seconds)}"
+        return (
+            f"{rest}{moving} to compute, up to {self.most} with repetitions{more}: up to roughly "
+            f"{_rounded(self.seconds)} on {on}{after}"
+        )
+
+
+def _rounded(seconds: float) -> str:
+    """A time of which one figure is known, rounded up."""
+    figure = 10.0 ** math.floor(math.log10(max(seconds, 1.0)))
+    return clock_time(figure * math.ceil(seconds / figure - 1e-9))
+
+
+def forecast(stages: Stages, jobs: int, *, quick: bool = False, scan: bool = True) -> Forecast:
+    """How many runs there will be, before the first is computed; arguments as `Stages.most_runs`."""
+    own, most = stages.most_runs(quick=quick, scan=scan)
+    request = stages.request
+    case = still(next(iter(request.variants.values())), request.heading.model)
+    total = len(stages.of_set())
+    moves = own > 0 and not quick
+    made = 0 if quick and own else request.motions.further
+    return Forecast(
+        of_set=total,
+        of_set_still=total - own,
+        most=most,
+        seconds=(most * of_a_record_s(case) + made * OF_A_MOTION_S) / jobs,
+        deciding_seconds=MOST_DECIDING * of_its_band_s(of_a_record_s(still(case, MODEL))) / jobs
+        if moves
+        else 0.0,
+        cores=jobs,
+        quick=quick,
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class SitePreview(JsonBlock):
+    """What is known of a verification before it is computed."""
+
+    site: str
+    title: str
+    spectrum: str
+    ag_S_m_s2: float
+    avg_m_s2: float
+    bodies: tuple[SiteBody, ...]
+    floor: str | None  #: what it is given by; None: the site moves it, perhaps through a building
+    motions: int
+    set_valid: bool
+    reasons: tuple[str, ...]
+    notes: tuple[str, ...]  #: what the processing of the records changed
+    factor_at_first_movement: float | None  #: on the motions, of a rigid body; None: not known
+    wind_utilisation: float | None
+    forecast: Forecast
+
+
+def preview_of(request: SiteRequest, *, allow_outside: bool = False) -> SitePreview:
+    """What is known of a request; nothing is computed but its motions.
+
+    Raises:
+        CaseError, MeshError: it cannot be computed.
+    """
+    bodies = bodies_of(request)
+    longest = longest_period(bodies)
+    ground = ground_motions(request, longest, allow_outside=allow_outside)
+    stages = Stages.of(request, floor_motions(request, ground), longest=longest, folder=Path())
+    checked = check_set(
+        ground, stages.target, longest=stages.longest, second=request.motions.second_component or 1.0
+    )
+    return SitePreview(
+        site=request.name,
+        title=request.heading.title,
+        spectrum=request.action.shape.source,
+        ag_S_m_s2=request.action.surface_acceleration,
+        avg_m_s2=request.action.vertical_acceleration,
+        bodies=bodies,
+        floor=GIVEN_FLOORS[request.motions.source == "floor"] if request.on_given_floor else None,
+        motions=len(ground),
+        set_valid=checked.valid,
+        reasons=checked.reasons,
+        notes=tuple(dict.fromkeys(note for motion in ground for note in motion.notes)),
+        factor_at_first_movement=stages.first_movement,
+        wind_utilisation=wind_utilisation(bodies, inputs_of(request)),
+        forecast=forecast(stages, cores()),
+    )
+
+
+def preview_lines(preview: SitePreview, request: SiteRequest) -> Iterator[str]:
+    """The lines of a preview, for people."""
+    yield f"{preview.site}: {preview.title}" if preview.title else preview.site
+    yield f"  action     {preview.spectrum}; a_g S = {preview.ag_S_m_s2:.3g} m/s2, a_vg = {preview.avg_m_s2:.3g} m/s2"
+    if preview.floor is not None:
+        yield f"  floor      given by {preview.floor}; taken as it is, without any factor"
+    for body in preview.bodies:
+        yield (
+            f"  {body.mass:<10} {body.mass_kg:.6g} kg, {body.elevation} {body.width_m:g} m along the motion: uplift "
+            f"from {body.uplift_acceleration_m_s2:.3g} m/s2, slip from "
+            f"{min(request.friction.mu_static) * body.gravity_m_s2:.3g} m/s2"
+        )
+    validity = "valid" if preview.set_valid else f"not valid: {'; '.join(preview.reasons)}"
+    yield f"  motions    {preview.motions}, {request.motions.source}: {validity}"
+    yield from (f"  note       {note}" for note in preview.notes)
+    if preview.factor_at_first_movement is not None:
+        yield f"  moves      first at {preview.factor_at_first_movement:.3g} times the set, as a rigid body"
+    if preview.wind_utilisation is not None:
+        yield f"  wind       utilisation {preview.wind_utilisation:.3g}"
+    yield f"  runs       {preview.forecast.words}"

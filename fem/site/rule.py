@@ -1,0 +1,344 @@
+"""The rule of a verification: from the runs of a set of motions to the figures that its limits are on.
+
+For each weight, elevation, building period and pair of frictions: of each motion the worse sign of the vertical; then
+of rotations the largest of fewer than seven motions, or the mean of seven and more (EN 1998-1:2004, 4.3.3.4.3 (3), by
+analogy), and of slips the largest, since a clearance is used up by one motion. Of these groups the largest counts. Any
+overturning means not fulfilled, and no single motion may turn the container further than a second limit: the code is
+silent there, so these are the rules of this program.
+"""
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
+from itertools import groupby
+from typing import Any, Self
+
+from fem.results.figures import SLIPPED, TURNED
+from fem.results.outcome import ENDINGS, Outcome
+from fem.runtime.intervals import binomial_interval
+from fem.site.result import (
+    BY_RULE,
+    FIGURE_OF,
+    FOUND_FROM,
+    FURTHER,
+    REFINED,
+    REPEATED,
+    SCAN,
+    SET,
+    ByRule,
+    FurtherMotions,
+    RuleRange,
+    RunKey,
+    ScanPoint,
+    SiteKey,
+    SiteRun,
+)
+from fem.site.tables import LimitsTable
+
+MEAN_FROM = 7  #: motions from which the mean counts
+SHARE = 0.3  #: of the other horizontal component
+CONFIDENCE = 0.95
+#: largest slip [m] under both horizontal components, by motion, period of the building and friction
+MotionSlips = Mapping[tuple[int, float | None, float, float], float]
+RANGED = tuple(FIGURE_OF.values())  #: of the rule, of which the range is given
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunGroup:
+    """The runs of one weight, elevation, building period and pair of frictions, and what counts of them."""
+
+    runs: tuple[SiteRun, ...]
+
+    @property
+    def first(self) -> SiteRun:
+        """One of them: weight, elevation, period and frictions are those of all."""
+        return self.runs[0]
+
+    @property
+    def by_motion(self) -> list[tuple[int, list[SiteRun]]]:
+        """Its runs motion by motion, the sign + first."""
+        ordered = sorted(self.runs, key=lambda run: (run.motion, -run.vertical_sign))
+        return [(motion, list(runs)) for motion, runs in groupby(ordered, lambda run: run.motion)]
+
+    @property
+    def motions(self) -> int:
+        """How many motions."""
+        return len({run.motion for run in self.runs})
+
+    @property
+    def rests(self) -> bool:
+        """Whether nothing moves in any of its runs."""
+        return all(run.outcome == Outcome.REST for run in self.runs)
+
+    @property
+    def overturned(self) -> int:
+        """Runs that overturned."""
+        return sum(run.outcome == Outcome.OVERTURNED for run in self.runs)
+
+    @property
+    def failed(self) -> int:
+        """Runs without an outcome."""
+        return sum(run.outcome is None for run in self.runs)
+
+    @property
+    def invalid(self) -> int:
+        """Runs that destroyed a corner: they do not count as standing, and have no figures."""
+        return sum(run.outcome == Outcome.INVALID for run in self.runs)
+
+    @cached_property
+    def by_rule(self) -> ByRule:
+        """What counts."""
+        rotations, slips = self._worst(TURNED), self._worst(SLIPPED)
+        if rotations is None or slips is None:
+            return ByRule()
+        mean = sum(rotations) / len(rotations)
+        return ByRule(
+            rotation_ratio=mean if len(rotations) >= MEAN_FROM else max(rotations),
+            rotation_ratio_largest=max(rotations),
+            slip_m=max(slips),
+            slip_mean_m=sum(slips) / len(slips),
+        )
+
+    def beyond(self, limits: Mapping[str, float]) -> set[int]:
+        """Motions under which it does not stand, or with one of some figures beyond its limit, of the worse sign."""
+        return {
+            run.motion
+            for run in self.runs
+            if run.outcome in ENDINGS or any((run[figure] or 0.0) > limit for figure, limit in limits.items())
+        }
+
+    def _worst(self, figure: str) -> list[float] | None:
+        """Of each motion the worse sign; None where a run has no such figure."""
+        if self.overturned or self.invalid or self.failed:
+            return None
+        worst: dict[int, float] = {}
+        for run in self.runs:
+            if run[figure] is None:
+                return None
+            worst[run.motion] = max(worst.get(run.motion, 0.0), run[figure])
+        return list(worst.values())
+
+
+@dataclass(frozen=True, kw_only=True)
+class RuleFound:
+    """What the rule finds in the runs of some groups."""
+
+    overturned: int
+    failed: int
+    invalid: int  #: runs that destroyed a corner
+    by_rule: ByRule  #: over the groups the largest; None where one has none
+
+    @classmethod
+    def of(cls, groups: Sequence[RunGroup]) -> Self:
+        """From the runs of groups."""
+        figures = {name: [group.by_rule[name] for group in groups] for name in BY_RULE}
+        return cls(
+            overturned=sum(group.overturned for group in groups),
+            failed=sum(group.failed for group in groups),
+            invalid=sum(group.invalid for group in groups),
+            by_rule=ByRule(
+                **{name: None if None in row else max(row, default=None) for name, row in figures.items()}
+            ),
+        )
+
+    def exceeded(self, limits: LimitsTable) -> list[str]:
+        """The limits that are exceeded, by their keys; where a run overturned none is known to be kept."""
+        return [key for key, name in FIGURE_OF.items() if (self.by_rule[name] or 0.0) > getattr(limits, key)]
+
+    def fails(self, limits: LimitsTable) -> bool:
+        """Whether the rule is not fulfilled."""
+        return self.overturned + self.invalid > 0 or bool(self.exceeded(limits))
+
+    def utilisation(self, limits: LimitsTable) -> float | None:
+        """The largest share of a limit; None where a run overturned or failed."""
+        used = [
+            None if self.by_rule[name] is None else self.by_rule[name] / getattr(limits, key)
+            for key, name in FIGURE_OF.items()
+        ]
+        known = [use for use in used if use is not None]
+        return max(known) if len(known) == len(used) else None
+
+
+def groups_of(runs: Iterable[SiteRun]) -> list[RunGroup]:
+    """Runs by weight, elevation, building period and frictions, in the order of their first runs."""
+    groups: dict[Any, list[SiteRun]] = {}
+    for run in runs:
+        groups.setdefault(run.group, []).append(run)
+    return [RunGroup(runs=tuple(members)) for members in groups.values()]
+
+
+def both_directions(groups: Sequence[RunGroup]) -> list[tuple[RunGroup, float]]:
+    """Slip under 100 % of one horizontal component and 30 % of the other, where both elevations were run [m].
+
+    EN 1998-1:2004, 4.3.3.5.1 (3), of effects: the slips as vectors. For friction, which is not linear, that is an
+    estimate, so it is shown and is no part of the rule.
+
+    Returns:
+        The group of the elevation along the width, and the larger of the two combinations.
+    """
+    combined = []
+    for along in groups:
+        for across in groups:
+            same = replace(across.first, elevation=along.first.elevation)
+            if along.first.elevation != "width" or across.first.elevation == "width":
+                continue
+            one, other = along.by_rule.slip_m, across.by_rule.slip_m
+            if same.group == along.first.group and one is not None and other is not None:
+                pairs = ((one, other), (other, one))
+                combined.append((along, max(math.hypot(whole, SHARE * part) for whole, part in pairs)))
+    return combined
+
+
+def governing_groups(groups: Sequence[RunGroup]) -> list[RunGroup]:
+    """Of each weight the group that governs rotation and the one that governs slip, in the order of the groups."""
+
+    def rotation(group: RunGroup) -> tuple[int, float]:
+        return group.overturned + group.invalid, max(run.turned for run in group.runs)
+
+    def slip(group: RunGroup) -> float:
+        return max(run.slipped for run in group.runs if run.outcome not in ENDINGS)
+
+    chosen: set[int] = set()
+    for mass in dict.fromkeys(group.first.mass for group in groups):
+        own = [group for group in groups if group.first.mass == mass and not group.failed]
+        standing = [group for group in own if group.overturned + group.invalid < len(group.runs)]
+        chosen |= {id(max(pool, key=key)) for pool, key in ((own, rotation), (standing, slip)) if pool}
+    return [group for group in groups if id(group) in chosen]
+
+
+def governing_run(limits: LimitsTable, runs: Sequence[SiteRun]) -> SiteRun | None:
+    """The run that decides: one that did not stand, else the largest of the group that uses most of a limit."""
+    fell = [run for run in runs if run.outcome in ENDINGS]
+    if fell:
+        counts = {id(run): sum(len(groups_of((run, other))) == 1 for other in fell) for run in fell}
+        return max(fell, key=lambda run: counts[id(run)])
+    known = [group for group in groups_of(runs) if not group.failed]
+    if not known:
+        return None
+    _, figure, group = max(
+        (
+            ((group.by_rule[name] or 0.0) / getattr(limits, key), FOUND_FROM[key], group)
+            for group in known
+            for key, name in FIGURE_OF.items()
+        ),
+        key=lambda use: use[0],
+    )
+    return max(group.runs, key=lambda run: run[figure] or 0.0)
+
+
+def runs_by_factor(runs: Mapping[RunKey, SiteRun], *stages: str) -> dict[float, list[SiteRun]]:
+    """The runs of these stages, by rising factor."""
+    by_factor: dict[float, list[SiteRun]] = {}
+    for key, run in runs.items():
+        if key.stage in stages:
+            by_factor.setdefault(key.factor, []).append(run)
+    return dict(sorted(by_factor.items()))
+
+
+def rule_range(groups: Sequence[RunGroup], runs: Mapping[RunKey, SiteRun]) -> tuple[RuleRange | None, int]:
+    """The rule over the set and its repetitions, and how many of their runs failed; None: there are no repetitions.
+
+    In each repetition the groups that were run again replace those of the set.
+    """
+    again = runs_by_factor(runs, REPEATED)
+    if not again:
+        return None, 0
+    tallies = [RuleFound.of(groups)]
+    for rerun in again.values():
+        repeated = {group.first.group: group for group in groups_of(rerun)}
+        tallies.append(RuleFound.of([repeated.get(group.first.group, group) for group in groups]))
+    ranges = {}
+    for name in RANGED:
+        known = [tally.by_rule[name] for tally in tallies if tally.by_rule[name] is not None]
+        ranges[name] = (min(known), max(known)) if known else ()
+    repetitions = tallies[1:]
+    span = RuleRange(
+        **ranges,
+        repetitions=len(repetitions),
+        overturned=sum(repetition.overturned + repetition.invalid > 0 for repetition in repetitions),
+    )
+    return span, sum(run.outcome is None for rerun in again.values() for run in rerun)
+
+
+def further_motions(
+    limits: LimitsTable, runs: Mapping[RunKey, SiteRun], slips: MotionSlips
+) -> tuple[FurtherMotions, ...]:
+    """Of the further motions, how many overturn each container, or go beyond a limit, with the worse sign.
+
+    Args:
+        slips: under both horizontal components.
+    """
+    counted = []
+    for group in groups_of(run for key, run in runs.items() if key.stage == FURTHER):
+        failed = {run.motion for run in group.runs if run.outcome is None}
+        known = RunGroup(runs=tuple(run for run in group.runs if run.motion not in failed))
+        fell = len(known.beyond({}))
+        first = group.first
+        pair = first.building_period_s, *first.friction
+        slid = {
+            motion: slips[motion, *pair]
+            for motion in {run.motion for run in known.runs}
+            if (motion, *pair) in slips
+        }
+        beyond = known.beyond({TURNED: limits.single_rotation_ratio, SLIPPED: limits.slip_m})
+        too_far = {motion for motion, slip in slid.items() if slip > limits.slip_m}
+        counted.append(
+            FurtherMotions(
+                **{field.name: first[field.name] for field in fields(SiteKey)},
+                motions=known.motions,
+                overturned=len({run.motion for run in known.runs if run.outcome == Outcome.OVERTURNED}),
+                invalid=len({run.motion for run in known.runs if run.outcome == Outcome.INVALID}),
+                beyond_limits=len(beyond | too_far),
+                slip_largest_m=max(slid.values(), default=None),
+                slid_too_far=len(too_far),
+                interval=binomial_interval(fell, known.motions, CONFIDENCE) if known.motions else (),
+                failed=len(failed),
+            )
+        )
+    return tuple(counted)
+
+
+def margin_factor(limits: LimitsTable, runs: Mapping[RunKey, SiteRun]) -> float | None:
+    """The least factor on the motions, of those tried, at which the rule fails; None: it fails at none."""
+    by_factor = runs_by_factor(runs, SET, SCAN, REFINED)
+    whole = max((len(group.runs) for group in groups_of(by_factor.get(1.0, ()))), default=0)
+
+    def fails(factor: float) -> bool:
+        # Between factors some runs of a group may be there alone: they have no mean.
+        return any(
+            group.overturned + group.invalid
+            or (len(group.runs) == whole and RuleFound.of([group]).fails(limits))
+            for group in groups_of(by_factor[factor])
+        )
+
+    return min((factor for factor in by_factor if fails(factor)), default=None)
+
+
+def first_overturning(runs: Mapping[RunKey, SiteRun]) -> float | None:
+    """The least factor on the motions at which a run overturned, of those tried; None: none did."""
+    factors = [
+        key.factor
+        for key, run in runs.items()
+        if key.stage in (SET, SCAN, REFINED) and run.outcome == Outcome.OVERTURNED
+    ]
+    return min(factors, default=None)
+
+
+def scan_of(runs: Mapping[RunKey, SiteRun]) -> tuple[ScanPoint, ...]:
+    """The set at every factor tried; empty where that is one."""
+    by_factor = runs_by_factor(runs, SET, SCAN)
+    points = []
+    for factor, own in by_factor.items():
+        tally = RuleFound.of(groups_of(own))
+        points.append(
+            ScanPoint(
+                factor=factor,
+                runs=len(own),
+                overturned=tally.overturned,
+                invalid=tally.invalid,
+                failed=tally.failed,
+                **vars(tally.by_rule),
+            )
+        )
+    return tuple(points) if len(points) > 1 else ()

@@ -1,0 +1,283 @@
+"""A verification from its file to its folder: motions and their checks, runs, answer, simplified methods, page.
+
+Rows are logged as they are ready, so that an interrupted verification continues where it was; the result depends
+neither on that nor on the number of cores.
+"""
+
+import hashlib
+import platform
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Unpack
+
+from fem.batch.log import LoggedRuns
+from fem.batch.runner import Runner
+from fem.batch.study import COMPLETED, INTERRUPTED, Study, StudyOptions, hash_of, run_study
+from fem.batch.table import row_of
+from fem.case.case import case_hash
+from fem.html.page import Signature
+from fem.results.disk import table_bytes
+from fem.results.folder import ResultFolder
+from fem.results.kinds import SITE
+from fem.runtime.identity import command_line, versions
+from fem.seismic.ground_motion import GroundMotion
+from fem.seismic.motion_set import MotionSetCheck, check_set
+from fem.site.answer import FULFILLED, NOT_FULFILLED, answer_of, no_answer_yet
+from fem.site.bodies import bodies_of
+from fem.site.confirm import confirmed, deciding
+from fem.site.copies import copy_files, inputs_of, left_elsewhere, texts_of
+from fem.site.methods import site_methods, wind_utilisation
+from fem.site.motion_results import (
+    action_result,
+    floor_result,
+    set_result,
+    write_csv_files,
+    write_ground,
+)
+from fem.site.motions import floor_motions, ground_motions, longest_period
+from fem.site.page import site_report
+from fem.site.preview import forecast
+from fem.site.request import SiteRequest
+from fem.site.result import (
+    ConfirmedRun,
+    MotionSet,
+    RunKey,
+    SiteAnswer,
+    SiteBody,
+    SiteProvenance,
+    SiteResult,
+    motion_stem,
+)
+from fem.site.rule import governing_run
+from fem.site.runs import COLUMNS, RunCases, cells_of
+from fem.site.stages import Stages
+
+RUNS, PAGE = "runs.csv", "report.html"
+OF_A_MOTION = 75_000  #: numbers, in three files
+QUICK = (
+    "Left out by --quick: further motions, other factors on the motions, the deciding runs with their bands."
+)
+TIMES_THE_SET = 20  #: runs of all stages over those of the set
+
+
+def run_site(
+    request: SiteRequest,
+    folder: Path,
+    *,
+    allow_outside: bool = False,
+    quick: bool = False,
+    **options: Unpack[StudyOptions],
+) -> SiteResult:
+    """Verify a container at a site, into a folder; raises as `run_study`, and CaseError for bad input.
+
+    Args:
+        allow_outside: take records from outside the folder of the site file.
+        quick: the set and its repetitions alone; "fulfilled" then only of a container that rests.
+    """
+    work = Verification.of(request, folder, allow_outside=allow_outside, quick=quick)
+    stages = work.stages
+    files = len(work.ground) * (1 + len(stages.floors)) + request.motions.further
+    study = Study(
+        kind=SITE,
+        request=work.digest,
+        result=SiteResult,
+        compute=work.compute,
+        texts=texts_of(request, SITE),
+        size=table_bytes(files, OF_A_MOTION)
+        + table_bytes(TIMES_THE_SET * len(stages.of_set()), len(COLUMNS)),
+        subject="the verification",
+        way_out="take fewer motions",
+        progress=lambda place: "its runs so far",
+    )
+    return run_study(study, folder, **options)
+
+
+def site_hash(request: SiteRequest, ground: Sequence[GroundMotion]) -> str:
+    """Equal for requests that give the same result."""
+    for_people = ("title", "document", "sources", "container")
+    data = {key: value for key, value in request.portable.items() if key not in for_people}
+    digest = hashlib.sha256()
+    for motion in ground:
+        for component in motion.components:
+            digest.update(component.tobytes())
+    if (floor := request.floor_target) is not None:  # of its file the request has the name alone
+        points = floor.periods, floor.accelerations, floor.vertical_accelerations
+        digest.update(repr(points).encode())
+    return hash_of([data, case_hash(request.container), digest.hexdigest()])
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Verification:
+    """What is asked, and its motions."""
+
+    request: SiteRequest
+    stages: Stages
+    bodies: tuple[SiteBody, ...]
+    ground: Sequence[GroundMotion]  #: motions of the set
+    wind: float | None  #: the largest utilisation under it
+    quick: bool = False
+    began: float = field(default_factory=time.perf_counter)  #: when it was asked for [s]
+
+    @classmethod
+    def of(
+        cls, request: SiteRequest, folder: Path, *, allow_outside: bool = False, **options: bool
+    ) -> "Verification":
+        """For a request whose runs read their motions from a folder.
+
+        Raises:
+            CaseError, MeshError: a record or a container that cannot be used.
+        """
+        bodies = bodies_of(request)
+        longest = longest_period(bodies)
+        ground = ground_motions(request, longest, allow_outside=allow_outside)
+        return cls(
+            request=request,
+            stages=Stages.of(request, floor_motions(request, ground), longest=longest, folder=folder),
+            bodies=bodies,
+            ground=ground,
+            wind=wind_utilisation(bodies, inputs_of(request)),
+            **options,
+        )
+
+    @property
+    def digest(self) -> str:
+        """Equal for requests that give the same result."""
+        digest = site_hash(self.request, self.ground)
+        return hash_of([digest, "quick"]) if self.quick else digest
+
+    @cached_property
+    def checked(self) -> MotionSetCheck:
+        """What the checks of the set found."""
+        stages, second = self.stages, self.request.motions.second_component
+        return check_set(self.ground, stages.target, longest=stages.longest, second=second or 1.0)
+
+    def compute(self, place: ResultFolder, runner: Runner) -> SiteResult:
+        """Write the motions, compute what is missing, and write runs and page."""
+        motions = set_result(self.request, self.checked, self.ground, write_ground(place.path, self.ground))
+        copy_files(self.request, place.path)
+        motions = replace(motions, notes=(*motions.notes, *left_elsewhere(self.request)))
+        self.write_floors()
+        if motions.valid:
+            runner.reporter.message(forecast(self.stages, runner.jobs, quick=self.quick).words)
+        answer = self.answer(motions, runner, place.path / RUNS)
+        place.check()
+        result = self._result(motions, answer)
+        if result.status == COMPLETED:
+            if self.stages.rows.runs:
+                place.write_text(RUNS, self.stages.rows.table())
+            place.write_text(PAGE, site_report(place.path, result))
+        return result
+
+    def write_floors(self, *, ground: bool = False) -> None:
+        """Write the motions of the floors of a building, and `ground`: those without one, for the runs."""
+        for period, moved in self.stages.floors.items():
+            for number, motion in enumerate(moved, start=1):
+                if ground or period is not None:
+                    write_csv_files(self.stages.folder, motion, motion_stem(number, period))
+
+    def answer(
+        self, motions: MotionSet, runner: Runner, log: Path, value: float | None = None
+    ) -> SiteAnswer | None:
+        """Compute the runs that are missing; None where it was interrupted.
+
+        Args:
+            motions: the set.
+            log: of the runs.
+            value: of the key that `size` varies, in the first column of its log. It is decided without a margin, and
+                without what comes after the first that speaks against it.
+        """
+        stages, rows = self.stages, self.stages.rows
+        again: list[ConfirmedRun] = []
+        left_out = QUICK if self.quick and not stages.rests else ""
+        varied = {} if value is None else {"value": float}
+        columns = varied | COLUMNS
+
+        def now() -> SiteAnswer:
+            beside = replace(stages.beside(again, self.wind), left_out=left_out)
+            return answer_of(self.request, motions, rows.in_order(), beside)
+
+        def batches() -> Iterator[Sequence[RunKey]]:
+            for keys in stages.of_the_answer(runner, quick=self.quick):
+                yield keys
+                if varied and now().answer == NOT_FULFILLED:
+                    return
+            if not (self.quick or varied):
+                yield from stages.of_the_margin()
+
+        def note(line: str) -> None:
+            row = row_of(columns, line)
+            if row.pop("value", value) == value:
+                rows.add(row)
+
+        if motions.valid:
+            cases = RunCases.of(self.request, stages.folder)
+            LoggedRuns(
+                what="runs",
+                path=log,
+                columns=columns,
+                make=cases,
+                model_of=lambda key: key.model,
+                key=lambda key: (value, *cells_of(key)) if varied else cells_of(key),
+                note=note,
+            ).run(runner, batches())
+            if not (runner.stop() or left_out) and not (varied and now().answer != FULFILLED):
+                runs, own = rows.in_order(), rows.of(stages.of_set())
+                keys = [
+                    key
+                    for key in deciding(runs, governing_run(self.request.limits, own))
+                    if key not in rows.still
+                ]
+                if keys:
+                    runner.reporter.message("repeating the deciding runs with the reduced model")
+                    again = confirmed(cases, runs, keys, runner.jobs)
+        return None if runner.stop() else now()
+
+    def _result(self, motions: MotionSet, answer: SiteAnswer | None) -> SiteResult:
+        """Everything that was found; without an answer what there is, and what is missing."""
+        request, inputs, rows = self.request, inputs_of(self.request), self.stages.rows
+        own = rows.of(self.stages.of_set())
+        missing = None if answer else self._missing()
+        action = action_result(request.action, self.checked)
+        floor = floor_result(request, self.stages.floors, self.checked)
+        document = request.document.model_dump(exclude_none=True) if request.document else None
+        return SiteResult(
+            status=COMPLETED if answer else INTERRUPTED,
+            answer=answer.sentence if answer else None,
+            missing=missing,
+            title=request.heading.title,
+            inputs=inputs,
+            action=action,
+            floor=floor,
+            set=motions,
+            bodies=self.bodies,
+            runs=tuple(rows.in_order().values()),
+            result=answer or no_answer_yet(request.limits, motions, own, missing or ""),
+            methods=site_methods(
+                bodies=self.bodies,
+                inputs=inputs,
+                site=request.action,
+                motions=motions.motions,
+                periods_s=action.periods_s,
+                floor=floor,
+                runs=own if answer else (),
+            ),
+            provenance=SiteProvenance(
+                command=command_line("assess", request.origin.place, *["--quick"] * self.quick),
+                site_hash=self.digest,
+                case_hash=case_hash(request.container),
+                versions=tuple(versions().items()),
+                system=f"{platform.system()} {platform.release()}, {platform.machine()}",
+                wall_s=time.perf_counter() - self.began,
+            ),
+            document=None if document is None else Signature(**document),
+        )
+
+    def _missing(self) -> str:
+        """What an interrupted verification has not come to, in words."""
+        rows, wanted = self.stages.rows, self.stages.of_set()
+        if left := len(rows.missing(wanted)):
+            return f"{len(wanted) - left} of {len(wanted)} runs of the set are computed"
+        return "repetitions, further motions, other factors on the motions or the deciding runs are missing"

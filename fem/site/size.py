@@ -1,0 +1,421 @@
+"""Which values of one key fulfil the rule: the key and its range, a scan, the changes located, the answer in words."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import groupby, pairwise
+from typing import Literal
+
+import numpy as np
+
+from fem.batch.axes import AxisError, field_of
+from fem.batch.derived import value_in
+from fem.batch.study import COMPLETED, StudyResult
+from fem.case.tables.quantities import Quantity
+from fem.case.validation import CaseError, did_you_mean, known_keys, quantity_of
+from fem.run.bracket import least_width, values_to_try
+from fem.site.bodies import bodies_of
+from fem.site.request import TABLES, SiteRequest
+from fem.site.result import BY_RULE, ByRule, SiteAnswer
+from mesh.errors import MeshError
+
+RESOLUTION = 0.01  #: largest width of a bracket over the value
+INNER = 3  #: values tried within a bracket at a time
+#: which values a user looks for: the least, the largest, or all
+Wanted = Literal["least", "largest", "window"]
+
+
+COUNT = 13  #: values of the scan
+MOST_COUNT = 200
+WIDER = 3.0  #: the scan reaches from the value in the file over this to this times it
+SIDES = ("container.width_m", "container.depth_m")
+BOXES, FRICTION, FLOOR = "container.boxes", "contact.mu_static", "building.z_over_h"
+NEAR = 1e-3  #: of a step, within which an end of the range is a value: 0.666667 is the second floor of three
+#: key -> what is looked for, and words for it; other keys: the window of their values
+KNOWN: dict[str, tuple[Wanted, str]] = {
+    "container.width_m": ("least", "width"),
+    "container.depth_m": ("least", "depth"),
+    BOXES: ("largest", "number of boxes"),
+    FRICTION: ("window", "static friction"),
+    "site.reference_acceleration_m_s2": ("largest", "reference acceleration"),
+    "site.importance_factor": ("largest", "importance factor"),
+    "site.element_importance_factor": ("largest", "importance factor of the element"),
+    "site.soil_factor": ("largest", "soil factor"),
+    "site.vertical_ratio": ("largest", "vertical ratio"),
+    FLOOR: ("largest", "height in the building"),
+}
+#: ends of the scan where the value in the file says little
+RANGES = {FRICTION: (0.05, 1.0), BOXES: (1.0, 12.0), FLOOR: (0.0, 1.0)}
+#: what is beyond a limit, by its key
+BEYOND = {
+    "rotation_ratio": "rotation",
+    "single_rotation_ratio": "the rotation of one motion",
+    "slip_m": "slip",
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class SizeAxis:
+    """The key that is varied, and the values of the scan."""
+
+    key: str
+    words: str  #: such as "width"
+    unit: str
+    wanted: Wanted
+    values: tuple[float, ...]  #: rising
+    whole: bool = False  #: all values are tried, and there are none between them: boxes, floors of a building
+
+    def __post_init__(self) -> None:
+        if len(self.values) < 2 or any(b <= a for a, b in pairwise(self.values)):
+            raise ValueError(f"{self.key}: at least two rising values are needed, got {self.values}")
+
+
+@dataclass(frozen=True, kw_only=True)
+class SizePoint(ByRule):
+    """The answer at one value."""
+
+    value: float
+    answer: str | None = None  #: fulfilled | not fulfilled | not sure
+    fulfilled: bool | None = None
+    overturned: int
+    invalid: int = 0  #: runs that destroyed a corner, which do not count as standing
+    runs: int
+    fails: str = ""  #: why it is not fulfilled, in words
+
+
+@dataclass(frozen=True, kw_only=True)
+class SizeResult(StudyResult):
+    """Which values fulfil the rule: what `size.json` holds."""
+
+    command: str = ""
+    wall_s: float | None = None
+    key: str
+    followers: tuple[str, ...] = ()  #: keys that took the same values
+    unit: str
+    low: float  #: ends of the range that was tried
+    high: float
+    #: the least or the largest; None where there is none in the range, or a window is asked
+    value: float | None = None
+    #: of the values that fulfil it, by their outermost values tried
+    intervals: tuple[tuple[float, ...], ...] = ()
+    sentence: str = ""
+    points: tuple[SizePoint, ...] = ()  #: by rising value
+
+
+def size_axis(
+    request: SiteRequest,
+    key: str,
+    *,
+    low: float | None = None,
+    high: float | None = None,
+    count: int | None = None,
+) -> SizeAxis:
+    """The axis of a key of the site file or of its container.
+
+    Args:
+        request: what is asked, with the value that the range starts from.
+        key: dotted, such as `container.width_m`.
+        low, high: ends of the scan; None: as suits the key, the upper one no further than a container can be built.
+        count: values of the scan; None: 13. Every number of boxes, and every floor of a building of storeys, is tried.
+
+    Raises:
+        CaseError: no such key, one without a number, a range that does not rise or that the key cannot have, or at an
+            end of which the containers cannot be built.
+    """
+    quantity, value = _quantity(key), _given(request, key)
+    steps = _steps(request, key)
+    last_is_usual = high is None
+    if low is None or high is None:
+        begin, end = RANGES.get(key) or _around(key, value, quantity)
+        low, high = begin if low is None else low, end if high is None else high
+    if not low < high:
+        raise CaseError(f"--from {low:g} --to {high:g}: the range of {key} must rise")
+    if key.startswith("site.") and request.on_given_floor:
+        raise CaseError(
+            f"--over {key}: the horizontal motion of the floor is given, which [site] does not change"
+        )
+    for name, bound in (("--from", low), ("--to", high)):
+        try:
+            quantity.check(bound)
+        except ValueError as error:
+            raise CaseError(f"{name}: {key} {error}") from None
+    if count is not None and not 2 <= count <= MOST_COUNT:
+        raise CaseError(f"--count must be 2 to {MOST_COUNT}, got {count}")
+    values = spaced(low, high, count or COUNT)
+    if steps is not None:
+        first, last = math.ceil(low * steps - NEAR), math.floor(high * steps + NEAR)
+        values = tuple(number / steps for number in range(first, last + 1))
+        if len(values) < 2:
+            raise CaseError(f"--from {low:g} --to {high:g}: {key} has fewer than two values there")
+    wanted, words = KNOWN.get(key, ("window", key))
+    axis = SizeAxis(
+        key=key, words=words, unit=quantity.unit, wanted=wanted, values=values, whole=steps is not None
+    )
+    while last_is_usual and len(values) > 2 and not _is_built(request, axis, values[-1]):
+        values = values[:-1]
+    for bound in (values[0], values[-1]):
+        _build(request, axis, bound)  # refused before anything is computed
+    return replace(axis, values=values)
+
+
+def at(request: SiteRequest, axis: SizeAxis, value: float) -> SiteRequest:
+    """The request at a value of the axis; of a square container the other side follows.
+
+    Raises:
+        CaseError: the value cannot be used.
+    """
+    changed = request.with_value(axis.key, round(value) if axis.key == BOXES else value)
+    for key in followers(request, axis.key):
+        changed = changed.with_value(key, value)
+    return changed
+
+
+def _build(request: SiteRequest, axis: SizeAxis, value: float) -> None:
+    """Build the containers at a value, to see that it can be done.
+
+    Raises:
+        CaseError: it cannot.
+    """
+    try:
+        bodies_of(at(request, axis, value))
+    except (CaseError, MeshError) as error:
+        raise CaseError(f"--over {axis.key}: at {value:.4g} {axis.unit}".rstrip() + f" {error}") from None
+
+
+def _is_built(request: SiteRequest, axis: SizeAxis, value: float) -> bool:
+    try:
+        _build(request, axis, value)
+    except CaseError:
+        return False
+    return True
+
+
+def followers(request: SiteRequest, key: str) -> tuple[str, ...]:
+    """Keys that take the same value: the other side of a container that is as deep as wide."""
+    box = request.container.container
+    square = key in SIDES and box.width_m == box.depth_m
+    return tuple(side for side in SIDES if square and side != key)
+
+
+def _steps(request: SiteRequest, key: str) -> int | None:
+    """Values of a key from 0 to 1, where it has no others between: whole numbers, floors; None: it has all."""
+    if key == FLOOR and request.building is not None:
+        return request.building.storeys
+    return 1 if key == BOXES else None
+
+
+def _quantity(key: str) -> Quantity:
+    """The quantity of a key; only numbers can vary."""
+    table, _, name = key.partition(".")
+    if table in TABLES:
+        fields = known_keys(TABLES[table])
+        if name not in fields:
+            near = did_you_mean(name, fields)
+            raise CaseError(f"--over {key}: no such key of a site file{'; ' + near if near else ''}")
+        field = fields[name]
+    else:
+        try:
+            field = field_of(key)
+        except AxisError as error:
+            raise CaseError(f"--over {key}: {error}") from None
+    quantity = quantity_of(field.annotation, field.metadata)
+    if quantity is None or "list" in str(field.annotation):
+        raise CaseError(f"--over {key}: it holds no single number; try one of {', '.join(KNOWN)}")
+    return quantity
+
+
+def _given(request: SiteRequest, key: str) -> float | None:
+    """The value in the files; None where there is none."""
+    table, _, name = key.partition(".")
+    if table not in TABLES:
+        return value_in(request.container, key, {})
+    content = getattr(request, table)
+    if content is None:
+        raise CaseError(f"--over {key}: the site file has no [{table}]")
+    given = getattr(content, name)
+    return None if given is None else float(given)
+
+
+def _around(key: str, value: float | None, quantity: Quantity) -> tuple[float, float]:
+    """From a third to three times the value in the file, within what the key can have."""
+    if not value or value < 0.0:
+        raise CaseError(f"--over {key}: the files give no value to start from; give --from and --to")
+    least = quantity.least if quantity.least is not None else 0.0
+    most = quantity.most if quantity.most is not None else math.inf
+    return max(value / WIDER, least), min(value * WIDER, most)
+
+
+def next_values(axis: SizeAxis, answers: Mapping[float, SiteAnswer]) -> list[float]:
+    """Values to be tried next: those of the scan, then values within every bracket wider than 1 % of the value.
+
+    Args:
+        answers: so far, by value. None is asked for again; empty: all is found.
+    """
+    missing = [value for value in axis.values if value not in answers]
+    if missing or axis.whole:
+        return missing
+    outcomes = {value: str(bool(answer.fulfilled)) for value, answer in answers.items()}
+    return values_to_try(
+        outcomes, resolution=RESOLUTION, inner=INNER, least=least_width(axis.values, RESOLUTION)
+    )
+
+
+def so_far(axis: SizeAxis, answers: Mapping[float, SiteAnswer], value: float) -> str:
+    """What is decided, and what comes next: "number of boxes: 1 to 5 fulfilled, 6 being tried"."""
+    stretches = [
+        (list(values), said)
+        for said, values in groupby(
+            sorted(answers), lambda tried: answers[tried].answer or "without an answer"
+        )
+    ]
+    decided = [
+        f"{' to '.join(dict.fromkeys(f'{end:.4g}' for end in (values[0], values[-1])))} {said}"
+        for values, said in stretches
+    ]
+    unit = f" [{axis.unit}]" if axis.unit else ""
+    return f"{axis.words}{unit}: {', '.join([*decided, f'{value:.4g} being tried'])}"
+
+
+def size_asked(axis: SizeAxis, followers: tuple[str, ...] = (), command: str = "") -> SizeResult:
+    """What is known before any value is tried."""
+    return SizeResult(
+        command=command,
+        key=axis.key,
+        followers=followers,
+        unit=axis.unit,
+        low=axis.values[0],
+        high=axis.values[-1],
+    )
+
+
+def size_result(
+    axis: SizeAxis, answers: Mapping[float, SiteAnswer], begun: SizeResult | None = None
+) -> SizeResult:
+    """Which values fulfil the rule, from the answers by value."""
+    points = tuple(_point(value, answers[value]) for value in sorted(answers))
+    intervals, words = fulfilled_intervals(points), sentence(axis, points)
+    return replace(
+        begun or size_asked(axis),
+        status=COMPLETED,
+        answer=words,
+        value=wanted_value(axis, intervals),
+        intervals=tuple(intervals),
+        sentence=words,
+        points=points,
+    )
+
+
+def fulfilled_intervals(points: Sequence[SizePoint]) -> list[tuple[float, float]]:
+    """Stretches of neighbouring values tried that all fulfil the rule, by rising value."""
+    stretches: list[list[float]] = []
+    before = False
+    for point in points:
+        if point.fulfilled and before:
+            stretches[-1][1] = point.value
+        elif point.fulfilled:
+            stretches.append([point.value, point.value])
+        before = bool(point.fulfilled)
+    return [(low, high) for low, high in stretches]
+
+
+def wanted_value(axis: SizeAxis, intervals: Sequence[tuple[float, float]]) -> float | None:
+    """The end of the stretch that reaches the good end of the range; an island elsewhere does not count."""
+    if axis.wanted == "least" and intervals and intervals[-1][1] == axis.values[-1]:
+        return intervals[-1][0]
+    if axis.wanted == "largest" and intervals and intervals[0][0] == axis.values[0]:
+        return intervals[0][1]
+    return None
+
+
+def sentence(axis: SizeAxis, points: Sequence[SizePoint]) -> str:
+    """The answer in one sentence: the value, what fails beyond it, and the islands."""
+    intervals = fulfilled_intervals(points)
+    low, high = axis.values[0], axis.values[-1]
+    tried = f"from {_value(low, axis)} to {_value(high, axis)}"
+    if not intervals:
+        reasons = " or ".join(dict.fromkeys(point.fails for point in points))
+        return f"The rule is not fulfilled at any {axis.words} tried {tried}: {reasons}."
+    if intervals == [(low, high)]:
+        return f"The rule is fulfilled at every {axis.words} tried {tried}."
+    value = wanted_value(axis, intervals)
+    if value is None:
+        return (
+            f"The rule is fulfilled for a {axis.words} {_stretches(intervals, axis)}, of those tried {tried}."
+        )
+    others = intervals[:-1] if axis.wanted == "least" else intervals[1:]
+    island = f"; also {_stretches(others, axis)}, an island that does not count" if others else ""
+    if axis.wanted == "least":
+        beyond = [point for point in points if point.value < value][-1]
+        return (
+            f"The least {axis.words} is {_value(value, axis, up=True)}: the rule is fulfilled from there to "
+            f"{_value(high, axis)} (below: {beyond.fails}){island}."
+        )
+    beyond = next(point for point in points if point.value > value)
+    return (
+        f"The largest {axis.words} is {_value(value, axis, up=False)}: the rule is fulfilled from "
+        f"{_value(low, axis)} to there (above: {beyond.fails}){island}."
+    )
+
+
+def _stretches(intervals: Sequence[tuple[float, float]], axis: SizeAxis) -> str:
+    return " and ".join(_stretch(low, high, axis) for low, high in intervals)
+
+
+def _stretch(low: float, high: float, axis: SizeAxis) -> str:
+    """A stretch in words, with enough figures for its ends to differ."""
+    if low == high:
+        return f"of {_value(low, axis)}"
+    figures = next((n for n in (3, 4, 5) if _inward(low, n, up=True) <= _inward(high, n, up=False)), 6)
+    return f"from {_value(low, axis, figures, up=True)} to {_value(high, axis, figures, up=False)}"
+
+
+def _value(value: float, axis: SizeAxis, figures: int = 3, *, up: bool | None = None) -> str:
+    """A value with its unit, rounded toward what fulfils the rule."""
+    if not axis.whole and up is not None:
+        value = _inward(value, figures, up=up)
+    return f"{value:.{figures}g} {axis.unit}".strip()
+
+
+def _inward(value: float, figures: int, *, up: bool) -> float:
+    """A value rounded up or down to a number of figures."""
+    if value == 0.0:
+        return value
+    step = 10.0 ** (math.floor(math.log10(abs(value))) - figures + 1)
+    steps = value / step
+    return (math.ceil(steps - 1e-9) if up else math.floor(steps + 1e-9)) * step
+
+
+def _point(value: float, answer: SiteAnswer) -> SizePoint:
+    return SizePoint(
+        value=value,
+        answer=answer.answer,
+        fulfilled=answer.fulfilled,
+        overturned=answer.overturned,
+        invalid=answer.invalid,
+        runs=answer.runs,
+        **{name: answer[name] for name in BY_RULE},
+        fails=_reason(answer),
+    )
+
+
+def _reason(answer: SiteAnswer) -> str:
+    if answer.fulfilled:
+        return ""
+    if answer.answer is None:
+        return "there is no answer"
+    if answer.fulfilled is None:
+        return "it is not sure"
+    if answer.overturned:
+        return "it overturns"
+    if answer.invalid:
+        return "a corner is destroyed"
+    names = [BEYOND[key] for key in answer.exceeded]
+    if not names:
+        return "the wind moves it"
+    return f"{' and '.join(names)} {'are' if len(names) > 1 else 'is'} beyond the limit"
+
+
+def spaced(low: float, high: float, count: int) -> tuple[float, ...]:
+    """Values of a scan, at equal ratios where the range spans more than a factor of four."""
+    even = np.geomspace(low, high, count) if low > 0.0 and high > 4.0 * low else np.linspace(low, high, count)
+    return tuple(float(f"{value:.6g}") for value in even)

@@ -1,0 +1,396 @@
+"""The runs of a verification stage by stage: each is asked for when the one before is there."""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
+from itertools import product
+from pathlib import Path
+
+import numpy as np
+
+from fem.batch.runner import Runner
+from fem.batch.workers import hand_out
+from fem.results.outcome import Outcome
+from fem.run.bracket import values_to_try
+from fem.seismic.action import MotionTarget
+from fem.seismic.artificial import artificial_motions
+from fem.seismic.ground_motion import GroundMotion
+from fem.seismic.two_directions import largest_slip, largest_slips
+from fem.site.answer import Beside
+from fem.site.bodies import Screening
+from fem.site.motion_results import write_csv_files
+from fem.site.motions import motion_target, on_floor
+from fem.site.request import SiteRequest
+from fem.site.result import (
+    FURTHER,
+    REFINED,
+    REPEATED,
+    SCAN,
+    SET,
+    ConfirmedRun,
+    RunKey,
+    SiteRun,
+    TwoDirections,
+    motion_stem,
+)
+from fem.site.rule import MotionSlips, RuleFound, RunGroup, governing_groups, groups_of, runs_by_factor
+from fem.site.runs import RunRows, key_of
+
+#: factors on the motions beside 1, and values tried below the first that fails and below the first that overturns
+SCANNED = (0.5, 0.75, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0, 3.5, 4.0)
+BETWEEN = 3
+#: factors of the repetitions: nobody can tell such motions from those of the set, rocking can
+REPETITIONS = (1.0 - 1e-4, 1.0 - 1e-5, 1.0 + 1e-6, 1.0 + 1e-5, 1.0 + 1e-4)
+#: numbers of the artificial motions beyond the set begin behind those of any set
+FIRST_FURTHER = 10_000
+FURTHER_PASSES = 15  #: in which those are matched: they are many, and nobody compares one with the target
+#: why the slip in two directions is not known
+ON_A_SLOPE = (
+    "Slip under both horizontal components at once is not computed on a sloping floor: how far it slides there is not "
+    "known."
+)
+NO_SECOND = (
+    "The motions have no second horizontal component: how far it slides under both at once is not known (records: the "
+    "third file of each)."
+)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Stages:
+    """The runs of one request, and what is known of them."""
+
+    request: SiteRequest
+    screening: Screening
+    floors: Mapping[float | None, Sequence[GroundMotion]]  #: of the set, by building period
+    longest: float  #: period of the band [s]
+    target: MotionTarget  #: of the motions
+    folder: Path  #: that holds the motions
+    rows: RunRows = field(default_factory=RunRows)
+
+    @classmethod
+    def of(
+        cls,
+        request: SiteRequest,
+        floors: Mapping[float | None, Sequence[GroundMotion]],
+        *,
+        longest: float,
+        folder: Path,
+    ) -> "Stages":
+        """For a request and the motions of its set, by building period.
+
+        Raises:
+            CaseError, MeshError: a container cannot be built.
+        """
+        motions = {
+            motion_stem(number, period): motion
+            for period, floor in floors.items()
+            for number, motion in enumerate(floor, start=1)
+        }
+        return cls(
+            request=request,
+            screening=Screening.of(request, motions),
+            floors=floors,
+            longest=longest,
+            target=motion_target(request, next(iter(floors.values())), longest),
+            folder=folder,
+        )
+
+    @property
+    def first(self) -> GroundMotion:
+        """One motion of the set."""
+        return next(iter(self.floors.values()))[0]
+
+    @property
+    def count(self) -> int:
+        """Motions of the set."""
+        return len(next(iter(self.floors.values())))
+
+    @property
+    def signs(self) -> tuple[int, ...]:
+        """Of the vertical component."""
+        return (0,) if self.first.vertical is None else (1, -1)
+
+    def of_set(self) -> list[RunKey]:
+        """Every motion with both signs, over weights, elevations, periods and frictions."""
+        return [
+            RunKey(
+                stage=SET,
+                motion=motion,
+                vertical_sign=sign,
+                mu_static=mu_static,
+                mu_kinetic=mu_kinetic,
+                mass=mass,
+                elevation=elevation,
+                building_period_s=period,
+                model=self.request.heading.model,
+                factor=1.0,
+            )
+            for (mass, elevation), period, (mu_static, mu_kinetic), motion, sign in product(
+                self.request.variants,
+                self.floors,
+                self.request.frictions,
+                range(1, self.count + 1),
+                self.signs,
+            )
+        ]
+
+    def repeated(self, groups: Iterable[RunGroup]) -> list[RunKey]:
+        """The runs of some groups with changes that nobody can tell apart."""
+        own = [key for group in groups for key in map(key_of, group.runs)]
+        return [replace(key, stage=REPEATED, factor=factor) for factor in REPETITIONS for key in own]
+
+    def scanned(self, factor: float) -> list[RunKey]:
+        """All runs of the set at another factor."""
+        return [replace(key, stage=SCAN, factor=factor) for key in self.of_set()]
+
+    def refined(self, runs: Mapping[RunKey, SiteRun]) -> list[RunKey]:
+        """Runs between the first factor at which a run overturns, or the rule fails, and the factor below.
+
+        Where the rule fails, all runs of the groups that fail: it may count their mean.
+        """
+        by_factor = runs_by_factor(runs, SET, SCAN)
+        wanted: dict[RunKey, None] = {}
+
+        def between(first: float, keys: Iterable[RunKey]) -> None:
+            known = {factor: str(factor == first) for factor in by_factor if factor <= first}
+            for factor in values_to_try(known, resolution=0.0, inner=BETWEEN):
+                wanted.update(dict.fromkeys(replace(key, stage=REFINED, factor=factor) for key in keys))
+
+        limits = self.request.limits
+        failing = {
+            factor: [group for group in groups_of(own) if RuleFound.of([group]).fails(limits)]
+            for factor, own in by_factor.items()
+        }
+        fell = {
+            factor: [run for run in own if run.outcome == Outcome.OVERTURNED]
+            for factor, own in by_factor.items()
+        }
+        if (first := min((factor for factor, groups in failing.items() if groups), default=None)) is not None:
+            between(first, [key_of(run) for group in failing[first] for run in group.runs])
+        if (first := min((factor for factor, own in fell.items() if own), default=None)) is not None:
+            between(first, list(map(key_of, fell[first])))
+        return list(wanted)
+
+    def of_further(self, groups: Iterable[RunGroup], count: int) -> list[RunKey]:
+        """Further motions with both signs, for the containers and frictions of these groups."""
+        return [
+            replace(key_of(group.first), stage=FURTHER, motion=number, vertical_sign=sign)
+            for group in groups
+            for number in range(1, count + 1)
+            for sign in self.signs
+        ]
+
+    def of_the_answer(self, runner: Runner, *, quick: bool = False) -> Iterator[Sequence[RunKey]]:
+        """The set, its repetitions and the further motions: all that the answer rests on but the deciding runs.
+
+        Args:
+            runner: lets its workers make the further motions.
+            quick: none of these, unless the container rests in the whole set, where they cost next to nothing.
+        """
+        yield self._left(self.of_set())
+        groups = governing_groups(groups_of(self.rows.of(self.of_set())))
+        yield self._left(self.repeated(groups))
+        if quick and not self.rests:
+            return
+        further = self.of_further(groups, self.request.motions.further)
+        self._make(runner, [key for key in further if key.stem not in self.screening.motions])
+        if not runner.stop():
+            yield self._left(further)
+
+    @property
+    def rests(self) -> bool:
+        """Whether no run of the set need be computed."""
+        return all(self.screening.at_rest(key) for key in self.of_set())
+
+    def most_runs(self, *, quick: bool = False, scan: bool = True) -> tuple[int, int]:
+        """Runs of the set that must be computed, and of all stages at most, without the deciding ones.
+
+        Args:
+            quick: the set and its repetitions alone.
+            scan: with the set at other factors.
+        """
+
+        def left(keys: Sequence[RunKey]) -> int:
+            return sum(not self.screening.at_rest(key) for key in keys)
+
+        own = left(self.of_set())
+        masses = len({mass for mass, _ in self.request.variants})
+        of_a_group = self.count * len(self.signs)
+        of_a_mass = len(self.of_set()) // (of_a_group * masses)  # groups, of which two govern
+        pairs = min(2, of_a_mass) * masses if own else 0
+        most = own + pairs * of_a_group * len(REPETITIONS)
+        if quick:
+            return own, most
+        most += pairs * self.request.motions.further * len(self.signs)
+        if scan:
+            most += sum(left(self.scanned(factor)) for factor in SCANNED)
+        return own, most
+
+    def of_the_margin(self) -> Iterator[Sequence[RunKey]]:
+        """The set at other factors, up to the first at which a run overturns, and between.
+
+        For a container that rests in the whole set, up to the first at which the rule fails: that is far enough.
+        """
+        before = SET, 1.0
+        for factor in SCANNED:
+            if factor > 1.0:
+                own = (run for key, run in self.rows.runs.items() if (key.stage, key.factor) == before)
+                tally = RuleFound.of(groups_of(own))
+                if tally.overturned + tally.invalid or (self.rests and tally.fails(self.request.limits)):
+                    break
+                before = SCAN, factor
+            yield self._left(self.scanned(factor))
+        yield self._left(self.refined(self.rows.runs))
+
+    @property
+    def first_movement(self) -> float | None:
+        """Factor on the motions at which a rigid body first uplifts or slips; None where that is not known."""
+        factors = [self.screening.moves_at(key) for key in self.of_set()]
+        return None if None in factors else min(factor for factor in factors if factor is not None)
+
+    def beside(self, confirmed: Sequence[ConfirmedRun], wind: float | None) -> Beside:
+        """What the answer rests on beside the runs.
+
+        Args:
+            confirmed: the deciding runs, repeated.
+            wind: the largest utilisation under wind; None: it was not asked for.
+        """
+        return Beside(
+            confirmed=confirmed,
+            wind=wind,
+            two_directions=self._two_directions(),
+            slips_of_further=self._slips_of_further(),
+            in_plane_only=self._in_plane_only,
+            still=sum(key.stage == SET for key in self.rows.still),
+            moves_at=self.first_movement,
+        )
+
+    @property
+    def _in_plane_only(self) -> str:
+        """Why the slip in two directions, which was asked for, is not known, in words; empty: it is."""
+        if not self.request.motions.second_component:
+            return ""
+        if self.request.container.floor.slope_percent:
+            return ON_A_SLOPE
+        return NO_SECOND if self._lacks_second else ""
+
+    @property
+    def _lacks_second(self) -> bool:
+        """Whether a motion has no second horizontal component."""
+        return any(motion.second is None for floor in self.floors.values() for motion in floor)
+
+    def _two_directions(self) -> TwoDirections | None:
+        """How far the container slides in both directions if it does not rock; None where that is not known.
+
+        On a sloping floor it is not: a body that has no preferred direction would also creep downhill.
+        """
+        gravity = self.request.container.gravity_m_s2
+        if self.request.container.floor.slope_percent or self._lacks_second:
+            return None
+        slips = {
+            (period, pair): slid
+            for period, motions in self.floors.items()
+            for pair, slid in largest_slips(motions, self.request.frictions, gravity=gravity).items()
+        }
+        longest = max(slips, key=lambda what: float(slips[what].mean()))
+        worst = max(slips, key=lambda what: float(slips[what].max()))
+        period, pair = worst
+        in_plane = [replace(motion, second=None) for motion in self.floors[longest[0]]]
+
+        def largest(factor: float) -> float:
+            return max(
+                largest_slip(motion.scaled(factor), pair, gravity=gravity) for motion in self.floors[period]
+            )
+
+        def too_far(factor: float) -> bool:
+            return largest(factor) > self.request.limits.slip_m
+
+        tried = sorted({1.0, *(key.factor for key in self.rows.runs if key.stage in (SET, SCAN))})
+        most = float(slips[worst].max())
+        alike = [most, *map(largest, REPETITIONS)]
+        return TwoDirections(
+            slip_mean_m=float(slips[longest].mean()),
+            slip_largest_m=most,
+            slip_mean_in_plane_m=float(
+                largest_slips(in_plane, longest[1:], gravity=gravity)[longest[1]].mean()
+            ),
+            mu_static=pair[0],
+            mu_kinetic=pair[1],
+            motion=1 + int(np.argmax(slips[worst])),
+            building_period_s=period,
+            margin_factor=next(filter(too_far, tried), None),
+            slip_range_m=(min(alike), max(alike)),
+        )
+
+    def _slips_of_further(self) -> MotionSlips:
+        """How far the container slides in both directions under each further motion; empty where that is not known."""
+        box = self.request.container
+        if box.floor.slope_percent or not self.request.motions.second_component:
+            return {}
+        slips: dict[tuple[int, float | None, float, float], float] = {}
+        for key in self.rows.runs:
+            what = key.motion, key.building_period_s, key.mu_static, key.mu_kinetic
+            if key.stage == FURTHER and what not in slips:
+                motion = self.screening.motions[key.stem]
+                slips[what] = largest_slip(motion, what[2:], gravity=box.gravity_m_s2)
+        return slips
+
+    def _left(self, keys: Sequence[RunKey]) -> list[RunKey]:
+        """Those that must be computed, by their motions; those at rest by the rigid bound are noted."""
+        left = []
+        for key in self.rows.missing(keys):
+            if self.screening.at_rest(key):
+                self.rows.rest(key)
+            else:
+                left.append(key)
+        return sorted(left, key=lambda key: (key.factor, key.stem, key.vertical_sign))
+
+    def _make(self, runner: Runner, keys: Sequence[RunKey]) -> None:
+        """Let the workers make the further motions of these runs, with their files."""
+        for period in dict.fromkeys(key.building_period_s for key in keys):
+            numbers = sorted({key.motion for key in keys if key.building_period_s == period})
+            make = partial(
+                further_motions,
+                self.request,
+                self.target,
+                self.first.vertical is not None,
+                self.longest,
+                period,
+                self.folder,
+            )
+            pools = runner.workers_of(self.request.heading.model, len(keys))
+            for chunk, made in hand_out(numbers, make, pools, at_a_time=4, stop=runner.stop):
+                for number, motion in zip(chunk, made, strict=True):
+                    self.screening.motions[motion_stem(number, period, FURTHER)] = motion
+
+
+def further_motions(
+    request: SiteRequest,
+    target: MotionTarget,
+    vertical: bool,
+    longest: float,
+    period: float | None,
+    folder: Path,
+    numbers: Sequence[int],
+) -> list[GroundMotion]:
+    """Artificial motions beyond the set, on the floor of a building of this period or on the ground (None).
+
+    Their files are written in the folder.
+    """
+    table, made = request.motions, []
+    for number in numbers:
+        (motion,) = artificial_motions(
+            target,
+            count=1,
+            seed=table.seed,
+            stationary=table.stationary_s,
+            longest=longest,
+            vertical=vertical,
+            second=table.second_component,
+            first=FIRST_FURTHER + number,
+            passes=FURTHER_PASSES,
+        )
+        moved = on_floor(request.building, motion, period)
+        write_csv_files(folder, replace(moved, second=None), motion_stem(number, period, FURTHER))
+        made.append(moved)
+    return made

@@ -1,1 +1,0 @@
-"""The page of a verification at a site, and its figures."""

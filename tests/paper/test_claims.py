@@ -1,0 +1,255 @@
+"""Conclusions on the paper follow from numbers; what is kept was found by this version of the program."""
+
+import json
+import math
+from dataclasses import replace
+
+import pytest
+from evidence.findings import at_most
+from paper import maps
+from paper.cases import STACK, PaperCase
+from paper.claims import Claim, ClaimFigure, ClaimResult, Conclusion, conclude
+from paper.criteria import MapMotion, contingency, paper_rule, predicted_mode, static_rule
+from paper.experiments import Experiments, InterruptedStudyError, VariantBand, VariantResult
+from paper.index import all_claims
+from paper.run import check_claims
+
+from fem.__main__ import main
+from fem.case.case import load_case
+from fem.results.errors import FolderError
+
+GOOD, BAD = at_most("a", 0.5, 1.0), at_most("a", 2.0, 1.0)
+GOOD_OUTSIDE, BAD_OUTSIDE = replace(GOOD, inside=False), replace(BAD, inside=False)
+
+
+@pytest.mark.parametrize(
+    ("comparisons", "bounds", "kind", "conclusion"),
+    [
+        ((GOOD, GOOD_OUTSIDE), "", "statement", Conclusion.CONFIRMED),
+        ((GOOD, GOOD_OUTSIDE), "some", "statement", Conclusion.CONFIRMED),
+        ((GOOD, BAD_OUTSIDE), "some", "statement", Conclusion.BOUNDED),
+        ((GOOD, BAD_OUTSIDE), "", "statement", Conclusion.REFUTED),
+        ((GOOD, BAD), "some", "statement", Conclusion.REFUTED),
+        ((BAD, GOOD_OUTSIDE), "some", "statement", Conclusion.REFUTED),
+        ((BAD_OUTSIDE,), "some", "statement", Conclusion.REFUTED),
+        ((BAD,), "", "statement", Conclusion.REFUTED),
+        ((), "some", "statement", Conclusion.UNDECIDED),
+        ((GOOD,), "", "print", Conclusion.CONFIRMED),
+        ((GOOD, BAD_OUTSIDE), "some", "print", Conclusion.BOUNDED),
+        ((BAD,), "", "print", Conclusion.MISPRINT),
+        ((), "", "print", Conclusion.UNDECIDED),
+        ((), "", "remark", Conclusion.REMARK),
+        ((BAD,), "", "remark", Conclusion.REMARK),
+    ],
+)
+def test_the_conclusion_follows_from_the_comparisons(comparisons, bounds, kind, conclusion):
+    assert conclude(comparisons, bounds, kind) is conclusion
+
+
+def band_of(*holds):
+    members = [
+        VariantResult(what=f"{n}", command="", outcome="rock", value=None if one is None else n, holds=one)
+        for n, one in enumerate(holds)
+    ]
+    return VariantBand(quantity="a ratio", unit="-", criterion="small", members=members)
+
+
+def test_a_band_counts_how_often_the_criterion_holds_and_leaves_failed_runs_out():
+    band = band_of(None, True, False)
+    assert (band.low, band.high, band.holding) == (1.0, 2.0, 1)
+    assert band.summary == "holds in 1 of 3, 1 not computed: it depends on deformation, contact or support"
+    assert band_of(True, True).summary.endswith("do not change it")
+    assert band_of(False, False).summary.endswith("it holds in none of them")
+    assert math.isnan(band_of(None).low)
+
+
+def test_a_band_says_where_the_regime_rests_on_chance():
+    first, second = band_of(True, False).members
+    rock, slide = replace(first, outcome="rock"), replace(second, outcome="slide-rock")
+    regimes = replace(band_of(), members=[rock, slide])
+    assert "chance" in replace(regimes, drop=True).summary
+    assert "chance" not in regimes.summary  # with mu_k = mu_s the same regimes differ by a little slip
+    assert "chance" not in replace(regimes, drop=True, members=[slide, slide]).summary
+
+
+def test_the_command_of_a_case_runs_the_very_case():
+    changes = {"output.stop_when_overturned": True, "solver.model": "rigid"}
+    case = STACK.but(changes, support="flat", peak=4.0, frequency=7.1)
+    words = case.command.split()
+    overrides = [words[n + 1] for n, word in enumerate(words) if word == "--set"]
+    typed = load_case(words[4], overrides).with_values({"output.fields_s": 0.0})
+    assert words[:5] == ["python", "-m", "fem", "run", "seed_stack"]
+    assert typed.resolved() == case.case.resolved() == Experiments().case(case).resolved()
+
+
+def test_a_contingency_counts_each_cell_once():
+    found = contingency([True, True, False, False, True], [True, False, True, False, True])
+    assert (found.cells, found.right, found.conservative, found.unconservative) == (5, 3, 1, 1)
+
+
+@pytest.mark.parametrize(
+    ("peak", "angular_frequency", "slenderness", "mu", "tilts", "overturns", "mode"),
+    [
+        (2.4, 6.928, 3.636, (0.4, 0.2), False, False, "rest"),  # the stack under its stated motion
+        (4.0, 6.928, 3.636, (0.4, 0.2), True, False, "rock"),  # .. under the plateau value
+        (4.0, 2.0, 3.636, (0.4, 0.2), True, True, "overturned"),
+        (4.0, 2.0, 0.909, (0.4, 0.2), False, False, "slide"),  # one box
+        (4.0, 2.0, 3.636, (0.2, 0.1), True, False, "slide"),  # it slides before it tilts
+    ],
+)
+def test_the_papers_criteria_say_of_known_motions_what_they_must(
+    peak, angular_frequency, slenderness, mu, tilts, overturns, mode
+):
+    motion = MapMotion(
+        angular_frequency=angular_frequency,
+        peak=peak,
+        slenderness=slenderness,
+        mu_static=mu[0],
+        mu_kinetic=mu[1],
+    )
+    assert (static_rule(motion), paper_rule(motion), predicted_mode(motion)) == (tilts, overturns, mode)
+
+
+def test_cells_beside_a_change_of_outcome_or_close_to_falling_are_perturbed():
+    def near(*rows):
+        rows = [{"outcome": outcome, "status": status, "rotation_ratio": r} for outcome, status, r in rows]
+        return maps.near_change(rows, range(len(rows)), [0.0]).tolist()
+
+    rest, rock = ("rest", "completed", 0.1), ("rock", "completed", 0.1)
+    fallen, failed = ("overturned", "overturned", 1.0), (None, "failed", None)
+    assert near(rest, rock, rest, rest, fallen, rock) == [False, False, False, True, True, True]
+    assert near(("rock", "completed", 0.7), rest) == [True, False]
+    assert near(rest, failed) == [True, True]
+
+
+def result(*comparisons):
+    figure = ClaimFigure(name="a-figure", caption="c", svg="<svg></svg>")
+    return ClaimResult(
+        comparisons=comparisons, reading="as read", figures=[figure], cases=[PaperCase(base="seed_box")]
+    )
+
+
+@pytest.fixture
+def three():
+    """One good and one bad claim, one that cannot be computed, and the names of those that were checked.
+
+    They have names of the paper's first claims, under which `study.json` lists them.
+    """
+    calls = []
+
+    def counted(kind, found, claim):
+        def check(experiments):
+            calls.append(kind)
+            if isinstance(found, BaseException):
+                raise found
+            return found
+
+        return Claim(name=claim.name, section="0", quote="q", tried="t", check=check)
+
+    results = {
+        "good": result(GOOD),
+        "bad": result(BAD),
+        "broken": ArithmeticError("no balance"),
+        "stopped": InterruptedStudyError("stopped"),
+    }
+    names = all_claims()
+    made = [counted(kind, found, names[n]) for n, (kind, found) in enumerate(results.items())]
+    return made, calls
+
+
+def test_a_claim_that_cannot_be_computed_has_no_conclusion_and_ends_as_failed(three, tmp_path):
+    claims, _ = three
+    document = check_claims(tmp_path / "study", Experiments(), claims=claims[:3])
+    assert document["status"] == "failed"
+    assert [document["counts"][name] for name in ("confirmed", "refuted", "not computed")] == [1, 1, 1]
+    page = (tmp_path / "study" / "study.html").read_text()
+    assert "no balance" in page and "as read" in page
+
+
+def test_the_report_of_a_study_is_signed(three, tmp_path):
+    claims, _ = three
+    check_claims(tmp_path / "study", Experiments(), claims=claims[:1])
+    assert 'name="author" value=""' in (tmp_path / "study" / "study.html").read_text()
+    words = ["--author", 'A. "Author" <a@b>', "--checker", "C. Checker", "--revision", "B"]
+    assert main(["report", str(tmp_path / "study"), *words]) == 0
+    page = (tmp_path / "study" / "report.html").read_text()
+    assert 'value="A. &#34;Author&#34; &lt;a@b&gt;"' in page
+    assert 'value="C. Checker"' in page and 'value="B"' in page
+
+
+def test_a_second_call_checks_only_undecided_claims_and_force_checks_all(three, tmp_path):
+    claims, calls = three
+    for force in (False, False, True):
+        check_claims(tmp_path / "study", Experiments(), claims=claims[:3], force=force)
+    assert calls == ["good", "bad", "broken", "broken", "good", "bad", "broken"]
+
+
+@pytest.mark.parametrize("change", ["program", "versions"])
+def test_a_claim_that_another_program_decided_is_checked_again(three, tmp_path, change):
+    claims, calls = three
+    document = check_claims(tmp_path, Experiments(), claims=claims[:1])
+    entry = document["groups"][0]["statements"][0]
+    changed, key = (entry, "program") if change == "program" else (document["versions"], "numpy")
+    changed[key] = "another"
+    (tmp_path / "study.json").write_text(json.dumps(document))
+    check_claims(tmp_path, Experiments(), claims=claims[:1])
+    assert calls == ["good", "good"]
+
+
+def test_an_interrupted_study_keeps_the_claims_checked_so_far(three, tmp_path):
+    (good, bad, _, stopped), calls = three
+    document = check_claims(tmp_path / "study", Experiments(), claims=[good, stopped])
+    assert (document["status"], document["statements"]) == ("interrupted", 1)
+    assert check_claims(tmp_path / "study", Experiments(), claims=[good, bad])["status"] == "completed"
+    assert calls == ["good", "stopped", "bad"]
+
+
+@pytest.mark.parametrize(
+    "content", ["{", '{"study": "seed", "groups": 3}', '{"study": "seed", "groups": [1]}']
+)
+def test_a_damaged_study_is_refused(tmp_path, content):
+    (tmp_path / "study.json").write_text(content)
+    with pytest.raises(FolderError, match="damaged"):
+        check_claims(tmp_path, Experiments(), claims=[])
+    assert (tmp_path / "study.json").read_text() == content
+
+
+def test_names_of_claims_are_used_once():
+    names = [claim.name for claim in all_claims()]
+    assert len(set(names)) == len(names) == 41
+
+
+def test_the_command_writes_page_and_document(tmp_path, capsys):
+    names = {
+        "numbers-one-box": "confirmed within stated bounds",
+        "half-width": "misprint",
+        "centre-or-base": "remark",
+    }
+    only = [word for name in names for word in ("--only", name)]
+    assert main(["study", "seed", *only, "--json", "-q", "--out", str(tmp_path / "s")]) == 0
+    document = json.loads(capsys.readouterr().out)
+    verdicts = {one["name"]: one["verdict"] for group in document["groups"] for one in group["statements"]}
+    assert verdicts == names
+    assert {name: count for name, count in document["counts"].items() if count} == dict.fromkeys(
+        names.values(), 1
+    )
+    page = (tmp_path / "s" / "study.html").read_text()
+    assert page.count('<div class="claim">') == 3
+    assert "comparisons of half-width" in page and "comparisons of centre-or-base" not in page
+    assert "src=" not in page  # nothing to load
+    assert page.count("<script") == 1 and 'id="save"' in page  # what keeps author and checker in a copy
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["study", "seeds"], "did you mean 'seed'"),
+        (["study", "seed", "--only", "half-widht"], "did you mean 'half-width'"),
+        (["study", "seed", "-j", "0"], "at least one core"),
+    ],
+)
+def test_bad_input_is_refused_with_a_way_out(arguments, said, capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(arguments) == 2
+    assert said in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []

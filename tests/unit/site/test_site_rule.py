@@ -1,0 +1,112 @@
+"""What counts of the runs of a set: worse sign, then mean or largest, then the largest of the groups."""
+
+from dataclasses import replace
+
+import pytest
+from site_example import RUN
+
+from fem.site.answer import rule_in_words
+from fem.site.result import SiteRun
+from fem.site.rule import RuleFound, both_directions, governing_groups, groups_of
+from fem.site.tables import LimitsTable
+
+LIMITS = LimitsTable(slip_m=0.1)
+
+
+def runs(count: int) -> list[SiteRun]:
+    """Motions 1 to count with both signs; the sign - rotates twice as much, the sign + slips more."""
+    return [
+        replace(
+            RUN,
+            motion=motion,
+            vertical_sign=sign,
+            rotation_ratio=0.01 * motion * (1 if sign > 0 else 2),
+            max_slip_m=0.001 * motion * (3 if sign > 0 else 1),
+        )
+        for motion in range(1, count + 1)
+        for sign in (1, -1)
+    ]
+
+
+def test_fewer_than_seven_motions_count_by_the_largest():
+    (group,) = groups_of(runs(6))
+    assert (group.motions, group.by_rule.rotation_ratio, group.by_rule.slip_m) == (
+        6,
+        pytest.approx(0.12),
+        pytest.approx(0.018),
+    )
+    assert "of rotations the largest over the 6 motions" in rule_in_words(6, LIMITS)
+    assert "single rotation" not in rule_in_words(6, LIMITS)
+
+
+def test_of_seven_motions_the_mean_rotation_counts_and_the_largest_slip():
+    (group,) = groups_of(runs(7))
+    found = group.by_rule
+    assert (found.rotation_ratio, found.rotation_ratio_largest) == (pytest.approx(0.08), pytest.approx(0.14))
+    assert (found.slip_m, found.slip_mean_m) == (pytest.approx(0.021), pytest.approx(0.012))
+    words = rule_in_words(7, LIMITS)
+    assert "of rotations the mean over the 7 motions, of slips the largest" in words
+    assert "no single rotation above 0.8" in words
+
+
+def test_a_mean_within_its_limit_does_not_hide_one_motion_near_overturning():
+    low = [replace(RUN, motion=motion, rotation_ratio=0.3) for motion in range(1, 7)]
+    for largest, exceeded in ((0.79, []), (0.99, ["single_rotation_ratio"])):
+        found = RuleFound.of(groups_of([*low, replace(RUN, motion=7, rotation_ratio=largest)]))
+        assert found.by_rule.rotation_ratio < 0.41
+        assert found.exceeded(LIMITS) == exceeded
+        assert found.fails(LIMITS) == bool(exceeded)
+
+
+def test_one_slip_beyond_the_clearance_is_not_averaged_away():
+    short = [replace(RUN, motion=motion, max_slip_m=0.05) for motion in range(1, 7)]
+    found = RuleFound.of(groups_of([*short, replace(RUN, motion=7, max_slip_m=0.11)]))
+    assert found.by_rule.slip_mean_m < 0.06
+    assert found.exceeded(LIMITS) == ["slip_m"]
+
+
+def test_each_weight_has_a_group_that_governs_rotation_and_one_that_governs_slip():
+    by_friction = [
+        replace(RUN, mass=mass, mu_static=mu, rotation_ratio=0.5 * mu, max_slip_m=0.1 * (1.0 - mu))
+        for mass in ("full", "empty")
+        for mu in (0.2, 0.3, 0.4)
+    ]
+    groups = groups_of(by_friction)
+    assert [(one.first.mass, one.first.mu_static) for one in governing_groups(groups)] == [
+        ("full", 0.2),
+        ("full", 0.4),
+        ("empty", 0.2),
+        ("empty", 0.4),
+    ]
+    fell = [replace(run, outcome="overturned") if run.mu_static == 0.3 else run for run in by_friction]
+    assert {one.first.mu_static for one in governing_groups(groups_of(fell))} == {0.2, 0.3}
+
+
+@pytest.mark.parametrize(("outcome", "overturned", "failed"), [("overturned", 1, 0), (None, 0, 1)])
+def test_one_run_that_overturned_or_failed_leaves_no_mean(outcome, overturned, failed):
+    first, *others = runs(7)
+    (group,) = groups_of([replace(first, outcome=outcome, rotation_ratio=None), *others])
+    assert (group.overturned, group.failed) == (overturned, failed)
+    assert (group.by_rule.rotation_ratio, group.by_rule.slip_m) == (None, None)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"mass": "empty"},
+        {"elevation": "depth"},
+        {"mu_static": 0.3},
+        {"mu_kinetic": 0.1},
+        {"building_period_s": 0.5},
+    ],
+)
+def test_groups_differ_in_weight_elevation_friction_and_building(change):
+    assert len(groups_of([RUN, replace(RUN, motion=2), replace(RUN, **change)])) == 2
+
+
+def test_slips_of_both_elevations_add_up_as_vectors_with_100_and_30_per_cent():
+    along = [replace(RUN, max_slip_m=0.03), replace(RUN, mass="empty", max_slip_m=0.02)]
+    across = replace(RUN, elevation="depth", max_slip_m=0.04)
+    ((group, slip),) = both_directions(groups_of([*along, across]))
+    assert (group.first.mass, slip) == ("full", pytest.approx((0.04**2 + 0.009**2) ** 0.5))
+    assert both_directions(groups_of(along)) == []

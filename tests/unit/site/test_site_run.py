@@ -1,0 +1,397 @@
+"""Verifications from file to folder: the same result on any number of cores and after an interruption."""
+
+import json
+
+import numpy as np
+import pytest
+
+from fem.__main__ import main
+from fem.batch.runner import run_chunk
+from fem.case.validation import CaseError
+from fem.records.files import read_record
+from fem.seismic.artificial import artificial_motions
+from fem.seismic.motion_files import write_at2, write_csv
+from fem.seismic.motion_set import check_set
+from fem.site.motions import ground_motions
+from fem.site.preview import Forecast
+from fem.site.request import load_site
+from fem.site.result import SiteResult
+from fem.site.run import run_site
+from fem.site.runs import NOT_COMPUTED, RunCases, key_of
+from fem.site.stages import SCANNED, Stages
+
+CONTAINER = """
+schema = 1
+[container]
+width_m = 1.1
+height_m = 4.0
+mass_kg = 10000.0
+[contact]
+mu_static = 0.4
+[motion]
+kind = "harmonic"
+peak_acceleration_m_s2 = 4.0
+frequency_Hz = 1.0
+[solver]
+model = "rigid"
+"""
+SITE = """
+schema = 1
+container = "k1.toml"
+{heading}
+[site]
+type = 1
+ground = "D"
+reference_acceleration_m_s2 = {reference}
+[motions]
+count = 3
+stationary_s = 10.0
+further = {further}
+{motions}
+[friction]
+mu_static = [0.4]
+mu_kinetic_over_static = [0.5]
+[limits]
+slip_m = 0.1
+{more}
+"""
+
+
+def site_file(folder, *, reference=2.4 / 1.35, further=72, heading="", motions="", more=""):
+    (folder / "k1.toml").write_text(CONTAINER)
+    text = SITE.format(reference=reference, further=further, heading=heading, motions=motions, more=more)
+    (folder / "site.toml").write_text(text)
+    return folder / "site.toml"
+
+
+@pytest.fixture
+def brief(monkeypatch):
+    """Runs at one factor, and no page."""
+    monkeypatch.setattr("fem.site.stages.SCANNED", ())
+    monkeypatch.setattr("fem.site.run.confirmed", lambda *arguments: [])
+    monkeypatch.setattr("fem.site.run.site_report", lambda *arguments: "")
+
+
+@pytest.fixture(scope="module")
+def computed(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("site")
+    place = site_file(folder)
+    return run_site(load_site(place), folder / "out", jobs=1), folder
+
+
+def test_every_motion_runs_with_both_signs_at_every_factor(computed):
+    result, _ = computed
+    assert result.status == "completed"
+    own = [run for run in result.runs if run.stage == "set"]
+    assert {(run.motion, run.vertical_sign) for run in own} >= {(k, s) for k in (1, 2, 3) for s in (1, -1)}
+    factors = [point.factor for point in result.result.scan]
+    assert factors == sorted([1.0, *SCANNED])[: len(factors)]
+    assert all(point.runs == 6 for point in result.result.scan)
+    assert result.result.runs == 6 and [one.motions for one in result.result.further] == [72]
+
+
+def test_the_container_of_the_example_fulfils_the_rule_and_overturns_at_a_higher_factor(computed):
+    answer = computed[0].result
+    assert (answer.answer, answer.fulfilled, answer.overturned) == ("fulfilled", True, 0)
+    assert answer.rotation_ratio < 0.01 and answer.slip_m < 0.005
+    assert answer.sentence.startswith("Fulfilled under the rule below: none of 6 runs overturned")
+    first = answer.factor_at_first_overturning
+    assert 1.25 < answer.margin_factor <= first <= 4.0
+    runs = computed[0].runs
+    assert first == min(run.factor for run in runs if run.outcome == "overturned")
+    # The scan ends where a run overturns; between the last factors of the scan, others were tried.
+    assert max(run.factor for run in runs) == min(
+        point.factor for point in answer.scan if point.overturned and point.factor > 1.0
+    )
+    assert {run.factor for run in runs if run.stage == "refined"} - {1.0, *SCANNED}
+
+
+def test_runs_below_uplift_and_slip_are_not_computed_and_rest_where_they_are(computed):
+    """What the rigid bound says of a run is what the run says: the nearest one that it spares, computed."""
+    result, folder = computed
+    spared = [line for line in (folder / "out" / "runs.csv").read_text().splitlines() if NOT_COMPUTED in line]
+    assert spared and result.result.still == sum(line.startswith("set,") for line in spared)
+    request = load_site(folder / "site.toml")
+    made = RunCases.of(request, folder / "out")
+    cases = lambda key: made(key).with_values({"output.stop_when_still": False})  # noqa: E731 - to the end
+    stages = Stages.of(request, {None: ground_motions(request, 4.0)}, longest=4.0, folder=folder / "out")
+    keys = [key for factor in SCANNED for key in stages.scanned(factor)]
+    near = max((key for key in keys if stages.screening.at_rest(key)), key=stages.screening.used)
+    (row,) = run_chunk(cases, [near])
+    assert row["outcome"] == "rest" and row["rotation_ratio"] < 1e-4 and row["max_slip_m"] < 1e-6
+    beyond = min((key for key in keys if stages.screening.used(key) > 1.3), key=stages.screening.used)
+    (row,) = run_chunk(cases, [beyond])
+    assert row["rotation_ratio"] > 1e-4 or row["max_slip_m"] > 1e-6
+
+
+def test_what_the_rule_decides_by_is_computed_as_a_single_run_and_what_is_counted_more_coarsely(computed):
+    result, folder = computed
+    request = load_site(folder / "site.toml")
+    made = RunCases.of(request, folder / "out")
+    tolerances = {run.stage: made(key_of(run)).solver.energy_tolerance for run in result.runs}
+    assert tolerances.keys() >= {"set", "repeated", "scan", "refined", "further"}
+    usual = request.container.solver.energy_tolerance
+    assert {tolerances.pop(stage) for stage in ("set", "repeated")} == {usual}
+    assert {*tolerances.values()} == {10.0}
+
+
+@pytest.mark.parametrize(("preset", "spared"), [("concrete C25/30", True), ("compacted gravel", False)])
+def test_on_a_floor_that_gives_way_every_run_is_computed(tmp_path, preset, spared):
+    place = site_file(tmp_path)
+    floor = f'[floor]\nkind = "slab"\npreset = "{preset}"\n[support]\nkind = "flat"\n'
+    (tmp_path / "k1.toml").write_text(CONTAINER + floor)
+    request = load_site(place)
+    stages = Stages.of(request, {None: ground_motions(request, 4.0)}, longest=4.0, folder=tmp_path)
+    weak = stages.scanned(0.1)
+    assert [stages.screening.at_rest(key) for key in weak] == [spared] * len(weak)
+
+
+def test_the_file_has_the_keys_that_scripts_rely_on(computed):
+    found = json.loads((computed[1] / "out" / "assess.json").read_text())
+    assert {"ag_m_s2", "soil_factor", "ag_S_m_s2", "avg_m_s2", "corner_periods_s", "displacement_m"} <= set(
+        found["action"]
+    )
+    spectra = ("periods_s", "target_m_s2", "mean_m_s2", "vertical_target_m_s2", "vertical_mean_m_s2")
+    assert len({len(found["action"][name]) for name in spectra}) == 1
+    assert found["set"]["valid"] is True and found["set"]["reasons"] == []
+    assert {"count", "mean_pga_m_s2", "least_ratio", "least_ratio_period_s", "largest_correlation"} <= set(
+        found["set"]
+    )
+    assert {
+        "motion",
+        "vertical_sign",
+        "mu_static",
+        "mu_kinetic",
+        "mass",
+        "model",
+        "factor",
+        "outcome",
+    } <= set(found["runs"][0])
+    result = found["result"]
+    assert {"fulfilled", "rule", "overturned", "runs", "rotation_ratio", "slip_m"} <= set(result)
+    assert set(result["further"][0]) >= {
+        "mass",
+        "mu_static",
+        "motions",
+        "overturned",
+        "beyond_limits",
+        "interval",
+    }
+    assert {"answer", "reasons", "margin_factor", "rule_range", "actions"} <= set(result)
+    assert {"slip_mean_m", "rotation_ratio_largest", "factor_at_first_overturning"} <= set(result)
+    assert {"name", "quantity", "demand", "capacity", "utilisation", "says", "source"} <= set(
+        found["methods"][0]
+    )
+    assert SiteResult.from_json(found) == computed[0]
+
+
+def test_the_motions_are_written_and_read_back_to_the_same_bits(computed):
+    result, folder = computed
+    assert {motion.files for motion in result.set.motions}
+    for motion in result.set.motions:
+        values = {name: read_record(folder / "out" / name).components[0] for name in motion.files}
+        for letter in ("h", "v", "t"):
+            csv, at2 = (
+                values[f"motions/motion_{motion.number:02d}_{letter}.{end}"] for end in ("csv", "at2")
+            )
+            assert csv.values.tobytes() == at2.values.tobytes()
+            assert csv.times.tobytes() == at2.times.tobytes()
+        assert motion.end_velocity_m_s < 1e-10 and motion.end_displacement_m < 1e-9
+
+
+def test_on_a_floor_the_period_of_the_building_is_varied(tmp_path, brief):
+    more = "[building]\nz_over_h = 1.0\nbuilding_period_s = 0.5"
+    place = site_file(tmp_path, reference=0.6, further=0, motions="vertical = false", more=more)
+    result = run_site(load_site(place), tmp_path / "out", jobs=1)
+    own = [run for run in result.runs if run.stage == "set"]
+    assert {run.building_period_s for run in own} == {0.425, 0.5, 0.575}
+    assert {run.vertical_sign for run in own} == {0}
+    assert result.floor.peak_m_s2 > 2.0 * result.set.mean_pga_m_s2
+    assert result.result.further == ()
+    assert any("4.3.5.2" in method.source for method in result.methods)
+
+
+def records(folder, *, twice=False, scale=1.0, event=""):
+    """Three pairs of record files, sampled at 0.01 s."""
+    action = load_site("site").action
+    made = artificial_motions(action, count=3, seed=5)
+    if twice:
+        made[2] = made[0]
+    names = []
+    for number, motion in enumerate(made):
+        pair = []
+        for letter, component in motion.lettered.items():
+            name = f"r{number}_{letter}.at2"
+            described = (
+                f"{event or f'EVENT {number}'}, 1/1/20, STATION {number}, {'UP' if letter == 'v' else '090'}"
+            )
+            values = scale * component
+            write_at2(folder / name, motion.step, values / 9.80665 * 9.80665, described)
+            pair.append(name)
+        names.append(pair)
+    return f'source = "records"\nfiles = {json.dumps(names)}'
+
+
+def test_records_are_matched_to_the_site(tmp_path):
+    motions = records(tmp_path, scale=0.1).replace('"records"', '"matched"')
+    request = load_site(site_file(tmp_path, motions=motions))
+    found = check_set(ground_motions(request, 4.0), request.action)
+    assert found.valid and found.least_ratio > 0.9 and found.vertical_least_ratio > 0.9
+    assert found.mean_peak < 1.3 * found.wanted_peak
+
+
+def test_records_are_scaled_to_the_site(tmp_path, brief):
+    place = site_file(tmp_path, further=0, motions=records(tmp_path, scale=0.1))
+    result = run_site(load_site(place), tmp_path / "out", jobs=1)
+    assert result.set.valid and result.set.source == "records" and result.set.stationary_s is None
+    assert all(motion.scale > 5.0 for motion in result.set.motions)
+    assert min(result.set.mean_pga_m_s2 / 2.4, result.set.least_ratio / 0.9) == pytest.approx(1.0, abs=1e-6)
+
+
+def test_a_set_with_one_motion_twice_is_not_used(tmp_path, capsys):
+    place = site_file(tmp_path, further=0, motions=records(tmp_path, twice=True))
+    assert main(["assess", str(place), "--out", str(tmp_path / "out"), "-q"]) == 0
+    found = json.loads((tmp_path / "out" / "assess.json").read_text())
+    assert found["set"]["valid"] is False and found["runs"] == []
+    assert found["result"]["fulfilled"] is None
+    assert "Not valid" in capsys.readouterr().out
+    page = (tmp_path / "out" / "report.html").read_text()
+    assert "Not valid" in page and "one motion" in page
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda folder: records(folder, event="IZMIT"), "records of one event"),
+        (
+            lambda folder: (
+                'source = "records"\nfiles = [["a.at2","b.at2"],["c.at2","d.at2"],["e.at2","f.at2"]]'
+            ),
+            "a.at2",
+        ),
+        (
+            lambda folder: 'source = "records"\nfiles = [["../a.at2","b.at2"],["c","d"],["e","f"]]',
+            "in the folder",
+        ),
+        (lambda folder: 'source = "records"\nfiles = [["a.at2","b.at2"]]', "at least 3"),
+        (lambda folder: 'source = "records"\nfiles = [["a"],["b"],["c"]]', "vertical"),
+        (lambda folder: 'source = "records"', "files is missing"),
+        (lambda folder: "stationary_s = 5.0", "between 10 and 60 s"),
+    ],
+)
+def test_motions_that_cannot_be_used_are_refused(tmp_path, capsys, make, message):
+    motions = make(tmp_path)
+    text = site_file(tmp_path, motions=motions).read_text()
+    if "stationary_s = 5.0" in motions:
+        text = text.replace("stationary_s = 10.0\n", "", 1)
+    (tmp_path / "site.toml").write_text(text)
+    assert main(["assess", str(tmp_path / "site.toml"), "--out", str(tmp_path / "out"), "-q"]) == 2
+    assert message in capsys.readouterr().err
+
+
+def test_components_of_different_length_are_refused(tmp_path, capsys):
+    motions = records(tmp_path)
+    write_csv(tmp_path / "r0_v.at2", 0.005, np.zeros(100))
+    place = site_file(tmp_path, motions=motions)
+    assert main(["assess", str(place), "--out", str(tmp_path / "out"), "-q"]) == 2
+    assert "do not belong together" in capsys.readouterr().err
+
+
+def test_a_container_without_friction_is_refused_at_reading(tmp_path, capsys):
+    text = site_file(tmp_path).read_text()
+    (tmp_path / "site.toml").write_text(text.replace("mu_static = [0.4]", "mu_static = [0.0, 0.4]"))
+    assert main(["assess", str(tmp_path / "site.toml"), "--out", str(tmp_path / "out"), "-q"]) == 2
+    assert "[friction] mu_static must be positive" in capsys.readouterr().err
+
+
+def test_wind_on_a_tall_stack_is_refused_before_anything_is_computed(tmp_path, capsys):
+    place = site_file(tmp_path, more="[wind]\npeak_velocity_pressure_Pa = 500.0")
+    (tmp_path / "k1.toml").write_text(CONTAINER.replace("height_m = 4.0", "height_m = 16.0"))
+    assert main(["assess", str(place), "--out", str(tmp_path / "out"), "-q"]) == 2
+    assert "[wind] the wind row is for bodies up to 15 m" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("seconds", "told"), [(0.0, "1 s"), (0.2, "1 s"), (14.8, "20 s"), (20.0, "20 s"), (61.0, "1 min 10 s")]
+)
+def test_the_time_that_it_takes_at_most_is_rounded_up(seconds, told):
+    runs = Forecast(of_set=140, of_set_still=0, most=2460, seconds=seconds, deciding_seconds=31.0, cores=2)
+    assert f"up to roughly {told} on 2 cores; then the deciding runs" in runs.words
+    assert runs.words.endswith("roughly 40 s")
+
+
+def test_quick_is_never_fulfilled_of_a_container_that_moves(tmp_path, capsys, brief):
+    place = site_file(tmp_path, reference=3.2, motions="vertical = false")
+    assert main(["assess", str(place), "--out", str(tmp_path / "out"), "--quick", "-j", "1"]) == 0
+    shown = capsys.readouterr()
+    assert "3 to compute, up to 18 with repetitions: up to roughly" in shown.err
+    found = json.loads((tmp_path / "out" / "assess.json").read_text())["result"]
+    assert found["answer"] in ("not sure", "not fulfilled") and found["further"] == []
+    assert any("Left out by --quick" in reason for reason in found["reasons"])
+
+
+def test_a_container_that_rests_is_answered_without_a_run(tmp_path, monkeypatch, brief):
+    place = site_file(tmp_path, reference=0.8, further=72)
+    same = ground_motions(load_site(place), 4.0)[:1]
+    monkeypatch.setattr("fem.site.stages.further_motions", lambda *arguments: same * len(arguments[-1]))
+    result = run_site(load_site(place), tmp_path / "out", jobs=1, quick=True)
+    answer = result.result
+    assert (answer.answer, answer.still, answer.runs) == ("fulfilled", 6, 6)
+    assert answer.further[0].motions == 72 and answer.factor_at_first_movement > 1.5
+
+
+def test_an_empty_box_lighter_than_its_walls_is_refused(tmp_path, capsys):
+    (tmp_path / "site.toml").write_text(
+        load_site("site").origin.text.replace("empty_mass_kg = 600.0", "empty_mass_kg = 400.0")
+    )
+    assert main(["assess", str(tmp_path / "site.toml"), "--out", str(tmp_path / "out"), "-q"]) == 2
+    assert "empty_mass_kg: the walls and posts of one box weigh" in capsys.readouterr().err
+
+
+def test_the_folder_holds_the_files_of_points_so_that_it_can_be_repeated(tmp_path, brief):
+    tables = '[floor_spectrum]\nfile = "in/floor.csv"'
+    place = site_file(tmp_path, further=0, more=tables)
+    place.write_text(place.read_text().replace("k1.toml", "seed_stack"))
+    (tmp_path / "in").mkdir()
+    (tmp_path / "in" / "floor.csv").write_text("period_s,acceleration_m_s2\n0.03,0.1\n4,0.02\n")
+    asked = load_site(place)
+    run_site(asked, tmp_path / "out", quick=True, jobs=1)
+    again = load_site(tmp_path / "out" / "site.toml")
+    assert again.floor_target == asked.floor_target
+
+
+@pytest.mark.parametrize("most", [20_000_000, 1000])
+def test_a_folder_of_results_is_repeated_by_itself(tmp_path, monkeypatch, brief, most):
+    """From where it was moved, with the records of two folders; a record that is too large stays where it is."""
+    monkeypatch.setattr("fem.site.copies.MOST_COPIED", most)
+    target = load_site(site_file(tmp_path)).action
+    names = ["in/one.csv", "in/two.csv", "other/one.csv"]
+    for name, motion in zip(names, artificial_motions(target, count=3, seed=5, vertical=False), strict=True):
+        place = tmp_path / name
+        place.parent.mkdir(exist_ok=True)
+        write_csv(place, motion.step, 0.2 * motion.horizontal)
+    keys = 'source = "floor"\nvertical = false\nsecond_component = 0.0\n'
+    files = f"{keys}files = {[[name] for name in names]}  # as they came"
+    place = site_file(tmp_path, further=2, motions=files)
+    place.write_text(place.read_text().replace("count = 3\nstationary_s = 10.0\n", ""))
+    first = run_site(load_site(place), tmp_path / "out", quick=True, jobs=1)
+    copied = most > 1000
+    (tmp_path / "out").rename(tmp_path / "moved")
+    for name in ("site.toml", "k1.toml", *(names if copied else ())):
+        (tmp_path / name).unlink()
+    own = tmp_path / "moved" / "site.toml"
+    assert 'container = "container.toml"' in own.read_text() and "# as they came" in own.read_text()
+    again = run_site(load_site(own), tmp_path / "again", quick=True, jobs=1, allow_outside=not copied)
+    assert (again.result, again.runs) == (first.result, first.runs)
+    assert first.result.still == 3 and [one.motions for one in first.result.further] == [2]
+    assert [one.pga_m_s2 for one in again.set.motions] == [one.pga_m_s2 for one in first.set.motions]
+    left = [note for note in first.set.notes if "not copied" in note]
+    assert len(left) == (0 if copied else 3) and all("SHA-256" in note for note in left)
+
+
+def test_a_file_of_points_named_like_a_result_is_refused(tmp_path):
+    (tmp_path / "runs.csv").write_text("period_s,acceleration_m_s2\n0.03,0.1\n4,0.02\n")
+    asked = load_site(site_file(tmp_path, more='[floor_spectrum]\nfile = "runs.csv"'))
+    with pytest.raises(CaseError, match=r"\[floor_spectrum\] file is named 'runs.csv', like a result"):
+        run_site(asked, tmp_path / "out", jobs=1)
+    assert not (tmp_path / "out").exists()
