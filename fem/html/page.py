@@ -52,6 +52,7 @@ FILTERS = {
     "formula": formula_markup,
     "head": lambda figure: f"#{figure_head(figure)}",
     "mm": millimetres,
+    "millimetres": millimetres,
     "number": number,
     "quantity": quantity,
     "ratio": ratio,

@@ -113,6 +113,11 @@ class ResponseRequest:
                 "or a sweep over motion.frequency_Hz",
             ),
             (
+                case.floor.turn != 0.0,
+                f'[floor] motion_along must be "floor" {needed} on a slope, whose motion has no part normal to the '
+                "floor; take --set floor.motion_along=floor",
+            ),
+            (
                 case.container.is_loose,
                 f'[container] joints must be "bolted" {needed}, which follows one body; {sweep}',
             ),

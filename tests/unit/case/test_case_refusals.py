@@ -186,7 +186,7 @@ least    | floor.preset=asphalt & floor.poisson_ratio=0.5 | poisson_ratio must b
 least    | floor.preset=asphalt & contact.normal_penalty_Pa_m=1e9 |
            [contact] normal_penalty_Pa_m belongs to floor.kind = "rigid": the stiffness of a slab follows its
 least    | floor.preset=asphalt & contact.tangential_ratio=0.5 | [contact] tangential_ratio belongs to floor.kind =
-least    | floor.slope_percent=45.0 | slope_percent must be between -20 and 20 per cent, got 45 per cent; 1 to 2 is
+least    | floor.slope_percent=65.0 | slope_percent must be between -60 and 60 per cent, got 65 per cent; 1 to 2 is
 least    | solver.model=rigit | got the text 'rigit'; did you mean 'rigid'?
 least    | solver.order=3 | [solver] order must be between 1 and 2, got 3
 least    | solver.scheme=newmark & solver.newmark_beta=0.1 | newmark_beta must be at least newmark_gamma/2

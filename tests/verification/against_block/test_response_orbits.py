@@ -141,6 +141,7 @@ def test_a_slider_on_a_slope_walks_and_sways():
         motion__amplitude_m=0.1,
         motion__frequency_Hz=1.0,
         floor__slope_percent=2.0,
+        floor__motion_along="floor",
     )
     row = followed(request).row
     walked = 12 * abs(row.slip_walk_m)
