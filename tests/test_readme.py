@@ -6,6 +6,7 @@ import re
 import shlex
 import subprocess
 import sys
+from dataclasses import fields
 from pathlib import Path
 
 import pytest
@@ -15,8 +16,10 @@ from fem.__main__ import COMMANDS, main
 from fem.case.case import load_case
 from fem.case.files import CASES, DEFAULT_CASE
 from fem.render.opengl import MEND_PICTURES, probe_rendering
+from fem.response.records import PointRow
 from fem.run.run import RunOptions, run_case
 from fem.site.request import load_site
+from fem.sweep.file import load_sweep
 
 ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / "README.md", *sorted(ROOT.glob("*/README.md")), *sorted(ROOT.glob("fem/**/README.md"))]
@@ -202,3 +205,16 @@ def test_files_and_scripts_named_in_the_readme_exist():
     named = re.findall(r"`(?:python )?((?:tests|\.ci)/[\w/.]+)`", README)
     assert {"tests/benchmarks/bench.py", ".ci/run"} <= set(named)
     assert [name for name in named if not (ROOT / name).exists()] == []
+
+
+def test_symbols_of_the_paper_lead_to_keys_and_columns_that_there_are():
+    _, _, after = README.partition("| symbol | here |")
+    rows = [line.strip("|").split("|") for line in after.partition("\n\n")[0].splitlines()[2:]]
+    symbols = ", ".join(row[0] for row in rows)
+    wanted = ("a, b, c", "c/a", "PGA", "η", "ω, T", "β, α", "φ", "μs, μk", "ρ", "Lyapunov")
+    assert [symbol for symbol in wanted if symbol not in symbols] == []
+    case, columns = load_case(), {field.name for field in fields(PointRow)}
+    free = {axis.key for axis in load_sweep("friction_slenderness").axes}
+    for name in re.findall(r"`([\w.]+)`", " ".join(row[2] for row in rows)):
+        table, _, key = name.rpartition(".")
+        assert name in columns | free | set(COMMANDS) or hasattr(getattr(case, table), key), name

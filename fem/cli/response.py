@@ -1,7 +1,6 @@
 """`response`: long-time motion under a harmonic floor, frequency by frequency."""
 
 import importlib
-from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
@@ -97,15 +96,7 @@ def page_of(request: "ResponseRequest", result: "ResponseResult", folder: Path) 
     """The lines of a response curve, for people."""
     words = importlib.import_module("fem.response.answer")
     yield f"{result.case}: {result.title}" if result.title else result.case
-    yield (
-        f"  drive       {request.held_in_words}, {request.count} frequencies from {request.first_Hz:.4g} to "
-        f"{request.last_Hz:.4g} Hz, {request.order}"
-    )
-    yield f"  judged by   {request.observe} periods each, after {request.settle}"
-    for direction in ("up", "down"):
-        counted = Counter(point.words for point in result.points if point.direction == direction)
-        there = ", ".join(f"{word} at {count}" for word, count in counted.items())
-        yield f"  {direction:<11} {there or 'not reached'}"
+    yield f"  drive       {request.held_in_words}; {request.observe} periods judged, after {request.settle}"
     for at, lasting in words.lasting_in_words(result):
         yield f"  {at.frequency_Hz:<8.4g} Hz {lasting}"
     yield f"  stable      {words.stable_in_words(result) or 'nothing was judged'}"

@@ -15,7 +15,7 @@ from fem.results.kinds import RESPONSE
 from fem.runtime.identity import command_line
 from fem.study.driver import read_study
 
-FIGURES = ("figures/response_curve.svg", "figures/portraits.svg", "figures/sections.svg")
+FIGURES = ("figures/response_curve.svg", "figures/portraits.svg")
 METHOD = (
     "Long-time motion under a harmonic floor whose frequency is swept up and down, the motion carried on from one "
     "frequency to the next onto a floor that is whole, and from random states at each. Only the motions that these "

@@ -1,8 +1,8 @@
 """The answer of a response curve in one sentence, and what lasts at each frequency in words."""
 
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator
+from typing import NamedTuple
 
 from fem.response.lasting import AtFrequency, Coexistence, DropOut
 from fem.response.records import PointRow
@@ -16,19 +16,18 @@ STABLE = "amplitudes do not diverge, and without drive the motion dies out"
 MOST_RANGES = 3  #: of frequencies that are named
 
 
-@dataclass(frozen=True, kw_only=True)
-class Fates:
+class Fates(NamedTuple):
     """The points of a curve that have an outcome, by what became of the container."""
 
-    overturned: tuple[PointRow, ...]
-    destroyed: tuple[PointRow, ...]  #: one of its corners
-    slid: tuple[PointRow, ...]  #: beyond the limit
-    standing: tuple[PointRow, ...]
+    overturned: list[PointRow]
+    destroyed: list[PointRow]  #: one of its corners
+    slid: list[PointRow]  #: beyond the limit
+    standing: list[PointRow]
 
     @property
     def overturned_share(self) -> float | None:
         """Of the points that do not stand; None where there is none."""
-        count = sum(map(len, (self.overturned, self.destroyed, self.slid, self.standing)))
+        count = sum(map(len, self))
         return 1.0 - len(self.standing) / count if count else None
 
 
@@ -37,10 +36,10 @@ def fates_of(result: ResponseResult) -> Fates:
     limit = math.inf if result.limit_slip is None else result.limit_slip
     stands = [point for point in result.points if not point.fell and not point.says_nothing]
     return Fates(
-        overturned=tuple(point for point in result.points if point.fell),
-        destroyed=tuple(point for point in result.points if point.motion == Outcome.INVALID),
-        slid=tuple(point for point in stands if result.slid(point) > limit),
-        standing=tuple(point for point in stands if result.slid(point) <= limit),
+        [point for point in result.points if point.fell],
+        [point for point in result.points if point.motion == Outcome.INVALID],
+        [point for point in stands if result.slid(point) > limit],
+        [point for point in stands if result.slid(point) <= limit],
     )
 
 
@@ -139,7 +138,7 @@ def range_of(change: Coexistence | DropOut) -> str:
     return _range(change.from_Hz, change.to_Hz)
 
 
-def _counted(points: Sequence[PointRow]) -> str:
+def _counted(points: list[PointRow]) -> str:
     count = f"{len(points)} point{'s' * (len(points) != 1)}"
     return f"{count}, the first at {points[0].frequency_Hz:.4g} Hz going {points[0].direction}"
 

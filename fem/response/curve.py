@@ -19,7 +19,7 @@ from fem.model.container import Container
 from fem.response.decay import follow_decay
 from fem.response.lasting import differ, lasting_at
 from fem.response.model import DrivenModel, begin_drive, carry_drive
-from fem.response.orbit import Orbit, Progress, follow_periods, no_progress, step_until
+from fem.response.orbit import Orbit, Progress, follow_periods, no_progress, orbit_of, step_until
 from fem.response.records import PORTRAYED, PointRecord, record_of
 from fem.response.request import ResponseRequest
 from fem.response.stability import LongTime, classify
@@ -170,7 +170,7 @@ def _settled(
         status = step_until(before, until) if until > 0.0 else "completed"
         if status != "completed":
             reason = "failed before the first section" if status == "failed" else None
-            return before, Orbit.empty(status, reason)
+            return before, orbit_of(status, reason)
     return follow_periods(carry_drive(case, container, before), request.settle, progress=progress)
 
 

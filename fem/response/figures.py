@@ -1,4 +1,4 @@
-"""Figures of a response curve: amplitudes over frequency, sections over frequency, phase portraits.
+"""Figures of a response curve: amplitudes over frequency, and phase portraits with their sections.
 
 In degrees, mm, Hz. Up and down differ in colour, mark and line, so that they can be distinguished in grey. What is not
 valid is marked and not joined.
@@ -22,12 +22,11 @@ from fem.runtime.units import MILLIMETRES
 LOOKS: dict[str, dict[str, Any]] = {
     "up": {"color": style.BLUE, "marker": "^", "linestyle": "-"},
     "down": {"color": style.VERMILLION, "marker": "v", "linestyle": "--"},
-    "start": {"color": style.PURPLE, "marker": "o", "linestyle": ":"},
+    "start": {"color": style.PURPLE},
 }
 SMALL: dict[str, Any] = {"markersize": 3.5, "markeredgewidth": 0.0}
 DOTS: dict[str, Any] = {"linestyle": "none", "marker": "o", "markersize": 2.6, "markeredgewidth": 0.0}
 SHELL: dict[str, Any] = {"color": style.GREEN, "linewidth": 0.9}
-LEADS = {"start": "from random states"}
 PORTRAITS = 5  #: frequencies whose motions are drawn
 COLUMNS = 3
 FREQUENCY = "frequency of the drive [Hz]"
@@ -39,7 +38,7 @@ def response_figures(request: ResponseRequest, records: Sequence[PointRecord]) -
     with style.house_style():
         drawn = {"response_curve": draw_curves(request, records)} if records else {}
         if any(record.stands for record in own):
-            drawn |= {"sections": draw_sections(request, own), "portraits": draw_portraits(own)}
+            drawn |= {"portraits": draw_portraits(own)}
         return {name: style.svg_of(figure) for name, figure in drawn.items()}
 
 
@@ -108,35 +107,6 @@ def draw_curves(request: ResponseRequest, records: Sequence[PointRecord]) -> Fig
     )
     below.set_xlabel("η = Ω/ω, over the frequency parameter ω of the container")
     style.legend_above(rotation)
-    return figure
-
-
-def draw_sections(request: ResponseRequest, records: Sequence[PointRecord]) -> Figure:
-    """Rotation at the sections over frequency: n dots for a motion of period n, a smear for one without period."""
-    figure, (axes,) = style.panels((3.2,), header=3)
-    style.head(
-        figure,
-        "Poincaré sections: rotation at the instant at which the floor turns back at +A",
-        "n dots belong to a motion that repeats after n periods of the drive, a smear to one that does not repeat",
-    )
-    for direction, look in LOOKS.items():
-        standing = [
-            record for record in shown(records) if record.row.direction == direction and record.stands
-        ]
-        if standing:
-            sections = [record.sections[-(record.row.period_n or 0) :, 0] for record in standing]
-            places = np.repeat(
-                [record.row.frequency_Hz for record in standing], [part.size for part in sections]
-            )
-            turned = np.degrees(np.concatenate(sections))
-            label = LEADS.get(direction, direction)
-            axes.plot(
-                places, turned, label=label, **DOTS | {"color": look["color"], "marker": look["marker"]}
-            )
-    axes.set_ylabel("rotation [deg]")
-    axes.set_xlabel(FREQUENCY)
-    _frequency_axis(axes, request)
-    style.legend_above(axes)
     return figure
 
 

@@ -6,6 +6,7 @@ The stepping ends a step at each section, the floor's turning point at +A.
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -47,14 +48,6 @@ class Orbit:
     extremes: FloatArray  #: (n, 7), see `EXTREME_COLUMNS`
     portrait: FloatArray  #: (n_samples, 2) rotation [rad] and angular velocity [rad/s] over the last periods
     reason: str | None = None  #: why it failed
-
-    @classmethod
-    def empty(cls, status: str, reason: str | None) -> "Orbit":
-        """Of a motion that ended before its first section."""
-        sections, extremes = np.zeros((0, len(SECTION_COLUMNS))), np.zeros((0, len(EXTREME_COLUMNS)))
-        return cls(
-            status=status, sections=sections, extremes=extremes, portrait=np.zeros((0, 2)), reason=reason
-        )
 
 
 def no_progress(time: float, rotation: float, mode: int) -> None:
@@ -124,11 +117,17 @@ def follow_periods(
     else:
         reason = reason or audit(driven.model)
         status = "failed" if reason else status
-    return driven, Orbit(
+    return driven, orbit_of(status, reason, sections, extremes, portraits)
+
+
+def orbit_of(status: str, reason: str | None, *periods: list[Any]) -> Orbit:
+    """An orbit from the sections, extremes and portraits of its periods; without these, of a motion that had none."""
+    sections, extremes, portraits = periods or ([], [], [])
+    return Orbit(
         status=status,
         sections=np.array(sections).reshape(-1, len(SECTION_COLUMNS)),
         extremes=np.array(extremes).reshape(-1, len(EXTREME_COLUMNS)),
-        portrait=np.concatenate(portraits) if portraits else np.zeros((0, 2)),
+        portrait=np.concatenate([np.zeros((0, 2)), *portraits]),
         reason=reason,
     )
 

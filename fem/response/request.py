@@ -56,13 +56,10 @@ class ResponseRequest:
         self._require_followed_case()
         for name, value in (("--from", self.first_Hz), ("--to", self.last_Hz)):
             if not LEAST_HZ <= value <= MOST_HZ:
+                why = "an angular frequency Omega in rad/s is Omega/(2 pi) in Hz"
+                why = why if value else "with eta = 0 the floor does not move"
                 raise CaseError(
-                    f"{name} must lie between {LEAST_HZ:g} and {MOST_HZ:g} Hz, got {value:g} Hz; "
-                    + (
-                        "with eta = 0 the floor does not move"
-                        if value == 0.0
-                        else "an angular frequency Omega in rad/s is Omega/(2 pi) in Hz"
-                    )
+                    f"{name} must lie between {LEAST_HZ:g} and {MOST_HZ:g} Hz, got {value:g} Hz; {why}"
                 )
         if not self.first_Hz < self.last_Hz:
             raise CaseError(
@@ -94,10 +91,7 @@ class ResponseRequest:
                 SLIP_LIMIT.check(self.limit_slip_m)
             except ValueError as error:
                 raise CaseError(f"--limit-slip {error}") from None
-        for number in (
-            0,
-            self.count - 1,
-        ):  # what the case refuses there is refused before anything is computed
+        for number in (0, self.count - 1):  # refused there, it is refused before anything is computed
             self.case_at(number)
 
     def _require_followed_case(self) -> None:

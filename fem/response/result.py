@@ -20,7 +20,6 @@ class ResponseResult(StudyResult):
     frequencies: tuple[AtFrequency, ...] = ()  #: what lasts at each, whatever led to it
     coexisting: tuple[Coexistence, ...] = ()
     drop_outs: tuple[DropOut, ...] = ()
-    stable_everywhere: bool | None = None  #: None without a point
     #: of the points with an outcome that do not stand: overturned, a corner destroyed, slid beyond the limit
     overturned_share: float | None = None
     starts_fell_share: float | None = None  #: of the random states, all frequencies; None without any

@@ -96,7 +96,6 @@ def _compute(
         frequencies=frequencies,
         coexisting=tuple(coexistences(frequencies)),
         drop_outs=tuple(drop_outs(own)),
-        stable_everywhere=all(record.row.stable for record in swept) if swept else None,
         starts_fell_share=fell_share(frequencies),
     )
     if status == INTERRUPTED:

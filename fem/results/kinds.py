@@ -102,14 +102,8 @@ RESPONSE = ResultKind(
     mark="response.json",
     results="response.csv",
     own=(
-        "response.csv",
-        "starts.csv",
-        "shell.csv",
-        "sections.csv",
-        "portraits.csv",
-        "case.toml",
-        "state.npz",
-        "figures/*.svg",
+        *("response.csv", "starts.csv", "shell.csv", "sections.csv", "portraits.csv"),
+        *("case.toml", "state.npz", "figures/*.svg"),
     ),
     temporary=("state.npz",),
 )

@@ -125,7 +125,7 @@ def test_a_cell_stands_where_its_axes_say():
 
 def test_cells_are_rectangles_and_no_image_that_a_viewer_blurs():
     drawn = svg_of(sweep_map(table_of(FREQUENCY, PEAK, copies=True), "outcome", MapChoice()))
-    assert "<image" not in drawn and "crispEdges" in drawn
+    assert "<image" not in drawn
 
 
 @pytest.mark.parametrize("case", ["seed_stack_plateau", "my-stack"])
@@ -133,12 +133,10 @@ def test_the_paper_is_marked_on_maps_of_its_containers_alone(case):
     table = table_of(OMEGA, MU)
     marked = replace(table, info=replace(table.info, case=case))
     (axes,) = panels_of(sweep_map(marked, "rotation", MapChoice()))
-    crosses = [line for line in axes.lines if line.get_marker() == "+"]
-    assert len(crosses) == (case != "my-stack")
-    for line in crosses:  # between the frequencies 6 and 8, on mu 0.4
-        ((x, y),) = line.get_xydata()
-        values = sorted(zip((axes.get_xlabel(), axes.get_ylabel()), (x, y), strict=True))
-        assert [value for _, value in values] == pytest.approx([1.464, 2.0])
+    crosses = [sorted(line.get_xydata()[0]) for line in axes.lines if line.get_marker() == "+"]
+    assert crosses == (
+        [] if case == "my-stack" else [pytest.approx([1.464, 2.0])]
+    )  # of 6.928 rad/s and mu 0.4
 
 
 def test_failed_cells_have_their_own_colour():
