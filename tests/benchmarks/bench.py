@@ -28,12 +28,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import psutil
 from distributed import LocalCluster
-from fem.study.axes import read_axis
-from fem.study.cluster import cluster
-from fem.study.runner import CASES_AT_A_TIME, run_cases
-from fem.study.workers import hand_out
-from fem.sweep.file import load_sweep
-from fem.sweep.run import run_sweep
+from fem.study.sweep import load_sweep
+from fem.study.sweep import run_sweep
 
 import fem
 from contact.stepping.outcome import run_to_end
@@ -55,6 +51,10 @@ from fem.run.simulation import simulate
 from fem.seismic.action import SiteAction, eurocode_shape
 from fem.seismic.artificial import artificial_motions
 from fem.solid.nodal_body import advance_body
+from fem.study.axes import read_axis
+from fem.study.cluster import cluster
+from fem.study.runner import CASES_AT_A_TIME, run_cases
+from fem.study.workers import hand_out
 
 sys.path.append(str(Path(__file__).parents[1] / "rigs"))
 from moreau import slide_and_rock_batch
