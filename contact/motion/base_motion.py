@@ -7,7 +7,7 @@ acceleration jumps or its formula changes), `span` and `time_scale` are for the 
 
 import math
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import Literal
 
 import numpy as np
@@ -16,8 +16,11 @@ from contact.arrays import FloatArray
 from contact.motion.kernel import (
     HALF_SINE,
     HARMONIC,
+    PART,
+    PIECEWISE,
     RECTANGULAR,
     SINE,
+    SUM,
     UNIFORM,
     FloorMotion,
     as_floor_motion,
@@ -256,4 +259,125 @@ class PulseMotion:
         return floor_history(self.compiled(), times)
 
 
-BaseMotion = NoMotion | HarmonicMotion | PulseMotion | TableMotion
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SumOfMotions:
+    """Two motions of any kinds at once, such as what a horizontal and a vertical one are along a slope."""
+
+    parts: tuple[HarmonicMotion | PulseMotion | TableMotion, ...]
+
+    @property
+    def peak_acceleration(self) -> float:
+        """Largest |acceleration| [m/s2]."""
+        return self.peak_within(self._end)
+
+    @property
+    def _end(self) -> float:
+        """Of the run, where a part goes on for as long as that [s]."""
+        return max(getattr(part, "duration", part.span[1]) for part in self.parts)
+
+    @property
+    def break_times(self) -> FloatArray:
+        """Those of all parts, shape (n,) [s]."""
+        return np.unique(np.concatenate([part.break_times for part in self.parts]))
+
+    @property
+    def time_scale(self) -> float:
+        """The shortest of its parts [s]."""
+        return min(part.time_scale for part in self.parts)
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """Start of the first and end of the last [s]."""
+        return min(part.span[0] for part in self.parts), max(part.span[1] for part in self.parts)
+
+    def peak_within(self, duration: float) -> float:
+        """Largest |acceleration| from 0 to `duration`, at instants that are dense for every part [m/s2]."""
+        end = min(duration, self._end)
+        count = 1 + math.ceil(SAMPLES_PER_CYCLE * end / self.time_scale)
+        tables = [part.times for part in self.parts if isinstance(part, TableMotion)]
+        instants = np.unique(
+            np.concatenate([np.linspace(0.0, end, min(count, 10**6)), self.break_times, *tables])
+        )
+        inside = instants[(instants >= 0.0) & (instants <= end)]
+        return float(np.abs(self.evaluate(inside)[2]).max())
+
+    def compiled(self) -> FloorMotion:
+        """Data for `floor_motion`: tables as one of both times, and the other parts one behind the other."""
+        return self._compiled
+
+    @cached_property
+    def _compiled(self) -> FloorMotion:
+        own = [part.compiled() for part in self.parts]
+        tables = [data for data in own if data.kind == PIECEWISE]
+        numbers = [
+            number
+            for data in own
+            if data.kind != PIECEWISE
+            for number in (float(data.kind), *data.parameters, *[0.0] * (PART - 1 - data.parameters.size))
+        ]
+        knots = np.unique(np.concatenate([np.empty(0), *(data.breaks for data in tables)]))
+        rows = sum((_rows_at(data, knots) for data in tables), start=np.zeros((knots.size + 1, 4)))
+        return as_floor_motion(SUM if numbers else PIECEWISE, tuple(numbers), breaks=knots, coefficients=rows)
+
+    def evaluate(self, times: FloatArray) -> FloatArray:
+        """Displacement, velocity, acceleration at the times [s], shape (3, n_times)."""
+        return floor_history(self.compiled(), times)
+
+
+def _rows_at(table: FloorMotion, knots: FloatArray) -> FloatArray:
+    """The coefficients of a table with more knots than its own, among these, shape (k + 1, 4)."""
+    if not knots.size:
+        return np.zeros((1, 4))
+    row = np.append(0, np.searchsorted(table.breaks, knots, side="right"))
+    s = np.append(knots[0], knots) - table.breaks[np.maximum(row - 1, 0)]
+    x, v, a, jerk = table.coefficients[row].T
+    return np.column_stack(
+        [x + s * (v + s * (0.5 * a + s * jerk / 6.0)), v + s * (a + 0.5 * s * jerk), a + s * jerk, jerk]
+    )
+
+
+SingleMotion = NoMotion | HarmonicMotion | PulseMotion | TableMotion
+BaseMotion = SingleMotion | SumOfMotions
+
+
+def along_and_normal(
+    horizontal: SingleMotion, vertical: SingleMotion, slope: float
+) -> tuple[BaseMotion, BaseMotion]:
+    """A horizontal and a vertical motion as those along a floor and normal to it.
+
+    Args:
+        slope: angle of the floor, > 0: it falls toward +x [rad].
+    """
+    cosine, sine = math.cos(slope), math.sin(slope)
+    return (
+        _combined(_scaled(horizontal, cosine), _scaled(vertical, -sine)),
+        _combined(_scaled(horizontal, sine), _scaled(vertical, cosine)),
+    )
+
+
+def _scaled(motion: SingleMotion, factor: float) -> SingleMotion:
+    match motion:
+        case HarmonicMotion():
+            turn = math.pi if factor < 0.0 else 0.0
+            return replace(motion, amplitude=abs(factor) * motion.amplitude, phase=motion.phase + turn)
+        case PulseMotion():
+            return replace(motion, acceleration=factor * motion.acceleration)
+        case TableMotion():
+            return replace(motion, values=factor * motion.values)
+    return motion
+
+
+def _combined(one: SingleMotion, other: SingleMotion) -> BaseMotion:
+    """Two motions at once."""
+    if isinstance(one, NoMotion):
+        return other
+    if isinstance(other, NoMotion):
+        return one
+    if (
+        isinstance(one, TableMotion)
+        and isinstance(other, TableMotion)
+        and one.quantity == other.quantity
+        and np.array_equal(one.times, other.times)
+    ):
+        return replace(one, values=one.values + other.values)
+    return SumOfMotions(parts=(one, other))

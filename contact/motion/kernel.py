@@ -16,7 +16,8 @@ from contact.jit import compiled
 from contact.structs import struct
 
 # Meaning of `FloorMotion.kind`.
-UNIFORM, HARMONIC, RECTANGULAR, HALF_SINE, SINE, PIECEWISE = 0, 1, 2, 3, 4, 5
+UNIFORM, HARMONIC, RECTANGULAR, HALF_SINE, SINE, PIECEWISE, SUM = 0, 1, 2, 3, 4, 5, 6
+PART = 6  #: numbers of a part of a SUM in its parameters: its kind, and five parameters
 
 
 @struct
@@ -30,7 +31,9 @@ class FloorMotion(NamedTuple):
     - RECTANGULAR, HALF_SINE, SINE: peak acceleration (signed), length, delay;
     - PIECEWISE: none; `breaks` are the knots, shape (k,) [s], and `coefficients`, shape (k + 1, 4), hold
       displacement, velocity, acceleration and jerk: row 0 before the first knot (referred to it), row i from
-      knot i - 1 on.
+      knot i - 1 on;
+    - SUM: kind and parameters of each part, harmonic or a pulse, one behind the other; besides a PIECEWISE one, where
+      there are breaks.
     """
 
     kind: int
@@ -121,6 +124,21 @@ def _piecewise(breaks: FloatArray, coefficients: FloatArray, time: float) -> tup
     )
 
 
+@compiled
+def _sum(motion: FloorMotion, time: float) -> tuple[float, float, float]:
+    x, v, a = 0.0, 0.0, 0.0
+    if motion.breaks.size > 0:
+        x, v, a = _piecewise(motion.breaks, motion.coefficients, time)
+    for k in range(motion.parameters.size // PART):
+        kind, own = int(motion.parameters[PART * k]), motion.parameters[PART * k + 1 : PART * (k + 1)]
+        if kind == HARMONIC:
+            part_x, part_v, part_a = _harmonic(own, time)
+        else:
+            part_x, part_v, part_a = _pulse(kind, own[:3], time)
+        x, v, a = x + part_x, v + part_v, a + part_a
+    return x, v, a
+
+
 @partial(compiled, inline=True)
 def floor_motion(motion: FloorMotion, time: float) -> tuple[float, float, float]:
     """Displacement [m], velocity [m/s] and acceleration [m/s2] of the floor at `time` [s]."""
@@ -131,6 +149,8 @@ def floor_motion(motion: FloorMotion, time: float) -> tuple[float, float, float]
     if motion.kind == UNIFORM:
         start, displacement, velocity = motion.parameters
         return displacement + velocity * (time - start), velocity, 0.0
+    if motion.kind == SUM:
+        return _sum(motion, time)
     return _pulse(motion.kind, motion.parameters, time)
 
 

@@ -157,6 +157,7 @@ def is_over(run: RunState, part: int) -> bool:
 
     At rest, kinetic energy in the frame of the floor and gravity potential above that of the container resting there
     are together below a share of the energy to overturn, at every look for some time; the floor must not accelerate.
+    Where something beside it may hold the container, the kinetic energy alone.
     The times of the looks do not depend on the slices.
     """
     clock, track, control = run.clock[0], run.track[0], run.problem.control
@@ -180,7 +181,10 @@ def is_over(run: RunState, part: int) -> bool:
     else:
         points = control.base_points
         sunk = 0.5 * (least_sunk(run, 0, (points + 1) // 2) + least_sunk(run, points // 2, points))
-    raised = max(0.0, lifting_energy(control, run.old, run.floor[0, 0], sunk)) if part == FREE else 0.0
+    held = run.links.shape[0] > 0  # what leans on a stop or on the next body stays raised
+    raised = 0.0
+    if part == FREE and not held:
+        raised = max(0.0, lifting_energy(control, run.old, run.floor[0, 0], sunk))
     if moving + raised > RESTING_ENERGY * control.reference_energy:
         clock.rest_since = NEVER
         return False

@@ -13,23 +13,24 @@ import numpy as np
 
 from contact.interface.penalty import contact_frequency
 from contact.motion.base_motion import BaseMotion
-from contact.motion.kernel import PIECEWISE, floor_motion
+from contact.motion.kernel import PIECEWISE, SUM, floor_motion
 from contact.reference.floor_acceleration import FloorAcceleration
 from contact.reference.planar_block import PlanarBlock, simulate_planar_block
 from contact.reference.planar_motion import PlanarImpact, PlanarMode
 from contact.reference.rigid_block import RigidBlock
-from contact.reference.rocking import RockingImpact, simulate_rocking
+from contact.reference.rocking import RockingImpact, RockingMotion, simulate_rocking
 from contact.stepping.observables import ROCKING, SLIDING
 from fem.assessment.loose_boxes import AS_ONE, joints_in_words
 from fem.model.model import Model
 from fem.results.history import ANALYTIC_COLUMN, History
-from fem.results.run_result import PeakPair, RigidCheckResult, RunAndBlock, Verdict
+from fem.results.run_result import AnalyticBlock, PeakPair, RigidCheckResult, RunAndBlock, Verdict
 from fem.runtime.arrays import FloatArray
 
 STIFF_CONTAINER = 7.0  #: first elastic over contact frequency, from which an impact is a rigid block's
 SOFT_FLOOR = 1e-3  #: static penetration over width times slenderness angle: the gap that counts as an impact
 BOUNCING_CONTACT = 1.0  #: contact damping ratio below which an impact is not plastic
 OFF_CENTRE = 1e-6  #: of the mass centre, over the width
+SAMPLES_OF_SLIP, SAMPLES_OF_FORCES = 200.0, 500.0  #: of the analytic block, a second
 PEAKS = 6  #: turning points that are compared
 #: times [s] -> rotation [rad], angular velocity [rad/s], each of shape (n,)
 RotationAt = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
@@ -107,6 +108,59 @@ def check_against_rigid_block(model: Model, history: History, verdict: Verdict) 
     return RigidCheck(result=result, rows=rows)
 
 
+def analytic_block(model: Model, end: float) -> AnalyticBlock:
+    """The rigid block of a container under its motion, up to `end` [s].
+
+    Raises:
+        EventError: the block changes its state too often.
+    """
+    case, angle = model.case, model.static.slenderness_angle
+    floor, start = _floor_and_start(model)
+    rotation, rate = case.initial.rotation_rad, case.initial.angular_velocity_rad_s
+    friction = PlanarBlock(
+        body=block_of(model), mu_static=case.contact.mu_static, mu_kinetic=case.contact.mu_kinetic
+    )
+    block = simulate_planar_block(
+        friction, floor, duration=end, rotation=rotation, angular_velocity=rate, slip_velocity=start
+    )
+    times = np.linspace(0.0, block.end, max(2, math.ceil(SAMPLES_OF_SLIP * block.end)))
+    slip = block.at(times).slip
+    held = simulate_rocking(friction.body, floor, duration=end, rotation=rotation, angular_velocity=rate)
+    needed = None if held.overturned_at is not None else friction_needed(held, floor)
+    return AnalyticBlock(
+        outcome=None if block.outcome is PlanarMode.OUTSIDE else block.outcome.value,
+        rotation_ratio=block.largest_rotation / angle,
+        max_slip_m=float(np.nanmax(np.abs(slip))) if np.isfinite(slip).any() else None,
+        friction_needed=needed,
+    )
+
+
+def friction_needed(held: RockingMotion, floor: FloorAcceleration) -> float | None:
+    """Largest |tangential| over normal force of a block that cannot slide, impacts aside [-].
+
+    About its corner its mass centre is at s = R (-sin l, cos l), l the slenderness angle less |rotation|, on the side
+    of the corner; T and N follow from the acceleration of that and of the floor.
+
+    Returns:
+        None where the block leaves the floor.
+    """
+    times = np.linspace(0.0, held.end, max(2, math.ceil(SAMPLES_OF_FORCES * held.end)))
+    rotation, rate = held.at(times)
+    known = np.isfinite(rotation)
+    times, rotation, rate = times[known], rotation[known], rate[known]
+    shake = np.array([(floor.function(time), floor.vertical(time)) for time in times.tolist()])
+    block, side = held.block, np.sign(rotation)
+    lean, pull = block.slenderness_angle - np.abs(rotation), shake[:, 1] + block.gravity
+    swing = -(block.frequency_parameter**2) / block.gravity
+    swing = swing * (pull * np.sin(lean) + side * shake[:, 0] * np.cos(lean))  # of |rotation|
+    along = side * block.radius * (np.cos(lean) * swing + np.sin(lean) * rate**2) * (side != 0.0)
+    up = block.radius * (np.sin(lean) * swing - np.cos(lean) * rate**2) * (side != 0.0)
+    normal = pull + up
+    if not np.all(normal > 0.0):
+        return None
+    return float(np.max(np.abs(shake[:, 0] + along) / normal))
+
+
 def block_of(model: Model) -> RigidBlock:
     """The rigid block with the mesh's mass centre and inertia on the points about which it turns."""
     mesh = model.container.mesh
@@ -127,10 +181,7 @@ def follow_block(model: Model, end: float) -> Reference:
     gravity is g + a_v; on a slope, the part of gravity along it is an acceleration of the floor uphill.
     """
     case, block = model.case, block_of(model)
-    floor = floor_of(model.motion, driven_until=model.duration).on_slope(case.gravity_downhill)
-    if case.has_vertical:
-        floor = floor.with_vertical(floor_of(model.vertical, driven_until=model.duration))
-    jerk = 0.0 if case.starts_moving else floor_motion(model.motion.compiled(), 0.0)[1]
+    floor, start = _floor_and_start(model)
     rotation, rate = case.initial.rotation_rad, case.initial.angular_velocity_rad_s
 
     def had_tilted(at: RotationAt, impact: PlanarImpact | RockingImpact) -> bool:
@@ -143,9 +194,9 @@ def follow_block(model: Model, end: float) -> Reference:
         duration=end,
         rotation=rotation,
         angular_velocity=rate,
-        slip_velocity=case.initial.velocity_m_s - jerk,
+        slip_velocity=start,
     )
-    left = case.has_vertical and sliding.outcome is PlanarMode.OUTSIDE
+    left = case.has_normal and sliding.outcome is PlanarMode.OUTSIDE
     if left or sliding.modes & {PlanarMode.SLIDE, PlanarMode.SLIDE_ROCK}:
 
         def at(times: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -166,11 +217,21 @@ def follow_block(model: Model, end: float) -> Reference:
     )
 
 
+def _floor_and_start(model: Model) -> tuple[FloorAcceleration, float]:
+    """The acceleration of a run's floor, with its slope and vertical motion, and the slip velocity at t = 0 [m/s]."""
+    case = model.case
+    floor = floor_of(model.motion, driven_until=model.duration).on_slope(case.gravity_downhill)
+    if case.has_normal:
+        floor = floor.with_vertical(floor_of(model.vertical, driven_until=model.duration))
+    jerk = 0.0 if case.starts_moving else floor_motion(model.motion.compiled(), 0.0)[1]
+    return floor, case.initial.velocity_m_s - jerk
+
+
 def floor_of(motion: BaseMotion, *, driven_until: float) -> FloorAcceleration:
     """Acceleration of the floor of a run, zero after its duration."""
     data = motion.compiled()
     breaks = {*motion.break_times.tolist(), driven_until}
-    if data.kind == PIECEWISE:  # it bends at every sample
+    if data.kind in (PIECEWISE, SUM):  # it bends at every sample
         breaks |= set(data.breaks.tolist())
 
     def acceleration(time: float) -> float:

@@ -36,7 +36,7 @@ from fem.results import run_result
 from fem.results.figures import BRIEF, FIGURES, SUMMARY, Place, summary_order
 from fem.results.kinds import RUN
 from fem.results.outcome import ENDINGS, ROCKING, SLIDING, Outcome
-from fem.runtime.units import DEGREES, INVISIBLE, visible_number
+from fem.runtime.units import DEGREES, INVISIBLE, MILLIMETRES, RATIO, visible_number
 
 TEXT_WIDTH = 80
 LEANING = 0.01  #: tilt at the end over the slenderness angle from which it is said
@@ -311,6 +311,7 @@ def result_rows(result: run_result.RunResult) -> list[tuple[str, str]]:
         ("states seen", ", ".join(states)),
     ]
     rows += _figure_rows(result, SUMMARY, behind)
+    rows.append(("analytic block, same motion", _analytic(verdict.analytic)))
     rows += [
         ("bolts, largest tension and shear", bolt_forces(result)),
         ("outcomes of the band", _band(verdict.band)),
@@ -369,6 +370,16 @@ def _band(band: run_result.Band | None) -> str:
     failed = sum(member.outcome is None for member in band.members)
     counts = f"{runs} runs" + (f", {failed} failed" if failed else "")
     return f"{', '.join(band.outcomes)} in {counts}"
+
+
+def _analytic(block: run_result.AnalyticBlock | None) -> str:
+    """What the analytic rigid block does under the same motion on rigid ground; empty where there is none."""
+    if block is None:
+        return ""
+    if block.outcome is None:
+        return "leaves the floor, which its formulas do not follow"
+    reached = f"{Outcome(block.outcome).verb}, to {RATIO.text(block.rotation_ratio)} of the slenderness angle"
+    return f"{reached}, slip {MILLIMETRES.text(block.max_slip_m)}"
 
 
 def _rigid_rows(check: run_result.RigidCheckResult | None, angle: float | None) -> list[tuple[str, str]]:

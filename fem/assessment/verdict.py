@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from contact.interface.penalty import contact_frequency
-from contact.stepping.body import ROTATION, State
+from contact.stepping.body import ROTATION
 from contact.stepping.ledger import (
     BASE_WORK,
     CONTACT_DAMPING,
@@ -140,7 +140,7 @@ def verdict_from(
         flight_share=track.flight_time / track.rocking_time if track.rocking_time > 0.0 else None,
         slip_peak_to_peak_m=_peak_to_peak(model, end, time, slip),
         max_indentation_m=_indentation(model),
-        tilt_rad=None if outcome == Outcome.OVERTURNED else _tilt(run.old, track),
+        tilt_rad=None if outcome == Outcome.OVERTURNED else _tilt(model),
         restored=rocked and _largest_rotation(model) < ROCKING * angle,
         at_rest_s=_finite(float(run.clock[0].rest_since)),
         restitution_first=None if model.container.row else _restitution(track),
@@ -261,9 +261,10 @@ def _largest_rotation(model: Model) -> float:
     return float(np.abs(state.boxes[:, ROTATION] if _is_loose(model) else state.pose[ROTATION]).max())
 
 
-def _tilt(state: State, track: SimpleNamespace) -> float | None:
+def _tilt(model: Model) -> float | None:
     """Rotation, of a loose stack that of its lowest box [rad]; None while it turns about one side."""
-    if track.left_open + track.right_open > 0:
+    state, track, at_rest = model.run.old, model.run.track[0], math.isfinite(model.run.clock[0].rest_since)
+    if track.left_open + track.right_open > 0 and not at_rest:
         return None
     return float(state.boxes[0, ROTATION] if len(state.boxes) else state.pose[ROTATION])
 

@@ -7,6 +7,7 @@ that raised it, the limit, and what can be done. No warning changes a verdict.
 import math
 from collections.abc import Callable
 
+from contact.stepping.observables import SLIDING
 from fem.assessment.motion_words import doubts
 from fem.assessment.ranges import plastic_corner
 from fem.assessment.sure_words import sureness_in_words
@@ -14,6 +15,7 @@ from fem.assessment.sureness import REGIME_UNSURE, UNSURE
 from fem.assessment.verdict import GAIN_LIMIT, LOSS_LIMIT, LOSS_SHARE_LIMIT
 from fem.case.case import Case
 from fem.case.tables.duration import MOST_FREE_MOTION, ends_at_rest, longest_time
+from fem.case.tables.input_keys import WEAKENING
 from fem.case.tables.unknown_inputs import in_words
 from fem.results import run_result
 from fem.results.outcome import Outcome
@@ -22,6 +24,8 @@ from fem.results.outcome import Outcome
 ROCKING_RATIO = 0.01
 NEAR = 0.5  #: share of a limit from which there is a warning
 REJECTED_SHARE = 0.05
+FLIGHT = 0.05  #: share of the rocking in the air from which it is said
+ROCKS = (Outcome.ROCK, Outcome.SLIDE_ROCK)
 #: largest von Mises stress over Young's modulus up to which `reduced` and `full` agree within 5 %: blocks of one to ten
 #: boxes, corners and flat, of 1e9 to 1.5e6 Pa; at 0.024 they differ by 9 % (`fem/README.md`)
 SMALL_STRAIN = 0.01
@@ -48,6 +52,57 @@ def verdict_is_unsure(result: run_result.RunResult, case: Case) -> str | None:
         else ""
     )
     return f"{words[0].lower()}{words[1:]}{failures}"
+
+
+def friction_decides(result: run_result.RunResult, case: Case) -> str | None:
+    """Rocking takes more friction than is left once the container slides: a landing decides which it does."""
+    analytic = _verdict(result).analytic
+    needed = None if analytic is None else analytic.friction_needed
+    static, kinetic = case.contact.mu_static, case.contact.mu_kinetic
+    if needed is None or not kinetic < needed < static or _verdict(result).outcome not in ROCKS:
+        return None
+    members = _verdict(result).band.members if _verdict(result).band else ()
+    gradual = [member for member in members if [*(member.values or {})] == [WEAKENING] and member.outcome]
+    gentlest = max(gradual, key=lambda member: member.values[WEAKENING], default=None)
+    return (
+        f"to rock without sliding takes friction of {needed:.2g}: static friction ({static:g}) gives it, kinetic "
+        f"friction ({kinetic:g}) does not, so one landing that breaks it loose decides"
+        + (
+            f"; if friction falls over {1e3 * gentlest.values[WEAKENING]:g} mm of slip instead of at once, it reaches "
+            f"{gentlest.rotation_ratio:.2g} of its slenderness angle, slip {1e3 * (gentlest.max_slip_m or 0.0):.3g} mm"
+            if gentlest is not None and gentlest.rotation_ratio is not None
+            else ""
+        )
+    )
+
+
+def weakening_is_too_short(result: run_result.RunResult, case: Case) -> str | None:
+    """A fall of friction over less than the slip from which a base counts as sliding is a fall at once."""
+    weakening, least = case.contact.weakening_m, SLIDING * case.stack[0].width
+    if not 0.0 < weakening < least:
+        return None
+    return (
+        f"friction falls over {1e3 * weakening:.3g} mm of slip, but sliding counts from {1e3 * least:.3g} mm on: "
+        "it falls at once, as with 0"
+    )
+
+
+def it_bounces(result: run_result.RunResult, case: Case) -> str | None:
+    """A container that is in the air for a good part of its rocking."""
+    share = _verdict(result).flight_share
+    if share is None or share < FLIGHT or _verdict(result).outcome not in ROCKS:
+        return None
+    reach = _verdict(result).band.flight_share if _verdict(result).band else None
+    span = f" ({reach[0]:.0%} to {reach[1]:.0%} over the variations)" if reach else ""
+    dashpot = (
+        ""
+        if case.floor.is_slab
+        else "; on a rigid floor the dashpot of the contact, a numerical one, takes most of it"
+    )
+    return (
+        f"it bounces: nothing touches the floor for {share:.0%} of the time in which it rocks{span}. What its fill and "
+        f"its walls take of a landing decides that{dashpot}"
+    )
 
 
 def energy_is_near_its_limits(result: run_result.RunResult, case: Case) -> str | None:
@@ -224,6 +279,9 @@ def steps_were_rejected(result: run_result.RunResult, case: Case) -> str | None:
 
 CHECKS: tuple[Callable[[run_result.RunResult, Case], str | None], ...] = (
     verdict_is_unsure,
+    friction_decides,
+    weakening_is_too_short,
+    it_bounces,
     motion_is_doubtful,
     it_still_moves,
     energy_is_near_its_limits,

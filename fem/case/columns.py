@@ -80,9 +80,16 @@ IMPACTS = ColumnGroup(
     lambda case: range(_states_restitution(case)),
     (HistoryColumn("impact_J", "J", START),),
 )
-#: a floor that moves up and down; positive upward
+
+
+def _turns(floor: Any) -> bool:
+    """Whether a horizontal motion moves this floor normal to itself."""
+    return bool(floor.slope_percent) and floor.motion_along != "floor"
+
+
+#: a floor that moves up and down, or normal to a slope; positive upward
 VERTICAL = ColumnGroup(
-    lambda case: range(case.vertical.kind != "none"),
+    lambda case: range(case.vertical.kind != "none" or (case.motion.kind != "none" and _turns(case.floor))),
     (
         HistoryColumn("base_vertical_displacement_m", "m", GROUND),
         HistoryColumn("base_vertical_velocity_m_s", "m/s", GROUND),

@@ -127,6 +127,11 @@ class CaseContent(CaseHeading):
         return self.vertical.kind != "none"
 
     @property
+    def has_normal(self) -> bool:
+        """Whether the floor moves normal to itself: up and down, or on a slope with a horizontal motion."""
+        return self.has_vertical or (self.floor.turn != 0.0 and self.motion.kind != "none")
+
+    @property
     def contact_damping_ratio(self) -> float | None:
         """c/(2 sqrt(k m)), the whole mass m on the spring k of one corner; None: the slab's own damping."""
         own = self.floor.is_slab and "damping_ratio" not in self.contact.model_fields_set

@@ -72,7 +72,7 @@ def numerics_lines(numerics: Mapping[str, Any]) -> list[str]:
     """The numerical settings, for people."""
     modes = f", {numerics['elastic_modes']} elastic modes" if numerics["elastic_modes"] else ""
     pascals = numerics["normal_penalty_Pa_m"]
-    penalty = "" if pascals is None else f"penalty {pascals:.4g} Pa/m, "
+    penalty = "" if pascals is None else f"{pascals:.4g} Pa/m, "
     most = "at most " if numerics["ends_at_rest"] else ""
     return [
         f"  model       {numerics['model']}{modes}, {numerics['scheme']}",
@@ -113,7 +113,7 @@ def _page(preview: Preview, document: dict[str, Any]) -> str:
         f"  frequency parameter    {static.frequency_parameter:8.4f} 1/s",
         f"  rocking period, paper  {static.period_eq2:8.3f} s as a point mass, {static.period_eq3:.3f} s as a rod",
         f"  uplift from            {static.uplift_acceleration:8.4f} m/s2, "
-        f"slip from {static.sliding_limit_static / derived['mass_kg'] - static.downhill:.4g} m/s2",
+        f"slip from {static.slip_acceleration:.4g} m/s2",
         f"  restitution, Housner   {static.housner_restitution:8.4f}",
         f"  restitution, contact   {_restitution_of_contact(case, document)}",
         "",
@@ -143,7 +143,8 @@ def _motion_lines(name: str, more: str, keys: FloorMotionTable, motion: MotionRe
     """What moves the floor in one direction, and the numbers of its motion."""
     table = f"table {keys.file}" if keys.file else "in the file of [motion]"
     harmonic = f"A = {keys.amplitude:.4g} m, Omega = {keys.angular_frequency:.4g} rad/s"
-    words = {"none": "at rest", "harmonic": harmonic, "pulse": f"{keys.shape} pulse", "table": table}
+    still = "at rest" if not motion.peak_in_run_m_s2 else "what [motion] is normal to the floor"
+    words = {"none": still, "harmonic": harmonic, "pulse": f"{keys.shape} pulse", "table": table}
     yield f"  {name:<11} {words[keys.kind]}, peak {motion.peak_in_run_m_s2 or 0.0:.4g} m/s2"
     if length := motion_in_words(motion):
         yield f"  {more:<11} {length}"

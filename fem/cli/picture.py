@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 
 from fem.case.data_files import split_channel
+from fem.case.plausible import doubts
 from fem.case.validation import CaseError
 from fem.cli.console import ELSEWHERE_TO
 from fem.records.files import read_record
@@ -66,7 +67,14 @@ def picture(
         if not components:
             record.component("horizontal", quantity=quantity)  # raises, with what it holds
         processing = Processing(baseline=baseline)
-        print(_write_motion([processed(component, processing) for component in components], path, to))
+        made = [processed(component, processing) for component in components]
+        noted = [
+            f"{component.name or path.name}: {note}"
+            for component, motion in zip(components, made, strict=True)
+            for note in (*component.notes, *doubts(path.name, component, motion, scale=1.0, confirmed=False))
+        ]
+        print(_write_motion(made, path, to))
+        print("\n".join(noted), end="\n" * bool(noted))
         for component in components:
             change = baseline_change(component, processing)
             if change is not None and change.is_said:

@@ -22,9 +22,14 @@ def response(
     case: CaseName = None,
     /,
     *,
-    first: Annotated[float, Parameter(name="--from", help="Lowest frequency of the floor [Hz].")],
-    last: Annotated[float, Parameter(name="--to", help="Highest frequency [Hz].")],
-    count: Annotated[int, whole("Number of frequencies, both ends included.")] = 41,
+    first: Annotated[
+        float | None,
+        Parameter(name="--from", help="Lowest frequency of the floor [Hz]; default: 3/11 of the case's own."),
+    ] = None,
+    last: Annotated[
+        float | None, Parameter(name="--to", help="Highest frequency [Hz]; default: 30/11 of the case's own.")
+    ] = None,
+    count: Annotated[int, whole("Number of frequencies, both ends included.")] = 28,
     scale: Annotated[Literal["linear", "log"], Parameter(help="Their spacing.")] = "linear",
     hold: Annotated[
         Literal["displacement", "acceleration"] | None,
@@ -36,6 +41,8 @@ def response(
     order: Annotated[
         Literal["up-down", "down-up"], Parameter(help="Which way first; the motion continues at the turn.")
     ] = "up-down",
+    starts: Annotated[int, whole("Random states from which each frequency is begun as well; 0: none.")] = 8,
+    shell: Annotated[bool, flag("Follow the elastic container, too, up and down.")] = False,
     settle: Annotated[int, whole("Periods to leave out at each frequency.")] = 60,
     observe: Annotated[int, whole("Periods to observe at each frequency.")] = 48,
     tolerance: Annotated[
@@ -55,17 +62,23 @@ def response(
     as_json: Annotated[bool, flag("Print response.json.", "--json")] = False,
     quiet: Quiet = False,
 ) -> int:
-    """Sweep the frequency of the floor up and down without restarting the motion: branches, jumps, drop-outs."""
-    loaded = load_case(case, overrides)
+    """Sweep the frequency of the floor up and down and from random states, as a rigid body: what lasts, what falls.
+
+    --set solver.model=reduced follows the elastic container alone, --shell beside the rigid one.
+    """
     requests = importlib.import_module("fem.response.request")
+    loaded = load_case(case, ("solver.model=rigid", *overrides))
+    own = loaded.angular_frequency / requests.TURN if loaded.motion.kind == "harmonic" else 1.0
     request = requests.ResponseRequest(
         case=loaded,
-        first_Hz=first,
-        last_Hz=last,
+        first_Hz=requests.FROM * own if first is None else first,
+        last_Hz=requests.TO * own if last is None else last,
         count=count,
         scale=scale,
         hold=hold,
         order=order,
+        starts=starts,
+        shell=shell,
         settle=settle,
         observe=observe,
         tolerance=tolerance,
@@ -82,25 +95,20 @@ def response(
 
 def page_of(request: "ResponseRequest", result: "ResponseResult", folder: Path) -> Iterator[str]:
     """The lines of a response curve, for people."""
-    branches = importlib.import_module("fem.response.answer").branches_in_words
+    words = importlib.import_module("fem.response.answer")
     yield f"{result.case}: {result.title}" if result.title else result.case
     yield (
-        f"  drive       {request.held_in_words}, {request.count} frequencies from {request.first_Hz:g} to "
-        f"{request.last_Hz:g} Hz, {request.order}"
+        f"  drive       {request.held_in_words}, {request.count} frequencies from {request.first_Hz:.4g} to "
+        f"{request.last_Hz:.4g} Hz, {request.order}"
     )
     yield f"  judged by   {request.observe} periods each, after {request.settle}"
     for direction in ("up", "down"):
         counted = Counter(point.words for point in result.points if point.direction == direction)
-        words = ", ".join(f"{word} at {count}" for word, count in counted.items())
-        yield f"  {direction:<11} {words or 'not reached'}"
-    for change, sweep, where, how in branches(result):
-        yield f"  {change:<11} {sweep}, {where}: {how}"
-    judged = [point.stable for point in result.points if point.stable is not None]
-    if judged:
-        yield (
-            f"  stable      {sum(judged)} of {len(judged)} points: amplitudes do not diverge, and without drive the "
-            "motion dies out"
-        )
+        there = ", ".join(f"{word} at {count}" for word, count in counted.items())
+        yield f"  {direction:<11} {there or 'not reached'}"
+    for at, lasting in words.lasting_in_words(result):
+        yield f"  {at.frequency_Hz:<8.4g} Hz {lasting}"
+    yield f"  stable      {words.stable_in_words(result) or 'nothing was judged'}"
     for point in result.points:
         if point.status == "failed":
             yield f"  failed      {point.direction}, {point.frequency_Hz:.4g} Hz: {point.reason}"

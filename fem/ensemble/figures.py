@@ -104,12 +104,12 @@ def draw_boundary(ensemble: Ensemble, unknown: UnknownInputs, points: Sequence[P
         for k, held in enumerate(outside)
     ]
     x = replace(
-        map_axis(across),
+        map_axis(across, ensemble.base.name),
         label=f"{axis_label(across)}   (numbers: % that {falling_in_words(ensemble.limit_slip_m, past=True)})",
     )
     return draw_heat_map(
         x,
-        map_axis(down),
+        map_axis(down, ensemble.base.name),
         maps,
         title=f"{ensemble.title or ensemble.name}\n{fill(_statement(ensemble, unknown), LINE)}",
         colours={words[region]: colour for region, colour in COLOURS.items()},

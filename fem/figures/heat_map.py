@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
 from matplotlib.collections import LineCollection
 from matplotlib.colors import Colormap, ListedColormap, Normalize, to_rgba
 from matplotlib.figure import Figure
@@ -37,6 +38,8 @@ class MapAxis:
     label: str
     values: Sequence[Any]  #: one a column or row; numbers that rise, or words
     scale: str = "list"  #: linear | log: round values between the cells are marked; list: cells are
+    marks: Sequence[float] = ()  #: values at which a line is drawn; where lines of both axes meet, a cross
+    marked: str = ""  #: what they are
 
     def positions(self, values: FloatArray) -> FloatArray:
         """Positions of values, counted in cells from the middle of the first; nan outside of the axis."""
@@ -123,15 +126,13 @@ def draw_heat_map(
             axes.set_visible(False)
         for k, (axes, panel) in enumerate(zip(subplots, panels, strict=False)):
             look = panel.look or shared
-            image = axes.imshow(
-                panel.values,
-                origin="lower",
-                aspect="auto",
-                interpolation="none",
+            scale = ScalarMappable(
                 cmap=ListedColormap(list(look.colours.values())) if look else colours,
                 norm=Normalize(-0.5, len(look.colours) - 0.5) if look else norm,
             )
+            _fill_cells(axes, scale.to_rgba(np.ma.masked_invalid(panel.values)))
             _draw_over(axes, x, y, panel, look)
+            _draw_marks(axes, x, y)
             axes.set_title(panel.title, fontsize=8.5)
             axes.grid(visible=False)
             axes.spines[:].set_visible(panel.look is not None)
@@ -148,7 +149,7 @@ def draw_heat_map(
                 axes.legend(handles=handles, handlelength=1.4, columnspacing=1.0, **below)
         figure.suptitle(title, x=0.01, ha="left", fontsize=10.0)
         if bar:
-            figure.colorbar(image, ax=subplots[: len(panels)], label=bar, pad=0.02, aspect=30)
+            figure.colorbar(scale, ax=subplots[: len(panels)], label=bar, pad=0.02, aspect=30)
         handles = _legend([panel for panel in panels if panel.look is None], shared)
         handles += subplots[0].get_legend_handles_labels()[0]
         if handles:  # names of curves are long
@@ -182,13 +183,54 @@ def _legend(panels: Sequence[Panel], look: Look | None) -> list[Any]:
     return handles
 
 
+def _fill_cells(axes: Axes, colours: FloatArray) -> None:
+    """Fill cells, all of a colour as one path of rectangles: an image would be blurred by some viewers.
+
+    Args:
+        axes: of the panel.
+        colours: (rows, columns, 4); what is not opaque is left out.
+    """
+    rows, columns, _ = colours.shape
+    for colour in np.unique(colours[colours[..., 3] > 0.0], axis=0):
+        own = np.pad((colours == colour).all(axis=2), ((0, 0), (1, 1)))
+        starts, ends = (np.argwhere(own[:, 1:] & ~own[:, :-1]), np.argwhere(~own[:, 1:] & own[:, :-1]))
+        runs = [
+            Path.unit_rectangle().transformed(
+                Affine2D().scale(end - start, 1.0).translate(start - 0.5, row - 0.5)
+            )
+            for (row, start), (_, end) in zip(starts, ends, strict=True)
+        ]
+        path = Path.make_compound_path(*runs)
+        axes.add_patch(PathPatch(path, facecolor=colour, linewidth=0, antialiased=False, zorder=0))
+    axes.set(xlim=(-0.5, columns - 0.5), ylim=(-0.5, rows - 0.5))
+
+
+def _draw_marks(axes: Axes, x: MapAxis, y: MapAxis) -> None:
+    """Lines at the marked values, and crosses where they meet."""
+    across, up = (axis.positions(np.array(axis.marks, dtype=float)) for axis in (x, y))
+    look: dict[str, Any] = {"color": BLACK, "linewidth": 0.8, "path_effects": CASED[:1]}
+    for place in across:
+        axes.axvline(place, linestyle=":", **look)
+    for place in up:
+        axes.axhline(place, linestyle=":", **look)
+    crossed = [(a, b) for a in across for b in up] or [(np.nan, np.nan)]
+    if x.marks or y.marks:
+        label = x.marked or y.marked
+        sign = "+" if x.marks and y.marks else ""
+        look |= {
+            "linestyle": "none" if sign else ":",
+            "marker": sign,
+            "markersize": 11.0,
+            "markeredgewidth": 1.6,
+        }
+        axes.plot(*np.transpose(crossed), label=label, **look)
+
+
 def _draw_over(axes: Axes, x: MapAxis, y: MapAxis, panel: Panel, look: Look | None) -> None:
     """What is drawn over the colours of a panel."""
     fallen = np.zeros(panel.values.shape, dtype=bool) if panel.overturned is None else panel.overturned
     if look is None:
-        shade = np.zeros((*fallen.shape, 4))
-        shade[fallen] = to_rgba(BLACK)
-        axes.imshow(shade, origin="lower", aspect="auto", interpolation="none")
+        _fill_cells(axes, np.where(fallen[..., np.newaxis], to_rgba(BLACK), 0.0))
     if panel.unsure is not None:
         _hatch(axes, panel.unsure & fallen, HATCH, WHITE)
         _hatch(axes, panel.unsure & ~fallen, HATCH, BLACK)

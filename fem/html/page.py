@@ -22,7 +22,7 @@ from markupsafe import Markup, escape
 
 from fem.html.drawing import require_drawing
 from fem.html.formula import formula_markup
-from fem.html.sections import Block
+from fem.html.sections import Block, Written
 from fem.html.units import (
     ABSENT,
     figure_cell,
@@ -52,6 +52,7 @@ FILTERS = {
     "formula": formula_markup,
     "head": lambda figure: f"#{figure_head(figure)}",
     "mm": millimetres,
+    "millimetres": millimetres,
     "number": number,
     "quantity": quantity,
     "ratio": ratio,
@@ -173,6 +174,8 @@ def _environment() -> Environment:
 
 def _draw(block: Block) -> Markup:
     """A block as HTML, by the macro that is named after its class."""
+    if isinstance(block, Written):
+        return Markup(_environment().get_template(block.template).render(block.values))
     name = "str" if isinstance(block, str) else type(block).__name__.lower()
     macros = _environment().get_template("sections.html.j2").module
     return Markup(getattr(macros, name)(block))

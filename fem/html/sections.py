@@ -246,7 +246,6 @@ class Figure:
     svg: Markup
     label: str = ""  #: for screen readers
     _: KW_ONLY
-    axes: Mapping[str, Any] | None = None  #: where a cursor moves over it
     caption: str = ""
 
 
@@ -287,33 +286,12 @@ def columns(*blocks: "Block") -> Group:
     return Group("columns", blocks)
 
 
-@dataclass(frozen=True)
-class Legend:
-    """Colours from nothing to the most."""
-
-    start: str
-    end: str
-    colours: Sequence[str]
-
-
 class Choice(NamedTuple):
     """An entry of a menu."""
 
     value: Any
     text: str
     chosen: bool = False
-
-
-@dataclass(frozen=True)
-class Player:
-    """The animation of a run, which `player.js` draws."""
-
-    note: str
-    _: KW_ONLY
-    loose: bool  #: of boxes that move on one another
-    exaggerations: Sequence[Choice]
-    meshed: bool  #: with deformation or forces, of which the mesh can be shown
-    legend: Legend | None = None  #: of stresses
 
 
 @dataclass(frozen=True)
@@ -326,6 +304,14 @@ class CellMap:
 
 
 #: a macro of `sections.html.j2` for each
+@dataclass(frozen=True)
+class Written:
+    """Sections that a template of their own writes."""
+
+    template: str  #: its file
+    values: Mapping[str, Any]  #: what it shows
+
+
 Block = (
     str
     | Paragraph
@@ -341,7 +327,6 @@ Block = (
     | Group
     | Folded
     | PageSection
-    | Legend
-    | Player
     | CellMap
+    | Written
 )

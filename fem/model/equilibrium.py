@@ -87,7 +87,13 @@ def find_equilibrium(
             contact = with_links(case, contact, [container.mesh.mass])
             compression = _compression(container, stance) if case.solver.model != "rigid" else 0.0
     except SettlingError as error:
-        raise CaseError(f"[initial] no equilibrium at the start: {error}") from error
+        slope = case.floor.slope_percent
+        table = (
+            f"[floor] slope_percent = {slope:g}: nothing stands there"
+            if slope
+            else "[initial] no equilibrium at the start"
+        )
+        raise CaseError(f"{table}: {error}") from error
     use = 0.0
     if case.initial.rotation_rad == 0.0:  # tilted, it sinks in at its edge until enough of the patch bears
         use = float(np.max(force[:, 1] / contact.cap[: len(force)]))

@@ -6,7 +6,15 @@ from typing import Any, assert_never
 
 import numpy as np
 
-from contact.motion.base_motion import BaseMotion, HarmonicMotion, NoMotion, PulseMotion, TableMotion
+from contact.motion.base_motion import (
+    BaseMotion,
+    HarmonicMotion,
+    NoMotion,
+    PulseMotion,
+    SingleMotion,
+    TableMotion,
+    along_and_normal,
+)
 from fem.case.case import Case, CaseError
 from fem.case.case_rules import CASE_RULES
 from fem.case.recorded import MotionKey, recorded_motion
@@ -29,8 +37,8 @@ BOUNDED = [
 ]
 
 
-def build_motion(case: Case) -> BaseMotion:
-    """How the floor of the case moves along x.
+def build_motion(case: Case) -> SingleMotion:
+    """The motion [motion] of the case.
 
     Raises:
         CaseError: the file of a table is missing or is no table of motion; an impossible motion.
@@ -38,8 +46,8 @@ def build_motion(case: Case) -> BaseMotion:
     return _built(case, "motion")
 
 
-def build_vertical(case: Case) -> BaseMotion:
-    """How the floor of the case moves up and down, positive upward.
+def build_vertical(case: Case) -> SingleMotion:
+    """The motion [vertical] of the case, positive upward.
 
     Raises:
         CaseError: as `build_motion`.
@@ -50,7 +58,7 @@ def build_vertical(case: Case) -> BaseMotion:
 def build_motions(
     case: Case, before: tuple[Case, BaseMotion, BaseMotion] | None = None
 ) -> tuple[BaseMotion, BaseMotion]:
-    """How the floor of the case moves along x, and up and down.
+    """How the floor of the case moves along x, which is along a slope, and up and down, which is normal to one.
 
     Args:
         case: with these motions.
@@ -59,10 +67,13 @@ def build_motions(
     Raises:
         CaseError: as `build_motion`.
     """
-    if before is None or not (case.motion.kind == "table" and same_record(case, before[0])):
-        return build_motion(case), build_vertical(case)
-    other, motion, vertical = before
-    return motion, vertical if case.vertical == other.vertical else build_vertical(case)
+    turn = case.floor.turn
+    if before is not None and case.motion.kind == "table" and same_record(case, before[0]):
+        other, motion, vertical = before
+        if turn == other.floor.turn and (case.vertical == other.vertical or not turn):
+            return motion, vertical if case.vertical == other.vertical else build_vertical(case)
+    motions = build_motion(case), build_vertical(case)
+    return along_and_normal(*motions, turn) if turn else motions
 
 
 def same_record(case: Case, other: Case) -> bool:
@@ -70,7 +81,7 @@ def same_record(case: Case, other: Case) -> bool:
     return case.motion == other.motion and case.folder == other.folder and case.recorded is other.recorded
 
 
-def _built(case: Case, table: MotionKey) -> BaseMotion:
+def _built(case: Case, table: MotionKey) -> SingleMotion:
     try:
         return _build(case, table)
     except CaseError:
@@ -105,15 +116,20 @@ def rest_sought_from(case: Case, *motions: BaseMotion) -> float:
 
 
 def motion_result(case: Case, motion: BaseMotion, vertical: BaseMotion) -> MotionResult:
-    """The numbers of both motions, and doubts about them."""
+    """The numbers of both motions, along the floor and normal to it, and doubts about them."""
     duration = longest_run(case, motion, vertical)
 
     def numbers(keys: FloorMotionTable, motion: BaseMotion, table: MotionKey) -> MotionResult:
-        result = numbers_from_keys(keys, longest_time(case)) or _evaluated(motion, duration)
+        turned = case.floor.turn != 0.0 and not isinstance(motion, NoMotion)
+        result = None if turned else numbers_from_keys(keys, longest_time(case))
         of_record = recorded_motion(case, table).notes if keys.kind == "table" else ()
-        return replace(result, kind=keys.kind, notes=(*of_record, *motion_notes(motion, table)))
+        return replace(
+            result or _evaluated(motion, duration),
+            kind=keys.kind if keys.kind != "none" or not turned else case.motion.kind,
+            notes=(*of_record, *motion_notes(motion, table)),
+        )
 
-    upward = numbers(case.vertical, vertical, "vertical") if case.has_vertical else None
+    upward = numbers(case.vertical, vertical, "vertical") if case.has_normal else None
     return replace(numbers(case.motion, motion, "motion"), vertical=upward)
 
 
@@ -171,7 +187,7 @@ def peaks_in_run(
     `duration` is its `longest_run`, where that is known.
     """
     duration = longest_run(case, motion, vertical) if duration is None else duration
-    upward = vertical.peak_within(duration) if case.has_vertical else None
+    upward = vertical.peak_within(duration) if case.has_normal else None
     return motion.peak_within(duration), upward
 
 
@@ -215,7 +231,7 @@ def _plausible(motion: TableMotion, table: MotionKey) -> TableMotion:
     )
 
 
-def _build(case: Case, table: MotionKey) -> BaseMotion:
+def _build(case: Case, table: MotionKey) -> SingleMotion:
     motion = case.vertical if table == "vertical" else case.motion
 
     def given(key: str) -> Any:

@@ -23,7 +23,7 @@ PULSE_ENDS = {
 
 def summary_from_keys(case: Case) -> MotionResult | None:
     """The numbers of both motions where the keys alone determine them; else None."""
-    result = numbers_from_keys(case.motion, longest_time(case))
+    result = None if case.floor.turn else numbers_from_keys(case.motion, longest_time(case))
     if result is None or not case.has_vertical:
         return result
     vertical = numbers_from_keys(case.vertical, longest_time(case))

@@ -15,7 +15,7 @@ reduced response of an elastic building: another question, in rows of its own, w
 import math
 from dataclasses import dataclass, replace
 
-from fem.case.case import Case
+from fem.case.case import Case, CaseError
 from fem.case.tables.run_tables import StaticTable
 from fem.model.floor import pivot_share
 from fem.results.run_result import ActionResult, CodeValues, StaticResult
@@ -148,6 +148,7 @@ class StaticChecks:
     restoring_moment: float
     #: of the floor, uphill on a slope: g (cos(slope) tan al - sin(slope)) [m/s2]. Paper, Eqs. (9) and (10); West (1885)
     uplift_acceleration: float
+    slip_acceleration: float  #: of the floor, at which it slips [m/s2]
     #: ratio of the angular velocities after and before an impact, 1 - (M R^2/I_O)(1 - cos 2 al) [-]; angular momentum
     #: about the new corner is kept, Housner (1963). Negative for a squat block: it would not rise on the other corner
     housner_restitution: float
@@ -228,6 +229,7 @@ def static_checks(
     code: StaticTable | None = None,
     initial_rotation: float = 0.0,
     slope: float = 0.0,
+    horizontal: bool = False,
 ) -> StaticChecks:
     """All static checks of one container under one motion.
 
@@ -247,6 +249,7 @@ def static_checks(
             ordinary rotation of a rocking container.
         slope: of the floor [rad]. The rule under the run's own peak takes the motion uphill, to which the weight adds
             its part along the floor; the code's rows are those of a level floor.
+        horizontal: the floor's acceleration is, and not along the slope: uphill it takes weight off the floor.
 
     The rocking period that is compared with the limit of the lateral force method is that of Eq. (3), as
     in the paper's section 4.2.
@@ -259,6 +262,11 @@ def static_checks(
     period = period_eq3(radius=arm, gravity=gravity)
     slope = abs(slope)
     toward, downhill = math.cos(slope), gravity * math.sin(slope)
+    lean = math.sin(slope) if horizontal else 0.0
+
+    def moves_from(tangent: float) -> float:
+        """The acceleration of the floor at which what holds with this tangent no longer does [m/s2]."""
+        return (toward * gravity * tangent - downhill) / ((toward if horizontal else 1.0) + lean * tangent)
 
     def under(base_shear: float, least_weight: float | None = None, share: float = 1.0) -> ActionCheck:
         moment = base_shear * centroid  # paper, Eq. (9)
@@ -309,7 +317,8 @@ def static_checks(
         sliding_limit_static=toward * friction,
         sliding_limit_kinetic=toward * mu_kinetic * weight,
         restoring_moment=toward * restoring,
-        uplift_acceleration=toward * gravity * math.tan(angle) - downhill,
+        uplift_acceleration=moves_from(math.tan(angle)),
+        slip_acceleration=moves_from(mu_static),
         # Of the same angular momentum: 1 - M nearer width/I_O; the last factor is 1 with the mass centre in the middle.
         housner_restitution=1.0
         - mass * arm**2 / about_corner * (1.0 - math.cos(2.0 * angle)) * (width / (2.0 * nearer)),
@@ -333,7 +342,7 @@ def static_checks_of(
     peak_vertical_acceleration: float | None = None,
 ) -> StaticChecks:
     """Static checks of a case's container on its mesh, under the peak accelerations of its own floor [m/s2]."""
-    return static_checks(
+    static = static_checks(
         mass=mesh.mass,
         centroid=mesh.centroid[1],
         inertia=mesh.inertia,
@@ -347,7 +356,15 @@ def static_checks_of(
         code=case.static,
         initial_rotation=case.initial.rotation_rad,
         slope=case.floor.slope,
+        horizontal=case.floor.turn != 0.0,
     )
+    held = case.links or case.neighbour or case.initial.rotation_rad or distance_beside(mesh)
+    if case.floor.slope and not held and static.uplift_acceleration <= 0.0:
+        raise CaseError(
+            f"[floor] slope_percent = {case.floor.slope_percent:g}: nothing stands there: the mass centre is beyond "
+            f"the lower edge from {100.0 * math.tan(static.slenderness_angle):.3g} % on"
+        )
+    return static
 
 
 def distance_beside(mesh: ContainerMesh) -> float:

@@ -6,33 +6,24 @@ in cm/sec2. (8f10.6)" of volume 2, which has velocities and displacements behind
 """
 
 import re
-from dataclasses import dataclass
 
-from fem.records.directions import direction_of
-from fem.records.fixed_width import (
-    fortran_format,
-    positive_number,
-    read_block,
-    regular_component,
-    whole_number,
-)
+from fem.records.fixed_width import fortran_format, read_block
+from fem.records.header import measured, regular_component, require_peak, whole_number
 from fem.records.record import Component, Quantity, Record
 from fem.records.source import MotionText
-from fem.records.units import settled_unit, unit_in_header
+from fem.records.units import RATES, TIMES, settled_unit, unit_in_header, unit_spelled
 
 NAME = "CSMIP"
 TITLE = re.compile(r"\s*(un)?corrected accelerogram|\s*response and fourier", re.IGNORECASE)
-SPACED = re.compile(
-    r"\s*(\d+)\s+points of (?:\S+ )*?(accel|veloc|displ)\w* data,? equally spaced at\s*([.\d]+)\s*sec\w*\.?,?\s*"
-    r"\(?(?:in|units[ :=])\s*(?:units of\s*)?([^\s,()]+)",
-    re.IGNORECASE | re.ASCII,
-)
-RATED = re.compile(
-    r"\s*(\d+)\s+accel\w* points at\s*([.\d]+)\s*(?:pts|points|samples)/sec\w*\.?,?\s*in units of\s+([^\s,()]+)",
+OPENING = re.compile(
+    r"\s*(?P<count>\d+)\s+(?:points of (?:\S+ )*?)?(?P<quantity>accel|veloc|displ)\w*"
+    r"(?: data,? equally spaced| points) at\s*(?P<step>\S+\s*[a-z]+(?P<rate>/sec\w*)?)\.?,?\s*"
+    r"\(?(?:in|units[ :=])\s*(?:units of\s*)?(?P<unit>[^\s,()]+)",
     re.IGNORECASE | re.ASCII,
 )
 CHANNEL = re.compile(r"\bChan\s+(\d+):\s*(\S+(?: \S+)*)", re.IGNORECASE | re.ASCII)
-LAYOUTS = {"spaced": (8, 10), "rated": (8, 9)}  #: where the line gives no format
+PEAK = re.compile(r"\bpeak\s+accel\w*\s*=\s*(\S+)\s*(\S+)", re.IGNORECASE)
+LAYOUTS = ((8, 10), (8, 9))  #: of volumes 2 and 1, where the line gives no format
 QUANTITIES: dict[str, Quantity] = {"accel": "acceleration", "veloc": "velocity", "displ": "displacement"}
 
 
@@ -50,27 +41,29 @@ def read(source: MotionText, unit: str | None) -> Record:
     if "fourier" in source.line(1).lower():
         raise source.refused("spectra do not move a floor; take the file of volume 1 or 2", 1)
     components: list[Component] = []
-    name, line = "", 1
+    name, line, peak = "", 1, None
     while line <= len(source.lines):
         text = source.line(line)
-        opening = _opening(source, line)
+        opening = OPENING.match(text)
         if opening is None:
             match = CHANNEL.search(text)
             name = match[2].split("  ")[0].strip() if match else name
+            peak = PEAK.search(text) or peak
             line += 1
             continue
-        layout = fortran_format(text) or opening.layout
-        first = line + 1
-        readings, line = read_block(source, first, opening.count, per_line=layout[0], width=layout[1])
-        if opening.quantity == "acceleration":
-            stated = unit_in_header(source, opening.unit.rstrip("."), opening.quantity)
-            settled = settled_unit(stated, unit, source.name)
-            direction, sense = direction_of(name)
-            components.append(
-                regular_component(
-                    readings, opening.step, settled, name=name, direction=direction, sense=sense
-                )
-            )
+        first, rated, quantity = line, opening["rate"], QUANTITIES[opening["quantity"].lower()]
+        count = whole_number(source, opening["count"], "number of samples", first)
+        units = RATES if rated else TIMES
+        stated = measured(source, opening["step"], "interval of the samples", first, units=units)
+        layout = fortran_format(text) or LAYOUTS[bool(rated)]
+        readings, line = read_block(source, first + 1, count, per_line=layout[0], width=layout[1])
+        if quantity == "acceleration":
+            spelled = unit_in_header(source, opening["unit"].rstrip("."), quantity)
+            settled = settled_unit(spelled, unit, source.name)
+            if peak is not None and unit_spelled(peak[2]) == settled[0]:
+                require_peak(source, [readings], peak[1], first)
+            step = 1.0 / stated if rated else stated
+            components.append(regular_component(readings, step, settled, name=name))
     if not components:
         raise source.refused("no line gives number, interval and unit of accelerations")
     return Record(
@@ -80,37 +73,6 @@ def read(source: MotionText, unit: str | None) -> Record:
         event=source.line(3).strip(),
         station=_station(source),
     )
-
-
-@dataclass(frozen=True, kw_only=True)
-class _Opening:
-    """The line that opens a block of values."""
-
-    count: int
-    step: float  #: [s]
-    quantity: Quantity
-    unit: str
-    layout: tuple[int, int]
-
-
-def _opening(source: MotionText, line: int) -> _Opening | None:
-    if match := SPACED.match(source.line(line)):
-        return _Opening(
-            count=whole_number(source, match[1], "number of samples", line),
-            step=positive_number(source, match[3], "interval of the samples", line),
-            quantity=QUANTITIES[match[2].lower()],
-            unit=match[4],
-            layout=LAYOUTS["spaced"],
-        )
-    if match := RATED.match(source.line(line)):
-        return _Opening(
-            count=whole_number(source, match[1], "number of samples", line),
-            step=1.0 / positive_number(source, match[2], "sampling rate", line),
-            quantity="acceleration",
-            unit=match[3],
-            layout=LAYOUTS["rated"],
-        )
-    return None
 
 
 def _station(source: MotionText) -> str:

@@ -2,11 +2,11 @@
 
 import re
 
-from fem.records.directions import stream_direction
-from fem.records.fixed_width import positive_number, read_separated, regular_component, whole_number
+from fem.records.fixed_width import read_separated
+from fem.records.header import measured, regular_component, require_peak, whole_number
 from fem.records.record import PLURALS, Record
 from fem.records.source import MotionText
-from fem.records.units import settled_unit, unit_in_header
+from fem.records.units import settled_unit, unit_in_header, unit_spelled
 
 NAME = "ESM ASCII"
 KEY = re.compile(r"([A-Z][A-Z0-9_/^]*)\s*:\s*(.*)")  #: such as PGA_CM/S^2
@@ -33,15 +33,18 @@ def read(source: MotionText, unit: str | None) -> Record:
         if not header.get(key):
             raise source.refused(f"the header has no {key}")
     count = whole_number(source, header["NDATA"], "number of samples (NDATA)")
-    step = positive_number(source, header["SAMPLING_INTERVAL_S"], "interval (SAMPLING_INTERVAL_S)")
+    step = measured(source, header["SAMPLING_INTERVAL_S"], "interval (SAMPLING_INTERVAL_S)")
     spelled = header.get("UNITS", "")
     quantity = next((known for known in PLURALS if known == header["DATA_TYPE"].lower()), None)
     if quantity is None:
         raise source.refused("its DATA_TYPE is neither acceleration nor displacement")
     stated = unit_in_header(source, spelled, quantity) if spelled else None
     settled = settled_unit(stated, unit, source.name)
-    readings, stream = read_separated(source, first, count)[0], header.get("STREAM", "")
-    component = regular_component(readings, step, settled, name=stream, direction=stream_direction(stream))
+    readings = read_separated(source, first, count)[0]
+    for key, peak in header.items():
+        if key.startswith("PGA_") and unit_spelled(key[4:]) == settled[0]:
+            require_peak(source, [readings], peak)
+    component = regular_component(readings, step, settled, name=header.get("STREAM", ""))
     return Record(
         components=(component,),
         name=source.name,

@@ -3,14 +3,15 @@
 from functools import lru_cache
 from pathlib import Path
 
-from fem.records import cosmos, csmip, esm, knet, peer, smc
+from fem.records import cosmos, csmip, csmnc, esm, knet, peer, smc
 from fem.records.columns import read_columns
+from fem.records.networks import NETWORKS
 from fem.records.record import Record, RecordError
 from fem.records.source import read_source
 from fem.records.units import STATED
 
 #: formats with a header of their own, each a module with `recognises` and `read`; every other text is columns
-FORMATS = (peer, esm, knet, smc, cosmos, csmip)
+FORMATS = (esm, knet, smc, cosmos, csmip, csmnc, *NETWORKS, peer)
 
 
 def read_record(path: Path, *, unit: str | None = None, sample_interval: float | None = None) -> Record:

@@ -2,14 +2,9 @@
 
 import re
 
-import numpy as np
-
-from fem.records.record import Component, Direction, RecordError
-from fem.records.source import LARGEST_NUMBER, MOST_SAMPLES, MotionText, as_numbers, read_rows
-from fem.records.units import UNITS
+from fem.records.source import LARGEST_NUMBER, MotionText, as_numbers, read_rows
 from fem.runtime.arrays import FloatArray
 
-INTERVALS = (1e-6, 10.0)  #: shortest and longest between samples [s]
 #: such as (8f10.6), (5E15.7), (10I8), (1P8E10.3)
 FORMAT = re.compile(r"\(\s*(?:1P\s*,?\s*)?(\d+)\s*[FEGDI]\s*(\d+)(?:\.\d+)?(?:E\d+)?\s*\)", re.IGNORECASE)
 
@@ -71,80 +66,23 @@ def read_separated(source: MotionText, first: int, count: int) -> tuple[FloatArr
     return read_rows(source, rows), len(source.lines) + 1
 
 
+def read_values(source: MotionText, first: int, count: int, *, per_line: int, width: int) -> FloatArray:
+    """Numbers up to the end of the file, in full lines of a fixed width or between blanks, by the first line.
+
+    Raises:
+        RecordError: as `read_block`, and content after the numbers.
+    """
+    line = source.line(first).rstrip()
+    fields = [line[at : at + width] for at in range(0, len(line), width)]
+    if len(fields) != min(per_line, count) or len(line) % width or as_numbers(fields) is None:
+        return read_separated(source, first, count)[0]
+    numbers, behind = read_block(source, first, count, per_line=per_line, width=width)
+    require_end(source, behind, count)
+    return numbers
+
+
 def require_end(source: MotionText, line: int, count: int) -> None:
     """Refuse a file with content after its numbers."""
     for number in range(line, len(source.lines) + 1):
         if source.line(number).strip():
             raise source.refused(f"the header says {count} values, and more content follows them", number)
-
-
-def whole_number(source: MotionText, text: str, what: str, number: int | None = None) -> int:
-    """A count of a header.
-
-    Raises:
-        RecordError: it is no whole number above zero, or more than a file may have.
-    """
-    stripped = text.strip()
-    if not stripped.isascii() or not stripped.isdigit() or len(stripped) > 9 or int(stripped) < 1:
-        raise source.refused(f"the header gives no {what}", number)
-    if int(stripped) > MOST_SAMPLES:
-        raise source.refused(f"{stripped} as {what}; at most {MOST_SAMPLES} are read", number)
-    return int(stripped)
-
-
-def positive_number(source: MotionText, text: str, what: str, number: int | None = None) -> float:
-    """A number of a header above zero.
-
-    Raises:
-        RecordError: it is none.
-    """
-    numbers = as_numbers([text])
-    if numbers is None or not numbers[0] > 0.0:
-        raise source.refused(f"the header gives no {what}", number)
-    return float(numbers[0])
-
-
-def regular_component(
-    readings: FloatArray,
-    step: float,
-    unit: tuple[str, bool],
-    *,
-    name: str,
-    direction: Direction | None,
-    sense: float = 1.0,
-) -> Component:
-    """A component of evenly spaced samples from t = 0.
-
-    Args:
-        readings: as the file gives them, (n,).
-        step: between the samples [s].
-        unit: as by `settled_unit`.
-        name, direction: of the component.
-        sense: -1 where the readings are positive downward.
-
-    Raises:
-        RecordError: no sensor has such an interval.
-    """
-    require_interval(step, "the header gives")
-    return Component(
-        times=np.arange(readings.size, dtype=np.float64) * step,
-        readings=readings,
-        factor=sense * UNITS[unit[0]].factor,
-        quantity=UNITS[unit[0]].quantity,
-        unit=unit[0],
-        unit_stated=unit[1],
-        name=name,
-        direction=direction,
-    )
-
-
-def require_interval(step: float, subject: str) -> None:
-    """Refuse an interval [s] that no sensor has.
-
-    Raises:
-        RecordError: beginning with `subject`, such as "the header gives".
-    """
-    if not INTERVALS[0] <= step <= INTERVALS[1]:
-        raise RecordError(
-            f"{subject} an interval of {step:g} s; it must be between {INTERVALS[0]:g} and {INTERVALS[1]:g} s"
-        )

@@ -5,23 +5,17 @@ The scale factor of the header makes them gal; they stand about an offset, so th
 
 import re
 
-from fem.records.directions import direction_of
-from fem.records.fixed_width import (
-    positive_number,
-    read_block,
-    read_separated,
-    regular_component,
-    require_end,
-)
+from fem.records.fixed_width import read_values
+from fem.records.header import NUMBER, measured, regular_component, require_peak
 from fem.records.record import Record
-from fem.records.source import MotionText, as_numbers
-from fem.records.units import settled_unit
-from fem.runtime.arrays import FloatArray
+from fem.records.source import MotionText
+from fem.records.units import RATES, settled_unit
+from fem.records.words import direction_of
 
 NAME = "K-NET"
 LINES, LABEL = 17, 18  #: of the header, and columns of its labels
 PER_LINE, WIDTH = 8, 9
-SCALE = re.compile(r"([\d.]+)\s*\(gal\)\s*/\s*([\d.]+)", re.IGNORECASE | re.ASCII)
+SCALE = re.compile(rf"({NUMBER})\s*\(gal\)\s*/\s*({NUMBER})", re.IGNORECASE)
 #: KiK-net numbers its sensors: 1 to 3 in the borehole, 4 to 6 at the surface
 SENSORS = {"1": "N-S", "2": "E-W", "3": "U-D", "4": "N-S", "5": "E-W", "6": "U-D"}
 
@@ -37,23 +31,23 @@ def read(source: MotionText, unit: str | None) -> Record:
     Raises:
         RecordError: a line of the header, counts, units or numbers that do not fit; with the line.
     """
-    rate = positive_number(source, _value(source, 11).lower().removesuffix("hz"), "sampling frequency", 11)
-    duration = positive_number(source, _value(source, 12), "duration", 12)
-    scale = SCALE.search(source.line(14))
+    step = 1.0 / measured(source, _value(source, 11), "sampling frequency", 11, units=RATES)
+    duration = measured(source, _value(source, 12), "duration", 12)
+    scale = SCALE.fullmatch(_value(source, 14))
     if scale is None:
         raise source.refused("the header gives no scale factor in gal", 14)
-    factor = positive_number(source, scale[1], "scale factor", 14) / positive_number(
-        source, scale[2], "scale factor", 14
-    )
+    factor = measured(source, scale[1], "scale factor", 14) / measured(source, scale[2], "scale factor", 14)
     settled = settled_unit("gal", unit, source.name)
-    count = round(duration * rate)
+    count = round(duration / step)
     if not 1 <= count <= 10**8:
         raise source.refused("the header gives no number of samples", 12)
-    counts = _counts(source, count)
+    counts = read_values(source, LINES + 1, count, per_line=PER_LINE, width=WIDTH)
     sensor = _value(source, 13)
-    direction, _ = direction_of(SENSORS.get(sensor, sensor))
     readings = (counts - counts.mean()) * factor
-    component = regular_component(readings, 1.0 / rate, settled, name=sensor, direction=direction)
+    require_peak(source, [readings], _value(source, 15), 15)
+    component = regular_component(
+        readings, step, settled, name=sensor, direction=direction_of(SENSORS.get(sensor, sensor))
+    )
     return Record(
         components=(component,),
         name=source.name,
@@ -65,14 +59,3 @@ def read(source: MotionText, unit: str | None) -> Record:
 
 def _value(source: MotionText, number: int) -> str:
     return source.line(number)[LABEL:].strip()
-
-
-def _counts(source: MotionText, count: int) -> FloatArray:
-    first = LINES + 1
-    line = source.line(first).rstrip()
-    fields = [line[at : at + WIDTH] for at in range(0, len(line), WIDTH)]
-    if len(line) % WIDTH or as_numbers(fields) is None:
-        return read_separated(source, first, count)[0]
-    numbers, behind = read_block(source, first, count, per_line=PER_LINE, width=WIDTH)
-    require_end(source, behind, count)
-    return numbers

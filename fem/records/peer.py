@@ -1,41 +1,49 @@
-"""Files of the PEER databases: .AT2 accelerations, .VT2 velocities, .DT2 displacements, with both headers.
+"""Files of the PEER databases, and others of one component under a line with number and interval of the samples.
 
-Four lines: database; event, date, station, component; "ACCELERATION TIME SERIES IN UNITS OF G"; and "NPTS= 4000, DT=
-.0050 SEC" or " 4000 0.0050 NPTS, DT". Then 5 numbers of 15 columns in a line, or numbers between blanks.
+PEER has four lines: database; event, date, station, component; "ACCELERATION TIME SERIES IN UNITS OF G"; and "NPTS=
+4000, DT= .0050 SEC" in either order, with signs or without, or " 4000 0.0050 NPTS, DT", or the two numbers alone. Then
+5 numbers of 15 columns in a line, or numbers between blanks, as many as the header says.
 """
 
 import re
+from typing import NamedTuple
 
-from fem.records.directions import direction_of
-from fem.records.fixed_width import (
-    positive_number,
-    read_block,
-    read_separated,
-    regular_component,
-    require_end,
-    whole_number,
-)
+from fem.records.fixed_width import read_values
+from fem.records.header import measured, regular_component, whole_number
 from fem.records.record import PLURALS, Quantity, Record
-from fem.records.source import MotionText, as_numbers
-from fem.records.units import settled_unit, unit_in_header
-from fem.runtime.arrays import FloatArray
+from fem.records.source import MotionText
+from fem.records.units import settled_unit, unit_in_header, units_in_words
+from fem.records.words import BRACKETS
 
 NAME = "PEER"
 PER_LINE, WIDTH = 5, 15
 HEADING = 8  #: lines in which the header must end
-LABELLED = re.compile(r"NPTS\s*=\s*(\d+)\s*,?\s*DT\s*=\s*([-+.\dEe]+)", re.IGNORECASE | re.ASCII)
-BEFORE = re.compile(r"\s*(\d+)\s+([-+.\dEe]+)\s+NPTS\s*,?\s*DT\b", re.IGNORECASE | re.ASCII)
+COUNT = re.compile(r"\bNPTS\b\s*[=:]?\s*([^\s,;=:]+)", re.IGNORECASE)
+STEP = re.compile(r"\bDT\b\s*[=:]?\s*([^\s,;=:]+(?:\s*(?!NPTS)[a-z]+)?)", re.IGNORECASE)
+BEFORE = re.compile(r"\s*(\S+)\s+(\S+)\s+NPTS\s*,?\s*DT\b(.*)", re.IGNORECASE)
 QUANTITY = re.compile(
-    r"(ACCELERATION|VELOCITY|DISPLACEMENT)\s+TIME\s+(?:SERIES|HISTORY)(?:\s+IN\s+UNITS\s+OF\s+([^\s.,;]+))?",
+    r"(ACCELERATION|VELOCITY|DISPLACEMENT)(?:\s+TIME\s+(?:SERIES|HISTORY))?\s*,?\s*(?:IN\s+)?UNITS?\s*(?:OF|:|=)?\s*"
+    r"\(?([^\s,;()]+)",
     re.IGNORECASE,
 )
-
+ALONE = re.compile(r"\s*(\d{1,7})[\s,;]+([\d.]\S*(?:\s+s(?:ec\w*)?)?)\s*", re.IGNORECASE | re.ASCII)
 QUANTITIES: dict[str, Quantity] = {name: name for name in PLURALS}
 
 
+class _Sampling(NamedTuple):
+    line: int
+    number: str
+    step: str
+
+
 def recognises(source: MotionText) -> bool:
-    """Whether one of the first lines gives number and interval of the samples as PEER does."""
-    return _sampling_line(source) is not None
+    """Whether one of the first lines gives number and interval of the samples, and not of rows of columns."""
+    sampling = _sampling(source)
+    if sampling is None:
+        return False
+    rows = [line for line in source.lines[sampling.line :] if line.strip()]
+    in_columns = sampling.number.isdigit() and len(rows) == int(sampling.number) > 1
+    return not in_columns or len(rows[0].split()) == 1
 
 
 def read(source: MotionText, unit: str | None) -> Record:
@@ -44,43 +52,50 @@ def read(source: MotionText, unit: str | None) -> Record:
     Raises:
         RecordError: counts, units or numbers that do not fit; with the line.
     """
-    last = _sampling_line(source) or 1
-    match = LABELLED.search(source.line(last)) or BEFORE.match(source.line(last))
-    count = whole_number(source, match[1] if match else "", "number of samples", last)
-    step = positive_number(source, match[2] if match else "", "interval of the samples", last)
-    stated = None
-    quantity = next((q for q in map(QUANTITY.search, source.lines[:last]) if q), None)
-    if quantity is not None and quantity[2]:
-        stated = unit_in_header(source, quantity[2], QUANTITIES[quantity[1].lower()])
-    settled = settled_unit(stated, unit, source.name)
+    last, counted, interval = _sampling(source) or _Sampling(1, "", "")
+    count = whole_number(source, counted, "number of samples", last)
+    step = measured(source, interval, "interval of the samples", last)
+    settled = settled_unit(_unit(source, last), unit, source.name)
     described = source.line(2) if last == 4 else ""
-    name = described.rpartition(",")[2].strip() if "," in described else ""
-    direction, sense = direction_of(name)
-    readings = _numbers(source, last + 1, count)
-    component = regular_component(readings, step, settled, name=name, direction=direction, sense=sense)
-    event, _, station = described.rpartition(",")[0].partition(",")
+    # what follows the station is its network or number, in brackets: "090 (CDMG STATION 99999)", "E, (CWB)"
+    fields = [field for part in described.split(",") if (field := BRACKETS.sub("", part).strip())]
+    name = fields[-1] if len(fields) > 1 else ""
+    readings = read_values(source, last + 1, count, per_line=PER_LINE, width=WIDTH)
+    component = regular_component(readings, step, settled, name=name)
     return Record(
         components=(component,),
         name=source.name,
         format=NAME,
-        event=event.strip(),
-        station=station.rpartition(",")[2].strip(),
+        event=fields[0] if len(fields) > 1 else "",
+        station=fields[-2] if len(fields) > 2 else "",
     )
 
 
-def _sampling_line(source: MotionText) -> int | None:
+def _sampling(source: MotionText) -> _Sampling | None:
+    """The line of number and interval of the samples, and what it gives."""
     for number, line in enumerate(source.lines[:HEADING], start=1):
-        if LABELLED.search(line) or BEFORE.match(line):
-            return number
+        if match := BEFORE.match(line):
+            return _Sampling(number, match[1], match[2])
+        count, step = COUNT.search(line), STEP.search(line)
+        if count and step:
+            return _Sampling(number, count[1], step[1])
+        if (alone := ALONE.fullmatch(line)) and _stands_over(source, number, int(alone[1])):
+            return _Sampling(number, alone[1], alone[2])
     return None
 
 
-def _numbers(source: MotionText, first: int, count: int) -> FloatArray:
-    line = source.line(first).rstrip()
-    fields = [line[at : at + WIDTH] for at in range(0, len(line), WIDTH)]
-    full = len(fields) == min(PER_LINE, count) and len(line) % WIDTH == 0 and as_numbers(fields) is not None
-    if not full:
-        return read_separated(source, first, count)[0]
-    numbers, behind = read_block(source, first, count, per_line=PER_LINE, width=WIDTH)
-    require_end(source, behind, count)
-    return numbers
+def _stands_over(source: MotionText, line: int, count: int) -> bool:
+    """Whether as many numbers as a line says follow it, which are not in pairs, as the rows of a table are."""
+    if QUANTITY.search(source.line(line - 1)):
+        return True
+    widths = [len(row.split()) for row in source.lines[line:]]
+    return sum(widths) == count > 1 and max(widths) != 2
+
+
+def _unit(source: MotionText, last: int) -> str | None:
+    for line in source.lines[:last]:
+        if match := QUANTITY.search(line):
+            return unit_in_header(source, match[2], QUANTITIES[match[1].lower()])
+        if units := units_in_words(line):
+            return units[0]
+    return None

@@ -74,6 +74,34 @@ class BaselineChange:
         )
 
 
+def trimmed(component: Component, start: float | None, end: float | None) -> Component:
+    """The part of a component from `start`, which becomes t = 0, to `end`, in the times of its file [s].
+
+    Accelerations are interpolated at its ends, displacements are not.
+
+    Raises:
+        RecordError: nothing is left of it.
+    """
+    times, readings = component.times, component.readings
+    if start is None and end is None:
+        return component
+    low = times[0] if start is None else max(start, times[0])
+    high = times[-1] if end is None else min(end, times[-1])
+    inside = (times >= low) & (times <= high)
+    if component.quantity == "acceleration" and low < high:
+        ends = np.array([low, high])
+        instants = np.unique(np.concatenate([times[inside], ends]))
+        readings, times = np.interp(instants, times, readings), instants
+    else:
+        times, readings = times[inside], readings[inside]
+    if times.size < 2:
+        raise RecordError(
+            f"from start_s to end_s nothing is left of it: its times are {component.times[0]:g} to "
+            f"{component.times[-1]:g} s"
+        )
+    return replace(component, times=times - (start or 0.0), readings=readings)
+
+
 def processed(component: Component, processing: Processing) -> Component:
     """The component as the floor follows it, in SI.
 
@@ -89,8 +117,8 @@ def processed(component: Component, processing: Processing) -> Component:
         raise RecordError(
             f"baseline {processing.baseline!r} corrects accelerations; displacements take 'none'"
         )
-    times, readings = _trimmed(component, processing)
-    values = readings * (component.factor * processing.scale)
+    part = trimmed(component, processing.start, processing.end)
+    times, values = part.times, part.readings * (component.factor * processing.scale)
     if component.quantity == "acceleration":
         values = values - _baseline(times, values, processing.baseline)
     if processing.peak is not None:
@@ -98,7 +126,7 @@ def processed(component: Component, processing: Processing) -> Component:
         if largest == 0.0:
             raise RecordError("its accelerations are all zero, so they cannot be scaled to a peak")
         values = values * (processing.peak / largest)
-    return replace(component, times=times, readings=values, factor=1.0)
+    return replace(part, readings=values, factor=1.0)
 
 
 def baseline_change(component: Component, processing: Processing) -> BaselineChange | None:
@@ -153,28 +181,6 @@ def motion_of(component: Component) -> tuple[FloatArray, FloatArray, FloatArray]
     if component.quantity == "velocity":
         raise RecordError("velocities do not move a floor; accelerations or displacements are needed")
     return sampled_motion(component.times, component.values, component.quantity)
-
-
-def _trimmed(component: Component, processing: Processing) -> tuple[FloatArray, FloatArray]:
-    """Times and readings of the part taken; accelerations are interpolated at its ends, displacements are not."""
-    times, readings = component.times, component.readings
-    if processing.start is None and processing.end is None:
-        return times, readings
-    low = times[0] if processing.start is None else max(processing.start, times[0])
-    high = times[-1] if processing.end is None else min(processing.end, times[-1])
-    inside = (times >= low) & (times <= high)
-    if component.quantity == "acceleration" and low < high:
-        ends = np.array([low, high])
-        instants = np.unique(np.concatenate([times[inside], ends]))
-        readings, times = np.interp(instants, times, readings), instants
-    else:
-        times, readings = times[inside], readings[inside]
-    if times.size < 2:
-        raise RecordError(
-            f"from start_s to end_s nothing is left of it: its times are {component.times[0]:g} to "
-            f"{component.times[-1]:g} s"
-        )
-    return times - (processing.start or 0.0), readings
 
 
 def _baseline(times: FloatArray, a: FloatArray, kind: Baseline) -> FloatArray:

@@ -5,7 +5,7 @@ not state stays empty. Values are positive as in the file.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal
 
@@ -23,6 +23,7 @@ PLURALS: dict[Quantity, str] = {
 
 #: largest difference of two sampling times that count as one, over the interval: what seven printed digits leave
 SAME_TIME = 1e-3
+LEAST_SHARED = 0.5  #: samples that components of one recording share, over those of the longer one
 
 
 class RecordError(ValueError):
@@ -44,6 +45,7 @@ class Component:
     quantity: Quantity = "acceleration"
     unit: str = "m/s2"  #: of the readings
     unit_stated: bool = True  #: by the file; else by who reads it
+    time_stated: bool = True  #: the unit of the times or the interval; else they are taken in s
     name: str = ""  #: as the file calls it, such as "HNE" or "Chan 2: 360 Deg"
     direction: Direction | None = None  #: None where the file does not say
 
@@ -75,6 +77,13 @@ class Component:
     def values(self) -> FloatArray:
         """The readings in SI, shape (n,) [m/s2], [m/s] or [m]."""
         return self.readings * self.factor
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What is done to its readings besides."""
+        turned = self.direction == "vertical" and self.factor < 0.0
+        said = f"its component {self.name} is positive downward; its sign is reversed, so that up is positive"
+        return (said,) if turned else ()
 
     @cached_property
     def step(self) -> float:
@@ -175,28 +184,39 @@ class Record:
         )
 
 
-def require_together(components: Sequence[Component], names: Sequence[str]) -> None:
-    """Refuse components of one motion that were not sampled together.
+def cut_together(components: Sequence[Component], names: Sequence[str]) -> tuple[list[Component], str]:
+    """Components of one motion, cut to the samples that all have, and a note where that cuts any.
+
+    Args:
+        components: of one recording, the part taken of each.
+        names: of each for messages.
 
     Raises:
-        RecordError: number of samples, start or interval differ; with both values.
+        RecordError: they were not sampled together: interval or times differ; with both values.
     """
     first = components[0]
     for other, name in zip(components[1:], names[1:], strict=True):
-        pairs = (
-            ("samples", first.times.size, other.times.size),
-            ("s between samples", first.step, other.step),
-        )
-        for unit, reference, value in pairs:
-            if abs(reference - value) > SAME_TIME * min(reference, value):
-                raise RecordError(
-                    f"{names[0]} and {name} do not belong together: {reference:g} and {value:g} {unit}; "
-                    "both components must be of one recording, with the same interval and length"
-                )
-        apart = (
-            float(np.abs(first.times - other.times).max()) if first.times.size == other.times.size else np.inf
-        )
-        if apart > SAME_TIME * first.step:
+        apart = f"{names[0]} and {name} do not belong together: "
+        if abs(first.step - other.step) > SAME_TIME * min(first.step, other.step):
             raise RecordError(
-                f"{names[0]} and {name} do not belong together: their samples are up to {apart:g} s apart in time"
+                f"{apart}{first.step:g} and {other.step:g} s between samples; both components must be of one recording"
             )
+        shared, longest = sorted((first.times.size, other.times.size))
+        if shared < LEAST_SHARED * longest:
+            raise RecordError(
+                f"{apart}{first.times.size} and {other.times.size} samples; start_s and end_s cut them"
+            )
+        off = float(np.abs(first.times[:shared] - other.times[:shared]).max())
+        if off > SAME_TIME * first.step:
+            raise RecordError(
+                f"{apart}their samples are up to {off:g} s apart in time; start_s and end_s cut them"
+            )
+    counts = [component.times.size for component in components]
+    if len(set(counts)) == 1:
+        return list(components), ""
+    shared = min(counts)
+    note = f"{', '.join(names)} have {', '.join(map(str, counts))} samples: they are cut to the {shared} that all have"
+    return [
+        replace(component, times=component.times[:shared], readings=component.readings[:shared])
+        for component in components
+    ], note

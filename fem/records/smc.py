@@ -7,16 +7,17 @@ format by the National Strong-Motion Program (Converse, USGS).
 import math
 import re
 
-from fem.records.directions import direction_of
-from fem.records.fixed_width import read_block, regular_component, require_end
+from fem.records.fixed_width import read_block, require_end
+from fem.records.header import regular_component
 from fem.records.record import Direction, Record
 from fem.records.source import MotionText
-from fem.records.units import settled_unit
+from fem.records.units import OTHERWISE, settled_unit
+from fem.records.words import direction_of
 
 NAME = "SMC"
 TEXT_LINES, WHOLE_LINES, REAL_LINES = 11, 6, 10
 TITLE = re.compile(
-    r"\s*\d\s+(UNCORRECTED ACCELEROGRAM|CORRECTED ACCELEROGRAM|VELOCITY|DISPLACEMENT|RESPONSE SPECTRA|FOURIER.*)\s*"
+    r"\s*\d\s+(UNKNOWN|(?:UN)?CORRECTED ACCELEROGRAM|VELOCITY|DISPLACEMENT|RESPONSE SPECTRA|FOURIER.*)\s*"
 )
 UNIT = {
     "UNCORRECTED ACCELEROGRAM": "cm/s2",
@@ -24,6 +25,7 @@ UNIT = {
     "VELOCITY": "cm/s",
     "DISPLACEMENT": "cm",
 }
+UNKNOWN = "UNKNOWN"  #: type 0: values of any kind
 PER_LINE, WIDTH = 8, 10
 FASTEST = 1e5  #: samples in a second, above which the rate is none
 
@@ -40,10 +42,12 @@ def read(source: MotionText, unit: str | None) -> Record:
         RecordError: a spectrum, counts, units or numbers that do not fit; with the line.
     """
     title = TITLE.fullmatch(source.line(1))
-    stated = UNIT.get(title[1] if title else "")
-    if stated is None:
+    kind = title[1] if title else ""
+    if kind not in UNIT and kind != UNKNOWN:
         raise source.refused("spectra do not move a floor; take the file of the accelerogram", 1)
-    settled = settled_unit(stated, unit, source.name)
+    if kind == UNKNOWN and unit is None:
+        raise source.refused(f"an SMC file of type 0 does not say what its values are; {OTHERWISE}", 1)
+    settled = settled_unit(UNIT.get(kind), unit, source.name)
     line = TEXT_LINES + 1
     whole, line = read_block(source, line, 8 * WHOLE_LINES, per_line=8, width=10)
     real, line = read_block(source, line, 5 * REAL_LINES, per_line=5, width=15, largest=math.inf)
@@ -63,8 +67,8 @@ def read(source: MotionText, unit: str | None) -> Record:
     readings, behind = read_block(source, line, count, per_line=PER_LINE, width=WIDTH)
     require_end(source, behind, count)
     name = source.line(6).partition("component=")[2].strip() or source.line(6).partition("comp=")[2].strip()
-    direction, sense = _direction(name, whole[12], whole[13], whole[0])
-    component = regular_component(readings, 1.0 / rate, settled, name=name, direction=direction, sense=sense)
+    direction = _direction(name, whole[12], whole[13], whole[0])
+    component = regular_component(readings, 1.0 / rate, settled, name=name, direction=direction)
     return Record(
         components=(component,),
         name=source.name,

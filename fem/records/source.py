@@ -74,11 +74,15 @@ def _has_long_line(content: bytes) -> bool:
 
 
 def decoded(content: bytes) -> str | None:
-    """UTF-16 with a byte order mark, UTF-8, else Latin-1, which any bytes can be; with the ends of lines of Python."""
+    """UTF-16 with a byte order mark, UTF-8, else Latin-1, which any bytes can be.
+
+    With the ends of lines of Python, and the minus that programs write for a typographic one.
+    """
     encodings = [TWO_BYTES[content[:2]]] if content[:2] in TWO_BYTES else ["utf-8-sig", "latin-1"]
     for encoding in encodings:
         try:
-            return content.decode(encoding).replace("\r\n", "\n").replace("\r", "\n")
+            text = content.decode(encoding).replace("\r\n", "\n").replace("\r", "\n")
+            return text.replace("\N{MINUS SIGN}", "-")
         except UnicodeDecodeError:
             continue
     return None

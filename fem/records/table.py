@@ -15,7 +15,7 @@ from typing import NamedTuple
 from fem.records.source import as_numbers
 
 DECIMAL_COMMA = re.compile(r"[-+]?\d+,\d+(e[-+]?\d+)?", re.ASCII | re.IGNORECASE)
-STATED = re.compile(r"sep=(.)\n", re.IGNORECASE)  #: by Excel, what separates columns
+STATED = re.compile(r'"?sep=(.)"?[;,\s]*', re.IGNORECASE)  #: by Excel, what separates columns
 
 
 class TableLine(NamedTuple):
@@ -37,6 +37,27 @@ def number_in(text: str) -> float | None:
     """The number in a field, with a decimal point or comma; None where it is none."""
     numbers = as_numbers([text.replace(",", ".") if DECIMAL_COMMA.fullmatch(text) else text])
     return None if numbers is None else float(numbers[0])
+
+
+def stated_separator(line: str) -> str | None:
+    """What separates columns as the first line of a file says, as Excel does."""
+    match = STATED.fullmatch(line)
+    return match[1] if match else None
+
+
+def fields_in(line: str, separator: str | None) -> list[str]:
+    """The fields of a line (None: between blanks), unquoted, without empty ones at its end."""
+    if separator is None:
+        return line.split()
+    quoted = '"' in line
+    fields = [
+        *map(
+            str.strip, next(csv.reader([line], delimiter=separator), []) if quoted else line.split(separator)
+        )
+    ]
+    while fields and not fields[-1]:
+        fields.pop()
+    return fields
 
 
 @dataclass(frozen=True)
@@ -92,10 +113,11 @@ class UserTable:
             )
 
     def _lines(self) -> Iterator[TableLine]:
-        stated = STATED.match(self.text)
-        table = self.text[stated.end() :] if stated else self.text
+        line, _, below = self.text.partition("\n")
+        stated = stated_separator(line)
+        table = below if stated else self.text
         first = next(filter(str.strip, table.split("\n", 99)), "")
-        separator = stated[1] if stated else next((mark for mark in ";\t" if mark in first), ",")
+        separator = stated or next((mark for mark in ";\t" if mark in first), ",")
         reader = csv.reader(io.StringIO(table, newline=""), delimiter=separator)
         try:
             for fields in ([field.strip() for field in line] for line in reader):

@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import dataclass
+from itertools import takewhile
 
 from fem.records.record import PLURALS, Quantity, RecordError
 from fem.records.source import MotionText
@@ -37,21 +38,48 @@ UNITS = {
     "mm": _unit("displacement", 1e-3),
 }
 #: units that headers are known to give and that are not read
-FOREIGN = ("in", "ft", "in/s2", "ft/s2", "%g", "in/s", "ft/s")
-TIMES = {"s": "s", "seconds": "s", "ms": "ms", "us": "us", "min": "min"}
-SPELLED = {unit: unit for unit in (*UNITS, *FOREIGN)} | {"gals": "gal"} | TIMES
+FOREIGN = (
+    "in", "ft", "in/s2", "ft/s2", "%g", "in/s", "ft/s", "counts", "volts", "v", "mv", "h", "hz", "%", "rad/s",
+    "deg", "d",
+)  # fmt: skip
+#: units of time, and of rates, to s and 1/s
+TIMES = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "min": 60.0}
+RATES = {"hz": 1.0, "khz": 1e3}
+SPELLED = {unit: unit for unit in (*UNITS, *FOREIGN, *TIMES, *RATES)} | {
+    "gals": "gal", "g's": "g", "millis": "ms", "micros": "us", "μs": "us", "minute": "min", "minutes": "min",
+    "mins": "min", "hour": "h", "hours": "h", "hr": "h", "hrs": "h", "day": "d", "days": "d", "hertz": "hz",
+    "1/s": "hz", "sps": "hz", "samples/s": "hz", "points/s": "hz", "pts/s": "hz", "muestras/s": "hz", "count": "counts",
+    "volt": "volts", "percent": "%", "%ofg": "%g", "percentg": "%g",
+}  # fmt: skip
 #: what a user may state; a file may also state the others
 STATED = ("g", "m/s2", "cm/s2", "gal", "mm/s2", "m")
 OTHERWISE = 'state it as unit = "g", "m/s2", "cm/s2", "gal" or "mm/s2" (displacements: "m")'
+#: "in units of G", "UNIT: CM/SEC/SEC", "unit = gal(cm/s/s)"; "acceleration in g", where a quantity is in the line
+UNITS_OF = re.compile(
+    r"\b(?:units?|unidades|einheit)\b(?:\s+(?:of|is|are)\b)?\s*[:=]?\s*(.{1,80})", re.IGNORECASE
+)
+QUANTITY_IN = re.compile(r"\b(?:acc|vel|disp)[a-z]*\b.{0,60}?\bin\s+(\S{1,30})", re.IGNORECASE)
 
 
 def unit_spelled(text: str) -> str | None:
-    """The unit that a header spells, such as CM/SEC/SEC, m s-2 or m_s2; None for an unknown unit."""
-    word = text.strip().casefold().replace("²", "2").replace("−", "-")
+    """The unit that a header spells, such as CM/SEC/SEC, m s-2, m_s2 or gal(cm/s/s); None for an unknown unit."""
+    word = text.strip(" \t[](){}.,;:").partition("(")[0].casefold().replace("²", "2").replace("−", "-")
     word = re.sub(r"\s+|\*\*|\^|\*|·", "", word) if "_" not in word else word.replace("_", "/", 1)
-    word = re.sub(r"sec(ond)?s?", "s", word)
+    word = re.sub(r"se[cg](ond|undo)?s?", "s", word)
     word = word.replace("/s/s", "/s2").replace("s-2", "/s2").replace("s-1", "/s").replace("//", "/")
     return SPELLED.get(word)
+
+
+def units_in_words(line: str) -> list[str | None]:
+    """The units that a line states in words, two at most, in their order."""
+    if match := UNITS_OF.search(line):
+        words = [
+            word for word in re.split(r"[\s,;]+", match[1]) if word.casefold() not in ("", "and", "in", "of")
+        ]
+        return [*takewhile(bool, map(unit_spelled, words[:2]))]
+    match = QUANTITY_IN.search(line)
+    unit = unit_spelled(match[1]) if match else None
+    return [unit] if unit in UNITS or unit in FOREIGN else []
 
 
 def settled_unit(stated: str | None, given_unit: str | None, name: str) -> tuple[str, bool]:

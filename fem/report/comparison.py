@@ -1,7 +1,6 @@
 """Rows of a report: the case as given, the static rules beside the run, assumptions."""
 
 import math
-from collections.abc import Sequence
 from typing import NamedTuple, assert_never
 
 from markupsafe import Markup
@@ -81,22 +80,6 @@ def compared_rows(static: StaticChecks, verdict: Verdict) -> list[Compared]:
             )
         )
     return rows
-
-
-def compared_table(rows: Sequence[Compared], *, loose: bool) -> html.Table:
-    """The rows as a table; words about boxes that move on one another are long."""
-    wide = "wide" if loose else ""
-    columns: list[html.Column[Compared]] = [
-        html.Column("check", lambda row: row.check),
-        html.Column("action", lambda row: html.Cell(row.action, wide)),
-        html.Column("demand", lambda row: row.demand, html.NUMBER),
-        html.Column("capacity", lambda row: row.capacity, html.NUMBER),
-        html.Column("utilisation", lambda row: row.utilisation, html.NUMBER),
-        html.Column("the rule says", lambda row: html.Cell(row.rule, "fail" if row.exceeded else "pass")),
-        html.Column("the run found", lambda row: html.Cell(row.run or "not compared", wide)),
-        html.Column("clause of EN 1998-1:2004", lambda row: html.Cell(row.clause, "note")),
-    ]
-    return html.table_of("static rule and run", columns, rows, look="compared")
 
 
 def _corners(case: Case) -> str:

@@ -1,44 +1,29 @@
-"""The report of a response curve: where it overturns and coexists, the curve, its points, the request."""
+"""The report of a response curve: its answer and figures, what lasts at each frequency, the request, the points."""
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any
 
 from fem.batch.study import read_study
 from fem.case.case import load_case
 from fem.html import sections as html
 from fem.html.page import Signature
-from fem.html.units import ABSENT, short
+from fem.html.units import short
 from fem.report import studies
 from fem.report.comparison import case_rows
-from fem.response.answer import branches_in_words, response_answer
-from fem.response.records import POINT_FIGURES, PointRow
+from fem.response.answer import lasting_in_words, range_of, response_answer, stable_in_words
 from fem.response.result import ResponseResult
 from fem.results.kinds import RESPONSE
 from fem.runtime.identity import command_line
 
-FIGURES = ("figures/response_curve.svg", "figures/sections.svg", "figures/portraits.svg")
-STABLE = ": amplitudes do not diverge, and without drive the motion dies out."
+FIGURES = ("figures/response_curve.svg", "figures/portraits.svg", "figures/sections.svg")
 METHOD = (
     "Long-time motion under a harmonic floor whose frequency is swept up and down, the motion carried on from one "
-    "frequency to the next. Only the motions that the sweep meets are found; there may be more. Nothing is known "
-    "between the frequencies."
+    "frequency to the next onto a floor that is whole, and from random states at each. Only the motions that these "
+    "meet are found; there may be more. Nothing is known between the frequencies."
 )
-#: options of the command, by the names that the result has for them
-OPTIONS = {
-    "--from": "first_Hz",
-    "--to": "last_Hz",
-    "--count": "count",
-    "--scale": "scale",
-    "--hold": "held",
-    "--order": "order",
-    "--settle": "settle",
-    "--observe": "observe",
-    "--tolerance": "tolerance",
-    "--largest-period": "largest_period",
-    "--limit-slip": "limit_slip_m",
-}
+#: names of the result that are options of the command, but for their underscores
+OPTIONS = ("count", "scale", "order", "starts", "settle", "observe", "tolerance", "largest_period")
+RENAMED = {"--from": "first_Hz", "--to": "last_Hz", "--hold": "held", "--limit-slip": "limit_slip_m"}
 
 
 def response_report(folder: Path, *, signature: Signature | None = None) -> str:
@@ -49,7 +34,35 @@ def response_report(folder: Path, *, signature: Signature | None = None) -> str:
         CaseError: the case in it cannot be read.
     """
     info = read_study(folder, RESPONSE, ResponseResult)
-    case, name = load_case(str(folder / "case.toml")), info.case or folder.name
+    case, name, asked = load_case(str(folder / "case.toml")), info.case or folder.name, info.request
+    counts = Counter(point.words for point in info.points).most_common()
+    counted = ", ".join(f"{words} at {count}" for words, count in counts)
+    points = f"{len(info.points)} of {2 * asked['count']} points of the sweeps{studies.unfinished(info)}: {counted}."
+    stable = stable_in_words(info)
+    given = {f"--{name.replace('_', '-')}": name for name in OPTIONS} | RENAMED
+    options = [word for option, key in given.items() if key in asked for word in (option, str(asked[key]))]
+    options += ["--shell"] * bool(asked.get("shell"))
+    options += [] if case.solver.model == "rigid" else ["--set", f"solver.model={case.solver.model}"]
+    unit, factor = ("mm", 1e3) if asked["held"] == "displacement" else ("m/s²", 1.0)
+    drive = [
+        (f"held {asked['held']}, amplitude", f"{short(asked['held_value'], factor)} {unit}"),
+        *(
+            (option, short(asked[key]) if isinstance(asked[key], float) else str(asked[key]))
+            for option, key in given.items()
+            if key in asked
+        ),
+    ]
+    parts = {
+        "info": info,
+        "drawings": studies.drawings(folder, FIGURES, "response curve"),
+        "lasting": list(lasting_in_words(info)),
+        "asked": html.columns(
+            html.Pairs(drive, caption="Drive", look="asked"),
+            html.Pairs(case_rows(case), caption="Case", look="asked"),
+        ),
+        "falls": [(fall, range_of(fall)) for fall in info.drop_outs],
+        "most": html.MOST_ROWS,
+    }
     return studies.study_html(
         "a response curve",
         info=info,
@@ -59,18 +72,10 @@ def response_report(folder: Path, *, signature: Signature | None = None) -> str:
         signature=signature,
         hash=info.asked,
         sections=[
-            found_section(info),
-            html.section("Response", "drawn", *studies.drawings(folder, FIGURES, "response curve")),
-            html.section("Where the curve changes", "branches", *branch_tables(info)),
-            html.section(
-                "The drive and the case",
-                "asked",
-                html.columns(
-                    html.Pairs(drive_rows(info.request), caption="Drive", look="asked"),
-                    html.Pairs(case_rows(case), caption="Case", look="asked"),
-                ),
+            studies.answer_section(
+                info, response_answer(info), points, *([f"Stable: {stable}."] if stable else []), note=METHOD
             ),
-            html.section("Points", "points", points_table(info)),
+            html.Written("response.html.j2", parts),
         ],
         provenance=[
             ("response curve", f"{name}, {info.status}, model {case.solver.model}"),
@@ -78,84 +83,7 @@ def response_report(folder: Path, *, signature: Signature | None = None) -> str:
         ],
         again=studies.Again(
             words="Save the file below as case.toml:",
-            command=command_line("response", "case.toml", *_options(info.request)),
+            command=command_line("response", "case.toml", *options),
             files=[("case.toml", studies.text_of(folder / "case.toml"))],
         ),
     )
-
-
-def found_section(info: ResponseResult) -> html.PageSection:
-    """The answer, and how many points were computed, of which kinds."""
-    counts = Counter(point.words for point in info.points).most_common()
-    counted = ", ".join(f"{words} at {count}" for words, count in counts)
-    judged = [point.stable for point in info.points if point.stable is not None]
-    return studies.answer_section(
-        info,
-        response_answer(info),
-        f"{len(info.points)} of {2 * info.request['count']} points{studies.unfinished(info)}: {counted}.",
-        *(
-            [html.joined(f"{sum(judged)} of {len(judged)} points are ", html.strong("stable"), STABLE)]
-            if judged
-            else []
-        ),
-        note=METHOD,
-    )
-
-
-def drive_rows(request: Mapping[str, Any]) -> list[tuple[str, str]]:
-    """How the floor was driven, and the motion judged: name and value."""
-    held = {
-        "displacement": f"amplitude {short(request['held_value'], 1e3)} mm",
-        "acceleration": f"peak acceleration {short(request['held_value'])} m/s²",
-    }
-    spacing = "equal ratios" if request["scale"] == "log" else "equal steps"
-    limit = request.get("limit_slip_m")
-    return [
-        ("held", held[request["held"]]),
-        (
-            "frequencies",
-            f"{request['count']} from {short(request['first_Hz'])} to {short(request['last_Hz'])} Hz, {spacing}",
-        ),
-        ("order", request["order"].replace("-", ", then ")),
-        ("judged by", f"{request['observe']} periods, after {request['settle']} that are left out"),
-        (
-            "repeats",
-            f"within {short(request['tolerance'])}, after at most {request['largest_period']} periods",
-        ),
-        *(
-            [("slip allowed", f"{short(limit, 1e3)} mm within the periods observed")]
-            if limit is not None
-            else []
-        ),
-    ]
-
-
-def branch_tables(info: ResponseResult) -> list[html.Block]:
-    """Coexisting motions, jumps and drop-outs, where there are any."""
-    rows = list(branches_in_words(info))
-    return [html.table_of("branches", html.in_order("what", "sweep", "where", "how"), rows)] if rows else []
-
-
-def points_table(info: ResponseResult) -> html.Table:
-    """A row a point, in the order in which they were swept."""
-    *amplitudes, dies_out = html.figure_columns(POINT_FIGURES)
-    columns: list[html.Column[PointRow]] = [
-        html.Column("sweep", lambda point: point.direction),
-        html.Column("frequency [Hz]", lambda point: short(point.frequency_Hz), html.NUMBER),
-        html.Column(
-            "motion", lambda point: point.words + (", from its start" if point.began == "case" else "")
-        ),
-        *amplitudes,
-        html.Column("without drive", lambda point: point.undriven or ABSENT),
-        dies_out,
-        html.Column("stable", lambda point: {None: ABSENT, True: "yes", False: "no"}[point.stable]),
-        html.Column("why failed", lambda point: point.reason or "", optional=True),
-    ]
-    return html.table_of("points", columns, info.points, file="response.csv")
-
-
-def _options(request: Mapping[str, Any]) -> Iterator[str]:
-    for option, name in OPTIONS.items():
-        if name in request:
-            yield option
-            yield str(request[name])

@@ -1,52 +1,66 @@
-"""The report of a run: one page from its folder, verdict first, with everything needed to check it."""
+"""The report of a run: one page from its folder, verdict first, with everything needed to check it.
+
+`run.html.j2` is the page; this module hands it the run, as `RunView`, and the words for it.
+"""
 
 import datetime as dt
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
 
 from markupsafe import Markup
 
+from contact.reference.event_driven import EventError
 from fem.assessment.code_note import code_note
 from fem.assessment.drawn_links import drawn_links
-from fem.assessment.floor_words import floor_rows
-from fem.assessment.loose_boxes import largest_joint_slip
-from fem.assessment.ranges import largest_ratio, largest_rotation, largest_slip, of_band
+from fem.assessment.floor_words import drawn_level, floor_rows
+from fem.assessment.joint_tables import joints_note, unbolted
+from fem.assessment.loose_boxes import BOXES_NOTE, box_rows, largest_joint_slip
+from fem.assessment.ranges import impact_note, largest_ratio, largest_rotation, largest_slip, of_band
+from fem.assessment.rigid_check import check_against_rigid_block
 from fem.assessment.rule_or_run import governing
-from fem.assessment.summary import MARGIN_NOTE, lacks_margin, outcome_sentence, result_rows
+from fem.assessment.summary import (
+    MARGIN_NOTE,
+    band_note,
+    lacks_margin,
+    outcome_sentence,
+    result_rows,
+    to_compare,
+)
 from fem.assessment.sureness import SURE, numerical
 from fem.case.case import Case
 from fem.case.tables.unknown_inputs import WORDS
 from fem.figures.cache import drawings_of
-from fem.html import sections as html
-from fem.html.page import Page, Signature, html_of
-from fem.html.units import ABSENT, number, quantity, short, typeset
-from fem.model.model import build_model
-from fem.report.animation import animation_of
-from fem.report.comparison import case_rows, compared_table, limits_section
-from fem.report.run_motion import motion_section
-from fem.report.run_sections import (
-    block_section,
-    boxes_section,
-    joints_section,
-    modes_section,
-    sheet_section,
-    sureness_section,
+from fem.figures.style import Drawing
+from fem.html.page import Page, Signature, html_of, svg_element
+from fem.html.units import number, quantity, short, typeset
+from fem.model.model import Model, build_model
+from fem.report.animation import (
+    COLOURS,
+    Animation,
+    animation_of,
+    colour_scale,
+    exaggeration,
+    exaggerations,
+    player_data,
 )
-from fem.report.run_view import RunView
+from fem.report.comparison import Compared, assumptions, case_rows, compared_rows, exclusions
 from fem.report.sketch import sketch
+from fem.report.static_sheet import static_sheet
 from fem.results.errors import FolderError
 from fem.results.fields import Fields
 from fem.results.history import History
 from fem.results.kinds import RUN
 from fem.results.outcome import Outcome
 from fem.results.reader import OpenedRun
-from fem.results.run_result import Energy, Numerics, RunResult, Verdict, to_overturn
+from fem.results.run_result import Energy, Numerics, RigidCheckResult, RunResult, Verdict, to_overturn
+from fem.solid.modes import FEW, elastic_mode_table
 
-READ_AS = (
-    " utilisation is demand over capacity; above 1 the rule says that it slides or overturns. Rotation ratio is the "
-    "largest |rotation| over the slenderness angle α; left alone at 1, the container falls. Slip > 0 to the right, "
-    "rotation > 0 clockwise; forces act on the container, and are means over milliseconds in impacts."
-)
+#: figures beside the animation, in the order of reading; the others have their own sections
+MOTION = ("rotation", "slip", "base_motion", "spectrum", "uplift", "forces", "phase_portrait", "energy")
+SHORT_MOTION = ("rotation", "slip")
 #: terms of the energy balance: fields of the result, and words
 ENERGIES = {
     "reference_J": "to overturn",
@@ -58,6 +72,215 @@ ENERGIES = {
     "impact_J": "restitution asked of the impacts",
     "numerical_J": "error at the end, > 0 lost",
 }
+#: what the template names besides the run
+SAID: dict[str, Any] = {
+    "BOXES_NOTE": BOXES_NOTE,
+    "DEGREES": math.degrees(1.0),
+    "MARGIN_NOTE": MARGIN_NOTE,
+    "assumptions": assumptions,
+    "band_note": band_note,
+    "case_rows": case_rows,
+    "exclusions": exclusions,
+    "governing": governing,
+    "impact_note": impact_note,
+    "joints_note": joints_note,
+    "lacks_margin": lacks_margin,
+    "largest_joint_slip": largest_joint_slip,
+    "largest_ratio": largest_ratio,
+    "largest_rotation": largest_rotation,
+    "largest_slip": largest_slip,
+    "of_band": of_band,
+    "static_sheet": static_sheet,
+    "unbolted": unbolted,
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunView:
+    """A run as its page shows it."""
+
+    run: OpenedRun
+    model: Model
+    history: History
+    animation: Animation
+    drawn: Mapping[str, Drawing]
+    brief: bool  #: of three printed sheets at most
+
+    @property
+    def case(self) -> Case:
+        """The case, resolved."""
+        return self.run.case
+
+    @property
+    def result(self) -> RunResult:
+        """What `run.json` holds."""
+        return self.run.typed_result
+
+    @property
+    def verdict(self) -> Verdict:
+        """What the run found; empty before there is anything."""
+        return self.result.verdict or Verdict()
+
+    @property
+    def finished(self) -> bool:
+        """Whether nothing is left to compute."""
+        return self.run.status in RUN.finished
+
+    @property
+    def standing(self) -> str:
+        """How the verdict is coloured: what the run found, never whether that is safe."""
+        verdict = self.verdict
+        if not self.finished:
+            return "open"
+        if verdict.outcome == Outcome.OVERTURNED:
+            return "fell"
+        unsure = verdict.outcome == Outcome.INVALID or (verdict.band is not None and verdict.band.unsure)
+        return "unsure" if unsure else "stood"
+
+    @property
+    def sentences(self) -> tuple[str, str]:
+        """The verdict in one sentence, and what follows it."""
+        first, _, further = outcome_sentence(self.result).partition(". ")
+        return (f"{first}." if further else first), further
+
+    @property
+    def sure(self) -> tuple[str, str]:
+        """How sure the outcome is, and why; without a reason: nothing was tried."""
+        verdict = self.verdict
+        if (band := verdict.band) is None:
+            return (verdict.sure, "by the static rule alone") if verdict.sure else ("not computed", "")
+        named = ", ".join(WORDS.get(key, key) for key in verdict.decided_by)
+        decided = f"; decided by {named}" if named else ""
+        known = verdict.sure or ("unsure" if band.unsure else "same outcome")
+        if verdict.sure == SURE and all(map(numerical, band.members[1:])):
+            known = "no input varied"
+        return known, f"{', '.join(band.outcomes)}{decided}"
+
+    @property
+    def sketch(self) -> Markup:
+        """The container in elevation."""
+        static, case = self.model.static, self.case
+        peak = static.own_motion.sliding.demand * case.gravity_m_s2 / static.weight - static.downhill
+        return sketch(
+            case,
+            centroid=static.centroid,
+            peak_acceleration=peak,
+            peak_vertical=static.peak_vertical_acceleration,
+        )
+
+    @property
+    def floor(self) -> list[tuple[str, str]]:
+        """What the floor amounts to: name and value."""
+        return [(name, typeset(value)) for name, value in floor_rows(self.result.floor)]
+
+    @property
+    def found(self) -> list[tuple[str, str]]:
+        """All figures of the run, but those of its floor: name and value."""
+        of_floor = dict(self.floor)
+        return [(name, typeset(value)) for name, value in result_rows(self.result) if name not in of_floor]
+
+    @property
+    def code(self) -> str:
+        """What is to be known of the code's rows; empty where there are none."""
+        return code_note(self.model.static.to_result())
+
+    @cached_property
+    def compared(self) -> list[Compared]:
+        """The static rules beside the run."""
+        return compared_rows(self.model.static, to_compare(self.result))
+
+    @cached_property
+    def boxes(self) -> Sequence[Sequence[str]]:
+        """A row for each box of a loose stack."""
+        return box_rows(self.result)
+
+    @property
+    def curves(self) -> list[str]:
+        """Names of the figures beside the animation."""
+        moves = self.case.motion.kind != "none" or self.case.has_vertical
+        names = SHORT_MOTION if self.brief else MOTION
+        return [name for name in names if name != "base_motion" or moves]
+
+    @cached_property
+    def played(self) -> dict[str, Any]:
+        """What the animation plays; empty where there is none."""
+        if len(self.history) < 2 or self.brief:
+            return {}
+        return player_data(self.animation, self.history, model=self.model)
+
+    @property
+    def exaggeration(self) -> float:
+        """Factor on the elastic displacement as first shown."""
+        return exaggeration(self.animation, self.model.container.mesh.height)
+
+    @property
+    def exaggerations(self) -> list[float]:
+        """Factors to choose from."""
+        return exaggerations(self.animation, self.model.container.mesh.height)
+
+    @property
+    def colours(self) -> list[str]:
+        """Of the stress."""
+        return colour_scale("YlGnBu", COLOURS)
+
+    @property
+    def level(self) -> str:
+        """A note that a sloping floor is drawn level; empty for a level one."""
+        return drawn_level(self.case.floor.slope_percent)
+
+    def svg(self, name: str) -> Markup:
+        """A drawing by its name."""
+        drawing = self.drawn[name]
+        return svg_element(drawing.svg, label=drawing.title, prefix=drawing.name)
+
+    @cached_property
+    def modes(self) -> Sequence[Mapping[str, float]]:
+        """The elastic modes of the container, also of a rigid run."""
+        return elastic_mode_table(self.model.container.lowest_modes(FEW))
+
+    @cached_property
+    def check(self) -> RigidCheckResult | None:
+        """The comparison with the analytic block: that of the run, or else made now; None of an unfinished run."""
+        result = self.result
+        if result.rigid_check is not None:
+            return result.rigid_check
+        if not self.finished or result.verdict is None or len(self.history) < 2:
+            return None
+        try:
+            return check_against_rigid_block(self.model, self.history, result.verdict).result
+        except (ValueError, EventError) as error:
+            return RigidCheckResult(reasons=(str(error),))
+
+    @property
+    def stepping(self) -> list[tuple[str, str]]:
+        """How the run was stepped: name and value."""
+        return _stepping(self.case, self.result.numerics or Numerics())
+
+    @property
+    def energies(self) -> list[tuple[str, str]]:
+        """The energy balance at the end: name and value."""
+        energy, row = self.result.energy or Energy(), bool(self.case.neighbour)
+        absent = {
+            "crushing_J": not self.case.floor.is_slab,
+            "impact_J": not self.case.states_restitution,
+        }
+        error = f"{number(energy.closure_error, figures=3)} of the energy {to_overturn(row)}"
+        rows = [
+            (to_overturn(row) if key == "reference_J" else words, quantity(getattr(energy, key), "J"))
+            for key, words in ENERGIES.items()
+            if not absent.get(key, False)
+        ]
+        return [*rows, ("largest error", error)]
+
+    @property
+    def computed(self) -> str:
+        """When."""
+        return f"{dt.datetime.fromtimestamp(self.run.place.result.stat().st_mtime):%Y-%m-%d %H:%M}"
+
+    @property
+    def resolved(self) -> str:
+        """The case with every default."""
+        return self.run.place.resolved.read_text(encoding="utf-8")
 
 
 def run_report(
@@ -92,177 +315,22 @@ def run_report(
         drawn=drawings_of(run, model.container),
         brief=brief,
     )
-    return html_of(_page(view, signature))
+    page = Page(
+        kind=f"{'Short report' if brief else 'Report'} of a run",
+        title=view.case.title or run.name,
+        name=run.name,
+        hash=str(view.result.case_hash or ""),
+        signature=(signature or Signature()).completed(view.case.named) if view.finished else None,
+        scripts=["player.js"] if view.played else [],
+        data={"run": view.played} if view.played else {},
+    )
+    return html_of(page, "run.html.j2", view=view, **SAID)
 
 
 def _broken(result: RunResult) -> list[float]:
     """When stops and ties broke, in the order of the case; empty where none was computed [s]."""
     links = (*(result.stops or ()), *(result.ties or ()))
     return [math.inf if link.broken_at_s is None else link.broken_at_s for link in links]
-
-
-def _page(view: RunView, signature: Signature | None) -> Page:
-    """The sections in the order of reading."""
-    further = [] if view.brief else [modes_section, block_section, joints_section, sheet_section]
-    behind = [part(view) for part in (motion_section, boxes_section)]
-    proof = [part(view) for part in (*further, numerics_section, provenance_section)]
-    finished = view.run.status in RUN.finished
-    first = [
-        verdict_section(view),
-        case_section(view),
-        limits_section(view.case, view.result, joints_below=bool(view.result.joints) and not view.brief),
-    ]
-    return Page(
-        kind=f"{'Short report' if view.brief else 'Report'} of a run",
-        title=view.case.title or view.run.name,
-        name=view.run.name,
-        introduction=_changes(view),
-        hash=str(view.result.case_hash or ""),
-        signature=(signature or Signature()).completed(view.case.named) if finished else None,
-        sections=[
-            html.Group("first", first),
-            static_section(view),
-            *behind,
-            sureness_section(view),
-            *proof,
-        ],
-        scripts=["player.js"] if view.played else [],
-        data={"run": view.played} if view.played else {},
-    )
-
-
-def _changes(view: RunView) -> list[html.Block]:
-    """What the command line changed in the case file, whose title may say otherwise."""
-    if not view.result.overrides:
-        return []
-    keys = Markup(", ").join(map(html.code, view.result.overrides))
-    return [html.Paragraph(html.joined("Changed on the command line: ", keys), "changed")]
-
-
-def verdict_section(view: RunView) -> html.PageSection:
-    """The answer: one sentence, the first figures, and where to read on."""
-    verdict = view.verdict
-    first, _, further = outcome_sentence(view.result).partition(". ")
-    return html.section(
-        "Verdict",
-        "verdict-title",
-        html.Paragraph(typeset(f"{first}." if further else first), "sentence"),
-        *([html.Paragraph(typeset(further))] if further else []),
-        *([html.Headlines(list(_headlines(view)))] if verdict.outcome else []),
-        html.Note(html.joined(*_reading(view))),
-        look=f"answer {_standing(view.run.status, verdict)}",
-    )
-
-
-def _headlines(view: RunView) -> Iterator[html.Headline]:
-    """The first figures of the page, with their ranges."""
-    verdict, loose = view.verdict, bool(view.boxes)
-    yield html.Headline(
-        "largest rotation",
-        _words(largest_rotation(verdict)),
-        f"{_words(largest_ratio(verdict))} of the slenderness angle",
-    )
-    yield html.Headline(
-        f"largest slip{' on the floor' if loose else ''}",
-        _words(largest_slip(verdict)),
-        f"at the end: {_words(of_band(verdict, 'residual_slip_m'))}",
-    )
-    if loose:
-        slip, joint = largest_joint_slip(verdict)
-        where = html.joined(_words(joint), "; see ", html.link("the boxes", "boxes"))
-        yield html.Headline("largest slip between boxes", _words(slip), where)
-    impacts = f"{verdict.impacts} impact{'' if verdict.impacts == 1 else 's'}"
-    yield html.Headline("largest uplift", _words(of_band(verdict, "max_uplift_m")), impacts)
-    sliding, overturning = view.compared[2:4] if view.case.has_vertical else view.compared[:2]
-    yield html.Headline(
-        "static rule, same motion",
-        f"{overturning.rule}, {sliding.rule}",
-        f"utilisations {overturning.utilisation} and {sliding.utilisation}",
-    )
-    yield html.Headline("how sure", *_sure(verdict))
-
-
-def _words(text: str | None) -> str:
-    return typeset(text or ABSENT)
-
-
-def _sure(verdict: Verdict) -> tuple[str, str]:
-    """How sure the outcome is, and why."""
-    if (band := verdict.band) is not None:
-        named = ", ".join(WORDS.get(key, key) for key in verdict.decided_by)
-        decided = f"; decided by {named}" if named else ""
-        known = verdict.sure or ("unsure" if band.unsure else "same outcome")
-        if verdict.sure == SURE and all(map(numerical, band.members[1:])):
-            known = "no input varied"
-        return known, f"{', '.join(band.outcomes)}{decided}"
-    if verdict.sure:
-        return verdict.sure, "by the static rule alone"
-    return "not computed", html.joined(html.code("run --band"), " computes it")
-
-
-def _reading(view: RunView) -> Iterator[str]:
-    """How the answer is to be read, and where there is more."""
-    under = (
-        "What happened under this motion" if view.run.status in RUN.finished else "What has happened so far"
-    )
-    yield (
-        f"{under}; a margin is that of the same motion made stronger or weaker. This is a "
-        "study, not a verification, and says nothing about motions of another form. "
-    )
-    if lacks_margin(view.result):
-        yield f"{MARGIN_NOTE} "
-    if warnings := len(view.result.warnings or ()):
-        yield f"{warnings} warning{'' if warnings == 1 else 's'}: see "
-        yield html.link("numerics", "numerics")
-        yield "."
-
-
-def case_section(view: RunView) -> html.PageSection:
-    """The container in elevation, and the case in words."""
-    static = view.model.static
-    drawn = sketch(
-        view.case,
-        centroid=static.centroid,
-        peak_acceleration=static.own_motion.sliding.demand * view.case.gravity_m_s2 / static.weight
-        - static.downhill,
-        peak_vertical=static.peak_vertical_acceleration,
-    )
-    floor = [(name, typeset(value)) for name, value in floor_rows(view.result.floor)]
-    inputs = html.Pairs([*case_rows(view.case), *floor], look="asked")
-    return html.section("The case", "asked", html.columns(html.Figure(drawn), inputs))
-
-
-def static_section(view: RunView) -> html.PageSection:
-    """The static rule beside the run, which of them governs, and all that the run found."""
-    code = typeset(code_note(view.model.static.to_result()))
-    own = "Only the rule under the peak floor acceleration of this run is compared with the run."
-    note: list[str] = [f"{code} {own}" if code else own]
-    if not view.brief:
-        note += [" See ", html.link("the static calculation", "sheet"), " for the numbers."]
-    of_floor = dict(floor_rows(view.result.floor))
-    figures = [(name, typeset(value)) for name, value in result_rows(view.result) if name not in of_floor]
-    of_itself = ", of the container itself" if view.case.neighbour else ""
-    return html.section(
-        "Static rule and run",
-        "static",
-        compared_table(view.compared, loose=bool(view.boxes)),
-        *(typeset(sentence) for sentence in governing(view.result)),
-        html.Note(html.joined(*note)),
-        html.Note(html.joined(html.strong("Read as:"), READ_AS)),
-        html.Pairs(figures, caption="What the run found" + of_itself, look="found"),
-    )
-
-
-def numerics_section(view: RunView) -> html.PageSection:
-    """Warnings; steps and energies."""
-    warnings = [typeset(warning) for warning in view.result.warnings or ()]
-    listed: html.Block = html.Bullets(warnings, "") if warnings else "No warnings."
-    if view.brief or view.result.numerics is None:
-        title = "Warnings" if view.brief else "Numerics and warnings"
-        return html.section(title, "numerics", listed)
-    steps = html.Pairs(_stepping(view.case, view.result.numerics), caption="Stepping")
-    energies = html.Pairs(_energies(view), caption="Energy balance")
-    return html.section("Numerics and warnings", "numerics", listed, html.columns(steps, energies))
 
 
 def _stepping(case: Case, numerics: Numerics) -> list[tuple[str, str]]:
@@ -291,54 +359,6 @@ def _stepping(case: Case, numerics: Numerics) -> list[tuple[str, str]]:
     ]
 
 
-def _energies(view: RunView) -> list[tuple[str, str]]:
-    """The energy balance at the end: name and value."""
-    energy = view.result.energy or Energy()
-    row = bool(view.case.neighbour)
-    error = f"{number(energy.closure_error, figures=3)} of the energy {to_overturn(row)}"
-    absent = {
-        "crushing_J": not view.case.floor.is_slab,
-        "impact_J": not view.case.states_restitution,
-    }
-    rows = [
-        (to_overturn(row) if key == "reference_J" else words, quantity(getattr(energy, key), "J"))
-        for key, words in ENERGIES.items()
-        if not absent.get(key, False)
-    ]
-    return [*rows, ("largest error", error)]
-
-
-def provenance_section(view: RunView) -> html.PageSection:
-    """From what the run was computed, and how to compute it again."""
-    run, result = view.run, view.result
-    computed = f"{dt.datetime.fromtimestamp(run.place.result.stat().st_mtime):%Y-%m-%d %H:%M}"
-    if result.wall_s:
-        computed += f", in {quantity(result.wall_s, 's', figures=3)}"
-    if result.wall_s and result.compile_s:
-        compiled = quantity(result.compile_s, "s", figures=3)
-        computed += f", of which {compiled} compilation, once after installation"
-    saved = "resolved.toml of the run" if view.brief else "the case below"
-    again = html.joined(
-        f"save {saved} as ", html.code("case.toml"), ", then ", html.code("python -m fem run case.toml")
-    )
-    rows = [
-        ("case", f"{run.name}, status {run.status}"),
-        ("computed", computed),
-        ("case hash", html.joined(html.code(result.case_hash), " (SHA-256 of the resolved case)")),
-        ("versions", ", ".join(f"{name} {version}" for name, version in (result.versions or {}).items())),
-        ("again", again),
-    ]
-    if view.brief:
-        return html.section("Provenance", "provenance", html.Pairs(rows))
-    return html.section(
-        "Provenance",
-        "provenance",
-        html.Pairs(rows),
-        html.Heading("Resolved case: every default written out"),
-        html.Listing(run.place.resolved.read_text(encoding="utf-8")),
-    )
-
-
 def _history(run: OpenedRun, message: Callable[[str], None]) -> History:
     try:
         return run.history
@@ -355,13 +375,3 @@ def _fields(run: OpenedRun, message: Callable[[str], None]) -> Fields | None:
     except FolderError as error:
         message(f"the animation shows no stresses: {error}")
         return None
-
-
-def _standing(status: str, verdict: Verdict) -> str:
-    """How the verdict is coloured: what the run found, never whether that is safe."""
-    if status not in RUN.finished:
-        return "open"
-    if verdict.outcome == Outcome.OVERTURNED:
-        return "fell"
-    unsure = verdict.outcome == Outcome.INVALID or (verdict.band is not None and verdict.band.unsure)
-    return "unsure" if unsure else "stood"

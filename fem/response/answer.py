@@ -1,17 +1,18 @@
-"""The answer of a response curve in one sentence: overturning, largest rotation, coexisting motions."""
+"""The answer of a response curve in one sentence, and what lasts at each frequency in words."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from fem.batch.answers import slip_in_words
-from fem.response.branches import Coexistence, DropOut, Jump
+from fem.response.lasting import AtFrequency, Coexistence, DropOut
 from fem.response.records import PointRow
 from fem.response.result import ResponseResult
-from fem.results.figures import TURNED
 from fem.results.outcome import Outcome
-from fem.runtime.units import MILLIMETRES, RATIO
+from fem.runtime.units import MILLIMETRES
 
+#: what stable means, as Knoedel and Hrabowski define Lyapunov stability
+STABLE = "amplitudes do not diverge, and without drive the motion dies out"
 MOST_RANGES = 3  #: of frequencies that are named
 
 
@@ -19,10 +20,10 @@ MOST_RANGES = 3  #: of frequencies that are named
 class Fates:
     """The points of a curve that have an outcome, by what became of the container."""
 
-    overturned: list[PointRow]
-    destroyed: list[PointRow]  #: one of its corners
-    slid: list[PointRow]  #: beyond the limit
-    standing: list[PointRow]
+    overturned: tuple[PointRow, ...]
+    destroyed: tuple[PointRow, ...]  #: one of its corners
+    slid: tuple[PointRow, ...]  #: beyond the limit
+    standing: tuple[PointRow, ...]
 
     @property
     def overturned_share(self) -> float | None:
@@ -33,16 +34,20 @@ class Fates:
 
 def fates_of(result: ResponseResult) -> Fates:
     """What became of the container at each point."""
-    fates = Fates(overturned=[], destroyed=[], slid=[], standing=[])
     limit = math.inf if result.limit_slip is None else result.limit_slip
-    for point in result.points:
-        if point.motion == Outcome.INVALID:
-            fates.destroyed.append(point)
-        elif point.fell:
-            fates.overturned.append(point)
-        elif point.status != "failed":
-            (fates.slid if result.slid(point) > limit else fates.standing).append(point)
-    return fates
+    stands = [point for point in result.points if not point.fell and not point.says_nothing]
+    return Fates(
+        overturned=tuple(point for point in result.points if point.fell),
+        destroyed=tuple(point for point in result.points if point.motion == Outcome.INVALID),
+        slid=tuple(point for point in stands if result.slid(point) > limit),
+        standing=tuple(point for point in stands if result.slid(point) <= limit),
+    )
+
+
+def fell_share(frequencies: tuple[AtFrequency, ...]) -> float | None:
+    """The share of all random states that overturn or destroy a corner; None without any."""
+    count = sum(at.starts for at in frequencies)
+    return sum(at.fell + at.destroyed for at in frequencies) / count if count else None
 
 
 def response_answer(result: ResponseResult) -> str | None:
@@ -50,19 +55,25 @@ def response_answer(result: ResponseResult) -> str | None:
     points = [point for point in result.points if point.status != "failed"]
     if result.state != "finished" or not points:
         return None
-    fates = fates_of(result)
+    fates, failed = fates_of(result), len(result.points) - len(points)
     limit = f"{slip_in_words(result.limit_slip or 0.0)} within {result.request.get('observe')} periods"
     frequencies = [point.frequency_Hz for point in points]
-    failed = len(result.points) - len(points)
     every = f"every frequency {'with an outcome' if failed else 'tried'}, {_range(min(frequencies), max(frequencies))}"
+    parts = [largest_in_words(result)]
+    if result.starts_fell_share is not None:
+        destroys = " or destroy a corner" if any(at.destroyed for at in result.frequencies) else ""
+        count = sum(at.starts for at in result.frequencies)
+        parts.append(f"{100.0 * result.starts_fell_share:.0f} % of {count} random starts overturn{destroys}")
     if len(fates.standing) == len(points):
-        parts = [f"stood at {every}, up and down"]
+        parts.append(f"stood at {every}, up and down")
         parts += [f"none slid beyond {limit}"] if result.limit_slip is not None else []
     elif len(fates.overturned) == len(points):
-        parts = [f"overturned at {every}"]
+        parts.append(f"overturned at {every}")
+    elif len(fates.destroyed) == len(points):
+        parts.append(f"not valid at {every}: a corner is destroyed")
     else:
         fallen = [f"{range_of(fall)} going {fall.direction}" for fall in result.drop_outs]
-        parts = [f"overturned at {_listed(fallen)}"] if fallen else []
+        parts += [f"overturned at {_listed(fallen)}"] if fallen else []
         if fates.destroyed:
             parts.append(f"not valid at {_counted(fates.destroyed)}: a corner is destroyed")
         if fates.slid:
@@ -71,10 +82,6 @@ def response_answer(result: ResponseResult) -> str | None:
         if count := len(fates.standing):
             parts.append(f"stood at the other {f'{count} points' if count > 1 else 'point'}")
     if fates.standing:
-        most = max(fates.standing, key=lambda point: point.turned)
-        turned = f"{most.turned:.2g} of the slenderness angle, at {most.frequency_Hz:.4g} Hz"
-        resting = all(point.long_time == "rest" for point in fates.standing)
-        parts.append("at rest there" if resting else f"largest rotation {turned} going {most.direction}")
         slid = max(fates.standing, key=lambda point: point.slip_stroke_m or 0.0)
         if (slid.slip_stroke_m or 0.0) >= MILLIMETRES.least:
             stroke = slip_in_words(slid.slip_stroke_m or 0.0)
@@ -82,35 +89,59 @@ def response_answer(result: ResponseResult) -> str | None:
                 f"slid by up to {stroke} a period, at {slid.frequency_Hz:.4g} Hz going {slid.direction}"
             )
     if result.coexisting:
-        parts.append(f"two motions coexist at {_listed([range_of(pair) for pair in result.coexisting])}")
+        parts.append(f"motions coexist at {_listed([range_of(several) for several in result.coexisting])}")
     if failed:
         parts.append(f"no outcome at {failed} of {len(result.points)} points")
-    return "frequency: " + "; ".join(parts)
+    return "frequency: " + "; ".join(filter(None, parts))
 
 
-def _counted(points: list[PointRow]) -> str:
+def stable_in_words(result: ResponseResult) -> str | None:
+    """How many of the points judged are stable, behind what that means; None where none was judged."""
+    judged = [point.stable for point in result.points if point.stable is not None]
+    return f"{sum(judged)} of {len(judged)} points: {STABLE}" if judged else None
+
+
+def largest_in_words(result: ResponseResult) -> str:
+    """The largest lasting motion, where it is, what leads to it and what the curve shows there; empty without one."""
+    motions = [(at, motion) for at in result.frequencies for motion in at.motions]
+    if not motions:
+        return ""
+    at, largest = max(motions, key=lambda pair: pair[1].rotation_ratio)
+    if all(motion.motion == "rest" for _, motion in motions):
+        return "at rest wherever it stands"
+    led = [
+        *(f"going {way}" for way in largest.ways),
+        *[f"{largest.starts} of {at.starts} starts"] * bool(at.starts),
+    ]
+    beside = "" if largest.ways else ", which neither sweep meets"
+    return (
+        f"largest lasting motion {largest.rotation_ratio:.2g} of the slenderness angle, {largest.motion} at "
+        f"{at.frequency_Hz:.4g} Hz{beside} ({', '.join(led)})"
+    )
+
+
+def lasting_in_words(result: ResponseResult) -> Iterator[tuple[AtFrequency, str]]:
+    """What lasts at each frequency, with the sweeps and the share of the starts that lead to it; what falls."""
+    for at in result.frequencies:
+        words = []
+        for motion in at.motions:
+            led = [*motion.ways, *([f"{motion.starts} of {at.starts} starts"] if motion.starts else [])]
+            words.append(
+                f"{motion.rotation_ratio:.3f} {motion.motion} ({', '.join(led) or 'followed from a neighbour'})"
+            )
+        words += [f"{at.fell} of {at.starts} starts overturn"] if at.fell else []
+        words += [f"{at.destroyed} of {at.starts} destroy a corner"] if at.destroyed else []
+        yield at, "; ".join(words) or "nothing lasts"
+
+
+def range_of(change: Coexistence | DropOut) -> str:
+    """The frequencies of a coexistence or a drop-out, in the order of its sweep."""
+    return _range(change.from_Hz, change.to_Hz)
+
+
+def _counted(points: Sequence[PointRow]) -> str:
     count = f"{len(points)} point{'s' * (len(points) != 1)}"
     return f"{count}, the first at {points[0].frequency_Hz:.4g} Hz going {points[0].direction}"
-
-
-def branches_in_words(result: ResponseResult) -> Iterator[tuple[str, str, str, str]]:
-    """Where the curve changes: what happens there, on which sweep, at which frequencies, and how."""
-    for fall in result.drop_outs:
-        how = "a motion that was carried there" if fall.carried else "from its start"
-        yield "overturns", fall.direction, range_of(fall), how
-    for pair in result.coexisting:
-        words = f"{' or '.join(pair.up)} going up, {' or '.join(pair.down)} going down"
-        if pair.largest_difference is not None:
-            words += f", rotation ratios up to {RATIO.text(pair.largest_difference)} apart"
-        yield "coexist", "up and down", range_of(pair), words
-    for jump in result.jumps:
-        before, after = map(RATIO.text, jump[TURNED])
-        yield "jump", jump.direction, range_of(jump), f"{jump.what}, rotation ratio {before} to {after}"
-
-
-def range_of(change: Coexistence | Jump | DropOut) -> str:
-    """The frequencies of a coexistence, a jump or a drop-out, in the order of its sweep."""
-    return _range(change.from_Hz, change.to_Hz)
 
 
 def _range(low: float, high: float) -> str:

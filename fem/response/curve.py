@@ -1,145 +1,167 @@
-"""Response curves: one frequency after the other, up and down, the motion carried on from one to the next.
+"""Response curves: one frequency after the other, up and down, and each from random states of the container.
 
-A container that overturned has no response; the next frequency then begins as the case does. Each frequency ends with
-the drive stopped, on a copy of the motion.
+Up and down the motion is carried on from one frequency to the next, onto a floor that is whole. After a fall or a
+destroyed corner the next frequency begins as the case does. Each ends with the drive stopped, on a copy of the motion.
+A motion that random states lead to, and the curve does not, is followed to the neighbouring frequencies.
 """
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from contact.stepping.observables import ROCKING
-from fem.assessment.verdict import destroyed_corner, relative_rotation
+from contact.stepping.state import Control
+from fem.assessment.verdict import destroyed_corner
 from fem.case.case import Case
 from fem.model.container import Container
-from fem.response.decay import Decay, follow_decay
-from fem.response.model import DrivenModel, begin_drive, carry_drive, driven_case
+from fem.response.decay import follow_decay
+from fem.response.lasting import differ, lasting_at
+from fem.response.model import DrivenModel, begin_drive, carry_drive
 from fem.response.orbit import Orbit, Progress, follow_periods, no_progress, step_until
+from fem.response.records import PORTRAYED, PointRecord, record_of
 from fem.response.request import ResponseRequest
-from fem.response.stability import LongTime, amplitude_growth, amplitudes_diverge, classify
+from fem.response.stability import LongTime, classify
 from fem.results.outcome import Outcome, least_slide
-from fem.runtime.arrays import FloatArray
 
-PORTRAYED = 16  #: last periods whose phase portrait is kept; of a periodic motion, one of its periods
 WINDOWS = 4  #: a motion that is not settled is observed again, at most so many windows in all
+SEED = 1  #: of the random states
+REACH = (0.6, 0.7)  #: of random states: rotation over the slenderness angle al, angular velocity over al p
+PHASES = 3  #: sections of a motion from which it is followed to a neighbour, at most
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class CurvePoint:
-    """One frequency of a curve."""
+@dataclass(frozen=True, kw_only=True)
+class Task:
+    """A frequency and what leads to it."""
 
-    direction: str  #: up | down
+    way: str  #: up | down: carried on; random: from random states; risen | sunk: from the motions of a neighbour
     number: int  #: of the frequency, from 0 for the lowest
-    case: Case
-    began: str  #: "carried" on from the frequency before, or as the "case" begins
-    motion: str | None  #: rest | slide | rock | slide-rock | overturned, in the window observed
-    long_time: LongTime | None  #: None where it overturned or failed
-    periods: int  #: of the drive followed, until the end or the fall
-    orbit: Orbit  #: of the window observed; where it overturned or failed, what there is of it
-    decay: Decay | None  #: with the drive stopped
-    slenderness_angle: float  #: [rad]
+    model: str
+    begins: bool = False  #: a sweep, as the case does
 
     @property
-    def amplitudes(self) -> FloatArray:
-        """Largest |rotation| of each period observed over the slenderness angle, shape (n,)."""
-        return relative_rotation(self.orbit.extremes[:, 0], self.slenderness_angle)
-
-    @property
-    def growth(self) -> float | None:
-        """Of the amplitudes within the window [-]."""
-        return amplitude_growth(self.amplitudes) if self.long_time is not None else None
-
-    @property
-    def bounded(self) -> bool | None:
-        """(a) of the paper's stability: it did not overturn, and amplitudes do not diverge; None where not valid."""
-        if self.orbit.status == "failed" or self.motion == Outcome.INVALID:
-            return None
-        return self.long_time is not None and not amplitudes_diverge(self.amplitudes)
-
-    @property
-    def stable(self) -> bool | None:
-        """(a) and (b) of the paper's stability; None where either could not be judged."""
-        if self.bounded is None or (self.bounded and (self.decay is None or self.decay.fate == "failed")):
-            return None
-        return self.bounded and self.decay is not None and self.decay.fate == "dies out"
+    def carries(self) -> bool:
+        """Whether its motion is carried on to the next frequency."""
+        return self.way in ("up", "down")
 
 
-def sweep_points(
+def plan_of(request: ResponseRequest) -> list[Task]:
+    """All tasks, in the order in which they are computed."""
+    rising, own = range(request.count), request.case.solver.model
+
+    def sweep(way: str, model: str, *, begins: bool = False) -> list[Task]:
+        numbers = rising if way in ("up", "random", "risen") else reversed(rising)
+        return [Task(way=way, number=k, model=model, begins=begins and not i) for i, k in enumerate(numbers)]
+
+    first, second = request.order.split("-")
+    plan = [*sweep(first, own, begins=True), *sweep(second, own)]
+    if request.starts:
+        plan += [task for way in ("random", "risen", "sunk") for task in sweep(way, own)]
+    if request.shell:
+        plan += [*sweep(first, "reduced", begins=True), *sweep(second, "reduced")]
+    return plan
+
+
+def computed(
     request: ResponseRequest,
     container: Container,
-    *,
-    skip: int = 0,
-    before: DrivenModel | None = None,
+    task: Task,
+    records: Sequence[PointRecord],
+    before: DrivenModel | None,
+    control: Control,
     progress: Progress = no_progress,
-) -> Iterator[tuple[CurvePoint, DrivenModel | None]]:
-    """The points of a curve in the order in which they are swept, each with the motion that is carried on.
+) -> tuple[list[PointRecord], DrivenModel | None]:
+    """The points of a task, and the motion to carry on; None where there is none.
 
     Args:
         request: frequencies and drive.
         container: of its case.
-        skip: number of points that are computed already.
-        before: the motion after the last of these; None: the next point begins as the case does.
+        task: what to compute.
+        records: what was computed before.
+        before: the motion to carry on; None: begin as the case does.
+        control: of its model.
         progress: called within a point with the time since its beginning [s], the rotation [rad] and the mode.
     """
-    for direction, number in plan_of(request)[skip:]:
-        point, before = follow_point(
-            request, container, before, direction=direction, number=number, progress=progress
-        )
-        yield point, before
+    case = request.case_at(task.number, task.model)
+    if task.carries:
+        point = follow_point(request, case, container, task, None if task.begins else before, progress)
+        return [point[0]], point[1]
+    found: list[PointRecord] = []
+    states = (
+        random_states(request, task, control) if task.way == "random" else neighbours(records, found, task)
+    )
+    at_section = {"initial.velocity_m_s": 0.0, "motion.phase_rad": 0.5 * math.pi, "motion.ramp_cycles": 0.0}
+    for rotation, rate in states:
+        start = {"initial.rotation_rad": rotation, "initial.angular_velocity_rad_s": rate}
+        begun = case.with_values(start | at_section)
+        found.append(follow_point(request, begun, container, task, None, progress)[0])
+    return found, None
 
 
-def plan_of(request: ResponseRequest) -> list[tuple[str, int]]:
-    """Direction and number of each frequency, in the order in which they are swept."""
-    up = [("up", k) for k in range(request.count)]
-    down = [("down", k) for k in reversed(range(request.count))]
-    return up + down if request.order == "up-down" else down + up
+def random_states(request: ResponseRequest, task: Task, control: Control) -> list[tuple[float, float]]:
+    """Rotations [rad] and angular velocities [rad/s] as the floor turns at +A, the same whenever they are asked for."""
+    drawn = np.random.default_rng([SEED, task.number]).uniform(-1.0, 1.0, (request.starts, 2))
+    angle = control.slenderness_angle
+    largest = np.multiply(REACH, [angle, angle * control.frequency_parameter])
+    return [(float(rotation), float(rate)) for rotation, rate in drawn * largest]
 
 
-def case_at(request: ResponseRequest, number: int) -> Case:
-    """The case at a frequency of the request."""
-    return driven_case(request.case, float(request.frequencies[number]), request.held, request.held_value)
+def neighbours(
+    records: Sequence[PointRecord], found: Sequence[PointRecord], task: Task
+) -> Iterator[tuple[float, float]]:
+    """States of the motions off the curve that last at the frequency before and were not found at this one.
+
+    `found` grows meanwhile by what these states led to.
+    """
+    for group in lasting_at(records, task.number + (-1 if task.way == "risen" else 1)):
+        if any(record.row.direction != "start" for record in group):
+            continue
+        for turned, rate in group[0].sections[-min(group[0].row.period_n or 1, PHASES) :, :2]:
+            here = lasting_at([*records, *found], task.number)
+            if all(differ(group[0], known[0]) for known in here):
+                yield float(turned), float(rate)
 
 
 def follow_point(
     request: ResponseRequest,
+    case: Case,
     container: Container,
-    before: DrivenModel | None,
-    *,
-    direction: str,
-    number: int,
+    task: Task,
+    before: DrivenModel | None = None,
     progress: Progress = no_progress,
-) -> tuple[CurvePoint, DrivenModel | None]:
-    """One frequency, from the motion before; returns the point and the motion to carry on, None after a fall."""
-    case = case_at(request, number)
-    began = "case" if before is None else "carried"
-    driven, orbit = settled(request, case, container, before, progress)
-    long_time, periods = None, len(orbit.sections)
+) -> tuple[PointRecord, DrivenModel | None]:
+    """One frequency, from the motion before or as its case begins; returns the point and the motion to carry on."""
+    driven, orbit = _settled(request, case, container, before, progress)
+    judged, periods = None, len(orbit.sections)
     for _ in range(WINDOWS):
-        if orbit.status != "completed":
+        if orbit.status != "completed" or destroyed_corner(driven.model):
             break
         driven, orbit = follow_periods(driven, request.observe, portrayed=PORTRAYED, progress=progress)
         periods += len(orbit.sections)
-        long_time = judge(request, case, driven, orbit) if orbit.status == "completed" else None
-        if long_time is not None and long_time.kind != "not settled":
+        judged = _judge(request, case, driven, orbit) if len(orbit.sections) == request.observe else None
+        if judged is not None and judged.kind != "not settled":
             break
-    stands = orbit.status == "completed"
-    point = CurvePoint(
-        direction=direction,
-        number=number,
-        case=case,
-        began=began,
-        motion=None if orbit.status == "failed" else motion_of(driven, orbit),
-        long_time=long_time,
+    crushed = destroyed_corner(driven.model)
+    stands = orbit.status == "completed" and not crushed
+    fall = f"it overturned in period {periods + 1} of the drive" if orbit.status == "overturned" else None
+    record = record_of(
+        case,
+        orbit,
+        driven.run.problem.control,
+        judged if stands else None,
+        follow_decay(case, container, driven) if stands and task.carries else None,
+        direction=task.way if task.carries else "start",
+        number=task.number,
+        began=task.way if not task.carries else "case" if before is None else "carried",
+        motion=None if orbit.status == "failed" else _motion_of(driven, orbit),
         periods=periods,
-        orbit=orbit,
-        decay=follow_decay(case, container, driven) if stands else None,
-        slenderness_angle=driven.run.problem.control.slenderness_angle,
+        reason=crushed or orbit.reason or fall,
     )
-    return point, driven if stands else None
+    return record, driven if stands else None
 
 
-def settled(
+def _settled(
     request: ResponseRequest, case: Case, container: Container, before: DrivenModel | None, progress: Progress
 ) -> tuple[DrivenModel, Orbit]:
     """The model after the periods left out, and their orbit; an empty one where it fell before the first section."""
@@ -148,32 +170,29 @@ def settled(
         status = step_until(before, until) if until > 0.0 else "completed"
         if status != "completed":
             reason = "failed before the first section" if status == "failed" else None
-            none = np.zeros((0, 4)), np.zeros((0, 7)), np.zeros((0, 2))
-            return before, Orbit(
-                status=status, sections=none[0], extremes=none[1], portrait=none[2], reason=reason
-            )
+            return before, Orbit.empty(status, reason)
     return follow_periods(carry_drive(case, container, before), request.settle, progress=progress)
 
 
-def judge(request: ResponseRequest, case: Case, driven: DrivenModel, orbit: Orbit) -> LongTime:
+def _judge(request: ResponseRequest, case: Case, driven: DrivenModel, orbit: Orbit) -> LongTime:
     """The long-time motion of a window of periods."""
     control = driven.run.problem.control
     angle, amplitude = control.slenderness_angle, case.amplitude
     scales = [angle, angle * control.frequency_parameter, amplitude * case.angular_frequency, amplitude]
     return classify(
         orbit.sections / scales,
-        resting=motion_of(driven, orbit) == Outcome.REST,
+        resting=_motion_of(driven, orbit) == Outcome.REST,
         tolerance=request.tolerance,
         largest_period=request.largest_period,
     )
 
 
-def motion_of(driven: DrivenModel, orbit: Orbit) -> str:
-    """One word for a window of periods, with the limits of a verdict; a corner sinks in further from point to point."""
-    if destroyed_corner(driven.model) is not None:
+def _motion_of(driven: DrivenModel, orbit: Orbit) -> str:
+    """One word for a window of periods, with the limits of a verdict."""
+    if destroyed_corner(driven.model):
         return Outcome.INVALID
     if orbit.status == "overturned":
         return Outcome.OVERTURNED
-    rocks = orbit.extremes[:, 3].max() > ROCKING * driven.run.problem.control.slenderness_angle
-    slides = orbit.extremes[:, 4].max() > least_slide(driven.run.problem.control.width)
-    return Outcome.of(slides=slides, rocks=rocks)
+    control = driven.run.problem.control
+    rocks = orbit.extremes[:, 3].max(initial=0.0) > ROCKING * control.slenderness_angle
+    return Outcome.of(slides=orbit.extremes[:, 4].max(initial=0.0) > least_slide(control.width), rocks=rocks)

@@ -3,9 +3,6 @@
 The floor is stopped at a turning point, where that is no impulse.
 """
 
-from dataclasses import dataclass
-
-from contact.stepping.body import ROTATION
 from contact.stepping.integrator import OVERTURNED, REACHED
 from contact.stepping.observables import ROCKING
 from contact.stepping.outcome import advance_compiled
@@ -21,35 +18,30 @@ LOOK = 0.02  #: between two checks, in 1/p
 PATIENCE = 400.0  #: followed at most, in 1/p
 
 
-@dataclass(frozen=True, kw_only=True)
-class Decay:
-    """A motion after its drive was stopped."""
-
-    fate: str  #: dies out | overturns | goes on | failed
-    time: float | None  #: from the stop until it is at rest, or overturned [s]
-    largest_rotation: float  #: on the way [rad]
+Decay = tuple[str, float | None]  #: fate, and time [s]
 
 
 def follow_decay(case: Case, container: Container, driven: DrivenModel) -> Decay:
-    """Stop the floor at a section and follow the container; `driven` does not change."""
+    """Stop the floor at a section and follow the container until it is at rest or overturned.
+
+    Returns:
+        dies out | overturns | goes on | failed, and the time from the stop until then [s].
+    """
     stopped = stop_drive(case, container, driven)
     run, control = stopped.run, stopped.run.problem.control
     clock, track, joint = run.clock[0], run.track[0], run.joints[0]
     look = LOOK / control.frequency_parameter
-    largest = abs(float(run.old.pose[ROTATION]))
     moved_at, limit = 0.0, ROCKING * control.slenderness_angle
     while clock.time < PATIENCE / control.frequency_parameter:
         track.max_rotation, travelled = 0.0, float(joint.slip_travel)
         code = advance_compiled(stopped.body, run, float(clock.time) + look)
         clock.samples_drained = clock.samples
-        largest = max(largest, float(track.max_rotation))
         if code == OVERTURNED:
-            return Decay(fate="overturns", time=float(track.overturned_at), largest_rotation=largest)
+            return "overturns", float(track.overturned_at)
         if code != REACHED:
-            return Decay(fate="failed", time=None, largest_rotation=largest)
+            return "failed", None
         if track.max_rotation > limit or joint.slip_travel - travelled > STILL_SLIP * control.width:
             moved_at = float(clock.time)
         if clock.time - moved_at > STILL / control.frequency_parameter:
-            fate = "failed" if audit(stopped.model) else "dies out"
-            return Decay(fate=fate, time=moved_at, largest_rotation=largest)
-    return Decay(fate="goes on", time=None, largest_rotation=largest)
+            return "failed" if audit(stopped.model) else "dies out", moved_at
+    return "goes on", None

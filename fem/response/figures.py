@@ -1,120 +1,152 @@
 """Figures of a response curve: amplitudes over frequency, sections over frequency, phase portraits.
 
-In degrees, mm, Hz. Up and down differ in colour, mark and line, so that they can be distinguished in grey.
+In degrees, mm, Hz. Up and down differ in colour, mark and line, so that they can be distinguished in grey. What is not
+valid is marked and not joined.
 """
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fem.figures import style
-from fem.response.branches import coexistences
+from fem.response.lasting import coexistences, frequencies_of, lasting_at, of_first_model, shown
 from fem.response.records import PointRecord
 from fem.response.request import ResponseRequest
+from fem.results.figures import TURNED
+from fem.results.outcome import Outcome
+from fem.runtime.units import MILLIMETRES
 
-LOOKS = {
+LOOKS: dict[str, dict[str, Any]] = {
     "up": {"color": style.BLUE, "marker": "^", "linestyle": "-"},
     "down": {"color": style.VERMILLION, "marker": "v", "linestyle": "--"},
+    "start": {"color": style.PURPLE, "marker": "o", "linestyle": ":"},
 }
-PORTRAITS = 6  #: of the most different motions
+SMALL: dict[str, Any] = {"markersize": 3.5, "markeredgewidth": 0.0}
+DOTS: dict[str, Any] = {"linestyle": "none", "marker": "o", "markersize": 2.6, "markeredgewidth": 0.0}
+SHELL: dict[str, Any] = {"color": style.GREEN, "linewidth": 0.9}
+LEADS = {"start": "from random states"}
+PORTRAITS = 5  #: frequencies whose motions are drawn
 COLUMNS = 3
 FREQUENCY = "frequency of the drive [Hz]"
 
 
 def response_figures(request: ResponseRequest, records: Sequence[PointRecord]) -> dict[str, str]:
     """Figures as SVG documents, by name."""
+    own = of_first_model(records)
     with style.house_style():
-        drawn = {"response_curve": draw_curves(request, records)}
-        if any(record.stands for record in records):
-            drawn |= {"sections": draw_sections(request, records), "portraits": draw_portraits(records)}
+        drawn = {"response_curve": draw_curves(request, records)} if records else {}
+        if any(record.stands for record in own):
+            drawn |= {"sections": draw_sections(request, own), "portraits": draw_portraits(own)}
         return {name: style.svg_of(figure) for name, figure in drawn.items()}
 
 
 def draw_curves(request: ResponseRequest, records: Sequence[PointRecord]) -> Figure:
-    """Largest rotation and slip stroke over frequency, up and down."""
-    figure, (rotation, slip, life) = style.panels((2.4, 1.2, 1.2), gaps=(0.12, 0.12), header=3)
+    """Largest rotation, share of the starts that fall, slip stroke and decay over frequency, up and down."""
+    own, shell = of_first_model(records), records[len(of_first_model(records)) :]
+    slides = any(record.number("slip_stroke_m") > MILLIMETRES.least for record in records)
+    heights = [2.6, *[0.8] * bool(request.starts), *[1.0] * slides, 1.0]
+    figure, panels = style.panels(heights, gaps=(0.12,) * (len(heights) - 1), header=4, below=1.05)
+    rotation, life = panels[0], panels[-1]
+    drawn = [
+        (rotation, TURNED, 1.0, "rotation ratio", 0.01),
+        *[(panels[-2], "slip_stroke_m", 1e3, "slip stroke [mm]", 1.0)] * slides,
+        (life, "undriven_s", 1.0, "dies out in [s]", 1.0),
+    ]
+    frequencies = list(frequencies_of(own))
+    coexisting = list(coexistences(frequencies))
+    title = request.case.title or request.case.name
     style.head(
         figure,
-        f"{request.case.title or request.case.name}: frequency swept, the motion carried on",
-        statement_of(request, records),
+        f"{title}: response over frequency",
+        f"{request.held_in_words}; {request.observe} periods judged, after {request.settle} left out"
+        + ("; grey: motions coexist" if coexisting else ""),
     )
-    for direction in LOOKS:
-        swept = sorted(
-            (record for record in records if record.row.direction == direction),
-            key=lambda record: record.row.number,
-        )
-        _draw_branch(rotation, swept, direction, "max_rotation_rad", 180.0 / np.pi)
-        _draw_branch(slip, swept, direction, "slip_stroke_m", 1e3)
-        _draw_branch(life, swept, direction, "undriven_s", 1.0)
-        fallen = [record.row.frequency_Hz for record in swept if record.row.status == "overturned"]
-        height = 0.97 if direction == "up" else 0.92
-        rotation.plot(
-            fallen,
-            np.full(len(fallen), height),
-            linestyle="none",
-            marker="x",
-            markersize=5,
-            color=LOOKS[direction]["color"],
-            transform=rotation.get_xaxis_transform(),
-            label=f"{direction}: overturned" if fallen else None,
-        )
-    for pair in coexistences(records):
-        for axes in (rotation, slip, life):
-            axes.axvspan(pair.from_Hz, pair.to_Hz, color="#DDDDDD", alpha=0.6, linewidth=0, zorder=0)
-    for axes, label, least in (
-        (rotation, "largest rotation [deg]", 0.1),
-        (slip, "slip stroke [mm]", 1.0),
-        (life, "dies out in [s]", 1.0),
-    ):
+    for axes, column, factor, label, least in drawn:
+        for direction in ("up", "down"):
+            look = LOOKS[direction]
+            beside = SHELL | {"linestyle": look["linestyle"]}
+            for label, drawn_so, of in ((direction, look, own), (f"shell, {direction}", beside, shell)):
+                if branch := _swept(of, direction):  # broken where there is no value
+                    axes.plot(
+                        [record.row.frequency_Hz for record in branch],
+                        [factor * record.number(column) for record in branch],
+                        label=label,
+                        **SMALL | drawn_so,
+                    )
         axes.set_ylabel(label)
         axes.set_ylim(0.0, max(axes.get_ylim()[1], least))  # rounding is not to look like motion
+    _draw_ends(rotation, own)
+    for k, row in enumerate(one.row for one in shown(own) if one.row.direction == "start"):
+        mark: dict[str, Any] = {
+            "color": style.PURPLE,
+            "marker": f"${row.period_n or '?'}$",
+            "markersize": 5.5,
+        }
+        label = "_" if k else "from random states: its period"
+        rotation.plot(row.frequency_Hz, row.turned, label=label, linestyle="none", **mark)
+    if request.starts:
+        width = 0.5 * (request.last_Hz - request.first_Hz) / request.count
+        places = [at.frequency_Hz for at in frequencies]
+        shares = [100.0 * (at.fell + at.destroyed) / max(at.starts, 1) for at in frequencies]
+        panels[1].bar(places, shares, width=width, color=style.BLACK)
+        panels[1].set_ylim(0.0, 100.0)
+        panels[1].set_ylabel("starts fall [%]")
+    for axes in panels:
+        for several in coexisting:
+            axes.axvspan(several.from_Hz, several.to_Hz, color="#DDDDDD", alpha=0.6, linewidth=0, zorder=0)
+        axes.axvline(request.own_frequency, color=style.GREY, linestyle=":", linewidth=0.8)
         _frequency_axis(axes, request)
-    for axes in (rotation, slip):
+    for axes in panels[:-1]:
         axes.tick_params(labelbottom=False)
-    life.set_xlabel(FREQUENCY)
+    life.set_xlabel(f"{FREQUENCY}; dotted: that of the case, {request.own_frequency:.4g} Hz")
+    ratio = (own[0].row.eta or 1.0) / own[0].row.frequency_Hz
+    below = life.secondary_xaxis(
+        -0.5, functions=(lambda f: np.multiply(f, ratio), lambda eta: np.divide(eta, ratio))
+    )
+    below.set_xlabel("η = Ω/ω, over the frequency parameter ω of the container")
     style.legend_above(rotation)
     return figure
 
 
 def draw_sections(request: ResponseRequest, records: Sequence[PointRecord]) -> Figure:
     """Rotation at the sections over frequency: n dots for a motion of period n, a smear for one without period."""
-    figure, (up, down) = style.panels((2.0, 2.0), gaps=(0.12,), header=2)
+    figure, (axes,) = style.panels((3.2,), header=3)
     style.head(
         figure,
         "Poincaré sections: rotation at the instant at which the floor turns back at +A",
         "n dots belong to a motion that repeats after n periods of the drive, a smear to one that does not repeat",
     )
-    for axes, direction in ((up, "up"), (down, "down")):
-        standing = [record for record in records if record.row.direction == direction and record.stands]
-        for record in standing:
-            turned = np.degrees(record.sections[:, 0])
-            axes.plot(
-                np.full(turned.size, record.row.frequency_Hz),
-                turned,
-                linestyle="none",
-                marker="o",
-                markersize=2.2,
-                markeredgewidth=0.0,
-                color=LOOKS[direction]["color"],
+    for direction, look in LOOKS.items():
+        standing = [
+            record for record in shown(records) if record.row.direction == direction and record.stands
+        ]
+        if standing:
+            sections = [record.sections[-(record.row.period_n or 0) :, 0] for record in standing]
+            places = np.repeat(
+                [record.row.frequency_Hz for record in standing], [part.size for part in sections]
             )
-        axes.set_ylabel(f"{direction}: rotation [deg]")
-        _frequency_axis(axes, request)
-    up.tick_params(labelbottom=False)
-    up.sharey(down)
-    up.autoscale(axis="y")
-    down.set_xlabel(FREQUENCY)
+            turned = np.degrees(np.concatenate(sections))
+            label = LEADS.get(direction, direction)
+            axes.plot(
+                places, turned, label=label, **DOTS | {"color": look["color"], "marker": look["marker"]}
+            )
+    axes.set_ylabel("rotation [deg]")
+    axes.set_xlabel(FREQUENCY)
+    _frequency_axis(axes, request)
+    style.legend_above(axes)
     return figure
 
 
 def draw_portraits(records: Sequence[PointRecord]) -> Figure:
-    """Phase portraits of motions that differ the most, with their sections."""
-    chosen = choose_portraits(records)
+    """Phase portraits with their sections: all motions that last at a few frequencies."""
+    chosen = choose_frequencies(records)
     rows = -(-len(chosen) // COLUMNS)
     figure = Figure(figsize=(style.WIDTH, 0.6 + 2.3 * rows), layout="constrained")
     figure.suptitle(
-        "Phase portraits of the long-time motion\n"
+        "Phase portraits of the motions that last\n"
         "dots: Poincaré sections, one a period; an impact is a jump of the angular velocity",
         x=0.01,
         ha="left",
@@ -123,8 +155,16 @@ def draw_portraits(records: Sequence[PointRecord]) -> Figure:
     subplots = list(figure.subplots(rows, COLUMNS, squeeze=False).flat)
     for axes in subplots[len(chosen) :]:
         axes.set_visible(False)
-    for k, (axes, record) in enumerate(zip(subplots, chosen, strict=False)):
-        _draw_portrait(axes, record)
+    for k, (axes, number) in enumerate(zip(subplots, chosen, strict=False)):
+        drawn = [group[0] for group in lasting_at(records, number)]
+        for record in sorted(drawn, key=lambda record: -record.row.turned):
+            repeats = record.row.long_time in ("periodic", "rest")
+            colour = LOOKS[record.row.direction]["color"] if repeats else style.GREY
+            axes.plot(*np.degrees(record.portrait).T, color=colour, linewidth=0.9 if repeats else 0.6)
+            axes.plot(*np.degrees(record.sections[:, :2]).T, color=style.BLACK, **DOTS)
+        row, words = drawn[0].row, " and ".join(record.row.words for record in drawn)
+        axes.set_title(f"{row.frequency_Hz:.3g} Hz, η = {row.eta or 0.0:.3g}\n{words}", fontsize=7.5)
+        axes.margins(0.08)
         if k % COLUMNS == 0:
             axes.set_ylabel("angular velocity [deg/s]")
         if k + COLUMNS >= len(chosen):
@@ -132,50 +172,41 @@ def draw_portraits(records: Sequence[PointRecord]) -> Figure:
     return figure
 
 
-def choose_portraits(records: Sequence[PointRecord]) -> list[PointRecord]:
-    """A few motions: one of each kind there is, the largest first, then those in between."""
-    standing = [record for record in records if record.stands and record.row.long_time != "rest"]
-    standing = standing or [record for record in records if record.stands]
-    by_size = sorted(standing, key=lambda record: -record.row.turned)
-    kinds: dict[str, PointRecord] = {}
-    for record in by_size:
-        kinds.setdefault(record.row.words, record)
-    chosen = list(kinds.values())[:PORTRAITS]
-    for share in np.linspace(0.0, 1.0, PORTRAITS):
-        candidate = by_size[round(share * (len(by_size) - 1))]
-        if len(chosen) < PORTRAITS and all(candidate is not picked for picked in chosen):
-            chosen.append(candidate)
-    return sorted(chosen, key=lambda record: (record.row.frequency_Hz, record.row.direction))
+def choose_frequencies(records: Sequence[PointRecord]) -> list[int]:
+    """Numbers of the frequencies whose portraits are drawn: of most motions first, else evenly over all that move."""
+    groups = {number: lasting_at(records, number) for number in {record.row.number for record in records}}
+    moving = sorted(n for n, found in groups.items() if any(group[0].row.turned > 0.01 for group in found))
+    moving = moving or sorted(number for number, found in groups.items() if found)
+    parts = [part for part in np.array_split(moving, PORTRAITS) if part.size]
+    return [int(max(part, key=lambda number: len(groups[int(number)]))) for part in parts]
 
 
-def statement_of(request: ResponseRequest, records: Sequence[PointRecord]) -> str:
-    """What is held and how the motion is judged, for the head of a figure."""
-    grey = "; grey: up and down differ" if coexistences(records) else ""
-    return f"{request.held_in_words}; {request.observe} periods judged, after {request.settle} left out{grey}"
+def _swept(records: Sequence[PointRecord], direction: str) -> list[PointRecord]:
+    """The points of a sweep, rising."""
+    swept = [record for record in records if record.row.direction == direction]
+    return sorted(swept, key=lambda record: record.row.number)
 
 
-def _draw_branch(
-    axes: Axes, swept: Sequence[PointRecord], direction: str, column: str, factor: float
-) -> None:
-    """A line with marks, broken where there is no value."""
-    numbers = [factor * record.number(column) for record in swept]
-    frequencies = [record.row.frequency_Hz for record in swept]
-    axes.plot(frequencies, numbers, label=direction, markersize=3.5, markeredgewidth=0.0, **LOOKS[direction])  # type: ignore[arg-type]
-
-
-def _draw_portrait(axes: Axes, record: PointRecord) -> None:
-    row, look = record.row, LOOKS[record.row.direction]
-    rotation, rate = np.degrees(record.portrait).T
-    repeats = row.long_time in ("periodic", "rest")
-    axes.plot(
-        rotation, rate, color=look["color"] if repeats else style.GREY, linewidth=0.9 if repeats else 0.6
-    )
-    turned, turning = np.degrees(record.sections[:, :2]).T
-    axes.plot(
-        turned, turning, linestyle="none", marker="o", markersize=2.6, markeredgewidth=0.0, color=style.BLACK
-    )
-    axes.set_title(f"{row.frequency_Hz:.3g} Hz, {row.direction}: {row.words}", fontsize=7.5)
-    axes.margins(0.08)
+def _draw_ends(axes: Axes, records: Sequence[PointRecord]) -> None:
+    """Where a sweep overturned or destroyed a corner: marks at the upper edge, joined with nothing."""
+    for direction, height in (("up", 0.97), ("down", 0.91)):
+        rows = [record.row for record in _swept(records, direction)]
+        for words, marker, ends in (
+            ("overturned", "x", [row.frequency_Hz for row in rows if row.fell]),
+            ("a corner destroyed", "s", [row.frequency_Hz for row in rows if row.motion == Outcome.INVALID]),
+        ):
+            if ends:
+                axes.plot(
+                    ends,
+                    np.full(len(ends), height),
+                    linestyle="none",
+                    marker=marker,
+                    markersize=5,
+                    markerfacecolor="none",
+                    color=LOOKS[direction]["color"],
+                    transform=axes.get_xaxis_transform(),
+                    label=f"{direction}: {words}",
+                )
 
 
 def _frequency_axis(axes: Axes, request: ResponseRequest) -> None:

@@ -10,16 +10,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from contact.motion.kernel import HARMONIC, UNIFORM, FloorMotion, as_floor_motion, floor_motion
-from contact.stepping.body import CENTRE_X
+from contact.stepping.body import CENTRE_X, CENTRE_Z
 from contact.stepping.control import step_level, step_of_level
 from contact.stepping.modal_body import ModalBody
 from contact.stepping.state import Buffers, RunState, make_samples
 from fem.case.case import Case
 from fem.model.container import Container
 from fem.model.model import Model, build_model
-from fem.response.request import Hold
+from fem.response.request import SAMPLES_PER_PERIOD
 
-SAMPLES_PER_PERIOD = 128
 #: state of the step control that is carried from one motion to the next
 CARRIED = ("allowance_used", "recent_dissipation", "growth_hold", "lag_step")
 
@@ -32,21 +31,6 @@ class DrivenModel:
     body: ModalBody
     run: RunState
     period: float  #: of the drive [s]
-
-
-def driven_case(case: Case, frequency: float, hold: Hold, value: float) -> Case:
-    """The case at another frequency [Hz], with displacement [m] or peak acceleration [m/s2] as held."""
-    key = "motion.amplitude_m" if hold == "displacement" else "motion.peak_acceleration_m_s2"
-    period = 1.0 / frequency
-    return case.with_values(
-        {
-            "motion.frequency_Hz": float(frequency),
-            key: value,
-            "solver.duration_s": (4.0 + 2.0 * math.ceil(case.motion.ramp_cycles)) * period,
-            "output.history_s": period / SAMPLES_PER_PERIOD,
-            "output.fields_s": 0.0,
-        }
-    )
 
 
 def begin_drive(case: Case, container: Container) -> tuple[DrivenModel, float]:
@@ -74,9 +58,13 @@ def driven_model(case: Case, container: Container) -> DrivenModel:
 
 
 def carry_drive(case: Case, container: Container, before: DrivenModel) -> DrivenModel:
-    """The container, moving as `before` left it at a turning point of its floor, on x = A cos(Omega t)."""
+    """The container, moving as `before` left it at a turning point of its floor, on x = A cos(Omega t).
+
+    The motion is carried, the damage is not: the floor is whole again.
+    """
     driven = driven_model(case, container)
     carry_state(before.run, driven.run)
+    _mend_floor(driven.run)
     return driven
 
 
@@ -106,9 +94,20 @@ def carry_state(before: RunState, after: RunState) -> None:
     after.joints[:] = before.joints
 
 
-def section_times(period: float, count: int) -> np.ndarray:
-    """Instants of the sections, one a period from the end of the first on, shape (count,) [s]."""
-    return period * np.arange(1, count + 1)
+def _mend_floor(run: RunState) -> None:
+    """Raise the container by its deepest indentation: there it bears as before, a corner less deep is off the floor."""
+    state, control = run.old, run.problem.control
+    raised = float(state.crushed[: control.base_points].max())
+    if raised == 0.0:
+        return
+    state.point[:, 1] += raised - state.crushed
+    state.crushed[:] = 0.0
+    state.position[1] += raised
+    state.pose[CENTRE_Z] += raised
+    state.corner[:, 1] += raised
+    state.monitor[:, 1] += raised
+    state.energy[2] += control.mass * control.gravity * raised
+    state.force[state.point[:, 1] > 0.0] = 0.0
 
 
 def with_sections(driven: DrivenModel, count: int) -> DrivenModel:
@@ -119,7 +118,7 @@ def with_sections(driven: DrivenModel, count: int) -> DrivenModel:
     """
     clock = driven.run.clock
     clock.time, clock.samples, clock.samples_drained, clock.next_break = 0.0, 0, 0, 0
-    breaks = np.append(section_times(driven.period, count), np.inf)
+    breaks = np.append(driven.period * np.arange(1, count + 1), np.inf)
     return replace(driven, run=driven.run.with_problem(breaks=breaks))
 
 

@@ -15,7 +15,7 @@ from contact.stepping.integrator import FAILED, OVERTURNED, REACHED
 from contact.stepping.outcome import advance_compiled
 from contact.stepping.state import ROW_ANGULAR_VELOCITY, ROW_ROTATION, ROW_SLIP
 from fem.assessment.verdict import audit, softer_contact
-from fem.response.model import DrivenModel, section_times, with_sections
+from fem.response.model import DrivenModel, with_sections
 from fem.runtime.arrays import FloatArray
 
 #: called with the time [s], the rotation [rad] and the mode
@@ -48,6 +48,14 @@ class Orbit:
     portrait: FloatArray  #: (n_samples, 2) rotation [rad] and angular velocity [rad/s] over the last periods
     reason: str | None = None  #: why it failed
 
+    @classmethod
+    def empty(cls, status: str, reason: str | None) -> "Orbit":
+        """Of a motion that ended before its first section."""
+        sections, extremes = np.zeros((0, len(SECTION_COLUMNS))), np.zeros((0, len(EXTREME_COLUMNS)))
+        return cls(
+            status=status, sections=sections, extremes=extremes, portrait=np.zeros((0, 2)), reason=reason
+        )
+
 
 def no_progress(time: float, rotation: float, mode: int) -> None:
     """A `Progress` that ignores it."""
@@ -73,7 +81,7 @@ def follow_periods(
     code, slipped, reason = REACHED, float(driven.run.joints[0].slip), None
     before = slipped
     _open_ledger(driven)
-    for k, end in enumerate(section_times(driven.period, count)):
+    for k, end in enumerate(driven.period * np.arange(1, count + 1)):
         impacts = int(track.impacts)
         track.max_rotation, track.max_rocking = 0.0, 0.0
         code, samples = _step_to(driven, end)

@@ -1,22 +1,28 @@
 """The points of a response curve as they are kept: a row of results each, its sections and its phase portrait."""
 
+import json
 import math
 from collections.abc import Sequence
-from dataclasses import astuple, dataclass, fields
+from dataclasses import asdict, astuple, dataclass, fields
 from typing import Annotated, Any
 
 import numpy as np
 
+from contact.stepping.state import Control
+from fem.assessment.verdict import relative_rotation
 from fem.batch.table import table_text
-from fem.response.curve import PORTRAYED, CurvePoint
-from fem.response.model import SAMPLES_PER_PERIOD
-from fem.response.orbit import EXTREME_COLUMNS, SECTION_COLUMNS
+from fem.case.case import Case
+from fem.response.decay import Decay
+from fem.response.orbit import EXTREME_COLUMNS, SECTION_COLUMNS, Orbit
+from fem.response.request import SAMPLES_PER_PERIOD
+from fem.response.stability import LongTime, amplitude_growth, amplitudes_diverge
 from fem.results.figures import FIGURES, TURNED, Shown, declared_in
 from fem.results.json_block import JsonBlock
 from fem.results.outcome import Outcome
 from fem.runtime import units
 from fem.runtime.arrays import FloatArray
 
+PORTRAYED = 16  #: last periods whose phase portrait is kept; of a periodic motion, one of its periods
 PORTRAIT_COLUMNS = ("rotation_rad", "angular_velocity_rad_s")
 ARRAYS = {"sections": SECTION_COLUMNS, "extremes": EXTREME_COLUMNS, "portrait": PORTRAIT_COLUMNS}
 
@@ -25,12 +31,13 @@ ARRAYS = {"sections": SECTION_COLUMNS, "extremes": EXTREME_COLUMNS, "portrait": 
 class PointRow(JsonBlock):
     """A row of `response.csv`; None where a column does not apply."""
 
-    direction: str  #: up | down
+    direction: str  #: up | down; start: from a state of its own
     number: int  #: of the frequency, from 0 for the lowest
     frequency_Hz: float
     amplitude_m: float
     peak_acceleration_m_s2: float
-    began: str  #: carried | case
+    #: carried | case; of a start: random | risen, sunk: from a motion at the frequency below, above
+    began: str
     status: str  #: completed | overturned | failed
     motion: str | None = None
     #: rest | periodic | not settled | not periodic; None without a long-time motion
@@ -55,6 +62,10 @@ class PointRow(JsonBlock):
     undriven_s: Annotated[float | None, Shown("dies out in", units.SECONDS)] = None
     stable: bool | None = None
     reason: str | None = None
+    model: str = ""
+    eta: float | None = None  #: angular frequency of the floor over the frequency parameter of the container
+    start_rotation_rad: float | None = None
+    start_angular_velocity_rad_s: float | None = None
 
     @property
     def says_nothing(self) -> bool:
@@ -106,20 +117,30 @@ class PointRecord:
         return math.nan if value is None else float(value)
 
 
-def record_of(point: CurvePoint) -> PointRecord:
-    """What is kept of a point."""
-    case, orbit, long_time, decay = point.case, point.orbit, point.long_time, point.decay
-    extremes = orbit.extremes
-    judged: dict[str, Any] = {}
-    if long_time is not None:
-        judged = {
-            "long_time": long_time.kind,
-            "period_n": long_time.period,
-            "scatter": long_time.scatter,
-            "settling": long_time.settling,
-            "pairs_compared": long_time.compared,
-            TURNED: float(point.amplitudes.max()),
-            "median_rotation_ratio": float(np.median(point.amplitudes)),
+def record_of(
+    case: Case, orbit: Orbit, control: Control, judged: LongTime | None, decay: Decay | None, **known: Any
+) -> PointRecord:
+    """What is kept of a point.
+
+    Args:
+        case: with the drive, and the start of its own if it has one.
+        orbit: of the window observed; where it overturned or failed, what there is of it.
+        control: of its model.
+        judged: None where it overturned, failed or destroyed a corner.
+        decay: with the drive stopped.
+        known: further columns.
+    """
+    extremes, omega = orbit.extremes, case.angular_frequency
+    ratios = relative_rotation(extremes[:, 0], control.slenderness_angle)
+    if judged is not None:
+        known |= {
+            "long_time": judged.kind,
+            "period_n": judged.period,
+            "scatter": judged.scatter,
+            "settling": judged.settling,
+            "pairs_compared": judged.compared,
+            TURNED: float(ratios.max()),
+            "median_rotation_ratio": float(np.median(ratios)),
             "max_rotation_rad": float(extremes[:, 0].max()),
             "least_rotation_rad": float(extremes[:, 1].min()),
             "most_rotation_rad": float(extremes[:, 2].max()),
@@ -127,34 +148,37 @@ def record_of(point: CurvePoint) -> PointRecord:
             "slip_walk_m": float(orbit.sections[:, 3].mean()),
             "slip_excursion_m": float(extremes[:, 6].max()),
             "impacts_per_period": float(extremes[:, 5].mean()),
-            "growth": point.growth,
+            "growth": amplitude_growth(ratios),
         }
     if decay is not None:
-        judged |= {"undriven": decay.fate, "undriven_s": decay.time}
+        known |= {"undriven": decay[0], "undriven_s": decay[1]}
+    if known["direction"] == "start":
+        start = case.initial
+        known |= {
+            "start_rotation_rad": start.rotation_rad,
+            "start_angular_velocity_rad_s": start.angular_velocity_rad_s,
+        }
+    if orbit.status != "failed" and known["motion"] != Outcome.INVALID:
+        bounded = judged is not None and not amplitudes_diverge(ratios)
+        known["bounded"] = bounded
+        if not bounded or (decay is not None and decay[0] != "failed"):
+            known["stable"] = bounded and decay is not None and decay[0] == "dies out"
     row = PointRow(
-        direction=point.direction,
-        number=point.number,
-        frequency_Hz=case.angular_frequency / (2.0 * math.pi),
+        frequency_Hz=omega / (2.0 * math.pi),
         amplitude_m=case.amplitude,
-        peak_acceleration_m_s2=case.amplitude * case.angular_frequency**2,
-        began=point.began,
+        peak_acceleration_m_s2=case.amplitude * omega**2,
         status=orbit.status,
-        motion=point.motion,
-        periods=point.periods,
-        bounded=point.bounded,
-        stable=point.stable,
-        reason=orbit.reason,
-        **judged,
+        model=case.solver.model,
+        eta=omega / control.frequency_parameter,
+        **known,
     )
-    periods = (
-        PORTRAYED if long_time is None else {"rest": 1}.get(long_time.kind, long_time.period or PORTRAYED)
-    )
+    periods = PORTRAYED if judged is None else {"rest": 1}.get(judged.kind, judged.period or PORTRAYED)
     portrait = orbit.portrait[-periods * SAMPLES_PER_PERIOD :]
     return PointRecord(row=row, sections=orbit.sections, extremes=extremes, portrait=portrait)
 
 
 def csv_of_rows(records: Sequence[PointRecord]) -> str:
-    """`response.csv`: a row a point, in the order in which they were swept."""
+    """A row a point, in the order in which they were computed."""
     return table_text([field.name for field in fields(PointRow)], (astuple(record.row) for record in records))
 
 
@@ -180,3 +204,25 @@ def csv_of_portraits(records: Sequence[PointRecord]) -> str:
         for k, (rotation, rate) in enumerate(record.portrait)
     )
     return table_text(columns, rows)
+
+
+def packed(records: Sequence[PointRecord]) -> dict[str, np.ndarray]:
+    """Points as a few plain arrays, which `unpacked` reads."""
+    rows = [asdict(record.row) for record in records]
+    counts = np.array([[len(getattr(record, name)) for name in ARRAYS] for record in records], dtype=int)
+    parts = {name: [getattr(record, name) for record in records] for name in ARRAYS}
+    joined = {
+        name: np.concatenate(parts[name]) if records else np.zeros((0, len(columns)))
+        for name, columns in ARRAYS.items()
+    }
+    return {"rows": np.array(json.dumps(rows)), "counts": counts} | joined
+
+
+def unpacked(arrays: dict[str, np.ndarray]) -> list[PointRecord]:
+    """The points that `packed` made these arrays of."""
+    ends = np.cumsum(arrays["counts"], axis=0)[:-1]
+    parts = {name: np.split(arrays[name], ends[:, k]) for k, name in enumerate(ARRAYS)}
+    return [
+        PointRecord(row=PointRow(**row), **{name: parts[name][k] for name in ARRAYS})
+        for k, row in enumerate(json.loads(str(arrays["rows"])))
+    ]

@@ -1,7 +1,8 @@
-"""The request of a response curve: case, frequencies, what of the drive is held, periods waited for."""
+"""The request of a response curve: case, frequencies, what of the drive is held, starts, periods waited for."""
 
 import hashlib
 import json
+import math
 from dataclasses import asdict, dataclass
 from typing import Literal
 
@@ -15,15 +16,21 @@ Hold = Literal["displacement", "acceleration"]
 Order = Literal["up-down", "down-up"]
 Scale = Literal["linear", "log"]
 
+#: of the case's own frequency, in steps of an eleventh: 0.3 to 3 Hz of the paper's motion, which is one of them
+FROM, TO, COUNT = 3.0 / 11.0, 30.0 / 11.0, 28
+TURN = 2.0 * math.pi  #: [rad]
 LEAST_HZ, MOST_HZ = 0.01, 100.0  #: as in a case file
 MOST_FREQUENCIES = 2000
 MOST_PERIODS = 100_000
+MOST_STARTS = 1000
 LEAST_OBSERVED = 8
+SAMPLES_PER_PERIOD = 128  #: of the history
+CLOSEST = 1e-6  #: relative distance of two frequencies that are still different motions of the floor
 
 
 @dataclass(frozen=True, kw_only=True)
 class ResponseRequest:
-    """Frequencies swept up and down, and the periods waited for at each.
+    """Frequencies swept up and down, random starts at each, and the periods waited for.
 
     Raises:
         CaseError: a number out of range, a case without a harmonic drive or with one that ends, with a vertical
@@ -33,10 +40,12 @@ class ResponseRequest:
     case: Case
     first_Hz: float
     last_Hz: float
-    count: int  #: frequencies, both ends included
+    count: int = COUNT  #: frequencies, both ends included
     scale: Scale = "linear"
     hold: Hold | None = None  #: what of the drive stays the same; None: what the case states
     order: Order = "up-down"
+    starts: int = 0  #: random states from which each frequency is begun as well
+    shell: bool = False  #: a rigid container is followed as an elastic one, too
     settle: int = 60  #: periods of the drive left out at each frequency
     observe: int = 48  #: periods by which the long-time motion is judged
     tolerance: float = TOLERANCE  #: within which two sections count as the same, see `fem.response.stability`
@@ -44,49 +53,16 @@ class ResponseRequest:
     limit_slip_m: float | None = None  #: within the periods observed, beyond which a motion does not stand
 
     def __post_init__(self) -> None:
-        motion, solver = self.case.motion, self.case.solver
-        if motion.kind != "harmonic":
-            raise CaseError(f'[motion] kind must be "harmonic" for a response curve, got "{motion.kind}"')
-        if motion.cycles is not None:
-            raise CaseError(
-                f"[motion] cycles = {motion.cycles:g} ends the drive, a response curve needs one without an end; "
-                "leave the key out"
-            )
-        if self.case.has_vertical:
-            raise CaseError(
-                f'[vertical] kind must be "none" for a response curve, got "{self.case.vertical.kind}": the frequency '
-                "of the horizontal motion is swept, and a vertical one would have to be changed with it; "
-                "take --set vertical.kind=none, or a sweep over motion.frequency_Hz"
-            )
-        if self.case.container.is_loose:
-            raise CaseError(
-                '[container] joints must be "bolted" for a response curve, which follows one body; take a sweep over '
-                "motion.frequency_Hz"
-            )
-        if self.case.links:
-            raise CaseError(
-                "[stop] and [tie] must be left out for a response curve, which follows a container that nothing holds; "
-                "take --set stop=[] --set tie=[], or a sweep over motion.frequency_Hz"
-            )
-        if self.case.neighbour:
-            raise CaseError(
-                "[neighbour] must be left out for a response curve, which follows one body; take --set neighbour=[], "
-                "or a sweep over motion.frequency_Hz"
-            )
-        if solver.model == "full":
-            raise CaseError(
-                '[solver] model = "full" would take days over the hundreds of periods of a response curve; '
-                'take --set solver.model="reduced" or "rigid"'
-            )
-        if not self.case.output.stop_when_overturned:
-            raise CaseError(
-                "[output] stop_when_overturned must be true: an overturned container has no response"
-            )
+        self._require_followed_case()
         for name, value in (("--from", self.first_Hz), ("--to", self.last_Hz)):
             if not LEAST_HZ <= value <= MOST_HZ:
                 raise CaseError(
                     f"{name} must lie between {LEAST_HZ:g} and {MOST_HZ:g} Hz, got {value:g} Hz; "
-                    "an angular frequency Omega in rad/s is Omega/(2 pi) in Hz"
+                    + (
+                        "with eta = 0 the floor does not move"
+                        if value == 0.0
+                        else "an angular frequency Omega in rad/s is Omega/(2 pi) in Hz"
+                    )
                 )
         if not self.first_Hz < self.last_Hz:
             raise CaseError(
@@ -95,6 +71,7 @@ class ResponseRequest:
             )
         for name, number, least, most in (
             ("--count", self.count, 2, MOST_FREQUENCIES),
+            ("--starts", self.starts, 0, MOST_STARTS),
             ("--settle", self.settle, 0, MOST_PERIODS),
             ("--observe", self.observe, LEAST_OBSERVED, MOST_PERIODS),
             ("--largest-period", self.largest_period, 1, MOST_PERIODS),
@@ -106,12 +83,72 @@ class ResponseRequest:
                 f"--tolerance must lie between 1e-6 and 0.1 of the slenderness angle, got {self.tolerance:g}; "
                 f"{TOLERANCE:g} is usual"
             )
+        step = float(np.min(np.diff(self.frequencies) / self.frequencies[1:]))
+        if step < CLOSEST:
+            raise CaseError(
+                f"--from, --to and --count ask for frequencies {step:.1g} apart, below the resolution of "
+                f"{CLOSEST:g}; take fewer, or a wider range"
+            )
         if self.limit_slip_m is not None:
             try:
                 SLIP_LIMIT.check(self.limit_slip_m)
             except ValueError as error:
                 raise CaseError(f"--limit-slip {error}") from None
-        if not self.case.amplitude > 0.0:
+        for number in (
+            0,
+            self.count - 1,
+        ):  # what the case refuses there is refused before anything is computed
+            self.case_at(number)
+
+    def _require_followed_case(self) -> None:
+        """Refuse what a response curve cannot follow."""
+        case, motion = self.case, self.case.motion
+        sweep = "take a sweep over motion.frequency_Hz"
+        needed = "for a response curve"
+        for refused, words in (
+            (motion.kind != "harmonic", f'[motion] kind must be "harmonic" {needed}, got "{motion.kind}"'),
+            (
+                motion.cycles is not None,
+                f"[motion] cycles = {motion.cycles or 0:g} ends the drive, a response curve needs one without an end; "
+                "leave the key out",
+            ),
+            (
+                case.has_vertical,
+                f'[vertical] kind must be "none" {needed}, got "{case.vertical.kind}": the frequency of the horizontal '
+                f"motion is swept, and a vertical one would have to be changed with it; take --set vertical.kind=none, "
+                "or a sweep over motion.frequency_Hz",
+            ),
+            (
+                case.floor.turn != 0.0,
+                f'[floor] motion_along must be "floor" {needed} on a slope, whose motion has no part normal to the '
+                "floor; take --set floor.motion_along=floor",
+            ),
+            (
+                case.container.is_loose,
+                f'[container] joints must be "bolted" {needed}, which follows one body; {sweep}',
+            ),
+            (
+                bool(case.links or case.neighbour),
+                f"[stop] and [tie] must be left out {needed}, and so must [neighbour]: it follows one body that "
+                f"nothing holds; take --set stop=[] --set tie=[] --set neighbour=[], or {sweep[5:]}",
+            ),
+            (
+                case.solver.model == "full",
+                '[solver] model = "full" would take days over the hundreds of periods of a response curve; '
+                'take --set solver.model="reduced" or "rigid"',
+            ),
+            (
+                self.shell and case.solver.model != "rigid",
+                '--shell adds the elastic container to a rigid one; leave it out, or --set solver.model="rigid"',
+            ),
+            (
+                not case.output.stop_when_overturned,
+                "[output] stop_when_overturned must be true: an overturned container has no response",
+            ),
+        ):
+            if refused:
+                raise CaseError(words)
+        if not case.amplitude > 0.0:
             raise CaseError(
                 "[motion] a response curve needs a floor that moves: give amplitude_m or peak_acceleration_m_s2 above 0"
             )
@@ -128,6 +165,11 @@ class ResponseRequest:
         return np.asarray(space(self.first_Hz, self.last_Hz, self.count))
 
     @property
+    def own_frequency(self) -> float:
+        """The frequency of the case [Hz]."""
+        return self.case.angular_frequency / TURN
+
+    @property
     def held_value(self) -> float:
         """Amplitude of the floor's displacement [m] or acceleration [m/s2], whichever is held."""
         amplitude, omega = self.case.amplitude, self.case.angular_frequency
@@ -140,14 +182,33 @@ class ResponseRequest:
             return f"amplitude {1e3 * self.held_value:.4g} mm held"
         return f"peak acceleration {self.held_value:.4g} m/s² held"
 
+    def case_at(self, number: int, model: str | None = None) -> Case:
+        """The case at one of the frequencies, with another model where one is given."""
+        key = "motion.amplitude_m" if self.held == "displacement" else "motion.peak_acceleration_m_s2"
+        period = 1.0 / float(self.frequencies[number])
+        return self.case.with_values(
+            {
+                "motion.frequency_Hz": 1.0 / period,
+                key: self.held_value,
+                "solver.duration_s": (4.0 + 2.0 * math.ceil(self.case.motion.ramp_cycles)) * period,
+                "solver.model": model or self.case.solver.model,
+                "output.history_s": period / SAMPLES_PER_PERIOD,
+                "output.fields_s": 0.0,
+            }
+        )
+
     def to_dict(self) -> dict[str, object]:
         """As the result states it, without the case."""
         numbers = asdict(self)
         del numbers["case"], numbers["hold"]
         if self.limit_slip_m is None:
             del numbers["limit_slip_m"]
-        frequencies = self.frequencies.tolist()
-        return numbers | {"held": self.held, "held_value": self.held_value, "frequencies_Hz": frequencies}
+        more = {
+            "held_value": self.held_value,
+            "frequencies_Hz": self.frequencies.tolist(),
+            "own_Hz": self.own_frequency,
+        }
+        return numbers | {"held": self.held} | more
 
     @property
     def hash(self) -> str:

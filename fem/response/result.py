@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from fem.batch.study import StudyResult
-from fem.response.branches import Coexistence, DropOut, Jump
+from fem.response.lasting import AtFrequency, Coexistence, DropOut
 from fem.response.records import PointRow
 
 
@@ -16,13 +16,14 @@ class ResponseResult(StudyResult):
     case: str = ""  #: its name
     title: str = ""
     request: dict[str, Any] = field(default_factory=dict)  #: without the case
-    points: tuple[PointRow, ...] = ()  #: in the order in which they were swept
+    points: tuple[PointRow, ...] = ()  #: up and down, in the order in which they were swept
+    frequencies: tuple[AtFrequency, ...] = ()  #: what lasts at each, whatever led to it
     coexisting: tuple[Coexistence, ...] = ()
-    jumps: tuple[Jump, ...] = ()
     drop_outs: tuple[DropOut, ...] = ()
     stable_everywhere: bool | None = None  #: None without a point
     #: of the points with an outcome that do not stand: overturned, a corner destroyed, slid beyond the limit
     overturned_share: float | None = None
+    starts_fell_share: float | None = None  #: of the random states, all frequencies; None without any
 
     @property
     def limit_slip(self) -> float | None:

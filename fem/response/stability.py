@@ -51,11 +51,16 @@ def classify(
     period = ratio = None
     if resting:
         kind = "rest"
-    elif repeating.size:
-        kind, period = "periodic", n
     else:
-        ratio = approach(sections, looked_for)
-        kind = "not settled" if ratio < SETTLING else "not periodic"
+        # a spiral toward a motion of period m comes back to itself first after a multiple of m
+        tried = [m for m in range(1, n) if n % m == 0] if repeating.size else range(1, looked_for + 1)
+        ratio = min((approach(sections, m) for m in tried), default=None)
+        if ratio is not None and ratio < SETTLING:
+            kind = "not settled"
+        elif repeating.size:
+            kind, period, ratio = "periodic", n, None
+        else:
+            kind = "not periodic"
     return LongTime(
         kind=kind, period=period, scatter=float(scatters[n - 1]), compared=count - n, settling=ratio
     )
@@ -66,14 +71,11 @@ def distances(sections: FloatArray, n: int) -> FloatArray:
     return np.asarray(np.abs(sections[n:] - sections[:-n]).max(axis=1))
 
 
-def approach(sections: FloatArray, largest_period: int) -> float:
-    """Mean distance in the second half over that in the first, of the n for which this is least."""
-    ratios = []
-    for n in range(1, largest_period + 1):
-        apart = distances(sections, n)
-        half = apart.size // 2
-        ratios.append(float(apart[-half:].mean() / max(apart[:half].mean(), 1e-300)))
-    return min(ratios)
+def approach(sections: FloatArray, n: int) -> float:
+    """Mean distance of sections n apart in the second half of the window over that in the first."""
+    apart = distances(sections, n)
+    half = apart.size // 2
+    return float(apart[-half:].mean() / max(apart[:half].mean(), 1e-300))
 
 
 def amplitude_growth(amplitudes: FloatArray) -> float:

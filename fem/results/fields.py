@@ -141,7 +141,8 @@ class FieldWriter:
                 **stress,
                 "contact_pressure_Pa": _single(frame.contact_pressure),
                 "floor_displacement_m": _padded(floor),
-            }
+            },
+            frame.time,
         )
         path = self.folder / frame_name(len(self._times))
         with replacing(path) as part:

@@ -17,7 +17,6 @@ from fem.runtime.units import JOINT_MILLIMETRES as JOINT_MM
 from fem.runtime.units import MILLIMETRES as MM
 from fem.runtime.units import SHORT_MILLIMETRES as SHORT_MM
 
-NoteT = TypeVar("NoteT")
 ValueT = TypeVar("ValueT")  #: a float of a run; [low, high] over a band
 
 
@@ -148,7 +147,7 @@ class Figures(JsonBlock, Generic[ValueT]):
     max_indentation_m: Annotated[ValueT | None, Shown("indentation of the floor", MM, BAND)] = None
     #: no corner has sunk in further than the law of its contact holds
     valid: Annotated[bool | None, Shown("valid", units.COUNT, COLUMN)] = None
-    #: rotation at the end; None of what overturned, or still turns about one side
+    #: rotation at the end; None of what overturned, or turns about one side
     tilt_rad: Annotated[
         ValueT | None,
         Shown("tilt at the end", units.DEGREES, COLUMN | BAND | SUMMARY, lowest=True),
@@ -322,15 +321,10 @@ def _hints(kind: type) -> dict[str, Any]:
     return get_type_hints(kind, include_extras=True) | of_derived
 
 
-def noted_in(kind: type, note: type[NoteT]) -> dict[str, NoteT]:
-    """The notes of a sort on what a class holds, by key."""
-    hints = _hints(kind).items()
-    return {key: arg for key, hint in hints for arg in get_args(hint) if isinstance(arg, note)}
-
-
 def declared_in(kind: type) -> dict[str, Shown]:
     """How people are shown what a class holds, by key."""
-    return noted_in(kind, Shown)
+    hints = _hints(kind).items()
+    return {key: arg for key, hint in hints for arg in get_args(hint) if isinstance(arg, Shown)}
 
 
 def types_of(kind: type) -> dict[str, type]:

@@ -101,7 +101,16 @@ RESPONSE = ResultKind(
     subject="response curve",
     mark="response.json",
     results="response.csv",
-    own=("response.csv", "sections.csv", "portraits.csv", "case.toml", "state.npz", "figures/*.svg"),
+    own=(
+        "response.csv",
+        "starts.csv",
+        "shell.csv",
+        "sections.csv",
+        "portraits.csv",
+        "case.toml",
+        "state.npz",
+        "figures/*.svg",
+    ),
     temporary=("state.npz",),
 )
 SITE = ResultKind(

@@ -224,6 +224,18 @@ class NeighbourResult(JsonBlock):
 
 
 @dataclass(frozen=True, kw_only=True)
+class AnalyticBlock(JsonBlock):
+    """The analytic rigid block of a container under the same motion, on rigid ground."""
+
+    outcome: str | None = None  #: rest | slide | rock | slide-rock | overturned; None: it left the floor
+    rotation_ratio: float | None = None  #: up to there
+    max_slip_m: float | None = None
+    friction_needed: float | None = (
+        None  #: largest |T|/N of the block if it cannot slide; None where it overturns
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
 class Verdict(RunFigures):
     """Outcome, extremes and events of a run; of a row those of the container itself, but that any fall is its end."""
 
@@ -247,6 +259,7 @@ class Verdict(RunFigures):
     decided_by: tuple[str, ...] = ()  #: inputs that change the outcome, the one of the smallest change first
     band: Band | None = None
     margin: Margin | None = None
+    analytic: AnalyticBlock | None = None  #: None where there is no such block
 
     #: the forces in bolts of a run are those of its joints
     written_where_given = WHERE_GIVEN.union(

@@ -22,6 +22,11 @@ HEAD = (
     '<?xml version="1.0"?>\n<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" '
     'header_type="UInt32" compressor="vtkZLibDataCompressor">\n<UnstructuredGrid>\n'
 )
+#: what ParaView takes as the time of a file that it opens without the series
+TIME = (
+    '<FieldData>\n<DataArray type="Float64" Name="TimeValue" NumberOfTuples="1" format="ascii">{!r}</DataArray>\n'
+    "</FieldData>\n"
+)
 
 
 class FrameFormat:
@@ -51,15 +56,15 @@ class FrameFormat:
         }
         self._cell_data = {name: _shared(values) for name, values in cell_data.items()}
 
-    def frame(self, point_data: Mapping[str, Reals]) -> bytes:
-        """A frame with these arrays at its points, shape (n,) or (n, 3)."""
+    def frame(self, point_data: Mapping[str, Reals], time: float | None = None) -> bytes:
+        """A frame with these arrays at its points, shape (n,) or (n, 3), and its time [s], where it has one."""
         sections = {
             "PointData": {name: _coded(values) for name, values in point_data.items()},
             "CellData": self._cell_data,
             "Points": self._points,
             "Cells": self._cells,
         }
-        parts = [HEAD, self._piece]
+        parts = [HEAD, "" if time is None else TIME.format(time), self._piece]
         # The last array is the first of the bytes: meshio 5.3 replaces one offset after the other and looks for the
         # next among all, the first in the document first; in the same order one that it replaced may be taken for it.
         blocks = [block for arrays in sections.values() for _, block in arrays.values()]

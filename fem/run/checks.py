@@ -5,6 +5,7 @@ All can be added to a run that was finished without them.
 
 import importlib
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -13,7 +14,7 @@ from fem.case.case import Case
 from fem.model.model import Model
 from fem.results.history import History
 from fem.results.kinds import RUN
-from fem.results.run_result import RigidCheckResult, RunResult
+from fem.results.run_result import Numerics, RigidCheckResult, RunResult
 from fem.run.band import rests_far_below_limits, wants_band, with_band
 from fem.run.changed_runs_file import ChangedRunsFile
 from fem.run.margin import margin_of, wants_margin
@@ -30,6 +31,9 @@ class WantedChecks:
     check_rigid: bool = False
     band: bool | None = None  #: None: wherever it takes no longer than it is worth
     margin: bool | None = None  #: None: wherever it takes seconds, and a band is not refused
+    analytic: bool = (
+        False  #: whether the analytic block under the same motion is followed, where there is one
+    )
     inner_forces: bool = True  #: whether members of a band find stresses and the forces in joints of a stack
 
 
@@ -68,6 +72,13 @@ def add_checks(
             result = replace(result, rigid_check=check.result)
         except (ValueError, events.EventError) as error:  # a run too short, a block that bounces without end
             result = replace(result, rigid_check=RigidCheckResult(reasons=(str(error),)))
+    if wanted.analytic and verdict.analytic is None and _has_analytic_block(model.case):
+        block = importlib.import_module("fem.assessment.rigid_check")
+        events = importlib.import_module("contact.reference.event_driven")
+        end = (result.numerics or Numerics()).simulated_s or 0.0
+        with suppress(ValueError, events.EventError):  # a block that bounces without end has no row
+            verdict = replace(verdict, analytic=block.analytic_block(model, end))
+            result = replace(result, verdict=verdict)
     if lacks_band(result, model.case, wanted) and not stop():
         reporter.message("band: repeating the run over what is not known of its inputs")
         judged = with_band(model, result, stop=stop, kept_in=members, inner_forces=wanted.inner_forces)
@@ -104,6 +115,15 @@ def lacks_band(result: RunResult, case: Case, wanted: WantedChecks) -> bool:
     """Whether a finished run is still to have its band."""
     verdict = result.verdict
     return verdict is not None and wants_band(wanted.band, case, result) and verdict.band is None
+
+
+def _has_analytic_block(case: Case) -> bool:
+    """Whether a case is a block on rigid ground whose motion formulas give: harmonic, a pulse, or a release."""
+    alone = not (case.links or case.neighbour or case.container.is_loose or case.floor.is_slab)
+    moves = case.motion.kind in ("harmonic", "pulse") or case.initial.rotation_rad != 0.0
+    return (
+        alone and moves and case.support.kind == "corners" and not case.rolls and case.motion.kind != "table"
+    )
 
 
 def wants_rigid_check(choice: bool, case: Case) -> bool:

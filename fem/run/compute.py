@@ -123,7 +123,9 @@ def compute(
         CaseError, MeshError: the case cannot be computed; both are a ValueError with the message of the command.
     """
     require_case(case)
-    return compute_on(None, case, WantedChecks(check_rigid=check_rigid, band=band, margin=margin))
+    return compute_on(
+        None, case, WantedChecks(check_rigid=check_rigid, band=band, margin=margin, analytic=True)
+    )
 
 
 def require_case(given: object) -> None:

@@ -334,13 +334,19 @@ def _trial(model: Model, values: Mapping[str, Value], stop: Callable[[], bool]) 
         if stop():
             raise StoppedError
         try:
-            case = own.with_values(as_changed(own, {**values, **scaled_motion(own, factor), **coarse}))
+            case = own.with_values(as_changed(own, {**values, **_scaled(own, factor, values), **coarse}))
             shared = model.equilibrium if same_equilibrium(case, own) else None
             return _ending(build_model(case, container(), shared), stop)
         except (ValueError, ArithmeticError, RuntimeError):  # a motion too strong for its key, no equilibrium
             return Ending.FAILED
 
     return ending
+
+
+def _scaled(own: Case, factor: float, values: Mapping[str, Value]) -> dict[str, float]:
+    """`scaled_motion` with the sign of the motion that the values choose."""
+    scaled = scaled_motion(own, factor)
+    return {key: math.copysign(value, float(values.get(key, value))) for key, value in scaled.items()}
 
 
 def _ending(model: Model, stop: Callable[[], bool]) -> Ending:

@@ -194,32 +194,49 @@ class Recorder:
     def _drain_frames(self, run: RunState) -> None:
         clock, samples = run.clock[0], run.buffers.frames
         first, count = int(clock.frames_drained), int(clock.frames - clock.frames_drained)
-        if self._recovery is not None and samples.position.shape[1] > 0:
-            for k in range(count):
-                time = (first + k) * samples.interval
-                frame = self._recovery.frame(samples.position[k], samples.velocity[k])
-                if frame.von_mises is not None and self._recovery.full:
-                    self._note_stress(self._recovery.largest_in(frame.von_mises))
-                if self._frame_sink is not None:
-                    pressure = np.zeros(len(frame.displacement))
-                    points = len(self._area)
-                    nodes = self._model.container.nodes[:points]
-                    pressure[nodes] = samples.force[k, :points, 1] / self._area
-                    floor, _, _ = floor_motion(run.problem.motion, time)
-                    lift, _, _ = floor_motion(run.problem.vertical, time)
-                    self._frame_sink(
-                        self._links.added_to(
-                            FrameFields(
-                                **vars(frame),
-                                time=float(as_written(np.array(time))),
-                                contact_pressure=pressure,
-                                floor_displacement=float(floor),
-                                floor_lift=float(lift),
-                            ),
-                            run,
-                        )
-                    )
+        for k in range(count):
+            time = (first + k) * samples.interval
+            self._write_frame(
+                run, time, samples.position[k : k + 1], samples.velocity[k : k + 1], samples.force[k]
+            )
         clock.frames_drained = clock.frames
+
+    def finish(self, run: RunState) -> None:
+        """Write a frame of the last instant, where the run ends between two."""
+        clock, samples, old = run.clock[0], run.buffers.frames, run.old
+        if clock.time > (int(clock.frames) - 1) * samples.interval * (1.0 + ROUNDING):
+            kept = min(samples.position.shape[1], 1)  # 0: there are no frames
+            self._write_frame(
+                run, float(clock.time), old.position[None][:kept], old.velocity[None][:kept], old.force
+            )
+
+    def _write_frame(
+        self, run: RunState, time: float, position: FloatArray, velocity: FloatArray, force: FloatArray
+    ) -> None:
+        """Write a frame of coordinates and their rates (1, n_d), and contact forces (n, 2); of none without them."""
+        if self._recovery is None or not position.size:
+            return
+        frame = self._recovery.frame(position[0], velocity[0])
+        if frame.von_mises is not None and self._recovery.full:
+            self._note_stress(self._recovery.largest_in(frame.von_mises))
+        if self._frame_sink is None:
+            return
+        pressure, points = np.zeros(len(frame.displacement)), len(self._area)
+        pressure[self._model.container.nodes[:points]] = force[:points, 1] / self._area
+        floor, _, _ = floor_motion(run.problem.motion, time)
+        lift, _, _ = floor_motion(run.problem.vertical, time)
+        self._frame_sink(
+            self._links.added_to(
+                FrameFields(
+                    **vars(frame),
+                    time=float(as_written(np.array(time))),
+                    contact_pressure=pressure,
+                    floor_displacement=float(floor),
+                    floor_lift=float(lift),
+                ),
+                run,
+            )
+        )
 
 
 def as_written(times: FloatArray) -> FloatArray:

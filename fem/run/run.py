@@ -46,6 +46,7 @@ WAY_ON = "--resume continues from the last checkpoint"
 class RunOptions(WantedChecks):
     """What the command line asks of a run besides its case."""
 
+    analytic: bool = True
     resume: bool = False
     force: bool = False
 

@@ -110,6 +110,8 @@ def simulate(
 
     def ended(status: str, error: str | None = None) -> SimulationEnd:
         reporter.finish()
+        if status != "interrupted":
+            recorder.finish(run)
         return SimulationEnd(status=status, stepping_cpu_s=progress.stepping_cpu_s, error=error)
 
     if progress.undriven is not None:

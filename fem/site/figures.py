@@ -45,17 +45,9 @@ def draw_spectra(
         periods, gap = np.array(action.periods_s), 0.65
         width = (style.WIDTH - style.LEFT - style.RIGHT - gap * (len(rows) - 1)) / len(rows)
         for k, (target, mean, name) in enumerate(rows):
-            box = (
-                (style.LEFT + k * (width + gap)) / style.WIDTH,
-                0.45 / tall,
-                width / style.WIDTH,
-                high / tall,
-            )
-            spectra = [
-                motion.spectrum_m_s2 if k == 0 else motion.vertical_spectrum_m_s2
-                for motion in motions.motions
-            ]
-            panel = figure.add_axes(box)
+            of_motions = "spectrum_m_s2" if k == 0 else "vertical_spectrum_m_s2"
+            spectra = [motion[of_motions] for motion in motions.motions]
+            panel = _panel(figure, style.LEFT + k * (width + gap), 0.45, width, high)
             _draw_spectrum(
                 panel, periods, target if fitted else (), mean, spectra, (low, last), f"{name} [m/s²]"
             )
@@ -80,13 +72,7 @@ def draw_floor(action: result.SiteActionResult, floor: result.FloorResult) -> st
         )
         axes.plot(periods, floor.mean_m_s2, color=style.BLUE, linewidth=1.8, label="floor, mean")
         axes.plot(periods, action.mean_m_s2, color=style.GREY, label="ground, mean")
-        axes.plot(
-            periods,
-            formula,
-            color=style.ORANGE,
-            linestyle="--",
-            label="formula (4.25), not a target",
-        )
+        axes.plot(periods, formula, color=style.ORANGE, linestyle="--", label="formula (4.25), not a target")
         _period_axis(axes, list(TICKS))
         axes.set_xlabel("period of an element [s]")
         axes.set_ylabel("horizontal [m/s²]")
@@ -114,9 +100,7 @@ def draw_motion(
             if values is None:
                 continue
             bottom = 0.45 + (count - 1 - k) * (each + 0.1)
-            panel = figure.add_axes(
-                (style.LEFT / style.WIDTH, bottom / tall, width / style.WIDTH, each / tall)
-            )
+            panel = _panel(figure, style.LEFT, bottom, width, each)
             style.curve_panel(
                 panel, f"{name}\n[m/s²]", times, (values, style.BLUE if k == 0 else style.PURPLE, "-", None)
             )
@@ -124,9 +108,7 @@ def draw_motion(
             panel.tick_params(labelbottom=k == count - 1)
         panel.set_xlabel("time [s]")
         left = share * style.WIDTH + 0.65
-        spectra = figure.add_axes(
-            (left / style.WIDTH, 0.45 / tall, (style.WIDTH - left - 0.15) / style.WIDTH, (tall - 0.95) / tall)
-        )
+        spectra = _panel(figure, left, 0.45, style.WIDTH - left - 0.15, tall - 0.95)
         periods = np.array(action.periods_s)
         spectra.plot(periods, action.target_m_s2, color=style.BLACK, linestyle="--", label="target")
         spectra.plot(periods, motion.spectrum_m_s2, color=style.BLUE, label="horizontal")
@@ -137,14 +119,8 @@ def draw_motion(
         spectra.set_xlabel("period [s]")
         spectra.set_ylabel("spectrum [m/s²]", labelpad=2)
         spectra.set_ylim(bottom=0.0)
-        spectra.legend(
-            loc="lower right",
-            bbox_to_anchor=(1.04, 1.0),
-            ncols=3,
-            borderaxespad=0.1,
-            handlelength=1.2,
-            columnspacing=0.9,
-        )
+        spaced = {"borderaxespad": 0.1, "handlelength": 1.2, "columnspacing": 0.9}
+        spectra.legend(loc="lower right", bbox_to_anchor=(1.04, 1.0), ncols=3, **spaced)
         return style.svg_of(figure)
 
 
@@ -227,13 +203,8 @@ def draw_methods(methods: Sequence[result.SiteMethod], answer: result.SiteAnswer
             "factor on the action at which it is used up",
         )
         axes.axvline(1.0, color=style.GREY, linewidth=0.9, linestyle="-.", label="action of the site")
-        if answer.factor_at_first_overturning is not None:
-            axes.axvline(
-                answer.factor_at_first_overturning,
-                color=style.VERMILLION,
-                linestyle=":",
-                label="runs: first overturned",
-            )
+        if (first := answer.factor_at_first_overturning) is not None:
+            axes.axvline(first, color=style.VERMILLION, linestyle=":", label="runs: first overturned")
         for row, method in enumerate(drawn):
             factor = method.factor or 0.0
             x = min(max(factor, FACTORS[0]), FACTORS[1])
@@ -241,15 +212,8 @@ def draw_methods(methods: Sequence[result.SiteMethod], answer: result.SiteAnswer
             axes.plot([FACTORS[0], x], [row, row], color="#DDDDDD", linewidth=0.8, zorder=1)
             axes.plot(x, row, color=COLOURS[method.quantity], marker=marker, markersize=4.5, linestyle="none")
         for quantity, colour in COLOURS.items():
-            axes.plot(
-                [],
-                [],
-                color=colour,
-                marker=MARKERS[quantity],
-                markersize=4.5,
-                linestyle="none",
-                label=quantity,
-            )
+            (dot,) = axes.plot([], [], color=colour, marker=MARKERS[quantity], markersize=4.5, label=quantity)
+            dot.set_linestyle("none")
         labels = [f"{method.name}, {method.quantity}" for method in drawn]
         axes.set_yticks(range(len(drawn)), labels, fontsize=7)
         axes.set_ylim(len(drawn) - 0.4, -0.6)
@@ -263,6 +227,12 @@ def draw_methods(methods: Sequence[result.SiteMethod], answer: result.SiteAnswer
             loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=5, borderaxespad=0.1, handlelength=1.4
         )
         return style.svg_of(figure)
+
+
+def _panel(figure: Figure, left: float, bottom: float, width: float, height: float) -> Axes:
+    """Axes in a figure, by their place in inches."""
+    wide, tall = figure.get_size_inches()
+    return figure.add_axes((left / wide, bottom / tall, width / wide, height / tall))
 
 
 def _draw_spectrum(
@@ -283,13 +253,8 @@ def _draw_spectrum(
     if target:
         inside = (periods >= band[0]) & (periods <= band[1])
         axes.plot(periods, target, color=style.BLACK, linestyle="--", label="target")
-        axes.plot(
-            periods[inside],
-            LEAST_RATIO * np.array(target)[inside],
-            color=style.VERMILLION,
-            linestyle=":",
-            label="90 %",
-        )
+        least = LEAST_RATIO * np.array(target)[inside]
+        axes.plot(periods[inside], least, color=style.VERMILLION, linestyle=":", label="90 %")
     axes.plot(periods, mean, color=style.BLUE, linewidth=1.8, label="mean")
     _period_axis(axes, list(TICKS))
     axes.set_xlabel("period [s]")

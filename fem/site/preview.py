@@ -9,16 +9,10 @@ from fem.results.json_block import JsonBlock
 from fem.run.expected import of_a_record_s, of_its_band_s
 from fem.runtime.progress import clock_time
 from fem.runtime.threads import cores
-from fem.seismic.motion_set import check_set
-from fem.site.bodies import bodies_of
-from fem.site.confirm import MODEL, MOST_DECIDING
-from fem.site.copies import inputs_of
-from fem.site.methods import wind_utilisation
-from fem.site.motion_results import GIVEN_FLOORS
-from fem.site.motions import floor_motions, ground_motions, longest_period
+from fem.site.motions import GIVEN_FLOORS
 from fem.site.request import SiteRequest
 from fem.site.result import SiteBody
-from fem.site.runs import still
+from fem.site.runs import CONFIRMING, MOST_DECIDING, still
 from fem.site.stages import Stages
 
 OF_A_MOTION_S = 0.03  #: processor time of making an artificial motion of three components, tests/README.md
@@ -72,7 +66,7 @@ def forecast(stages: Stages, jobs: int, *, quick: bool = False, scan: bool = Tru
         of_set_still=total - own,
         most=most,
         seconds=(most * of_a_record_s(case) + made * OF_A_MOTION_S) / jobs,
-        deciding_seconds=MOST_DECIDING * of_its_band_s(of_a_record_s(still(case, MODEL))) / jobs
+        deciding_seconds=MOST_DECIDING * of_its_band_s(of_a_record_s(still(case, CONFIRMING))) / jobs
         if moves
         else 0.0,
         cores=jobs,
@@ -106,27 +100,22 @@ def preview_of(request: SiteRequest, *, allow_outside: bool = False) -> SitePrev
     Raises:
         CaseError, MeshError: it cannot be computed.
     """
-    bodies = bodies_of(request)
-    longest = longest_period(bodies)
-    ground = ground_motions(request, longest, allow_outside=allow_outside)
-    stages = Stages.of(request, floor_motions(request, ground), longest=longest, folder=Path())
-    checked = check_set(
-        ground, stages.target, longest=stages.longest, second=request.motions.second_component or 1.0
-    )
+    stages = Stages.of(request, Path(), allow_outside=allow_outside)
+    checked = stages.checked
     return SitePreview(
         site=request.name,
         title=request.heading.title,
         spectrum=request.action.shape.source,
         ag_S_m_s2=request.action.surface_acceleration,
         avg_m_s2=request.action.vertical_acceleration,
-        bodies=bodies,
+        bodies=stages.bodies,
         floor=GIVEN_FLOORS[request.motions.source == "floor"] if request.on_given_floor else None,
-        motions=len(ground),
+        motions=len(stages.ground),
         set_valid=checked.valid,
         reasons=checked.reasons,
-        notes=tuple(dict.fromkeys(note for motion in ground for note in motion.notes)),
+        notes=tuple(dict.fromkeys(note for motion in stages.ground for note in motion.notes)),
         factor_at_first_movement=stages.first_movement,
-        wind_utilisation=wind_utilisation(bodies, inputs_of(request)),
+        wind_utilisation=stages.wind,
         forecast=forecast(stages, cores()),
     )
 

@@ -7,12 +7,13 @@ neither on that nor on the number of cores.
 import hashlib
 import platform
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from pathlib import Path
 from typing import Unpack
 
+from fem.assessment.ranges import largest_bolt_forces
+from fem.batch.compute_many import compute_many
 from fem.batch.log import LoggedRuns
 from fem.batch.runner import Runner
 from fem.batch.study import COMPLETED, INTERRUPTED, Study, StudyOptions, hash_of, run_study
@@ -20,39 +21,40 @@ from fem.batch.table import row_of
 from fem.case.case import case_hash
 from fem.html.page import Signature
 from fem.results.disk import table_bytes
+from fem.results.figures import SLIPPED, TURNED, Place
 from fem.results.folder import ResultFolder
 from fem.results.kinds import SITE
+from fem.results.outcome import ENDINGS
+from fem.results.run_result import Band
 from fem.runtime.identity import command_line, versions
 from fem.seismic.ground_motion import GroundMotion
-from fem.seismic.motion_set import MotionSetCheck, check_set
 from fem.site.answer import FULFILLED, NOT_FULFILLED, answer_of, no_answer_yet
-from fem.site.bodies import bodies_of
-from fem.site.confirm import confirmed, deciding
 from fem.site.copies import copy_files, inputs_of, left_elsewhere, texts_of
-from fem.site.methods import site_methods, wind_utilisation
-from fem.site.motion_results import (
+from fem.site.methods import site_methods
+from fem.site.motions import (
     action_result,
     floor_result,
     set_result,
     write_csv_files,
     write_ground,
 )
-from fem.site.motions import floor_motions, ground_motions, longest_period
 from fem.site.page import site_report
 from fem.site.preview import forecast
 from fem.site.request import SiteRequest
 from fem.site.result import (
+    SET,
     ConfirmedRun,
     MotionSet,
     RunKey,
     SiteAnswer,
-    SiteBody,
+    SiteMotion,
     SiteProvenance,
     SiteResult,
+    SiteRun,
     motion_stem,
 )
 from fem.site.rule import governing_run
-from fem.site.runs import COLUMNS, RunCases, cells_of
+from fem.site.runs import COLUMNS, CONFIRMING, RunCases, cells_of
 from fem.site.stages import Stages
 
 RUNS, PAGE = "runs.csv", "report.html"
@@ -77,9 +79,9 @@ def run_site(
         allow_outside: take records from outside the folder of the site file.
         quick: the set and its repetitions alone; "fulfilled" then only of a container that rests.
     """
-    work = Verification.of(request, folder, allow_outside=allow_outside, quick=quick)
-    stages = work.stages
-    files = len(work.ground) * (1 + len(stages.floors)) + request.motions.further
+    stages = Stages.of(request, folder, allow_outside=allow_outside)
+    work = Verification(stages=stages, quick=quick)
+    files = len(stages.ground) * (1 + len(stages.floors)) + request.motions.further
     study = Study(
         kind=SITE,
         request=work.digest,
@@ -111,52 +113,30 @@ def site_hash(request: SiteRequest, ground: Sequence[GroundMotion]) -> str:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Verification:
-    """What is asked, and its motions."""
+    """A verification that is asked for, and how far it is."""
 
-    request: SiteRequest
     stages: Stages
-    bodies: tuple[SiteBody, ...]
-    ground: Sequence[GroundMotion]  #: motions of the set
-    wind: float | None  #: the largest utilisation under it
     quick: bool = False
     began: float = field(default_factory=time.perf_counter)  #: when it was asked for [s]
 
-    @classmethod
-    def of(
-        cls, request: SiteRequest, folder: Path, *, allow_outside: bool = False, **options: bool
-    ) -> "Verification":
-        """For a request whose runs read their motions from a folder.
-
-        Raises:
-            CaseError, MeshError: a record or a container that cannot be used.
-        """
-        bodies = bodies_of(request)
-        longest = longest_period(bodies)
-        ground = ground_motions(request, longest, allow_outside=allow_outside)
-        return cls(
-            request=request,
-            stages=Stages.of(request, floor_motions(request, ground), longest=longest, folder=folder),
-            bodies=bodies,
-            ground=ground,
-            wind=wind_utilisation(bodies, inputs_of(request)),
-            **options,
-        )
+    @property
+    def request(self) -> SiteRequest:
+        """What is asked."""
+        return self.stages.request
 
     @property
     def digest(self) -> str:
         """Equal for requests that give the same result."""
-        digest = site_hash(self.request, self.ground)
+        digest = site_hash(self.request, self.stages.ground)
         return hash_of([digest, "quick"]) if self.quick else digest
 
-    @cached_property
-    def checked(self) -> MotionSetCheck:
-        """What the checks of the set found."""
-        stages, second = self.stages, self.request.motions.second_component
-        return check_set(self.ground, stages.target, longest=stages.longest, second=second or 1.0)
+    def set_of(self, described: Sequence[SiteMotion]) -> MotionSet:
+        """The set of motions and its checks."""
+        return set_result(self.request, self.stages.checked, self.stages.ground, described)
 
     def compute(self, place: ResultFolder, runner: Runner) -> SiteResult:
         """Write the motions, compute what is missing, and write runs and page."""
-        motions = set_result(self.request, self.checked, self.ground, write_ground(place.path, self.ground))
+        motions = self.set_of(write_ground(place.path, self.stages.ground))
         copy_files(self.request, place.path)
         motions = replace(motions, notes=(*motions.notes, *left_elsewhere(self.request)))
         self.write_floors()
@@ -196,8 +176,7 @@ class Verification:
         columns = varied | COLUMNS
 
         def now() -> SiteAnswer:
-            beside = replace(stages.beside(again, self.wind), left_out=left_out)
-            return answer_of(self.request, motions, rows.in_order(), beside)
+            return answer_of(self.request, motions, rows.in_order(), stages.beside(again, left_out))
 
         def batches() -> Iterator[Sequence[RunKey]]:
             for keys in stages.of_the_answer(runner, quick=self.quick):
@@ -240,8 +219,8 @@ class Verification:
         request, inputs, rows = self.request, inputs_of(self.request), self.stages.rows
         own = rows.of(self.stages.of_set())
         missing = None if answer else self._missing()
-        action = action_result(request.action, self.checked)
-        floor = floor_result(request, self.stages.floors, self.checked)
+        action = action_result(request.action, self.stages.checked)
+        floor = floor_result(request, self.stages.floors, self.stages.checked)
         document = request.document.model_dump(exclude_none=True) if request.document else None
         return SiteResult(
             status=COMPLETED if answer else INTERRUPTED,
@@ -252,11 +231,11 @@ class Verification:
             action=action,
             floor=floor,
             set=motions,
-            bodies=self.bodies,
+            bodies=self.stages.bodies,
             runs=tuple(rows.in_order().values()),
             result=answer or no_answer_yet(request.limits, motions, own, missing or ""),
             methods=site_methods(
-                bodies=self.bodies,
+                bodies=self.stages.bodies,
                 inputs=inputs,
                 site=request.action,
                 motions=motions.motions,
@@ -281,3 +260,54 @@ class Verification:
         if left := len(rows.missing(wanted)):
             return f"{len(wanted) - left} of {len(wanted)} runs of the set are computed"
         return "repetitions, further motions, other factors on the motions or the deciding runs are missing"
+
+
+def deciding(runs: Mapping[RunKey, SiteRun], governing: SiteRun | None) -> list[RunKey]:
+    """The runs that decide: one that overturned, else that of the largest rotation; and that of the largest slip."""
+    own = {key: run for key, run in runs.items() if key.stage == SET and run.outcome is not None}
+    if governing is None or not own:
+        return []
+    stood = {key: run for key, run in own.items() if run.outcome not in ENDINGS}
+    keys = [next(key for key, run in own.items() if run is governing)] if len(stood) < len(own) else []
+    figures = (TURNED, SLIPPED)[len(keys) :] if stood else ()
+    keys += [max(stood, key=lambda key: stood[key][figure] or 0.0) for figure in figures]
+    return list(dict.fromkeys(keys))
+
+
+def confirmed(
+    cases: RunCases, runs: Mapping[RunKey, SiteRun], keys: list[RunKey], jobs: int | None
+) -> list[ConfirmedRun]:
+    """These runs with the reduced model, each with its band unless it rests far below the static limits.
+
+    None where a signal stops them; the caller asks that.
+
+    Raises:
+        CaseError, MeshError: one of them cannot be computed.
+    """
+    results: list[ConfirmedRun] = []
+    try:
+        repeated = [cases(replace(key, model=CONFIRMING)) for key in keys]
+        again = compute_many(repeated, jobs, margin=False, inner_forces=False)
+    except KeyboardInterrupt:
+        return results
+    for key, run in zip(keys, again, strict=True):
+        verdict, joints = run.verdict, run.typed_result.joints or ()
+        band = verdict.band or Band()
+        tension, shear = largest_bolt_forces(joints) if joints else (None, None)
+        used = [joint.bolt_utilisation for joint in joints if joint.bolt_utilisation is not None]
+        results.append(
+            ConfirmedRun(
+                run=runs[key],
+                model=CONFIRMING,
+                outcome=verdict.outcome,
+                **verdict.figures(Place.KEY),
+                bolt_tension_N=tension,
+                bolt_shear_N=shear,
+                bolt_utilisation=max(used, default=None),
+                sure=verdict.sure or "",
+                outcomes=band.outcomes,
+                rotation_ratio_range=band.rotation_ratio or (),
+                max_slip_m_range=band.max_slip_m or (),
+            )
+        )
+    return results

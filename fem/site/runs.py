@@ -19,6 +19,10 @@ from fem.run.changed_runs import tolerance_of_draws
 from fem.site.request import FULL, WIDTH, SiteRequest
 from fem.site.result import MOTIONS, REPEATED, SET, STAGES, RunKey, SiteRun
 
+CONFIRMING = (
+    "reduced"  #: model with which the deciding runs are repeated, and how many of them there are at most
+)
+MOST_DECIDING = 2
 NOT_COMPUTED = "below uplift and slip of a rigid body: not computed"
 #: the columns that tell which run a row is of
 KEYS = (

@@ -260,17 +260,18 @@ def next_values(axis: SizeAxis, answers: Mapping[float, SiteAnswer]) -> list[flo
     )
 
 
+def stretches(said: Mapping[float, str]) -> list[tuple[str, float, float]]:
+    """What is said of neighbouring values, with the first and the last of which it is, by rising value."""
+    alike = [(what, list(values)) for what, values in groupby(sorted(said), said.__getitem__)]
+    return [(what, values[0], values[-1]) for what, values in alike]
+
+
 def so_far(axis: SizeAxis, answers: Mapping[float, SiteAnswer], value: float) -> str:
     """What is decided, and what comes next: "number of boxes: 1 to 5 fulfilled, 6 being tried"."""
-    stretches = [
-        (list(values), said)
-        for said, values in groupby(
-            sorted(answers), lambda tried: answers[tried].answer or "without an answer"
-        )
-    ]
+    said = {tried: answer.answer or "without an answer" for tried, answer in answers.items()}
     decided = [
-        f"{' to '.join(dict.fromkeys(f'{end:.4g}' for end in (values[0], values[-1])))} {said}"
-        for values, said in stretches
+        f"{' to '.join(dict.fromkeys(f'{end:.4g}' for end in ends))} {what}"
+        for what, *ends in stretches(said)
     ]
     unit = f" [{axis.unit}]" if axis.unit else ""
     return f"{axis.words}{unit}: {', '.join([*decided, f'{value:.4g} being tried'])}"
@@ -307,15 +308,8 @@ def size_result(
 
 def fulfilled_intervals(points: Sequence[SizePoint]) -> list[tuple[float, float]]:
     """Stretches of neighbouring values tried that all fulfil the rule, by rising value."""
-    stretches: list[list[float]] = []
-    before = False
-    for point in points:
-        if point.fulfilled and before:
-            stretches[-1][1] = point.value
-        elif point.fulfilled:
-            stretches.append([point.value, point.value])
-        before = bool(point.fulfilled)
-    return [(low, high) for low, high in stretches]
+    said = {point.value: "fulfilled" if point.fulfilled else "" for point in points}
+    return [(low, high) for what, low, high in stretches(said) if what]
 
 
 def wanted_value(axis: SizeAxis, intervals: Sequence[tuple[float, float]]) -> float | None:

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
+from functools import cached_property, partial
 from itertools import product
 from pathlib import Path
 
@@ -15,11 +15,20 @@ from fem.run.bracket import values_to_try
 from fem.seismic.action import MotionTarget
 from fem.seismic.artificial import artificial_motions
 from fem.seismic.ground_motion import GroundMotion
+from fem.seismic.motion_set import MotionSetCheck, check_set
 from fem.seismic.two_directions import largest_slip, largest_slips
 from fem.site.answer import Beside
-from fem.site.bodies import Screening
-from fem.site.motion_results import write_csv_files
-from fem.site.motions import motion_target, on_floor
+from fem.site.bodies import Screening, bodies_of
+from fem.site.copies import inputs_of
+from fem.site.methods import wind_utilisation
+from fem.site.motions import (
+    floor_motions,
+    ground_motions,
+    longest_period,
+    motion_target,
+    on_floor,
+    write_csv_files,
+)
 from fem.site.request import SiteRequest
 from fem.site.result import (
     FURTHER,
@@ -29,6 +38,7 @@ from fem.site.result import (
     SET,
     ConfirmedRun,
     RunKey,
+    SiteBody,
     SiteRun,
     TwoDirections,
     motion_stem,
@@ -60,27 +70,30 @@ class Stages:
     """The runs of one request, and what is known of them."""
 
     request: SiteRequest
-    screening: Screening
-    floors: Mapping[float | None, Sequence[GroundMotion]]  #: of the set, by building period
+    bodies: tuple[SiteBody, ...]  #: the containers
+    ground: Sequence[GroundMotion]  #: motions of the set
+    floors: Mapping[float | None, Sequence[GroundMotion]]  #: on the floor, by building period
     longest: float  #: period of the band [s]
     target: MotionTarget  #: of the motions
+    wind: float | None  #: the largest utilisation under it; None: it was not asked for
+    screening: Screening
     folder: Path  #: that holds the motions
     rows: RunRows = field(default_factory=RunRows)
 
     @classmethod
-    def of(
-        cls,
-        request: SiteRequest,
-        floors: Mapping[float | None, Sequence[GroundMotion]],
-        *,
-        longest: float,
-        folder: Path,
-    ) -> "Stages":
-        """For a request and the motions of its set, by building period.
+    def of(cls, request: SiteRequest, folder: Path, *, allow_outside: bool = False) -> "Stages":
+        """For a request whose runs read their motions from a folder.
+
+        Args:
+            allow_outside: take records from outside the folder of the site file.
 
         Raises:
-            CaseError, MeshError: a container cannot be built.
+            CaseError, MeshError: a record or a container that cannot be used.
         """
+        bodies = bodies_of(request)
+        longest = longest_period(bodies)
+        ground = ground_motions(request, longest, allow_outside=allow_outside)
+        floors = floor_motions(request, ground)
         motions = {
             motion_stem(number, period): motion
             for period, floor in floors.items()
@@ -88,27 +101,26 @@ class Stages:
         }
         return cls(
             request=request,
-            screening=Screening.of(request, motions),
+            bodies=bodies,
+            ground=ground,
             floors=floors,
             longest=longest,
-            target=motion_target(request, next(iter(floors.values())), longest),
+            target=motion_target(request, ground, longest),
+            wind=wind_utilisation(bodies, inputs_of(request)),
+            screening=Screening.of(request, motions),
             folder=folder,
         )
 
-    @property
-    def first(self) -> GroundMotion:
-        """One motion of the set."""
-        return next(iter(self.floors.values()))[0]
-
-    @property
-    def count(self) -> int:
-        """Motions of the set."""
-        return len(next(iter(self.floors.values())))
+    @cached_property
+    def checked(self) -> MotionSetCheck:
+        """What the checks of the set found."""
+        second = self.request.motions.second_component
+        return check_set(self.ground, self.target, longest=self.longest, second=second or 1.0)
 
     @property
     def signs(self) -> tuple[int, ...]:
         """Of the vertical component."""
-        return (0,) if self.first.vertical is None else (1, -1)
+        return (0,) if self.ground[0].vertical is None else (1, -1)
 
     def of_set(self) -> list[RunKey]:
         """Every motion with both signs, over weights, elevations, periods and frictions."""
@@ -129,7 +141,7 @@ class Stages:
                 self.request.variants,
                 self.floors,
                 self.request.frictions,
-                range(1, self.count + 1),
+                range(1, len(self.ground) + 1),
                 self.signs,
             )
         ]
@@ -215,7 +227,7 @@ class Stages:
 
         own = left(self.of_set())
         masses = len({mass for mass, _ in self.request.variants})
-        of_a_group = self.count * len(self.signs)
+        of_a_group = len(self.ground) * len(self.signs)
         of_a_mass = len(self.of_set()) // (of_a_group * masses)  # groups, of which two govern
         pairs = min(2, of_a_mass) * masses if own else 0
         most = own + pairs * of_a_group * len(REPETITIONS)
@@ -248,16 +260,12 @@ class Stages:
         factors = [self.screening.moves_at(key) for key in self.of_set()]
         return None if None in factors else min(factor for factor in factors if factor is not None)
 
-    def beside(self, confirmed: Sequence[ConfirmedRun], wind: float | None) -> Beside:
-        """What the answer rests on beside the runs.
-
-        Args:
-            confirmed: the deciding runs, repeated.
-            wind: the largest utilisation under wind; None: it was not asked for.
-        """
+    def beside(self, confirmed: Sequence[ConfirmedRun] = (), left_out: str = "") -> Beside:
+        """What the answer rests on beside the runs: the deciding runs repeated, stages that were left out, in words."""
         return Beside(
             confirmed=confirmed,
-            wind=wind,
+            wind=self.wind,
+            left_out=left_out,
             two_directions=self._two_directions(),
             slips_of_further=self._slips_of_further(),
             in_plane_only=self._in_plane_only,
@@ -353,7 +361,7 @@ class Stages:
                 further_motions,
                 self.request,
                 self.target,
-                self.first.vertical is not None,
+                self.ground[0].vertical is not None,
                 self.longest,
                 period,
                 self.folder,

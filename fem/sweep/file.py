@@ -1,6 +1,7 @@
 """Read a sweep file: base case, axes, derived keys; one line for each reason why it cannot be used."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from itertools import islice, product
 from pathlib import Path
 from typing import Annotated, Any
@@ -9,7 +10,7 @@ from pydantic import Field
 
 from fem.batch import study_file
 from fem.batch.axes import Axis, AxisError, check_varied, field_of, first_motion, hint, read_axis
-from fem.batch.derived import Derived, read_derived, value_in
+from fem.batch.derived import FREE, Derived, read_derived, value_in
 from fem.case.case import Case
 from fem.case.files import DEFAULT_CASE, SWEEPS, Origin
 from fem.case.overrides import keys_in_effect
@@ -57,7 +58,7 @@ def _read(data: Mapping[str, Any], origin: Origin) -> Sweep:
         study_file.flat("axes", tables.get("axes", {})),
         MOST_AXES,
         '"contact.mu_static" = [0.2, 0.3, 0.4]',
-        read_axis,
+        _axis,
     )
     base = study_file.base_case(
         heading.case, tables.get("set", {}), origin, first_motion(axes), [axis.key for axis in axes]
@@ -83,11 +84,21 @@ def _read(data: Mapping[str, Any], origin: Origin) -> Sweep:
     return sweep
 
 
+def _axis(key: str, value: Any) -> Axis:
+    # a free variable takes any number, as the scale of a table of motion does
+    return (
+        replace(read_axis("motion.scale", value), key=key) if key.startswith(FREE) else read_axis(key, value)
+    )
+
+
 def _derived(content: Mapping[str, Any], base: Case, axes: tuple[Axis, ...]) -> tuple[Derived, ...]:
     values = {axis.key: axis.values for axis in axes}
 
     def check_reference(name: str) -> None:
-        field_of(name)
+        if not (free := name.startswith(FREE)):
+            field_of(name)
+        if free and name not in values:
+            raise AxisError("is no axis")
         if any(isinstance(value, str | bool) for value in values.get(name, ())):
             raise AxisError("has values that are no numbers")
         first = {key: axis_values[0] for key, axis_values in values.items()}
@@ -174,4 +185,4 @@ def _is_idle(case: Case, key: str) -> bool:
     table, _, name = key.rpartition(".")
     if key == "solver.elastic_modes":
         return case.solver.model != "reduced"
-    return bool(table) and table not in ROWS and getattr(case, table).is_idle(name)
+    return table not in ("", "free", *ROWS) and getattr(case, table).is_idle(name)

@@ -21,6 +21,7 @@ from fem.batch.axes import Axis
 from fem.batch.labels import axis_label, axis_name
 from fem.figures import style
 from fem.figures.heat_map import Look, MapAxis, Panel, draw_heat_map, value_label
+from fem.figures.paper_marks import LABEL, marks_of
 from fem.html.units import rounded
 from fem.results.figures import SLIPPED, TURNED
 from fem.results.files import write_atomically
@@ -154,6 +155,8 @@ def rotation_curve(table: SweepTable) -> Figure:
             )
         if axis.scale == "log":
             axes.set_xscale("log")
+        for k, value in enumerate(marks_of(table.info.case, axis.key)):
+            axes.axvline(value, color=style.GREY, linestyle=":", label="_" if k else LABEL)
         if not numeric:
             axes.set_xticks(places, [str(value) for value in axis.values])
         axes.set_xlabel(axis_label(axis))
@@ -178,13 +181,18 @@ def _outcome_map(table: SweepTable, choice: MapChoice, *, printed: bool) -> Figu
     for name, plane in grids:
         overturned = plane(table.outcome == Outcome.OVERTURNED)
         if share is not None:
-            words = "; ".join(filter(None, ("Share of a cell's variations that do not stand", name)))
+            words = "\n".join(filter(None, ("Share of a cell's variations that do not stand", name)))
             panels.append(Panel(values=plane(share), title=words, overturned=overturned, look=shares))
         words = "; ".join(filter(None, ("Outcome", name)))
         panels.append(Panel(values=plane(outcome), title=words, overturned=overturned, look=outcomes))
     title = _titled(table, "Outcome" if share is None else "Does it overturn?", left_out)
     return draw_heat_map(
-        map_axis(across), map_axis(up), panels, title=title, colours={}, columns=3 if share is None else 2
+        map_axis(across, table.info.case),
+        map_axis(up, table.info.case),
+        panels,
+        title=title,
+        colours={},
+        columns=3 if share is None else 2,
     )
 
 
@@ -221,7 +229,13 @@ def _map(
     ]
     title = _titled(table, title, left_out)
     return draw_heat_map(
-        map_axis(across), map_axis(up), panels, title=title, colours=colours, norm=norm, bar=bar
+        map_axis(across, table.info.case),
+        map_axis(up, table.info.case),
+        panels,
+        title=title,
+        colours=colours,
+        norm=norm,
+        bar=bar,
     )
 
 
@@ -247,10 +261,11 @@ def _grids(
     return [(name, partial(plane, pick)) for name, pick in picks], across, up, left_out
 
 
-def map_axis(axis: Axis) -> MapAxis:
-    """An axis as a map draws it."""
+def map_axis(axis: Axis, base: str) -> MapAxis:
+    """An axis as a map draws it, with marks for a base case of this name."""
     scale = axis.scale if axis.is_numeric else "list"
-    return MapAxis(label=axis_label(axis), values=axis.values, scale=scale)
+    marks = marks_of(base, axis.key) if axis.is_numeric else ()
+    return MapAxis(label=axis_label(axis), values=axis.values, scale=scale, marks=marks, marked=LABEL)
 
 
 def _plane(table: SweepTable, choice: MapChoice) -> tuple[Axis, Axis]:

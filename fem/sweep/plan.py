@@ -15,7 +15,7 @@ from pydantic import Field
 
 from fem.batch.axes import Axis, point_of, shape_of, with_following
 from fem.batch.case_maker import CaseMaker
-from fem.batch.derived import Derived, with_derived
+from fem.batch.derived import FREE, Derived, with_derived
 from fem.case.case import Case
 from fem.case.tables.quantities import Quantity
 from fem.case.tables.table import CaseTable
@@ -105,7 +105,8 @@ class Sweep:
         Raises:
             CaseError: an expression has no value there.
         """
-        return with_derived(with_following(self.axes, point), self.derived, self.base)
+        values = with_derived(with_following(self.axes, point), self.derived, self.base)
+        return {key: value for key, value in values.items() if not key.startswith(FREE)}
 
     def model_of(self, cell: int) -> str:
         """The model of a cell."""

@@ -180,6 +180,87 @@ def csmip_v1(channels: Sequence[tuple[Array, str]]) -> str:
     return "\n".join(text) + "\n"
 
 
+def afad(values: Sequence[Array]) -> str:
+    """17 lines of text and one of names, then three columns; `values` in gal."""
+    names = ("N-S", "E-W", "U-D")
+    peaks = " ".join(f"({name}) {np.abs(v).max():.6f}" for name, v in zip(names, values, strict=True))
+    keys = {
+        "PLACE": "NOWHERE", "EARTHQUAKE DATE": "1999/01/02 03:04:05 (GMT)", "EPICENTER COORDINATES": "36.9N-27.4E",
+        "EARTHQUAKE DEPTH (km)": "19.44", "EARTHQUAKE MAGNITUDE": "6.5 Mw", "STATION ID": "9999",
+        "STATION COORDINATES": "37.2N-28.3E", "STATION ALTITUDE (m)": "638", "RECORDER TYPE": "none",
+        "RECORDER SERIAL NO": "5C20", "RECORD TIME": "02/01/1999 03:04:14.000000 (GMT)",
+        "NUMBER OF DATA": str(len(values[0])), "SAMPLING INTERVAL (sec)": f"{STEP:g}", "RAW PGA VALUES (gal)": peaks,
+    }  # fmt: skip
+    heading = [
+        "STRONG GROUND MOTION RECORDS OF TURKIYE",
+        *(f"{key:<24}: {value}" for key, value in keys.items()),
+    ]
+    heading += ["Copyright NOBODY", "NOWHERE", "       N-S          E-W          U-D"]
+    return (
+        "\n".join([*heading, *("".join(f"{x:13.6f}" for x in row) for row in zip(*values, strict=True))])
+        + "\n"
+    )
+
+
+def jma(values: Sequence[Array]) -> str:
+    """7 lines, then three columns, each with empty fields behind it; `values` in gal."""
+    heading = [
+        "SITE CODE= 99999 Nowhere,37.5,137.2,16,7.6", " LAT.=   37.0000", " LON.=  137.0000",
+        f" SAMPLING RATE= {1 / STEP:.0f}Hz", " UNIT  = gal(cm/s/s)", "INITIAL TIME = 1999 01 02 03 04 05", " NS,EW,UD",
+    ]  # fmt: skip
+    rows_ = (",".join(f"{x:.3f}" for x in row) for row in zip(*values, strict=True))
+    return "".join(f"{line},,,,,\n" for line in (*heading, *rows_))
+
+
+def knet_csv(values: Sequence[Array]) -> str:
+    """The labels of K-NET with commas, then a time and three columns; `values` in gal."""
+    heading = [
+        "Origin Time,1999/01/02 03:04:00", "Lat.,38.1", "Long.,142.9", "Station Code,TST001",
+        f"Sampling Freq(Hz),{1 / STEP:.0f}Hz", f"Duration Time(s),{len(values[0]) * STEP:g}",
+        f"Max. Acc. (gal),{max(np.abs(v).max() for v in values):.3f}", "Time(s),NS(gal),EW(gal),UD(gal)",
+    ]  # fmt: skip
+    rows_ = (
+        ",".join([f"{STEP * k:.3f}", *(f"{x:.4f}" for x in row)])
+        for k, row in enumerate(zip(*values, strict=True))
+    )
+    return "\n".join([*heading, *rows_]) + "\n"
+
+
+def asa(values: Sequence[Array]) -> str:
+    """A header of keys in Spanish, then a column a channel; `values` in gal."""
+    peaks = "/".join(f"{np.abs(v).max():.2f}" for v in values)
+    heading = [
+        "=" * 80, "1. NOMBRE DEL ARCHIVO", "", "FORMATO: ARCHIVO ESTANDAR DE ACELERACION (ASA 2.0)", "=" * 80,
+        "NOMBRE DE LA ESTACION                 : NOWHERE", "CLAVE DE LA ESTACION                  : TST1",
+        "NUMERO DE CANALES                     : 3", "ORIENTACION C1-C6 (rumbo;orientacion) : /N90E;L/N00E;T/V;+/",
+        "VEL. DE MUESTREO, C1-C6 (muestras/s)  : /200/200/200/",
+        f"INTERVALO DE MUESTREO, C1-C6 (s)      : /{STEP}/{STEP}/{STEP}/",
+        "HORA EPICENTRO (GMT)                  : 03:04:05.6", "FECHA DEL SISMO [GMT]                 : 1999/01/02",
+        f"NUM. TOTAL DE MUESTRAS, C1-C6         : /{len(values[0])}/{len(values[0])}/{len(values[0])}/",
+        f"ACEL. MAX.(Gal), C1-C6                : /{peaks}/", "ACEL. MAX. C1-C6, EN LA MUESTRA       : /1/2/3/",
+        "UNIDADES DE LOS DATOS                 : Gal (cm/s/s)", "FACTOR DE DECIMACION                  : 1",
+        "COMENTARIOS", "none", "=" * 80, "   CANAL 1    CANAL 2    CANAL 3", "-" * 40,
+    ]  # fmt: skip
+    return (
+        "\n".join([*heading, *("".join(f"{x:12.5f}" for x in row) for row in zip(*values, strict=True))])
+        + "\n"
+    )
+
+
+def csmnc(values: Array, component: str = "EW") -> str:
+    """16 lines, then 8 numbers in a line; `values` in cm/s2."""
+    heading = [
+        "051TST990102030405", "0199010203040 1999-01-02 03:04:05 BTM", "NOWHERE EARTHQUAKE, NOWHERE",
+        "EPICENTER  30.300N 103.000E DEPTH 13 KM", "MAGNITUDE  7.0(Ms)", "STATION: 51TST 30.400N 102.800E",
+        "SITE CONDITION: ROCK", "INSTRUMENT TYPE: NONE", "OBSERVING POINT: GROUND", f"COMP. {component}",
+        "UNCORRECTED ACCELERATION          UNIT: CM/SEC/SEC",
+        f"NO. OF POINTS:  {len(values)}  EQUALLY SPACED INTERVALS OF:  {STEP}  SEC",
+        f"PEAK VALUE: {np.abs(values).max():.3f}   AT   1.0 SEC    DURATION:  {len(values) * STEP:g} SEC",
+        "PRE-EVENT TIME:  20  SEC", "CSMNC", "",
+    ]  # fmt: skip
+    return "\n".join([*heading, *rows([f"{v:14.6E}" for v in values], 8)]) + "\n"
+
+
 def columns(values: Sequence[Array], *, mark: str = ",", comma: bool = False, heading: str = "") -> str:
     """Time and values."""
     lines = []
@@ -236,6 +317,31 @@ WRITTEN = {
         digits=6e-6,
         format="CSMIP",
         components=2,
+    ),
+    "AFAD": Written(
+        text=lambda a, b, c: afad((100.0 * a, 100.0 * b, 100.0 * c)), digits=1e-8, format="AFAD", components=3
+    ),
+    "JMA": Written(
+        text=lambda a, b, c: jma((100.0 * a, 100.0 * b, 100.0 * c)),
+        digits=5e-6,
+        format="JMA CSV",
+        components=3,
+    ),
+    "K-NET CSV": Written(
+        text=lambda a, b, c: knet_csv((100.0 * a, 100.0 * b, 100.0 * c)),
+        digits=1e-6,
+        format="columns",
+        components=3,
+    ),
+    "ASA": Written(
+        text=lambda a, b, c: asa((100.0 * a, 100.0 * b, 100.0 * c)), digits=1e-7, format="ASA", components=3
+    ),
+    "CSMNC": Written(text=lambda a, b, c: csmnc(100.0 * a), digits=1e-5, format="CSMNC"),
+    "count and interval": Written(
+        text=lambda a, b, c: f"a title\n{len(a)} {STEP}\n" + "\n".join(rows([f"{v:12.7f}" for v in a], 8)),
+        digits=1e-7,
+        unit="m/s2",
+        format="PEER",
     ),
     "one column": Written(
         text=lambda a, b, c: "".join(f"{v:.7f}\n" for v in a),

@@ -84,12 +84,9 @@ def _literal(value: Any) -> str:
     return repr(value) if isinstance(value, int | float) else str(value)
 
 
-RIGID_FLOOR = {"floor.kind": "rigid"}  #: of the paper; the shipped cases stand on concrete
-BOX = PaperCase(base="seed_box", values=RIGID_FLOOR, what="one box, 50 mm at 6.928 rad/s")
-STACK = PaperCase(base="seed_stack", values=RIGID_FLOOR, what="stack of four, 50 mm at 6.928 rad/s")
-PLATEAU = PaperCase(
-    base="seed_stack_plateau", values=RIGID_FLOOR, what="stack of four, 4.0 m/s² at 6.928 rad/s"
-)
+BOX = PaperCase(base="seed_box", what="one box, 50 mm at 6.928 rad/s")
+STACK = PaperCase(base="seed_stack", what="stack of four, 50 mm at 6.928 rad/s")
+PLATEAU = PaperCase(base="seed_stack_plateau", what="stack of four, 4.0 m/s² at 6.928 rad/s")
 
 RIGID, SHELL = {"solver.model": "rigid"}, {"solver.model": "reduced"}
 #: a rigid container whose history is not needed

@@ -84,6 +84,10 @@ def response_folder(folder: Path, **more: object) -> Path:
         }
         for direction, number, frequency, ratio in rows
     ]
+    motions = [
+        {"motion": "rock of period 1", "period_n": 1, "rotation_ratio": ratio, "ways": [way], "starts": 0}
+        for ratio, way in ((0.1, "up"), (0.62, "up"), (0.2, "down"))
+    ]
     request = {"first_Hz": 0.5, "last_Hz": 1.0, "count": 2, "scale": "linear", "held": "acceleration"}
     request |= {"held_value": 4.0, "order": "up-down", "settle": 60, "observe": 48, "tolerance": 5e-3}
     info = {
@@ -91,12 +95,28 @@ def response_folder(folder: Path, **more: object) -> Path:
         "asked": "cd" * 32,
         "case": "my stack",
         "title": "Stack <b>",
-        "request": request | {"largest_period": 16},
+        "request": request | {"largest_period": 16, "starts": 0},
         "points": points,
-        "coexisting": [
-            {"from_Hz": 1.0, "to_Hz": 1.0, "frequencies": 1, "up": ["rock of period 1"], "down": ["rest"]}
+        "frequencies": [
+            {
+                "frequency_Hz": 0.5,
+                "eta": 1.65,
+                "starts": 0,
+                "fell": 0,
+                "destroyed": 0,
+                "motions": motions[:1],
+            },
+            {"frequency_Hz": 1.0, "eta": 3.3, "starts": 0, "fell": 0, "destroyed": 0, "motions": motions[1:]},
         ],
-        "jumps": [],
+        "coexisting": [
+            {
+                "from_Hz": 1.0,
+                "to_Hz": 1.0,
+                "frequencies": 1,
+                "motions": ["rock of period 1"],
+                "largest_difference": 0.42,
+            }
+        ],
         "drop_outs": [{"direction": "down", "from_Hz": 0.5, "to_Hz": 0.5, "frequencies": 1, "carried": True}],
         "versions": VERSIONS,
     }

@@ -201,7 +201,7 @@ def slider_on_slope() -> Findings:
     for per_cent in (2.0, -10.0):
         angle = math.atan(0.01 * per_cent)
         floor = sine_floor(amplitude=0.05, angular_frequency=10.0).on_slope(runs.GRAVITY * math.sin(angle))
-        slope = {"floor.slope_percent": per_cent}
+        slope = {"floor.slope_percent": per_cent, "floor.motion_along": "floor"}
         yield slip_of_a_driven_box(f"slope {per_cent:g} %", slope, floor, runs.GRAVITY * math.cos(angle))
 
 
@@ -228,4 +228,5 @@ def rocked_on_slope(per_cent: float, keys: runs.Keys) -> runs.Finished:
         "solver.duration_s": 2.0,
     }
     values = runs.harmonic(4.5 / OMEGA**2, OMEGA) | stiff | keys | {"floor.slope_percent": per_cent}
+    values |= {"floor.motion_along": "floor"}
     return runs.finish(build_model(runs.STACK.with_values(values)))

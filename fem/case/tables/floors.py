@@ -181,6 +181,12 @@ class FloorTable(CaseTable):
         )
     )
     slope_percent: Annotated[float, q.SLOPE] = case_key("of the floor, > 0: it falls toward +x", 0.0)
+    motion_along: Literal["horizontal", "floor"] | None = case_key(
+        'of a floor that slopes: [motion] is "horizontal" and [vertical] vertical, or they are along the "floor" and '
+        "normal to it",
+        follows=lambda values: "horizontal" if values.get("slope_percent") else None,
+        example="horizontal",
+    )
 
     rules = FLOOR_RULES
 
@@ -201,6 +207,11 @@ class FloorTable(CaseTable):
     def slope(self) -> float:
         """Angle of the floor with the horizontal, > 0: it falls toward +x [rad]."""
         return math.atan(0.01 * self.slope_percent)
+
+    @property
+    def turn(self) -> float:
+        """Angle by which its motions are turned to those along it and normal to it [rad]."""
+        return 0.0 if self.motion_along == "floor" else self.slope
 
     @property
     def density(self) -> float | None:

@@ -7,6 +7,9 @@ JOINTS_WEAKENING, JOINTS_DASHPOT = "joints.weakening_m", "joints.damping_ratio"
 MU_STATIC, SUPPORT = "contact.mu_static", "support.kind"
 CENTROID, ECCENTRICITY = "container.centroid_m", "container.eccentricity_m"
 EFFECTIVE, SLOPE, VERTICAL_PHASE = "support.effective_width", "floor.slope_percent", "vertical.phase_rad"
+PHASE, VERTICAL_SIGN = "motion.phase_rad", "vertical.scale"
+#: of a record, of one that is scaled to a peak, of a pulse
+SIGNS = "motion.scale", "motion.scale_to_m_s2", "motion.peak_acceleration_m_s2"
 START, RAMP, TOLERANCE = "motion.start", "motion.ramp_cycles", "solver.energy_tolerance"
 PENALTY, DASHPOT, RESTITUTION, MATERIAL = (
     "contact.normal_penalty_Pa_m",

@@ -183,7 +183,9 @@ BEARING_STRENGTH = Quantity(
     advice="concrete has 2.5e7 to 1e8",
 )
 PATCH = metres(least=1e-4, most=100.0, typical=0.02)
-SLOPE = Quantity(unit="per cent", least=-20.0, most=20.0, advice="1 to 2 is usual for drainage")
+SLOPE = Quantity(
+    unit="per cent", least=-60.0, most=60.0, advice="1 to 2 is usual for drainage, 40 to 60 in tilt tests"
+)
 EFFECTIVE_WIDTH = Quantity(least=0.5, most=1.0, advice="0.97 to 1 is usual")
 DRAWS = Quantity(least=0, most=1024, advice="32 is usual")
 RATIO = Quantity(least=1e-6, most=1e3, advice="1 is usual")

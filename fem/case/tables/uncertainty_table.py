@@ -84,6 +84,14 @@ class UncertaintyTable(CaseTable):
     vertical_phase_rad: Unknown = optional_key(
         "of a vertical harmonic beside a horizontal one; default: the whole turn", [0.0, 3.14]
     )
+    phase_rad: Unknown = optional_key("harmonic: of the motion; default: held", [0.0, 3.14])
+    sign: bool | Literal["held", "known"] | None = optional_key(
+        "record or pulse: whether it may come from the other side; default: true where left and right differ",
+        True,
+    )
+    vertical_sign: bool | Literal["held", "known"] | None = optional_key(
+        "record or pulse: true tries the vertical motion with the other sign; default: false", True
+    )
     support: bool | Literal["held", "known"] | None = optional_key(
         "corners and flat: whether the base may touch as the other does; default: true", True
     )

@@ -55,7 +55,7 @@ RESTITUTIONS = (0.95, 1.06)  #: over Housner's, of sharp corners whose restituti
 #: container lies otherwise, and its draws move it
 LOSS_LEFT = 0.3
 WEAKENING_M, STRIBECK_M_S = 5e-3, 0.3  #: largest slip and velocity over which friction falls
-WEAKENINGS_BETWEEN_M = (1e-4, 1e-3)
+WEAKENINGS_BETWEEN_M = (1e-3, 3e-3)  #: a stack that rings changes from sliding to rocking there
 RAMP_CYCLES = 2.0
 #: of stops, ties and sides over those of the case
 GAPS, LINK_STIFFNESS, LINK_FRICTION = (
@@ -104,6 +104,41 @@ def _other_ramp(case: Any) -> Value | None:
         return 0.0
     ramp = min(RAMP_CYCLES, short(0.5 * (motion.cycles or longest_time(case) / motion.period) * (1.0 - 1e-9)))
     return ramp if ramp == 0.0 or ramp >= LEAST_RAMP else None
+
+
+def _is_lopsided(case: Any) -> bool:
+    """Whether left and right of a container, or what is beside it, differ: a mirrored motion is then another one."""
+    start, box = case.initial, case.container
+    return bool(
+        start.rotation_rad
+        or start.angular_velocity_rad_s
+        or start.velocity_m_s
+        or box.eccentricity_m
+        or box.mesh_file
+        or case.floor.slope_percent
+        or case.links
+        or case.neighbour
+        or any(stacked.axis for stacked in case.stack)
+    )
+
+
+def _mirrored(key: str) -> Callable[[Any], Value | None]:
+    """The other sign of a record or a pulse by its key, where that makes a difference."""
+
+    def other(case: Any) -> Value | None:
+        motion, name = case.motion, key.partition(".")[2]
+        peak = motion.scale_to_m_s2 is not None
+        of_a_table = "scale_to_m_s2" if peak else "scale"
+        used = {"table": of_a_table, "pulse": "peak_acceleration_m_s2"}.get(motion.kind)
+        return (
+            -getattr(motion, name) if name == used and getattr(motion, name) and _is_lopsided(case) else None
+        )
+
+    return other
+
+
+def _other_vertical(case: Any) -> Value | None:
+    return -case.vertical.scale if case.vertical.kind in ("table", "pulse") else None
 
 
 def _joints_mu_static(case: Any, own: float) -> Ends:
@@ -298,6 +333,10 @@ UNKNOWN: tuple[UnknownNumber | UnknownChoice, ...] = (
            lambda case, own: (short(own - math.pi), short(own + math.pi)),
            matters=lambda case: case.motion.kind == case.vertical.kind == "harmonic", power=1.0,
            between=_shares(0.25, 0.75), same=lambda value: short(math.pi - (math.pi - value) % (2.0 * math.pi))),
+    Number(keys.PHASE, "phase_rad", "phase of the motion", q.PHASE, lambda case, own: (own, own),
+           matters=lambda case: case.motion.kind == "harmonic", power=1.0, between=_shares(0.25, 0.5, 0.75)),
+    *(Choice(key, "sign", "sign of the motion", _mirrored(key)) for key in keys.SIGNS),
+    Choice(keys.VERTICAL_SIGN, "vertical_sign", "sign of the vertical motion", _other_vertical, unless_stated=False),
     Choice(keys.START, "start", "start", _other_start, unless_stated=False),
     Choice(keys.RAMP, "ramp", "cycles of the ramp", _other_ramp),
     Number(keys.STOP_GAP, "stop_gap_m", "gap of the stops", q.GAP, GAPS, power=1.0),

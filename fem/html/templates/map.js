@@ -40,6 +40,7 @@
   const quoted = (text) => (/^[\w.+\-=,/]+$/.test(text) ? text : `'${text.replaceAll("'", "'\\''")}'`);
   const commandOf = (cell) => {
     const changes = sweep.axes.map((axis, k) => [axis.key, axis.values[Math.floor(cell / strides[k]) % sizes[k]]])
+      .filter(([key]) => !key.startsWith("free."))  // no key of a case
       .concat(sweep.derived.map((one) => [one.key, one.values[cell]]))
       .filter(([, value]) => value !== null);
     return [sweep.command, ...changes.map(([key, value]) => `--set ${quoted(`${key}=${value}`)}`)].join(" ");

@@ -8,6 +8,7 @@ import pytest
 from fem.case.case import CaseError, load_case
 from fem.case.tables.floors import PRESETS
 
+ON_CONCRETE = "stack_on_concrete"
 BASE = "seed_stack"  # amplitude and angular frequency, weight
 
 
@@ -93,15 +94,15 @@ def test_another_kind_of_floor_takes_nothing_of_the_former_one():
 
 
 def test_a_numerical_penalty_replaces_a_slab():
-    edge = load_case(BASE, [WALL])
+    edge = load_case(ON_CONCRETE, [WALL])
     rigid = edge.with_values({"floor.kind": "rigid", "contact.normal_penalty_Pa_m": 1e9})
-    slab = load_case(BASE, SLAB)
+    slab = load_case(ON_CONCRETE, SLAB)
     assert slab.with_values({"contact.normal_penalty_Pa_m": 1e9}).resolved() == rigid.resolved()
     assert load_case(BASE, [*SLAB, "contact.damping_ratio=1.0"]).floor.kind == "slab"
 
 
 def test_a_patch_under_the_wall_follows_wall_and_depth():
-    case = load_case(BASE, [WALL]).with_values({"container.depth_m": 0.8})
+    case = load_case(ON_CONCRETE, [WALL]).with_values({"container.depth_m": 0.8})
     assert case.floor.corner_patch_m == [0.008, 0.8]
     assert case.with_values({"container.wall_m": 0.01}).floor.corner_patch_m == [0.01, 0.8]
     castings = load_case(BASE, [*SLAB, "container.depth_m=0.8", "container.wall_m=0.01"])
@@ -109,7 +110,7 @@ def test_a_patch_under_the_wall_follows_wall_and_depth():
 
 
 def test_of_castings_and_a_patch_the_one_that_is_set_holds():
-    edge = load_case(BASE, [WALL])
+    edge = load_case(ON_CONCRETE, [WALL])
     assert (edge.support.casting_m, edge.container.corner_post_N) == (None, None)
     castings = edge.with_values({"support.casting_m": [0.1, 0.1, 0.0]})
     assert castings.floor.corner_patch_m is None

@@ -391,3 +391,30 @@ def test_the_impacts_of_a_squat_box_make_cases_that_can_be_read(width, ratio):
     for one in tried:
         case.with_values(one)
     assert any("contact.restitution_over_housner" in one for one in tried) == (width < 2**0.5)
+
+
+@pytest.mark.parametrize(
+    ("keys", "tried"),
+    [
+        ([], {}),
+        (["container.eccentricity_m=0.05"], {"motion.peak_acceleration_m_s2": (-3.8,)}),
+        (["floor.slope_percent=1"], {"motion.peak_acceleration_m_s2": (-3.8,)}),
+        (["floor.slope_percent=1", "uncertainty.sign=false"], {}),
+    ],
+)
+def test_a_pulse_is_tried_from_the_other_side_where_left_and_right_differ(keys, tried):
+    pulse = (
+        "motion.kind=pulse",
+        "motion.shape=sine",
+        "motion.peak_acceleration_m_s2=3.8",
+        "motion.pulse_s=1.0",
+    )
+    found = {one.key: one.ends for one in ranges_of(load_case("rocking", [*pulse, *keys]), 1e9)}
+    assert {key: ends for key, ends in found.items() if key.startswith("motion.")} == tried
+
+
+def test_the_phase_of_a_harmonic_motion_is_tried_where_its_range_is_stated():
+    stated = ranges_of(load_case("rocking", ["uncertainty.phase_rad=[0.0, 1.5]"]), 1e9)
+    (phase,) = (one for one in stated if one.key == "motion.phase_rad")
+    assert (phase.ends, phase.between) == ((1.5,), (0.375, 0.75, 1.125))
+    assert "motion.phase_rad" not in {one.key for one in ranges_of(load_case("rocking"), 1e9)}

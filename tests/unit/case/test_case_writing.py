@@ -19,6 +19,7 @@ SHIPPED = {
     "seed_box",
     "seed_stack",
     "seed_stack_plateau",
+    "stack_on_concrete",
     "free_rocking",
     "sliding",
     "rocking",

@@ -73,4 +73,5 @@ def test_a_level_rigid_floor_is_no_part_of_a_resolved_case():
 
 def test_a_slope_is_part_of_a_rigid_floor():
     case = read_case(LEAST + "[floor]\nslope_percent = 1.5\n")
-    assert case.resolved()["floor"] == {"kind": "rigid", "slope_percent": 1.5}
+    assert case.resolved()["floor"] == {"kind": "rigid", "slope_percent": 1.5, "motion_along": "horizontal"}
+    assert case.with_values({"floor.slope_percent": 0.0}).floor.motion_along is None

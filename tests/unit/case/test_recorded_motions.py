@@ -75,7 +75,6 @@ def test_the_vertical_component_follows_what_is_common_to_both():
         ("h.at2", ("vertical.kind=table",), r"\[vertical\] h.at2: no vertical component"),
         ("one.at2", ("vertical.kind=table",), "has one motion, which moves the floor along x already"),
         ("one.at2#1", ("vertical.kind=table", "vertical.file=one.at2#1"), "has one motion, which moves"),
-        ("h.at2", ("vertical.kind=table", "vertical.file=short.at2"), "do not belong together: 801 and 700 samples"),
         ("h.at2", ("vertical.kind=table", "vertical.file=slow.at2"), "0.005 and 0.01 s between samples"),
         ("h.at2", ("motion.unit=gal",), "the file states 'g', but unit = 'gal' is given"),
         ("bare.csv", (), "does not state the unit of its values; state it as unit"),
@@ -96,6 +95,33 @@ def test_what_cannot_move_the_floor_is_refused_with_exit_code_2(motion, changes,
     assert main(["check", "case.toml", "--motion", motion, *options]) == 2
     said = capsys.readouterr().err
     assert f"[{table}]" in said and "root:" not in said
+
+
+def test_components_of_one_recording_are_cut_to_what_they_share():
+    # real sets have 2676, 2671 and 2300 samples, or 7999 and 7998
+    keys = ("vertical.kind=table", "vertical.file=short.at2")
+    both = [moved("h.at2", *keys, table=table) for table in ("motion", "vertical")]
+    assert [motion.times.size for motion in both] == [700, 700]
+    assert both[0].values == pytest.approx(FIRST[:700], abs=2e-6)
+    case = load_case("case.toml", keys, motion="h.at2")
+    note = "h.at2, short.at2 have 801, 700 samples: they are cut to the 700 that all have"
+    assert note in recorded_motion(case, "motion").notes and note in recorded_motion(case, "vertical").notes
+    # what the keys take of both is compared, not what the files hold
+    ended = load_case("case.toml", (*keys, "motion.end_s=3.0", "vertical.end_s=3.0"), motion="h.at2")
+    assert not any("samples" in note for note in recorded_motion(ended, "motion").notes)
+    assert recorded_motion(ended, "vertical").motion.times[-1] == 3.0
+    late = load_case("case.toml", (*keys, "vertical.start_s=0.5"), motion="h.at2")
+    assert recorded_motion(late, "vertical").motion.times.size == 600
+
+
+def test_components_that_were_not_sampled_together_are_refused(folder):
+    (folder / "brief.at2").write_text(files.peer(THIRD[:300] / G, "UP"))
+    (folder / "late.csv").write_text(
+        "t [s],UP [m/s2]\n" + "".join(f"{0.0123 + STEP * k:.4f},{v:.6f}\n" for k, v in enumerate(THIRD))
+    )
+    for name, words in (("brief.at2", "801 and 300 samples"), ("late.csv", r"up to 0\.0123 s apart in time")):
+        with pytest.raises(CaseError, match=f"do not belong together: .*{words}"):
+            moved("h.at2", "vertical.kind=table", f"vertical.file={name}", table="vertical")
 
 
 @pytest.mark.parametrize("missing", [1, 100])

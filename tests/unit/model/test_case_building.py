@@ -92,7 +92,7 @@ def with_table(folder, content):
 
 
 def test_table_of_a_case_is_read_beside_it_and_scaled(tmp_path):
-    case = with_table(tmp_path, "0,0\n0.5,-0.2\n1.0,0.1\n")
+    case = with_table(tmp_path, "t [s],a\n0,0\n0.5,-0.2\n1.0,0.1\n")
     assert isinstance(build_motion(case), TableMotion)
     assert preview_of(case).peak == pytest.approx(2.0 * 0.2 * 9.80665)
 

@@ -217,7 +217,7 @@ def test_a_container_slides_down_a_slope_steeper_than_its_friction():
 
 def test_of_boxes_that_differ_the_lowest_stands_on_the_floor():
     boxes = [{"width_m": 1.4, "wall_m": 0.012}, {"width_m": 1.1}]
-    case = load_case("seed_stack").with_values({"container.box": boxes, "floor.corner_patch_m": None})
+    case = load_case("stack_on_concrete").with_values({"container.box": boxes, "floor.corner_patch_m": None})
     slab = slab_of(case, mass=5e3)
     assert slab.patch == (0.012, 1.1)
     assert slab.steel_capacity == pytest.approx(235e6 * 0.012 * 1.1)

@@ -109,7 +109,7 @@ def test_units_of_the_header_need_no_other_word(tmp_path, heading, unit):
         ("0,1\n0.1,1\n0.1,1\n", "line 3: times must increase, but time 0.1 s occurs twice"),
         ("time,acc [g]\n0,1\n1,2\n", "file states 'g', but unit = 'm/s2' is given"),
         ("time_s,a_g\n0,1\n1,2\n", "file states 'g', but unit = 'm/s2' is given"),
-        ("time (ms), acc (m/s2)\n0,1\n1,2\n", "header gives times in 'ms'; they must be in s"),
+        ("time (h), acc (m/s2)\n0,1\n1,2\n", "header gives times in 'h'; they must be in s, ms, us, min"),
         ("time (s) acc (Gal)\n0 1\n1 2\n", "file states 'gal', but unit = 'm/s2'"),
         ("t [s], a (m/s2), b (g)\n0,1\n1,2\n", "names more units than the 2 columns"),
         ("t [s],a [g]\ns,m/s2\n0,1\n1,2\n", "two units for column 2"),

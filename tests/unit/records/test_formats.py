@@ -29,11 +29,15 @@ def horizontal(record):
     return record.component("horizontal", quantity="acceleration")
 
 
+def first_of(record):
+    return record.component("horizontal", quantity="acceleration", channel="1")
+
+
 @pytest.mark.parametrize("name", WRITTEN)
 def test_every_format_is_read_to_the_same_numbers(tmp_path, name):
     form, values, text = written(name)
     record = read(tmp_path, text, unit=form.unit, sample_interval=form.sample_interval)
-    found = horizontal(record)
+    found = first_of(record)
     assert record.format == form.format and len(record.components) == form.components
     assert found.times == pytest.approx(TIMES[: values.size], abs=1e-12)
     expected = values - values.mean() if form.centred else values
@@ -58,16 +62,18 @@ def test_every_format_is_read_to_the_same_numbers(tmp_path, name):
 def test_encodings_and_line_ends_make_no_difference(tmp_path, name, change):
     form, values, text = written(name)
     text = text.replace("Nowhere", "Görlitz")
-    found = horizontal(read(tmp_path, change(text), unit=form.unit, sample_interval=form.sample_interval))
+    found = first_of(read(tmp_path, change(text), unit=form.unit, sample_interval=form.sample_interval))
     assert found.times.size == values.size
 
 
-@pytest.mark.parametrize("name", [name for name, form in WRITTEN.items() if form.format != "columns"])
+@pytest.mark.parametrize(
+    "name", [name for name, form in WRITTEN.items() if form.unit is None and form.format != "columns"]
+)
 def test_the_file_states_the_unit_and_its_user_may_not_state_another(tmp_path, name):
     form, _, text = written(name)
-    found = horizontal(read(tmp_path, text))
+    found = first_of(read(tmp_path, text))
     assert found.unit_stated
-    assert horizontal(read(tmp_path, text, unit=found.unit)).values == pytest.approx(found.values)
+    assert first_of(read(tmp_path, text, unit=found.unit)).values == pytest.approx(found.values)
     with pytest.raises(ValueError, match=f"the file states '{found.unit}', but unit = 'mm/s2' is given"):
         read(tmp_path, text, unit="mm/s2")
     with pytest.raises(
@@ -83,7 +89,17 @@ def cut_line(text):
     return "\n".join(lines[:last] + lines[last + 1 :])
 
 
-COUNTED = [name for name, form in WRITTEN.items() if form.format not in ("columns",)]
+ROWS = ("columns", "JMA CSV", "AFAD", "ASA")  #: without a block of numbers
+COUNTED = [name for name, form in WRITTEN.items() if form.format not in ROWS and form.unit is None]
+
+
+@pytest.mark.parametrize("name", ["AFAD", "ASA", "K-NET CSV"])
+def test_rows_that_are_not_as_many_as_the_header_says_are_refused(tmp_path, name):
+    text = written(name)[2].rstrip("\n")
+    with pytest.raises(ValueError, match=r"the header (says \d+ values, found|gives a length of)"):
+        read(tmp_path, text.rsplit("\n", 10)[0])
+    with pytest.raises(ValueError, match=r"line \d+: [34] columns are needed as in line \d+, found 1"):
+        read(tmp_path, text + "\n1.0")
 
 
 @pytest.mark.parametrize("name", COUNTED)
@@ -263,3 +279,31 @@ def test_headers_say_where_and_when(tmp_path):
     found = read(tmp_path, files.esm(FIRST))
     assert (found.event, found.station, found.date) == ("NOWHERE", "TST", "19990102")
     assert read(tmp_path, files.knet(FIRST[:2000])).station == "TST001"
+
+
+@pytest.mark.parametrize(
+    ("name", "key", "words"),
+    [
+        ("JMA", " UNIT  =", "the header has no UNIT, as JMA CSV has; write one component into a column"),
+        ("JMA", " SAMPLING RATE=", "has no SAMPLING, as JMA CSV"),
+        ("AFAD", "SAMPLING INTERVAL (sec) :", "the header has no SAMPLING INTERVAL, as AFAD"),
+        ("ASA", "ORIENTACION", "the header has no ORIENTACION C1-C6, as ASA"),
+        ("JMA", "gal(cm/s/s)", "in a unit that is not known"),
+        ("ASA", "/0.005/0.005/", "its channels have different intervals"),
+    ],
+)
+def test_a_national_format_that_lacks_a_key_is_refused_by_name(tmp_path, name, key, words):
+    text = written(name)[2]
+    assert key in text
+    with pytest.raises(ValueError, match=re.escape(words)):
+        read(tmp_path, text.replace(key, "/0.005/0.01/" if key.startswith("/") else "X "))
+
+
+def test_smc_of_type_0_does_not_say_what_it_holds(tmp_path):
+    text = files.smc(100.0 * FIRST, title="0 UNKNOWN")
+    with pytest.raises(
+        ValueError, match="an SMC file of type 0 does not say what its values are; state it as unit"
+    ):
+        read(tmp_path, text)
+    (found,) = read(tmp_path, text, unit="cm/s2").components
+    assert found.values == pytest.approx(FIRST, abs=1e-7) and not found.unit_stated

@@ -16,7 +16,10 @@ from fem.results.errors import FolderError
 #: headings in the order in which a reader wants them
 HEADINGS = {
     "ensemble": ["Found", "Fragility curve", "The ensemble", "Points"],
-    "response": ["Found", "Response", "Where the curve changes", "The drive and the case", "Points"],
+    "response": [
+        *("Found", "Response", "What lasts at each frequency", "Where a sweep overturns"),
+        *("The drive and the case", "Points of the sweeps"),
+    ],
 }
 END = ["Assumptions and exclusions", "Provenance and how to repeat it"]
 MADE = {"ensemble": (ensemble_folder, ensemble_report), "response": (response_folder, response_report)}
@@ -30,7 +33,7 @@ def page_of(kind, folder, **more):
 def rows_of(page, label):
     """The texts of a table's rows."""
     table = re.search(rf'aria-label="{label}">.*?</table>', page, re.DOTALL)[0]
-    rows = re.findall(r"<tr>(.*?)</tr>", table)
+    rows = re.findall(r"<tr>(.*?)</tr>", table, re.DOTALL)
     return [re.findall(r">([^<]*)</t[hd]>", row) for row in rows[1:]]
 
 
@@ -69,25 +72,26 @@ def test_an_ensemble_says_where_half_overturned_and_shows_every_point(tmp_path):
 
 def test_a_curve_of_which_no_point_was_judged_says_nothing_of_stable_ones(tmp_path):
     page = page_of("response", tmp_path)
-    assert "3 of 4 points are <strong>stable</strong>" in page
+    assert "Stable: 3 of 4 points: amplitudes do not diverge" in page
     assert "rock of period 1 at 3, overturned at 1." in page
     found = response_folder(tmp_path / "none")
     text = (found / "response.json").read_text()
     (found / "response.json").write_text(re.sub(r'"stable": (true|false)', '"stable": null', text))
-    assert "stable</strong>" not in response_report(found)
+    assert "Stable:" not in response_report(found)
 
 
 def test_a_response_curve_is_repeated_by_its_command(tmp_path):
     page = page_of("response", tmp_path)
     assert (
-        "Frequency: overturned at 0.5 Hz going down; stood at the other 3 points; largest rotation 0.62"
-        in page
+        "Frequency: largest lasting motion 0.62 of the slenderness angle, rock of period 1 at 1 Hz (going up); "
+        "overturned at 0.5 Hz going down; stood at the other 3 points; slid by up to 12 mm a period, at 0.5 "
+        "Hz going up; motions coexist at 1 Hz." in page
     )
-    assert rows_of(page, "points")[-1] == ["down", "0.5", "overturned", *"–––––", "no"]
-    assert rows_of(page, "branches") == [
-        ["overturns", "down", "0.5 Hz", "a motion that was carried there"],
-        ["coexist", "up and down", "1 Hz", "rock of period 1 going up, rest going down"],
+    assert rows_of(page, "points")[-1] == ["down", "0.5", "overturned", *"–––––", "no", ""]
+    assert rows_of(page, "what lasts")[-1] == [
+        *("1", "3.3", "0.620 rock of period 1 (up); 0.200 rock of period 1 (down)")
     ]
+    assert "0.5 Hz going down: a motion that was carried there" in page
     words = shlex.split(re.search(r'<pre class="command">(.*?)</pre>', page)[1])
     assert words[:5] == ["python", "-m", "fem", "response", "case.toml"]
     assert dict(zip(words[5::2], words[6::2], strict=True))["--hold"] == "acceleration"

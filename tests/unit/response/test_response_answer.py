@@ -1,12 +1,12 @@
-"""The sentence of a response curve: where it overturned, how far it turned, where two motions coexist."""
+"""The sentence of a response curve: the largest motion that lasts, what falls, where motions coexist."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from fem.response.answer import fates_of, response_answer
-from fem.response.branches import Coexistence, DropOut, differ, drop_outs, jumps
+from fem.response.answer import fates_of, fell_share, lasting_in_words, response_answer
+from fem.response.lasting import coexistences, differ, drop_outs, frequencies_of
 from fem.response.records import PointRecord, PointRow
 from fem.response.result import ResponseResult
 
@@ -16,91 +16,105 @@ def point(
 ):
     stands = ratio is not None
     return PointRow(
-        number=0,
+        number=round(10 * frequency),
         frequency_Hz=frequency,
         amplitude_m=0.1,
         peak_acceleration_m_s2=1.0,
-        began="carried",
+        began="random" if direction == "start" else "carried",
         periods=1,
         direction=direction,
         rotation_ratio=ratio,
+        median_rotation_ratio=ratio,
         slip_stroke_m=slip if stands else None,
         slip_excursion_m=reach if stands else None,
         motion=motion if stands else None,
-        long_time=long_time if stands else None,
+        long_time=long_time if stands and motion != "invalid" else None,
+        period_n=1,
         status=status if stands or status == "failed" else "overturned",
     )
 
 
+def record(row):
+    return PointRecord(
+        row=row, sections=np.zeros((1, 4)), extremes=np.zeros((1, 7)), portrait=np.zeros((1, 2))
+    )
+
+
 def curve(*points, status="completed", **found):
-    return ResponseResult(asked="", status=status, points=points, **found)
+    records = [record(row) for row in points]
+    frequencies = tuple(frequencies_of(records))
+    return ResponseResult(
+        asked="",
+        status=status,
+        points=tuple(row for row in points if row.direction != "start"),
+        frequencies=frequencies,
+        coexisting=tuple(coexistences(frequencies)),
+        drop_outs=tuple(drop_outs(records)),
+        starts_fell_share=fell_share(frequencies),
+        **found,
+    )
 
 
 STANDS = (point(0.5, "up", 0.1), point(1.0, "up", 0.62), point(1.0, "down", 0.3), point(0.5, "down", 0.1))
 #: 48 mm peak to peak, drifting to the left by 1 mm a period: 96 mm from the start after 48 periods
 WALKS = (point(1.0, "down", 0.3, slip=0.048, reach=0.096), point(0.5, "down", 0.1, slip=0.064))
-FALL = DropOut(direction="down", from_Hz=0.9, to_Hz=0.5, frequencies=2, carried=True)
-TWO = Coexistence(from_Hz=1.0, to_Hz=1.0, frequencies=1, up=("rock",), down=("rest",))
+STARTS = (
+    point(1.0, "start", 0.9),
+    point(1.0, "start", 0.62),
+    point(1.0, "start", None),
+    point(0.5, "start", None),
+)
+UP = "largest lasting motion 0.62 of the slenderness angle, rock of period 1 at 1 Hz (going up)"
+EVERY = "stood at every frequency tried, 0.5 to 1 Hz, up and down"
 
 
 @pytest.mark.parametrize(
     ("result", "sentence"),
     [
+        (curve(*STANDS), f"{UP}; {EVERY}; motions coexist at 1 Hz"),
         (
-            curve(*STANDS, coexisting=(TWO,)),
-            "frequency: stood at every frequency tried, 0.5 to 1 Hz, up and down; largest rotation 0.62 of the "
-            "slenderness angle, at 1 Hz going up; two motions coexist at 1 Hz",
+            curve(*STANDS, *STARTS),
+            "largest lasting motion 0.9 of the slenderness angle, rock of period 1 at 1 Hz, which neither sweep meets "
+            f"(1 of 3 starts); 50 % of 4 random starts overturn; {EVERY}; motions coexist at 1 Hz",
         ),
         (
-            curve(*STANDS[:3], point(0.5, "down", None), drop_outs=(FALL,)),
-            "frequency: overturned at 0.9 to 0.5 Hz going down; stood at the other 3 points; largest rotation 0.62 of "
-            "the slenderness angle, at 1 Hz going up",
+            curve(*STANDS[:3], point(0.5, "down", None)),
+            f"{UP}; overturned at 0.5 Hz going down; stood at the other 3 points; motions coexist at 1 Hz",
         ),
         (
-            curve(point(0.5, "up", None), point(0.5, "down", None), drop_outs=(FALL,)),
-            "frequency: overturned at every frequency tried, 0.5 Hz",
+            curve(point(0.5, "up", None), point(0.5, "down", None)),
+            "overturned at every frequency tried, 0.5 Hz",
         ),
         (
             curve(point(0.5, "up", 0.0, "rest"), point(1.0, "up", None, status="failed"), status="failed"),
-            "frequency: stood at every frequency with an outcome, 0.5 Hz, up and down; at rest there; "
-            "no outcome at 1 of 2 points",
+            "at rest wherever it stands; stood at every frequency with an outcome, 0.5 Hz, up and down; no outcome at "
+            "1 of 2 points",
         ),
         (
-            curve(*STANDS[:3], point(0.5, "down", 0.1, slip=0.064)),
-            "frequency: stood at every frequency tried, 0.5 to 1 Hz, up and down; largest rotation 0.62 of the "
-            "slenderness angle, at 1 Hz going up; slid by up to 64 mm a period, at 0.5 Hz going down",
+            curve(*STANDS[:2], point(0.5, "down", 0.1, slip=0.064)),
+            f"{UP}; {EVERY}; slid by up to 64 mm a period, at 0.5 Hz going down; motions coexist at 0.5 Hz",
         ),
         (
-            curve(*STANDS[:3], point(0.5, "down", 0.1, motion="invalid")),
-            "frequency: not valid at 1 point, the first at 0.5 Hz going down: a corner is destroyed; stood at the "
-            "other 3 points; largest rotation 0.62 of the slenderness angle, at 1 Hz going up",
+            curve(*STANDS[:2], point(0.5, "down", 0.1, motion="invalid")),
+            f"{UP}; not valid at 1 point, the first at 0.5 Hz going down: a corner is destroyed; stood at the other 2 "
+            "points",
         ),
         (
-            curve(point(0.5, "up", 0.1, "rest"), point(0.5, "down", 0.1, motion="invalid")),
-            "frequency: not valid at 1 point, the first at 0.5 Hz going down: a corner is destroyed; stood at the "
-            "other point; at rest there",
-        ),
-        (
-            curve(
-                *STANDS[:3],
-                point(0.5, "down", 0.1, slip=0.064),
-                request={"limit_slip_m": 0.07, "observe": 48},
-            ),
-            "frequency: stood at every frequency tried, 0.5 to 1 Hz, up and down; none slid beyond 70 mm within "
-            "48 periods; largest rotation 0.62 of the slenderness angle, at 1 Hz going up; slid by up to 64 mm a "
-            "period, at 0.5 Hz going down",
+            curve(point(0.5, "up", 0.1, motion="invalid"), point(1.0, "start", 0.1, motion="invalid")),
+            "100 % of 1 random starts overturn or destroy a corner; not valid at every frequency tried, 0.5 Hz: a "
+            "corner is destroyed",
         ),
         (
             curve(*STANDS[:2], *WALKS, request={"limit_slip_m": 0.05, "observe": 48}),
-            "frequency: slid beyond 50 mm within 48 periods at 2 points, the first at 1 Hz going down (slip there "
-            "96 mm); stood at the other 2 points; largest rotation 0.62 of the slenderness angle, at 1 Hz going up",
+            f"{UP}; slid beyond 50 mm within 48 periods at 2 points, the first at 1 Hz going down (slip there 96 mm); "
+            "stood at the other 2 points; motions coexist at 0.5 to 1 Hz",
         ),
         (curve(*STANDS, status="interrupted"), None),
         (curve(point(0.5, "up", None, status="failed"), status="failed"), None),
     ],
 )
 def test_a_curve_has_one_sentence(result, sentence):
-    assert response_answer(result) == sentence
+    assert response_answer(result) == (sentence and f"frequency: {sentence}")
 
 
 @pytest.mark.parametrize(
@@ -119,27 +133,22 @@ def test_the_share_that_does_not_stand_counts_points_with_an_outcome(points, lim
     assert fates_of(result).overturned_share == share
 
 
-def test_what_destroyed_a_corner_before_it_lay_down_did_not_overturn():
-    fallen, destroyed = point(0.5, "up", None), replace(point(0.6, "up", None), motion="invalid")
-    empty = np.empty((0, 2))
-    rows = [
-        PointRecord(row=row, sections=empty, extremes=empty, portrait=empty) for row in (fallen, destroyed)
+def test_what_lasts_is_listed_with_what_leads_to_it():
+    assert [words for _, words in lasting_in_words(curve(*STANDS, *STARTS))] == [
+        "0.100 rock of period 1 (up, down); 1 of 1 starts overturn",
+        "0.900 rock of period 1 (1 of 3 starts); 0.620 rock of period 1 (up, 1 of 3 starts); 0.300 rock of period 1 "
+        "(down); 1 of 3 starts overturn",
     ]
-    assert [(fall.from_Hz, fall.to_Hz) for fall in drop_outs(rows)] == [(0.5, 0.5)]
-    assert response_answer(curve(fallen, destroyed, drop_outs=tuple(drop_outs(rows)))) == (
-        "frequency: overturned at 0.5 Hz going up; not valid at 1 point, the first at 0.6 Hz going up: a corner is "
-        "destroyed"
-    )
+    followed = replace(point(1.0, "start", 0.9), began="risen")
+    (at,) = frequencies_of([record(STANDS[1]), record(followed)])
+    assert at.starts == 0 and [motion.starts for motion in at.motions] == [0, 0]
 
 
-def test_a_destroyed_corner_is_no_motion_that_coexists_with_another():
-    empty = np.empty((0, 7))
-
-    def record(direction, **changed):
-        row = replace(point(0.5, direction, 0.2), **changed)
-        return PointRecord(row=row, sections=empty, extremes=empty, portrait=empty)
-
-    resting = record("up", long_time="rest", motion="rest", rotation_ratio=0.0)
-    assert differ(resting, record("down"))
-    destroyed = record("down", motion="invalid")
-    assert not differ(resting, destroyed) and jumps([resting, destroyed, replace(destroyed)]) == []
+def test_a_destroyed_corner_neither_overturned_nor_coexists():
+    destroyed = replace(point(0.6, "up", None), motion="invalid")
+    assert [fall.from_Hz for fall in drop_outs([record(point(0.5, "up", None)), record(destroyed)])] == [0.5]
+    resting, rocking = point(0.5, "up", 0.0, "rest"), point(0.5, "down", 0.2)
+    assert differ(record(resting), record(rocking))
+    assert len(list(coexistences(list(frequencies_of([record(resting), record(rocking)]))))) == 1
+    gone = replace(rocking, motion="invalid")
+    assert list(coexistences(list(frequencies_of([record(resting), record(gone)])))) == []

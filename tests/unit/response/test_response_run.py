@@ -5,8 +5,14 @@ import json
 
 import pytest
 
+from contact.stepping.body import CENTRE_Z, ROTATION
 from fem.__main__ import main
 from fem.case.case import CaseError, load_case
+from fem.model.container import discretise
+from fem.model.model import build_model
+from fem.report.response_page import response_report
+from fem.response.curve import computed, plan_of
+from fem.response.model import carry_drive
 from fem.response.request import ResponseRequest
 from fem.response.run import run_response
 from fem.results.errors import FolderError
@@ -51,8 +57,19 @@ def test_what_is_held_is_what_the_case_states():
             r"\[stop\] and \[tie\] must be left out",
         ),
         ([], {"first_Hz": 2.0}, "--from must be less than --to, got 2 Hz and 1.4 Hz"),
-        ([], {"first_Hz": 0.0}, "--from must lie between 0.01 and 100 Hz, got 0 Hz"),
+        (
+            [],
+            {"first_Hz": 0.0},
+            "--from must lie between 0.01 and 100 Hz, got 0 Hz; with eta = 0 the floor does not move",
+        ),
         ([], {"last_Hz": float("nan")}, "--to must lie between"),
+        (
+            [],
+            {"first_Hz": 1.0, "last_Hz": 1.0 + 1e-7},
+            "below the resolution of 1e-06; take fewer, or a wider range",
+        ),
+        ([], {"starts": -1}, "--starts must lie between 0 and 1000, got -1"),
+        (["solver.model=reduced"], {"shell": True}, "--shell adds the elastic container to a rigid one"),
         ([], {"count": 1}, "--count must lie between 2 and 2000, got 1"),
         ([], {"observe": 4}, "--observe must lie between 8"),
         ([], {"tolerance": 0.0}, "--tolerance must lie between"),
@@ -66,7 +83,7 @@ def test_a_request_that_cannot_be_met_is_refused(changes, values, message):
 
 def test_the_command_writes_its_tables_and_figures(tmp_path, capsys):
     line = ["response", "seed_stack_plateau", "--from", "0.9", "--to", "1.1", "--count", "2", "--json", "-q"]
-    line += ["--settle", "4", "--observe", "8", "--out", str(tmp_path / "r")]
+    line += ["--settle", "4", "--observe", "8", "--starts", "2", "--shell", "--out", str(tmp_path / "r")]
     for change in CHANGES:
         line += ["--set", change]
     assert main(line) == 0
@@ -78,6 +95,54 @@ def test_the_command_writes_its_tables_and_figures(tmp_path, capsys):
     for row, point in zip(rows, result["points"], strict=True):
         assert float(row["rotation_ratio"]) == point["rotation_ratio"]
     with (tmp_path / "r" / "sections.csv").open() as file:
-        assert len(list(csv.DictReader(file))) == 4 * 8
+        assert len(list(csv.DictReader(file))) >= 4 * 8
+    for name, models in (("starts", {"rigid"}), ("shell", {"reduced"})):
+        with (tmp_path / "r" / f"{name}.csv").open() as file:
+            assert {row["model"] for row in csv.DictReader(file)} == models
     names = {path.name for path in (tmp_path / "r" / "figures").iterdir()}
     assert names == {"response_curve.svg", "sections.svg", "portraits.svg"}
+
+
+CRUSHING = (
+    "floor.corner_patch_m=[0.008, 1.1]",
+    "floor.bearing_strength_Pa=2e7",
+    "motion.peak_acceleration_m_s2=6",
+)
+
+
+def test_each_frequency_begins_on_a_floor_that_is_whole(tmp_path):
+    case = load_case("stack_on_concrete", [*CHANGES, "motion.peak_acceleration_m_s2=3.2"])
+    container, before, depths = discretise(case), None, []
+    request = ResponseRequest(case=case, first_Hz=1.2, last_Hz=2.0, count=3, settle=6, observe=8)
+    for task in plan_of(request)[:3]:
+        if before is not None:
+            depths.append(float(before.run.old.crushed.max()))
+            carried = carry_drive(request.case_at(task.number), container, before).run.old
+            assert not carried.crushed.any() and carried.pose[ROTATION] == before.run.old.pose[ROTATION]
+            # where it is crushed most it bears as before, now that much higher
+            deepest = int(before.run.old.crushed.argmax())
+            assert carried.point[deepest, 1] == before.run.old.point[deepest, 1]
+            assert carried.pose[CENTRE_Z] - before.run.old.pose[CENTRE_Z] == pytest.approx(
+                depths[-1], abs=1e-12
+            )
+        (point,), before = computed(
+            request, container, task, [], before, build_model(case, container).run.problem.control
+        )
+        assert point.row.status == "completed" and point.row.reason is None  # the energy balance closes
+    assert min(depths) > 1e-5
+
+
+def test_after_a_destroyed_corner_the_next_frequency_begins_anew_and_a_curve_of_them_says_so(
+    tmp_path, capsys
+):
+    case = load_case("stack_on_concrete", [*CHANGES, *CRUSHING])
+    request = ResponseRequest(case=case, first_Hz=1.4, last_Hz=1.8, count=3, settle=6, observe=8, starts=1)
+    result = run_response(request, folder=tmp_path / "r")
+    assert {(point.motion, point.began) for point in result.points} == {("invalid", "case")}
+    assert all("crushed by more than" in point.reason for point in result.points)
+    assert all(point.long_time is None and point.rotation_ratio is None for point in result.points)
+    assert "not valid at every frequency tried, 1.4 to 1.8 Hz: a corner is destroyed" in result.answer
+    drawn = (tmp_path / "r" / "figures" / "response_curve.svg").read_text()
+    assert "up: a corner destroyed" in drawn and not (tmp_path / "r" / "figures" / "portraits.svg").exists()
+    page = response_report(tmp_path / "r")
+    assert "What lasts" in page and "nothing was judged" not in page

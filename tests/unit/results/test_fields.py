@@ -76,6 +76,7 @@ def test_pyvista_reads_the_time_series(tmp_path, cells, kind):
     reader.set_active_time_value(0.05)
     grid = reader.read()[0]
     assert set(grid.celltypes) == {kind}
+    assert grid.field_data["TimeValue"].tolist() == [0.05]  # of a file that is opened alone
     assert grid.point_data["displacement_m"][:, :2] == pytest.approx(written[1]["displacement"], rel=1e-6)
     assert grid.cell_data["region"].tolist() == grid.cell_data["box"].tolist() == [1, 2]
     assert grid.compute_cell_sizes()["Area"] == pytest.approx([1.0, 1.0], rel=1e-6)  # nodes in VTK's order

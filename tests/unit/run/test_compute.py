@@ -92,3 +92,13 @@ def test_what_is_chosen_for_auto_is_no_change_of_the_user():
     assert (
         fem.compute(fem.load_case("free_rocking"), band=False, margin=False).result.get("overrides") is None
     )
+
+
+@pytest.mark.parametrize(
+    ("every", "times"), [(0.3, [0.0, 0.3, 0.6, 0.9, 1.0]), (0.25, [0.0, 0.25, 0.5, 0.75, 1.0])]
+)
+def test_the_last_instant_of_a_run_has_a_frame(every, times):
+    run = fem.compute(fem.load_case("rocking", ROCKING).replace({"output.fields_s": every}), band=False)
+    assert run.fields.times.tolist() == times
+    last, moved = run.frame(1.0), run.history["centre_x_m"][-1] - run.history["centre_x_m"][0]
+    assert np.mean(last.displacement[:, 0]) - last.floor_displacement == pytest.approx(moved, abs=0.02)

@@ -40,7 +40,7 @@ def unsure_of(*names: str, **keys) -> Case:
         for one in UNKNOWN
         if one.name not in names
     }
-    return load_case("seed_stack_plateau", []).with_values(SLIDING | held | keys)
+    return load_case("stack_on_concrete", []).with_values(SLIDING | held | keys)
 
 
 def test_every_input_of_links_is_varied_alone_and_with_the_others():

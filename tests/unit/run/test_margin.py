@@ -13,6 +13,7 @@ from contact.reference.rocking import first_swing_threshold
 from fem.assessment.margin_words import margin_in_words
 from fem.case.strength import scaled_motion
 from fem.case.uncertainty import as_changed, draws_of
+from fem.model.model import build_model
 from fem.results.outcome import Ending
 from fem.results.run_result import Band, ChangedRun, Margin, Verdict
 from fem.run import changed_runs
@@ -188,7 +189,7 @@ def test_the_margin_is_written_and_read():
 def test_a_corner_that_a_stronger_motion_destroys_is_named():
     # On the end of its wall the plateau stack crushes 7 mm of the floor; under twice its motion it is more than 10.
     changes = ("solver.model=rigid", "solver.duration_s=10", "floor.corner_patch_m=[0.008, 1.1]")
-    verdict = fem.compute(fem.load_case("seed_stack_plateau", changes), band=False, margin=True).verdict
+    verdict = fem.compute(fem.load_case("stack_on_concrete", changes), band=False, margin=True).verdict
     assert 1.0 < verdict.margin.destroyed_from < 2.0
     assert f"; at {verdict.margin.destroyed_from:.2f} times this motion a corner is destroyed, and" in (
         margin_in_words(verdict)
@@ -212,3 +213,18 @@ def test_what_overturns_in_the_band_bounds_the_margin():
     assert low(own, replace(own, kind="draw")) > 1.0
     assert low(own, fell) == 1.0
     assert low(own, replace(fell, kind="one", values={"solver.energy_tolerance": 0.1})) > 1.0
+
+
+def test_the_margin_over_a_mirrored_motion_is_that_of_the_mirrored_case():
+    keys = [
+        *("solver.model=rigid", "solver.duration_s=6", "container.eccentricity_m=0.15", "motion.kind=pulse"),
+        *("motion.shape=sine", "motion.peak_acceleration_m_s2=3.8", "motion.pulse_s=1.0"),
+    ]
+    own = build_model(fem.load_case("rocking", keys))
+    mirrored = build_model(fem.load_case("rocking", [*keys, "motion.peak_acceleration_m_s2=-3.8"]))
+    other = {"motion.peak_acceleration_m_s2": -3.8}
+    for factor, falls in ((0.8, False), (0.95, True)):  # from its own side it falls from 1.05 on
+        ending = search._trial(own, other, lambda: False)(factor)
+        assert ending == search._trial(mirrored, {}, lambda: False)(factor)
+        assert (ending == Ending.OVERTURNED) == falls
+        assert search._trial(own, {}, lambda: False)(factor) == Ending.STANDING

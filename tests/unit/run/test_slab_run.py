@@ -138,7 +138,7 @@ def test_a_container_left_leaning_on_its_hole_is_said_to_lean():
         "motion.pulse_s=0.4",
     ]
     weak = ["contact.mu_static=0.6", "floor.bearing_strength_Pa=12e6", "floor.corner_patch_m=[0.1, 0.2]"]
-    run = fem.compute(load_case("seed_stack_plateau", ["solver.model=rigid", *pulse, *weak]), band=False)
+    run = fem.compute(load_case("stack_on_concrete", ["solver.model=rigid", *pulse, *weak]), band=False)
     result, verdict, angle = run.typed_result, run.verdict, run.typed_result.static.slenderness_angle_rad
     assert verdict.tilt_rad == pytest.approx(run.history["rotation_rad"][-1], rel=1e-6)
     assert abs(verdict.tilt_rad) > 0.005 * angle and verdict.restored

@@ -41,7 +41,7 @@ def request(tmp_path, *changes: tuple[str, str]) -> SiteRequest:
 
 def test_the_shipped_site_can_be_read():
     asked = load_site("site")
-    assert (asked.name, asked.heading.container, asked.motions.count) == ("site", "seed_stack", 7)
+    assert (asked.name, asked.heading.container, asked.motions.count) == ("site", "stack_on_concrete", 7)
     assert asked.action.surface_acceleration == pytest.approx(1.35 * 2.3)
     assert list(asked.variants) == [("full", "width"), ("empty", "width")]
     assert asked.variants["empty", "width"].mass == pytest.approx(2400.0)

@@ -114,7 +114,7 @@ def test_runs_below_uplift_and_slip_are_not_computed_and_rest_where_they_are(com
     request = load_site(folder / "site.toml")
     made = RunCases.of(request, folder / "out")
     cases = lambda key: made(key).with_values({"output.stop_when_still": False})  # noqa: E731 - to the end
-    stages = Stages.of(request, {None: ground_motions(request, 4.0)}, longest=4.0, folder=folder / "out")
+    stages = Stages.of(request, folder / "out")
     keys = [key for factor in SCANNED for key in stages.scanned(factor)]
     near = max((key for key in keys if stages.screening.at_rest(key)), key=stages.screening.used)
     (row,) = run_chunk(cases, [near])
@@ -141,7 +141,7 @@ def test_on_a_floor_that_gives_way_every_run_is_computed(tmp_path, preset, spare
     floor = f'[floor]\nkind = "slab"\npreset = "{preset}"\n[support]\nkind = "flat"\n'
     (tmp_path / "k1.toml").write_text(CONTAINER + floor)
     request = load_site(place)
-    stages = Stages.of(request, {None: ground_motions(request, 4.0)}, longest=4.0, folder=tmp_path)
+    stages = Stages.of(request, tmp_path)
     weak = stages.scanned(0.1)
     assert [stages.screening.at_rest(key) for key in weak] == [spared] * len(weak)
 
@@ -289,7 +289,7 @@ def test_motions_that_cannot_be_used_are_refused(tmp_path, capsys, make, message
     assert message in capsys.readouterr().err
 
 
-def test_components_of_different_length_are_refused(tmp_path, capsys):
+def test_components_of_quite_different_length_are_refused(tmp_path, capsys):
     motions = records(tmp_path)
     write_csv(tmp_path / "r0_v.at2", 0.005, np.zeros(100))
     place = site_file(tmp_path, motions=motions)

@@ -11,8 +11,8 @@ from small_site import SITE
 
 from fem.__main__ import main
 from fem.site.request import load_site
-from fem.site.size import size_asked, size_axis
-from fem.site.size_run import _Sizing
+from fem.site.size import size_axis
+from fem.site.size_run import verification_at
 
 SURE = SITE.replace("further = 2", "further = 72\nvertical = false")
 
@@ -84,14 +84,13 @@ def test_values_share_a_folder_of_motions_where_these_are_the_same(tmp_path, key
     (tmp_path / "hall.toml").write_text(SITE, encoding="utf-8")
     asked = load_site(tmp_path / "hall.toml")
     axis = size_axis(asked, key, low=ends[0], high=ends[1], count=2)
-    sizing = _Sizing(request=asked, axis=axis, begun=size_asked(axis), allow_outside=False)
-    works = [sizing._verification(value, tmp_path / "made") for value in axis.values]
+    works = [verification_at(asked, axis, value, tmp_path / "made", {}) for value in axis.values]
     assert len({work.stages.folder for work in works}) == len(list((tmp_path / "made").iterdir())) == folders
     for work in works:
         key = work.stages.of_set()[0]
         assert (work.stages.folder / "motions" / f"{key.stem}_h.csv").is_file()
         np.testing.assert_array_equal(
-            work.stages.screening.motions[key.stem].horizontal, work.ground[0].horizontal
+            work.stages.screening.motions[key.stem].horizontal, work.stages.ground[0].horizontal
         )
 
 

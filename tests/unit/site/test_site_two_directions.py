@@ -8,7 +8,6 @@ from site_example import RUN, example
 from fem.batch.study import runner_of
 from fem.seismic.two_directions import largest_slip, largest_slips
 from fem.site.answer import answer_of
-from fem.site.motions import floor_motions, ground_motions
 from fem.site.request import load_site
 from fem.site.rule import groups_of
 from fem.site.stages import REPETITIONS, Stages
@@ -32,7 +31,7 @@ slip_m = {limit}
 def slid(folder, *, limit=0.2, motions="", building="", container=""):
     """What stages find, and the motions of the floors."""
     stages = stages_of(folder, limit=limit, motions=motions, building=building, container=container)
-    return stages.beside([], None).two_directions, stages.floors
+    return stages.beside().two_directions, stages.floors
 
 
 def stages_of(folder, *, limit=0.2, motions="", building="", container=""):
@@ -41,8 +40,7 @@ def stages_of(folder, *, limit=0.2, motions="", building="", container=""):
     request = load_site(place)
     for key, value in dict(part.split("=") for part in container.split()).items():
         request = request.with_value(key, float(value))
-    floors = floor_motions(request, ground_motions(request, 4.0))
-    return Stages.of(request, floors, longest=4.0, folder=folder)
+    return Stages.of(request, folder)
 
 
 def test_the_largest_slip_of_the_set_is_found_with_its_friction_and_motion(tmp_path):
@@ -73,7 +71,7 @@ def test_further_motions_have_a_second_component_and_their_own_slips(tmp_path):
     with runner_of(jobs=1) as runner:
         stages._make(runner, keys)
     stages.rows.runs.update({key: replace(run, **vars(key)) for key in keys})
-    slips = stages.beside([], None).slips_of_further
+    slips = stages.beside().slips_of_further
     first = keys[0]
     pair = first.mu_static, first.mu_kinetic
     motions = [stages.screening.motions[stem] for stem in sorted({key.stem for key in keys})]
@@ -111,7 +109,7 @@ def answer_beside(stages):
     """The answer where all runs of the set stand, and nothing else is asked for."""
     run = replace(RUN, mass="full", rotation_ratio=0.0, max_slip_m=0.0, outcome="rest")
     runs = {key: replace(run, **vars(key)) for key in stages.of_set()}
-    return answer_of(stages.request, example()[0].set, runs, stages.beside([], None))
+    return answer_of(stages.request, example()[0].set, runs, stages.beside())
 
 
 @pytest.mark.parametrize(

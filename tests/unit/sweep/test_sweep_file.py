@@ -64,9 +64,21 @@ def test_derived_keys_follow_axes_defaults_and_one_another(sweep_of):
     assert values["initial.velocity_m_s"] == pytest.approx(1.6 + 0.2)
 
 
+def test_a_free_variable_is_an_axis_that_only_derived_keys_know(sweep_of):
+    sweep = sweep_of(
+        '[axes]\n"free.aspect_ratio" = [3.0, 4.0]\n[derived]\n"container.height_m" = "0.275 * free.aspect_ratio"\n'
+    )
+    assert sweep.values(sweep.point(1)) == {"container.height_m": pytest.approx(1.1)}
+    assert sweep.case(1).container.height_m == pytest.approx(1.1)
+
+
 @pytest.mark.parametrize(
     ("body", "words"),
     [
+        (
+            f'[axes]\n{FREQUENCY}[derived]\n"container.height_m" = "free.aspect_ratio"\n',
+            ["free.aspect_ratio", "is no axis"],
+        ),
         ('[axes]\n"contact.mu_statik" = [0.2]\n', ["contact.mu_statik", "did you mean 'mu_static'"]),
         ('[axes]\n"contacts.mu_static" = [0.2]\n', ["names no table", "did you mean 'contact'"]),
         ("[axes]\nmu_static = [0.2]\n", ["write 'contact.mu_static or joints.mu_static or"]),

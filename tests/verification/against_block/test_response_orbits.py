@@ -12,11 +12,11 @@ from contact.reference.floor_acceleration import sine_floor, still_floor
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
 from fem.model.container import discretise
-from fem.response.branches import coexistences, drop_outs, jumps
-from fem.response.curve import follow_point, sweep_points
+from fem.model.model import build_model
+from fem.response.curve import Task, computed, follow_point, plan_of
+from fem.response.lasting import coexistences, drop_outs, frequencies_of
 from fem.response.model import begin_drive, carry_drive
 from fem.response.orbit import follow_periods, step_until
-from fem.response.records import record_of
 from fem.response.request import ResponseRequest
 
 GRAVITY = 9.81
@@ -43,6 +43,23 @@ def request_of(*, first, last, count, settle=30, observe=12, **changes):
     )
 
 
+def followed(request):
+    """The point of the lowest frequency, from its start."""
+    task = Task(way="up", number=0, model=request.case.solver.model, begins=True)
+    point, _ = follow_point(request, request.case_at(0), discretise(request.case), task)
+    return point
+
+
+def swept(request):
+    """The points of both sweeps."""
+    container, before, points = discretise(request.case), None, []
+    control = build_model(request.case, container).run.problem.control
+    for task in plan_of(request):
+        found, before = computed(request, container, task, points, before, control)
+        points += found
+    return points
+
+
 def started(case, container):
     """The container as the case begins, at its first section."""
     lead, until = begin_drive(case, container)
@@ -67,20 +84,20 @@ def test_the_steady_symmetric_orbit_is_the_analytic_blocks():
         motion__phase_rad=orbit.impact_phase,
         initial__angular_velocity_rad_s=speed,
     )
-    point, _ = follow_point(request, discretise(request.case), None, direction="up", number=0)
-    assert (point.began, point.long_time.kind, point.long_time.period) == ("case", "periodic", 1)
-    assert point.long_time.scatter < 1e-3
+    point = followed(request)
+    assert (point.row.began, point.row.long_time, point.row.period_n) == ("case", "periodic", 1)
+    assert point.row.scatter < 1e-3
     # A symmetric orbit: each half period is the mirror image of the one before.
-    assert point.orbit.extremes[:, 1] == pytest.approx(-point.orbit.extremes[:, 2], rel=1e-3)
+    assert point.extremes[:, 1] == pytest.approx(-point.extremes[:, 2], rel=1e-3)
 
     floor = sine_floor(amplitude=amplitude, angular_frequency=omega, phase=orbit.impact_phase)
     turn = ((0.5 * math.pi - orbit.impact_phase) % (2.0 * math.pi)) / omega
     exact = simulate_rocking(BLOCK, floor, duration=45.0 * cycle, angular_velocity=speed)
     rotation, velocity = exact.at(turn + cycle * np.arange(31, 43))
-    assert point.orbit.sections[:, 0] == pytest.approx(rotation, abs=2e-3 * angle)
-    assert point.orbit.sections[:, 1] == pytest.approx(velocity, abs=4e-3 * angle * rate)
+    assert point.sections[:, 0] == pytest.approx(rotation, abs=2e-3 * angle)
+    assert point.sections[:, 1] == pytest.approx(velocity, abs=4e-3 * angle * rate)
     peak = max(abs(peak.rotation) for peak in exact.peaks if peak.time > 30.0 * cycle)
-    assert max(point.amplitudes) == pytest.approx(peak / angle, rel=5e-3)
+    assert point.row.rotation_ratio == pytest.approx(peak / angle, rel=5e-3)
 
 
 @pytest.mark.parametrize(("friction_ratio", "stroke"), [(0.2, 1.898741), (0.5, 1.237982), (0.7, 0.432494)])
@@ -101,13 +118,13 @@ def test_the_steady_slip_is_that_of_a_rigid_slider(friction_ratio, stroke):
         motion__amplitude_m=amplitude,
         motion__frequency_Hz=frequency,
     )
-    point, _ = follow_point(request, discretise(request.case), None, direction="up", number=0)
-    assert (point.motion, point.long_time.kind, point.long_time.period) == ("slide", "periodic", 1)
-    assert point.orbit.extremes[:, 4] == pytest.approx(stroke * amplitude, rel=5e-3)
-    assert point.orbit.sections[:, 3] == pytest.approx(0.0, abs=1e-3 * amplitude)
-    assert point.stable and point.decay.fate == "dies out"
+    point = followed(request)
+    assert (point.row.motion, point.row.long_time, point.row.period_n) == ("slide", "periodic", 1)
+    assert point.extremes[:, 4] == pytest.approx(stroke * amplitude, rel=5e-3)
+    assert point.sections[:, 3] == pytest.approx(0.0, abs=1e-3 * amplitude)
+    assert point.row.stable and point.row.undriven == "dies out"
     # at the floor's turning point the slider is on its way: it goes farthest to one side
-    assert 0.5 * stroke * amplitude < record_of(point).row.slip_excursion_m <= 1.001 * stroke * amplitude
+    assert 0.5 * stroke * amplitude < point.row.slip_excursion_m <= 1.001 * stroke * amplitude
 
 
 def test_a_slider_on_a_slope_walks_and_sways():
@@ -124,8 +141,9 @@ def test_a_slider_on_a_slope_walks_and_sways():
         motion__amplitude_m=0.1,
         motion__frequency_Hz=1.0,
         floor__slope_percent=2.0,
+        floor__motion_along="floor",
     )
-    row = record_of(follow_point(request, discretise(request.case), None, direction="up", number=0)[0]).row
+    row = followed(request).row
     walked = 12 * abs(row.slip_walk_m)
     assert walked > 0.02 and row.slip_stroke_m > 0.02
     # in the last period it sways on both sides of where it ends
@@ -136,23 +154,21 @@ def test_rest_and_rocking_coexist_below_uplift_and_rest_ends_at_uplift():
     # A Omega^2 = g tan al is where rest ends on the way up; the rocking motion is kept on the way down.
     uplift = math.sqrt(GRAVITY * math.tan(BLOCK.slenderness_angle) / 0.08) / (2.0 * math.pi)
     request = request_of(first=0.85 * uplift, last=1.25 * uplift, count=5)
-    points = [point for point, _ in sweep_points(request, discretise(request.case))]
+    points = swept(request)
     up, down = points[:5], points[5:]
     frequencies = request.frequencies
-    assert [point.motion == "rest" for point in up] == [bool(f < uplift) for f in frequencies]
-    assert all(point.motion == "rock" for point in down)
-    assert all(point.stable for point in points)
-    records = [record_of(point) for point in points]
-    (both,) = coexistences(records)
+    assert [point.row.motion == "rest" for point in up] == [bool(f < uplift) for f in frequencies]
+    assert all(point.row.motion == "rock" for point in down)
+    assert all(point.row.stable for point in points)
+    (both,) = coexistences(list(frequencies_of(points)))
     assert (both.from_Hz, both.frequencies) == (pytest.approx(0.85 * uplift), 2)
-    (jump,) = jumps(records)
-    assert jump.direction == "up" and jump.from_Hz < uplift < jump.to_Hz
-    assert drop_outs(records) == []
+    assert both.to_Hz < uplift and both.motions == ("rock of period 1", "rest")
+    assert list(drop_outs(points)) == []
 
     # The lowest of them is an orbit of the analytic block too: put on it, the block stays.
     last = down[-1]
     omega = 2.0 * math.pi * frequencies[0]
-    rotation, velocity = last.orbit.sections[-1, :2]
+    rotation, velocity = last.sections[-1, :2]
     exact = simulate_rocking(
         BLOCK,
         sine_floor(amplitude=0.08, angular_frequency=omega, phase=0.5 * math.pi),
@@ -166,8 +182,8 @@ def test_rest_and_rocking_coexist_below_uplift_and_rest_ends_at_uplift():
 
 def test_undriven_rocking_dies_out_when_the_analytic_blocks_does():
     request = request_of(first=1.0, last=1.1, count=2, motion__amplitude_m=0.1)
-    point, _ = follow_point(request, discretise(request.case), None, direction="up", number=0)
-    rotation, velocity = point.orbit.sections[-1, :2]
+    point = followed(request)
+    rotation, velocity = point.sections[-1, :2]
     free = simulate_rocking(
         BLOCK, still_floor(), duration=20.0, rotation=float(rotation), angular_velocity=float(velocity)
     )
@@ -175,9 +191,8 @@ def test_undriven_rocking_dies_out_when_the_analytic_blocks_does():
     beyond = np.abs(free.at(times)[0]) > 0.01 * BLOCK.slenderness_angle
     exact = times[beyond][-1]
     # The last small peaks decide, each 1/e^2 times the one before: one more or less of them is 3 per cent.
-    assert point.decay.fate == "dies out"
-    assert point.decay.time == pytest.approx(exact, rel=0.05)
-    assert point.decay.largest_rotation == pytest.approx(float(np.abs(free.at(times)[0]).max()), rel=5e-3)
+    assert point.row.undriven == "dies out"
+    assert point.row.undriven_s == pytest.approx(exact, rel=0.05)
 
 
 def test_carrying_a_motion_on_at_the_same_frequency_changes_nothing():

@@ -11,6 +11,7 @@ from contact.stepping.control import most_attempts
 from contact.stepping.integrator import REACHED, enter_floor_frame_compiled
 from contact.stepping.ledger import BASE_WORK, CONTACT_DAMPING, CRUSHING, FRICTION, IMBALANCE
 from contact.stepping.outcome import FREE, is_over
+from fem.case.case import CaseError, load_case, to_toml
 from fem.model.model import Model, build_model
 from fem.run.checkpoint import CheckpointWriter, read_state
 from fem.run.recorder import Recorder
@@ -78,7 +79,7 @@ def test_the_full_model_slides_down_a_slope_as_the_closed_form_says():
 
 def test_a_floor_that_carries_a_container_along_a_slope_does_no_work_on_it():
     # At constant velocity friction balances gravity: neither does the height change, nor anything else.
-    keys = {"floor.slope_percent": 100.0 * SLOPE, "motion.start": "moving"}
+    keys = {"floor.slope_percent": 100.0 * SLOPE, "floor.motion_along": "floor", "motion.start": "moving"}
     model = build_model(STACK.with_values(pulse(1.0, 0.2) | keys | {"contact.mu_static": 0.3}))
     before = float(model.run.old.energy[POTENTIAL])
     stepped(model, 1.0)
@@ -100,6 +101,95 @@ def test_a_container_comes_to_rest_where_it_has_slid(downhill):
     assert (run.joints[0].slip > 0.0) == downhill
     assert run.joints[0].max_slip > 0.01
     assert 0.0 < over < 1.5
+
+
+def slip_of_a_point(times, acceleration, *, mu, slope, along):
+    """Largest slip down a slope of a point mass, whose floor accelerates uphill, by its own integration [m]."""
+    cosine, sine = math.cos(math.atan(slope)), math.sin(math.atan(slope))
+    step = 1e-5
+    a = np.interp(np.arange(0.0, 3.0, step), times, acceleration, right=0.0)
+    turned = along == "horizontal"
+    pushed = GRAVITY * sine + a * (cosine if turned else 1.0)
+    held = mu * (GRAVITY * cosine - a * (sine if turned else 0.0))
+    velocity = slip = 0.0
+    for push, hold in zip(pushed, held, strict=True):
+        velocity = max(velocity + step * (push - hold), 0.0)
+        slip += step * velocity
+    return slip
+
+
+@pytest.mark.parametrize(("along", "slip"), [("horizontal", 0.0425), ("floor", 0.0289)])
+@pytest.mark.parametrize("model", ["rigid", "full"])
+def test_a_horizontal_motion_on_a_slope_takes_weight_off_it(model, along, slip, tmp_path):
+    # braking at 0.42 g within 0.05 s, for 0.5 s, on a bed that falls 5 % forward; the figures are printed
+    times, braking = np.array([0.0, 0.05, 0.55, 0.6]), 0.42 * GRAVITY * np.array([0.0, 1.0, 1.0, 0.0])
+    (tmp_path / "case.toml").write_text(to_toml(BOX))
+    case = (
+        load_case(tmp_path / "case.toml")
+        .with_motion(times, -braking)
+        .with_values(
+            MODELS[model]
+            | {"floor.slope_percent": 5.0, "floor.motion_along": along, "contact.mu_static": 0.45}
+            | {
+                "contact.mu_kinetic": 0.45,
+                "solver.duration_s": 1.2,
+                "motion.gaps": "bridge",
+            }
+        )
+    )
+    done = stepped(build_model(case), 1.0)
+    exact = slip_of_a_point(times, braking, mu=0.45, slope=0.05, along=along)
+    assert exact == pytest.approx(slip, abs=1e-4)
+    assert done.run.joints[0].max_slip == pytest.approx(exact, rel=0.01)
+
+
+def test_a_horizontal_motion_slips_where_the_closed_form_says():
+    # a = g (mu cos - sin)/(cos + mu sin): 0.3912 g for mu 0.45 and 5 %, and 0.3995 g along the floor
+    for along, limit in (("horizontal", 0.3912), ("floor", 0.3995)):
+        keys = {"floor.slope_percent": 5.0, "floor.motion_along": along, "contact.mu_static": 0.45}
+        keys |= {"container.height_m": 0.5, "solver.duration_s": 0.5}
+        slips = [
+            stepped(
+                build_model(BOX.with_values(pulse(-share * limit * GRAVITY, 0.2) | keys)), 0.4
+            ).run.joints[0]
+            for share in (0.996, 1.004)
+        ]
+        assert slips[0].max_slip < 1e-5 < 1e-4 < slips[1].max_slip, along
+
+
+def test_a_vertical_motion_on_a_slope_is_turned_too():
+    # g and the floor's acceleration are both vertical: it slides as under g + a on a floor at rest
+    keys = {"floor.slope_percent": 20.0, "contact.mu_static": 0.1, "contact.mu_kinetic": 0.1}
+    keys |= {"vertical.kind": "pulse", "vertical.shape": "rectangular", "vertical.pulse_s": 0.5}
+    keys |= {"vertical.peak_acceleration_m_s2": 3.0, "motion.kind": "none", "solver.duration_s": 0.5}
+    run = stepped(build_model(BOX.with_values(keys | {"container.height_m": 0.5})), 0.4).run
+    angle = math.atan(0.2)
+    expected = 0.5 * (GRAVITY + 3.0) * (math.sin(angle) - 0.1 * math.cos(angle)) * run.clock[0].time ** 2
+    assert run.joints[0].slip == pytest.approx(expected, rel=2e-3)
+
+
+@pytest.mark.parametrize("per_cent", [40.0, -60.0])
+def test_a_tilt_test_slides_where_the_slope_is_mu(per_cent):
+    keys = {"floor.slope_percent": per_cent, "motion.kind": "none", "container.height_m": 0.5}
+    slope = abs(per_cent) / 100.0
+    for mu in (1.01 * slope, 0.5 * slope):
+        run = stepped(
+            build_model(BOX.with_values(keys | {"contact.mu_static": mu, "contact.mu_kinetic": mu})), 0.3
+        ).run
+        angle = math.atan(slope)
+        free = max(0.0, math.sin(angle) - mu * math.cos(angle))
+        assert abs(run.joints[0].slip) == pytest.approx(
+            0.5 * GRAVITY * free * run.clock[0].time ** 2, rel=2e-3, abs=1e-6
+        )
+
+
+def test_where_nothing_stands_is_refused():
+    with pytest.raises(CaseError, match=r"\[floor\] slope_percent = 50: nothing stands there"):
+        build_model(
+            BOX.with_values(
+                {"floor.slope_percent": 50.0, "container.height_m": 3.0, "contact.mu_static": 0.9}
+            )
+        )
 
 
 @pytest.mark.parametrize("model", MODELS)

@@ -5,7 +5,14 @@ import math
 import numpy as np
 import pytest
 
-from contact.motion.base_motion import HarmonicMotion, NoMotion, PulseMotion
+from contact.motion.base_motion import (
+    HarmonicMotion,
+    NoMotion,
+    PulseMotion,
+    SumOfMotions,
+    along_and_normal,
+)
+from contact.motion.table import TableMotion
 
 OMEGA = 6.928
 PERIOD = 2.0 * math.pi / OMEGA
@@ -166,3 +173,40 @@ def test_harmonic_refuses(change, word):
 def test_pulse_refuses(change, word):
     with pytest.raises(ValueError, match=word):
         PulseMotion(**{"shape": "sine", "acceleration": 1.0, "pulse": 0.5, **change})
+
+
+class TestMotionsOnASlope:
+    """A horizontal and a vertical motion of any kinds, along a floor and normal to it."""
+
+    MOTIONS = (
+        HarmonicMotion(amplitude=0.05, angular_frequency=7.0, duration=4.0, phase=0.3, ramp_cycles=1.0),
+        HarmonicMotion(amplitude=0.02, angular_frequency=11.0, duration=4.0, cycles=3.0),
+        PulseMotion(shape="half-sine", acceleration=3.0, pulse=0.4, delay=0.2),
+        PulseMotion(shape="rectangular", acceleration=-2.0, pulse=0.3),
+        TableMotion(times=0.1 * np.arange(30), values=np.sin(np.arange(30.0))),
+        TableMotion(times=0.5 + 0.07 * np.arange(40), values=np.cos(np.arange(40.0))),
+        TableMotion(times=0.1 * np.arange(30), values=np.cos(np.arange(30.0))),
+        TableMotion(
+            times=0.1 * np.arange(30), values=0.01 * np.sin(np.arange(30.0)), quantity="displacement"
+        ),
+        NoMotion(),
+    )
+    TIMES = np.linspace(-0.5, 5.0, 1237)
+
+    @pytest.mark.parametrize("slope", [0.05, -0.4])
+    @pytest.mark.parametrize("one", range(len(MOTIONS)))
+    def test_they_are_those_of_the_turned_axes(self, one, slope):
+        horizontal, turn = self.MOTIONS[one], np.array([math.cos(slope), math.sin(slope)])
+        for vertical in self.MOTIONS:
+            along, normal = along_and_normal(horizontal, vertical, slope)
+            x, z = horizontal.evaluate(self.TIMES), vertical.evaluate(self.TIMES)
+            assert along.evaluate(self.TIMES) == pytest.approx(x * turn[0] - z * turn[1], rel=1e-9, abs=1e-9)
+            assert normal.evaluate(self.TIMES) == pytest.approx(x * turn[1] + z * turn[0], rel=1e-9, abs=1e-9)
+
+    def test_their_peak_is_that_of_the_sum(self):
+        sums = [along_and_normal(a, b, 0.3)[0] for a, b in zip(self.MOTIONS, self.MOTIONS[1:], strict=False)]
+        for motion in [found for found in sums if isinstance(found, SumOfMotions)]:
+            found = np.abs(motion.evaluate(np.linspace(0.0, 3.0, 200_001))[2]).max()
+            assert motion.peak_within(3.0) == pytest.approx(found, rel=1e-4)
+            assert motion.peak_acceleration >= (1.0 - 1e-4) * found
+            assert motion.span[0] <= min(motion.break_times)
