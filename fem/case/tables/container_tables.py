@@ -101,6 +101,7 @@ class ContainerTable(CaseTable):
     fill_damping_ratio: Annotated[float, q.MATERIAL_DAMPING] = case_key(
         "of a mode in which the fill alone moved, at the bounce of one corner; default: by fill",
         follows=lambda values: FILL_DAMPING[values["fill"]],
+        example=0.2,
         only=("section", "shell"),
     )
     post_m: Annotated[
