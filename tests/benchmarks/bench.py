@@ -28,8 +28,6 @@ from typing import Any, NamedTuple
 import numpy as np
 import psutil
 from distributed import LocalCluster
-from fem.study.sweep import load_sweep
-from fem.study.sweep import run_sweep
 
 import fem
 from contact.stepping.outcome import run_to_end
@@ -53,7 +51,9 @@ from fem.seismic.artificial import artificial_motions
 from fem.solid.nodal_body import advance_body
 from fem.study.axes import read_axis
 from fem.study.cluster import cluster
+from fem.study.file import load_sweep
 from fem.study.runner import CASES_AT_A_TIME, run_cases
+from fem.study.sweep import run_sweep
 from fem.study.workers import hand_out
 
 sys.path.append(str(Path(__file__).parents[1] / "rigs"))
