@@ -118,12 +118,12 @@ BUDGET = {
     "solid": ("fem/solid", 1_979, 64),
     "model": ("fem/model", 4_224, 124),
     "run": ("fem/run fem/assessment", 5_761, 192),
-    "pages": ("fem/html fem/figures fem/render fem/report", 5_856, 180),
-    "study": ("fem/study fem/response", 9_812, 279),
+    "pages": ("fem/html fem/figures fem/render fem/report", 5_821, 168),
+    "study": ("fem/study fem/response", 9_086, 265),
     "site": ("fem/site", 4_812, 137),
     "cli": ("fem/cli fem/__init__.py fem/__main__.py", 1_980, 46),
-    "product": ("mesh contact fem", 60_582, 1_823),
-    "tests": ("tests", 51_146, 3_061),
+    "product": ("mesh contact fem", 59_819, 1_797),
+    "tests": ("tests", 51_112, 3_061),
 }
 
 
