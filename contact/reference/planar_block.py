@@ -36,7 +36,6 @@ from contact.reference.planar_motion import (
     PlanarTransition,
 )
 from contact.reference.rigid_block import RigidBlock
-from contact.reference.sliding import check_friction
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -249,6 +248,18 @@ def _follow(
         regime=regime,
         first_step=first_step,
     )
+
+
+def check_friction(mu_static: float, mu_kinetic: float) -> None:
+    """Refuse coefficients that are negative or not finite, and mu_kinetic above mu_static."""
+    for name, value in (("mu_static", mu_static), ("mu_kinetic", mu_kinetic)):
+        if not 0.0 <= value < math.inf:
+            raise ValueError(f"{name} must be finite and not negative, got {value}")
+    if mu_kinetic > mu_static:
+        raise ValueError(
+            f"mu_kinetic must not exceed mu_static, got {mu_kinetic} > {mu_static}; "
+            "otherwise a body could neither stick nor slide"
+        )
 
 
 def _rate(block: PlanarBlock, state: PlanarState) -> Rate:

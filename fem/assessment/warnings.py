@@ -61,18 +61,23 @@ def friction_decides(result: run_result.RunResult, case: Case) -> str | None:
     static, kinetic = case.contact.mu_static, case.contact.mu_kinetic
     if needed is None or not kinetic < needed < static or _verdict(result).outcome not in ROCKS:
         return None
-    members = _verdict(result).band.members if _verdict(result).band else ()
-    gradual = [member for member in members if [*(member.values or {})] == [WEAKENING] and member.outcome]
-    gentlest = max(gradual, key=lambda member: member.values[WEAKENING], default=None)
-    return (
+    band = _verdict(result).band
+    gradual = {
+        float(member.values[WEAKENING]): member
+        for member in (band.members if band else ())
+        if member.values is not None and [*member.values] == [WEAKENING] and member.rotation_ratio is not None
+    }
+    words = (
         f"to rock without sliding takes friction of {needed:.2g}: static friction ({static:g}) gives it, kinetic "
         f"friction ({kinetic:g}) does not, so one landing that breaks it loose decides"
-        + (
-            f"; if friction falls over {1e3 * gentlest.values[WEAKENING]:g} mm of slip instead of at once, it reaches "
-            f"{gentlest.rotation_ratio:.2g} of its slenderness angle, slip {1e3 * (gentlest.max_slip_m or 0.0):.3g} mm"
-            if gentlest is not None and gentlest.rotation_ratio is not None
-            else ""
-        )
+    )
+    if not gradual:
+        return words
+    length = max(gradual)
+    slip, ratio = 1e3 * (gradual[length].max_slip_m or 0.0), gradual[length].rotation_ratio
+    return (
+        f"{words}; if friction falls over {1e3 * length:g} mm of slip instead of at once, it reaches {ratio:.2g} of "
+        f"its slenderness angle, slip {slip:.3g} mm"
     )
 
 
@@ -92,7 +97,8 @@ def it_bounces(result: run_result.RunResult, case: Case) -> str | None:
     share = _verdict(result).flight_share
     if share is None or share < FLIGHT or _verdict(result).outcome not in ROCKS:
         return None
-    reach = _verdict(result).band.flight_share if _verdict(result).band else None
+    band = _verdict(result).band
+    reach = band.flight_share if band else None
     span = f" ({reach[0]:.0%} to {reach[1]:.0%} over the variations)" if reach else ""
     dashpot = (
         ""

@@ -16,11 +16,11 @@ import sys
 from pathlib import Path
 
 import numpy as np
+from floors import sine_floor
 from measuring import BENCHMARK_BOX, Figure, Stepped, at_most, median_of, near, report, stepped
+from rigid_slider import RigidSlider, simulate_sliding
 
-from contact.reference.floor_acceleration import sine_floor
 from contact.reference.rigid_block import RigidBlock
-from contact.reference.sliding import RigidSlider, simulate_sliding
 from fem.case.case import load_case
 
 sys.path.append(str(Path(__file__).parents[1] / "rigs"))

@@ -40,7 +40,9 @@ def page_of(
 ) -> str:
     """The page of what a command has computed; its pictures by the names that the template has for them."""
     template = TEMPLATES.get_template(f"{command}.html.j2")
-    shown = template.make_module({**document, "pictures": pictures, "today": dt.date.today().isoformat()})
+    shown: Any = template.make_module(
+        {**document, "pictures": pictures, "today": dt.date.today().isoformat()}
+    )
     kind, title = TITLES[command]
     return html_of(
         Page(

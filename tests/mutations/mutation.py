@@ -6,7 +6,7 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 SOURCES = {
     path.relative_to(ROOT).as_posix(): path.read_text(encoding="utf-8")
-    for package in ("fem", "mesh", "contact")
+    for package in ("fem", "mesh", "contact", "tests/rigs")
     for path in sorted((ROOT / package).rglob("*.py"))
 }
 

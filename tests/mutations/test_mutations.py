@@ -10,7 +10,7 @@ from mutations import MUTATIONS
 def test_there_are_enough_of_them_and_no_two_alike():
     assert len(MUTATIONS) >= 15
     assert len({m.old for m in MUTATIONS}) == len(MUTATIONS)
-    assert {m.file.split("/")[0] for m in MUTATIONS} == {"fem", "mesh", "contact"}
+    assert {m.file.split("/")[0] for m in MUTATIONS} == {"fem", "mesh", "contact", "tests"}
 
 
 @pytest.mark.parametrize("mutation", MUTATIONS, ids=lambda mutation: mutation.name)

@@ -5,6 +5,8 @@ import math
 import numpy as np
 from closed_forms_overturning import sustained_sine_threshold_slender
 from evidence.findings import at_least, at_most
+from first_swing import first_swing_threshold
+from floors import sine_floor
 from paper.cases import FOR_MAPS, NO_SLIDING, PLATEAU, RIGID, SHELL, STACK
 from paper.claims import Evidence, claim, table
 from paper.dimensions import (
@@ -19,8 +21,6 @@ from paper.experiments import Experiments, capped_ratio, stands
 from paper.figures import curve, draw_curves, draw_map
 from paper.maps import FAST, FREQUENCIES, MapCell, stack_map
 
-from contact.reference.floor_acceleration import sine_floor
-from contact.reference.rocking import first_swing_threshold
 from fem.figures.heat_map import MapCurve
 
 FRICTIONS = {"mu 0.4/0.2": PAPER_MU, "mu 1.0": HOLDING}

@@ -4,15 +4,16 @@ import math
 from collections.abc import Sequence
 
 from evidence.findings import at_most, equal
+from first_swing import first_swing_threshold
+from floors import sine_floor
 from paper.cases import PLATEAU, RIGID, SHELL, STACK, PaperCase
 from paper.claims import Evidence, claim, outcomes, table
 from paper.dimensions import ANGULAR_FREQUENCY, GRAVITY, HALF_WIDTH, HEIGHT, PLATEAU_PEAK, WIDTH
 from paper.experiments import Experiments
 from paper.figures import curve, draw_curves
 
-from contact.reference.floor_acceleration import sine_floor
 from contact.reference.rigid_block import RigidBlock
-from contact.reference.rocking import first_swing_threshold, simulate_rocking
+from contact.reference.rocking import simulate_rocking
 from fem.assessment.joint_demands import joint_demands
 from fem.model.recovery import recovery_of
 from fem.results.outcome import Outcome

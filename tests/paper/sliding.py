@@ -5,15 +5,15 @@ from collections.abc import Sequence
 
 import numpy as np
 from evidence.findings import at_most
+from floors import sine_floor
 from paper.cases import BOX, FOR_MAPS, PLATEAU, RIGID, STACK, friction
 from paper.claims import Evidence, claim, table
 from paper.dimensions import ANGULAR_FREQUENCY, GRAVITY, HEIGHT, HOLDING, PAPER_MU, WIDTH
 from paper.experiments import Experiments, capped_ratio, stands
 from paper.figures import curve, draw_curves
 from paper.maps import MapCell, pairs, stack_map
+from rigid_slider import RigidSlider, simulate_sliding
 
-from contact.reference.floor_acceleration import sine_floor
-from contact.reference.sliding import RigidSlider, simulate_sliding
 from fem.results.outcome import Outcome
 from fem.study.runner import Row
 

@@ -6,21 +6,16 @@ from collections import Counter
 import closed_forms_overturning
 import numpy as np
 import pytest
+from first_swing import first_swing_threshold
+from floors import half_sine_pulse, one_sine_pulse, rectangular_pulse, sine_floor, still_floor
 from verification.overturning import initiation_grid
 
-from contact.reference.floor_acceleration import (
-    Acceleration,
-    half_sine_pulse,
-    one_sine_pulse,
-    rectangular_pulse,
-    sine_floor,
-    still_floor,
-)
+from contact.reference.floor_acceleration import Acceleration
 from contact.reference.planar_block import PlanarBlock, simulate_planar_block
 from contact.reference.planar_equations import rock
 from contact.reference.planar_motion import PlanarMode
 from contact.reference.rigid_block import RigidBlock
-from contact.reference.rocking import RockingOutcome, first_swing_threshold, simulate_rocking
+from contact.reference.rocking import RockingOutcome, simulate_rocking
 
 STACK = RigidBlock.homogeneous(width=1.1, height=4.0)
 BOX = RigidBlock.homogeneous(width=1.1, height=1.0)

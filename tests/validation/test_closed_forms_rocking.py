@@ -12,9 +12,9 @@ from closed_forms_rocking import (
     quarter_period,
     symmetric_orbit_slender,
 )
+from floors import rectangular_pulse, sine_floor, still_floor
 from scipy.integrate import solve_ivp
 
-from contact.reference.floor_acceleration import rectangular_pulse, sine_floor, still_floor
 from contact.reference.planar_block import PlanarBlock, simulate_planar_block
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking

@@ -5,9 +5,8 @@ import math
 import numpy as np
 import pytest
 from closed_forms_sliding import never_stops_ratio, pulse_slip, steady_stroke
-
-from contact.reference.floor_acceleration import rectangular_pulse, sine_floor
-from contact.reference.sliding import RigidSlider, simulate_sliding
+from floors import rectangular_pulse, sine_floor
+from rigid_slider import RigidSlider, simulate_sliding
 
 GRAVITY = 9.81
 AMPLITUDE, FREQUENCY = 0.1, 10.0

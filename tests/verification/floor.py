@@ -12,13 +12,13 @@ from itertools import product
 import numpy as np
 import runs
 from evidence.findings import Convergence, analytic, computed
+from floors import sine_floor
 from verification.bodies import Flight, free_run
 from verification.checks import Findings, check
 from verification.restitution import peaks
 from verification.rocking import difference_of_rotation
 from verification.sliding import slip_of_a_driven_box
 
-from contact.reference.floor_acceleration import sine_floor
 from contact.stepping.ledger import CRUSHING, IMBALANCE
 from contact.stepping.modal_body import make_modal_body
 from contact.stepping.scheme import generalised_alpha

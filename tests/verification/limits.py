@@ -9,10 +9,10 @@ from itertools import product
 
 import numpy as np
 from evidence.findings import Convergence, analytic, computed
+from floors import sine_floor, still_floor
 from runs import FRICTION, SLENDERNESS, SOLID, STACK, TILTED, Keys, harmonic, run
 from verification.checks import Findings, check
 
-from contact.reference.floor_acceleration import sine_floor, still_floor
 from contact.reference.planar_block import PlanarBlock, simulate_planar_block
 from contact.reference.planar_motion import PlanarMode
 from contact.reference.rigid_block import RigidBlock

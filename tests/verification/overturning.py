@@ -15,12 +15,13 @@ import closed_forms_overturning
 import numpy as np
 import runs
 from evidence.findings import analytic, computed
+from first_swing import first_swing_threshold
+from floors import half_sine_pulse, one_sine_pulse
 from verification.checks import Findings, check
 
 from contact.motion.kernel import PIECEWISE, FloorMotion, as_floor_motion
-from contact.reference.floor_acceleration import FloorAcceleration, half_sine_pulse, one_sine_pulse
+from contact.reference.floor_acceleration import FloorAcceleration
 from contact.reference.rigid_block import RigidBlock
-from contact.reference.rocking import first_swing_threshold
 from fem.model.container import Container, discretise
 from fem.model.model import build_model
 from fem.results.outcome import Outcome

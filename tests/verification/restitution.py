@@ -13,12 +13,12 @@ from functools import partial
 import numpy as np
 from block_on_springs import evenly_spaced, next_turning_point
 from evidence.findings import Convergence, analytic, computed
+from floors import one_sine_pulse
 from runs import GRAVITY, SOLID, STACK, Finished, Keys, finish, pulse, run
 from verification.checks import Findings, check
 from verification.rocking import turning_points
 
 from contact.interface.penalty import contact_frequency
-from contact.reference.floor_acceleration import one_sine_pulse
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
 from fem.case.case import Case

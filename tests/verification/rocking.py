@@ -17,9 +17,10 @@ from closed_forms_rocking import (
     symmetric_orbit_slender,
 )
 from evidence.findings import analytic, computed
+from floors import sine_floor
 from verification.checks import Findings, check
 
-from contact.reference.floor_acceleration import FloorAcceleration, sine_floor
+from contact.reference.floor_acceleration import FloorAcceleration
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
 from fem.results.history import History

@@ -1,7 +1,7 @@
 """Friction and sliding without rocking: a rigid box of 1.1 x 1.0 m on two corners.
 
 The law of friction: its limit, creep if it is regularised in velocity, heat. Then strokes against the rigid slider of
-`contact.reference.sliding`, which is event-driven, sticks perfectly and shares no code with the stepping; the box
+`rigid_slider`, which is event-driven, sticks perfectly and shares no code with the stepping; the box
 sticks by stiff springs. Den Hartog, Trans. ASME APM-53-9 (1931); Westermo and Udwadia, Earthquake Engng Struct.
 Dyn. 11 (1983); Newmark, Geotechnique 15 (1965).
 """
@@ -18,10 +18,11 @@ from closed_forms_sliding import (
     steady_stroke,
 )
 from evidence.findings import Finding, analytic, computed
+from floors import half_sine_pulse, sine_floor
+from rigid_slider import RigidSlider, simulate_sliding
 from verification.checks import Findings, check
 
-from contact.reference.floor_acceleration import FloorAcceleration, half_sine_pulse, sine_floor
-from contact.reference.sliding import RigidSlider, simulate_sliding
+from contact.reference.floor_acceleration import FloorAcceleration
 from contact.stepping.ledger import FRICTION as FRICTION_HEAT
 from fem.results.outcome import Outcome
 from fem.runtime.arrays import FloatArray

@@ -11,12 +11,12 @@ from dataclasses import dataclass
 import numpy as np
 import runs
 from evidence.findings import Convergence, analytic, computed
+from floors import half_sine_pulse, sine_floor
+from rigid_slider import RigidSlider, simulate_sliding
 from two_block_motion import TwoBlockMotion, simulate_two_blocks
 from two_blocks import Pattern, StackedBlock, TwoBlockStack, energy
 from verification.checks import Findings, check
 
-from contact.reference.floor_acceleration import half_sine_pulse, sine_floor
-from contact.reference.sliding import RigidSlider, simulate_sliding
 from fem.results.history import History
 
 OMEGA = 6.928  #: of the motions of the paper [rad/s]

@@ -9,11 +9,12 @@ import math
 import numpy as np
 import runs
 from evidence.findings import analytic, computed
+from floors import sine_floor
 from verification.checks import Findings, check
 from verification.rocking import difference_of_rotation
 from verification.sliding import slip_of_a_driven_box
 
-from contact.reference.floor_acceleration import FloorAcceleration, sine_floor
+from contact.reference.floor_acceleration import FloorAcceleration
 from contact.reference.planar_block import PlanarBlock, simulate_planar_block
 
 OMEGA = 6.928

@@ -8,12 +8,12 @@ from xml.etree import ElementTree
 import matplotlib
 import numpy as np
 import pytest
+from floors import still_floor
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.legend import Legend
 
 import fem
 import fem.run.run
-from contact.reference.floor_acceleration import still_floor
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
 from fem.case.case import load_case

@@ -8,8 +8,8 @@ import math
 import numpy as np
 import pytest
 from cases import named_case
+from floors import half_sine_pulse, one_sine_pulse
 
-from contact.reference.floor_acceleration import half_sine_pulse, one_sine_pulse
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
 from fem.assessment.rigid_check import block_of

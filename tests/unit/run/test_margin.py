@@ -5,11 +5,11 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import pytest
+from first_swing import first_swing_threshold
+from floors import half_sine_pulse
 
 import fem
-from contact.reference.floor_acceleration import half_sine_pulse
 from contact.reference.rigid_block import RigidBlock
-from contact.reference.rocking import first_swing_threshold
 from fem.assessment.margin_words import margin_in_words
 from fem.assessment.summary import outcome_sentence
 from fem.case.strength import scaled_motion

@@ -6,13 +6,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from floors import still_floor
 from interrupted_runs import run_command
 
 import fem.assessment.verdict
 import fem.model.equilibrium
 import fem.model.step_size
 import fem.run.run
-from contact.reference.floor_acceleration import still_floor
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
 from fem.__main__ import main

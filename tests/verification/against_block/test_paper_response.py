@@ -9,8 +9,8 @@ import math
 
 import numpy as np
 import pytest
+from floors import sine_floor
 
-from contact.reference.floor_acceleration import sine_floor
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
 from fem.__main__ import main

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from closed_forms_rocking import symmetric_orbit_slender
 from closed_forms_sliding import steady_stroke
+from floors import sine_floor, still_floor
 from runs import STACK
 
-from contact.reference.floor_acceleration import sine_floor, still_floor
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
 from fem.model.container import discretise

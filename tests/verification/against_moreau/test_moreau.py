@@ -4,14 +4,15 @@ import math
 
 import numpy as np
 import pytest
+from floors import half_sine_pulse, sine_floor
 from moreau import Boxes, move_boxes, slide_and_rock, slide_and_rock_batch
+from rigid_slider import RigidSlider, simulate_sliding
 from two_block_motion import simulate_two_blocks
 from two_blocks import StackedBlock, TwoBlockStack
 
-from contact.reference.floor_acceleration import FloorAcceleration, half_sine_pulse, sine_floor
+from contact.reference.floor_acceleration import FloorAcceleration
 from contact.reference.planar_block import PlanarBlock, simulate_planar_block
 from contact.reference.rigid_block import RigidBlock
-from contact.reference.sliding import RigidSlider, simulate_sliding
 
 WHOLE = RigidBlock.homogeneous(width=1.1, height=4.0)
 ONE = Boxes.homogeneous([1.1], [4.0], [10e3])

@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 from block_on_floor import Block, Rig, rig
 from container_runs import stack
+from floors import one_sine_pulse
 from runs import STACK, pulse, run
 from stack_on_floor import Box, stack_rig
 
 from contact.motion.base_motion import PulseMotion
 from contact.motion.kernel import UNIFORM, as_floor_motion
-from contact.reference.floor_acceleration import one_sine_pulse
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
 from contact.stepping.body import ANGULAR_VELOCITY, CENTRE_X, CENTRE_Z, VELOCITY_X, VELOCITY_Z

@@ -2,9 +2,9 @@ import math
 
 import numpy as np
 import pytest
+from floors import still_floor
 
 from contact.reference.event_driven import Guard, first_crossing, flow, sample, turning_point
-from contact.reference.floor_acceleration import still_floor
 
 
 def crossing_of(margin, start=0.0, end=1.0):

@@ -1,14 +1,9 @@
 import math
 
 import pytest
+from floors import half_sine_pulse, one_sine_pulse, rectangular_pulse, sine_floor
 
-from contact.reference.floor_acceleration import (
-    FloorAcceleration,
-    half_sine_pulse,
-    one_sine_pulse,
-    rectangular_pulse,
-    sine_floor,
-)
+from contact.reference.floor_acceleration import FloorAcceleration
 
 
 def test_each_side_of_a_jump_has_its_own_limit():

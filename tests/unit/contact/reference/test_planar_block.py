@@ -2,15 +2,16 @@ import math
 
 import numpy as np
 import pytest
+from floors import sine_floor, still_floor
+from rigid_slider import RigidSlider, simulate_sliding
 from scipy.optimize import brentq
 
-from contact.reference.floor_acceleration import Acceleration, FloorAcceleration, sine_floor, still_floor
+from contact.reference.floor_acceleration import Acceleration, FloorAcceleration
 from contact.reference.planar_block import PlanarBlock, simulate_planar_block
 from contact.reference.planar_equations import energy
 from contact.reference.planar_motion import PlanarMode
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
-from contact.reference.sliding import RigidSlider, simulate_sliding
 
 STACK = RigidBlock.homogeneous(width=1.1, height=4.0)
 BOX = RigidBlock.homogeneous(width=1.1, height=1.0)

@@ -2,10 +2,11 @@ import math
 
 import numpy as np
 import pytest
+from first_swing import first_swing_threshold
+from floors import half_sine_pulse, rectangular_pulse, sine_floor, still_floor
 
-from contact.reference.floor_acceleration import half_sine_pulse, rectangular_pulse, sine_floor, still_floor
 from contact.reference.rigid_block import RigidBlock
-from contact.reference.rocking import RockingOutcome, first_swing_threshold, simulate_rocking
+from contact.reference.rocking import RockingOutcome, simulate_rocking
 
 STACK = RigidBlock.homogeneous(width=1.1, height=4.0)
 ANGLE = STACK.slenderness_angle

@@ -2,9 +2,10 @@ import math
 
 import numpy as np
 import pytest
+from floors import rectangular_pulse, sine_floor, still_floor
+from rigid_slider import RigidSlider, simulate_sliding
 
-from contact.reference.floor_acceleration import FloorAcceleration, rectangular_pulse, sine_floor, still_floor
-from contact.reference.sliding import RigidSlider, simulate_sliding
+from contact.reference.floor_acceleration import FloorAcceleration
 
 GRAVITY = 9.81
 HALF = RigidSlider(mu_static=0.4, mu_kinetic=0.2, gravity=GRAVITY)

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from floors import half_sine_pulse, rectangular_pulse, sine_floor, still_floor
 from two_block_motion import select, simulate_two_blocks
 from two_blocks import (
     Footing,
@@ -15,13 +16,7 @@ from two_blocks import (
     velocities,
 )
 
-from contact.reference.floor_acceleration import (
-    Acceleration,
-    half_sine_pulse,
-    rectangular_pulse,
-    sine_floor,
-    still_floor,
-)
+from contact.reference.floor_acceleration import Acceleration
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
 

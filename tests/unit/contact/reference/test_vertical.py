@@ -4,19 +4,14 @@ import math
 
 import numpy as np
 import pytest
+from floors import half_sine_pulse, rectangular_pulse, sine_floor, still_floor
+from rigid_slider import RigidSlider, simulate_sliding
 
-from contact.reference.floor_acceleration import (
-    FloorAcceleration,
-    half_sine_pulse,
-    rectangular_pulse,
-    sine_floor,
-    still_floor,
-)
+from contact.reference.floor_acceleration import FloorAcceleration
 from contact.reference.planar_block import PlanarBlock, simulate_planar_block
 from contact.reference.planar_motion import PlanarMode
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import RockingOutcome, simulate_rocking
-from contact.reference.sliding import RigidSlider, simulate_sliding
 
 GRAVITY = 9.81
 TIMES = np.linspace(0.0, 4.0, 201)

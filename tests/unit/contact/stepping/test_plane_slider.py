@@ -4,10 +4,10 @@ import math
 
 import numpy as np
 import pytest
+from rigid_slider import RigidSlider, simulate_sliding
 
 import fem
 from contact.reference.floor_acceleration import FloorAcceleration
-from contact.reference.sliding import RigidSlider, simulate_sliding
 from contact.stepping.plane_slider import slide_over
 
 G = 9.81

@@ -15,6 +15,7 @@ import numpy as np
 from contact.arrays import FloatArray
 from contact.reference.event_driven import MAX_EVENTS, EventError, Guard, Piece, Rate, flow, sample
 from contact.reference.floor_acceleration import Acceleration, FloorAcceleration
+from contact.reference.planar_block import check_friction
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -138,18 +139,6 @@ def simulate_sliding(
     else:
         raise EventError(f"t = {time:.6g} s: {MAX_EVENTS} changes between sticking and sliding")
     return SlidingMotion(intervals=tuple(intervals), end=time, pieces=tuple(pieces))
-
-
-def check_friction(mu_static: float, mu_kinetic: float) -> None:
-    """Refuse coefficients that are negative or not finite, and mu_kinetic above mu_static."""
-    for name, value in (("mu_static", mu_static), ("mu_kinetic", mu_kinetic)):
-        if not 0.0 <= value < math.inf:
-            raise ValueError(f"{name} must be finite and not negative, got {value}")
-    if mu_kinetic > mu_static:
-        raise ValueError(
-            f"mu_kinetic must not exceed mu_static, got {mu_kinetic} > {mu_static}; "
-            "otherwise a body could neither stick nor slide"
-        )
 
 
 def _rate(slider: RigidSlider, direction: int) -> Rate:

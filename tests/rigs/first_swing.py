@@ -1,0 +1,42 @@
+"""The strength of a motion that overturns a rigid block in its first swing, by bisection of the event-driven block."""
+
+from collections.abc import Callable
+
+from contact.reference.floor_acceleration import FloorAcceleration
+from contact.reference.rigid_block import RigidBlock
+from contact.reference.rocking import RockingOutcome, simulate_rocking
+
+
+def first_swing_threshold(
+    block: RigidBlock,
+    floor_of_peak: Callable[[float], FloorAcceleration],
+    *,
+    low: float,
+    high: float,
+    duration: float,
+    relative_tolerance: float = 1e-9,
+) -> float:
+    """Peak floor acceleration from which the block overturns before any impact [m/s2].
+
+    Bisection on the exact motion of the first swing only, where overturning is monotone in the peak of the
+    motions considered here; with impacts there are safe islands above it and no single threshold.
+
+    Args:
+        floor_of_peak: the motion for a given peak acceleration [m/s2].
+        low, high: peaks that do not, and do, overturn in the first swing [m/s2].
+        duration: long enough to overturn or to come back [s].
+
+    Raises:
+        ValueError: `low` overturns or `high` does not.
+    """
+
+    def overturns(peak: float) -> bool:
+        motion = simulate_rocking(block, floor_of_peak(peak), duration=duration, stop_at_impact=True)
+        return motion.outcome is RockingOutcome.OVERTURNED
+
+    if overturns(low) or not overturns(high):
+        raise ValueError(f"first swing: no change from standing to overturned between {low} and {high} m/s2")
+    while high - low > relative_tolerance * high:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if overturns(middle) else (middle, high)
+    return 0.5 * (low + high)

@@ -1,0 +1,66 @@
+"""Accelerations of floors for the analytic references: at rest, sines, pulses."""
+
+import math
+from collections.abc import Callable
+
+from contact.reference.floor_acceleration import FloorAcceleration
+
+
+def still_floor() -> FloorAcceleration:
+    """A floor that does not move, or moves at constant velocity."""
+    return FloorAcceleration(function=lambda time: 0.0, longest_step=math.inf)
+
+
+def sine_floor(*, amplitude: float, angular_frequency: float, phase: float = 0.0) -> FloorAcceleration:
+    """Acceleration of a floor at x = A sin(Omega t + phase): -A Omega^2 sin(Omega t + phase).
+
+    Args:
+        amplitude: A [m].
+        angular_frequency: Omega [rad/s].
+        phase: [rad].
+    """
+    if not angular_frequency > 0.0:
+        raise ValueError(f"sine floor: angular_frequency must be positive, got {angular_frequency} rad/s")
+    peak = amplitude * angular_frequency**2
+    return FloorAcceleration(
+        function=lambda time: -peak * math.sin(angular_frequency * time + phase),
+        longest_step=0.25 * math.pi / angular_frequency,
+    )
+
+
+def rectangular_pulse(*, peak: float, duration: float, delay: float = 0.0) -> FloorAcceleration:
+    """Constant acceleration `peak` [m/s2] for `duration` [s] from `delay` [s] on, zero before and after."""
+    return _pulse(lambda share: peak, duration=duration, delay=delay, longest_step=math.inf)
+
+
+def half_sine_pulse(*, peak: float, duration: float, delay: float = 0.0) -> FloorAcceleration:
+    """peak x sin(pi t/duration) for half a period, zero before and after [m/s2]."""
+    return _pulse(
+        lambda share: peak * math.sin(math.pi * share),
+        duration=duration,
+        delay=delay,
+        longest_step=0.25 * duration,
+    )
+
+
+def one_sine_pulse(*, peak: float, duration: float) -> FloorAcceleration:
+    """peak x sin(2 pi t/duration) for one period, zero before and after [m/s2]."""
+    return _pulse(
+        lambda share: peak * math.sin(2.0 * math.pi * share),
+        duration=duration,
+        delay=0.0,
+        longest_step=0.125 * duration,
+    )
+
+
+def _pulse(
+    shape: Callable[[float], float], *, duration: float, delay: float, longest_step: float
+) -> FloorAcceleration:
+    if not duration > 0.0:
+        raise ValueError(f"pulse: duration must be positive, got {duration} s")
+    end = delay + duration
+
+    def acceleration(time: float) -> float:
+        return shape((time - delay) / duration) if delay <= time < end else 0.0
+
+    return FloorAcceleration(function=acceleration, break_times=(delay, end), longest_step=longest_step)
