@@ -13,7 +13,7 @@ import os
 import re
 import sys
 from collections import defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from importlib import metadata
 from typing import Literal, NoReturn
@@ -161,13 +161,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return result if isinstance(result, int) else 0
 
 
-def _names_of(tokens: Sequence[str]) -> Iterator[str]:
+def _names_of(tokens: Sequence[str]) -> list[str]:
     """The command, and its options by themselves and behind its name, as `LEFT` has them."""
-    yield from tokens[:1]
-    for token in tokens[1:]:
-        if token.startswith("--"):
-            option = token.partition("=")[0]
-            yield from (option, f"{tokens[0]} {option}")
+    options = [token.partition("=")[0] for token in tokens[1:] if token.startswith("--")]
+    return [*tokens[:1], *options, *(f"{tokens[0]} {option}" for option in options)]
 
 
 def _unknown_command(name: str) -> str:

@@ -119,10 +119,10 @@ BUDGET = {
     "model": ("fem/model", 4_224, 124),
     "run": ("fem/run fem/assessment", 5_760, 192),
     "pages": ("fem/html fem/figures fem/render fem/report", 5_692, 164),
-    "study": ("fem/study fem/response", 9_045, 265),
+    "study": ("fem/study fem/response", 9_046, 265),
     "site": ("fem/site", 4_811, 137),
-    "cli": ("fem/cli fem/__init__.py fem/__main__.py", 1_978, 46),
-    "product": ("mesh contact fem", 59_336, 1_783),
+    "cli": ("fem/cli fem/__init__.py fem/__main__.py", 1_971, 46),
+    "product": ("mesh contact fem", 59_330, 1_783),
     "tests": ("tests", 48_231, 2_970),
 }
 

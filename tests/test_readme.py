@@ -10,7 +10,6 @@ from dataclasses import fields
 from pathlib import Path
 
 import pytest
-from fem.sweep.file import load_sweep
 
 import fem
 from fem.__main__ import COMMANDS, main
@@ -20,6 +19,7 @@ from fem.render.opengl import MEND_PICTURES, probe_rendering
 from fem.response.records import PointRow
 from fem.run.run import RunOptions, run_case
 from fem.site.request import load_site
+from fem.study.file import load_sweep
 
 ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / "README.md", *sorted(ROOT.glob("*/README.md")), *sorted(ROOT.glob("fem/**/README.md"))]

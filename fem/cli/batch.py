@@ -62,13 +62,11 @@ def batch(
         result = importlib.import_module("fem.study.hall").run_hall(
             listed, base, folder, motions=motion, checks=margins, strict=strict, **options
         )
-    page, mark = folder / "report.html", folder / HALL.mark
-    if result.state == "finished" and (
-        not page.is_file() or page.stat().st_mtime_ns < mark.stat().st_mtime_ns
-    ):
+    page = folder / "report.html"
+    if result.state == "finished" and not page.is_file():
         write_atomically(page, importlib.import_module("fem.report.study_page").hall_report(folder))
     if pdf and result.status == "completed":
-        print(print_to_pdf(folder / "report.html"))
+        print(print_to_pdf(page))
     return print_result(result, HALL, folder, page_of(result, folder), as_json=flags.as_json)
 
 

@@ -96,15 +96,13 @@ def connected(scheduler: str | None) -> AbstractContextManager[Any]:
     if scheduler is None:
         return nullcontext()
     try:
-        module = importlib.import_module("fem.study.cluster")
+        return importlib.import_module("fem.study.cluster").cluster(scheduler)
     except ModuleNotFoundError as error:
         if (error.name or "").partition(".")[0] not in ("dask", "distributed"):
             raise
         raise CaseError(
             "--scheduler needs the extra 'cluster': python -m pip install \"unanchored[cluster]\""
         ) from None
-    workers: AbstractContextManager[Any] = module.cluster(scheduler)
-    return workers
 
 
 @Parameter(name="*")

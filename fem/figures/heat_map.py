@@ -207,7 +207,7 @@ def _fill_cells(axes: Axes, colours: FloatArray) -> None:
 
 def _draw_marks(axes: Axes, x: MapAxis, y: MapAxis) -> None:
     """Lines at the marked values, and crosses where they meet."""
-    across, up = (axis.positions(np.array(axis.marks, dtype=float)) for axis in (x, y))
+    across, up = (axis.positions(np.array(axis.marks)) if axis.marks else np.empty(0) for axis in (x, y))
     look: dict[str, Any] = {"color": BLACK, "linewidth": 0.8, "path_effects": CASED[:1]}
     for place in across:
         axes.axvline(place, linestyle=":", **look)

@@ -381,6 +381,7 @@ def written(
     )
     fields = ([*row["given"].values(), *(row[name] for name in RESULT_COLUMNS)] for row in table)
     results.write_text(TABLE, table_text((*result.columns, *RESULT_COLUMNS), fields))
+    results.remove("report.html")  # the command makes another
     return replace(result, answer=answer_of(result))
 
 
