@@ -99,7 +99,7 @@ UPLIFT = SheetRow(
 UPLIFT_ON_SLOPE = UPLIFT._replace(
     formula="a_up = g (cos θ tan α − sin θ)", numbers="{g:s4} × (cos({θ}°) × tan({α:5}°) − sin({θ}°))"
 )
-UPLIFT_ON_HORIZONTAL = UPLIFT._replace(formula="a_up = g tan(α − θ)", numbers="{g:s4} × tan({α:5}° − {θ:5}°)")
+UPLIFT_LEVEL = UPLIFT._replace(formula="a_up = g tan(α − θ)", numbers="{g:s4} × tan({α:5}° − {θ:5}°)")
 ROCKING = (
     SheetRow("corner to mass centre", "R = √((a/2)² + z_c²)", "√(({a:s4} / 2)² + {z_c}²)", "R", "m"),
     SheetRow(
@@ -145,10 +145,7 @@ def static_sheet(static: StaticChecks, case: Case) -> list[tuple[str, list[Sheet
     numbers = _numbers(static, case)
     joints = "which move as one here" if case.container.is_loose else "bolted"
     boxes = f"n = {{n:s4}} boxes, {joints}" if case.container.boxes > 1 else "n = 1 box"
-    weight, height = (
-        (WEIGHT._replace(source=boxes), MASS),
-        [HEIGHT] if case.container.mesh_file is None else [],
-    )
+    weight, height = (WEIGHT._replace(source=boxes), MASS), [HEIGHT] * (case.container.mesh_file is None)
     if case.container.box is not None:
         weight = _weight_of_boxes(case), MASS
         height = [_height_of_boxes(case)] if height else []
@@ -158,11 +155,9 @@ def static_sheet(static: StaticChecks, case: Case) -> list[tuple[str, list[Sheet
         own["a_max"], case.nominal_peak_acceleration or 0.0, rel_tol=1e-6
     )
     slopes = static.slope != 0.0
-    along = " along itself" if slopes else ""
-    shear = (SHEAR_ON_SLOPE if slopes else SHEAR)._replace(
-        source="" if swings else f"largest |acceleration| of the floor{along} within the run"
-    )
-    uplift = UPLIFT_ON_HORIZONTAL if case.floor.turn else UPLIFT_ON_SLOPE if slopes else UPLIFT
+    largest = f"largest |acceleration| of the floor{' along itself' * slopes} within the run"
+    shear = (SHEAR_ON_SLOPE if slopes else SHEAR)._replace(source="" if swings else largest)
+    uplift = UPLIFT_LEVEL if case.floor.turn else UPLIFT_ON_SLOPE if slopes else UPLIFT
     credible = "credible" if static.housner_credible else "not credible, below 0.5"
     code = _code_lines(static.by_code, numbers) if static.by_code is not None else []
     return [
@@ -215,11 +210,11 @@ def _vertical_lines(static: StaticChecks, own: Numbers) -> list[SheetLine]:
     upward = own | _action(action) | {"a_v": _Printed(peak), "G_v": _Printed(least)}
     row = LEAST_WEIGHT
     if static.slope:
-        row = row._replace(
-            formula="G_v = m (g cos θ − a_v)",
-            numbers="{m} × ({g:s4} × cos({θ}°) − {a_v})",
-            source=row.source.replace("vertical acceleration of the floor", "of the floor normal to itself"),
+        normal = row.source.replace(
+            "vertical acceleration of the floor", "acceleration of the floor normal to itself"
         )
+        numbers = "{m} × ({g:s4} × cos({θ}°) − {a_v})"
+        row = row._replace(formula="G_v = m (g cos θ − a_v)", numbers=numbers, source=normal)
     return [_line(row, upward), *_utilisations(action, upward, "F", "G_v")]
 
 
@@ -311,11 +306,9 @@ def _off_centre(row: SheetRow, inside: bool) -> SheetRow:
     """A row with the distance b from the nearer corner in place of half the width."""
     factor = "", ""
     if row is RESTITUTION:
-        factor = (
-            (" (a/2 − s)/b", " × ({a:s4} / 2 − {s}) / {b}")
-            if inside
-            else (" a/(2 b)", " × {a:s4} / (2 × {b})")
-        )
+        factor = " a/(2 b)", " × {a:s4} / (2 × {b})"
+        if inside:
+            factor = " (a/2 − s)/b", " × ({a:s4} / 2 − {s}) / {b}"
     return row._replace(
         formula=row.formula.replace("(a/2)", "b").replace("a/2", "b") + factor[0],
         numbers=row.numbers.replace("({a:s4} / 2)", "{b}").replace("{a:s4} / 2", "{b}") + factor[1],

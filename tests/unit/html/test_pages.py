@@ -14,17 +14,7 @@ from markupsafe import Markup
 from fem.html import page as pages
 from fem.html import sections
 from fem.html.page import Page, html_of, svg_element
-from fem.html.sections import (
-    MOST_ROWS,
-    NUMBER,
-    Cell,
-    Choice,
-    Column,
-    PageSection,
-    Table,
-    TableRow,
-    table_of,
-)
+from fem.html.sections import MOST_ROWS, NUMBER, Cell, Choice, Column, PageSection, Table, TableRow, table_of
 
 HOSTILE = "</script><script>alert(1)</script><!-- & \u2028"
 

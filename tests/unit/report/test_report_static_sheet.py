@@ -14,6 +14,7 @@ from fem.model.static_checks import static_checks_of
 from fem.report.static_sheet import static_sheet
 
 CASES = ("seed_stack_plateau", "seed_box", "overturning", "sliding", "uneven")
+ALONG = {"floor.slope_percent": 5.0, "floor.motion_along": "floor"}
 
 
 def sheet_of(name, values=None):
@@ -42,12 +43,7 @@ def calculated(numbers):
 @pytest.mark.parametrize("name", CASES)
 @pytest.mark.parametrize(
     "slope",
-    [
-        {},
-        {"floor.slope_percent": -2.0},
-        {"floor.slope_percent": 5.0, "floor.motion_along": "floor"},
-        {"support.effective_width": 0.9},
-    ],
+    [{}, {"floor.slope_percent": -2.0}, ALONG, {"support.effective_width": 0.9}],
     ids=["level", "slope", "along", "inside"],
 )
 def test_every_line_gives_its_result_with_the_numbers_it_prints(name, slope):
