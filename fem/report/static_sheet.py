@@ -99,6 +99,9 @@ UPLIFT = SheetRow(
 UPLIFT_ON_SLOPE = UPLIFT._replace(
     formula="a_up = g (cos θ tan α − sin θ)", numbers="{g:s4} × (cos({θ}°) × tan({α:5}°) − sin({θ}°))"
 )
+UPLIFT_ON_HORIZONTAL = UPLIFT._replace(
+    formula="a_up = g tan(α − θ)", numbers="{g:s4} × tan({α:5}° − {θ:5}°)"
+)
 ROCKING = (
     SheetRow("corner to mass centre", "R = √((a/2)² + z_c²)", "√(({a:s4} / 2)² + {z_c}²)", "R", "m"),
     SheetRow(
@@ -157,9 +160,11 @@ def static_sheet(static: StaticChecks, case: Case) -> list[tuple[str, list[Sheet
         own["a_max"], case.nominal_peak_acceleration or 0.0, rel_tol=1e-6
     )
     slopes = static.slope != 0.0
+    along = " along itself" if slopes else ""
     shear = (SHEAR_ON_SLOPE if slopes else SHEAR)._replace(
-        source="" if swings else "largest |acceleration| of the floor within the run"
+        source="" if swings else f"largest |acceleration| of the floor{along} within the run"
     )
+    uplift = UPLIFT_ON_HORIZONTAL if case.floor.turn else UPLIFT_ON_SLOPE if slopes else UPLIFT
     credible = "credible" if static.housner_credible else "not credible, below 0.5"
     code = _code_lines(static.by_code, numbers) if static.by_code is not None else []
     return [
@@ -177,7 +182,7 @@ def static_sheet(static: StaticChecks, case: Case) -> list[tuple[str, list[Sheet
         (
             "What follows from the mass alone",
             [
-                *(_line(row, numbers) for row in (UPLIFT_ON_SLOPE if slopes else UPLIFT, *ROCKING)),
+                *(_line(row, numbers) for row in (uplift, *ROCKING)),
                 _line(RESTITUTION, numbers, credible),
             ],
         ),
@@ -212,7 +217,12 @@ def _vertical_lines(static: StaticChecks, own: Numbers) -> list[SheetLine]:
     upward = own | _action(action) | {"a_v": _Printed(peak), "G_v": _Printed(least)}
     row = LEAST_WEIGHT
     if static.slope:
-        row = row._replace(formula="G_v = m (g cos θ − a_v)", numbers="{m} × ({g:s4} × cos({θ}°) − {a_v})")
+        row = row._replace(
+            name="least weight, under the motion normal to the floor",
+            formula="G_v = m (g cos θ − a_v)",
+            numbers="{m} × ({g:s4} × cos({θ}°) − {a_v})",
+            source="a_v, largest acceleration of the floor normal to itself within the run",
+        )
     return [_line(row, upward), *_utilisations(action, upward, "F", "G_v")]
 
 

@@ -45,7 +45,7 @@ def test_examples_are_the_same_every_time():
 def test_there_are_enough_faults_and_no_two_alike():
     assert len(FAULTS) >= 150
     assert len({(m.file, m.old) for m in FAULTS}) == len({m.name for m in FAULTS}) == len(FAULTS)
-    assert {m.file.split("/")[0] for m in FAULTS} == {"fem", "mesh", "contact"}
+    assert {m.file.split("/")[0] for m in FAULTS} == {"fem", "mesh", "contact", "tests"}
 
 
 @pytest.mark.parametrize("mutation", FAULTS, ids=lambda mutation: mutation.name)

@@ -18,7 +18,6 @@ from textwrap import fill
 
 import pytest
 from cases import TEXTS, named_case
-from fem.report.ensemble_page import ensemble_report
 from site_answers import answered
 from site_example import write_example
 from study_folders import ensemble_folder, response_folder
@@ -28,6 +27,7 @@ from fem.__main__ import main
 from fem.case.case import CaseError, load_case
 from fem.case.overrides import parse_override
 from fem.report.response_page import response_report
+from fem.report.study_page import ensemble_report
 from fem.site.page import site_report
 
 HERE = Path(__file__).parent
@@ -35,7 +35,8 @@ BAD_INPUT = 2  #: exit code; then nothing is printed but the reason, and nothing
 #: what differs between two runs of the same bits: times, dates, versions, hashes, free room
 FLEETING = (
     (r"(computing time +|computed \| |computed in \| ).*(\n {20,}.*)?", r"\1TIME"),
-    (r"(versions|hash) \| .*", r"\1 |"),
+    (r"(versions|hash|program) \| .*", r"\1 |"),
+    (r"\n?(t = [\d.]+ of [\d.]+ s, .* left, |compiling the stepping kernels, ).*", ""),
     (r"unanchored \d+\.\d+\.\d+( on [\d-]+)?", "unanchored"),
     (r"room for [\d.]+ .B", "room for SOME"),
     (r"roughly\s+[\d.]+\s+(s|min|h)(\s+on\s+\d+\s+cores)?", "roughly SOME"),
@@ -92,6 +93,10 @@ def text_of_page(page):
     """What is read of a page: no style, script, drawing or copy of a file; a line for each block."""
     for hidden in ("style", "script", "svg", "head", 'pre class="case"'):
         page = re.sub(rf"<{hidden}\b.*?</{hidden.split()[0]}>", "", page, flags=re.DOTALL)
+    page = "".join(  # a line of a template is none of the page, but in what is written as it is
+        part if part.startswith("<pre") else " ".join(part.split())
+        for part in re.split(r"(<pre\b.*?</pre>)", page, flags=re.DOTALL)
+    )
     page = re.sub(r"</(p|h\d|li|tr|pre|dt|dd|figcaption|summary|div|option|label)>", "\n", page)
     page = re.sub(r"</t[dh]>", " | ", page)
     lines = (" ".join(line.split()) for line in unescape(re.sub(r"<[^>]*>", "", page)).splitlines())

@@ -8,6 +8,7 @@ import typing
 from dataclasses import fields, replace
 
 import pytest
+from jinja2 import ChoiceLoader, DictLoader
 from markupsafe import Markup
 
 from fem.html import page as pages
@@ -59,11 +60,15 @@ def test_only_the_scripts_of_the_page_may_run_and_nothing_may_be_loaded(page, mo
 
 
 @pytest.mark.parametrize("block", typing.get_args(sections.Block), ids=lambda kind: kind.__name__)
-def test_every_kind_of_block_is_set_and_its_texts_are_escaped(page, block):
+def test_every_kind_of_block_is_set_and_its_texts_are_escaped(page, block, monkeypatch):
+    own = DictLoader({"own.html.j2": "<p>{{ words }}</p>"})
+    environment = pages._environment()
+    monkeypatch.setattr(environment, "loader", ChoiceLoader([environment.loader, own]))
     texts = {"title": "<t>", "text": "<t>", "label": "<t>", "note": "<t>", "svg": Markup("<svg></svg>")}
     texts |= {"rows": [("<t>", "a")], "lines": ["<t>"], "blocks": ["<t>"]}
     texts |= {"quantities": [Choice(1, "<t>")], "across": (), "name": "n", "look": ""}
     texts |= {"head": [Cell("<t>")], "summary": "<t>"}
+    texts |= {"template": "own.html.j2", "values": {"words": "<t>"}}
     if block is str:
         made = "<t>"
     else:

@@ -147,8 +147,8 @@ class TestScene:
 
 
 def test_the_grid_of_an_elastic_container_is_coloured_by_its_stress(run):
-    assert run.grid(0.8).point_data["von_mises_Pa"] == pytest.approx(run.frame(0.8).von_mises)
-    assert run.frame(0.8).von_mises.max() > 1e5
+    assert run.grid(0.5).point_data["von_mises_Pa"] == pytest.approx(run.frame(0.5).von_mises)
+    assert run.frame(0.5).von_mises.max() > 1.37e7  # its weight on two of its four posts, 98.1 kN on 7168 mm2
 
 
 @pytest.mark.parametrize("stress", [None, np.zeros(4)])  # old rigid runs stored zeros

@@ -6,10 +6,10 @@ import re
 import pytest
 from cases import named_case
 
-from contact.motion.base_motion import HarmonicMotion
 from fem.case.case import load_case, read_case
 from fem.case.toml import toml_document
 from fem.model.geometry import build_container
+from fem.model.motion import build_motions, peaks_in_run
 from fem.model.static_checks import static_checks_of
 from fem.report.static_sheet import static_sheet
 
@@ -18,8 +18,7 @@ CASES = ("seed_stack_plateau", "seed_box", "overturning", "sliding", "uneven")
 
 def sheet_of(name, values=None):
     case = named_case(name, values)
-    motion = HarmonicMotion(amplitude=case.amplitude, angular_frequency=case.angular_frequency, duration=10.0)
-    static = static_checks_of(case, build_container(case), motion.peak_acceleration)
+    static = static_checks_of(case, build_container(case), *peaks_in_run(case, *build_motions(case)))
     return static_sheet(static, case)
 
 
@@ -43,8 +42,13 @@ def calculated(numbers):
 @pytest.mark.parametrize("name", CASES)
 @pytest.mark.parametrize(
     "slope",
-    [{}, {"floor.slope_percent": -2.0}, {"support.effective_width": 0.9}],
-    ids=["level", "slope", "inside"],
+    [
+        {},
+        {"floor.slope_percent": -2.0},
+        {"floor.slope_percent": 5.0, "floor.motion_along": "floor"},
+        {"support.effective_width": 0.9},
+    ],
+    ids=["level", "slope", "along", "inside"],
 )
 def test_every_line_gives_its_result_with_the_numbers_it_prints(name, slope):
     lines = [line for _, group in sheet_of(name, slope) for line in group]

@@ -48,11 +48,22 @@ def test_columns_are_the_documented_ones_in_their_order_and_come_back_to_the_las
         history["joint_3_shear_N"]
 
 
-def case_of(*, boxes=1, joints="bolted", vertical=False, crushing=False, restitution=None):
+def case_of(
+    *,
+    boxes=1,
+    joints="bolted",
+    vertical=False,
+    crushing=False,
+    restitution=None,
+    slope=0.0,
+    along="horizontal",
+    motion="harmonic",
+):
     """The tables of a case that decide on its columns."""
     return SimpleNamespace(
         container=SimpleNamespace(boxes=boxes, joints=joints),
-        floor=SimpleNamespace(kind="slab" if crushing else "rigid"),
+        floor=SimpleNamespace(kind="slab" if crushing else "rigid", slope_percent=slope, motion_along=along),
+        motion=SimpleNamespace(kind=motion),
         states_restitution=restitution is not None,
         vertical=SimpleNamespace(kind="pulse" if vertical else "none"),
     )
@@ -88,6 +99,20 @@ def test_crushing_impacts_vertical_motion_joints_boxes_and_rigid_block_follow_in
     assert history.numbers[NUMBERS:] == (*names, *["analytic_rotation_rad"] * analytic)
     for column, name in enumerate(names):
         assert history[name].tolist() == ROWS[:, column].tolist()
+
+
+@pytest.mark.parametrize(
+    ("slope", "along", "motion", "normal"),
+    [
+        (2.0, "horizontal", "harmonic", True),
+        (2.0, "floor", "harmonic", False),
+        (2.0, "horizontal", "none", False),
+        (0.0, None, "harmonic", False),
+    ],
+)
+def test_a_slope_that_moves_horizontally_moves_normal_to_itself(slope, along, motion, normal):
+    columns = history_columns(case_of(slope=slope, along=along, motion=motion))
+    assert ("base_vertical_velocity_m_s" in columns) == normal
 
 
 def test_the_stepper_fills_every_column_but_time_floor_joints_and_rigid_block():
