@@ -146,8 +146,7 @@ class StaticChecks:
     sliding_limit_kinetic: float  #: mu_kinetic G cos(slope) [N]. Paper, Eq. (11)
     #: of the weight about a corner before it turns, G cos(slope) a/2 [Nm]. Paper, Eq. (10)
     restoring_moment: float
-    #: of the floor, uphill on a slope: horizontal, g tan(al - slope), or along it, g (cos(slope) tan al - sin(slope))
-    #: [m/s2]. Paper, Eqs. (9) and (10); West (1885)
+    #: of the floor, uphill on a slope: g tan(al - slope), horizontally [m/s2]. Paper, Eqs. (9) and (10); West (1885)
     uplift_acceleration: float
     slip_acceleration: float  #: of the floor, at which it slips [m/s2]
     #: ratio of the angular velocities after and before an impact, 1 - (M R^2/I_O)(1 - cos 2 al) [-]; angular momentum

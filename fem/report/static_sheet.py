@@ -99,9 +99,7 @@ UPLIFT = SheetRow(
 UPLIFT_ON_SLOPE = UPLIFT._replace(
     formula="a_up = g (cos θ tan α − sin θ)", numbers="{g:s4} × (cos({θ}°) × tan({α:5}°) − sin({θ}°))"
 )
-UPLIFT_ON_HORIZONTAL = UPLIFT._replace(
-    formula="a_up = g tan(α − θ)", numbers="{g:s4} × tan({α:5}° − {θ:5}°)"
-)
+UPLIFT_ON_HORIZONTAL = UPLIFT._replace(formula="a_up = g tan(α − θ)", numbers="{g:s4} × tan({α:5}° − {θ:5}°)")
 ROCKING = (
     SheetRow("corner to mass centre", "R = √((a/2)² + z_c²)", "√(({a:s4} / 2)² + {z_c}²)", "R", "m"),
     SheetRow(
@@ -218,10 +216,9 @@ def _vertical_lines(static: StaticChecks, own: Numbers) -> list[SheetLine]:
     row = LEAST_WEIGHT
     if static.slope:
         row = row._replace(
-            name="least weight, under the motion normal to the floor",
             formula="G_v = m (g cos θ − a_v)",
             numbers="{m} × ({g:s4} × cos({θ}°) − {a_v})",
-            source="a_v, largest acceleration of the floor normal to itself within the run",
+            source=row.source.replace("vertical acceleration of the floor", "of the floor normal to itself"),
         )
     return [_line(row, upward), *_utilisations(action, upward, "F", "G_v")]
 

@@ -93,11 +93,10 @@ def text_of_page(page):
     """What is read of a page: no style, script, drawing or copy of a file; a line for each block."""
     for hidden in ("style", "script", "svg", "head", 'pre class="case"'):
         page = re.sub(rf"<{hidden}\b.*?</{hidden.split()[0]}>", "", page, flags=re.DOTALL)
-    page = "".join(  # a line of a template is none of the page, but in what is written as it is
-        part if part.startswith("<pre") else " ".join(part.split())
-        for part in re.split(r"(<pre\b.*?</pre>)", page, flags=re.DOTALL)
-    )
-    page = re.sub(r"</(p|h\d|li|tr|pre|dt|dd|figcaption|summary|div|option|label)>", "\n", page)
+    parts = re.split(r"(<pre\b.*?</pre>)", page, flags=re.DOTALL)  # elsewhere a line of a template is no line
+    page = "".join(part if part.startswith("<pre") else " ".join(part.split()) for part in parts)
+    ends = r"</(p|h\d|li|tr|pre|dt|dd|figcaption|caption|summary|div|option|label)>"
+    page = re.sub(rf"{ends}|<(p|h\d|header|section|table)\b[^>]*>", "\n", page)
     page = re.sub(r"</t[dh]>", " | ", page)
     lines = (" ".join(line.split()) for line in unescape(re.sub(r"<[^>]*>", "", page)).splitlines())
     return "\n".join(line for line in lines if line)

@@ -61,14 +61,12 @@ def test_only_the_scripts_of_the_page_may_run_and_nothing_may_be_loaded(page, mo
 
 @pytest.mark.parametrize("block", typing.get_args(sections.Block), ids=lambda kind: kind.__name__)
 def test_every_kind_of_block_is_set_and_its_texts_are_escaped(page, block, monkeypatch):
-    own = DictLoader({"own.html.j2": "<p>{{ words }}</p>"})
-    environment = pages._environment()
-    monkeypatch.setattr(environment, "loader", ChoiceLoader([environment.loader, own]))
+    loaders = [pages._environment().loader, DictLoader({"own.html.j2": "<p>{{ words }}</p>"})]
+    monkeypatch.setattr(pages._environment(), "loader", ChoiceLoader(loaders))
     texts = {"title": "<t>", "text": "<t>", "label": "<t>", "note": "<t>", "svg": Markup("<svg></svg>")}
     texts |= {"rows": [("<t>", "a")], "lines": ["<t>"], "blocks": ["<t>"]}
     texts |= {"quantities": [Choice(1, "<t>")], "across": (), "name": "n", "look": ""}
-    texts |= {"head": [Cell("<t>")], "summary": "<t>"}
-    texts |= {"template": "own.html.j2", "values": {"words": "<t>"}}
+    texts |= {"head": [Cell("<t>")], "summary": "<t>", "template": "own.html.j2", "values": {"words": "<t>"}}
     if block is str:
         made = "<t>"
     else:
