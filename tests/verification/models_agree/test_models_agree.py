@@ -49,7 +49,9 @@ def test_reduced_stays_with_full_over_two_half_cycles(section: str, kind: str) -
 
 def test_reduced_vibrates_at_the_floor_as_full_does() -> None:
     # Force of the floor while the stack rocks on a corner after its first impact: it rings by more than the weight.
-    reduced, full = rocking("shell", "corners", "reduced"), rocking("shell", "corners", "full")
+    # without a fill, which would damp it
+    keys = {"support__kind": "corners", "solver__energy_tolerance": 0.3, "container__fill": "none"}
+    reduced, full = (run(stack("shell", solver__model=model, **keys)) for model in ("reduced", "full"))
     window = (times(full) > first_impact(full) + 0.05) & (times(full) < first_impact(full) + 0.3)
     forces = [each.history["normal_force_N"][: window.size][window] for each in (reduced, full)]
     ringing = np.std(forces[1])
