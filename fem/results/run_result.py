@@ -259,7 +259,7 @@ class Verdict(RunFigures):
     decided_by: tuple[str, ...] = ()  #: inputs that change the outcome, the one of the smallest change first
     band: Band | None = None
     margin: Margin | None = None
-    analytic: AnalyticBlock | None = None  #: None where there is no such block
+    analytic: AnalyticBlock | None = None  #: of a run by the command; None where there is no such block
 
     #: the forces in bolts of a run are those of its joints
     written_where_given = WHERE_GIVEN.union(
