@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any, TypeVar
 
@@ -39,6 +40,7 @@ RotationT = TypeVar("RotationT", float, FloatArray)
 
 CONTENTS_FILTER = "Butterworth low-pass of two poles, causal"  #: `contact.stepping.contents`
 MOST_RESTITUTION = 1.05
+STILL = 1e-4  #: change of the rotation over the slenderness angle below which a container does not turn
 
 
 def outcome_of(model: Model) -> Outcome:
@@ -101,7 +103,13 @@ def verdict_of(model: Model, history: History, largest_von_mises: float | None) 
     """The `verdict` of a result; what was not reached is None."""
     time, slip = history["time_s"], history["slip_m"]
     end = float(time[-1]) if time.size else None
-    return verdict_from(model, end, time, slip, largest_von_mises)
+    verdict = verdict_from(model, end, time, slip, largest_von_mises)
+    if verdict.tilt_rad is None and verdict.outcome != Outcome.OVERTURNED and model.case.links:
+        # what leans on a stop bears on one side alone and does not turn
+        late = history["rotation_rad"][time >= time[-1] - 1.0 / model.static.frequency_parameter]
+        if late.size > 1 and np.ptp(late) < STILL * model.static.slenderness_angle:
+            verdict = replace(verdict, tilt_rad=float(late[-1]))
+    return verdict
 
 
 def verdict_from(
