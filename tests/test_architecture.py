@@ -117,12 +117,12 @@ BUDGET = {
     "seismic": ("fem/seismic", 2_289, 61),
     "solid": ("fem/solid", 1_979, 64),
     "model": ("fem/model", 4_224, 124),
-    "run": ("fem/run fem/assessment", 5_766, 192),
+    "run": ("fem/run fem/assessment", 5_769, 192),
     "pages": ("fem/html fem/figures fem/render fem/report", 5_692, 164),
     "study": ("fem/study fem/response", 9_046, 265),
     "site": ("fem/site", 4_811, 137),
     "cli": ("fem/cli fem/__init__.py fem/__main__.py", 1_971, 46),
-    "product": ("mesh contact fem", 59_337, 1_783),
+    "product": ("mesh contact fem", 59_340, 1_783),
     "tests": ("tests", 48_274, 2_971),
 }
 

@@ -100,11 +100,14 @@ def it_bounces(result: run_result.RunResult, case: Case) -> str | None:
     band = _verdict(result).band
     reach = band.flight_share if band else None
     span = f" ({reach[0]:.0%} to {reach[1]:.0%} over the variations)" if reach else ""
-    dashpot = (
-        ""
-        if case.floor.is_slab
-        else "; on a rigid floor the dashpot of the contact, a numerical one, takes most of it"
+    numerics = _numerics(result)
+    own, contact = (
+        numerics.bounce_container_damping_ratio or 0.0,
+        numerics.bounce_contact_damping_ratio or 0.0,
     )
+    dashpot = ""
+    if contact > own and not case.floor.is_slab:
+        dashpot = "; on a rigid floor the dashpot of the contact, a numerical one, takes most of it"
     return (
         f"it bounces: nothing touches the floor for {share:.0%} of the time in which it rocks{span}. What its fill and "
         f"its walls take of a landing decides that{dashpot}"
