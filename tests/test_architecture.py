@@ -123,7 +123,7 @@ BUDGET = {
     "site": ("fem/site", 4_811, 137),
     "cli": ("fem/cli fem/__init__.py fem/__main__.py", 1_971, 46),
     "product": ("mesh contact fem", 59_340, 1_783),
-    "tests": ("tests", 48_274, 2_971),
+    "tests": ("tests", 48_276, 2_971),
 }
 
 

