@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from fem.cli.console import STUDY, AllowBaseline, AllowOutside, StudyFlags, flag, print_result, print_to_pdf
+from fem.results.files import write_atomically
 from fem.results.kinds import SITE
 from fem.runtime.progress import ScreenReporter
 
@@ -31,7 +32,9 @@ def assess(
         bool,
         flag('The set of motions and its repetitions alone; its answer is never "fulfilled" if it moves.'),
     ] = False,
-    pdf: Annotated[bool, flag("Print the page to report.pdf, by Chromium or Chrome.")] = False,
+    pdf: Annotated[
+        bool, flag("Print two sheets of the page to report-short.pdf, by Chromium or Chrome.")
+    ] = False,
 ) -> int:
     """Verify a container at a site: overturning and slip under motions for the site, by EN 1998-1, 4.4.2.4(2).
 
@@ -54,7 +57,10 @@ def assess(
             request, folder, allow_outside=allow_outside or bool(motion), quick=quick, **options
         )
     if pdf and result.status == "completed":
-        ScreenReporter(quiet=flags.quiet).message(print_to_pdf(folder / study.PAGE))
+        page = importlib.import_module("fem.site.page").site_report(folder, result, brief=True)
+        short = folder / "report-short.html"
+        write_atomically(short, page)
+        ScreenReporter(quiet=flags.quiet).message(print_to_pdf(short))
     return print_result(result, SITE, folder, page_of(result, folder), as_json=flags.as_json)
 
 
@@ -100,4 +106,6 @@ def page_of(result: "SiteResult", folder: Path) -> Iterator[str]:
             f"{further.mu_static:.3g}/{further.mu_kinetic:.3g})"
         )
     yield f"  rule       {answer.rule}"
+    if result.inputs.unstated:
+        yield f"  sources    not to be signed: nobody stands for {', '.join(result.inputs.unstated)}"
     yield f"  files      {folder}"

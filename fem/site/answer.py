@@ -380,9 +380,8 @@ def destroyed(count: int) -> str:
 
 
 def where(run: SiteKey) -> str:
-    """The container and friction of runs: "full, friction 0.4/0.2"."""
-    side = "" if run.elevation == "width" else f", {run.elevation} along the motion"
-    return f"{run.mass}{side}{period_and_friction(run)}"
+    """The container and friction of runs: "full, motion along its width, friction 0.4/0.2"."""
+    return f"{run.mass}, motion along its {run.elevation}{period_and_friction(run)}"
 
 
 def period_and_friction(run: FloorKey) -> str:

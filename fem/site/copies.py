@@ -37,7 +37,9 @@ def inputs_of(request: SiteRequest) -> SiteInputs:
         gamma_mu=request.wind.gamma_mu if request.wind else 1.0,
         behaviour_factor=static.behaviour_factor if static else USUAL_BEHAVIOUR_FACTOR,
         model=request.heading.model,
-        sources=tuple(request.sources.model_dump().items()),
+        contents=request.heading.contents or "",
+        sources=tuple(request.sources_in_use.items()),
+        unstated=request.unstated,
     )
 
 

@@ -52,7 +52,7 @@ def site_report(
         title=result.title or folder.name,
         name=folder.name,
         hash=result.provenance.site_hash,
-        signature=(signature or Signature()).completed(document) if result.state == "finished" else None,
+        signature=(signature or Signature()).completed(document) if result.to_be_signed else None,
     )
     return html_of(page, "site.html.j2", **shown(result, folder, brief=brief))
 

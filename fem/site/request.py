@@ -61,6 +61,13 @@ FULL, EMPTY = "full", "empty"
 WIDTH, DEPTH = "width", "depth"  #: elevations: the dimension along the motion; a case file shows the first
 
 
+#: contents for which gamma_a is at least that (EN 1998-1:2004, 4.3.5.3 (1))
+HAZARDOUS = ("toxic", "explosive")
+HAZARDOUS_FACTOR = 1.5
+#: a source that begins so states nothing
+PLACEHOLDERS = ("placeholder", "example")
+
+
 class SiteHeading(CaseTable):
     """The keys of a site file that stand before its first table."""
 
@@ -74,6 +81,9 @@ class SiteHeading(CaseTable):
     )
     empty_centroid_m: Annotated[float, q.LENGTH] | None = optional_key(
         "height of the mass centre of an empty box; default: half its height", 0.5
+    )
+    contents: Literal["ordinary", "toxic", "explosive"] | None = optional_key(
+        '"ordinary" | "toxic" | "explosive": of the last two gamma_a is at least 1.5', "toxic"
     )
     model: Literal["rigid", "reduced"] = case_key(
         '"rigid" | "reduced", of all runs; the deciding ones are repeated with "reduced"', "rigid"
@@ -117,9 +127,34 @@ class SiteRequest:
             CaseError: a ground that the spectrum does not have.
         """
         try:
-            return action_of(self.site)
+            return action_of(self.site, self.element_factor)
         except ValueError as error:
             raise CaseError(f"[site] {error}") from None
+
+    @property
+    def element_factor(self) -> float:
+        """gamma_a as given, or by the contents; 1 on a floor whose motion is given."""
+        if (given := self.site.element_importance_factor) is not None:
+            return given
+        hazardous = self.heading.contents in HAZARDOUS and not self.on_given_floor
+        return HAZARDOUS_FACTOR if hazardous else 1.0
+
+    @property
+    def sources_in_use(self) -> dict[str, str]:
+        """Where the inputs of this file come from, in the words of the user; empty: not stated."""
+        unused = {"floor": self.building is None and not self.on_given_floor, "wind": self.wind is None}
+        return {name: words for name, words in self.sources.model_dump().items() if not unused.get(name)}
+
+    @property
+    def unstated(self) -> tuple[str, ...]:
+        """What must be stated before anybody signs: the contents, and sources that are missing or placeholders."""
+        missing = (
+            name
+            for name, words in self.sources_in_use.items()
+            if not words.strip() or words.strip().lower().startswith(PLACEHOLDERS)
+        )
+        contents = () if self.heading.contents else ("contents (ordinary, toxic or explosive)",)
+        return (*contents, *(f"source of {name}" for name in missing))
 
     @property
     def on_given_floor(self) -> bool:
@@ -334,7 +369,12 @@ def _check_floor(request: SiteRequest) -> None:
         raise CaseError(
             f"{given} and [building] both say how the floor moves: the storey would be counted twice; keep one of them"
         )
-    factors = request.site.importance_factor, request.site.element_importance_factor
+    factors = request.site.importance_factor, request.element_factor
+    if request.heading.contents in HAZARDOUS and not request.on_given_floor and factors[1] < HAZARDOUS_FACTOR:
+        raise CaseError(
+            f'[site] element_importance_factor = {factors[1]:g} with contents = "{request.heading.contents}": EN '
+            f"1998-1:2004, 4.3.5.3 asks for {HAZARDOUS_FACTOR:g} at least; take the key out"
+        )
     if request.on_given_floor and factors != (1.0, 1.0):
         raise CaseError(
             f"[site] importance_factor and element_importance_factor have no effect with {given}: the motion of the "
@@ -357,7 +397,7 @@ def _rounded(value: float) -> float:
     return float(f"{value:.9g}")
 
 
-def action_of(site: SiteTable) -> SiteAction:
+def action_of(site: SiteTable, element_factor: float) -> SiteAction:
     """The action of a site.
 
     Raises:
@@ -390,7 +430,7 @@ def action_of(site: SiteTable) -> SiteAction:
         shape=shape,
         reference_acceleration=reference or 0.0,
         importance_factor=site.importance_factor,
-        element_importance_factor=site.element_importance_factor,
+        element_importance_factor=element_factor,
         topographic_factor=site.topographic_factor,
     )
 

@@ -292,6 +292,7 @@ class TwoDirections(FloorKey):
     slip_mean_m: float
     slip_largest_m: float
     slip_mean_in_plane_m: float  #: as the mean, without the second component
+    slip_largest_in_plane_m: float | None = None  #: as the largest, without it
     motion: int
     #: least factor on the motions, of those tried, at which it slides too far
     margin_factor: float | None = None
@@ -374,8 +375,11 @@ class SiteInputs(JsonBlock):
     #: of the plateau rows: that of [static] of the container
     behaviour_factor: float = USUAL_BEHAVIOUR_FACTOR
     model: str
-    #: where site, container, friction and limits come from, in the words of the user; empty: not stated
+    contents: str = ""  #: ordinary | toxic | explosive; empty: not stated
+    #: where the inputs come from, by their tables, in the words of the user; empty: not stated
     sources: tuple[tuple[str, str], ...] = ()
+    #: inputs that nobody stands for yet, in words: there is nothing to sign while there are some
+    unstated: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -406,3 +410,8 @@ class SiteResult(StudyResult):
     methods: tuple[SiteMethod, ...] = ()
     provenance: SiteProvenance
     document: Signature | None = None  #: [document] of the site file
+
+    @property
+    def to_be_signed(self) -> bool:
+        """Whether all is computed, and somebody stands for every input."""
+        return self.state == "finished" and not self.inputs.unstated

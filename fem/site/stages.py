@@ -10,6 +10,7 @@ import numpy as np
 
 from fem.results.outcome import Outcome
 from fem.run.bracket import values_to_try
+from fem.runtime.arrays import FloatArray
 from fem.seismic.action import MotionTarget
 from fem.seismic.artificial import artificial_motions
 from fem.seismic.ground_motion import GroundMotion
@@ -303,7 +304,10 @@ class Stages:
         longest = max(slips, key=lambda what: float(slips[what].mean()))
         worst = max(slips, key=lambda what: float(slips[what].max()))
         period, pair = worst
-        in_plane = [replace(motion, second=None) for motion in self.floors[longest[0]]]
+
+        def in_plane(period: float | None, pair: tuple[float, float]) -> FloatArray:
+            motions = [replace(motion, second=None) for motion in self.floors[period]]
+            return largest_slips(motions, [pair], gravity=gravity)[pair]
 
         def largest(factor: float) -> float:
             return max(
@@ -319,9 +323,8 @@ class Stages:
         return TwoDirections(
             slip_mean_m=float(slips[longest].mean()),
             slip_largest_m=most,
-            slip_mean_in_plane_m=float(
-                largest_slips(in_plane, longest[1:], gravity=gravity)[longest[1]].mean()
-            ),
+            slip_mean_in_plane_m=float(in_plane(*longest).mean()),
+            slip_largest_in_plane_m=float(in_plane(*worst).max()),
             mu_static=pair[0],
             mu_kinetic=pair[1],
             motion=1 + int(np.argmax(slips[worst])),

@@ -130,8 +130,8 @@ class SiteTable(CaseTable):
         "a_gR on rock; DIN-NA-2011: from the zone", 1.6
     )
     importance_factor: Annotated[float, IMPORTANCE] = case_key("gamma_I (4.2.5)", 1.0)
-    element_importance_factor: Annotated[float, IMPORTANCE] = case_key(
-        "gamma_a (4.3.5.3): 1.5 for toxic or explosive content", 1.0
+    element_importance_factor: Annotated[float, IMPORTANCE] | None = optional_key(
+        "gamma_a (4.3.5.3); left out: 1.5 for toxic or explosive contents, else 1", 1.5
     )
     topographic_factor: Annotated[float, TOPOGRAPHY] = case_key(
         "S_T near cliffs and on ridges (EN 1998-5:2004, Annex A)", 1.0
@@ -358,12 +358,14 @@ class LimitsTable(CaseTable):
 
 
 class SourcesTable(CaseTable):
-    """Where the inputs come from, in words for the page."""
+    """Where the inputs come from, in words for the page, which is not signed while one is missing or a placeholder."""
 
     site: OfSource = case_key("hazard, ground, importance", "", example="report on the ground of 3 May 2026")
+    floor: OfSource = case_key("the building, or the motion of its floor", "")
     container: OfSource = case_key("weights, dimensions, mass centre", "")
     friction: OfSource = case_key("the range of friction", "", example="tests of castings on this floor")
     limits: OfSource = case_key("limits of rotation and slip", "", example="clearances of drawing 12")
+    wind: OfSource = case_key("pressure or zone of the wind", "")
 
 
 class WindTable(CaseTable):

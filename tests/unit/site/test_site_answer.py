@@ -201,7 +201,7 @@ def test_each_pair_of_further_motions_is_told_by_itself():
     assert [(one.mass, one.overturned) for one in found.further] == [("full", 0), ("empty", 3)]
     assert (
         "3 of 100 further motions overturned it" in found.sentence
-        and "(empty, friction 0.4/0.2)" in found.sentence
+        and "(empty, motion along its width, friction 0.4/0.2)" in found.sentence
     )
 
 
@@ -264,7 +264,7 @@ def test_further_motions_that_slide_too_far_in_two_directions_speak_against_it()
     assert found.answer == "not sure"
     assert found.reasons == (
         "Of 100 further motions 18 went beyond a limit of a single motion, 18 by slip under both horizontal components "
-        "(full, friction 0.4/0.2): of such motions more than 5 % do.",
+        "(full, motion along its width, friction 0.4/0.2): of such motions more than 5 % do.",
     )
     assert (found.further[0].slip_largest_m, found.further[0].slid_too_far) == (0.2, 18)
 

@@ -165,6 +165,45 @@ def test_wind_pressures_come_from_a_table_or_a_terrain(tmp_path):
 
 
 @pytest.mark.parametrize(
+    ("contents", "given", "factor"),
+    [
+        ("ordinary", "", 1.0),
+        ("toxic", "", 1.5),
+        ("explosive", "", 1.5),
+        ("toxic", "1.8", 1.8),
+        ("toxic", "1.2", None),
+    ],
+)
+def test_contents_set_the_importance_factor_of_the_element(tmp_path, contents, given, factor):
+    """EN 1998-1:2004, 4.3.5.3 (1): at least 1.5 for what is toxic or explosive."""
+    key = given and f"\nelement_importance_factor = {given}"
+    changes = ("= 1.6", f"= 1.6{key}"), ('"seed_stack"', f'"seed_stack"\ncontents = "{contents}"')
+    if factor is None:
+        with pytest.raises(CaseError, match=r"asks for 1\.5 at least"):
+            request(tmp_path, *changes)
+        return
+    action = request(tmp_path, *changes).action
+    assert action.element_importance_factor == factor
+    assert action.ground_acceleration == pytest.approx(1.6 * factor)
+
+
+@pytest.mark.parametrize(
+    ("sources", "unstated"),
+    [
+        ("", ["contents", "site", "container", "friction", "limits", "wind"]),
+        ('contents = "toxic"\nsite = "report 7"\ncontainer = " Placeholder: 1 t"\nfriction = "example"\nlimits = "x"'
+         '\nwind = "annex"', ["container", "friction"]),
+        ('contents = "ordinary"\nsite = "a"\ncontainer = "b"\nfriction = "c"\nlimits = "d"\nwind = "e"', []),
+    ],
+)  # fmt: skip
+def test_nothing_is_signed_while_a_source_is_missing_or_a_placeholder(tmp_path, sources, unstated):
+    contents, _, words = sources.partition("\n")
+    heading = ('"seed_stack"', f'"seed_stack"\n{contents}')
+    asked = request(tmp_path, heading, ("[limits]", f"[wind]\ngerman_zone = 2\n[sources]\n{words}\n[limits]"))
+    assert [name.removeprefix("source of ").partition(" ")[0] for name in asked.unstated] == unstated
+
+
+@pytest.mark.parametrize(
     ("old", "new", "message"),
     [
         ('ground = "D"', 'ground = "F"', r"ground type 'F': EN 1998-1 has A, B, C, D, E"),

@@ -260,7 +260,16 @@ def test_where_a_run_overturned_no_slip_in_the_plane_is_named():
     )
     words = words_of(box_of(replace(result, result=answer)))
     assert "under both horizontal components" in words and "in the plane –" not in words
-    assert "It is held against the clearance, too. Rocking" in words
+    assert "Its largest slip is held against the clearance, too. A container" in words
+
+
+def test_a_page_is_green_and_signed_where_somebody_stands_for_every_input():
+    result, _ = example()
+    open_result = replace(result, inputs=replace(result.inputs, unstated=("source of friction",)))
+    for of, signed in ((result, True), (open_result, False)):
+        page = page_with(of)
+        assert ('class="sign"' in page, 'class="answer stood"' in page) == (signed, signed)
+        assert ("nobody stands for source of friction" in words_of(page)) is not signed
 
 
 def test_runs_that_failed_at_other_factors_are_told():
