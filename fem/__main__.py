@@ -73,11 +73,12 @@ GROUPS = {
         "validate": ("Predict laboratory experiments and compare with what was measured.", "--data motions"),
         "study": ("Check every claim of the paper (Knoedel and Hrabowski) by runs.", "seed -j 4"),
         "doctor": ("Report missing dependencies and how to install them.", ""),
+        "docs": ("Print where the documents of the program are, or one of them.", "case"),
         "schema": ("Print the JSON schema of a case, sweep, ensemble or site file.", "sweep"),
     },
 }
 COMMANDS = [name for commands in GROUPS.values() for name in commands]
-READING = {"check", "init", "list", "completion", "schema", "doctor"}  #: commands that compute nothing
+READING = {"check", "init", "list", "completion", "schema", "docs", "doctor"}  #: commands that compute nothing
 #: import strings of commands that are not `fem.cli.NAME:NAME`
 PLACES = {"list": "fem.cli.list_cases:list_cases", "completion": "fem.__main__:completion"} | {
     command: f"fem.cli.evidence:{command}" for command in ("verify", "validate", "study")
