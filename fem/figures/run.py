@@ -6,6 +6,8 @@ degrees, lengths in mm, forces in kN; x to the right, rotation > 0 toward +x, fo
 
 import math
 from collections.abc import Callable
+from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -22,14 +24,23 @@ from fem.figures.modes import modes_figure
 from fem.figures.recorded import spectrum_figure
 from fem.html.units import rounded
 from fem.model.container import Container
+from fem.results.history import History
 from fem.results.outcome import least_slide
 from fem.results.reader import RunData
 from fem.results.run_result import StaticResult, Verdict
-from fem.runtime.arrays import FloatArray
+from fem.runtime.arrays import FloatArray, IntArray
 from fem.runtime.units import DEGREES, RATIO
 from fem.solid.modes import FEW
 
 LEAST_MOTION = 1e-3  #: of the floor, on its axes [mm, m/s, m/s2]
+#: of a phase portrait
+PHASES: dict[str, dict[str, Any]] = {
+    "on the floor": {"color": style.BLUE, "linewidth": 0.8, "zorder": 2.2},
+    "in the air": {"color": style.SKY, "linewidth": 0.6},
+    "lands": {"color": style.GREY, "linewidth": 0.5, "linestyle": ":"},
+}
+ON_THE_FLOOR, IN_THE_AIR, LANDS = range(3)
+LANDING_FORCE = 2.0  #: times weight: a larger force is that of a landing
 
 
 def figures_of(run: RunData) -> dict[str, Figure]:
@@ -209,21 +220,31 @@ def uplift_figure(run: RunData) -> Figure:
 
 
 def phase_portrait_figure(run: RunData) -> Figure | None:
-    """Angular velocity over rotation, with the curve within which a free rigid block returns.
+    """Angular velocity over rotation: on a corner, landing, and in the air, where the angular velocity is constant.
 
-    Of a loose stack that of its lowest box; none where this does not rock.
+    With the curve within which a free rigid block returns. Of a loose stack that of its lowest box; none where this
+    does not rock.
     """
-    static = run.typed_result.static or StaticResult()
+    static, history = run.typed_result.static or StaticResult(), run.history
     angle, parameter = run.slenderness_angle, static.frequency_parameter_1_s
     if run.verdict.boxes and run.verdict.boxes[0].max_rotation_rad < ROCKING * angle:
         return None
-    rotation, rate = run.history["rotation_rad"], run.history["angular_velocity_rad_s"]
-    figure, (axes,) = style.panels((4.0,), width=0.8 * style.WIDTH, header=2)
+    rotation, rate = history["rotation_rad"], history["angular_velocity_rad_s"]
+    figure, (axes,) = style.panels((4.0,), width=0.8 * style.WIDTH, header=3)
     axes.set_label(style.PLANE)  # for `cursor_axes`
-    samples = style.kept_samples(rotation, rate)
-    axes.plot(np.degrees(rotation[samples]), np.degrees(rate[samples]), color=style.BLUE, linewidth=0.7)
-    axes.plot(*np.degrees([rotation[0], rate[0]]), "o", color=style.GREEN, label="start")
-    axes.plot(*np.degrees([rotation[-1], rate[-1]]), "s", color=style.VERMILLION, label="end")
+    phase, share = phases(history, run.case.weight), run.verdict.flight_share
+    ends = [0, *(np.flatnonzero(np.diff(phase)) + 1), len(phase)]
+    spans = [(phase[first], slice(first, last + 1)) for first, last in pairwise(ends)]
+    for k, (name, look) in enumerate(PHASES.items()):
+        own = [
+            np.degrees([[*rotation[span], np.nan], [*rate[span], np.nan]])
+            for kind, span in spans
+            if kind == k
+        ]
+        if own:
+            axes.plot(*np.hstack(own), label=name, **look)
+    axes.plot(*np.degrees([rotation[0], rate[0]]), "o", color=style.GREEN, label="start", zorder=3)
+    axes.plot(*np.degrees([rotation[-1], rate[-1]]), "s", color=style.VERMILLION, label="end", zorder=3)
     if parameter and np.abs(rotation).max() >= style.NEAR_LIMIT * angle:
         tilt = np.linspace(-angle, angle, 201)
         bound = parameter * np.sqrt(2.0 * (1.0 - np.cos(angle - np.abs(tilt))))
@@ -237,10 +258,25 @@ def phase_portrait_figure(run: RunData) -> Figure | None:
     style.keep_visible(axes, least)
     axes.set_xlabel("rotation [degrees]")
     axes.set_ylabel("angular velocity [degrees/s]")
-    style.legend_above(axes)
+    style.legend_above(axes, columns=3)
     of_box = " of box 1" if run.verdict.boxes else ""
-    style.head(figure, f"Phase portrait of the rotation{of_box}", status=run.status)
+    in_the_air = f", {rounded(100.0 * share, 2)} % of the rocking in the air" if share else ""
+    style.head(figure, f"Phase portrait of the rotation{of_box}{in_the_air}", status=run.status)
     return figure
+
+
+def phases(history: History, weight: float) -> IntArray:
+    """Which of `PHASES` the motion from each sample to the next belongs to, shape (n_samples - 1,).
+
+    Args:
+        history: with the force of the floor.
+        weight: [N].
+    """
+    force, rotation, uplift = (history[name] for name in ("normal_force_N", "rotation_rad", "uplift_m"))
+    lands = np.maximum(force[:-1], force[1:]) > LANDING_FORCE * weight
+    lands |= (rotation[:-1] * rotation[1:] < 0.0) & (np.maximum(uplift[:-1], uplift[1:]) > 0.0)
+    flies = np.minimum(force[:-1], force[1:]) <= 0.0
+    return np.where(lands, LANDS, np.where(flies, IN_THE_AIR, ON_THE_FLOOR))
 
 
 FIGURES: dict[str, Callable[[RunData], Figure | None]] = {

@@ -205,6 +205,62 @@ def test_a_free_block_returns_from_within_the_curve_of_the_phase_portrait(drawn)
             assert (motion.overturned_at is not None) == falls, (index, factor)
 
 
+def arcs_of(figure):
+    """Rotation [rad] and angular velocity [rad/s] of each stretch of a phase portrait on the floor."""
+    (line,) = lines(figure.axes[0], "on the floor")
+    points = np.radians([line.get_xdata(), line.get_ydata()])
+    gaps = np.flatnonzero(np.isnan(points[0]))
+    return [arc[:, ~np.isnan(arc[0])] for arc in np.split(points, gaps, axis=1) if arc.shape[1] > 2]
+
+
+def test_a_free_rigid_block_stays_on_its_orbit_in_the_phase_portrait(tmp_path):
+    rocking = (
+        "motion.kind=none",
+        "initial.rotation_rad=0.12",
+        "solver.duration_s=4",
+        "contact.mu_static=0.8",
+    )
+    run = run_into(tmp_path / "r", "seed_stack_plateau", *rocking, "contact.mu_kinetic=0.8", margin=False)
+    angle, parameter = run.slenderness_angle, run.typed_result.static.frequency_parameter_1_s
+    figure = figures_of(run)["phase_portrait"]
+    arcs, lands = arcs_of(figure), lines(figure.axes[0], "lands")
+    energies = []  # over m g R: omega^2/(2 p^2) + cos(alpha - |theta|), constant between impacts
+    for rotation, rate in arcs:
+        energy = rate**2 / (2.0 * parameter**2) + np.cos(angle - np.abs(rotation)) - np.cos(angle)
+        energies.append(energy.mean())
+        assert np.ptp(energy) < 3e-3 * energies[0]
+    left = 1.0 - 1.5 * np.sin(angle) ** 2  # of the angular velocity at an impact (Housner)
+    assert energies[0] == pytest.approx(np.cos(angle - 0.12) - np.cos(angle), rel=1e-3)
+    assert np.divide(energies[1:], energies[:-1]) == pytest.approx(left**2, rel=0.02)
+    assert len(arcs) > 3 and len(lands) == 1 and not lines(figure.axes[0], "in the air")
+
+
+def test_the_phase_portrait_of_a_shell_has_no_steps_on_the_floor_and_marks_its_flights(tmp_path):
+    run = run_into(
+        tmp_path / "r", "seed_stack_plateau", "solver.model=reduced", "solver.duration_s=5", margin=False
+    )
+    figure, history = figures_of(run)["phase_portrait"], run.history
+    static, case = run.typed_result.static, run.case
+    half, height = 0.5 * case.container.width_m, static.centroid_m
+    about_corner = case.weight * math.hypot(half, height) / static.frequency_parameter_1_s**2
+    about_centre = about_corner - case.weight / case.gravity_m_s2 * (half**2 + height**2)
+    # a rigid block on its corner under the largest acceleration, and one more weight there with its static friction
+    rigid = static.frequency_parameter_1_s**2 * (
+        math.sin(run.slenderness_angle) + np.abs(history["base_acceleration_m_s2"]).max() / case.gravity_m_s2
+    )
+    further = case.weight * (half + case.contact.mu_static * height) / about_centre
+    step = (rigid + further) * (history["time_s"][1] - history["time_s"][0])
+    assert max(np.abs(np.diff(rate)).max() for _, rate in arcs_of(figure)) < step
+    assert np.abs(np.diff(history["angular_velocity_rad_s"])).max() > 1.4 * step  # of a landing
+    (flights,) = lines(figure.axes[0], "in the air")
+    words = f"{rounded(100.0 * run.verdict.flight_share, 2)} % of the rocking in the air"
+    assert any(words in text.get_text() for text in figure.texts)
+    flying = np.isin(
+        np.radians(flights.get_xdata()), history["rotation_rad"][history["normal_force_N"] <= 0.0]
+    )
+    assert flying.sum() > 20
+
+
 def test_forces_of_impacts_are_cut_off_and_given_in_words(runs, drawn):
     normal = 1e-3 * runs["rocking"].history["normal_force_N"]
     figure = drawn["rocking"]["forces"]
