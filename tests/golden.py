@@ -91,7 +91,7 @@ ITEMS = (
         options=["--no-band"],
     ),
     run("run regularised", "sliding", "contact.friction=regularised", options=["--no-band"]),
-    run("run weakening", "sliding", "contact.weakening_m=1e-4", options=["--no-band"]),
+    run("run weakening", "sliding", "contact.weakening_m=2e-4", options=["--no-band"]),
     run("run pulse", "rocking", *PULSE, "solver.model=rigid"),
     run("run slope", "rocking", "floor.slope_percent=3", "solver.model=rigid"),
     run("run vertical", "rocking", *VERTICAL, "solver.model=rigid"),

@@ -7,7 +7,6 @@ that raised it, the limit, and what can be done. No warning changes a verdict.
 import math
 from collections.abc import Callable
 
-from contact.stepping.observables import SLIDING
 from fem.assessment.motion_words import doubts
 from fem.assessment.ranges import plastic_corner
 from fem.assessment.sure_words import sureness_in_words
@@ -78,17 +77,6 @@ def friction_decides(result: run_result.RunResult, case: Case) -> str | None:
     return (
         f"{words}; if friction falls over {1e3 * length:g} mm of slip instead of at once, it reaches {ratio:.2g} of "
         f"its slenderness angle, slip {slip:.3g} mm"
-    )
-
-
-def weakening_is_too_short(result: run_result.RunResult, case: Case) -> str | None:
-    """A fall of friction over less than the slip from which a base counts as sliding is a fall at once."""
-    weakening, least = case.contact.weakening_m, SLIDING * case.stack[0].width
-    if not 0.0 < weakening < least:
-        return None
-    return (
-        f"friction falls over {1e3 * weakening:.3g} mm of slip, but sliding counts from {1e3 * least:.3g} mm on: "
-        "it falls at once, as with 0"
     )
 
 
@@ -289,7 +277,6 @@ def steps_were_rejected(result: run_result.RunResult, case: Case) -> str | None:
 CHECKS: tuple[Callable[[run_result.RunResult, Case], str | None], ...] = (
     verdict_is_unsure,
     friction_decides,
-    weakening_is_too_short,
     it_bounces,
     motion_is_doubtful,
     it_still_moves,

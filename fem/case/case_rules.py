@@ -5,7 +5,7 @@ from typing import Any
 
 from fem.case.columns import history_width
 from fem.case.tables import quantities as q
-from fem.case.tables.boxes import BOX_RULES, JOINT_RULES, base_width, boxes_of
+from fem.case.tables.boxes import BOX_RULES, JOINT_RULES, WEAKENING_RULES, base_width, boxes_of
 from fem.case.tables.castings import CASTING_RULES
 from fem.case.tables.duration import duration_in_words, longest_time
 from fem.case.tables.floors import FLOOR_CASE_RULES
@@ -136,6 +136,7 @@ CASE_RULES = (
     *FLOOR_CASE_RULES,
     *BOX_RULES,
     *JOINT_RULES,
+    *WEAKENING_RULES,
     *LINK_RULES,
     *NEIGHBOUR_RULES,
     _plausible_density("weight_N"),

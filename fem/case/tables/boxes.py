@@ -11,6 +11,8 @@ from typing import Any
 from fem.case.tables import quantities as q
 from fem.case.tables.problem import Rule, refused
 
+MICROSLIP = 1e-4  #: `contact.stepping.observables.SLIDING`, whose import takes a second: of the width
+
 
 @dataclass(frozen=True, kw_only=True)
 class Box:
@@ -89,6 +91,35 @@ def boxes_of(container: Any, gravity: float) -> tuple[Box, ...]:
 def base_width(case: Any) -> float:
     """Width of the lowest box [m]."""
     return boxes_of(case.container, case.gravity_m_s2)[0].width
+
+
+def least_weakening(case: Any) -> float:
+    """The slip over which friction falls at the least [m]: what slips less still sticks, and then it falls at once."""
+    return float(MICROSLIP * max(box.width for box in boxes_of(case.container, case.gravity_m_s2)))
+
+
+def _falls_within_microslip(place: str) -> Rule:
+    """A fall of friction with slip, or the upper end of its range, is 0 or long enough to be one."""
+    table, _, key = place.partition(".")
+
+    def reason(case: Any) -> str:
+        stated, least = getattr(getattr(case, table), key), least_weakening(case)
+        longest = stated[-1] if isinstance(stated, list) else stated
+        if not isinstance(longest, float) or not 0.0 < longest < least:
+            return ""
+        return (
+            f"{'ends at' if isinstance(stated, list) else '='} {longest:g} m, less than {least:g} m ({MICROSLIP:g} of "
+            f"the width): a base that slipped so little still sticks, and its friction falls at once; give "
+            f"{least:g} m or more, or 0 for a fall at once"
+        )
+
+    return refused(place, reason)
+
+
+WEAKENING_RULES = tuple(
+    _falls_within_microslip(f"{table}weakening_m")
+    for table in ("contact.", "joints.", "uncertainty.", "uncertainty.joints_")
+)
 
 
 def shared_face(lower: Box, upper: Box) -> tuple[float, float]:

@@ -46,7 +46,7 @@ class ContactTable(CaseTable):
     )
     tangential_ratio: Annotated[float, q.RATIO] = case_key("tangential over normal penalty", 1.0)
     weakening_m: Annotated[float, q.WEAKENING] = case_key(
-        "slip over which mu_static falls to mu_kinetic; 0: at once", 0.0
+        "slip over which mu_static falls to mu_kinetic, 1e-4 of the width or more; 0: at once", 0.0
     )
     stribeck_velocity_m_s: Annotated[float, q.STRIBECK_VELOCITY] = case_key(
         "slip velocity over which mu_static falls to mu_kinetic, like exp(-(v/v_s)^2); 0: not with velocity",

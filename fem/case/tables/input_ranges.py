@@ -52,6 +52,9 @@ class UnknownNumber(NamedTuple):
     alone: Callable[[Any], bool] = lambda case: True  #: where a change of it alone makes a difference
     same: Callable[[float], float] = lambda value: value  #: the value that means the same, of an angle
     varies: Callable[[Any], bool] = lambda case: True  #: where it is drawn with all others
+    tried_from: Callable[[Any], float] = lambda case: (
+        -math.inf
+    )  #: a smaller value, but the lower end, means nothing
 
     def range_in(self, case: Any, penalty: float | None) -> InputRange | None:
         """The range in a case; None where it makes no difference."""
@@ -60,13 +63,14 @@ class UnknownNumber(NamedTuple):
             return None
         low, high = self._default(case, own) if stated is None else (own, own) if stated in HELD else stated
         ends = {self.same(end) for end in (low, high)}
-        between = (value for value in self.between(low, high) if low < value < high and value != own)
+        least = min(high, max(low, self.tried_from(case)))
+        between = (value for value in self.between(low, high) if least < value < high and value != own)
         return InputRange(
             key=self.key,
             own=own,
             ends=tuple(end for end in sorted(ends) if not math.isclose(end, own, rel_tol=1e-12)),
             between=tuple(map(self.same, between)),
-            drawn=partial(self._drawn, low, high) if self.varies(case) else None,
+            drawn=partial(self._drawn, least, high) if self.varies(case) else None,
             alone=self.alone(case),
         )
 

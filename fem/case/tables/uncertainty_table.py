@@ -27,7 +27,9 @@ class UncertaintyTable(CaseTable):
     joints_mu_kinetic: Unknown = optional_key(
         "loose joints: of kinetic friction; default: half of mu_static to all of it", [0.2, 0.4]
     )
-    joints_weakening_m: Unknown = optional_key("loose joints: default: 0 to 5 mm", [0.0, 0.005])
+    joints_weakening_m: Unknown = optional_key(
+        "loose joints: default: 0, or 1e-4 of the width to 5 mm", [0.0, 0.005]
+    )
     joints_damping_ratio: Unknown = optional_key("loose joints: default: 0.1 to 2, and as given", [0.1, 2.0])
     camber_m: Unknown = optional_key(
         "of the support; default: half to twice, of a level base flat or on feet 0 to 2 mm", [0.0, 0.002]
@@ -35,7 +37,9 @@ class UncertaintyTable(CaseTable):
     rocking_damping_ratio: Unknown = optional_key(
         "of the support, where it is cambered; default: 0.02 to 0.1, and as given", [0.02, 0.1]
     )
-    weakening_m: Unknown = optional_key("of the contact; default: 0 to 5 mm", [0.0, 0.005])
+    weakening_m: Unknown = optional_key(
+        "of the contact; default: 0, or 1e-4 of the width to 5 mm", [0.0, 0.005]
+    )
     stribeck_velocity_m_s: Unknown = optional_key("of the contact; default: 0 to 0.3 m/s", [0.0, 0.3])
     normal_penalty_Pa_m: Unknown = optional_key(
         "of the contact; default: a ninth to three times", [1e9, 3e10]

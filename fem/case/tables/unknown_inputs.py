@@ -19,6 +19,7 @@ from typing import Any
 from contact.reference.rigid_block import RigidBlock
 from fem.case.tables import input_keys as keys
 from fem.case.tables import quantities as q
+from fem.case.tables.boxes import least_weakening
 from fem.case.tables.duration import longest_time
 from fem.case.tables.input_ranges import (
     HELD,
@@ -274,7 +275,7 @@ UNKNOWN: tuple[UnknownNumber | UnknownChoice, ...] = (
     Number(keys.MU_STATIC, "mu_static", "static friction", q.FRICTION, STATIC, power=1.0),
     Number(keys.WEAKENING, "weakening_m", "fall of friction with slip", q.WEAKENING,
            _reaching(0.0, WEAKENING_M), matters=_may_fall, power=3.0, between=lambda low, high: WEAKENINGS_BETWEEN_M,
-           alone=_falls),
+           alone=_falls, tried_from=least_weakening),
     Number(keys.STRIBECK, "stribeck_velocity_m_s", "fall of friction with velocity", q.STRIBECK_VELOCITY,
            _reaching(0.0, STRIBECK_M_S), matters=lambda case: _may_fall(case) or _joints_may_fall(case), power=2.0,
            alone=lambda case: _falls(case) or _joints_fall(case)),
@@ -285,7 +286,8 @@ UNKNOWN: tuple[UnknownNumber | UnknownChoice, ...] = (
            matters=lambda case: case.container.is_loose, power=1.0, between=_shares(0.5)),
     Number(keys.JOINTS_WEAKENING, "joints_weakening_m", "fall of friction of the joints with slip", q.WEAKENING,
            _reaching(0.0, WEAKENING_M), matters=_joints_may_fall, power=3.0,
-           between=lambda low, high: WEAKENINGS_BETWEEN_M, alone=_joints_fall),
+           between=lambda low, high: WEAKENINGS_BETWEEN_M, alone=_joints_fall,
+           tried_from=least_weakening),
     Number(keys.JOINTS_DASHPOT, "joints_damping_ratio", "damping of the joints", q.CONTACT_DAMPING,
            _reaching(*JOINTS_DASHPOTS), matters=lambda case: case.container.is_loose),
     Number(keys.CAMBER, "camber_m", "camber of the base", q.CAMBER, _cambers, matters=_may_be_cambered,

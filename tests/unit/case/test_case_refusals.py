@@ -5,7 +5,10 @@ import re
 import pytest
 from cases import named_case
 
+from contact.stepping.observables import SLIDING
+from fem.case.case import CaseError
 from fem.case.overrides import parse_override
+from fem.case.tables.boxes import MICROSLIP
 
 
 def case_of(name, changes):
@@ -40,3 +43,20 @@ pulse    | motion.delay_s=1.0
 @pytest.mark.parametrize(("name", "changes"), rows(EXTREMES))
 def test_extremes_that_the_program_can_compute_are_not_taken_for_slips(name, changes):
     assert case_of(name, changes).gravity_m_s2 == 9.81
+
+
+LEAST_WEAKENING = 1.1e-4  #: [m], of boxes 1.1 m wide
+
+
+@pytest.mark.parametrize("key", ["contact.weakening_m", "joints.weakening_m"])
+def test_a_fall_of_friction_within_microslip_is_refused_with_what_to_give(key):
+    loose = {"container.joints": "loose"} if key.startswith("joints") else {}
+    unknown = key.replace("contact.", "uncertainty.").replace("joints.", "uncertainty.joints_")
+    for value in (0.0, LEAST_WEAKENING, 1e-3):
+        named_case("seed_stack", {key: value, unknown: [0.0, max(value, LEAST_WEAKENING)]} | loose)
+    for changes in ({key: 0.99 * LEAST_WEAKENING}, {unknown: [0.0, 0.99 * LEAST_WEAKENING]}):
+        with pytest.raises(
+            CaseError, match=r"less than 0\.00011 m \(0\.0001 of the width\).* give 0\.00011 m or more"
+        ):
+            named_case("seed_stack", changes | loose)
+    assert MICROSLIP == SLIDING
