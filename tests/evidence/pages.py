@@ -66,6 +66,7 @@ def verification_lines(document: Document) -> list[str]:
         for title, some in by(rows, "check"):
             lines += [
                 f"  {title}  ({seconds[title]:.1f} s)",
+                f"    {some[0]['inputs']}",
                 *(line for row in some for line in _row_lines(row)),
             ]
         groups.append((topic.upper().ljust(WIDE) + HEADING, lines))

@@ -1,4 +1,4 @@
-"""A rigid block on discrete springs, integrated by scipy: the reference for restitution where Housner's is none.
+"""A rigid block on discrete springs: the reference for restitution where Housner's is none, and for corner forces.
 
 Springs and dashpots under the base that never pull, and friction regularised in velocity, all over the mass. It
 shares with the program the data of the bed only: no law, no time stepping. x to the right, z up, rotation > 0
@@ -64,3 +64,63 @@ def next_turning_point(
     )
     angles = solution.y[2]
     return float(-(angles * math.copysign(1.0, rotation)).min())
+
+
+def largest_corner_force(
+    block: RigidBlock,
+    *,
+    mass: float,
+    stiffness: float,
+    relaxation_time: float,
+    friction: float,
+    window: float,
+    rotation: float,
+    duration: float,
+    step: float = 4e-6,
+) -> float:
+    """Largest mean force on a corner over a window that slides with the time [N].
+
+    The block stands on two corners, each a spring with a dashpot that never pulls, and a like one along x that slides
+    at `friction` times the force. Explicit steps of one size, no step control.
+
+    Args:
+        mass: [kg]; stiffness: of the spring of one corner [N/m]; relaxation_time: dashpot over spring [s].
+        window: [s].
+        rotation: from which the block is released at rest, its corner as deep as it carries the weight [rad].
+        duration: [s]; step: [s].
+    """
+    below, half, inertia = (
+        block.centroid_height,
+        block.half_width,
+        (block.inertia_ratio - 1.0) * block.radius**2 * mass,
+    )
+    x, turned, vx, vz, spin = 0.0, rotation, 0.0, 0.0, 0.0
+    z = half * math.sin(abs(turned)) + below * math.cos(turned) - mass * block.gravity / stiffness
+    anchors: list[float | None] = [None, None]
+    forces = np.zeros((round(duration / step), 2))
+    for row in forces:
+        sin, cos = math.sin(turned), math.cos(turned)
+        shear = normal = moment = 0.0
+        for corner, side in enumerate((-half, half)):
+            arm_x, arm_z = side * cos - below * sin, -side * sin - below * cos
+            press = stiffness * (-(z + arm_z) - relaxation_time * (vz - spin * arm_x))
+            if z + arm_z >= 0.0 or press <= 0.0:
+                anchors[corner] = None
+                continue
+            at, speed = x + arm_x, vx + spin * arm_z
+            anchor = at if anchors[corner] is None else anchors[corner]
+            hold = -stiffness * (at - anchor + relaxation_time * speed)
+            if abs(hold) > friction * press:
+                hold = math.copysign(friction * press, hold)
+                anchor = at + hold / stiffness + relaxation_time * speed
+            anchors[corner], row[corner] = anchor, press
+            shear, normal, moment = shear + hold, normal + press, moment + hold * arm_z - press * arm_x
+        vx, vz, spin = (
+            vx + step * shear / mass,
+            vz + step * (normal / mass - block.gravity),
+            spin + step * moment / inertia,
+        )
+        x, z, turned = x + step * vx, z + step * vz, turned + step * spin
+    count = round(window / step)
+    sums = np.cumsum(np.vstack([np.zeros((1, 2)), forces]), axis=0)
+    return float((sums[count:] - sums[:-count]).max()) / count

@@ -6,6 +6,10 @@ from dataclasses import dataclass
 from evidence.findings import Finding
 
 Findings = Iterator[Finding]
+#: what of the inputs of a reference comes from the program, one sentence a check
+NOTHING = "No input of the reference comes from the program."
+MESH = "Mass centre, inertia and base of the block come from the program's mesh; held by hand under statics."
+PROGRAM = "The reference is another run of the program."
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -16,8 +20,11 @@ class Check:
     title: str
     findings: Callable[[], Iterable[Finding]]
     quick: bool = True  #: computed with `--quick` as well
+    inputs: str = NOTHING  #: of the references, those that come from the program
 
 
-def check(topic: str, title: str, *, quick: bool = True) -> Callable[[Callable[[], Findings]], Check]:
+def check(
+    topic: str, title: str, *, quick: bool = True, inputs: str = NOTHING
+) -> Callable[[Callable[[], Findings]], Check]:
     """Make a check of a generator; `verification.suite` collects the checks of a module."""
-    return lambda findings: Check(topic=topic, title=title, findings=findings, quick=quick)
+    return lambda findings: Check(topic=topic, title=title, findings=findings, quick=quick, inputs=inputs)

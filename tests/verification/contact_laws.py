@@ -31,7 +31,9 @@ BAR_SPEED = 0.02
 LIGHT: runs.Keys = {"gravity_m_s2": 0.01, "container.weight_N": 100.0}
 
 
-@check("contact", "contact patch test on a graded base")
+@check(
+    "contact", "contact patch test on a graded base", inputs="Mass and width of the block come from the mesh."
+)
 def patch_test() -> Findings:
     """A homogeneous elastic block stands on a graded flat base with uniform pressure; nu = 0."""
     mesh = graded_block()
@@ -73,7 +75,7 @@ def penetration() -> Findings:
     )
 
 
-@check("contact", "flat drops")
+@check("contact", "flat drops", inputs="The stiffness of the base is the model's.")
 def flat_drops() -> Findings:
     """Largest floor force of a flat drop without damping."""
     source = "m g + sqrt((m g)^2 + k m v^2)"

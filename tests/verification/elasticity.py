@@ -26,7 +26,11 @@ MANUFACTURED = "manufactured solution"
 NAFEMS = "NAFEMS TNSB Rev. 3 (1990)"
 
 
-@check("elasticity", "patch tests")
+@check(
+    "elasticity",
+    "patch tests",
+    inputs="The stress expected is of the program's law at one point; its elements are checked against it.",
+)
 def patch_tests() -> Findings:
     """A homogeneous state, prescribed on the whole boundary, at finite strain and rotation: reproduced exactly."""
     gradient = turn(0.5) @ np.array([[1.03, 0.02], [-0.01, 0.96]]) - np.eye(2)
@@ -52,7 +56,7 @@ def patch_tests() -> Findings:
         )
 
 
-@check("elasticity", "rigid rotation")
+@check("elasticity", "rigid rotation", inputs="The energy of linear strain is of the program's stiffness.")
 def rigid_rotation() -> Findings:
     """A rotation by 0.3 rad stores no strain energy; linear strain would."""
     for order in (1, 2):

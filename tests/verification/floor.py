@@ -14,7 +14,7 @@ import runs
 from evidence.findings import Convergence, analytic, computed
 from floors import sine_floor
 from verification.bodies import Flight, free_run
-from verification.checks import Findings, check
+from verification.checks import MESH, Findings, check
 from verification.restitution import peaks
 from verification.rocking import difference_of_rotation
 from verification.sliding import slip_of_a_driven_box
@@ -123,7 +123,7 @@ def slab(stiffness: float, cap: float, ratio: float | None = None) -> runs.Keys:
     return keys if ratio is None else keys | {"contact.damping_ratio": ratio}
 
 
-@check("floor", "the work of crushing")
+@check("floor", "the work of crushing", inputs="Forces, indentations and cap are those of the run.")
 def work_of_crushing() -> Findings:
     """The ledger's work against the area under force and indentation, added up from the outside; energy closes."""
     driven = runs.harmonic(4.0 / OMEGA**2, OMEGA) | {"solver.duration_s": 3.0}
@@ -156,7 +156,7 @@ def area_under_the_curves(model: Model) -> float:
     return area
 
 
-@check("floor", "restitution of a corner that crushes")
+@check("floor", "restitution of a corner that crushes", inputs=MESH)
 def restitution() -> Findings:
     """Housner's whatever the cap, the stiffness and the dashpot, to what the springs hold at the cap and give back."""
     free: runs.Keys = runs.TILTED | {"contact.mu_static": 0.8, "solver.duration_s": 2.5}
@@ -205,7 +205,7 @@ def slider_on_slope() -> Findings:
         yield slip_of_a_driven_box(f"slope {per_cent:g} %", slope, floor, runs.GRAVITY * math.cos(angle))
 
 
-@check("floor", "a block on a slope")
+@check("floor", "a block on a slope", inputs=f"{MESH} So does the part of gravity along the slope.")
 def block_on_slope() -> Findings:
     """Rotation of the stack up to the first impact, driven on a slope."""
     for per_cent, (name, keys) in product((3.0, -3.0), runs.STACKS.items()):

@@ -11,7 +11,7 @@ import numpy as np
 from evidence.findings import Convergence, analytic, computed
 from floors import sine_floor, still_floor
 from runs import FRICTION, SLENDERNESS, SOLID, STACK, TILTED, Keys, harmonic, run
-from verification.checks import Findings, check
+from verification.checks import MESH, PROGRAM, Findings, check
 
 from contact.reference.planar_block import PlanarBlock, simulate_planar_block
 from contact.reference.planar_motion import PlanarMode
@@ -26,7 +26,7 @@ SHELL = SOLID | {"container.wall_m": 0.008, "container.section": "shell"}
 PLANAR_BLOCK = "event-driven planar block"
 
 
-@check("limits", "limit of a rigid container")
+@check("limits", "limit of a rigid container", inputs=PROGRAM)
 def rigid_container() -> Findings:
     """The stiffer the container on the same floor, the nearer to the rigid model: like 1/E."""
     penalty = build_model(STACK.with_values(RELEASED)).penalty
@@ -46,7 +46,7 @@ def rigid_container() -> Findings:
     )
 
 
-@check("limits", "limit of a stiff floor")
+@check("limits", "limit of a stiff floor", inputs=MESH)
 def stiff_floor() -> Findings:
     """The stiffer the floor, the nearer the rigid model to the analytic block: like 1/penalty."""
     default, errors = build_model(STACK).penalty, {}
@@ -67,7 +67,7 @@ def stiff_floor() -> Findings:
     )
 
 
-@check("limits", "limit of many modes")
+@check("limits", "limit of many modes", inputs=PROGRAM)
 def many_modes() -> Findings:
     """A shell through its first impact: the more elastic modes, the nearer to very many."""
     keys = SHELL | RELEASED | {"solver.step_s": 2.5e-4, "solver.duration_s": 1.3}
@@ -87,7 +87,7 @@ def many_modes() -> Findings:
     )
 
 
-@check("limits", "rest under the stated motion")
+@check("limits", "rest under the stated motion", inputs="The tolerance of slip is of the model's stiffness.")
 def stated_motion() -> Findings:
     """The stack under 50 mm at 6.928 rad/s, below uplift: it stays at rest for ten cycles."""
     models: dict[str, Keys] = {"rigid": {}, "solid, 20 modes": SOLID, "shell of 8 mm, 20 modes": SHELL}
@@ -142,7 +142,12 @@ def slide_rocking() -> Findings:
     yield computed(case, "slip after 2.5 s [m]", slip, 81.1e-3, source=PLANAR_BLOCK, relative=0.02)
 
 
-@check("limits", "full model", quick=False)
+@check(
+    "limits",
+    "full model",
+    quick=False,
+    inputs="First impact and restitution: nothing; the other references are runs of the reduced model.",
+)
 def full_model() -> Findings:
     """Every node free to move: first impact and velocity ratio, against exact values and the reduced model."""
     keys = TILTED | {
@@ -171,7 +176,7 @@ def full_model() -> Findings:
     yield computed(case, compared, largest(difference[before]), source=source, absolute=1e-3)
 
 
-@check("limits", "a shell refined", quick=False)
+@check("limits", "a shell refined", quick=False, inputs=PROGRAM)
 def refined_shell() -> Findings:
     """The default motion of the stack, a shell: it depends on no number of the discretisation.
 
@@ -262,7 +267,7 @@ def start_at_rest() -> Findings:
     )
 
 
-@check("limits", "full model through an impact", quick=False)
+@check("limits", "full model through an impact", quick=False, inputs=PROGRAM)
 def full_model_through_an_impact() -> Findings:
     """Every node of the shell free to move, through its first impact: the same motion as with 20 modes.
 

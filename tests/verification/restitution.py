@@ -15,7 +15,7 @@ from block_on_springs import evenly_spaced, next_turning_point
 from evidence.findings import Convergence, analytic, computed
 from floors import one_sine_pulse
 from runs import GRAVITY, SOLID, STACK, Finished, Keys, finish, pulse, run
-from verification.checks import Findings, check
+from verification.checks import MESH, Findings, check
 from verification.rocking import turning_points
 
 from contact.interface.penalty import contact_frequency
@@ -92,7 +92,7 @@ def stiffness_of_the_container() -> Findings:
         yield housner(case, COMPARED, peaks(done), 0.8945, absolute=SOLID_TOLERANCE)
 
 
-@check("restitution", "centroids and columns")
+@check("restitution", "centroids and columns", inputs=MESH)
 def centroids_and_columns() -> Findings:
     """Boxes filled below and above their middle, two boxes and eight, and a column 1:20: as Housner's."""
     for centroid in (0.25, 0.35, 0.5, 0.65):
@@ -157,7 +157,7 @@ def stated() -> Findings:
             )
 
 
-@check("restitution", "a stated restitution under a pulse")
+@check("restitution", "a stated restitution under a pulse", inputs=MESH)
 def stated_under_a_pulse() -> Findings:
     """Largest rotation of the stack under one sine, with less and more restitution, on both floors."""
     slab = {"floor.preset": "concrete C25/30", "floor.corner_patch_m": [0.008, 1.1]}
@@ -182,7 +182,12 @@ def stated_under_a_pulse() -> Findings:
         )
 
 
-@check("restitution", "a bed of springs", quick=False)
+@check(
+    "restitution",
+    "a bed of springs",
+    quick=False,
+    inputs=f"{MESH} So do the stiffness and the dashpots of the springs.",
+)
 def bed_of_springs() -> Findings:
     """A flat base keeps more than Housner's: as a rigid block on springs that shares no code, by two turning points."""
     beds: tuple[tuple[str, Keys, tuple[float, ...]], ...] = (

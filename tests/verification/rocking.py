@@ -18,7 +18,7 @@ from closed_forms_rocking import (
 )
 from evidence.findings import analytic, computed
 from floors import sine_floor
-from verification.checks import Findings, check
+from verification.checks import MESH, Findings, check
 
 from contact.reference.floor_acceleration import FloorAcceleration
 from contact.reference.rigid_block import RigidBlock
@@ -29,7 +29,7 @@ BLOCK = RigidBlock.homogeneous(width=1.1, height=4.0)
 MODELS: dict[str, runs.Keys] = {"rigid stack": {}, "stiff solid stack, 20 modes": runs.STIFF_SOLID}
 
 
-@check("rocking", "first impact after release")
+@check("rocking", "first impact after release", inputs=MESH)
 def first_impacts() -> Findings:
     """Time from release to the first impact."""
     source = "quarter period, exact (elliptic integral)"
@@ -45,7 +45,7 @@ def first_impacts() -> Findings:
         yield analytic(case, "first impact [s]", impact, 0.700737, source=source, relative=3e-3)
 
 
-@check("rocking", "decay of free rocking")
+@check("rocking", "decay of free rocking", inputs=MESH)
 def free_decay() -> Findings:
     """Turning points of free rocking, cos(al - theta_n) - cos al = e^(2n) [cos(al - theta_0) - cos al]."""
     source = "energy relation with Housner's e"
@@ -67,7 +67,7 @@ def free_decay() -> Findings:
         yield analytic(case, compared, peaks[worst], exact[worst], source=source, relative=0.03, note=note)
 
 
-@check("rocking", "equation of motion on a moving floor")
+@check("rocking", "equation of motion on a moving floor", inputs=MESH)
 def equation_of_motion() -> Findings:
     """Rotation under a moving floor, before any impact."""
     for name, factor, omega, until in (("grows", 1.5, 1.88337, 1.2), ("returns", 1.2, 6.928, 0.35)):

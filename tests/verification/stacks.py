@@ -15,7 +15,7 @@ from floors import half_sine_pulse, sine_floor
 from rigid_slider import RigidSlider, simulate_sliding
 from two_block_motion import TwoBlockMotion, simulate_two_blocks
 from two_blocks import Pattern, StackedBlock, TwoBlockStack, energy
-from verification.checks import Findings, check
+from verification.checks import PROGRAM, Findings, check
 
 from fem.results.history import History
 
@@ -120,7 +120,7 @@ def slider_at_joint() -> Findings:
         )
 
 
-@check("stacks", "rough joints")
+@check("stacks", "rough joints", inputs=PROGRAM)
 def rough_joints() -> Findings:
     """Joints that neither slide nor open: the bolted stack, through its impacts."""
     motion = runs.harmonic(4.0 / OMEGA**2, OMEGA) | {"contact.mu_static": 1.0, "output.history_s": 0.005}
@@ -199,7 +199,11 @@ def impacts() -> Findings:
         )
 
 
-@check("stacks", "momentum, energy and mirror image")
+@check(
+    "stacks",
+    "momentum, energy and mirror image",
+    inputs="The forces of the floor are those of the run, the mirror image is another one.",
+)
 def balance() -> Findings:
     """What the impacts of two boxes keep and lose."""
     pair = BoxPair(boxes=(TALL, SLENDER), peak=runs.GRAVITY, length=0.15, duration=1.0)

@@ -93,7 +93,7 @@ def run_suite(checks: Sequence[Check], *, quick: bool, reporter: ScreenReporter)
     for number, check in enumerate(checks, start=1):
         reporter.message(f"[{number}/{len(checks)}] {check.topic}: {check.title}")
         # `room` is the former name of `topic`
-        names = {"room": check.topic, "topic": check.topic, "check": check.title}
+        names = {"room": check.topic, "topic": check.topic, "check": check.title, "inputs": check.inputs}
         findings, taken = _compute(check)
         rows += [
             names

@@ -12,7 +12,7 @@ import runs
 from evidence.findings import Convergence, Finding, analytic
 from meshes import graded_block
 from verification.bodies import Flight, free_run, full_body
-from verification.checks import Findings, check
+from verification.checks import PROGRAM, Findings, check
 from verification.manufactured import moving_body_error
 
 from contact.motion.kernel import PIECEWISE, FloorMotion, as_floor_motion
@@ -52,7 +52,12 @@ def linear_order() -> Findings:
         )
 
 
-@check("time", "order at large rotation", quick=False)
+@check(
+    "time",
+    "order at large rotation",
+    quick=False,
+    inputs="The source of the motion is that of the program's elements: the error is that of time stepping alone.",
+)
 def large_rotation_order() -> Findings:
     """Order 2 on a body that rotates by more than a radian while strained, with a manufactured source."""
     for name in ("generalised-alpha 0.5", TRAPEZOIDAL):
@@ -110,7 +115,7 @@ def energy_closure() -> Findings:
         )
 
 
-@check("time", "spin", quick=False)
+@check("time", "spin", quick=False, inputs="The mass matrix is the program's.")
 def spin() -> Findings:
     """A block thrown spinning: it keeps its angular momentum, and rotates evenly if it is stiff."""
     turn = 2.0 * math.pi / SPIN
@@ -133,7 +138,7 @@ def spin() -> Findings:
     )
 
 
-@check("time", "mirror symmetry")
+@check("time", "mirror symmetry", inputs=PROGRAM)
 def mirror() -> Findings:
     """The floor's motion mirrored: the container's motion mirrored."""
     note = "sin(Omega t + pi) is -sin(Omega t) except for rounding"
@@ -145,7 +150,7 @@ def mirror() -> Findings:
         yield same_rotation(case, plain, -mirrored.history["rotation_rad"], source="symmetry", note=note)
 
 
-@check("time", "scaling")
+@check("time", "scaling", inputs=PROGRAM)
 def scaling() -> Findings:
     """Lengths times four, times times two: the same rotation."""
     scaled = {
@@ -164,7 +169,7 @@ def scaling() -> Findings:
     yield same_rotation(case, plain, enlarged.history["rotation_rad"], source="dimensional analysis")
 
 
-@check("time", "Galilean invariance")
+@check("time", "Galilean invariance", inputs=PROGRAM)
 def galilei() -> Findings:
     """A constant velocity of 3 m/s added to the floor and the container: the same relative motion."""
     still, travelling = (

@@ -10,7 +10,7 @@ import numpy as np
 import runs
 from evidence.findings import analytic, computed
 from floors import sine_floor
-from verification.checks import Findings, check
+from verification.checks import MESH, PROGRAM, Findings, check
 from verification.rocking import difference_of_rotation
 from verification.sliding import slip_of_a_driven_box
 
@@ -27,7 +27,7 @@ def vertical(keys: runs.Keys) -> runs.Keys:
     return {key.replace("motion.", "vertical."): value for key, value in keys.items()}
 
 
-@check("vertical", "a constant vertical acceleration")
+@check("vertical", "a constant vertical acceleration", inputs=PROGRAM)
 def another_gravity() -> Findings:
     """A floor that accelerates upward by a is a floor at rest under gravity g + a, up to the third impact."""
     driven = (
@@ -65,7 +65,7 @@ def slider_under_both() -> Findings:
         )
 
 
-@check("vertical", "a block under both motions")
+@check("vertical", "a block under both motions", inputs=MESH)
 def block_under_both() -> Findings:
     """Rotation of the stack under harmonic motions along x and upward: up to the first impact, and its first peaks.
 
