@@ -76,7 +76,7 @@ def largest_corner_force(
     window: float,
     rotation: float,
     duration: float,
-    step: float = 4e-6,
+    step: float = 8e-6,
 ) -> float:
     """Largest mean force on a corner over a window that slides with the time [N].
 
