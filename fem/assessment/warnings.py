@@ -10,7 +10,7 @@ from collections.abc import Callable
 from fem.assessment.motion_words import doubts
 from fem.assessment.ranges import plastic_corner
 from fem.assessment.sure_words import sureness_in_words
-from fem.assessment.sureness import REGIME_UNSURE, UNSURE
+from fem.assessment.sureness import REGIME_UNSURE, UNSURE, numerical
 from fem.assessment.verdict import GAIN_LIMIT, LOSS_LIMIT, LOSS_SHARE_LIMIT
 from fem.case.case import Case
 from fem.case.tables.duration import MOST_FREE_MOTION, ends_at_rest, longest_time
@@ -23,6 +23,10 @@ from fem.results.outcome import Outcome
 ROCKING_RATIO = 0.01
 NEAR = 0.5  #: share of a limit from which there is a warning
 REJECTED_SHARE = 0.05
+SLIPPED, SCATTER = (
+    1e-3,
+    0.2,
+)  #: slip over the width, and its change over the larger one, from which it is said
 FLIGHT = 0.05  #: share of the rocking in the air from which it is said
 ROCKS = (Outcome.ROCK, Outcome.SLIDE_ROCK)
 #: largest von Mises stress over Young's modulus up to which `reduced` and `full` agree within 5 %: blocks of one to ten
@@ -99,6 +103,22 @@ def it_bounces(result: run_result.RunResult, case: Case) -> str | None:
     return (
         f"it bounces: nothing touches the floor for {share:.0%} of the time in which it rocks{span}. What its fill and "
         f"its walls take of a landing decides that{dashpot}"
+    )
+
+
+def slip_follows_the_steps(result: run_result.RunResult, case: Case) -> str | None:
+    """Steps ten times as accurate give another slip: a landing decides how far it slides."""
+    band, own = _verdict(result).band or run_result.Band(), _verdict(result).max_slip_m
+    finer = next((member.max_slip_m for member in band.members[1:] if numerical(member)), None)
+    if own is None or finer is None or band.max_slip_m is None:
+        return None
+    low, high = band.max_slip_m
+    small = max(own, finer) < SLIPPED * case.stack[0].width or abs(own - finer) < SCATTER * max(own, finer)
+    if small or not low <= finer <= high:  # it fell, or destroyed a corner
+        return None
+    return (
+        f"slip scatters with the accuracy of the steps: {1e3 * own:.3g} mm, and {1e3 * finer:.3g} mm with "
+        "solver.energy_tolerance ten times tighter; its range holds both"
     )
 
 
@@ -278,6 +298,7 @@ CHECKS: tuple[Callable[[run_result.RunResult, Case], str | None], ...] = (
     verdict_is_unsure,
     friction_decides,
     it_bounces,
+    slip_follows_the_steps,
     motion_is_doubtful,
     it_still_moves,
     energy_is_near_its_limits,

@@ -1,9 +1,11 @@
 """How sure a verdict is, which inputs decide, a range across zero, and the static rule or the run."""
 
 import pytest
+from cases import named_case
 
 from fem.assessment.sure_words import sureness_in_words
 from fem.assessment.sureness import judged
+from fem.assessment.warnings import slip_follows_the_steps
 from fem.case.uncertainty import InputChange
 from fem.results.figures import BoxResult
 from fem.results.run_result import (
@@ -81,6 +83,19 @@ def test_the_members_say_how_sure_a_verdict_is_and_what_decides(found, sure, dec
     judgement = verdict(*found)
     assert (judgement.sure, judgement.decided_by) == (sure, decided_by)
     assert judgement.band.unsure is (sure == "unsure")
+
+
+@pytest.mark.parametrize(
+    ("figures", "said"),
+    [({"max_slip_m": 0.3}, True), ({"max_slip_m": 0.19}, False), (FELL | {"max_slip_m": 0.3}, False)],
+)
+def test_a_slip_that_scatters_with_the_accuracy_is_said_and_is_within_its_range(figures, said):
+    judgement = verdict((HALF, {}), (FINE, figures))
+    words = slip_follows_the_steps(RunResult(status="completed", verdict=judgement), named_case("least"))
+    assert (words is not None) is said
+    if said:
+        assert judgement.band.max_slip_m == (0.2, 0.3)
+        assert "200 mm, and 300 mm" in words
 
 
 def boxes(**changed):
