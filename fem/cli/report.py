@@ -18,7 +18,7 @@ SUFFIXES = (".html", ".htm")
 PAGES = {
     "sweep.json": "fem.report.study_page:sweep_report",
     "ensemble.json": "fem.report.study_page:ensemble_report",
-    "response.json": "fem.report.response_page:response_report",
+    "response.json": "fem.report.study_page:response_report",
     "study.json": "fem.cli.evidence:paper_report",
     "assess.json": "fem.site.page:site_report",
     "hall.json": "fem.report.study_page:hall_report",

@@ -1,9 +1,8 @@
 """Pages: one self-contained HTML file each, without network and without other files.
 
-A page has a template that reads like it and extends `page.html.j2`, or is a list of sections, set by
-`sections.html.j2`. Text from users is escaped everywhere: in
-the page, in JSON inside a script element, in a style sheet. The content security policy of the page forbids the
-browser to load anything and to run any script but those of the page.
+A page has a template that reads like it and extends `page.html.j2`. Text from users is escaped everywhere: in the page,
+in JSON inside a script element, in a style sheet. The content security policy of the page forbids the browser to load
+anything and to run any script but those of the page.
 """
 
 import base64
@@ -22,7 +21,6 @@ from markupsafe import Markup, escape
 
 from fem.html.drawing import require_drawing
 from fem.html.formula import formula_markup
-from fem.html.sections import Block, Written
 from fem.html.units import (
     ABSENT,
     figure_cell,
@@ -34,15 +32,10 @@ from fem.html.units import (
     short,
     typeset,
 )
-from fem.results.figures import FIGURES, Shown
+from fem.results.figures import FIGURES
 from fem.results.json_block import JsonBlock
 
 TEMPLATES = "templates"
-
-
-def _two_figures(value: float | None, figure: Shown) -> str:
-    """A figure of a run as far as it is known."""
-    return ABSENT if value is None else typeset(figure.unit.text(value, figures=2, bare=True))
 
 
 #: what templates set values with: numbers and units of `fem.html.units`, symbols, and columns of declared figures
@@ -59,7 +52,9 @@ FILTERS = {
     "short": short,
     "svg": lambda text, name: svg_element(text, label=name.replace("-", " "), prefix=name),
     "symbols": partial(formula_markup, prose=True),
-    "two": _two_figures,
+    "two": lambda value, figure: (
+        ABSENT if value is None else typeset(figure.unit.text(value, figures=2, bare=True))
+    ),
     "typeset": typeset,
     "used": lambda value, figures: "∞" if value is None else number(value, figures=figures),
 }
@@ -95,8 +90,8 @@ class Page:
     kind: str  #: above the title
     title: str
     name: str  #: of what it shows; a copy of the page is named after it
-    sections: Sequence[Block] = ()  #: of a page without a template of its own
-    introduction: Sequence[Block] = ()  #: under the title
+    content: str = ""  #: markup, of a page without a template of its own
+    introduction: str = ""  #: markup under its title
     signature: Signature | None = None  #: None of a page that nobody signs
     hash: str = ""  #: of what it shows, at the foot of every printed sheet
     scripts: Sequence[str] = ()  #: file names of the scripts that run in it, in order
@@ -121,27 +116,21 @@ def html_of(
     environment = _environment().overlay()
     environment.filters = {**environment.filters, **(filters or {})}
     signed = ("signature.js",) if page.signature else ()
-    scripts, version = (
-        [template_text(name) for name in (*page.scripts, *signed)],
-        metadata.version("unanchored"),
-    )
+    scripts = [template_text(name) for name in (*page.scripts, *signed)]
+    hashes = (base64.b64encode(hashlib.sha256(text.encode()).digest()).decode() for text in scripts)
+    version = metadata.version("unanchored")
     return environment.get_template(template).render(
         shown,
         page=page,
         signature=page.signature,
         style=template_text("page.css"),
         scripts=scripts,
-        script_policy=_policy(scripts),
+        script_policy=" ".join(f"'sha256-{digest}'" for digest in hashes) or "'none'",
         data={name: _json_in_page(value) for name, value in page.data.items()},
         foot=f"unanchored {version}   {page.hash[:12]}".rstrip(),
         version=version,
         today=dt.date.today().isoformat(),
     )
-
-
-def markup_of(template: str, **shown: Any) -> Markup:
-    """A part of a page, by a template of its own; arguments as for `html_of`."""
-    return Markup(_environment().get_template(template).render(shown))
 
 
 @cache
@@ -178,17 +167,7 @@ def _environment() -> Environment:
         lstrip_blocks=True,
     )
     environment.filters |= FILTERS | {"css_string": _css_string}
-    environment.globals["draw"] = _draw
     return environment
-
-
-def _draw(block: Block) -> Markup:
-    """A block as HTML, by the macro that is named after its class."""
-    if isinstance(block, Written):
-        return Markup(_environment().get_template(block.template).render(block.values))
-    name = "str" if isinstance(block, str) else type(block).__name__.lower()
-    macros = _environment().get_template("sections.html.j2").module
-    return Markup(getattr(macros, name)(block))
 
 
 def _json_in_page(value: Any) -> Markup:
@@ -203,11 +182,3 @@ def _css_string(text: str) -> Markup:
     """Text as a CSS string: everything but letters and digits by its code point, which would swallow a space."""
     signs = (sign if sign.isalnum() else f"\\{ord(sign):06x}" for sign in text)
     return Markup(f'"{"".join(signs)}"')  # escaped here
-
-
-def _policy(scripts: Sequence[str]) -> str:
-    """Which scripts may run: those of the page, by their hashes."""
-    if not scripts:
-        return "'none'"
-    hashes = (base64.b64encode(hashlib.sha256(text.encode()).digest()).decode() for text in scripts)
-    return " ".join(f"'sha256-{digest}'" for digest in hashes)

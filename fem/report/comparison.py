@@ -10,8 +10,6 @@ from fem.assessment.summary import own_motion_name, rule_says, run_lifted, run_s
 from fem.case.case import Case
 from fem.case.tables.boxes import Box
 from fem.case.tables.motion_tables import FloorMotionTable
-from fem.html import sections as html
-from fem.html.page import markup_of
 from fem.html.units import degrees, number, quantity, short, typeset
 from fem.model.container import modes_of_a_body
 from fem.model.static_checks import StaticChecks
@@ -163,11 +161,6 @@ def _duration(case: Case) -> str:
     if case.solver.duration_s == "auto":
         return "to the end of the motion, and on until rest or a fall"
     return f"{short(case.solver.duration_s)} s"
-
-
-def limits_section(case: Case) -> html.Html:
-    """What a study of a case rests on, and what it leaves out."""
-    return html.Html(markup_of("limits.html.j2", case=case, numerics=None, joints_below=False))
 
 
 def motion_in_words(motion: FloorMotionTable) -> str:

@@ -1,37 +1,30 @@
-"""The page of a sweep, an ensemble or a list of containers, by one template.
+"""The page of a sweep, an ensemble, a response curve or a list of containers, by one template.
 
 `study.html.j2` reads like the page; here is what it is handed: the result, the columns of tables, and filters.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
 from fem.assessment.margin_words import FACTOR
 from fem.assessment.sure_words import deciding_in_words
 from fem.case.case import Case, load_case
-from fem.html import sections as html
-from fem.html.page import Page, Signature, html_of
+from fem.html.page import Page, Signature, html_of, svg_element
 from fem.html.units import ABSENT, figure_cell, figure_head, millimetres, number, ratio, short, typeset
 from fem.records.units import STANDARD_GRAVITY
-from fem.report.comparison import case_rows, limits_section
-from fem.report.studies import (
-    Again,
-    again_from_files,
-    axes_table,
-    drawings,
-    repeat_section,
-    text_of,
-    unfinished,
-)
-from fem.report.sweep_map import cell_map, counts, map_data
+from fem.report.comparison import case_rows
+from fem.report.sweep_map import counts, map_data, shown_quantities
+from fem.response.answer import lasting_in_words, range_of, response_answer, stable_in_words
+from fem.response.result import ResponseResult
 from fem.results.errors import FolderError
 from fem.results.figures import DURATION, PGA, PGD, PGV, SLIPPED, TURNED, Place, Shown, figures_of
-from fem.results.kinds import ENSEMBLE, HALL
+from fem.results.kinds import ENSEMBLE, HALL, RESPONSE
 from fem.results.outcome import COUNTED, ROCKING, SLIDING, Outcome
 from fem.runtime import units
 from fem.runtime.identity import command_line
@@ -46,8 +39,8 @@ from fem.study.answers import (
     interval_in_words,
     ranges_in_words,
 )
-from fem.study.axes import axis_label, in_words, unit_in_words
-from fem.study.driver import StudyResult, read_study
+from fem.study.axes import Axis, axis_label, in_words, unit_in_words
+from fem.study.driver import COMPLETED, StudyResult, read_study
 from fem.study.fragility import EnsembleResult
 from fem.study.list_file import HallResult
 from fem.study.motion_outcomes import MEAN_TURNED, WORST_TURNED, motions_at
@@ -59,14 +52,22 @@ from fem.study.table import read_rows
 A_ROW = Mapping[str, Any]
 #: head, cells, look, and whether it is left out where all cells are empty; the last two may be missing
 Column = tuple[Any, ...]
-N = html.NUMBER
+#: how to repeat a study: in words, its command, and names and texts of the files that it needs
+Again = tuple[str, str, Sequence[tuple[str, str]]]
+N = "number"
+MOST_DRAWING_BYTES = 400_000  #: of a drawing, as SVG
 MOST_POINTS = 12  #: beside one another in the table of outcomes
 STOOD = Shown("slip of those that stood", units.MILLIMETRES)
+CODE, LINK = Markup("<code>{}</code>"), Markup('<a href="#{}">{}</a>')
+TARGET = Markup('<span id="row-{}">{}</span>')
 SWATCH = Markup('<span class="swatch" style="background:{}"></span>{}')
 PEAK = "peak_acceleration_m_s2"
 #: what is shown of a motion
 MEASURES = {PEAK: PGA, "peak_velocity_m_s": PGV, "peak_displacement_m": PGD, "significant_s": DURATION}
 LOOKS = {"overturned": "bad", "invalid": "bad", "failed": "bad"}
+#: names of the result of a response curve that are options of its command, but for their underscores
+OPTIONS = ("count", "scale", "order", "starts", "settle", "observe", "tolerance", "largest_period")
+RENAMED = {"--from": "first_Hz", "--to": "last_Hz", "--hold": "held", "--limit-slip": "limit_slip_m"}
 
 
 def sweep_report(folder: Path, *, signature: Signature | None = None) -> str:
@@ -79,7 +80,7 @@ def sweep_report(folder: Path, *, signature: Signature | None = None) -> str:
     table = open_sweep(folder)
     info, case = table.info, load_case(str(folder / "base.toml"))
     answer, name = sweep_answer(table, folder), info.sweep or folder.name
-    data, tally = map_data(table, folder), counts(table)
+    data, tally, labels = map_data(table, folder), counts(table), [axis_label(axis) for axis in table.axes]
     counted = ", ".join(f"{count} {label}" for label, _, count, _ in tally)
     computed = int((table["status"] != "").sum())
     failed = np.flatnonzero(np.asarray(table["status"]).astype(str) == "failed")[:20].tolist()
@@ -95,11 +96,13 @@ def sweep_report(folder: Path, *, signature: Signature | None = None) -> str:
         scripts=["map.js"],
         data={"sweep": data},
         sentence=answer.sentence if answer else None,
-        count=f"{computed} of {info.cells} cells{unfinished(info)}: {counted}.",
-        drawings=drawings(folder, [name for name in info.maps if not name.endswith("_print.svg")], "sweep"),
+        count=f"{computed} of {info.cells} cells{_unfinished(info)}: {counted}.",
+        figures=_figures(folder, [name for name in info.maps if not name.endswith("_print.svg")], "sweep"),
         deciding=sorted((info.decided_by or {}).items(), key=lambda pair: -pair[1]),
-        cells=cell_map(table, data),
-        rows=len(answer.rows) if answer else 0,
+        quantities=shown_quantities(data),
+        axis_labels=list(enumerate(labels)),
+        longest=sorted(sorted(range(len(labels)), key=lambda k: -len(table.axes[k].values))[:2]),
+        answer_rows=len(answer.rows) if answer else 0,
         answers=_answers_of_sweep(answer) if answer and answer.others else [],
         counts=[
             ("outcome", [SWATCH.format(colour, label) for label, colour, *_ in tally]),
@@ -108,13 +111,13 @@ def sweep_report(folder: Path, *, signature: Signature | None = None) -> str:
         ],
         failures=[(cell, table["reason"][cell]) for cell in failed],
         thresholds=_thresholds(folder, table),
-        axes_table=axes_table(table.axes, info.derived),
+        axes=_axes(table.axes, info.derived),
         provenance=[
             ("sweep", f"{name}, {info.status}, model {info.model}"),
             ("sweep hash", info.sweep_hash),
             ("base hash", info.base_hash),
         ],
-        again=again_from_files(folder, study="sweep", name=name, case=case),
+        again=_again(folder, "sweep", name, case),
         **(_motions_of_sweep(table) if info.motions else {}),
     )
 
@@ -203,7 +206,7 @@ def ensemble_report(folder: Path, *, signature: Signature | None = None) -> str:
     limit, fell = f"{short(info.probability, 100.0)} %", falling_in_words(info.limit_slip_m, past=True)
     words = {"below": f"at most {limit}", "undecided": "not decided", "above": f"more than {limit}"}
     regions = ", ".join(f"{words[region]} at {count}" for region, count in info.regions.items() if count)
-    counted = f"{len(info.points)} points of {info.draws} draws{unfinished(info)}"
+    counted = f"{len(info.points)} points of {info.draws} draws{_unfinished(info)}"
     drawn = dict.fromkeys(info.drawn_over_uncertainty, "over its range as an unknown input")
     random = {key: _drawn(spread) for key, spread in info.random.items()} | drawn
     motions = info.motions or ()
@@ -220,12 +223,12 @@ def ensemble_report(folder: Path, *, signature: Signature | None = None) -> str:
         count=counted + (f"; share that {fell}: {regions}." if regions else "."),
         more=[typeset(f"{head}: {line}.") for head, line in fragility_lines(info)],
         answers=_answers_of_ensemble(answer, info) if answer and answer.others else [],
-        drawings=drawings(folder, ("figures/fragility.svg", "figures/boundary.svg"), "ensemble"),
+        figures=_figures(folder, ("figures/fragility.svg", "figures/boundary.svg"), "ensemble"),
         outcomes=[
             ("motion", [motion["file"] for motion in motions]),
             *((name, [motion.get(name, 0) for motion in motions], N) for name in COUNTED),
         ],
-        axes_table=axes_table(info.point_axes, info.derived),
+        axes=_axes(info.point_axes, info.derived),
         random=[("key", list(random)), ("drawn", list(random.values()))],
         points=_points(info, words),
         provenance=[
@@ -233,7 +236,7 @@ def ensemble_report(folder: Path, *, signature: Signature | None = None) -> str:
             ("draws", f"{info.draws} at each point, {info.sampling}, seed {info.seed}"),
             ("hash", info.asked),
         ],
-        again=again_from_files(folder, study="ensemble", name=name, case=case),
+        again=_again(folder, "ensemble", name, case),
     )
 
 
@@ -292,6 +295,58 @@ def _drawn(spread: Mapping[str, Any] | Sequence[Any]) -> str:
     return f"{spread['distribution']}, {', '.join(parts)}"
 
 
+def response_report(folder: Path, *, signature: Signature | None = None) -> str:
+    """The page of a response curve, as the text of an HTML file.
+
+    Raises:
+        FolderError: it is no folder of a response curve, it is damaged, or it has no points yet.
+        CaseError: the case in it cannot be read.
+    """
+    info = read_study(folder, RESPONSE, ResponseResult)
+    case, name, asked = load_case(str(folder / "case.toml")), info.case or folder.name, info.request
+    counts = Counter(point.words for point in info.points).most_common()
+    counted = ", ".join(f"{words} at {count}" for words, count in counts)
+    given = {f"--{name.replace('_', '-')}": name for name in OPTIONS} | RENAMED
+    asked_for = {option: asked[key] for option, key in given.items() if key in asked}
+    options = [word for option, value in asked_for.items() for word in (option, str(value))]
+    options += ["--shell"] * bool(asked.get("shell"))
+    options += [] if case.solver.model == "rigid" else ["--set", f"solver.model={case.solver.model}"]
+    unit, factor = ("mm", 1e3) if asked["held"] == "displacement" else ("m/s²", 1.0)
+    stable = stable_in_words(info)
+    return _html(
+        "response curve",
+        folder,
+        info,
+        case,
+        signature,
+        title=info.title or name,
+        name=name,
+        hash=info.asked,
+        sentence=response_answer(info),
+        count=f"{len(info.points)} of {2 * asked['count']} points of the sweeps{_unfinished(info)}: {counted}.",
+        more=[f"Stable: {stable}."] if stable else [],
+        figures=_figures(folder, ("figures/response_curve.svg", "figures/portraits.svg"), "response curve"),
+        lasting=list(lasting_in_words(info)),
+        falls=[(fall, range_of(fall)) for fall in info.drop_outs],
+        drive=[
+            (f"held {asked['held']}, amplitude", f"{short(asked['held_value'], factor)} {unit}"),
+            *(
+                (option, short(value) if isinstance(value, float) else str(value))
+                for option, value in asked_for.items()
+            ),
+        ],
+        provenance=[
+            ("response curve", f"{name}, {info.status}, model {case.solver.model}"),
+            ("hash", info.asked),
+        ],
+        again=(
+            "Save the file below as case.toml:",
+            command_line("response", "case.toml", *options),
+            [("case.toml", _text(folder / "case.toml"))],
+        ),
+    )
+
+
 def hall_report(folder: Path, *, signature: Signature | None = None, brief: bool = False) -> str:
     """The page of a list of containers, as the text of an HTML file.
 
@@ -306,23 +361,20 @@ def hall_report(folder: Path, *, signature: Signature | None = None, brief: bool
     """
     info = read_study(folder, HALL, HallResult)
     case = load_case(str(folder / "base.toml"), allow_outside=True)
-    count = f"{info.extent}{unfinished(info)}."
+    count = f"{info.extent}{_unfinished(info)}."
     if info.checked:
         which = "all" if info.checked == info.distinct else f"the weakest {info.checked}"
         count += f" Sure, deciding inputs and margin are those of {which}, each under its governing motion."
     elif info.state == "finished":
         count += " No run was repeated, so sureness and margins are not known."
     outcomes = ", ".join(f"{word}: {number}" for word, number in info.outcomes.items())
-    words = dict.fromkeys(word for tag in info.tags for word in sorted(tag["counts"]))
+    counted = dict.fromkeys(word for tag in info.tags for word in sorted(tag["counts"]))
     asked = ["--motion", *info.motions] if info.motions else []
     asked += ["--margins", info.checks] * (info.checks != "weakest")
-    again = Again(
-        words="With the two files of this folder, and the motions:",
-        command=command_line(
-            "batch", "list.csv", "--case", "base.toml", *asked, allow_outside=bool(info.allow_outside)
-        ),
-        files=[("base.toml", text_of(folder / "base.toml"))],
+    command = command_line(
+        "batch", "list.csv", "--case", "base.toml", *asked, allow_outside=bool(info.allow_outside)
     )
+    words = "With the two files of this folder, and the motions:"
     return _html(
         "hall",
         folder,
@@ -335,12 +387,12 @@ def hall_report(folder: Path, *, signature: Signature | None = None, brief: bool
         sentence=info.answer,
         count=count,
         more=[f"{outcomes[0].upper()}{outcomes[1:]}."] if outcomes else [],
-        tag_counts=[(word, [tag["counts"].get(word, "") for tag in info.tags], N) for word in words],
+        tag_counts=[(word, [tag["counts"].get(word, "") for tag in info.tags], N) for word in counted],
         weakest=_weakest(info.ranked, linked=not brief),
         looks=[LOOKS.get(row["outcome"] or "failed", "") for row in info.ranked],
         brief=brief,
         provenance=[("hall", f"{info.hall}, {info.status}, model {info.model}"), ("hash", info.asked)],
-        again=None if brief else again,
+        again=None if brief else (words, command, [("base.toml", _text(folder / "base.toml"))]),
     )
 
 
@@ -361,7 +413,7 @@ def _weakest(rows: Sequence[A_ROW], *, linked: bool) -> list[Column]:
     return [
         (
             "container",
-            [html.link(row["name"], f"row-{row['row']}") if linked else row["name"] for row in rows],
+            [LINK.format(f"row-{row['row']}", row["name"]) if linked else row["name"] for row in rows],
         ),
         key("line", "line", N),
         key("count", "count", N, empty=1),
@@ -405,6 +457,7 @@ def _html(
     sentence: str | None,
     provenance: Sequence[tuple[str, str]],
     again: Again | None,
+    figures: Sequence[tuple[str, Markup]] = (),
     scripts: Sequence[str] = (),
     data: Mapping[str, Any] | None = None,
     **context: Any,
@@ -414,30 +467,97 @@ def _html(
     An unfinished study is not signed; without `again` it is a short page, without its end.
     """
     motions = () if kind == "hall" else getattr(info, "motions", None) or ()
-    figures = getattr(info, "motion_figures", ())
+    drawn = _figures(folder, getattr(info, "motion_figures", ()), kind, prefix="motion")
     page = Page(
         kind=f"Report of {'an' if kind == 'ensemble' else 'a'} {kind}",
         title=title,
         name=name,
         signature=None if info.no_answer_yet else (signature or Signature()).completed(case.named),
-        sections=[] if again is None else [limits_section(case), repeat_section(provenance, info, again)],
         hash=hash,
         scripts=scripts,
         data=data or {},
     )
-    known = {"more": [], "answers": [], "rows": 0, "brief": False} | context
+    known = {"more": [], "answers": [], "answer_rows": 0, "brief": False} | context
+    versions = ", ".join(f"{name} {version}" for name, version in info.versions.items())
     return html_of(
         page,
         "study.html.j2",
         FILTERS,
         kind=kind,
         info=info,
+        case=case,
+        numerics=None,
+        joints_below=False,
         base_rows=case_rows(case),
         sentence=info.no_answer_yet or sentence,
         measures=_measures(motions),
-        motion_drawings=drawings(folder, figures, kind, prefix="motion"),
+        figures=figures,
+        motion_figures=drawn,
+        provenance=[*provenance, ("versions", versions)],
+        again=again,
         **known,
     )
+
+
+def _unfinished(info: StudyResult) -> str:
+    """How a study ended that is not complete."""
+    return "" if info.status == COMPLETED else f" ({info.status})"
+
+
+def _axes(axes: Sequence[Axis], derived: Mapping[str, str]) -> list[Column]:
+    """The axes of a study, and the keys that follow from them."""
+
+    def words(axis: Axis) -> str:
+        first, last = axis.values[0], axis.values[-1]
+        if (
+            axis.scale in ("linear", "log")
+            and isinstance(first, int | float)
+            and isinstance(last, int | float)
+        ):
+            return f"{short(first)} to {short(last)} {axis.unit}, {axis.scale}".replace(" ,", ",")
+        listed = ", ".join(str(value) for value in axis.values[:12])
+        return f"{listed}{' ...' * (len(axis.values) > 12)} {axis.unit}".rstrip()
+
+    return [
+        ("key", [CODE.format(key) for key in (*(axis.key for axis in axes), *derived)]),
+        ("values", [*map(words, axes), *(escape(f"= {rule}") for rule in derived.values())]),
+        ("count", [*(len(axis.values) for axis in axes), *("follows" for _ in derived)], N),
+    ]
+
+
+def _figures(
+    folder: Path, names: Iterable[str], command: str, *, prefix: str = "drawn"
+) -> list[tuple[str, Markup]]:
+    """Drawings that a study has made, with their labels; what is missing, outside or too large is left out.
+
+    `prefix` is that of their ids, another one for each list of drawings on a page.
+    """
+    drawn = []
+    for k, name in enumerate(names):
+        path = folder / name
+        inside = path.resolve().is_relative_to(folder.resolve())
+        if not inside or not path.is_file() or path.stat().st_size > MOST_DRAWING_BYTES:
+            continue
+        text, label = path.read_text(encoding="utf-8"), path.stem.replace("_", " ")
+        try:
+            drawn.append((label, svg_element(text, label=label, prefix=f"{prefix}{k}")))
+        except ValueError as error:
+            raise FolderError(
+                f"{path}: {error}; remove it and repeat the {command}, which draws it again"
+            ) from None
+    return drawn
+
+
+def _text(path: Path) -> str:
+    return path.read_text(encoding="utf-8") if path.is_file() else ""
+
+
+def _again(folder: Path, study: str, name: str, case: Case) -> Again:
+    """How to compute a study again from the files in its folder: its own, and its base case."""
+    records = " and the files of its motions" if case.motion.kind == "table" else ""
+    words = f'Save the two files below in one folder{records}, with case = "base.toml" in {name}.toml:'
+    files = [(f"{name}.toml", _text(folder / f"{study}.toml")), ("base.toml", _text(folder / "base.toml"))]
+    return words, command_line(study, f"{name}.toml"), files
 
 
 def _measures(motions: Sequence[A_ROW]) -> list[Column]:
@@ -474,39 +594,26 @@ def _shown(columns: Sequence[Column]) -> list[dict[str, Any]]:
     return shown
 
 
-def _worst_motion(row: A_ROW) -> str:
-    if not row["worst_motion"]:
-        return ABSENT
-    return f"{row['worst_motion']}: {_outcome(row['worst_outcome'], row[WORST_TURNED])}"
-
-
-def _largest_slip(row: A_ROW) -> str:
-    largest = row["worst_slip_m"]
-    return f"{millimetres(largest)} mm, {row['worst_slip_motion']}" if largest else ABSENT
-
-
-def _mean_ratio(row: A_ROW) -> str:
-    return ratio(row[MEAN_TURNED]) + (f" (of {row['stood']})" if 0 < row["stood"] < row["motions"] else "")
-
-
-def _target(row: A_ROW) -> Markup:
-    """The name of a container, to which the table of the weakest leads."""
-    return Markup('<span id="row-{}">{}</span>').format(row["row"], row["name"])
-
-
 #: of `study.html.j2`
 FILTERS: dict[str, Callable[..., Any]] = {
     "shown": _shown,
-    "typeset": typeset,
-    "millimetres": millimetres,
-    "number": number,
-    "code": html.code,
+    "code": CODE.format,
     "input_in_words": input_in_words,
     "share_interval": lambda row: f"{short(row['low'], 100.0, 3)} to {short(row['high'], 100.0, 3)} %",
     "count": lambda row, name: str(row.get(name) or ""),
-    "worst_motion": _worst_motion,
-    "largest_slip": _largest_slip,
-    "mean_ratio": _mean_ratio,
+    "worst_motion": lambda row: (
+        f"{row['worst_motion']}: {_outcome(row['worst_outcome'], row[WORST_TURNED])}"
+        if row["worst_motion"]
+        else ABSENT
+    ),
+    "largest_slip": lambda row: (
+        f"{millimetres(row['worst_slip_m'])} mm, {row['worst_slip_motion']}"
+        if row["worst_slip_m"]
+        else ABSENT
+    ),
+    "mean_ratio": lambda row: (
+        ratio(row[MEAN_TURNED]) + f" (of {row['stood']})" * (0 < row["stood"] < row["motions"])
+    ),
     "or_absent": lambda text: text or ABSENT,
-    "target": _target,
+    "target": lambda row: TARGET.format(row["row"], row["name"]),
 }

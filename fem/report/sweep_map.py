@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 from fem.assessment.sureness import REGIME_UNSURE, SURE, UNSURE
 from fem.figures.style import STATE_COLOURS, VERMILLION
-from fem.html import sections as html
 from fem.html.units import typeset
 from fem.report.animation import colour_scale, packed
 from fem.results.errors import FolderError
@@ -41,20 +40,12 @@ OUTCOMES = (
 )
 
 
-def cell_map(table: SweepTable, data: Mapping[str, Any]) -> html.CellMap:
-    """The map, first over the one or two longest axes."""
-    labels, known = [axis_label(axis) for axis in table.axes], {column["name"] for column in data["columns"]}
-    longest = sorted(sorted(range(len(labels)), key=lambda k: -len(table.axes[k].values))[:2])
-    quantities = (
-        FLAGS[0],
-        ("outcome", "outcome"),
-        *FLAGS[1:],
-        *((name, figure.on_map) for name, figure in QUANTITIES.items()),
-    )
-    return html.CellMap(
-        [html.Choice(name, label) for name, label in quantities if name in known],
-        *([html.Choice(k, label, k == first) for k, label in enumerate(labels)] for first in longest),
-    )
+def shown_quantities(data: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Names and labels of what the map can show of these data."""
+    known = {column["name"] for column in data["columns"]}
+    figures = ((name, figure.on_map) for name, figure in QUANTITIES.items())
+    quantities = (FLAGS[0], ("outcome", "outcome"), *FLAGS[1:], *figures)
+    return [(name, label) for name, label in quantities if name in known]
 
 
 def map_data(table: SweepTable, folder: Path) -> dict[str, Any]:

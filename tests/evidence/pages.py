@@ -18,7 +18,6 @@ from matplotlib.figure import Figure
 
 from fem.figures.style import house_style, svg_of
 from fem.html.page import Page, Signature, html_of, svg_element
-from fem.html.sections import Html
 from fem.html.units import ABSENT, short, typeset
 from fem.runtime.arrays import FloatArray
 
@@ -49,8 +48,8 @@ def page_of(
             kind=kind,
             title=title,
             name=f"{command}_{document['study']}" if "study" in document else command,
-            introduction=[Html(Markup(shown.introduction()))],
-            sections=[Html(Markup(shown))],
+            introduction=Markup(shown.introduction()),
+            content=Markup(shown),
             signature=signature,
             hash=document.get("program", ""),
         )

@@ -26,8 +26,7 @@ from typed_results import told
 from fem.__main__ import main
 from fem.case.case import CaseError, load_case
 from fem.case.overrides import parse_override
-from fem.report.response_page import response_report
-from fem.report.study_page import ensemble_report
+from fem.report.study_page import ensemble_report, response_report
 from fem.site.page import site_report
 
 HERE = Path(__file__).parent
@@ -38,6 +37,7 @@ FLEETING = (
     (r"(versions|hash|program) \| .*", r"\1 |"),
     (r"\n?(t = [\d.]+ of [\d.]+ s, .* left, |compiling the stepping kernels, ).*", ""),
     (r"unanchored \d+\.\d+\.\d+( on [\d-]+)?", "unanchored"),
+    (r"\b[0-9a-f]{64}\b", "HASH"),
     (r"room for [\d.]+ .B", "room for SOME"),
     (r"roughly\s+[\d.]+\s+(s|min|h)(\s+on\s+\d+\s+cores)?", "roughly SOME"),
     (r"\b[\d.]+ × 10⁻¹\d", "ROUNDING"),

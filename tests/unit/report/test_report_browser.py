@@ -13,9 +13,8 @@ from matplotlib.image import imread
 from study_folders import ensemble_folder, response_folder
 
 from fem.case.case import load_case
-from fem.report.response_page import response_report
 from fem.report.run_page import run_report
-from fem.report.study_page import ensemble_report, sweep_report
+from fem.report.study_page import ensemble_report, response_report, sweep_report
 from fem.results.reader import open_run
 from fem.run.run import run_case
 from fem.runtime.progress import SilentReporter

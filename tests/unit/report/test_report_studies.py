@@ -9,8 +9,7 @@ from study_folders import ensemble_folder, response_folder
 
 from fem.__main__ import main
 from fem.html.units import ABSENT
-from fem.report.response_page import response_report
-from fem.report.study_page import ensemble_report
+from fem.report.study_page import ensemble_report, response_report
 from fem.results.errors import FolderError
 
 #: headings in the order in which a reader wants them

@@ -10,7 +10,7 @@ from fem.__main__ import main
 from fem.case.case import CaseError, load_case
 from fem.model.container import discretise
 from fem.model.model import build_model
-from fem.report.response_page import response_report
+from fem.report.study_page import response_report
 from fem.response.curve import computed, plan_of
 from fem.response.model import carry_drive
 from fem.response.request import ResponseRequest
