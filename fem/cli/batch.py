@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from cyclopts import Parameter
 
 from fem.case.case import load_case
-from fem.cli.console import STUDY, AllowOutside, StudyFlags, flag, print_result, print_to_pdf
+from fem.cli.console import PAGE, STUDY, AllowOutside, StudyFlags, flag, print_result, print_short
 from fem.results.figures import TURNED, Place, figures_of
 from fem.results.files import write_atomically
 from fem.results.kinds import HALL
@@ -42,7 +42,7 @@ def batch(
     ] = "weakest",
     strict: Annotated[bool, flag("Refuse the list if one of its rows is bad.")] = False,
     allow_outside: AllowOutside = False,
-    pdf: Annotated[bool, flag("Print the page to report.pdf, by Chromium or Chrome.")] = False,
+    pdf: Annotated[bool, flag("Print the short page to report-short.pdf, by Chromium or Chrome.")] = False,
     flags: StudyFlags = STUDY,
 ) -> int:
     """Compute a list of containers: which rest, slide, rock or overturn, and which is the weakest?
@@ -62,11 +62,11 @@ def batch(
         result = importlib.import_module("fem.study.hall").run_hall(
             listed, base, folder, motions=motion, checks=margins, strict=strict, **options
         )
-    page = folder / "report.html"
+    page, pages = folder / PAGE, importlib.import_module("fem.report.study_page")
     if result.state == "finished" and not page.is_file():
-        write_atomically(page, importlib.import_module("fem.report.study_page").hall_report(folder))
+        write_atomically(page, pages.hall_report(folder))
     if pdf and result.status == "completed":
-        print(print_to_pdf(page))
+        print(print_short(folder, pages.hall_report))
     return print_result(result, HALL, folder, page_of(result, folder), as_json=flags.as_json)
 
 

@@ -1,7 +1,7 @@
 """What commands have in common: options that mean the same everywhere, and the exit code of a status."""
 
 import importlib
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,6 +11,7 @@ from cyclopts import Parameter, Token
 
 from fem.case.validation import CaseError
 from fem.results.errors import require_writable
+from fem.results.files import write_atomically
 from fem.results.kinds import ResultKind
 from fem.runtime.progress import ScreenReporter
 from fem.runtime.signals import unheard
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 
 ELSEWHERE_OUT = "run the command again, or choose another place with --out DIR"
 ELSEWHERE_TO = "run the command again, or choose another place with --to FILE"
+PAGE, SHORT_PAGE = "report.html", "report-short.html"
 WIDTH = 79  #: of what is printed for people
 #: exit codes by status: 0 computed, 3 failed, 4 interrupted
 EXIT_CODES = {"completed": 0, "overturned": 0, "failed": 3, "interrupted": 4}
@@ -139,6 +141,13 @@ class StudyFlags:
                 "force": self.force,
                 "reporter": ScreenReporter(quiet=self.quiet),
             }
+
+
+def print_short(folder: Path, report: Callable[..., str]) -> str:
+    """Write the short page of a folder and print it, as `print_to_pdf`."""
+    page = folder / SHORT_PAGE
+    write_atomically(page, report(folder, brief=True))
+    return print_to_pdf(page)
 
 
 def print_to_pdf(page: Path) -> str:

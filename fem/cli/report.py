@@ -6,13 +6,12 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from fem.cli.console import ELSEWHERE_TO, Quiet, flag, print_to_pdf
+from fem.cli.console import ELSEWHERE_TO, PAGE, SHORT_PAGE, Quiet, flag, print_to_pdf
 from fem.results.disk import BYTES_BESIDE
 from fem.results.errors import FolderError, require_writable, writing_into
 from fem.results.files import write_atomically
 from fem.runtime.progress import ScreenReporter
 
-PAGE = "report.html"
 SUFFIXES = (".html", ".htm")
 #: what makes the page of a study, by the file that marks its folder
 PAGES = {
@@ -32,14 +31,17 @@ def report(
     folder: Path,
     /,
     *,
-    to: Annotated[Path | None, Parameter(help="The file; default: report.html in the folder.")] = None,
+    to: Annotated[
+        Path | None, Parameter(help="The file; default: report.html, or report-short.html, in the folder.")
+    ] = None,
     author: Annotated[str, Parameter(show_default=False, help="Author; may be filled in later.")] = "",
     checker: Annotated[str, Parameter(show_default=False, help="Checker.")] = "",
     revision: Annotated[str, Parameter(show_default=False, help="Revision.")] = "",
     short: Annotated[
         bool, flag("At most three printed pages, of a run; two, of a verification at a site.")
     ] = False,
-    pdf: Annotated[bool, flag("Print it to a PDF beside it, by Chromium or Chrome.")] = False,
+    pdf: Annotated[bool, flag("Print the short page to a PDF beside it, by Chromium or Chrome.")] = False,
+    full: Annotated[bool, flag("With --pdf: the whole page.")] = False,
     quiet: Quiet = False,
 ) -> None:
     """Make one HTML file that can be sent, read offline and printed.
@@ -54,13 +56,17 @@ def report(
             f"{folder}: no such folder; give the folder of a run, a sweep, an ensemble, a response curve or a study, "
             "such as outputs/NAME"
         )
-    if short and not any((folder / mark).is_file() for mark in WITH_SHORT):
+    has_short = any((folder / mark).is_file() for mark in WITH_SHORT)
+    if short and not has_short:
         raise FolderError(
             f"{folder}: --short is for the report of a run, of a verification at a site, or of a hall"
         )
+    if short and full:
+        raise FolderError("--short and --full contradict each other; give one of them")
+    short = short or (pdf and has_short and not full)
     if pdf and to is not None and to.suffix.lower() == ".pdf":
         to = to.with_suffix(".html")  # the PDF lies beside the page
-    target = _target(to if to is not None else folder / PAGE)
+    target = _target(to if to is not None else folder / (SHORT_PAGE if short else PAGE))
     require_writable(target.parent, ELSEWHERE_TO, BYTES_BESIDE)
     reporter = ScreenReporter(quiet=quiet)
     pages = importlib.import_module("fem.report.run_page")

@@ -41,6 +41,7 @@ TEMPLATES = "templates"
 #: what templates set values with: numbers and units of `fem.html.units`, symbols, and columns of declared figures
 FILTERS = {
     "cell": lambda value, figure: figure_cell(figure, value),
+    "drawing": lambda text, label, prefix: svg_element(text, label=label, prefix=prefix),
     "figure_of": FIGURES.__getitem__,
     "formula": formula_markup,
     "head": lambda figure: f"#{figure_head(figure)}",

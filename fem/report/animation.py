@@ -111,11 +111,6 @@ class Animation:
             return 0.0
         return _round_up(float(np.percentile(self.stresses, STRESS_SHARE)))
 
-    @property
-    def largest_elastic(self) -> float:
-        """Over the frames [m]."""
-        return max((float(np.hypot(*frame.elastic.T).max()) for frame in self.frames), default=0.0)
-
 
 def animation_of(model: Model, fields: Fields | None, links: tuple[DrawnLink, ...] = ()) -> Animation:
     """The frames of a run, thinned out to what a page can carry.
@@ -146,6 +141,14 @@ def animation_of(model: Model, fields: Fields | None, links: tuple[DrawnLink, ..
         else bodies_of(elements, loose=loose)
     )
     centroid = np.array([fit.centre for fit in bodies])
+    rests: list[list[float]] = []  # bolted boxes with the same sides are one
+    for box in np.unique(elements.box):
+        nodes = elements.nodes[np.unique(elements.cells[elements.box == box])]
+        (left, bottom), (right, top) = nodes.min(axis=0).tolist(), nodes.max(axis=0).tolist()
+        if rests and not loose and np.allclose(rests[-1][::2], (left, right)):
+            rests[-1][3] = top
+        else:
+            rests.append([left, bottom, right, top])
     body = np.zeros(len(elements.nodes), dtype=np.int64)
     for k, fit in enumerate(bodies):
         body[fit.nodes] = k
@@ -154,7 +157,7 @@ def animation_of(model: Model, fields: Fields | None, links: tuple[DrawnLink, ..
         body=body[drawn],
         points=elements.nodes[drawn] - centroid[body[drawn]],
         corners=drawn_index[[_corners(fit) for fit in bodies]],
-        rests=_rests(elements, loose=loose),
+        rests=np.array(rests),
         quads=drawn_index[quads],
         edges=drawn_index[edges],
         contact=drawn_index[contact],
@@ -216,19 +219,6 @@ def _corners(body: BodyFit) -> IntArray:
     return np.array([body.nodes[end[pick(x[end])]] for end in ends for pick in (np.argmin, np.argmax)])
 
 
-def _rests(elements: FiniteElements, *, loose: bool) -> FloatArray:
-    """Rectangles (k, 4) of the undeformed boxes; bolted boxes with the same sides are one."""
-    rests: list[list[float]] = []
-    for box in np.unique(elements.box):
-        nodes = elements.nodes[np.unique(elements.cells[elements.box == box])]
-        (left, bottom), (right, top) = nodes.min(axis=0).tolist(), nodes.max(axis=0).tolist()
-        if rests and not loose and np.allclose(rests[-1][::2], (left, right)):
-            rests[-1][3] = top
-        else:
-            rests.append([left, bottom, right, top])
-    return np.array(rests)
-
-
 def player_data(animation: Animation, history: History, *, model: Model) -> dict[str, Any]:
     """What the script `player.js` reads, of a run with samples."""
     stride = max(1, math.ceil(len(history) / MOST_SAMPLES))
@@ -241,6 +231,7 @@ def player_data(animation: Animation, history: History, *, model: Model) -> dict
     journey = max(float(np.ptp(columns[name])) for name in ("base", "lift") if name in columns)
     modes = sorted(set(history.modes))
     mesh, angle, scale = model.container.mesh, model.static.slenderness_angle, animation.stress_scale
+    stresses = 255.0 * np.array(animation.stresses).ravel() / scale if scale else np.zeros(0)
     wide = len(animation.points) >= 65536
     index = "<u4" if wide else "<u2"
     # The page opens at the largest rotation that is not yet a fall: that is what one looks for.
@@ -286,7 +277,7 @@ def player_data(animation: Animation, history: History, *, model: Model) -> dict
         "contact": animation.contact.tolist(),
         "times": [frame.time for frame in animation.frames],
         "elastic": packed_floats(np.array([frame.elastic for frame in animation.frames]).ravel()),
-        "stress": packed(_on_scale(animation.stresses, scale), "u1"),
+        "stress": packed(np.clip(np.round(stresses), 0, 255), "u1"),
         "stress_scale": scale,
         "normal": packed_floats(np.array([frame.normal_force for frame in animation.frames]).ravel()),
         "colours": colour_scale("YlGnBu", COLOURS),
@@ -305,9 +296,10 @@ def exaggeration(animation: Animation, height: float) -> float:
     Most frames then deform visibly. Frames are in single precision: a factor that would show its rounding as
     deformation is not taken.
     """
-    if animation.largest_elastic == 0.0:
+    largest = [float(np.hypot(*frame.elastic.T).max()) for frame in animation.frames]
+    if max(largest, default=0.0) == 0.0:
         return 0.0
-    typical = float(np.percentile([np.hypot(*frame.elastic.T).max() for frame in animation.frames], TYPICAL))
+    typical = float(np.percentile(largest, TYPICAL))
     reach = max(float(np.abs(frame.centre).max()) for frame in animation.frames) + height
     most = SHOWN_ROUNDING * height / (SINGLE_PRECISION * reach)
     return max(1.0, round_down(min(SHOWN_ELASTIC * height / typical if typical else most, most)))
@@ -361,12 +353,6 @@ def _frame(
         von_mises=None if frame.von_mises is None else np.asarray(frame.von_mises, dtype=float)[drawn],
         normal_force=np.asarray(frame.contact_pressure, dtype=float)[contact] * area,
     )
-
-
-def _on_scale(stresses: list[FloatArray], scale: float) -> NDArray[np.uint8]:
-    if scale == 0.0:
-        return np.zeros(0, dtype=np.uint8)
-    return np.clip(np.round(255.0 * np.array(stresses).ravel() / scale), 0, 255).astype(np.uint8)
 
 
 def _round_up(value: float) -> float:

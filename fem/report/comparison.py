@@ -81,14 +81,6 @@ def compared_rows(static: StaticChecks, verdict: Verdict) -> list[Compared]:
     return rows
 
 
-def _corners(case: Case) -> str:
-    """What a base on corners touches with, in words."""
-    casting = case.support.casting_m
-    if casting is None:
-        return "two bottom corners"
-    return f"castings of {short(casting[0], 1e3)} × {short(casting[1], 1e3)} mm, at their outer edges"
-
-
 def case_rows(case: Case) -> list[tuple[str, str]]:
     """The case in words: name and value."""
     box, contact = case.container, case.contact
@@ -96,8 +88,11 @@ def case_rows(case: Case) -> list[tuple[str, str]]:
     section = f"shell, walls {walls} mm" if box.section == "shell" else "solid block"
     if (post := box.post_section) is not None:
         section += f", posts {' × '.join(short(length, 1e3) for length in post)} mm"
+    corners = "two bottom corners"
+    if casting := case.support.casting_m:
+        corners = f"castings of {short(casting[0], 1e3)} × {short(casting[1], 1e3)} mm, at their outer edges"
     supports = {
-        "corners": _corners(case),
+        "corners": corners,
         "feet": f"two feet, {short(case.support.foot_m, 1e3)} mm long",
         "flat": "flat base",
     }
@@ -107,7 +102,13 @@ def case_rows(case: Case) -> list[tuple[str, str]]:
         "reduced": f"reduced: turning frame and {modes_of_a_body(case)} elastic modes{a_box}",
         "rigid": f"rigid: three coordinates{a_box}",
     }
-    mu = Markup("μ<sub>s</sub> = {}, μ<sub>k</sub> = {}")
+    mu, joints = Markup("μ<sub>s</sub> = {}, μ<sub>k</sub> = {}"), case.joint_friction
+    weakening = f", falling over {short(joints['weakening_m'], 1e3)} mm" if joints["weakening_m"] else ""
+    whose = ", as on the floor" if case.joints.mu_static is None else ""
+    between = mu.format(short(joints["mu_static"]), short(joints["mu_kinetic"])) + weakening + whose
+    duration = "to the end of the motion, and on until rest or a fall"
+    if case.solver.duration_s != "auto":
+        duration = f"{short(case.solver.duration_s)} s"
     return [
         *_box_rows(case),
         (
@@ -116,13 +117,13 @@ def case_rows(case: Case) -> list[tuple[str, str]]:
         ),
         ("support", supports[case.support.kind]),
         ("friction", mu.format(short(contact.mu_static), short(contact.mu_kinetic))),
-        *([("friction between boxes", _joint_friction(case, mu))] if box.is_loose else []),
+        *([("friction between boxes", between)] if box.is_loose else []),
         ("floor", motion_in_words(case.motion)),
         *([("floor, vertical", motion_in_words(case.vertical))] if case.has_vertical else []),
         *((name, typeset(value)) for name, value in link_rows(case)),
         ("start", _start(case)),
         ("model", models[case.solver.model]),
-        ("time", f"{_duration(case)}, g = {short(case.gravity_m_s2)} m/s²"),
+        ("time", f"{duration}, g = {short(case.gravity_m_s2)} m/s²"),
     ]
 
 
@@ -148,19 +149,6 @@ def _box_rows(case: Case) -> list[tuple[str, str]]:
         )
         rows.append((f"box {k}", f"{described(box)}, mass centre at {short(box.centroid)} m{offset}"))
     return rows
-
-
-def _joint_friction(case: Case, mu: Markup) -> Markup:
-    friction = case.joint_friction
-    weakening = f", falling over {short(friction['weakening_m'], 1e3)} mm" if friction["weakening_m"] else ""
-    whose = ", as on the floor" if case.joints.mu_static is None else ""
-    return mu.format(short(friction["mu_static"]), short(friction["mu_kinetic"])) + weakening + whose
-
-
-def _duration(case: Case) -> str:
-    if case.solver.duration_s == "auto":
-        return "to the end of the motion, and on until rest or a fall"
-    return f"{short(case.solver.duration_s)} s"
 
 
 def motion_in_words(motion: FloorMotionTable) -> str:
@@ -190,15 +178,11 @@ def motion_in_words(motion: FloorMotionTable) -> str:
         case "table":
             unit = f", {motion.unit}" if motion.unit else ""
             record = f"record {motion.file}" if motion.file else "vertical component of that record"
-            return f"{record} ({motion.quantity}{unit}), {scale_in_words(motion)}, baseline {motion.baseline}"
+            scale = f"scale {short(motion.scale)}"
+            if motion.scale_to_m_s2 is not None:
+                scale = f"scaled to {quantity(motion.scale_to_m_s2, 'm/s²')}"
+            return f"{record} ({motion.quantity}{unit}), {scale}, baseline {motion.baseline}"
     assert_never(motion.kind)
-
-
-def scale_in_words(motion: FloorMotionTable) -> str:
-    """The factor on a record, or the peak to which it is scaled."""
-    if motion.scale_to_m_s2 is not None:
-        return f"scaled to {quantity(motion.scale_to_m_s2, 'm/s²')}"
-    return f"scale {short(motion.scale)}"
 
 
 def _start(case: Case) -> str:

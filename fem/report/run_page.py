@@ -1,16 +1,12 @@
 """The report of a run: one page from its folder, verdict first, with everything needed to check it.
 
-`run.html.j2` is the page; this module hands it the run, as `RunView`, and the words for it.
+`run.html.j2` is the page; this module hands it the run and the words for it.
 """
 
 import datetime as dt
 import math
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from functools import cached_property
+from collections.abc import Callable
 from typing import Any
-
-from markupsafe import Markup
 
 from contact.reference.event_driven import EventError
 from fem.assessment.code_note import code_note
@@ -18,6 +14,7 @@ from fem.assessment.drawn_links import drawn_links
 from fem.assessment.floor_words import drawn_level, floor_rows
 from fem.assessment.joint_tables import joints_note, unbolted
 from fem.assessment.loose_boxes import BOXES_NOTE, box_rows, largest_joint_slip
+from fem.assessment.margin_words import FACTOR
 from fem.assessment.ranges import impact_note, largest_ratio, largest_rotation, largest_slip, of_band
 from fem.assessment.rigid_check import check_against_rigid_block
 from fem.assessment.rule_or_run import governing
@@ -33,20 +30,18 @@ from fem.assessment.sureness import SURE, numerical
 from fem.case.case import Case
 from fem.case.tables.unknown_inputs import WORDS
 from fem.figures.cache import drawings_of
-from fem.figures.style import Drawing
-from fem.html.page import Page, Signature, html_of, svg_element
+from fem.html.page import Page, Signature, html_of
 from fem.html.units import number, quantity, short, typeset
 from fem.model.model import Model, build_model
 from fem.report.animation import (
     COLOURS,
-    Animation,
     animation_of,
     colour_scale,
     exaggeration,
     exaggerations,
     player_data,
 )
-from fem.report.comparison import Compared, case_rows, compared_rows
+from fem.report.comparison import case_rows, compared_rows
 from fem.report.sketch import sketch
 from fem.report.static_sheet import static_sheet
 from fem.results.errors import FolderError
@@ -55,7 +50,15 @@ from fem.results.history import History
 from fem.results.kinds import RUN
 from fem.results.outcome import Outcome
 from fem.results.reader import OpenedRun
-from fem.results.run_result import Energy, Numerics, RigidCheckResult, RunResult, Verdict, to_overturn
+from fem.results.run_result import (
+    Energy,
+    Margin,
+    Numerics,
+    RigidCheckResult,
+    RunResult,
+    Verdict,
+    to_overturn,
+)
 from fem.solid.modes import FEW, elastic_mode_table
 
 #: figures beside the animation, in the order of reading; the others have their own sections
@@ -88,197 +91,8 @@ SAID: dict[str, Any] = {
     "largest_rotation": largest_rotation,
     "largest_slip": largest_slip,
     "of_band": of_band,
-    "static_sheet": static_sheet,
     "unbolted": unbolted,
 }
-
-
-@dataclass(frozen=True, kw_only=True)
-class RunView:
-    """A run as its page shows it."""
-
-    run: OpenedRun
-    model: Model
-    history: History
-    animation: Animation
-    drawn: Mapping[str, Drawing]
-    brief: bool  #: of three printed sheets at most
-
-    @property
-    def case(self) -> Case:
-        """The case, resolved."""
-        return self.run.case
-
-    @property
-    def result(self) -> RunResult:
-        """What `run.json` holds."""
-        return self.run.typed_result
-
-    @property
-    def verdict(self) -> Verdict:
-        """What the run found; empty before there is anything."""
-        return self.result.verdict or Verdict()
-
-    @property
-    def finished(self) -> bool:
-        """Whether nothing is left to compute."""
-        return self.run.status in RUN.finished
-
-    @property
-    def standing(self) -> str:
-        """How the verdict is coloured: what the run found, never whether that is safe."""
-        verdict = self.verdict
-        if not self.finished:
-            return "open"
-        if verdict.outcome == Outcome.OVERTURNED:
-            return "fell"
-        unsure = verdict.outcome == Outcome.INVALID or (verdict.band is not None and verdict.band.unsure)
-        return "unsure" if unsure else "stood"
-
-    @property
-    def sentences(self) -> tuple[str, str]:
-        """The verdict in one sentence, and what follows it."""
-        first, _, further = outcome_sentence(self.result).partition(". ")
-        return (f"{first}." if further else first), further
-
-    @property
-    def sure(self) -> tuple[str, str]:
-        """How sure the outcome is, and why; without a reason: nothing was tried."""
-        verdict = self.verdict
-        if (band := verdict.band) is None:
-            return (verdict.sure, "by the static rule alone") if verdict.sure else ("not computed", "")
-        named = ", ".join(WORDS.get(key, key) for key in verdict.decided_by)
-        decided = f"; decided by {named}" if named else ""
-        known = verdict.sure or ("unsure" if band.unsure else "same outcome")
-        if verdict.sure == SURE and all(map(numerical, band.members[1:])):
-            known = "no input varied"
-        return known, f"{', '.join(band.outcomes)}{decided}"
-
-    @property
-    def sketch(self) -> Markup:
-        """The container in elevation."""
-        static, case = self.model.static, self.case
-        peak = static.own_motion.sliding.demand * case.gravity_m_s2 / static.weight - static.downhill
-        return sketch(
-            case,
-            centroid=static.centroid,
-            peak_acceleration=peak,
-            peak_vertical=static.peak_vertical_acceleration,
-        )
-
-    @property
-    def floor(self) -> list[tuple[str, str]]:
-        """What the floor amounts to: name and value."""
-        return [(name, typeset(value)) for name, value in floor_rows(self.result.floor)]
-
-    @property
-    def found(self) -> list[tuple[str, str]]:
-        """All figures of the run, but those of its floor: name and value."""
-        of_floor = dict(self.floor)
-        return [(name, typeset(value)) for name, value in result_rows(self.result) if name not in of_floor]
-
-    @property
-    def code(self) -> str:
-        """What is to be known of the code's rows; empty where there are none."""
-        return code_note(self.model.static.to_result())
-
-    @cached_property
-    def compared(self) -> list[Compared]:
-        """The static rules beside the run."""
-        return compared_rows(self.model.static, to_compare(self.result))
-
-    @cached_property
-    def boxes(self) -> Sequence[Sequence[str]]:
-        """A row for each box of a loose stack."""
-        return box_rows(self.result)
-
-    @property
-    def curves(self) -> list[str]:
-        """Names of the figures beside the animation."""
-        moves = self.case.motion.kind != "none" or self.case.has_vertical
-        names = SHORT_MOTION if self.brief else MOTION
-        return [name for name in names if name != "base_motion" or moves]
-
-    @cached_property
-    def played(self) -> dict[str, Any]:
-        """What the animation plays; empty where there is none."""
-        if len(self.history) < 2 or self.brief:
-            return {}
-        return player_data(self.animation, self.history, model=self.model)
-
-    @property
-    def exaggeration(self) -> float:
-        """Factor on the elastic displacement as first shown."""
-        return exaggeration(self.animation, self.model.container.mesh.height)
-
-    @property
-    def exaggerations(self) -> list[float]:
-        """Factors to choose from."""
-        return exaggerations(self.animation, self.model.container.mesh.height)
-
-    @property
-    def colours(self) -> list[str]:
-        """Of the stress."""
-        return colour_scale("YlGnBu", COLOURS)
-
-    @property
-    def level(self) -> str:
-        """A note that a sloping floor is drawn level; empty for a level one."""
-        return drawn_level(self.case.floor.slope_percent)
-
-    def svg(self, name: str) -> Markup:
-        """A drawing by its name."""
-        drawing = self.drawn[name]
-        return svg_element(drawing.svg, label=drawing.title, prefix=drawing.name)
-
-    @cached_property
-    def modes(self) -> Sequence[Mapping[str, float]]:
-        """The elastic modes of the container, also of a rigid run."""
-        return elastic_mode_table(self.model.container.lowest_modes(FEW))
-
-    @cached_property
-    def check(self) -> RigidCheckResult | None:
-        """The comparison with the analytic block: that of the run, or else made now; None of an unfinished run."""
-        result = self.result
-        if result.rigid_check is not None:
-            return result.rigid_check
-        if not self.finished or result.verdict is None or len(self.history) < 2:
-            return None
-        try:
-            return check_against_rigid_block(self.model, self.history, result.verdict).result
-        except (ValueError, EventError) as error:
-            return RigidCheckResult(reasons=(str(error),))
-
-    @property
-    def stepping(self) -> list[tuple[str, str]]:
-        """How the run was stepped: name and value."""
-        return _stepping(self.case, self.result.numerics or Numerics())
-
-    @property
-    def energies(self) -> list[tuple[str, str]]:
-        """The energy balance at the end: name and value."""
-        energy, row = self.result.energy or Energy(), bool(self.case.neighbour)
-        absent = {
-            "crushing_J": not self.case.floor.is_slab,
-            "impact_J": not self.case.states_restitution,
-        }
-        error = f"{number(energy.closure_error, figures=3)} of the energy {to_overturn(row)}"
-        rows = [
-            (to_overturn(row) if key == "reference_J" else words, quantity(getattr(energy, key), "J"))
-            for key, words in ENERGIES.items()
-            if not absent.get(key, False)
-        ]
-        return [*rows, ("largest error", error)]
-
-    @property
-    def computed(self) -> str:
-        """When."""
-        return f"{dt.datetime.fromtimestamp(self.run.place.result.stat().st_mtime):%Y-%m-%d %H:%M}"
-
-    @property
-    def resolved(self) -> str:
-        """The case with every default."""
-        return self.run.place.resolved.read_text(encoding="utf-8")
 
 
 def run_report(
@@ -302,33 +116,118 @@ def run_report(
     """
     if run.typed_result.static is None:
         raise FolderError(f"{run.place.result}: the run has not begun; run the case, then report it")
-    model = build_model(run.case)
-    view = RunView(
-        run=run,
-        model=model,
-        history=_history(run, message),
-        animation=animation_of(
-            model, _fields(run, message), drawn_links(run.case, _broken(run.typed_result))
+    model, result, case = build_model(run.case), run.typed_result, run.case
+    verdict, history = result.verdict or Verdict(), _history(run, message)
+    links = (*(result.stops or ()), *(result.ties or ()))
+    broken = [math.inf if link.broken_at_s is None else link.broken_at_s for link in links]
+    animation = animation_of(model, _fields(run, message), drawn_links(case, broken))
+    played = {} if len(history) < 2 or brief else player_data(animation, history, model=model)
+    finished, height, static = run.status in RUN.finished, model.container.mesh.height, model.static
+    first, _, further = outcome_sentence(result).partition(". ")
+    floor = [(name, typeset(value)) for name, value in floor_rows(result.floor)]
+    peak = static.own_motion.sliding.demand * case.gravity_m_s2 / static.weight - static.downhill
+    moves = case.motion.kind != "none" or case.has_vertical
+    view = {
+        "run": run,
+        "case": case,
+        "result": result,
+        "verdict": verdict,
+        "brief": brief,
+        "finished": finished,
+        "standing": _standing(verdict) if finished else "open",
+        "sentences": (f"{first}." if further else first, further),
+        "sure": _sure(verdict),
+        "margin": _margin(verdict.margin),
+        "sketch": sketch(
+            case,
+            centroid=static.centroid,
+            peak_acceleration=peak,
+            peak_vertical=static.peak_vertical_acceleration,
         ),
-        drawn=drawings_of(run, model.container),
-        brief=brief,
-    )
+        "floor": floor,
+        "found": [(name, typeset(text)) for name, text in result_rows(result) if name not in dict(floor)],
+        "code": code_note(static.to_result()),
+        "compared": compared_rows(static, to_compare(result)),
+        "boxes": box_rows(result),
+        "sheet": static_sheet(static, case),
+        "drawn": drawings_of(run, model.container),
+        "curves": [name for name in (SHORT_MOTION if brief else MOTION) if name != "base_motion" or moves],
+        "animation": animation,
+        "played": played,
+        "exaggeration": exaggeration(animation, height),
+        "exaggerations": exaggerations(animation, height),
+        "colours": colour_scale("YlGnBu", COLOURS),
+        "level": drawn_level(case.floor.slope_percent),
+        "modes": [] if brief else elastic_mode_table(model.container.lowest_modes(FEW)),
+        "check": None if brief else _check(model, history, result, finished=finished),
+        "stepping": _stepping(case, result.numerics or Numerics()),
+        "energies": _energies(case, result.energy or Energy()),
+        "computed": f"{dt.datetime.fromtimestamp(run.place.result.stat().st_mtime):%Y-%m-%d %H:%M}",
+        "resolved": run.place.resolved.read_text(encoding="utf-8"),
+    }
     page = Page(
         kind=f"{'Short report' if brief else 'Report'} of a run",
-        title=view.case.title or run.name,
+        title=case.title or run.name,
         name=run.name,
-        hash=str(view.result.case_hash or ""),
-        signature=(signature or Signature()).completed(view.case.named) if view.finished else None,
-        scripts=["player.js"] if view.played else [],
-        data={"run": view.played} if view.played else {},
+        hash=str(result.case_hash or ""),
+        signature=(signature or Signature()).completed(case.named) if finished else None,
+        scripts=["player.js"] if played else [],
+        data={"run": played} if played else {},
     )
     return html_of(page, "run.html.j2", view=view, **SAID)
 
 
-def _broken(result: RunResult) -> list[float]:
-    """When stops and ties broke, in the order of the case; empty where none was computed [s]."""
-    links = (*(result.stops or ()), *(result.ties or ()))
-    return [math.inf if link.broken_at_s is None else link.broken_at_s for link in links]
+def _standing(verdict: Verdict) -> str:
+    """How the verdict is coloured: what the run found, never whether that is safe."""
+    if verdict.outcome == Outcome.OVERTURNED:
+        return "fell"
+    unsure = verdict.outcome == Outcome.INVALID or (verdict.band is not None and verdict.band.unsure)
+    return "unsure" if unsure else "stood"
+
+
+def _sure(verdict: Verdict) -> tuple[str, str]:
+    """How sure the outcome is, and why; without a reason: nothing was tried."""
+    if (band := verdict.band) is None:
+        return (verdict.sure, "by the static rule alone") if verdict.sure else ("not computed", "")
+    named = ", ".join(WORDS.get(key, key) for key in verdict.decided_by)
+    known = verdict.sure or ("unsure" if band.unsure else "same outcome")
+    if verdict.sure == SURE and all(map(numerical, band.members[1:])):
+        known = "no input varied"
+    return known, f"{', '.join(band.outcomes)}{f'; decided by {named}' if named else ''}"
+
+
+def _margin(margin: Margin | None) -> tuple[str, str]:
+    """The least factor on the motion at which it overturns, as given or varied, and what it rests on."""
+    if margin is None:
+        return "", ""
+    found = [factor for factor in (margin.factor, margin.low) if factor is not None]
+    if not found:
+        return f"> {FACTOR.text(margin.largest_tried)}", "times this motion; none that was tried overturns it"
+    given = "" if margin.factor is None else FACTOR.text(margin.factor)
+    as_given = f"; with the inputs as given {given or 'none'}" if margin.low is not None else ""
+    return FACTOR.text(min(found)), f"times this motion overturn it first{as_given}"
+
+
+def _check(model: Model, history: History, result: RunResult, *, finished: bool) -> RigidCheckResult | None:
+    """The comparison with the analytic block: that of the run, or else made now; None of an unfinished run."""
+    if result.rigid_check is not None or not finished or result.verdict is None or len(history) < 2:
+        return result.rigid_check
+    try:
+        return check_against_rigid_block(model, history, result.verdict).result
+    except (ValueError, EventError) as error:
+        return RigidCheckResult(reasons=(str(error),))
+
+
+def _energies(case: Case, energy: Energy) -> list[tuple[str, str]]:
+    """The energy balance at the end: name and value."""
+    absent = {"crushing_J": not case.floor.is_slab, "impact_J": not case.states_restitution}
+    reference = to_overturn(bool(case.neighbour))
+    rows = [
+        (reference if key == "reference_J" else words, quantity(getattr(energy, key), "J"))
+        for key, words in ENERGIES.items()
+        if not absent.get(key, False)
+    ]
+    return [*rows, ("largest error", f"{number(energy.closure_error, figures=3)} of the energy {reference}")]
 
 
 def _stepping(case: Case, numerics: Numerics) -> list[tuple[str, str]]:

@@ -139,8 +139,10 @@ def _draw_container(axes: Axes, case: Case, unit: float) -> None:
         if wall := box.wall or 0.0:
             inside = (left + wall, box.bottom + wall), box.width - 2 * wall, box.height - 2 * wall
             axes.add_patch(Rectangle(*inside, fill=False, ec=GREY, lw=0.5))
-    for left, bottom, right, top in _outlines(case) if rotation else ():
-        outline = Rectangle((left, bottom), right - left, top - bottom, fill=False, ec=BLUE, ls="--")
+    outlines = boxes if case.container.box else (replace(boxes[0], height=boxes[-1].top),)
+    for box in outlines if rotation else ():
+        corner = box.sides[0], box.bottom
+        outline = Rectangle(corner, box.width, box.height, fill=False, ec=BLUE, ls="--")
         outline.set_transform(turn)
         axes.add_patch(outline)
     if rotation:
@@ -151,7 +153,9 @@ def _draw_container(axes: Axes, case: Case, unit: float) -> None:
     if case.container.is_loose:
         _draw_loose_joints(axes, case, unit)
     if case.container.is_loose or case.container.box is not None:
-        _number_boxes(axes, boxes, unit)
+        for number, box in enumerate(boxes, 1):
+            position = box.sides[0] + unit, box.bottom + 0.5 * box.height
+            axes.text(*position, str(number), color=GREY, fontsize=8.0, ha="left", va="center")
 
 
 def _draw_beside(axes: Axes, case: Case, unit: float) -> tuple[float, float]:
@@ -199,21 +203,6 @@ def _draw_loose_joints(axes: Axes, case: Case, unit: float) -> None:
     top = case.stack[-1]
     position = max(box.sides[1] for box in case.stack[-2:]) + unit, top.bottom + 0.5 * unit
     axes.text(*position, words, color=BLUE, va="bottom")
-
-
-def _number_boxes(axes: Axes, boxes: Sequence[Box], unit: float) -> None:
-    """Numbers from the floor up."""
-    for number, box in enumerate(boxes, 1):
-        position = box.sides[0] + unit, box.bottom + 0.5 * box.height
-        axes.text(*position, str(number), color=GREY, fontsize=8.0, ha="left", va="center")
-
-
-def _outlines(case: Case) -> list[tuple[float, float, float, float]]:
-    """Left, bottom, right and top of each box; equal boxes are one."""
-    boxes = case.stack
-    if case.container.box is None:
-        boxes = (replace(boxes[0], height=boxes[-1].top),)
-    return [(box.sides[0], box.bottom, box.sides[1], box.top) for box in boxes]
 
 
 def _draw_mass_centre(

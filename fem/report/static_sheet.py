@@ -147,8 +147,18 @@ def static_sheet(static: StaticChecks, case: Case) -> list[tuple[str, list[Sheet
     boxes = f"n = {{n:s4}} boxes, {joints}" if case.container.boxes > 1 else "n = 1 box"
     weight, height = (WEIGHT._replace(source=boxes), MASS), [HEIGHT] * (case.container.mesh_file is None)
     if case.container.box is not None:
-        weight = _weight_of_boxes(case), MASS
-        height = [_height_of_boxes(case)] if height else []
+        g, tonnes = case.gravity_m_s2, [(1e-3 * box.mass, box) for box in case.stack]
+        sum_of = " + ".join(short(1e-3 * box.mass * g, figures=6) for box in case.stack)
+        weighed = WEIGHT._replace(formula="G = Σ G_i", numbers=sum_of, source="boxes from the floor up")
+        weight = weighed, MASS
+        moments = " + ".join(
+            f"{short(mass, figures=6)} × {short(box.bottom + box.centroid, figures=6)}"
+            for mass, box in tonnes
+        )
+        words = "z_i, of the mass centre of box i"
+        sum_of = f"({moments}) / {{m:6}}"
+        centre = HEIGHT._replace(formula="z_c = Σ m_i z_i/m", numbers=sum_of, source=words)
+        height = [centre] if height else []
     nearer = [INSIDE if "s" in numbers else NEARER] if "b" in numbers else []
     own = numbers | _action(static.own_motion)
     swings = case.motion.kind == "harmonic" and math.isclose(
@@ -180,25 +190,6 @@ def static_sheet(static: StaticChecks, case: Case) -> list[tuple[str, list[Sheet
             ],
         ),
     ]
-
-
-def _weight_of_boxes(case: Case) -> SheetRow:
-    """The weight of boxes that differ."""
-    weights = " + ".join(short(1e-3 * box.mass * case.gravity_m_s2, figures=6) for box in case.stack)
-    return WEIGHT._replace(formula="G = Σ G_i", numbers=weights, source="boxes from the floor up")
-
-
-def _height_of_boxes(case: Case) -> SheetRow:
-    """The height of the mass centre of boxes that differ."""
-    moments = " + ".join(
-        f"{short(1e-3 * box.mass, figures=6)} × {short(box.bottom + box.centroid, figures=6)}"
-        for box in case.stack
-    )
-    return HEIGHT._replace(
-        formula="z_c = Σ m_i z_i/m",
-        numbers=f"({moments}) / {{m:6}}",
-        source="z_i, of the mass centre of box i",
-    )
 
 
 def _vertical_lines(static: StaticChecks, own: Numbers) -> list[SheetLine]:

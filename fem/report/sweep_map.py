@@ -58,7 +58,13 @@ def map_data(table: SweepTable, folder: Path) -> dict[str, Any]:
     outcomes = np.array(
         [names.index(str(word)) if str(word) in names else len(names) - 1 for word in table.outcome]
     )
-    outcome = {"name": "outcome", "label": "outcome", "unit": "", "factor": 1.0, "words": True}
+    outcome: dict[str, Any] = {
+        "name": "outcome",
+        "label": "outcome",
+        "unit": "",
+        "factor": 1.0,
+        "words": True,
+    }
     columns: list[dict[str, Any]] = [outcome | {"values": packed(outcomes, "u1")}]
     if _has(table, "unsure"):
         columns += _sureness(table)
@@ -66,7 +72,9 @@ def map_data(table: SweepTable, folder: Path) -> dict[str, Any]:
     for k, (name, figure) in enumerate(QUANTITIES.items()):
         if k >= 1 and not _has(table, name):
             continue
-        column = _column(table, name, figure)
+        values = table.columns.get(name, np.full(len(table["cell"]), np.nan)).astype("<f4")
+        column = outcome | {"name": name, "label": figure.on_map, "unit": typeset(figure.unit.name)}
+        column |= {"factor": figure.unit.factor, "words": False, "values": packed(values, "<f4")}
         room -= len(column["values"])
         if room < 0 and k < NEEDED:
             raise FolderError(
@@ -97,17 +105,15 @@ def map_data(table: SweepTable, folder: Path) -> dict[str, Any]:
     }
 
 
-def _short_key(key: str) -> str:
-    """A key without its table, unless the friction of loose joints, which has the names of the floor's."""
-    return key if key.startswith("joints.") else key.rpartition(".")[2]
-
-
 def _sureness(table: SweepTable) -> list[dict[str, Any]]:
     """How sure each cell is and what decides, as numbers of words; of earlier versions only whether it is unsure."""
     if "sure" not in table.columns:
         return [_words("unsure", "unsure", np.where(table["unsure"] == 1.0, UNSURE, SURE), SURENESS)]
     sure = np.where(table["sure"] == "", "not tried", table["sure"])
-    deciding = [" ".join(map(_short_key, str(inputs).split())) or "-" for inputs in table["decided_by"]]
+    # keys without their tables, but for the friction of loose joints, which has the names of the floor's
+    keys = [str(inputs).split() for inputs in table["decided_by"]]
+    short = [[key if key.startswith("joints.") else key.rpartition(".")[2] for key in one] for one in keys]
+    deciding = [" ".join(one) or "-" for one in short]
     columns = [
         _words("sure", "how sure", sure, SURENESS),
         _words("decided_by", "decided by", np.array(deciding), dict.fromkeys(sorted(set(deciding)), "")),
@@ -138,13 +144,6 @@ def counts(table: SweepTable) -> list[tuple[str, str, int, float]]:
 
 def _has(table: SweepTable, name: str) -> bool:
     return name in table.columns and bool(np.isfinite(table[name].astype(float)).any())
-
-
-def _column(table: SweepTable, name: str, figure: Shown) -> dict[str, Any]:
-    values: NDArray[Any] = table.columns.get(name, np.full(len(table["cell"]), np.nan)).astype("<f4")
-    unit = figure.unit
-    column = {"name": name, "label": figure.on_map, "unit": typeset(unit.name), "factor": unit.factor}
-    return column | {"values": packed(values, "<f4")}
 
 
 def _plain(values: NDArray[Any]) -> list[Any]:

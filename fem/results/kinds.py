@@ -12,6 +12,8 @@ from fem.results.json_block import JsonBlock
 
 BlockT = TypeVar("BlockT", bound=JsonBlock)
 
+#: of a run, a site or a list
+PAGES = ("report.html", "report.pdf", "report-short.html", "report-short.pdf")
 #: ends of the names of numbers in the result of a run
 MEASURED = re.compile(r"_(m|m2|m3|s|s2|N|Nm|J|Pa|Hz|rad|ratio)$")
 
@@ -41,20 +43,10 @@ RUN = ResultKind(
     request="case_hash",
     results="history.csv",
     own=(
-        "checkpoint.npz",
-        "band.json",
-        "summary.txt",
-        "history.csv",
-        "rigid_check.csv",
-        "fields/run.pvd",
-        "fields/frame_*.vtu",
-        "figures/*.svg",
-        "figures/drawn.json",
-        "figures/picture_*.png",
-        "figures/movie.gif",
-        "figures/movie.mp4",
-        "report.html",
-        "report.pdf",
+        *PAGES,
+        *("checkpoint.npz", "band.json", "summary.txt", "history.csv", "rigid_check.csv", "fields/run.pvd"),
+        *("fields/frame_*.vtu", "figures/*.svg", "figures/drawn.json", "figures/picture_*.png"),
+        *("figures/movie.gif", "figures/movie.mp4"),
     ),
     finished=frozenset({"completed", "overturned"}),
 )
@@ -65,16 +57,8 @@ SWEEP = ResultKind(
     request="sweep_hash",
     results="table.csv",
     own=(
-        *(
-            "rows.csv",
-            "members.csv",
-            "margins.csv",
-            "tried.csv",
-            "thresholds.csv",
-            "answers.csv",
-            "table.csv",
-            "maps/*.svg",
-        ),
+        *("rows.csv", "members.csv", "margins.csv", "tried.csv", "thresholds.csv", "answers.csv"),
+        *("table.csv", "maps/*.svg"),
         *("motions.csv", "motion_set.csv", "spectra.csv", "figures/*.svg"),
     ),
     temporary=("rows.csv",),
@@ -86,14 +70,8 @@ ENSEMBLE = ResultKind(
     mark="ensemble.json",
     results="points.csv, draws.csv",
     own=(
-        "points.csv",
-        "draws.csv",
-        "motions.csv",
-        "spectra.csv",
-        "base.toml",
-        "ensemble.toml",
-        "state.npz",
-        "figures/*.svg",
+        *("points.csv", "draws.csv", "motions.csv", "spectra.csv", "base.toml", "ensemble.toml"),
+        *("state.npz", "figures/*.svg"),
     ),
 )
 RESPONSE = ResultKind(
@@ -113,13 +91,8 @@ SITE = ResultKind(
     mark="assess.json",
     results="assess.json",
     own=(
-        "runs.csv",
-        "report.html",
-        "report.pdf",
-        "site.toml",
-        "container.toml",
-        "motions/*.csv",
-        "motions/*.at2",
+        *PAGES,
+        *("runs.csv", "site.toml", "container.toml", "motions/*.csv", "motions/*.at2"),
     ),
 )
 SIZE = ResultKind(
@@ -135,14 +108,8 @@ HALL = ResultKind(
     mark="hall.json",
     results="hall.csv",
     own=(
-        "hall.csv",
-        "runs.csv",
-        "checks.csv",
-        "list.csv",
-        "base.toml",
-        "report.html",
-        "report.pdf",
-        "figures/*.svg",
+        *PAGES,
+        *("hall.csv", "runs.csv", "checks.csv", "list.csv", "base.toml", "figures/*.svg"),
     ),
 )
 PAPER = ResultKind(

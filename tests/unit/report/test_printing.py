@@ -30,7 +30,7 @@ def folder(tmp_path_factory):
 
 def test_the_document_stands_on_the_page_and_at_the_head_of_every_sheet(folder):
     assert main(["report", str(folder), "-q", "--short", "--revision", "B"]) == 0
-    text = (folder / "report.html").read_text(encoding="utf-8")
+    text = (folder / "report-short.html").read_text(encoding="utf-8")
     heads = re.search(r"@top-left \{ content: (.*?); \} @top-right \{ content: (.*?); \}", text)
     said = [re.sub(r"\\([0-9a-f]{6})", lambda sign: chr(int(sign[1], 16)), one) for one in heads.groups()]
     assert said == ['"Store <3> · 7-A"', '"revision B"']
@@ -40,14 +40,14 @@ def test_the_document_stands_on_the_page_and_at_the_head_of_every_sheet(folder):
 
 
 @NEEDS_BROWSER
-def test_the_short_report_has_three_pages_at_most(folder, capsys):
-    assert main(["report", str(folder), "-q", "--short", "--pdf"]) == 0
-    assert capsys.readouterr().out.splitlines()[-1] == str(folder / "report.pdf")
-    pdf = (folder / "report.pdf").read_bytes()
+def test_the_page_that_is_printed_unasked_is_the_short_one_of_three_sheets_at_most(folder, capsys):
+    assert main(["report", str(folder), "-q", "--pdf"]) == 0
+    assert capsys.readouterr().out.splitlines()[-1] == str(folder / "report-short.pdf")
+    pdf = (folder / "report-short.pdf").read_bytes()
     assert pdf.startswith(b"%PDF")
     if shutil.which("pdfinfo"):
         info = subprocess.run(
-            ["pdfinfo", folder / "report.pdf"], capture_output=True, text=True, check=True
+            ["pdfinfo", folder / "report-short.pdf"], capture_output=True, text=True, check=True
         ).stdout
         assert int(re.search(r"^Pages:\s+(\d+)", info, flags=re.MULTILINE)[1]) <= 3
         assert "A4" in info
@@ -62,7 +62,8 @@ def test_without_a_browser_the_way_by_hand_is_printed(folder, monkeypatch, capsy
     assert (folder / "calc.html").is_file()
 
 
-def test_only_a_run_has_a_short_report(tmp_path, capsys):
-    (tmp_path / "sweep.json").write_text("{}")
-    assert main(["report", str(tmp_path), "--short"]) == 2
-    assert "--short is for the report of a run" in capsys.readouterr().err
+def test_the_short_page_does_not_replace_the_long_one(folder, capsys):
+    assert main(["report", str(folder), "-q", "--pdf", "--full"]) == 0
+    whole = (folder / "report.html").read_text(encoding="utf-8")
+    assert main(["report", str(folder), "-q", "--short"]) == 0
+    assert (folder / "report.html").read_text(encoding="utf-8") == whole and 'id="sheet"' in whole
