@@ -69,8 +69,9 @@ class Case(CaseContent):
     def states_restitution(self) -> bool:
         """Whether a factor is stated on what its impacts leave, or those of a case beside it."""
         beside = (self._origin.beside.get(neighbour.case or "") for neighbour in self.neighbour)
-        cases = (self, *(case for case in beside if case is not None))
-        return any(case.contact.restitution_over_housner is not None for case in cases)
+        return super().states_restitution or any(
+            case is not None and case.states_restitution for case in beside
+        )
 
     @property
     def row(self) -> tuple["Case", ...]:

@@ -5,7 +5,7 @@ from typing import Any
 
 from fem.case.columns import history_width
 from fem.case.tables import quantities as q
-from fem.case.tables.boxes import BOX_RULES, JOINT_RULES, WEAKENING_RULES, base_width, boxes_of
+from fem.case.tables.boxes import BOX_RULES, JOINT_RULES, WEAKENING_RULES
 from fem.case.tables.castings import CASTING_RULES
 from fem.case.tables.duration import duration_in_words, longest_time
 from fem.case.tables.floors import FLOOR_CASE_RULES
@@ -57,7 +57,7 @@ def _largest(case: Any) -> float:
     """Largest dimension of the elevation [m]."""
     if case.container.box is None:
         return float(max(case.container.width_m, case.container.boxes * case.container.height_m))
-    boxes = boxes_of(case.container, case.gravity_m_s2)
+    boxes = case.stack
     return max(boxes[-1].top, *(box.width for box in boxes))
 
 
@@ -123,7 +123,7 @@ def _posts_do_not_fit(case: Any) -> str:
     if case.container.post_m is None or case.container.section != "shell":
         return ""
     width, wall = case.container.post_m
-    boxes = boxes_of(case.container, case.gravity_m_s2)
+    boxes = case.stack
     narrowest = min(case.container.depth_m, *(box.width for box in boxes))
     if 2.0 * wall > width:
         return f"must be [width, wall] with a wall of at most half the width, got {case.container.post_m}"
@@ -156,11 +156,11 @@ CASE_RULES = (
     ),
     Rule(
         "support.foot_m",
-        lambda case: case.support.kind != "feet" or case.support.foot_m < 0.5 * base_width(case),
+        lambda case: case.support.kind != "feet" or case.support.foot_m < 0.5 * case.stack[0].width,
         lambda case: (
-            f"must be less than half of width_m = {base_width(case):g} m, got {case.support.foot_m:g} m; "
+            f"must be less than half of width_m = {case.stack[0].width:g} m, got {case.support.foot_m:g} m; "
             + (
-                q.FOOT.guess(case.support.foot_m, lambda meant: meant < 0.5 * base_width(case))
+                q.FOOT.guess(case.support.foot_m, lambda meant: meant < 0.5 * case.stack[0].width)
                 or 'for a base that bears all along take kind = "flat"'
             )
         ),

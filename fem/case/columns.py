@@ -63,24 +63,17 @@ ALWAYS = ColumnGroup(
     ),
 )
 #: a floor that crushes: the work of that
-CRUSHING = ColumnGroup(
-    lambda case: range(case.floor.kind == "slab"), (HistoryColumn("crushing_J", "J", START),)
-)
+CRUSHING = ColumnGroup(lambda case: range(case.floor.is_slab), (HistoryColumn("crushing_J", "J", START),))
 #: a restitution that was asked for: what the impacts lost by it, < 0 where they return energy
 IMPACTS = ColumnGroup(
-    lambda case: range(_states_restitution(case)),
+    lambda case: range(case.states_restitution),
     (HistoryColumn("impact_J", "J", START),),
 )
 
 
-def _turns(floor: Any) -> bool:
-    """Whether a horizontal motion moves this floor normal to itself."""
-    return bool(floor.slope_percent) and floor.motion_along != "floor"
-
-
 #: a floor that moves up and down, or normal to a slope; positive upward
 VERTICAL = ColumnGroup(
-    lambda case: range(case.vertical.kind != "none" or (case.motion.kind != "none" and _turns(case.floor))),
+    lambda case: range(case.has_normal),
     (
         HistoryColumn("base_vertical_displacement_m", "m", GROUND),
         HistoryColumn("base_vertical_velocity_m_s", "m/s", GROUND),
@@ -90,9 +83,7 @@ VERTICAL = ColumnGroup(
 #: the joints between the boxes of a bolted stack, from the floor up, from 1 (`fem.model.joints`)
 JOINTS = ColumnGroup(
     # of bolted boxes whose joint forces follow from their motion
-    lambda case: range(
-        1, 1 if case.container.joints == "loose" or held_above(case) else case.container.boxes
-    ),
+    lambda case: range(1, 1 if case.container.is_loose or held_above(case) else case.container.boxes),
     (
         HistoryColumn("joint_{}_normal_N", "N"),
         HistoryColumn("joint_{}_shear_N", "N"),
@@ -101,7 +92,7 @@ JOINTS = ColumnGroup(
 )
 #: the further boxes of a loose stack, from the floor up, from 2
 BOXES = ColumnGroup(
-    lambda case: range(2, case.container.boxes + 1 if case.container.joints == "loose" else 2),
+    lambda case: range(2, case.container.boxes + 1 if case.container.is_loose else 2),
     (
         HistoryColumn("box_{}_rotation_rad", "rad", GROUND),
         HistoryColumn("box_{}_slip_m", "m", BELOW),
@@ -111,15 +102,11 @@ BOXES = ColumnGroup(
     ),
 )
 #: stops and ties, in the order of the case, from 1: the force along their line, on the container
-STOPS = ColumnGroup(
-    lambda case: range(1, 1 + len(getattr(case, "stop", ()))), (HistoryColumn("stop_{}_force_N", "N"),)
-)
-TIES = ColumnGroup(
-    lambda case: range(1, 1 + len(getattr(case, "tie", ()))), (HistoryColumn("tie_{}_force_N", "N"),)
-)
+STOPS = ColumnGroup(lambda case: range(1, 1 + len(case.stop)), (HistoryColumn("stop_{}_force_N", "N"),))
+TIES = ColumnGroup(lambda case: range(1, 1 + len(case.tie)), (HistoryColumn("tie_{}_force_N", "N"),))
 #: neighbours, in the order of the case, from 1: their motion, and the force across the gap before them
 NEIGHBOURS = ColumnGroup(
-    lambda case: range(1, 1 + len(getattr(case, "neighbour", ()))),
+    lambda case: range(1, 1 + len(case.neighbour)),
     (
         HistoryColumn("neighbour_{}_rotation_rad", "rad", GROUND),
         HistoryColumn("neighbour_{}_slip_m", "m", FLOOR),
@@ -132,13 +119,6 @@ NEIGHBOURS = ColumnGroup(
 #: a run that was compared with the rigid block (`fem.assessment.rigid_check`): nan where that is not followed
 ANALYTIC = ColumnGroup(lambda case: (), (HistoryColumn("analytic_rotation_rad", "rad", GROUND),))
 GROUPS = (ALWAYS, CRUSHING, IMPACTS, VERTICAL, JOINTS, BOXES, STOPS, TIES, NEIGHBOURS, ANALYTIC)
-
-
-def _states_restitution(case: Any) -> bool:
-    """`Case.states_restitution`; of a case that is read in part, whether it does itself."""
-    if hasattr(case, "states_restitution"):
-        return bool(case.states_restitution)
-    return case.contact.restitution_over_housner is not None
 
 
 def history_width(case: Any) -> int:

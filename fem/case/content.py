@@ -1,6 +1,7 @@
 """What a case file holds, table by table, and what follows from several of its keys."""
 
 import math
+from functools import cached_property
 from typing import Any
 
 from pydantic import Field
@@ -10,7 +11,7 @@ from fem.case.tables.boxes import Box, boxes_of, joint_friction
 from fem.case.tables.contact_tables import ContactTable, JointsTable
 from fem.case.tables.container_tables import ContainerTable, SupportTable
 from fem.case.tables.floors import FloorTable
-from fem.case.tables.links import StopTable, TieTable, links_of_case
+from fem.case.tables.links import StopTable, TieTable
 from fem.case.tables.motion_tables import MotionTable, VerticalTable
 from fem.case.tables.neighbours import NeighbourTable
 from fem.case.tables.run_tables import DocumentTable, InitialTable, OutputTable, SolverTable, StaticTable
@@ -42,7 +43,7 @@ class CaseContent(CaseHeading):
         """What stands on its pages, by key of [document]."""
         return {} if self.document is None else self.document.model_dump()
 
-    @property
+    @cached_property
     def stack(self) -> tuple[Box, ...]:
         """All boxes, from the floor up."""
         return boxes_of(self.container, self.gravity_m_s2)
@@ -50,7 +51,7 @@ class CaseContent(CaseHeading):
     @property
     def links(self) -> tuple[StopTable | TieTable, ...]:
         """Stops and ties, the stops first."""
-        return links_of_case(self)
+        return (*self.stop, *self.tie)
 
     @property
     def bodies(self) -> int:
@@ -136,6 +137,11 @@ class CaseContent(CaseHeading):
         """c/(2 sqrt(k m)), the whole mass m on the spring k of one corner; None: the slab's own damping."""
         own = self.floor.is_slab and "damping_ratio" not in self.contact.model_fields_set
         return None if own else self.contact.damping_ratio
+
+    @property
+    def states_restitution(self) -> bool:
+        """Whether a factor is stated on what its impacts leave."""
+        return self.contact.restitution_over_housner is not None
 
     @property
     def starts_moving(self) -> bool:

@@ -7,14 +7,14 @@ keys that could be read. Each reason is one line: table, key, what is required, 
 import datetime
 import difflib
 from collections.abc import Iterable, Mapping
-from types import SimpleNamespace
-from typing import Any, get_args
+from typing import Any, TypeVar, get_args
 
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails, PydanticUndefined
 
 from fem.case.case_rules import CASE_RULES
+from fem.case.content import CaseContent
 from fem.case.tables.all_tables import OPTIONAL, TABLES, CaseHeading
 from fem.case.tables.container_tables import BoxTable
 from fem.case.tables.input_ranges import short
@@ -23,6 +23,8 @@ from fem.case.tables.problem import Problem, broken
 from fem.case.tables.quantities import Quantity, with_unit
 from fem.case.tables.table import CaseTable
 from fem.runtime.left import left_words
+
+ModelT = TypeVar("ModelT", bound=BaseModel)
 
 
 class CaseError(ValueError):
@@ -98,23 +100,26 @@ def read_case_tables(data: Mapping[str, Any]) -> tuple[dict[str, Any], list[Prob
             continue
         given, part, faults = read_table(name, model, content)
         problems += faults
-        partial[name] = _ReadInPart(**part)
+        partial[name] = _in_part(model, part)
         if not faults:
             read[name] = model.model_validate(given)
+    partial |= dict.fromkeys(ROWS, ())
     for name in (one for one in ROWS if one in data):
         rows, faults = _read_rows(name, ROWS[name], data[name], range(MOST_ROWS + 1))
         problems += faults
         if not faults:
             read[name] = rows
         partial[name] = rows or ()
-    return read, problems + broken(CASE_RULES, SimpleNamespace(**partial))
+    return read, problems + broken(CASE_RULES, _in_part(CaseContent, partial))
 
 
-class _ReadInPart(SimpleNamespace):
-    """The keys of a table that could be read."""
-
-    # SimpleNamespace has no hash; rules hand the tables to functions that are cached
-    __hash__ = object.__hash__  # type: ignore[assignment]
+def _in_part(model: type[ModelT], values: Mapping[str, Any]) -> ModelT:
+    """A table or a case as far as it could be read: what asks for one of its other keys raises AttributeError."""
+    part = model.__new__(model)
+    kept = {"__dict__": dict(values), "__pydantic_fields_set__": set(values)}
+    for name, value in (kept | dict.fromkeys(("__pydantic_extra__", "__pydantic_private__"))).items():
+        object.__setattr__(part, name, value)
+    return part
 
 
 def with_friction_range(data: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -172,7 +177,7 @@ def read_table(
     for key, details in reasons.items():
         problems.append(Problem(table=name, key=key, reason=_reason(known[key], details)))
     partial = _partial(model, given, reasons.keys())
-    return given, partial, problems + broken(model.rules, SimpleNamespace(**partial))
+    return given, partial, problems + broken(model.rules, _in_part(model, partial))
 
 
 def _read_rows(
@@ -188,7 +193,7 @@ def _read_rows(
     rows, problems = [], []
     for number, row in enumerate(content, 1):
         given, part, faults = read_table(name, model, row)
-        rows.append(model.model_construct(**part) if faults else model.model_validate(given))
+        rows.append(_in_part(model, part) if faults else model.model_validate(given))
         problems += [
             Problem(table=table, key=f"{key} {number}: {problem.key}".rstrip(), reason=problem.reason)
             for problem in faults

@@ -5,7 +5,6 @@ Each box of [[container.box]] takes what it leaves out from [container]; without
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Any
 
 from fem.case.tables import quantities as q
@@ -46,7 +45,6 @@ def mass_of_box(container: Any, gravity: float, volume: float) -> float | None:
     return None if container.density_kg_m3 is None else float(container.density_kg_m3 * volume)
 
 
-@lru_cache(maxsize=64)  # every rule of every case of a study asks for the same few
 def centroid_at(container: Any, height: float) -> float:
     """Height of the mass centre in a box of another height for which none is given [m].
 
@@ -56,7 +54,6 @@ def centroid_at(container: Any, height: float) -> float:
     return 0.5 * height if half else float(container.centroid_m)
 
 
-@lru_cache(maxsize=64)  # likewise
 def boxes_of(container: Any, gravity: float) -> tuple[Box, ...]:
     """All boxes of a table [container], from the floor up; raises AttributeError where a box has no mass."""
     tables = container.box or (None,) * container.boxes
@@ -88,14 +85,9 @@ def boxes_of(container: Any, gravity: float) -> tuple[Box, ...]:
     return tuple(boxes)
 
 
-def base_width(case: Any) -> float:
-    """Width of the lowest box [m]."""
-    return boxes_of(case.container, case.gravity_m_s2)[0].width
-
-
 def least_weakening(case: Any) -> float:
     """The slip over which friction falls at the least [m]: what slips less still sticks, and then it falls at once."""
-    return float(MICROSLIP * max(box.width for box in boxes_of(case.container, case.gravity_m_s2)))
+    return float(MICROSLIP * max(box.width for box in case.stack))
 
 
 def _falls_within_microslip(place: str) -> Rule:
@@ -151,7 +143,7 @@ def _each(says: Callable[[Any, Box], str]) -> Rule:
     def reason(case: Any) -> str:
         if case.container.box is None:
             return ""
-        boxes = enumerate(boxes_of(case.container, case.gravity_m_s2), 1)
+        boxes = enumerate(case.stack, 1)
         return "; box ".join(f"{number}: {reason}" for number, box in boxes if (reason := says(case, box)))
 
     return refused("container.box", reason)
@@ -196,7 +188,7 @@ def _unsupported(case: Any) -> str:
     """Where what is above has its mass centre beyond the face that carries it."""
     if case.container.box is None:
         return ""
-    boxes = boxes_of(case.container, case.gravity_m_s2)
+    boxes = case.stack
     # of a joint first: what hangs over there may tilt the whole, too
     for number in (*range(1, len(boxes)), 0):
         upper = boxes[number]
@@ -226,13 +218,9 @@ BOX_RULES = (
 )
 
 
-def _friction(case: Any) -> dict[str, float]:
-    return joint_friction(case.joints, case.contact)
-
-
 def _of_one_body(place: str, applies: Callable[[Any], bool], reason: str) -> Rule:
     """A key that has no meaning for loose boxes."""
-    return Rule(place, lambda case: case.container.joints != "loose" or not applies(case), reason)
+    return Rule(place, lambda case: not case.container.is_loose or not applies(case), reason)
 
 
 JOINT_RULES = (
@@ -265,7 +253,7 @@ JOINT_RULES = (
     ),
     Rule(
         "container.joints",
-        lambda case: case.container.joints != "loose" or case.container.boxes > 1,
+        lambda case: not case.container.is_loose or case.container.boxes > 1,
         '= "loose" needs two boxes or more: a stack of one has no joints; give boxes or [[container.box]]',
     ),
     Rule(
@@ -281,10 +269,10 @@ JOINT_RULES = (
     ),
     Rule(
         "joints.mu_kinetic",
-        lambda case: _friction(case)["mu_kinetic"] <= _friction(case)["mu_static"],
+        lambda case: case.joint_friction["mu_kinetic"] <= case.joint_friction["mu_static"],
         lambda case: (
-            f"must be at most mu_static = {_friction(case)['mu_static']:g} of the joints, got "
-            f"{_friction(case)['mu_kinetic']:g}; leave it out where the two are equal"
+            f"must be at most mu_static = {case.joint_friction['mu_static']:g} of the joints, got "
+            f"{case.joint_friction['mu_kinetic']:g}; leave it out where the two are equal"
         ),
     ),
 )

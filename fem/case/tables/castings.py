@@ -2,7 +2,6 @@
 
 from typing import Any
 
-from fem.case.tables.boxes import base_width
 from fem.case.tables.problem import refused
 
 
@@ -17,7 +16,7 @@ def _casting_does_not_fit(case: Any) -> str:
         return f"must be [width, depth, inset] with a positive width and depth, got {case.support.casting_m}"
     if case.floor.corner_patch_m is not None:
         return "and floor.corner_patch_m both say what bears under a corner; keep one of them"
-    half = 0.5 * base_width(case)
+    half = 0.5 * case.stack[0].width
     if inset + width > half or 2.0 * depth > case.container.depth_m:
         return (
             f"= {case.support.casting_m} does not fit under the base: inset and width at most half of width_m = "

@@ -12,7 +12,6 @@ from typing import Annotated, Any, Literal
 from pydantic import Field
 
 from fem.case.tables import quantities as q
-from fem.case.tables.boxes import boxes_of
 from fem.case.tables.problem import Rule, refused
 from fem.case.tables.table import CaseTable, case_key, optional_key
 
@@ -222,9 +221,9 @@ class FloorTable(CaseTable):
 def _patch_does_not_fit(case: Any) -> str:
     """Why the patches do not fit below the base; empty where they do."""
     patch, depth = case.floor.corner_patch_m, case.container.depth_m
-    if case.floor.kind != "slab" or patch is None:
+    if not case.floor.is_slab or patch is None:
         return ""
-    half = 0.5 * boxes_of(case.container, case.gravity_m_s2)[0].width
+    half = 0.5 * case.stack[0].width
     limits = (("along x", "half of width_m", half), ("out of plane", "depth_m", depth))
     for value, (name, of, most) in zip(patch, limits, strict=True):
         if value > most * (1.0 + 1e-9):
@@ -240,7 +239,7 @@ FLOOR_CASE_RULES = (
     Rule(
         "floor.corner_patch_m",
         lambda case: (
-            case.floor.kind != "slab"
+            not case.floor.is_slab
             or case.floor.corner_patch_m is not None
             or case.support.casting_m is not None
             or case.support.kind != "corners"
@@ -251,12 +250,12 @@ FLOOR_CASE_RULES = (
     refused("floor.corner_patch_m", _patch_does_not_fit),
     Rule(
         "contact.normal_penalty_Pa_m",
-        lambda case: case.floor.kind != "slab" or case.contact.normal_penalty_Pa_m == "auto",
+        lambda case: not case.floor.is_slab or case.contact.normal_penalty_Pa_m == "auto",
         'belongs to floor.kind = "rigid": the stiffness of a slab follows its youngs_modulus_Pa; leave it out',
     ),
     Rule(
         "contact.tangential_ratio",
-        lambda case: case.floor.kind != "slab" or case.contact.tangential_ratio == 1.0,
+        lambda case: not case.floor.is_slab or case.contact.tangential_ratio == 1.0,
         'belongs to floor.kind = "rigid": a slab has its own tangential stiffness; leave it out',
     ),
 )

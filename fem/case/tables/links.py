@@ -75,15 +75,10 @@ ROWS: dict[str, type[CaseTable]] = {"stop": StopTable, "tie": TieTable, "neighbo
 MOST_ROWS = 20
 
 
-def links_of_case(case: Any) -> tuple[Any, ...]:
-    """Stops and ties of a case, in this order; those that could be read."""
-    return (*getattr(case, "stop", ()), *getattr(case, "tie", ()))
-
-
 def held_above(case: Any) -> bool:
     """Whether something may push the container above its lowest box: its joint forces do not follow from its motion."""
-    links = links_of_case(case)
-    if getattr(case, "neighbour", ()):
+    links = case.links
+    if case.neighbour:
         return True
     if not links:
         return False
@@ -104,11 +99,7 @@ def name_of(number: int) -> str:
 
 def _held(case: Any, name: str) -> list[Any]:
     """Stops or ties of a case whose container is there."""
-    return [
-        link
-        for link in getattr(case, name, ())
-        if holder_of(case, link) <= len(getattr(case, "neighbour", ()))
-    ]
+    return [link for link in getattr(case, name) if holder_of(case, link) <= len(case.neighbour)]
 
 
 def _above(name: str) -> Rule:
@@ -150,7 +141,7 @@ LINK_RULES = (
     refused("tie.to", _before_the_wall),
     Rule(
         "container.mesh_file",
-        lambda case: case.container.mesh_file is None or not links_of_case(case),
+        lambda case: case.container.mesh_file is None or not case.links,
         "cannot stand beside [[stop]] or [[tie]]: the sides of a mesh are not known",
     ),
 )

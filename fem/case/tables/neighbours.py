@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Strict
 
 from fem.case.tables import quantities as q
-from fem.case.tables.boxes import boxes_of, centroid_at
+from fem.case.tables.boxes import centroid_at
 from fem.case.tables.problem import Rule, either
 from fem.case.tables.table import CaseTable, case_key, optional_key
 
@@ -138,14 +138,14 @@ def places_of(case: Any, widths: Sequence[float]) -> Places:
 def outermost(case: Any, side: str) -> int:
     """Number of the last neighbour on a side of a case; 0, the container itself, where it has none there."""
     return max(
-        (number for number, neighbour in enumerate(_neighbours(case), 1) if neighbour.side == side), default=0
+        (number for number, neighbour in enumerate(case.neighbour, 1) if neighbour.side == side), default=0
     )
 
 
 def beside_of(case: Any, number: int, side: str) -> int | None:
     """Number of the container of a row beside another one, on a side of that; None where there is none."""
     row = [0]
-    for further, neighbour in enumerate(_neighbours(case), 1):
+    for further, neighbour in enumerate(case.neighbour, 1):
         row.insert(len(row) if neighbour.side == "right" else 0, further)
     place = row.index(number) + (1 if side == "right" else -1)
     return row[place] if 0 <= place < len(row) else None
@@ -157,25 +157,19 @@ def top_of(case: Any, number: int) -> float:
     if neighbour is not None and neighbour.case is not None:
         return float(case.row[number].stack[-1].top)
     if neighbour is None or (neighbour.boxes is None and neighbour.height_m is None):
-        return boxes_of(own, case.gravity_m_s2)[-1].top
+        return float(case.stack[-1].top)
     return float((neighbour.boxes or own.boxes) * (neighbour.height_m or own.height_m))
-
-
-def _neighbours(case: Any) -> Sequence[NeighbourTable]:
-    """Those that could be read."""
-    neighbours: Sequence[NeighbourTable] = getattr(case, "neighbour", ())
-    return neighbours
 
 
 def _alone(place: str, applies: Any, reason: str) -> Rule:
     """What cannot stand beside neighbours."""
-    return Rule(place, lambda case: not _neighbours(case) or not applies(case), reason)
+    return Rule(place, lambda case: not case.neighbour or not applies(case), reason)
 
 
 NEIGHBOUR_RULES = (
     Rule(
         "neighbour.",
-        lambda case: len(_neighbours(case)) <= MOST_NEIGHBOURS,
+        lambda case: len(case.neighbour) <= MOST_NEIGHBOURS,
         lambda case: (
             f"stands {len(case.neighbour)} times; a row has six containers at most, so five neighbours"
         ),
@@ -197,7 +191,7 @@ NEIGHBOUR_RULES = (
     ),
     _alone(
         "container.box",
-        lambda case: len({(box.width, box.axis) for box in boxes_of(case.container, case.gravity_m_s2)}) > 1,
+        lambda case: len({(box.width, box.axis) for box in case.stack}) > 1,
         "cannot stand beside [[neighbour]] unless all boxes have one width and no offset_m: a side must be straight",
     ),
     _alone(
