@@ -1,16 +1,25 @@
-"""The answer of a verification at a site for runs that a line of a transcript makes: `repeated(), further(71)`."""
+"""What is said of a site for what a line of a transcript makes: `repeated(), further(71)`, `box(still=112)`."""
 
+from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 
 from site_example import RUN, example
+from small_site import SITE
 
+from fem.case.validation import CaseError
+from fem.cli.assess import page_of as lines_of
+from fem.html.page import Page, html_of
 from fem.site.answer import Beside, answer_of
+from fem.site.page import shown
 from fem.site.request import load_site
-from fem.site.result import FURTHER, REPEATED, ConfirmedRun, TwoDirections
+from fem.site.result import FURTHER, REPEATED, ConfirmedRun, FloorResult, SiteAnswer, TwoDirections
 from fem.site.runs import key_of
+from fem.site.size import SizeAxis, SizeResult, next_values, size_axis, size_result, spaced
 from fem.site.stages import REPETITIONS
 
-MOTIONS = example()[0].set
+EXAMPLE = example()[0]
+MOTIONS = EXAMPLE.set
 
 
 def runs(motions=range(1, 8), stage="set", **changes):
@@ -55,3 +64,111 @@ def answered(asked):
     """The sentence, the reasons against, and the rule."""
     found = eval(f"answer({asked})")  # a line of this folder
     return "\n".join([f"{found.answer}: {found.sentence}", *found.reasons, f"rule: {found.rule}"])
+
+
+def changed(floor=None, action=None, run=None, **answer):
+    """The example with other findings; a floor by its differences from one in a building of ten storeys."""
+    tall = FloorResult(
+        z_over_h=0.5,
+        building="10 storeys",
+        building_periods_s=(2.0,),
+        damping_ratio=0.05,
+        peak_m_s2=1.9,
+        peak_velocity_m_s=0.5,
+        mean_m_s2=(),
+    )
+    return replace(
+        EXAMPLE,
+        result=replace(EXAMPLE.result, **answer),
+        floor=None if floor is None else replace(tall, **floor),
+        action=replace(EXAMPLE.action, **action or {}),
+        runs=tuple(replace(one, **run) for one in EXAMPLE.runs[:2]) + EXAMPLE.runs[2:]
+        if run
+        else EXAMPLE.runs,
+    )
+
+
+def deciding(**changes):
+    once = replace(RUN, rotation_ratio=0.47, max_slip_m=0.0052)
+    return (replace(EXAMPLE.result.confirmed[0], run=once, **changes),)
+
+
+def brief_page(asked):
+    """The two sheets of the example with changes, and what the command prints."""
+    result = eval(f"changed({asked})")
+    page = Page(kind="", title="", name="", hash="", signature=None)
+    html = html_of(page, "site.html.j2", **shown(result, Path(), brief=True))
+    return html + "".join(f"<p>{line}</p>" for line in lines_of(result, Path("out")))
+
+
+#: a value that fulfils the rule, and one that does not
+STANDS = SiteAnswer(
+    answer="fulfilled",
+    fulfilled=True,
+    rule="",
+    sentence="",
+    overturned=0,
+    runs=28,
+    rotation_ratio=0.1,
+    slip_m=0.01,
+)
+FELL = replace(
+    STANDS, answer="not fulfilled", fulfilled=False, overturned=3, rotation_ratio=None, slip_m=None
+)
+WIDTH = SizeAxis(
+    key="container.width_m", words="width", unit="m", wanted="least", values=spaced(0.8, 2.0, 13)
+)
+STRENGTH = SizeAxis(
+    key="site.reference_acceleration_m_s2",
+    words="reference acceleration",
+    unit="m/s2",
+    wanted="largest",
+    values=spaced(0.2, 6.0, 15),
+)
+FRICTION = SizeAxis(
+    key="contact.mu_static", words="static friction", unit="", wanted="window", values=spaced(0.1, 0.8, 15)
+)
+BOXES = SizeAxis(
+    key="container.boxes",
+    words="number of boxes",
+    unit="",
+    wanted="largest",
+    values=tuple(map(float, range(1, 7))),
+    whole=True,
+)
+
+
+def size(axis: SizeAxis, fulfils: Callable[[float], bool]) -> SizeResult:
+    """The result where `fulfils(value)` says which values do; every value is asked for once."""
+    found: dict[float, SiteAnswer] = {}
+    while values := next_values(axis, found):
+        assert not set(values) & set(found)
+        found |= {value: STANDS if fulfils(value) else FELL for value in values}
+    return size_result(axis, found)
+
+
+def ends(**changes):
+    """Stacks of one box that stand; of six another answer."""
+    return size_result(BOXES, {1.0: STANDS, 6.0: replace(FELL, **changes)})
+
+
+def site(*changes):
+    """A site file with texts replaced, one after the other."""
+    text = SITE
+    for old, new in zip(changes[::2], changes[1::2], strict=True):
+        assert old in text, old
+        text = text.replace(old, new)
+    Path("hall.toml").write_text(text, encoding="utf-8")
+    return load_site("hall.toml")
+
+
+def axis(key, *changes, **ends):
+    return size_axis(site(*changes) if changes else load_site("site"), key, **ends)
+
+
+def sited(asked):
+    """The sentence of `size`, or why a site file or a key of it is refused."""
+    try:
+        return getattr(eval(asked), "sentence", "nothing is said against it")
+    except CaseError as error:
+        return str(error)

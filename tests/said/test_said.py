@@ -18,7 +18,7 @@ from textwrap import fill
 
 import pytest
 from cases import TEXTS, named_case
-from site_answers import answered
+from site_answers import answered, brief_page, sited
 from site_example import write_example
 from study_folders import ensemble_folder, response_folder
 from typed_results import told
@@ -77,8 +77,10 @@ def commanded(asked, capsys):
 
 
 def paged(asked):
-    """The page of a known result of a study, with changes as in TOML."""
+    """The page of a known result of a study, with changes as in TOML; `brief`: two sheets, with arguments."""
     kind, _, changes = asked.partition(" ")
+    if kind == "brief":
+        return text_of_page(brief_page(changes))
     folder = Path(tempfile.mkdtemp(dir="."))
     make, report = {
         "ensemble": (ensemble_folder, ensemble_report),
@@ -151,7 +153,7 @@ def test_the_program_says_what_it_said_when_that_was_last_read(name, request, tm
         (tmp_path / f"{case}.toml").write_text(text, encoding="utf-8")
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "80")
-    say = {"refusals": refused, "results": told, "answers": answered, "pages": paged}.get(
+    say = {"refusals": refused, "results": told, "answers": answered, "sites": sited, "pages": paged}.get(
         name, lambda asked: commanded(asked, capsys)
     )
     pairs = [

@@ -3,8 +3,6 @@
 import numpy as np
 import pytest
 
-from fem.case.case import load_case
-from fem.case.files import SITES
 from fem.case.validation import CaseError
 from fem.site.motions import ground_motions
 from fem.site.request import SiteRequest, load_site
@@ -20,7 +18,6 @@ mu_static = [0.3, 0.4]
 slip_m = 0.1
 """
 
-GERMAN = 'spectrum = "DIN-NA-2011"\nground = "C-R"\nzone = 3\nvertical_ratio = 0.5'
 #: ground D with S_alpha,RP = 4.0 and S_beta,RP = 1.2 m/s2: 4.0 x 1.580 and 1.2 x 2.809, T_D = 1 + 1.2 s
 SECOND = """spectrum = "second-generation"
 plateau_m_s2 = 6.319
@@ -59,22 +56,6 @@ def test_frictions_are_the_corners_of_the_ranges_and_their_middle(tmp_path):
     assert request(tmp_path).frictions == [(0.3, 0.15), (0.3, 0.3), (0.4, 0.2), (0.4, 0.4), (0.35, 0.2625)]
     one = request(tmp_path, ("[0.3, 0.4]", "[0.3]\nmu_kinetic_over_static = [1.0]"))
     assert one.frictions == [(0.3, 0.3)]
-
-
-@pytest.mark.parametrize(
-    "link",
-    [
-        '[[stop]]\nside = "right"\nheight_m = 0.1\ngap_m = 0.05\nstiffness_N_m = 1e8',
-        '[[tie]]\nfrom = "left"\nheight_m = 0.5\nstiffness_N_m = 1e6',
-    ],
-)
-def test_a_container_that_something_holds_is_refused(tmp_path, link):
-    (tmp_path / "box.toml").write_text(
-        "[container]\nwidth_m = 1.1\nheight_m = 2.0\nmass_kg = 3000.0\n[contact]\nmu_static = 0.4\n"
-        f'[motion]\nkind = "none"\n{link}\n'
-    )
-    with pytest.raises(CaseError, match=r"\[\[stop\]\] and \[\[tie\]\] are not verified at a site"):
-        request(tmp_path, ('"seed_stack"', '"box.toml"'))
 
 
 def test_both_elevations_are_run_where_width_and_depth_differ(tmp_path):
@@ -130,11 +111,6 @@ def test_topography_multiplies_the_action(tmp_path):
     )
     for one in ("surface_acceleration", "vertical_acceleration"):
         assert getattr(ridge, one) == pytest.approx(1.4 * getattr(flat, one))
-
-
-def test_the_german_annex_of_2011_says_that_it_is_superseded(tmp_path):
-    old = request(tmp_path, ('ground = "D"\nreference_acceleration_m_s2 = 1.6', GERMAN))
-    assert "superseded by NA:2021-07 and NA:2023-11" in old.action.shape.source
 
 
 def test_a_spectrum_of_the_second_generation_is_given_by_its_parameters(tmp_path):
@@ -203,50 +179,6 @@ def test_nothing_is_signed_while_a_source_is_missing_or_a_placeholder(tmp_path, 
     assert [name.removeprefix("source of ").partition(" ")[0] for name in asked.unstated] == unstated
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "message"),
-    [
-        ('ground = "D"', 'ground = "F"', r"ground type 'F': EN 1998-1 has A, B, C, D, E"),
-        ('ground = "D"', 'ground = "S1"', r"\[site\] ground type S1 needs a special study"),
-        ('ground = "D"\n', "", r'\[site\] spectrum = "EN1998-1" needs ground \(such as "D"'),
-        ('ground = "D"', 'ground = "D"\nzone = 2', r'spectrum = "EN1998-1" has its own zone'),
-        ('ground = "D"', 'ground = "C-R"\nspectrum = "DIN-NA-2011"\nzone = 3', r"needs vertical_ratio \(a_vg/a_g"),
-        ("= 1.6", "= 1.6\nimportance_factor = 2.5", r"importance_factor must be between 0.5 and 2"),
-        ("= 1.6", "= 1.6\nelement_importance_factor = 0.1", r"element_importance_factor must be between 0.5 and 2"),
-        ("= 1.6", "= 1.6\ntopographic_factor = 0.8", r"topographic_factor must be between 1 and 2"),
-        ('ground = "D"', SECOND, r'"second-generation" has its own reference_acceleration_m_s2'),
-        ("[0.3, 0.4]", "[0.4, 0.3]", r"\[friction\] mu_static must be \[low, high\], got \[0.4, 0.3\]"),
-        ("[limits]\nslip_m = 0.1\n", "", r"\[limits\] is missing: slip_m, the clearance"),
-        ("slip_m = 0.1", "rotation_ratio = 0.5", r"\[limits\] slip_m"),
-        ("slip_m = 0.1", "slip_m = 150.0", r"millimetres"),
-        ("[limits]", "[building]\nz_over_h = 1.0\nbuilding_period_s = 0.0\n[limits]", r"building_period_s"),
-        ("[limits]", '[motions]\nsource = "records"\n[limits]', r"\[motions\] files is missing"),
-        ("[limits]", '[motions]\nsource = "records"\nfiles = [["h.at2"]]\n[limits]', r"a vertical record beside every"),
-        ("[limits]", "[motions]\ncount = 2\n[limits]", r"\[motions\] count"),
-        ("[limits]", "[wind]\n[limits]", r"german_zone, terrain: exactly one of the three"),
-        ("[limits]", '[wind]\ngerman_zone = 1\ngerman_place = "coast"\n[limits]', r"no simplified wind"),
-        ("[limits]", "[hazard]\npoints = [[475, 1.6]]\n[limits]", r"\[hazard\] is no longer there; estimate"),
-        ("[limits]", "[motions]\nscatter = 0.4\n[limits]", r"\[motions\] 'scatter' is no longer there"),
-        ("[limits]", "[wnd]\n[limits]", r"unknown table; did you mean 'wind'"),
-        ('"seed_stack"', '"no-such.toml"', r"is no file in .* and no shipped case"),
-        ('"seed_stack"', '"seed_stack"\nempty_mass_kg = 0.4', r"mass"),
-        ('"seed_stack"', '"seed_stack"\nempty_centroid_m = 0.4', r"no effect without empty_mass_kg"),
-    ],
-)  # fmt: skip
-def test_bad_input_is_told_with_its_place(tmp_path, old, new, message):
-    with pytest.raises(CaseError, match=message) as error:
-        request(tmp_path, (old, new))
-    assert "hall.toml" in str(error.value)
-
-
-def test_a_site_file_is_no_case_file_nor_the_other_way_round(tmp_path):
-    place = tmp_path / "hall.toml"
-    place.write_text(LEAST)
-    with pytest.raises(CaseError, match=r"this is a site file: python -m fem assess"):
-        load_case(place)
-    assert "site" in SITES.names
-
-
 def test_records_of_the_command_line_take_the_place_of_those_of_the_file(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "here").mkdir()
@@ -261,7 +193,6 @@ def test_records_of_the_command_line_take_the_place_of_those_of_the_file(tmp_pat
     pairs = load_site(path, ["here/a.at2,b.at2", "c.csv,d.csv", "e.csv, f.csv"])
     assert pairs.motions.files[0] == ["a.at2", str(tmp_path / "b.at2")]
     assert pairs.motions.vertical
-    with pytest.raises(CaseError, match="a vertical record beside every horizontal one"):
-        load_site(path, ["a.at2,b.at2", "c.csv", "d.csv"])
-    with pytest.raises(CaseError, match="at least 3 are needed"):
-        load_site(path, ["a.at2"])
+    for few in (["a.at2,b.at2", "c.csv", "d.csv"], ["a.at2"]):
+        with pytest.raises(CaseError, match="files"):
+            load_site(path, few)

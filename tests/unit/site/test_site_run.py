@@ -1,6 +1,7 @@
 """Verifications from file to folder: the same result on any number of cores and after an interruption."""
 
 import json
+import re
 
 import numpy as np
 import pytest
@@ -74,9 +75,12 @@ def brief(monkeypatch):
 
 @pytest.fixture(scope="module")
 def computed(tmp_path_factory):
+    """A verification without its deciding runs, whose bands `said/studies.txt` computes, and its folder."""
     folder = tmp_path_factory.mktemp("site")
     place = site_file(folder)
-    return run_site(load_site(place), folder / "out", jobs=1), folder
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("fem.site.run.confirmed", lambda *arguments: [])
+        return run_site(load_site(place), folder / "out", jobs=1), folder
 
 
 def test_every_motion_runs_with_both_signs_at_every_factor(computed):
@@ -94,7 +98,6 @@ def test_the_container_of_the_example_fulfils_the_rule_and_overturns_at_a_higher
     answer = computed[0].result
     assert (answer.answer, answer.fulfilled, answer.overturned) == ("fulfilled", True, 0)
     assert answer.rotation_ratio < 0.01 and answer.slip_m < 0.005
-    assert answer.sentence.startswith("Fulfilled under the rule below: none of 6 runs overturned")
     first = answer.factor_at_first_overturning
     assert 1.25 < answer.margin_factor <= first <= 4.0
     runs = computed[0].runs
@@ -148,42 +151,15 @@ def test_on_a_floor_that_gives_way_every_run_is_computed(tmp_path, preset, spare
     assert [stages.screening.at_rest(key) for key in weak] == [spared] * len(weak)
 
 
-def test_the_file_has_the_keys_that_scripts_rely_on(computed):
+def test_the_result_survives_its_file_with_the_keys_that_scripts_rely_on(computed):
     found = json.loads((computed[1] / "out" / "assess.json").read_text())
-    assert {"ag_m_s2", "soil_factor", "ag_S_m_s2", "avg_m_s2", "corner_periods_s", "displacement_m"} <= set(
-        found["action"]
-    )
-    spectra = ("periods_s", "target_m_s2", "mean_m_s2", "vertical_target_m_s2", "vertical_mean_m_s2")
-    assert len({len(found["action"][name]) for name in spectra}) == 1
-    assert found["set"]["valid"] is True and found["set"]["reasons"] == []
-    assert {"count", "mean_pga_m_s2", "least_ratio", "least_ratio_period_s", "largest_correlation"} <= set(
-        found["set"]
-    )
-    assert {
-        "motion",
-        "vertical_sign",
-        "mu_static",
-        "mu_kinetic",
-        "mass",
-        "model",
-        "factor",
-        "outcome",
-    } <= set(found["runs"][0])
-    result = found["result"]
-    assert {"fulfilled", "rule", "overturned", "runs", "rotation_ratio", "slip_m"} <= set(result)
-    assert set(result["further"][0]) >= {
-        "mass",
-        "mu_static",
-        "motions",
-        "overturned",
-        "beyond_limits",
-        "interval",
-    }
-    assert {"answer", "reasons", "margin_factor", "rule_range", "actions"} <= set(result)
-    assert {"slip_mean_m", "rotation_ratio_largest", "factor_at_first_overturning"} <= set(result)
-    assert {"name", "quantity", "demand", "capacity", "utilisation", "says", "source"} <= set(
-        found["methods"][0]
-    )
+    for table, keys in {
+        "action": "ag_m_s2 soil_factor ag_S_m_s2 avg_m_s2 corner_periods_s displacement_m",
+        "set": "count valid reasons mean_pga_m_s2 least_ratio least_ratio_period_s largest_correlation",
+        "result": "answer fulfilled rule overturned runs rotation_ratio rotation_ratio_largest slip_m slip_mean_m "
+        "reasons margin_factor factor_at_first_overturning rule_range actions further",
+    }.items():
+        assert set(keys.split()) <= set(found[table])
     assert SiteResult.from_json(found) == computed[0]
 
 
@@ -213,7 +189,7 @@ def test_on_a_floor_the_period_of_the_building_is_varied(tmp_path, brief):
     assert any("4.3.5.2" in method.source for method in result.methods)
 
 
-def records(folder, *, twice=False, scale=1.0, event=""):
+def records(folder, *, twice=False, scale=1.0):
     """Three pairs of record files, sampled at 0.01 s."""
     action = load_site("site").action
     made = artificial_motions(action, count=3, seed=5)
@@ -224,9 +200,7 @@ def records(folder, *, twice=False, scale=1.0, event=""):
         pair = []
         for letter, component in motion.lettered.items():
             name = f"r{number}_{letter}.at2"
-            described = (
-                f"{event or f'EVENT {number}'}, 1/1/20, STATION {number}, {'UP' if letter == 'v' else '090'}"
-            )
+            described = f"EVENT {number}, 1/1/20, STATION {number}, {'UP' if letter == 'v' else '090'}"
             values = scale * component
             write_at2(folder / name, motion.step, values / 9.80665 * 9.80665, described)
             pair.append(name)
@@ -262,32 +236,19 @@ def test_a_set_with_one_motion_twice_is_not_used(tmp_path, capsys):
 
 
 @pytest.mark.parametrize(
-    ("make", "message"),
+    ("old", "new", "message"),
     [
-        (lambda folder: records(folder, event="IZMIT"), "records of one event"),
-        (
-            lambda folder: (
-                'source = "records"\nfiles = [["a.at2","b.at2"],["c.at2","d.at2"],["e.at2","f.at2"]]'
-            ),
-            "a.at2",
-        ),
-        (
-            lambda folder: 'source = "records"\nfiles = [["../a.at2","b.at2"],["c","d"],["e","f"]]',
-            "in the folder",
-        ),
-        (lambda folder: 'source = "records"\nfiles = [["a.at2","b.at2"]]', "at least 3"),
-        (lambda folder: 'source = "records"\nfiles = [["a"],["b"],["c"]]', "vertical"),
-        (lambda folder: 'source = "records"', "files is missing"),
-        (lambda folder: "stationary_s = 5.0", "between 10 and 60 s"),
+        ("EVENT", "IZMIT", "records of one event"),
+        ("r0_h.at2", "none.at2", "none.at2"),
+        ("r0_h.at2", "../r0_h.at2", "in the folder"),
     ],
 )
-def test_motions_that_cannot_be_used_are_refused(tmp_path, capsys, make, message):
-    motions = make(tmp_path)
-    text = site_file(tmp_path, motions=motions).read_text()
-    if "stationary_s = 5.0" in motions:
-        text = text.replace("stationary_s = 10.0\n", "", 1)
-    (tmp_path / "site.toml").write_text(text)
-    assert main(["assess", str(tmp_path / "site.toml"), "--out", str(tmp_path / "out"), "-q"]) == 2
+def test_records_that_cannot_be_used_are_refused(tmp_path, capsys, old, new, message):
+    motions = records(tmp_path)
+    for file in tmp_path.glob("*.at2"):
+        file.write_text(re.sub(rf"{old} \d", new, file.read_text()))
+    place = site_file(tmp_path, motions=motions.replace(old, new))
+    assert main(["assess", str(place), "--out", str(tmp_path / "out"), "-q"]) == 2
     assert message in capsys.readouterr().err
 
 
@@ -299,13 +260,6 @@ def test_components_of_quite_different_length_are_refused(tmp_path, capsys):
     assert "do not belong together" in capsys.readouterr().err
 
 
-def test_a_container_without_friction_is_refused_at_reading(tmp_path, capsys):
-    text = site_file(tmp_path).read_text()
-    (tmp_path / "site.toml").write_text(text.replace("mu_static = [0.4]", "mu_static = [0.0, 0.4]"))
-    assert main(["assess", str(tmp_path / "site.toml"), "--out", str(tmp_path / "out"), "-q"]) == 2
-    assert "[friction] mu_static must be positive" in capsys.readouterr().err
-
-
 def test_wind_on_a_tall_stack_is_refused_before_anything_is_computed(tmp_path, capsys):
     place = site_file(tmp_path, more="[wind]\npeak_velocity_pressure_Pa = 500.0")
     (tmp_path / "k1.toml").write_text(CONTAINER.replace("height_m = 4.0", "height_m = 16.0"))
@@ -313,13 +267,12 @@ def test_wind_on_a_tall_stack_is_refused_before_anything_is_computed(tmp_path, c
     assert "[wind] the wind row is for bodies up to 15 m" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize(
-    ("seconds", "told"), [(0.0, "1 s"), (0.2, "1 s"), (14.8, "20 s"), (20.0, "20 s"), (61.0, "1 min 10 s")]
-)
-def test_the_time_that_it_takes_at_most_is_rounded_up(seconds, told):
-    runs = Forecast(of_set=140, of_set_still=0, most=2460, seconds=seconds, deciding_seconds=31.0, cores=2)
-    assert f"up to roughly {told} on 2 cores; then the deciding runs" in runs.words
-    assert runs.words.endswith("roughly 40 s")
+def test_the_time_that_it_takes_at_most_is_rounded_up():
+    for seconds, told in {0.0: "1 s", 0.2: "1 s", 14.8: "20 s", 20.0: "20 s", 61.0: "1 min 10 s"}.items():
+        runs = Forecast(
+            of_set=140, of_set_still=0, most=2460, seconds=seconds, deciding_seconds=31.0, cores=2
+        )
+        assert f"up to roughly {told} on 2 cores" in runs.words and runs.words.endswith("roughly 40 s")
 
 
 def test_quick_is_never_fulfilled_of_a_container_that_moves(tmp_path, capsys, brief):
@@ -340,14 +293,6 @@ def test_a_container_that_rests_is_answered_without_a_run(tmp_path, monkeypatch,
     answer = result.result
     assert (answer.answer, answer.still, answer.runs) == ("fulfilled", 6, 6)
     assert answer.further[0].motions == 72 and answer.factor_at_first_movement > 1.5
-
-
-def test_an_empty_box_lighter_than_its_walls_is_refused(tmp_path, capsys):
-    (tmp_path / "site.toml").write_text(
-        load_site("site").origin.text.replace("empty_mass_kg = 600.0", "empty_mass_kg = 400.0")
-    )
-    assert main(["assess", str(tmp_path / "site.toml"), "--out", str(tmp_path / "out"), "-q"]) == 2
-    assert "empty_mass_kg: the walls and posts of one box weigh" in capsys.readouterr().err
 
 
 def test_the_folder_holds_the_files_of_points_so_that_it_can_be_repeated(tmp_path, brief):

@@ -45,13 +45,6 @@ def test_the_request_takes_the_value():
     assert (deep.width_m, deep.depth_m) == (0.8, 1.3)
 
 
-def test_the_action_of_the_ground_is_not_sized_where_the_floor_is_given():
-    spectrum = {"period_s": [0.03, 4.0], "acceleration_m_s2": [3.0, 0.5]}
-    given = replace(SITE, data={**SITE.data, "floor_spectrum": spectrum}).with_value("motions.seed", 1)
-    with pytest.raises(CaseError, match="the horizontal motion of the floor is given, which"):
-        size_axis(given, "site.reference_acceleration_m_s2")
-
-
 def test_of_a_building_of_storeys_every_floor_is_tried_and_none_between():
     tall = in_building(storeys=5)
     axis = size_axis(tall, "building.z_over_h")
@@ -65,29 +58,3 @@ def test_of_a_building_of_storeys_every_floor_is_tried_and_none_between():
     assert len(size_axis(low, "building.z_over_h").values) == 13
     with pytest.raises(CaseError, match="fewer than two values"):
         size_axis(tall, "building.z_over_h", low=0.3, high=0.5)
-
-
-@pytest.mark.parametrize(
-    ("key", "ends", "message"),
-    [
-        ("container.widht_m", {}, "did you mean 'width_m'"),
-        ("site.acceleration", {}, "no such key of a site file"),
-        ("site.spectrum", {}, "holds no single number"),
-        ("friction.mu_static", {}, "holds no single number"),
-        ("building.z_over_h", {}, r"the site file has no \[building\]"),
-        ("site.soil_factor", {}, "no value to start from; give --from and --to"),
-        ("site.soil_factor", {"low": 1.0, "high": 2.0}, "has its own soil_factor"),
-        ("container.width_m", {"low": 2.0, "high": 1.0}, "must rise"),
-        ("container.width_m", {"high": 3000.0}, "--to: container.width_m"),
-        (
-            "container.width_m",
-            {"high": 1.32},
-            "at 1.32 m empty_mass_kg: the walls and posts of one box weigh 655",
-        ),
-        ("container.height_m", {}, "centroid_m must be less than height_m"),
-        ("container.width_m", {"count": 1}, "--count must be 2 to 200"),
-    ],
-)
-def test_a_key_that_cannot_vary_is_told(key, ends, message):
-    with pytest.raises(CaseError, match=message):
-        size_axis(SITE, key, **ends)
