@@ -78,7 +78,15 @@ GROUPS = {
     },
 }
 COMMANDS = [name for commands in GROUPS.values() for name in commands]
-READING = {"check", "init", "list", "completion", "schema", "docs", "doctor"}  #: commands that compute nothing
+READING = {
+    "check",
+    "init",
+    "list",
+    "completion",
+    "schema",
+    "docs",
+    "doctor",
+}  #: commands that compute nothing
 #: import strings of commands that are not `fem.cli.NAME:NAME`
 PLACES = {"list": "fem.cli.list_cases:list_cases", "completion": "fem.__main__:completion"} | {
     command: f"fem.cli.evidence:{command}" for command in ("verify", "validate", "study")
