@@ -88,24 +88,6 @@ def test_the_same_seed_gives_the_same_bits(motions):
     )
 
 
-def test_a_longer_band_is_matched_with_annex_a():
-    periods = np.geomspace(4.0, 8.0, 12)
-    found = [
-        response_spectrum(STEP_S, motion.horizontal, periods).pseudo_acceleration_m_s2
-        for motion in artificial_motions(
-            ACTION, count=5, seed=1, longest=8.0, stationary=20.0, vertical=False
-        )
-    ]
-    ratios = np.mean(found, axis=0) / ACTION.horizontal(periods)
-    assert ratios.min() > 0.9 and ratios.max() < 1.15
-
-
-@pytest.mark.parametrize(("stationary", "longest"), [(9.9, 4.0), (61.0, 4.0), (12.0, 11.0)])
-def test_motions_that_no_code_knows_are_refused(stationary, longest):
-    with pytest.raises(ValueError, match="s, got"):
-        artificial_motions(ACTION, count=1, seed=1, stationary=stationary, longest=longest)
-
-
 def test_rounding_off_leaves_small_values_and_keeps_the_sign():
     values = np.linspace(-3.0, 3.0, 601)
     found = rounded_off(values, 1.0)

@@ -7,7 +7,6 @@ import pytest
 
 from fem.seismic.action import SiteAction, eurocode_shape
 from fem.seismic.artificial import artificial_set
-from fem.seismic.ground_motion import GroundMotion
 from fem.seismic.motion_set import check_set, copy_correlation, largest_correlation
 
 ACTION = SiteAction(shape=eurocode_shape(1, "D"), reference_acceleration=2.4 / 1.35)
@@ -64,21 +63,9 @@ def test_a_copy_in_disguise_is_found(motions, change):
     assert any("one motion" in reason for reason in check_set([*motions, copy], ACTION).reasons)
 
 
-def test_two_motions_are_too_few(motions):
-    assert any("at least 3" in reason for reason in check_set(motions[:2], ACTION).reasons)
-
-
 def test_vertical_like_horizontal_is_correlated(motions):
     same = [replace(motion, vertical=0.5 * motion.horizontal) for motion in motions]
     assert largest_correlation(same) == pytest.approx(1.0)
-
-
-def test_motions_of_other_steps_are_compared(motions):
-    coarse = replace(
-        motions[0], step=0.01, horizontal=motions[0].horizontal[::2], vertical=None, name="coarse"
-    )
-    assert copy_correlation(motions[0], coarse) > 0.95
-    assert largest_correlation([motions[0], coarse]) > 0.95
 
 
 def test_recorded_verticals_are_shown_and_not_required(motions):
@@ -92,17 +79,3 @@ def test_motions_with_and_without_vertical_do_not_mix(motions):
     found = check_set([replace(motions[0], vertical=None), *motions[1:]], ACTION)
     assert found.vertical is None
     assert any("some have none" in reason for reason in found.reasons)
-
-
-@pytest.mark.parametrize(
-    ("given", "message"),
-    [
-        ({"vertical": np.zeros(9)}, "one length"),
-        ({"horizontal": np.array([0.0, np.nan])}, "not a finite number"),
-        ({"step": 0.0}, "must be positive"),
-        ({"horizontal": np.zeros(1)}, "two samples"),
-    ],
-)
-def test_a_motion_that_is_none_is_refused(given, message):
-    with pytest.raises(ValueError, match=message):
-        GroundMotion(**({"name": "bad", "step": 0.01, "horizontal": np.zeros(10)} | given))
