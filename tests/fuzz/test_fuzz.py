@@ -24,11 +24,11 @@ def compiled():
 @pytest.mark.parametrize(
     ("kind", "count"),
     [
-        ("text", 60),
+        ("text", 40),
         ("mesh", 35),
         ("table", 35),
-        ("record", 40),
-        ("hostile", 25),
+        ("record", 25),
+        ("hostile", 8),
         ("case", 25),
         ("option", 20),
         ("folder", 5),
