@@ -12,6 +12,8 @@ SLOW = {
     "impact of a bar",
     "full model",
     "full model through an impact",
+    "a shell refined",
+    "a bed of springs",
 }
 
 

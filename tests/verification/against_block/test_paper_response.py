@@ -15,6 +15,7 @@ from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
 from fem.__main__ import main
 
+pytestmark = pytest.mark.slow
 BLOCK = RigidBlock.homogeneous(width=1.1, height=4.0)
 PEAK = 4.0  #: of the floor, held [m/s2]
 #: frequency -> rotation ratio of the motion of period 3

@@ -24,15 +24,8 @@ FLAT = ("support.kind=flat", "solver.duration_s=0.3")
 THREADED = (FLAT, (*COARSE, "solver.duration_s=0.1"), ("solver.model=rigid", "solver.duration_s=3"))
 
 
-@pytest.mark.parametrize(
-    "overrides",
-    [
-        pytest.param(FLAT, marks=pytest.mark.slow),
-        pytest.param(THREADED[1], marks=pytest.mark.slow),
-        THREADED[2],
-    ],
-    ids=["reduced", "full", "rigid"],
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("overrides", THREADED, ids=["reduced", "full", "rigid"])
 def test_the_number_of_threads_changes_no_byte(tmp_path, overrides):
     variables = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS", "NUMBA_NUM_THREADS")
     for threads in ("1", "2"):

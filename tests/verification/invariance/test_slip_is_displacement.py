@@ -16,6 +16,7 @@ from fem.case.files import CASES
 
 UPRIGHT = 1e-3  #: rotation over the slenderness angle below which a container counts as upright
 NO_FRAMES = {"output.fields_s": 0.0}
+ALONE = {"band": False, "margin": False}
 STOP = """
 schema = 1
 [container]
@@ -80,13 +81,13 @@ def allowed(run):
 
 @pytest.mark.parametrize("name", CASES.names)
 def test_the_slip_of_an_upright_shipped_case_is_what_it_has_moved(name):
-    run = fem.compute(fem.load_case(name).replace(NO_FRAMES), band=False, margin=False)
+    run = fem.compute(fem.load_case(name).replace(NO_FRAMES), **ALONE)
     assert difference(run) <= allowed(run)
 
 
 def test_the_slip_of_random_rigid_containers_is_what_they_have_moved():
     cases = [random_case(number, "rigid", 5.0).replace(NO_FRAMES) for number in range(200)]
-    runs = fem.compute_many(cases, jobs=1, errors="return")
+    runs = fem.compute_many(cases, jobs=1, **ALONE, errors="return")
     followed = 0
     for number, run in enumerate(runs):
         apart = None if isinstance(run, Exception) or len(run.history) == 0 else difference(run)
@@ -99,7 +100,7 @@ def test_the_slip_of_random_rigid_containers_is_what_they_have_moved():
 def test_the_slip_of_random_elastic_containers_is_what_they_have_moved():
     cases = [random_case(number, "reduced", 2.0).replace(NO_FRAMES) for number in range(12)]
     followed = 0
-    for run in fem.compute_many(cases, jobs=1, errors="return"):
+    for run in fem.compute_many(cases, jobs=1, **ALONE, errors="return"):
         apart = None if isinstance(run, Exception) or len(run.history) == 0 else difference(run)
         if apart is not None:
             followed += 1
@@ -109,7 +110,7 @@ def test_the_slip_of_random_elastic_containers_is_what_they_have_moved():
 
 def test_what_a_container_moves_in_the_air_is_slip():
     # An independent block (explicit, penalty corners) stands 61.0 mm from where it was, its foot 71.9 mm.
-    run = fem.compute(fem.case_from(tomllib.loads(STOP)), band=False, margin=False)
+    run = fem.compute(fem.case_from(tomllib.loads(STOP)), **ALONE)
     assert run.verdict.residual_slip_m == pytest.approx(0.0719, abs=4e-4)
     assert run.verdict.slip_in_air_m == pytest.approx(run.verdict.residual_slip_m, abs=1e-3)
     assert run.verdict.outcome == "slide-rock"
@@ -121,7 +122,7 @@ def test_what_a_container_moves_in_the_air_is_slip():
 def test_the_boxes_of_a_loose_stack_slip_as_far_as_they_move_over_what_is_below():
     keys = {"container.joints": "loose", "solver.model": "rigid", "joints.mu_static": 0.1}
     case = fem.load_case("seed_stack_plateau").replace(keys | NO_FRAMES)
-    history = fem.compute(case, band=False, margin=False).history
+    history = fem.compute(case, **ALONE).history
     rotations = [history["rotation_rad"], *(history[f"box_{k}_rotation_rad"] for k in (2, 3, 4))]
     places = [history["centre_x_m"], *(history[f"box_{k}_x_m"] for k in (2, 3, 4))]
     upright = np.max(np.abs(rotations), axis=0) < 1e-4
@@ -151,7 +152,7 @@ def test_a_box_that_hops_slips_as_far_as_the_slider_in_two_directions():
     time = np.arange(0.0, 2.001, 0.005)
     along, up = 4.0 * np.sin(9.0 * time), 12.0 * np.sin(20.0 * time)
     case = fem.load_case("seed_box").replace(keys | NO_FRAMES)
-    run = fem.compute(case.with_motion(time, along, up), band=False, margin=False)
+    run = fem.compute(case.with_motion(time, along, up), **ALONE)
     plane = fem.slide_in_plane(time, along, 0.0 * along, up, mu_static=0.3)
     assert abs(run.verdict.slip_in_air_m) > 1e-3
     assert run.history["slip_m"][-1] == pytest.approx(plane[-1, 0], rel=0.1)

@@ -35,7 +35,7 @@ UPLIFT = 2.698  # m/s2, of the stack as a rigid block: g a/h
 
 def verdict_of(folder, name, values):
     case = named_case(name, QUICK | values)
-    return run_case(case, case_text=case.text, folder=folder, options=RunOptions()).typed_result
+    return run_case(case, case_text=case.text, folder=folder, options=RunOptions(margin=False)).typed_result
 
 
 def pulse(model="reduced", **values):
