@@ -1,5 +1,7 @@
 """All stepping kernels, compiled once for a whole suite: its workers share the work, and none waits for long."""
 
+from contextlib import suppress
+
 from filelock import FileLock, Timeout
 
 from contact.jit import cache_folder
@@ -28,16 +30,12 @@ STEPPED = {
 
 
 def compile_kernels() -> None:
-    """Compile those that no other worker is compiling, then wait for the others."""
+    """Compile those that no other worker is compiling and no earlier suite has compiled, then wait for the others."""
     for wait in (0.0, -1.0):
-        for name in STEPPED:
-            try:
-                with FileLock(cache_folder() / f"{name}.lock", timeout=wait):
-                    _step(name)
-            except Timeout:
-                continue
-
-
-def _step(name: str) -> None:
-    model = build_model(load_case("seed_box", ["solver.duration_s=0.02", *STEPPED[name]]))
-    simulate(model, Recorder(model))
+        for name, changes in STEPPED.items():
+            place = cache_folder() / name
+            with suppress(Timeout), FileLock(f"{place}.lock", timeout=wait):
+                if not (done := place.with_suffix(".compiled")).exists():
+                    model = build_model(load_case("seed_box", ["solver.duration_s=0.02", *changes]))
+                    simulate(model, Recorder(model))
+                    done.touch()

@@ -61,11 +61,13 @@ def run_into(folder, name, *overrides, reporter=None, **options):
 def runs(tmp_path_factory):
     """One run a name in CASES, with its figures drawn by the run itself."""
     place = tmp_path_factory.mktemp("figures")
-    checked = {"check_rigid": True, "band": True}
-    return {
-        name: run_into(place / name, *case, **(checked if name == "rocking" else {}))
+    checked, said = {"check_rigid": True, "band": True, "margin": False}, Collecting()
+    found = {
+        name: run_into(place / name, *case, reporter=said, **(checked if name == "rocking" else {}))
         for name, case in CASES.items()
     }
+    assert not [text for text in said.messages if "not drawn" in text]  # no run fails for its figures
+    return found
 
 
 @pytest.fixture(scope="module")
