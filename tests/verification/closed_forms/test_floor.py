@@ -169,21 +169,6 @@ def test_a_vertical_motion_on_a_slope_is_turned_too():
     assert run.joints[0].slip == pytest.approx(expected, rel=2e-3)
 
 
-@pytest.mark.parametrize("per_cent", [40.0, -60.0])
-def test_a_tilt_test_slides_where_the_slope_is_mu(per_cent):
-    keys = {"floor.slope_percent": per_cent, "motion.kind": "none", "container.height_m": 0.5}
-    slope = abs(per_cent) / 100.0
-    for mu in (1.01 * slope, 0.5 * slope):
-        run = stepped(
-            build_model(BOX.with_values(keys | {"contact.mu_static": mu, "contact.mu_kinetic": mu})), 0.3
-        ).run
-        angle = math.atan(slope)
-        free = max(0.0, math.sin(angle) - mu * math.cos(angle))
-        assert abs(run.joints[0].slip) == pytest.approx(
-            0.5 * GRAVITY * free * run.clock[0].time ** 2, rel=2e-3, abs=1e-6
-        )
-
-
 def test_where_nothing_stands_is_refused():
     with pytest.raises(CaseError, match=r"\[floor\] slope_percent = 50: nothing stands there"):
         build_model(

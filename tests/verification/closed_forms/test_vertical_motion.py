@@ -62,9 +62,8 @@ def test_a_shaken_block_converges_to_the_exact_oscillation_in_second_order():
 
 
 @pytest.mark.parametrize("acceleration", [3.0, -4.0])
-@pytest.mark.parametrize("model", ["rigid", "reduced", "full"])
-def test_a_constant_acceleration_is_another_gravity(model, acceleration):
-    common = PENALTY | {"container.mass_kg": 2500.0, "solver.model": model, "solver.duration_s": 4.5}
+def test_a_constant_acceleration_is_another_gravity_for_the_full_model(acceleration):
+    common = PENALTY | {"container.mass_kg": 2500.0, "solver.model": "full", "solver.duration_s": 4.5}
     lifted = run(stack().with_values(common | PULL | {"vertical.peak_acceleration_m_s2": acceleration}))
     heavier = run(stack().with_values(common | {"gravity_m_s2": 9.81 + acceleration}))
     assert int(lifted.track.impacts) == int(heavier.track.impacts) >= 3

@@ -93,3 +93,11 @@ def test_frequencies_of_the_modes_kept_are_those_of_all_nodes(section: str) -> N
     assert np.abs(squares[:3]).max() < 1e-6 * squares[3]
     kept = container.basis.angular_frequencies[:20]
     assert kept == pytest.approx(np.sqrt(squares[3:23]), rel=1e-3)
+
+
+def test_velocities_of_the_nodes_are_the_rates_of_their_displacements() -> None:
+    model = run(stack("shell", solver__duration_s=0.5)).model
+    recovery, position, velocity = recovery_of(model), model.run.old.position, model.run.old.velocity
+    back, on = (recovery.frame(position + t * velocity, velocity).displacement for t in (-1e-6, 1e-6))
+    speeds = recovery.frame(position, velocity).velocity
+    assert (on - back) / 2e-6 == pytest.approx(speeds, abs=1e-6 * np.abs(speeds).max())
