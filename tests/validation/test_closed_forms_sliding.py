@@ -66,10 +66,3 @@ def test_rectangular_pulse_one_way(peak, mu_kinetic):
         assert expected == pytest.approx(-(2.4**2) / (2.0 * limit) * (1.0 - limit / 8.0), rel=1e-14)
     if peak == 3.0:
         assert expected == 0.0
-
-
-def test_forms_refuse_what_no_slider_has():
-    with pytest.raises(ValueError, match="mu_static/mu_kinetic"):
-        steady_stroke(friction_ratio=0.3, static_ratio=0.9)
-    with pytest.raises(ValueError, match="friction_ratio"):
-        steady_stroke(friction_ratio=-0.3, static_ratio=1.0)

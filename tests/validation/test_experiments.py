@@ -111,16 +111,9 @@ def outcomes_of(block, scales):
     body = Body(mass=400.0, height=0.8, centroid=0.4, inertia=0.055, angles=(0.1, 0.3))
     times = np.arange(0.0, 2.0, 0.01)
     sine = np.where(times < 1.5, np.sin(2.0 * np.pi * times / 1.5), 0.0)
+    done = {"name": "", "record": "", "overturned": (), "simulated": (), "fitted": True}
     for scale in scales:
-        test = ShakeTest(
-            name="",
-            record="",
-            overturned=(),
-            simulated=(),
-            fitted=True,
-            times=times,
-            acceleration=scale * sine,
-        )
+        test = ShakeTest(**done, times=times, acceleration=scale * sine)
         yield f"sine.csv,{scale:g},{scale:g},,{int(rocks.overturns(body, block, test))}"
 
 
@@ -145,37 +138,30 @@ def test_tests_set_apart_are_predicted_by_the_others(tmp_path, monkeypatch):
     assert rocks.compute(own_tests(tmp_path, rows)).tests == 4
 
 
-@pytest.mark.parametrize(
-    ("rows", "words"),
-    [
-        (["sine.csv,1,,,2"], "row 2: overturned must be 0 or 1"),
-        (["sine.csv,1,,,0", "none.csv,1,,,1"], "row 3: .*none.csv"),
-        (["sine.csv,0,,,1"], "row 2: scale must be finite and not zero"),
-        (["sine.csv,x,,,1"], "row 2: scale must be a number"),
-        (["sine.csv,1,,both,1"], "row 2: set must be fit or predict"),
-        (["sine.csv,1,,,1"], "too few tests"),
-        ([], "header needs the columns"),
-    ],
-)
-def test_a_table_of_outcomes_that_cannot_be_used_is_refused_with_its_row(tmp_path, rows, words):
-    with pytest.raises(ShakeTestError, match=words):
-        read_series(own_tests(tmp_path, rows))
+REFUSED_ROWS = {
+    "row 2: overturned must be 0 or 1": ["sine.csv,1,,,2"],
+    "row 3: .*none.csv": ["sine.csv,1,,,0", "none.csv,1,,,1"],
+    "row 2: scale must be finite and not zero": ["sine.csv,0,,,1"],
+    "row 2: scale must be a number": ["sine.csv,x,,,1"],
+    "row 2: set must be fit or predict": ["sine.csv,1,,both,1"],
+    "too few tests": ["sine.csv,1,,,1"],
+    "header needs the columns": [],
+}
+REFUSED_BODIES = {
+    "mass_kg is missing": ("mass_kg = 400.0\n", ""),
+    "mass_kg must be a positive number, got -4": ("400.0", "-4"),
+    "must rise": ("[0.1, 0.3]", "[0.3, 0.1]"),
+    r"must be \[least, largest\]": ("[0.1, 0.3]", "0.2"),
+    "unknown key mass;": ("mass_kg", "mass"),
+    "unit must be text": ('"m/s2"', "3"),
+}
 
 
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [
-        (("mass_kg = 400.0\n", ""), "mass_kg is missing"),
-        (("400.0", "-4"), "mass_kg must be a positive number, got -4"),
-        (("[0.1, 0.3]", "[0.3, 0.1]"), "must rise"),
-        (("[0.1, 0.3]", "0.2"), r"must be \[least, largest\]"),
-        (("mass_kg", "mass"), "unknown key mass;"),
-        (('"m/s2"', "3"), "unit must be text"),
-    ],
-)
-def test_a_body_that_cannot_be_used_is_refused(tmp_path, change, words):
+@pytest.mark.parametrize("words", [*REFUSED_ROWS, *REFUSED_BODIES])
+def test_outcomes_and_a_body_that_cannot_be_used_are_refused(tmp_path, words):
+    rows = REFUSED_ROWS.get(words, ["sine.csv,1,,,1", "sine.csv,2,b,,1"])
     with pytest.raises(ShakeTestError, match=words):
-        read_series(own_tests(tmp_path, ["sine.csv,1,,,1", "sine.csv,2,b,,1"], BODY.replace(*change)))
+        read_series(own_tests(tmp_path, rows, BODY.replace(*REFUSED_BODIES.get(words, ("", "")))))
 
 
 @pytest.mark.slow

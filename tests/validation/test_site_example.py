@@ -27,9 +27,8 @@ CASE = case_from(
 )
 
 
-def on(motion, factor, sign=0):
-    vertical = None if sign == 0 else sign * factor * motion.vertical
-    return CASE.with_motion(motion.times, factor * motion.horizontal, vertical)
+def on(motion, factor):
+    return CASE.with_motion(motion.times, factor * motion.horizontal)
 
 
 @pytest.fixture(scope="module")
@@ -68,17 +67,7 @@ def test_slip_with_little_friction_is_that_of_the_independent_set(sets):
         assert 0.5 * high < found.max() < 1.5 * high
 
 
-def test_the_sign_of_the_vertical_decides_single_motions(sets):
-    motions = sets[0]
-    found = {
-        sign: np.array(
-            [min(row["rotation_ratio"], 1.0) for row in run_cases([on(m, 1.75, sign) for m in motions])]
-        )
-        for sign in (1, -1)
-    }
-    assert np.abs(found[1] - found[-1]).max() > 0.2
-
-
+@pytest.mark.slow
 def test_the_analytic_block_rests_and_rocks_under_the_same_motions():
     """Friction holds here, so the block without sliding is a second solver; impacts differ, so single peaks may."""
     block = k1().block
