@@ -83,10 +83,6 @@ def rectangular_pulse_duration(block: RigidBlock, peak: float) -> float:
     """
     strength = abs(peak) / block.gravity
     angle = block.slenderness_angle
-    if not abs(peak) > block.uplift_acceleration:
-        raise ValueError(
-            f"rectangular pulse: {peak} m/s2 does not lift the block; it needs more than g tan al"
-        )
     end = angle - math.asin(math.sin(angle) - (1.0 - math.cos(angle)) / strength)
 
     def integrand(root: float) -> float:  # rotation = root^2 takes the singularity at the start away
@@ -115,8 +111,6 @@ def velocity_step_threshold(block: RigidBlock) -> float:
 def _threshold(frequency_ratio: float, growth: Callable[[float, float, float], float]) -> float:
     """The acceleration ratio above 1 at which growth(a, arcsin(1/a), w) = w; growth increases with a."""
     w = frequency_ratio
-    if not w > 0.0:
-        raise ValueError(f"overturning threshold: frequency_ratio must be positive, got {w}")
 
     def surplus(ratio: float) -> float:
         return growth(ratio, math.asin(1.0 / ratio), w) - w

@@ -20,7 +20,6 @@ def never_stops_ratio(static_ratio: float) -> float:
 
     At it the slip reverses just where the floor acceleration reaches mu_s g.
     """
-    _check_static_ratio(static_ratio)
     return 1.0 / math.hypot(static_ratio, 0.5 * math.pi)
 
 
@@ -31,9 +30,6 @@ def steady_stroke(*, friction_ratio: float, static_ratio: float) -> float:
     sin x0 = mu_s g/(A Omega^2), stops where cos x0 - kappa (x1 - x0) = cos x1, and sticks until the
     opposite phase; stroke cos x0 (x1 - x0) - kappa (x1 - x0)^2/2 - (sin x1 - sin x0). Zero where it sticks.
     """
-    _check_static_ratio(static_ratio)
-    if not friction_ratio >= 0.0:
-        raise ValueError(f"steady_stroke: friction_ratio must not be negative, got {friction_ratio}")
     kappa = friction_ratio
     if static_ratio * kappa >= 1.0:
         return 0.0
@@ -66,8 +62,3 @@ def pulse_slip(*, peak: float, duration: float, mu_static: float, mu_kinetic: fl
 def incline_acceleration(*, angle: float, mu_kinetic: float, gravity: float) -> float:
     """Acceleration of a body that slides down an incline: g (sin - mu_k cos) [m/s2]."""
     return gravity * (math.sin(angle) - mu_kinetic * math.cos(angle))
-
-
-def _check_static_ratio(static_ratio: float) -> None:
-    if not 1.0 <= static_ratio < math.inf:
-        raise ValueError(f"mu_static/mu_kinetic must be at least 1, got {static_ratio}")

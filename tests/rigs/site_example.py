@@ -2,6 +2,8 @@
 
 import hashlib
 import math
+from dataclasses import replace
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -130,26 +132,28 @@ def example(
         motions.append(motion)
         files |= texts
     runs = tuple(
-        SiteRun(
+        replace(
+            RUN,
             motion=motion.number,
             vertical_sign=sign,
             mu_static=mu,
             mu_kinetic=share * mu,
             mass=mass,
             building_period_s=period,
-            model="rigid",
             outcome="slide" if mu == 0.2 else "rest",
             rotation_ratio=0.002 * motion.number,
             max_slip_m=0.003 * motion.number * (0.4 - mu) if mu == 0.2 else 1e-6,
         )
-        for motion in motions
-        for sign in (1, -1)
-        for mu in (0.2, 0.4)
-        for share in (0.5, 1.0)
-        for mass in ("full", "empty")
-        for period in ((0.425, 0.5, 0.575) if building else (None,))
+        for motion, sign, mu, share, mass, period in product(
+            motions,
+            (1, -1),
+            (0.2, 0.4),
+            (0.5, 1.0),
+            ("full", "empty"),
+            (0.425, 0.5, 0.575) if building else (None,),
+        )
     )
-    fell = [SiteRun(**(run.__dict__ | {"outcome": "overturned", "rotation_ratio": 2.0})) for run in runs]
+    fell = [replace(run, outcome="overturned", rotation_ratio=2.0) for run in runs]
     runs = (*fell[:overturned], *runs[overturned:])
     mean = np.mean([motion.spectrum_m_s2 for motion in motions], axis=0)
     vertical_mean = np.mean([motion.vertical_spectrum_m_s2 for motion in motions], axis=0)
@@ -186,32 +190,16 @@ def example(
         mean_m_s2=tuple((mean * (1.0 + 3.0 * np.exp(-(np.log(PERIODS / 0.5) ** 2)))).tolist()),
     )
     mean_pga = float(np.mean([motion.pga_m_s2 for motion in motions]))
-    checks = (
-        SetCheck(
-            name="number of motions",
-            found=7.0,
-            demanded="at least 3",
-            fulfilled=True,
-            clause="EN 1998-1:2004, 3.2.3.1.2 (4) a)",
-        ),
-        SetCheck(
-            name="mean of the zero-period values",
-            found=mean_pga,
-            demanded="at least 2.4 m/s2",
-            unit="m/s2",
-            fulfilled=True,
-            clause="EN 1998-1:2004, 3.2.3.1.2 (4) b)",
-        ),
-        SetCheck(
-            name=f"least mean over target, 0.05 to 4 s, at {PERIODS[worst]:.3g} s",
-            found=least,
-            demanded="at least 0.9",
-            fulfilled=valid,
-            clause="EN 1998-1:2004, 3.2.3.1.2 (4) c)",
-        ),
-        SetCheck(
-            name="largest correlation of two motions", found=0.12, demanded="at most 0.3", fulfilled=True
-        ),
+    clause = "EN 1998-1:2004, 3.2.3.1.2 (4) "
+    band_in_words = f"least mean over target, 0.05 to 4 s, at {PERIODS[worst]:.3g} s"
+    checks = tuple(
+        SetCheck(name=name, found=found, demanded=demanded, unit=unit, fulfilled=fulfilled, clause=of)
+        for name, found, demanded, unit, fulfilled, of in (
+            ("number of motions", 7.0, "at least 3", "", True, f"{clause}a)"),
+            ("mean of the zero-period values", mean_pga, "at least 2.4 m/s2", "m/s2", True, f"{clause}b)"),
+            (band_in_words, least, "at least 0.9", "", valid, f"{clause}c)"),
+            ("largest correlation of two motions", 0.12, "at most 0.3", "", True, ""),
+        )
     )
     reasons = () if valid else (f"the mean spectrum is {least:.2f} of the target at {PERIODS[worst]:.3g} s",)
     fulfilled = None if not valid else overturned == 0
@@ -247,20 +235,17 @@ def example(
         ),
         scan=tuple(
             ScanPoint(
-                factor=factor,
+                factor=f,
                 runs=112,
                 overturned=fallen,
-                rotation_ratio=ratio if not fallen else None,
-                slip_m=0.0024 * factor**3,
+                rotation_ratio=None if fallen else ratio,
+                slip_m=0.0024 * f**3,
             )
-            for factor, ratio, fallen in (
-                (0.5, 0.0, 0),
-                (1.0, 0.008, 0),
-                (1.5, 0.25, 0),
-                (1.75, 0.5, 3),
-                (2.0, 0.7, 0),
-                (2.5, 0.8, 20),
-                (4.0, 1.0, 70),
+            for f, ratio, fallen in zip(
+                (0.5, 1.0, 1.5, 1.75, 2.0, 2.5, 4.0),
+                (0.0, 0.008, 0.25, 0.5, 0.7, 0.8, 1.0),
+                (0, 0, 0, 3, 0, 20, 70),
+                strict=True,
             )
         ),
         further=(

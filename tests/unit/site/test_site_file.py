@@ -45,13 +45,6 @@ def test_the_shipped_site_can_be_read():
     assert asked.wind_pressure == (500.0, "given")
 
 
-def test_defaults_are_those_of_the_shipped_file(tmp_path):
-    asked = request(tmp_path)
-    assert (asked.motions.source, asked.motions.seed, asked.motions.vertical) == ("artificial", 1, True)
-    assert (asked.limits.rotation_ratio, asked.building, asked.wind_pressure) == (0.5, None, None)
-    assert list(asked.variants) == [("full", "width")]
-
-
 def test_frictions_are_the_corners_of_the_ranges_and_their_middle(tmp_path):
     assert request(tmp_path).frictions == [(0.3, 0.15), (0.3, 0.3), (0.4, 0.2), (0.4, 0.4), (0.35, 0.2625)]
     one = request(tmp_path, ("[0.3, 0.4]", "[0.3]\nmu_kinetic_over_static = [1.0]"))

@@ -114,11 +114,6 @@ def test_a_baseline_that_takes_a_fifth_of_a_matched_record_must_be_allowed(tmp_p
         load_site(site, allow_baseline=True)
 
 
-def test_pairs_of_records_have_no_second_component(tmp_path):
-    asked = request(tmp_path, f'[motions]\nsource = "records"\nfiles = {three_records(tmp_path, "hv")}')
-    assert all(motion.second is None for motion in ground_motions(asked, 4.0))
-
-
 def test_one_component_is_not_two_directions(tmp_path):
     names = json.loads(three_records(tmp_path, "hv"))
     again = json.dumps([[*pair, pair[0]] for pair in names])
@@ -136,10 +131,6 @@ def test_a_building_of_storeys_moves_with_all_its_modes(tmp_path):
         modes = storey_modes(storeys=10, kind="cantilever", height_ratio=0.6, period=period)
         np.testing.assert_array_equal(floor.horizontal, floor_motion(ground[0], modes).horizontal)
         assert floor.second is not None and not np.array_equal(floor.second, floor.horizontal)
-
-
-def test_one_mode_is_taken_up_to_a_period(tmp_path):
-    assert request(tmp_path, "[building]\nz_over_h = 1.0\nbuilding_period_s = 0.7").building.storeys is None
 
 
 SPECTRUM = """[floor_spectrum]
