@@ -127,10 +127,11 @@ STUDIES = pytest.mark.parametrize(
     ("study", "mark", "log"),
     [
         (sweep, "sweep.json", "rows.csv"),
-        (ensemble, "ensemble.json", "draws.csv"),
-        (response, "response.json", "state.npz"),
-        (site, "assess.json", "runs.csv"),
-        pytest.param(size, "size.json", "runs.csv", marks=pytest.mark.slow),  # several verifications
+        # they share their drivers with sweep and hall
+        pytest.param(ensemble, "ensemble.json", "draws.csv", marks=pytest.mark.slow),
+        pytest.param(response, "response.json", "state.npz", marks=pytest.mark.slow),
+        pytest.param(site, "assess.json", "runs.csv", marks=pytest.mark.slow),
+        pytest.param(size, "size.json", "runs.csv", marks=pytest.mark.slow),
         (hall, "hall.json", "runs.csv"),
     ],
     ids=["sweep", "ensemble", "response", "site", "size", "hall"],
@@ -254,6 +255,7 @@ def test_the_report_of_a_killed_study_gives_no_answer(tmp_path, capsys, study, m
     assert not said.out and not (folder / "report.html").exists()
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="process groups of POSIX")
 def test_sigterm_to_all_processes_of_an_assessment_ends_it_in_a_sentence(tmp_path):
     """As a batch scheduler ends a job: the workers get the signal with the process that started them."""
