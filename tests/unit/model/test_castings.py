@@ -95,6 +95,6 @@ def test_the_bolts_of_locked_containers_have_a_utilisation():
             "solver.duration_s=1",
         ],
     )
-    (joint,) = fem.compute(case).result["joints"]
+    (joint,) = fem.compute(case, band=False, margin=False).result["joints"]
     tension = max(joint["bolt_tension_left_N"], joint["bolt_tension_right_N"])
     assert tension > 0.0 and joint["bolt_utilisation"] == pytest.approx(tension / 500e3)

@@ -78,5 +78,5 @@ def test_run_and_check_tell_of_a_drift(tmp_path, capsys):
     assert main(["check", str(tmp_path / "case.toml"), "--json"]) == 0
     assert any("it drifts" in note for note in json.loads(capsys.readouterr().out)["notes"])
     out = tmp_path / "out"
-    assert main(["run", str(tmp_path / "case.toml"), "--out", str(out), "-q"]) == 0
+    assert main(["run", str(tmp_path / "case.toml"), "--out", str(out), "-q", "--no-band"]) == 0
     assert any("it drifts" in warning for warning in json.loads((out / "run.json").read_text())["warnings"])
