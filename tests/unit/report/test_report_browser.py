@@ -16,7 +16,7 @@ from fem.case.case import load_case
 from fem.report.run_page import run_report
 from fem.report.study_page import ensemble_report, response_report, sweep_report
 from fem.results.reader import open_run
-from fem.run.run import run_case
+from fem.run.run import RunOptions, run_case
 from fem.runtime.progress import SilentReporter
 from fem.study.file import load_sweep
 from fem.study.sweep import run_sweep
@@ -47,7 +47,7 @@ def pages(tmp_path_factory):
     """A report of a run, a sweep, an ensemble and a response curve."""
     place = tmp_path_factory.mktemp("pages")
     case = load_case("seed_stack_plateau", COARSE)
-    run_case(case, case_text=case.text, folder=place / "stack")
+    run_case(case, case_text=case.text, folder=place / "stack", options=RunOptions(margin=False))
     (place / "run.html").write_text(run_report(open_run(place / "stack")), encoding="utf-8")
     (place / "boxes.toml").write_text(SWEEP)
     asked = load_sweep(str(place / "boxes.toml"))

@@ -30,7 +30,7 @@ def folder(tmp_path_factory):
     case = load_case("seed_stack_plateau", [*COARSE, "floor.kind=rigid"]).model_copy(
         update={"title": HOSTILE}
     )
-    run_case(case, case_text=case.text, folder=place)
+    run_case(case, case_text=case.text, folder=place, options=RunOptions(margin=False))
     return place
 
 

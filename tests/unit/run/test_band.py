@@ -31,7 +31,7 @@ FEW = ["uncertainty.draws=2", "uncertainty.weakening_m=known", "uncertainty.stri
 
 
 def verdict_with_band(folder: Path, case: Case) -> Verdict:
-    found = run_case(case, case_text=case.text, folder=folder, options=RunOptions(band=True))
+    found = run_case(case, case_text=case.text, folder=folder, options=RunOptions(band=True, margin=False))
     return found.typed_result.verdict
 
 
@@ -78,7 +78,7 @@ def test_members_are_the_run_itself_and_every_change_of_its_case(tmp_path):
     assert verdict.band.left_out == () and verdict.band.draws == 32
 
 
-@pytest.mark.parametrize("model", ["rigid", "reduced"])
+@pytest.mark.parametrize("model", ["rigid", pytest.param("reduced", marks=pytest.mark.slow)])
 def test_members_side_by_side_are_the_runs_one_by_one(tmp_path, model):
     # Threads share the container; each member must be to the bit what the case alone gives, whatever runs beside it.
     changes = [

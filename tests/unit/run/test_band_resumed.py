@@ -90,6 +90,7 @@ def test_a_band_cut_off_after_every_member_is_the_band_left_alone(tmp_path, monk
     require_same(tmp_path / "cut", tmp_path / "whole")
 
 
+@pytest.mark.slow
 def test_a_band_killed_within_a_member_continues_with_the_finished_ones(tmp_path, monkeypatch, one_by_one):
     assert main(command(tmp_path / "whole", *MODELS["full"])) == 0
     process = subprocess.Popen(

@@ -23,7 +23,7 @@ def test_a_refused_set_up_leaves_nothing(tmp_path):
     assert not (tmp_path / "new").exists()
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", [pytest.param(signal.SIGINT, marks=pytest.mark.slow), signal.SIGTERM])
 def test_a_signal_during_the_set_up_ends_it_at_once(tmp_path, number):
     slow = """
 import sys, time
