@@ -273,6 +273,7 @@ def test_containers_that_overlap_at_the_start_are_refused():
         run(in_a_row(HELD, {**BESIDE, "gap_m": 0.2}), {"initial.rotation_rad": 0.2})
 
 
+@pytest.mark.slow
 def test_two_sliders_under_pulses_end_where_impulses_leave_them():
     rng, apart = np.random.default_rng(35), []
     for _ in range(50):

@@ -86,7 +86,7 @@ def test_the_slip_of_an_upright_shipped_case_is_what_it_has_moved(name):
 
 
 def test_the_slip_of_random_rigid_containers_is_what_they_have_moved():
-    cases = [random_case(number, "rigid", 5.0).replace(NO_FRAMES) for number in range(200)]
+    cases = [random_case(number, "rigid", 5.0).replace(NO_FRAMES) for number in range(100)]
     runs = fem.compute_many(cases, jobs=1, **ALONE, errors="return")
     followed = 0
     for number, run in enumerate(runs):
@@ -94,7 +94,7 @@ def test_the_slip_of_random_rigid_containers_is_what_they_have_moved():
         if apart is not None:
             followed += 1
             assert apart <= allowed(run), number
-    assert followed >= 100
+    assert followed >= 50
 
 
 def test_the_slip_of_random_elastic_containers_is_what_they_have_moved():
