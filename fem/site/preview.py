@@ -15,7 +15,7 @@ from fem.site.result import SiteBody
 from fem.site.runs import CONFIRMING, MOST_DECIDING, still
 from fem.site.stages import Stages
 
-OF_A_MOTION_S = 0.03  #: processor time of making an artificial motion of three components, tests/benchmarks/bench.py
+OF_A_MOTION_S = 0.03  #: processor time of making an artificial motion of three components (`bench.py`)
 
 
 @dataclass(frozen=True, kw_only=True)

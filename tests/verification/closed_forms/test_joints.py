@@ -1,7 +1,5 @@
 """Forces in the joints of a stack, against a rigid block in closed form and against the contact forces."""
 
-import math
-
 import numpy as np
 import pytest
 from container_runs import SLENDERNESS_ANGLE, first_impact, stack, times
@@ -117,17 +115,6 @@ def test_an_impact_puts_its_whole_impulse_through_the_base():
     assert impulse == pytest.approx(contact, rel=0.01)
 
 
-def test_mirrored_stacks_have_mirrored_joints():
-    right = run(solver__model="reduced", solver__duration_s=0.9)
-    left = run(
-        solver__model="reduced", solver__duration_s=0.9, initial__rotation_rad=-0.5 * SLENDERNESS_ANGLE
-    )
-    for joint in (1, 2, 3):
-        assert forces(left.history, joint) == pytest.approx(
-            forces(right.history, joint) * [1.0, -1.0, -1.0], abs=1e-6 * WEIGHT
-        )
-
-
 def test_joint_forces_do_not_depend_on_the_change_of_frame_after_the_end():
     """The floor keeps 0.1 m/s: beyond the end the motion continues in its frame."""
     falling = run(
@@ -153,8 +140,3 @@ def test_joint_forces_do_not_depend_on_the_length_of_a_chunk_of_samples(monkeypa
         run(solver__model="reduced", solver__duration_s=0.9).history.values.tobytes()
         == whole.values.tobytes()
     )
-
-
-def test_a_single_box_has_no_joints():
-    box = run(container__boxes=1, initial__rotation_rad=0.3 * math.atan(1.1), solver__model="rigid")
-    assert box.history.joints == 0

@@ -306,13 +306,6 @@ def test_the_mirrored_motion_hits_the_mirrored_links_alike():
     assert left.model.run.links.max_force == pytest.approx(right.model.run.links.max_force, rel=1e-3)
 
 
-def test_the_order_of_links_does_not_matter():
-    one, other = (run(with_links(SHAKEN, stop=stop, tie=(TIE,))) for stop in (KERBS, KERBS[::-1]))
-    early = one.history["time_s"] < 1.0
-    assert other.history["slip_m"][early] == pytest.approx(one.history["slip_m"][early], abs=1e-9)
-    assert other.model.run.links[1].hits == one.model.run.links[0].hits > 0
-
-
 def test_links_that_are_not_reached_change_no_bit_wherever_they_are():
     far = tuple({**one, "gap_m": 3.0} for one in KERBS)
     farther = tuple({**one, "gap_m": 7.0, "stiffness_N_m": 1e5, "mu": 0.0} for one in KERBS)
@@ -390,10 +383,3 @@ def test_stiff_containers_hang_on_a_tie_to_a_wall_as_the_rigid_one_does(model):
     assert other.largest_closing_velocity == pytest.approx(first.largest_closing_velocity, rel=2e-3)
     largest = rigid.history["rotation_rad"].max()
     assert elastic.history["rotation_rad"] == pytest.approx(rigid.history["rotation_rad"], abs=0.01 * largest)
-
-
-def test_a_strap_of_great_stiffness_fixes_the_corner():
-    moving = HELD.with_values({"initial.angular_velocity_rad_s": 0.3, "solver.duration_s": 0.5})
-    free = run(moving).track.max_rotation
-    fixed = run(with_links(moving, tie=({**STRAP, "stiffness_N_m": 1e12},))).track.max_rotation
-    assert fixed < 0.02 * free  # what is left is the penalty of the floor, 2.8e9 N/m under each corner

@@ -203,32 +203,6 @@ PAIR = (
     {**BESIDE, "gap_m": 0.01, "mu": 0.3, "height_m": 3.0, "mass_kg": 8e3},
     {**BESIDE, "gap_m": 0.02, "side": "left", "width_m": 1.5, "restitution": 0.4},
 )
-OTHER = {"left": "right", "right": "left"}
-
-
-def test_the_mirrored_row_moves_as_the_mirror_image():
-    right = run(in_a_row(SHAKEN, *PAIR))
-    mirrored = tuple({**one, "side": OTHER[one["side"]]} for one in PAIR)
-    left = run(in_a_row(SHAKEN, *mirrored), {"motion.phase_rad": math.pi})
-    assert right.model.run.links.hits.min() > 0
-    early = right.history["time_s"] < 1.0
-    for column in (
-        "rotation_rad",
-        "slip_m",
-        "neighbour_1_rotation_rad",
-        "neighbour_2_slip_m",
-        "neighbour_2_x_m",
-    ):
-        assert left.history[column][early] == pytest.approx(-right.history[column][early], abs=1e-8)
-
-
-def test_the_order_of_neighbours_on_two_sides_does_not_matter():
-    one, other = (run(in_a_row(SHAKEN, *pair)) for pair in (PAIR, PAIR[::-1]))
-    early = one.history["time_s"] < 1.0
-    assert other.history["slip_m"][early] == pytest.approx(one.history["slip_m"][early], abs=1e-8)
-    assert other.history["neighbour_2_rotation_rad"][early] == pytest.approx(
-        one.history["neighbour_1_rotation_rad"][early], abs=1e-8
-    )
 
 
 def test_the_ledger_of_a_row_closes_with_friction_between_the_sides():

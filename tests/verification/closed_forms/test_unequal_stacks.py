@@ -91,10 +91,3 @@ def test_modes_are_those_of_the_same_shape_meshed_as_one():
     )
     assert len(mesh.quads) == len(other.quads)
     assert frequencies(mesh) == pytest.approx(frequencies(other), rel=1e-8)
-
-
-def test_two_half_boxes_are_one_box():
-    halves = build_container(stack(2 * f"{BOX}height_m = 0.5\nmass_kg = 1250.0\n"))
-    whole = build_container(stack("boxes = 1\n"))
-    assert (halves.mass, halves.inertia) == pytest.approx((whole.mass, whole.inertia))
-    assert frequencies(halves) == pytest.approx(frequencies(whole), rel=1e-8)
