@@ -19,7 +19,6 @@ from fem.site.size import SizeAxis, SizeResult, next_values, size_axis, size_res
 from fem.site.stages import REPETITIONS
 
 EXAMPLE = example()[0]
-MOTIONS = EXAMPLE.set
 
 
 def runs(motions=range(1, 8), stage="set", **changes):
@@ -55,8 +54,9 @@ def in_two_directions(largest, factor, **more):
 
 def answer(*stages, **beside):
     request = load_site("site").with_value("limits.slip_m", 0.1)  # and 0.5, 0.8 of the angle
+    motions = replace(EXAMPLE.set, count=len({run.motion for run in stages[0]}))
     return answer_of(
-        request, MOTIONS, {key_of(run): run for stage in stages for run in stage}, Beside(**beside)
+        request, motions, {key_of(run): run for stage in stages for run in stage}, Beside(**beside)
     )
 
 

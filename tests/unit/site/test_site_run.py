@@ -251,16 +251,14 @@ def test_the_time_that_it_takes_at_most_is_rounded_up():
         assert f"up to roughly {told} on 2 cores" in runs.words and runs.words.endswith("roughly 40 s")
 
 
-@pytest.mark.parametrize(
-    ("more", "message"),
-    [("[wind]\npeak_velocity_pressure_Pa = 500.0", "up to 15 m"), ("", "belong together")],
-)
-def test_wind_on_a_tall_stack_and_components_of_other_lengths_are_refused(tmp_path, capsys, more, message):
-    place = site_file(tmp_path, motions=records(tmp_path), more=more)
+def test_wind_on_a_tall_stack_and_components_of_other_lengths_are_refused(tmp_path, capsys):
+    wind, motions = "[wind]\npeak_velocity_pressure_Pa = 500.0", records(tmp_path)
     write_csv(tmp_path / "r0_v.at2", 0.005, np.zeros(100))
-    (tmp_path / "k1.toml").write_text(CONTAINER.replace("height_m = 4.0", "height_m = 16.0"))
-    assert main(["assess", str(place), "--out", str(tmp_path / "out"), "-q"]) == 2
-    assert message in capsys.readouterr().err
+    for asked, message in (({"more": wind}, "up to 15 m"), ({"motions": motions}, "do not belong together")):
+        place = site_file(tmp_path, **asked)
+        (tmp_path / "k1.toml").write_text(CONTAINER.replace("height_m = 4.0", "height_m = 16.0"))
+        assert main(["assess", str(place), "--out", str(tmp_path / "out"), "-q"]) == 2
+        assert message in capsys.readouterr().err
 
 
 def test_quick_is_never_fulfilled_of_a_container_that_moves(tmp_path, capsys, brief):
