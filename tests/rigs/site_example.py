@@ -3,6 +3,7 @@
 import hashlib
 import math
 from dataclasses import replace
+from functools import cache
 from itertools import product
 from pathlib import Path
 
@@ -70,6 +71,7 @@ def noise(number: int, peak: float) -> np.ndarray:
     return wave * peak / np.abs(wave).max()
 
 
+@cache
 def site_motion(number: int) -> tuple[SiteMotion, dict[str, str]]:
     """A motion of the set, and its files by name."""
     curves = {"h": noise(number, 2.5 + 0.05 * number), "v": noise(100 + number, 1.7)}
