@@ -51,35 +51,23 @@ def experiment(name: str, *met: bool | None, not_computed: str = "") -> Experime
     )
 
 
-@pytest.mark.parametrize(
-    ("experiments", "sentence"),
-    [
-        (
-            [experiment("a", True, None)],
-            "1 of 1 judged predictions meet their criterion; 1 are stated and not judged.",
-        ),
+def test_the_sentence_names_what_is_missed_what_is_not_computed_and_what_tells_most():
+    held, lacking = experiment("a", True, None), experiment("b", not_computed="no data")
+    off = prediction("restitution", "1.002", reference=0.95, telling=True)
+    for experiments, sentence in (
+        ([held], "1 of 1 judged predictions meet their criterion; 1 are stated and not judged."),
         (
             [experiment("a", True), experiment("b", False)],
             "1 of 2 judged predictions meet their criterion; missed: b.",
         ),
+        ([experiment("a", True), lacking], "; 1 of 2 experiments not computed (b)."),
+        ([lacking], "No experiment was computed."),
         (
-            [experiment("a", True), experiment("b", not_computed="no data")],
-            "; 1 of 2 experiments not computed (b).",
+            [replace(held, findings=(*held.findings, off))],
+            "2 are stated and not judged, of which 1 tell most (restitution: measured 0.95, predicted 1.002).",
         ),
-        ([experiment("b", not_computed="no data")], "No experiment was computed."),
-    ],
-)
-def test_the_sentence_names_what_is_missed_and_what_is_not_computed(experiments, sentence):
-    assert in_a_sentence(experiments).endswith(sentence)
-
-
-def test_a_telling_number_that_is_not_judged_stands_in_the_sentence():
-    off = prediction("restitution", "1.002", reference=0.95, telling=True)
-    one = replace(experiment("a", True, None), findings=(*experiment("a", True, None).findings, off))
-    assert in_a_sentence([one]) == (
-        "1 of 1 judged predictions meet their criterion; 2 are stated and not judged, of which 1 tell most "
-        "(restitution: measured 0.95, predicted 1.002)."
-    )
+    ):
+        assert in_a_sentence(experiments).endswith(sentence)
 
 
 def test_a_vote_is_weighted_by_what_the_blocks_said_of_the_others():
