@@ -190,9 +190,17 @@ def _structured(
 def box_cells(geometry: ContainerGeometry, points: FloatArray, quads: IntArray, region: IntArray) -> BoxCells:
     """The cells of one box, a grid with points from its axis and its floor, before it is filled."""
     area, centroid = areas_and_centroids(points, quads)
+    thickness, depth = cell_thickness(geometry, region, centroid[:, 0]), np.ones(len(region))
+    if geometry.round:  # the chords of its circle; its wall is what lies between two of them
+        sides = points[quads[:, 0], 0], points[quads[:, 1], 0]
+        wall = geometry.wall or 0.0
+        thickness, depth = geometry.chords(*sides), geometry.chords(*sides, inside=wall) / geometry.width
+        if geometry.wall is not None:
+            thickness = np.where(region == Region.WALL, thickness, thickness - geometry.width * depth)
     return BoxCells(
         region=region,
-        thickness=cell_thickness(geometry, region, centroid[:, 0]),
+        thickness=thickness,
+        depth=depth,
         area=area,
         centroid=centroid[:, 1],
         bottom=points[quads[:, 0], 1],

@@ -301,6 +301,7 @@ def _fill_boxes(
             BoxCells(
                 region=region[cells],
                 thickness=thickness[cells],
+                depth=np.ones(len(cells)),
                 area=area[cells],
                 centroid=centroid[cells, 1] - floor,
                 bottom=bottom[cells] - floor,

@@ -50,6 +50,8 @@ class BoxCells:
     centroid: FloatArray  #: (m,) heights of the centroids [m]
     bottom: FloatArray  #: (m,) lowest points [m]
     top: FloatArray  #: (m,) highest points [m]
+    #: (m,) depth of what fills them, or of a solid, over the largest one: 1 of a prism [-]
+    depth: FloatArray
 
 
 def cell_thickness(geometry: ContainerGeometry, region: IntArray, x: FloatArray) -> FloatArray:
@@ -95,17 +97,18 @@ def _solid_density(geometry: ContainerGeometry, fill: MassFill, cells: BoxCells)
             f"(density linear in height and nowhere negative), got {fill.centroid_height} m; "
             "use section shell"
         )
-    total_area = cells.area.sum()
-    arm = cells.centroid - cells.area @ cells.centroid / total_area
-    offset = fill.mass * fill.centroid_height - fill.mass * (cells.area @ cells.centroid) / total_area
+    volume = cells.area * cells.depth  # over the largest depth
+    total_area = volume.sum()
+    arm = cells.centroid - volume @ cells.centroid / total_area
+    offset = fill.mass * fill.centroid_height - fill.mass * (volume @ cells.centroid) / total_area
     if abs(offset) <= ROUNDING * fill.mass * geometry.height:
-        return np.full(len(arm), fill.mass / total_area)
-    second_moment = cells.area @ arm**2
+        return fill.mass / total_area * cells.depth
+    second_moment = volume @ arm**2
     if second_moment > ROUNDING * total_area * geometry.height**2:
         density = fill.mass / total_area + offset / second_moment * arm
         # Never so for even rows, but a low row beside tall ones can fall below zero.
         if density.min() >= 0.0:
-            return density
+            return density * cells.depth
     raise MeshError(
         f"the rows of this mesh are too tall to put the centroid at {fill.centroid_height} m in a solid "
         f"box of {geometry.height} m; take smaller elements, of at most {0.5 * geometry.height:.6g} m"
@@ -143,7 +146,8 @@ def _shell_density(
     region = np.where(cells.region == Region.FILL, Region.SHEET, cells.region)
     if room.size:
         share = _fill_shares(fill, wall_moment, fill_mass, cells, room)
-        density[room] += fill_mass / (cells.area[room] @ share) * share
+        depth = cells.depth[room]
+        density[room] += fill_mass / ((cells.area[room] * depth) @ share) * share * depth
         region[room[share > 0.0]] = Region.FILL
     return density, region
 
@@ -152,7 +156,7 @@ def _fill_shares(
     fill: MassFill, wall_moment: float, fill_mass: float, cells: BoxCells, room: npt.NDArray[np.intp]
 ) -> FloatArray:
     """Share (len(room),) of every cell in `room` that is filled, so that the box meets its centroid."""
-    area, centroid = cells.area[room], cells.centroid[room]
+    area, centroid = cells.area[room] * cells.depth[room], cells.centroid[room]
     bottom, top = cells.bottom[room], cells.top[room]
     target = (fill.mass * fill.centroid_height - wall_moment) / fill_mass
     full = float(area @ centroid / area.sum())

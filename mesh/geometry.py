@@ -65,6 +65,7 @@ class ContainerGeometry:
     section: Section = Section.SHELL
     wall: float | None = None  #: thickness of the steel, shell only [m]
     post: CornerPost | None = None  #: shell only
+    round: bool = False  #: a vertical cylinder whose diameter is width and depth
 
     def __post_init__(self) -> None:
         for name in ("width", "height", "depth"):
@@ -99,6 +100,16 @@ class ContainerGeometry:
                 raise MeshError(
                     f"two posts of {post.width} m leave no room in a {name} of {getattr(self, name)} m"
                 )
+
+    def chords(self, left: FloatArray, right: FloatArray, *, inside: float = 0.0) -> FloatArray:
+        """Mean depth of a cylinder between two distances from its axis (m,) [m].
+
+        That of the circle `inside` its surface by so much [m], the integral of 2 sqrt(r^2 - x^2) over the interval.
+        """
+        radius = 0.5 * self.width - inside
+        low, high = (np.clip(np.asarray(x) / radius, -1.0, 1.0) for x in (left, right))
+        area = [x * np.sqrt(1.0 - x * x) + np.arcsin(x) for x in (low, high)]
+        return radius**2 * (area[1] - area[0]) / (np.asarray(right) - np.asarray(left))
 
     @property
     def total_height(self) -> float:

@@ -16,7 +16,7 @@ from mesh.elevation import Elevation
 from mesh.errors import MeshError
 from mesh.fill import MassFill, distribute_mass
 from mesh.geometry import ContainerGeometry
-from mesh.grid import MOST_CELLS, Segments, column_segments, row_segments, segments_between
+from mesh.grid import MOST_CELLS, Segments, column_segments, column_size, row_segments, segments_between
 
 #: Sides nearer than this share of the narrowest box are one mesh line.
 SAME_LINE = 1e-9
@@ -158,7 +158,7 @@ def build_bolted_mesh(
             or a centroid that cannot be met.
     """
     ends = _lines_of_all(boxes, element_size, foot)
-    columns = segments_between(ends, element_size)
+    columns = segments_between(ends, column_size(boxes[0].geometry, element_size))
     x = columns.lines_from(ends)
     rows = [row_segments(box.geometry, element_size, bears=bears and box.bottom == 0.0) for box in boxes]
     spans = [np.searchsorted(x, np.add(box.sides, _near(boxes) * np.array([-1.0, -1.0]))) for box in boxes]

@@ -5,7 +5,7 @@ from typing import Any
 
 from fem.case.columns import history_width
 from fem.case.tables import quantities as q
-from fem.case.tables.boxes import BOX_RULES, JOINT_RULES, WEAKENING_RULES
+from fem.case.tables.boxes import BOX_RULES, JOINT_RULES, WEAKENING_RULES, plan_share
 from fem.case.tables.castings import CASTING_RULES
 from fem.case.tables.duration import duration_in_words, longest_time
 from fem.case.tables.floors import FLOOR_CASE_RULES
@@ -29,14 +29,16 @@ def _plausible_density(key: str) -> Rule:
 
     def density(case: Any, value: float) -> float:
         box = case.container
-        return float(value / (per_kilogram(case) * (box.width_m * box.height_m * box.depth_m)))
+        return float(
+            value / (per_kilogram(case) * (box.width_m * box.height_m * box.depth_m * plan_share(box)))
+        )
 
     def reason(case: Any) -> str:
         box, value, mass = case.container, getattr(case.container, key), per_kilogram(case)
         slips = {"tonnes": 1e3 * mass} | (
             {"kilonewtons": 1e3, "kilograms": mass} if key == "weight_N" else {}
         )
-        typical = 1e3 * mass * (box.width_m * box.height_m * box.depth_m)
+        typical = 1e3 * mass * (box.width_m * box.height_m * box.depth_m * plan_share(box))
         guess = q.Quantity(unit=MASSES[key].unit, typical=typical, slips=slips).guess(
             value, lambda meant: q.DENSITY.allows(density(case, meant))
         )

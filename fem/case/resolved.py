@@ -1,6 +1,6 @@
 """The keys of a case with every default, as its resolved file has them.
 
-A case without vertical motion, on a level rigid floor, of equal bolted boxes that bear on all of their base, without
+A case without vertical motion, on a level rigid floor, of equal bolted prisms that bear on all of their base, without
 stops and ties, has no keys of these, and keeps its hash.
 What [joints] leaves out stays out: the floor's friction stands in its place, and the band treats it as unknown.
 """
@@ -34,6 +34,8 @@ def resolved_tables(case: Any) -> dict[str, Any]:
         del document["container"]["joints"]
         if case.joints.bolt_capacity_N is not None and case.container.bolted_joints:
             document["joints"] = {"bolt_capacity_N": case.joints.bolt_capacity_N}
+    if not case.container.is_round:
+        del document["container"]["shape"]
     if case.container.eccentricity_m == 0.0:
         del document["container"]["eccentricity_m"]
     if case.support.camber_m == 0.0:

@@ -54,6 +54,7 @@ def _stacked(case: Case, box: Box) -> StackedBox:
             depth=container.depth_m,
             section=Section(container.section),
             wall=box.wall,
+            round=container.is_round,
             post=None if post is None else CornerPost(width=post[0], wall=post[1]),
         ),
         fill=MassFill(mass=box.mass, centroid_height=box.centroid, wall_density=container.wall_density_kg_m3),

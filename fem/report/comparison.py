@@ -134,9 +134,10 @@ def _box_rows(case: Case) -> list[tuple[str, str]]:
 
     def described(box: Box) -> str:
         size = " × ".join((short(box.width), depth, short(box.height)))
-        return (
-            f"{size} m (width × depth × height), {short(box.mass * case.gravity_m_s2, 1e-3, 6)} kN with fill"
-        )
+        names = "width × depth × height"
+        if case.container.is_round:
+            size, names = f"{short(box.width)} × {short(box.height)}", "cylinder, diameter × height"
+        return f"{size} m ({names}), {short(box.mass * case.gravity_m_s2, 1e-3, 6)} kN with fill"
 
     if case.container.box is None:
         return [("container", f"{count}, each {described(boxes[0])}" if count else described(boxes[0]))]

@@ -3,6 +3,7 @@
 Each box of [[container.box]] takes what it leaves out from [container]; without such tables all boxes are equal.
 """
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -36,6 +37,11 @@ class Box:
         return self.axis - 0.5 * self.width, self.axis + 0.5 * self.width
 
 
+def plan_share(container: Any) -> float:
+    """Area of the plan of a container over its width times its depth [-]."""
+    return 0.25 * math.pi if container.shape == "cylinder" else 1.0
+
+
 def mass_of_box(container: Any, gravity: float, volume: float) -> float | None:
     """Mass that [container] gives a box of this outer volume [kg]; None where it gives none."""
     if container.weight_N is not None:
@@ -66,7 +72,9 @@ def boxes_of(container: Any, gravity: float) -> tuple[Box, ...]:
         )
         width = given.get("width_m", container.width_m)
         height = given.get("height_m", container.height_m)
-        mass = given.get("mass_kg") or mass_of_box(container, gravity, width * height * container.depth_m)
+        mass = given.get("mass_kg") or mass_of_box(
+            container, gravity, width * height * container.depth_m * plan_share(container)
+        )
         if mass is None:
             raise AttributeError("mass_kg")
         axis += given.get("offset_m", 0.0)
@@ -175,7 +183,7 @@ def _wall(case: Any, box: Box) -> str:
 
 
 def _density(case: Any, box: Box) -> str:
-    density = box.mass / (box.width * box.height * case.container.depth_m)
+    density = box.mass / (box.width * box.height * case.container.depth_m * plan_share(case.container))
     if q.DENSITY.allows(density):
         return ""
     return (
@@ -212,7 +220,43 @@ def _offset(case: Any, box: Box) -> str:
     return f"offset_m is measured from the axis of the box below, and the lowest box has none; got {box.axis:g} m"
 
 
+def _not_a_cylinder(case: Any) -> str:
+    """What a cylinder does not have; empty where nothing speaks against one."""
+    container, support = case.container, case.support
+    if container.shape != "cylinder":
+        return ""
+    boxes = boxes_of(container, case.gravity_m_s2)
+    slab = case.floor.kind == "slab" and case.floor.corner_patch_m is None
+    faults = (
+        (
+            abs(container.depth_m - container.width_m) > 1e-9 * container.width_m,
+            f"depth_m = width_m = {container.width_m:g} m, its diameter; leave depth_m out",
+        ),
+        (
+            len({(box.width, box.axis) for box in boxes}) > 1,
+            "boxes of one diameter on one axis; take equal width_m and no offset_m",
+        ),
+        (
+            (container.post_m or container.corner_post_N) is not None,
+            "no posts, which stand in edges; leave post_m and corner_post_N out",
+        ),
+        (support.casting_m is not None, "no castings; leave support.casting_m out"),
+        (
+            container.mesh_file is not None,
+            'no mesh_file, whose cells have one depth; leave it out, or take "prism"',
+        ),
+        (
+            support.kind != "corners" or support.camber_m > 0.0,
+            'to stand on the ends of its diameter; take support.kind = "corners" without camber_m',
+        ),
+        (slab, "floor.corner_patch_m on a slab: what bears of its round edge, [along x, out of plane]"),
+    )
+    needs = [words for fault, words in faults if fault]
+    return f'= "cylinder" needs {"; and ".join(needs)}' if needs else ""
+
+
 BOX_RULES = (
+    refused("container.shape", _not_a_cylinder),
     *map(_each, (_proportions, _centroid, _wall, _density, _offset)),
     refused("container.box", _unsupported),
 )

@@ -44,6 +44,9 @@ class ContainerTable(CaseTable):
     depth_m: Annotated[float, q.LENGTH] = case_key(
         "outer depth, out of the plane; default: the width", follows=lambda values: values["width_m"]
     )
+    shape: Literal["prism", "cylinder"] = case_key(
+        '"prism" | "cylinder": upright, of the diameter width_m; on corners', "prism"
+    )
     box: Annotated[tuple[BoxTable, ...] | None, BeforeValidator(_as_tuple)] = Field(
         default=None,
         description="boxes that differ, [[container.box]] from the floor up; what one leaves out is as [container]",
@@ -135,6 +138,11 @@ class ContainerTable(CaseTable):
     def post_section(self) -> tuple[float, float] | None:
         """Width and wall of the posts of a shell [m]; None without."""
         return self.post_m if self.section == "shell" else None
+
+    @property
+    def is_round(self) -> bool:
+        """Whether it is an upright cylinder."""
+        return self.shape == "cylinder"
 
     @property
     def is_filled_shell(self) -> bool:

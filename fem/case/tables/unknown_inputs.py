@@ -255,7 +255,7 @@ def _other_support(case: Any) -> Value | None:
     kind = {"corners": "flat", "flat": "corners"}.get(case.support.kind)
     if kind is None or case.rolls or case.container.is_loose or case.container.box is not None:
         return None
-    if case.neighbour:
+    if case.neighbour or case.container.is_round:
         return None
     if case.floor.is_slab:
         stated = case.floor.corner_patch_m
