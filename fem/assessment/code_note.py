@@ -1,19 +1,25 @@
-"""The note on the code's rows beside a run: whose values they use, and whether the method applies."""
+"""The note on the rows of the code and of the wind beside a run: whose values they use, whether the method applies."""
 
 from fem.results.run_result import StaticResult
+from fem.seismic.wind import COMBINATION
 
 
 def code_note(static: StaticResult) -> str:
-    """The note below the code's rows; empty where there are none."""
-    if static.code is None:
-        return ""
-    note = (
-        f"The code's rows take {_values(static)}. They are a design response (EN 1998-1:2004, 4.3.3.2), not the motion "
-        "of this floor; they are not compared with the run."
-    )
-    if static.method_applicable is not False:
-        return note
-    return f"{note} The lateral force method does not apply: {_reason(static)} ({static.clause})."
+    """The note below the rows of the code and of the wind; empty where there are none."""
+    notes = []
+    if static.wind is not None:
+        notes.append(
+            "The wind (1.5 of it, 0.9 of the weight, level floor) acts on the container as it is; check it empty, too. "
+            f"{COMBINATION}"
+        )
+    if static.code is not None:
+        notes.append(
+            f"The code's rows take {_values(static)}. They are a design response (EN 1998-1:2004, 4.3.3.2), not the "
+            "motion of this floor; they are not compared with the run."
+        )
+        if static.method_applicable is False:
+            notes.append(f"The lateral force method does not apply: {_reason(static)} ({static.clause}).")
+    return " ".join(notes)
 
 
 def _values(static: StaticResult) -> str:

@@ -191,15 +191,19 @@ def _static_table(static: run_result.StaticResult, verdict: run_result.Verdict) 
         (static.own_motion_vertical, "own, vertical"),
         (static.code, "code, q"),
         (static.code_q1, "q = 1"),
+        (static.wind, "wind"),
     ):
         if action is not None:
             slid, tilted = (run_slid(verdict), run_tilted(verdict)) if name.startswith("own") else ("", "")
             factor = 1e-3 * share_of_weight(action, static)
-            demand = f"{visible_number(action.base_shear_N, 1e-3)} / {visible_number(sliding, factor)} kN"
             use = _use(action.utilisation_sliding, action.base_shear_N)
+            if name == "wind" and use:  # it may have a partial factor on friction
+                sliding, factor = (action.base_shear_N or 0.0) / use, 1e-3
+            demand = f"{visible_number(action.base_shear_N, 1e-3)} / {visible_number(sliding, factor)} kN"
             table.add_row(
                 name, "sliding", demand, visible_number(use, 1.0, ".3f"), rule_says("sliding", use), slid
             )
+            factor = 1e-3 * share_of_weight(action, static)
             demand = (
                 f"{visible_number(action.tilting_moment_Nm, 1e-3)} / {visible_number(restoring, factor)} kNm"
             )

@@ -14,7 +14,14 @@ from fem.case.tables.floors import FloorTable
 from fem.case.tables.links import StopTable, TieTable
 from fem.case.tables.motion_tables import MotionTable, VerticalTable
 from fem.case.tables.neighbours import NeighbourTable
-from fem.case.tables.run_tables import DocumentTable, InitialTable, OutputTable, SolverTable, StaticTable
+from fem.case.tables.run_tables import (
+    DocumentTable,
+    InitialTable,
+    OutputTable,
+    SolverTable,
+    StaticTable,
+    WindTable,
+)
 from fem.case.tables.uncertainty_table import UncertaintyTable
 
 
@@ -30,6 +37,7 @@ class CaseContent(CaseHeading):
     vertical: VerticalTable = Field(default_factory=VerticalTable)
     initial: InitialTable = Field(default_factory=InitialTable)
     static: StaticTable | None = None  #: None: no rows of the code
+    wind: WindTable | None = None  #: None: no rows of the wind
     solver: SolverTable = Field(default_factory=SolverTable)
     output: OutputTable = Field(default_factory=OutputTable)
     uncertainty: UncertaintyTable = Field(default_factory=UncertaintyTable)

@@ -141,12 +141,16 @@ def _replace_support(data: dict[str, Any], dotted: Any) -> None:
             return
     floor, support, container = (data.get(key) or {} for key in ("floor", "support", "container"))
     of_floor, of_support = _keys_set("floor", dotted), _keys_set("support", dotted)
+    of_container = _keys_set("container", dotted)
+    if "shape" in of_container and container["shape"] == "cylinder":  # it has neither edges nor another depth
+        _drop(container, ("post_m", "corner_post_N", "depth_m"), of_container)
+        _drop(support, ("casting_m",), of_support)
     no_corners = "kind" in of_support and support["kind"] != "corners"
     if no_corners or "casting_m" in of_support:
         _drop(floor, ("corner_patch_m",), of_floor)
     if no_corners or ("corner_patch_m" in of_floor and "casting_m" in support):
         _drop(support, ("casting_m",), of_support)
-        _drop(container, ("corner_post_N",), _keys_set("container", dotted))
+        _drop(container, ("corner_post_N",), of_container)
 
 
 def _replace_floor(data: dict[str, Any], dotted: Any) -> None:

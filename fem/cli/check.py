@@ -124,6 +124,8 @@ def _page(preview: Preview, document: dict[str, Any]) -> str:
         actions["own, vertical"] = static.own_motion_vertical
     if (code := static.by_code) is not None:
         actions |= {f"code, q = {code.values.behaviour_factor:g}": code.as_given, "code, q = 1": code.q1}
+    if static.wind is not None:
+        actions["wind"] = static.wind
     for action, result in actions.items():
         for kind, rule in (("sliding", result.sliding), ("overturning", result.overturning)):
             verdict = "" if rule.passed else f"  {'slides' if kind == 'sliding' else 'overturns'}"

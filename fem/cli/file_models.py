@@ -4,7 +4,7 @@ from typing import Any
 
 from pydantic import Field
 
-from fem.case.tables.run_tables import DocumentTable
+from fem.case.tables.run_tables import DocumentTable, WindTable
 from fem.site import tables
 from fem.site.request import SiteHeading
 from fem.study.axes import Range
@@ -48,7 +48,7 @@ class SiteFile(SiteHeading):
     motions: tables.MotionsTable = tables.MotionsTable()
     friction: tables.FrictionTable
     limits: tables.LimitsTable
-    wind: tables.WindTable | None = None
+    wind: WindTable | None = None
     sources: tables.SourcesTable = tables.SourcesTable()
     document: DocumentTable | None = None
 

@@ -15,11 +15,14 @@ reduced response of an elastic building: another question, in rows of its own, w
 import math
 from dataclasses import dataclass, replace
 
+from contact.reference.rigid_block import RigidBlock
 from fem.case.case import Case, CaseError
 from fem.case.tables.run_tables import StaticTable
 from fem.model.floor import pivot_share
 from fem.results.run_result import ActionResult, CodeValues, StaticResult
+from fem.seismic.body import LooseBody
 from fem.seismic.method import utilisation
+from fem.seismic.wind import STABILISING, pressure_of, wind_rows
 from mesh.container import ContainerMesh
 
 LIMIT_PERIOD = 2.0  # s, EN 1998-1:2004, 4.3.3.2.1 (2) a), Eq. (4.4)
@@ -158,6 +161,9 @@ class StaticChecks:
     peak_vertical_acceleration: float | None  #: of the floor in this run [m/s2]
     by_code: CodeChecks | None  #: None where the case has no [static]
     slope: float = 0.0  #: size of the angle of the floor with the horizontal [rad]
+    wind: ActionCheck | None = (
+        None  #: on a level floor, with 0.9 of the weight; None where the case has no [wind]
+    )
 
     @property
     def overturning_energy(self) -> float:
@@ -210,6 +216,7 @@ class StaticChecks:
                 upward.to_result(), utilisation_lifting=peak / (self.gravity * math.cos(self.slope))
             ),
             downhill_m_s2=self.downhill or None,
+            wind=None if self.wind is None else self.wind.to_result(),
         )
         return result if self.by_code is None else self.by_code.added_to(result)
 
@@ -364,7 +371,43 @@ def static_checks_of(
             f"[floor] slope_percent = {case.floor.slope_percent:g}: nothing stands there: the mass centre is beyond "
             f"the lower edge from {100.0 * math.tan(static.slenderness_angle):.3g} % on"
         )
-    return static
+    return static if case.wind is None else replace(static, wind=wind_check(case, mesh, static))
+
+
+def wind_check(case: Case, mesh: ContainerMesh, static: StaticChecks) -> ActionCheck:
+    """Sliding and overturning of a case's container, as it is, under its [wind] (`fem.seismic.wind`).
+
+    Raises:
+        CaseError: the container is higher than the rule or the pressure holds.
+    """
+    half, height = static.radius * math.sin(static.slenderness_angle), static.centroid
+    body = LooseBody(
+        block=RigidBlock(
+            half_width=half,
+            centroid_height=height,
+            gravity=static.gravity,
+            inertia_ratio=1.0 + static.inertia / (mesh.mass * static.radius**2),
+        ),
+        width=mesh.width,
+        height=mesh.height,
+        depth=case.container.depth_m,
+        mass=mesh.mass,
+        mu_static=case.contact.mu_static,
+        mu_kinetic=case.contact.mu_kinetic,
+        round=case.container.is_round,
+    )
+    try:
+        pressure, _ = pressure_of(case.wind, mesh.height)
+        tilts, slides = wind_rows(body, pressure, gamma_mu=case.wind.gamma_mu if case.wind else 1.0)
+    except ValueError as error:
+        raise CaseError(f"[wind] {error}; leave the table out") from None
+    overturning, sliding = (
+        CheckResult(
+            demand=row.demand, capacity=row.capacity, unit=row.unit.replace(" ", ""), clause=row.source
+        )
+        for row in (tilts, slides)
+    )
+    return ActionCheck(sliding=sliding, overturning=overturning, least_weight=STABILISING * static.weight)
 
 
 def distance_beside(mesh: ContainerMesh) -> float:

@@ -43,6 +43,8 @@ def compared_rows(static: StaticChecks, verdict: Verdict) -> list[Compared]:
         q = code.values.behaviour_factor
         codes = [(code.as_given, f"code, q = {short(q)}"), (code.q1, "code, q = 1")]
         actions += codes if q != 1.0 else codes[:1]
+    if static.wind is not None:
+        actions.append((static.wind, "wind"))
     rows = [
         Compared(
             check=check,

@@ -59,6 +59,7 @@ class StaticResult(JsonBlock):
     own_motion: ActionResult | None = None  #: peak floor acceleration of this run
     #: the same with g less the largest vertical acceleration; left out where the floor does not move up and down
     own_motion_vertical: ActionResult | None = None
+    wind: ActionResult | None = None  #: characteristic wind and 0.9 of the weight; left out without [wind]
     code: ActionResult | None = None  #: behaviour factor as given; None without [static], as all that follows
     code_q1: ActionResult | None = None  #: behaviour factor 1
     method_applicable: bool | None = None  #: the lateral force method
@@ -67,7 +68,7 @@ class StaticResult(JsonBlock):
     code_values: CodeValues | None = None
     downhill_m_s2: float | None = None  #: of the weight along the floor; left out where it is level
 
-    written_where_given = frozenset({"own_motion_vertical", "downhill_m_s2"})
+    written_where_given = frozenset({"own_motion_vertical", "downhill_m_s2", "wind"})
 
     @property
     def ruling(self) -> ActionResult:

@@ -128,7 +128,7 @@ class Preview:
                 static.own_motion.sliding.utilisation > 1.0 and self.peak == 0.0,
                 "the floor is steeper than static friction holds: the container slides from the beginning",
             ),
-            (static.by_code is not None, code_note(static.to_result())),
+            (static.by_code is not None or static.wind is not None, code_note(static.to_result())),
             *((True, note) for note in doubts(self.motion, case.gravity_m_s2)),
             (
                 not case.contact.sticks,

@@ -32,6 +32,7 @@ class LooseBody:
     mass: float  #: [kg]
     mu_static: float
     mu_kinetic: float
+    round: bool = False  #: an upright cylinder
 
     def __post_init__(self) -> None:
         for name in ("width", "height", "depth", "mass", "mu_static", "mu_kinetic"):

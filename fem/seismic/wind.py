@@ -1,10 +1,12 @@
 """Wind on an unanchored stack: EN 1991-1-4 with the partial factors of EN 1990 for equilibrium.
 
-The wind acts along the width on a face of depth times height. Wind and earthquake are not combined (psi_2 = 0).
+The wind acts along the width on a face of depth times height. Wind and earthquake are not combined: psi_2 of wind is 0
+(EN 1990:2002, table A1.1 with Eq. (6.12b)).
 """
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -19,6 +21,8 @@ TERRAIN = {"0": (0.003, 1.0), "I": (0.01, 1.0), "II": (0.05, 2.0), "III": (0.3, 
 #: force coefficient of a rectangle over depth along the wind to width across it, EN 1991-1-4, figure 7.23
 DEPTH_RATIOS = (0.1, 0.2, 0.6, 0.7, 1.0, 2.0, 5.0, 10.0)
 FORCE_COEFFICIENTS = (2.0, 2.0, 2.35, 2.4, 2.1, 1.65, 1.0, 0.9)
+#: of a cylinder, the largest of EN 1991-1-4, figure 7.28: rough surfaces and small Reynolds numbers
+ROUND_COEFFICIENT = 1.2
 #: end-effect factor of a solid face over the effective slenderness, EN 1991-1-4, figure 7.36
 SLENDERNESSES, END_EFFECTS = (1.0, 10.0, 70.0), (0.60, 0.698, 0.918)
 #: Germany: heights [m] up to which the simplified pressures hold
@@ -34,6 +38,7 @@ GERMAN_PRESSURES = {
     (4, "coast"): (1250.0, 1400.0, 1550.0),
     (4, "North Sea islands"): (1400.0,),
 }
+COMBINATION = "Wind and earthquake are not combined: psi_2 of wind is 0 (EN 1990:2002, table A1.1)."
 SOURCE = "EN 1991-1-4:2005, 7.6, with EN 1990:2002, table A1.2(A), EQU"
 
 
@@ -78,9 +83,25 @@ def german_pressure(*, zone: int, place: str, height: float) -> float:
     raise ValueError(f"the simplified wind pressures hold up to {highest:g} m there, got {height:g} m")
 
 
+def pressure_of(wind: Any, height: float) -> tuple[float, str]:
+    """Peak velocity pressure of a table [wind] at a height [m]: [Pa], and where it comes from.
+
+    Raises:
+        ValueError: the simplified pressures do not hold there.
+    """
+    if wind.terrain is not None:
+        velocity = wind.basic_velocity_m_s or 0.0
+        pressure = terrain_pressure(category=wind.terrain, basic_velocity=velocity, height=height)
+        return pressure, f"EN 1991-1-4:2005, terrain {wind.terrain}, v_b = {velocity:g} m/s"
+    if wind.german_zone is not None:
+        pressure = german_pressure(zone=wind.german_zone, place=wind.german_place, height=height)
+        return pressure, f"simplified German pressure, zone {wind.german_zone}, {wind.german_place}"
+    return wind.peak_velocity_pressure_Pa or 0.0, "given"
+
+
 @dataclass(frozen=True, kw_only=True)
 class WindForce:
-    """The wind on a prism."""
+    """The wind on a prism or an upright cylinder."""
 
     coefficient: float  #: c_f
     area: float  #: [m2]
@@ -93,7 +114,7 @@ class WindForce:
 
 
 def wind_force(body: LooseBody, pressure: float) -> WindForce:
-    """Wind along the width on a sharp-edged prism, EN 1991-1-4, 7.6, up to 15 m high.
+    """Wind along the width on a sharp-edged prism or an upright cylinder, EN 1991-1-4, 7.6 and 7.9, up to 15 m high.
 
     Raises:
         ValueError: higher than 15 m, where c_s c_d = 1 does not hold.
@@ -102,6 +123,8 @@ def wind_force(body: LooseBody, pressure: float) -> WindForce:
         raise ValueError(f"the wind row is for bodies up to {LOW:g} m, got {body.height:g} m")
     ratio, slenderness = body.width / body.depth, min(2.0 * body.height / body.depth, 70.0)
     base = np.interp(math.log(ratio), np.log(DEPTH_RATIOS), FORCE_COEFFICIENTS)
+    if body.round:
+        base = ROUND_COEFFICIENT
     end = np.interp(math.log(slenderness), np.log(SLENDERNESSES), END_EFFECTS)
     return WindForce(coefficient=float(base * end), area=body.depth * body.height, pressure=pressure)
 
@@ -116,7 +139,8 @@ def wind_rows(body: LooseBody, pressure: float, *, gamma_mu: float = 1.0) -> lis
     wind, half = wind_force(body, pressure), body.block.half_width
     force, weight = DESTABILISING * wind.force, STABILISING * body.weight
     put_in = f"1.5 × {wind.coefficient:.4g} × {pressure:.4g} × {wind.area:.4g}"
-    validity = "sharp edges, up to 15 m; characteristic wind; not combined with the earthquake"
+    edges = "a cylinder, the largest c_f,0" if body.round else "sharp edges"
+    validity = f"{edges}, up to 15 m; characteristic wind; not combined with the earthquake"
     return [
         MethodRow(
             name="wind",

@@ -13,7 +13,7 @@ from fem.case.case import Case
 from fem.case.data_files import as_named_from
 from fem.case.files import SITES, Origin
 from fem.case.tables import quantities as q
-from fem.case.tables.run_tables import DocumentTable
+from fem.case.tables.run_tables import DocumentTable, WindTable
 from fem.case.tables.table import CaseTable, case_key, optional_key
 from fem.case.toml import toml_document
 from fem.case.validation import CaseError
@@ -27,7 +27,7 @@ from fem.seismic.action import (
     second_generation_shape,
 )
 from fem.seismic.floor_spectrum import HORIZONTAL, PERIOD, VERTICAL, FloorSpectrum, read_spectrum
-from fem.seismic.wind import german_pressure, terrain_pressure
+from fem.seismic.wind import pressure_of
 from fem.site.tables import (
     BuildingTable,
     FloorSpectrumTable,
@@ -36,7 +36,6 @@ from fem.site.tables import (
     MotionsTable,
     SiteTable,
     SourcesTable,
-    WindTable,
 )
 from fem.study.file import base_case, read_as, read_study, split_tables
 
@@ -222,18 +221,10 @@ class SiteRequest:
         """
         if (wind := self.wind) is None:
             return None
-        height = self.container.container.total_height
-        if wind.terrain is not None:
-            velocity = wind.basic_velocity_m_s or 0.0
-            pressure = terrain_pressure(category=wind.terrain, basic_velocity=velocity, height=height)
-            return pressure, f"EN 1991-1-4:2005, terrain {wind.terrain}, v_b = {velocity:g} m/s"
-        if wind.german_zone is not None:
-            try:
-                pressure = german_pressure(zone=wind.german_zone, place=wind.german_place, height=height)
-            except ValueError as error:
-                raise CaseError(f"[wind] {error}") from None
-            return pressure, f"simplified German pressure, zone {wind.german_zone}, {wind.german_place}"
-        return wind.peak_velocity_pressure_Pa or 0.0, "given"
+        try:
+            return pressure_of(wind, self.container.container.total_height)
+        except ValueError as error:
+            raise CaseError(f"[wind] {error}") from None
 
     def with_value(self, key: str, value: float | int) -> "SiteRequest":
         """This request with one dotted key changed: of the site file, or of its container.

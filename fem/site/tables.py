@@ -50,8 +50,6 @@ SHARE = Quantity(above=0.0, most=1.0, advice="0.5 to 1 is usual")
 SECOND = Quantity(least=0.0, most=1.5, advice="1 is the same spectrum in both directions")
 ROTATION_RATIO = Quantity(above=0.0, most=1.0, advice="0.5 is usual; 1 is on the point of falling")
 SLIP = Quantity(unit="m", above=0.0, most=100.0, typical=0.1, slips={"millimetres": 1e-3})
-WIND = Quantity(unit="Pa", above=0.0, most=1e4, typical=650.0, slips={"kN/m2": 1e3})
-GAMMA_MU = Quantity(least=1.0, most=3.0, advice="1.3 is usual for scaffolds")
 MOST_MOTIONS = 100
 #: the rules of thumb divide by it, so there is no container without friction
 SOME_FRICTION = replace(q.FRICTION, least=None, above=0.0)
@@ -366,33 +364,3 @@ class SourcesTable(CaseTable):
     friction: OfSource = case_key("the range of friction", "", example="tests of castings on this floor")
     limits: OfSource = case_key("limits of rotation and slip", "", example="clearances of drawing 12")
     wind: OfSource = case_key("pressure or zone of the wind", "")
-
-
-class WindTable(CaseTable):
-    """The wind, on the lightest container; not combined with the earthquake."""
-
-    peak_velocity_pressure_Pa: Annotated[float, WIND] | None = optional_key(
-        "q_p at the top of the container", 650.0
-    )
-    german_zone: Annotated[int, Strict(), Quantity(least=1, most=4)] | None = optional_key(
-        "wind zone, in place of q_p: simplified pressure", 2
-    )
-    german_place: Literal["inland", "coast", "North Sea islands"] = case_key(
-        '"inland" | "coast" | "North Sea islands"', "inland"
-    )
-    terrain: Literal["0", "I", "II", "III", "IV"] | None = optional_key(
-        "category of EN 1991-1-4, in place of q_p: with basic_velocity_m_s", "II"
-    )
-    basic_velocity_m_s: Annotated[float, Quantity(unit="m/s", above=0.0, most=60.0)] | None = optional_key(
-        "v_b, with terrain", 25.0
-    )
-    gamma_mu: Annotated[float, GAMMA_MU] = case_key("partial factor on friction under wind", 1.0)
-
-    rules = (
-        one_of("wind.peak_velocity_pressure_Pa", "german_zone", "terrain"),
-        Rule(
-            "wind.basic_velocity_m_s",
-            lambda wind: (wind.basic_velocity_m_s is None) == (wind.terrain is None),
-            "and terrain belong together",
-        ),
-    )

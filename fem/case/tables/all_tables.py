@@ -9,7 +9,14 @@ from fem.case.tables.contact_tables import ContactTable, JointsTable
 from fem.case.tables.container_tables import ContainerTable, SupportTable
 from fem.case.tables.floors import FloorTable
 from fem.case.tables.motion_tables import MotionTable, VerticalTable
-from fem.case.tables.run_tables import DocumentTable, InitialTable, OutputTable, SolverTable, StaticTable
+from fem.case.tables.run_tables import (
+    DocumentTable,
+    InitialTable,
+    OutputTable,
+    SolverTable,
+    StaticTable,
+    WindTable,
+)
 from fem.case.tables.table import CaseTable, case_key
 from fem.case.tables.uncertainty_table import UncertaintyTable
 
@@ -23,6 +30,7 @@ TABLES: dict[str, type[CaseTable]] = {
     "vertical": VerticalTable,
     "initial": InitialTable,
     "static": StaticTable,
+    "wind": WindTable,
     "solver": SolverTable,
     "output": OutputTable,
     "uncertainty": UncertaintyTable,
@@ -31,7 +39,7 @@ TABLES: dict[str, type[CaseTable]] = {
 
 
 #: tables that mean something by standing in a case file; the others have their defaults where they do not
-OPTIONAL = frozenset({"static", "document"})
+OPTIONAL = frozenset({"static", "wind", "document"})
 
 
 class CaseHeading(CaseTable):

@@ -230,6 +230,8 @@ CORNER_PERIOD = Quantity(
 )
 BEHAVIOUR_FACTOR = Quantity(least=1.0, most=10.0, advice="1.0 is elastic, 1.5 is usual")
 IMPORTANCE_FACTOR = Quantity(least=0.1, most=5.0, advice="EN 1998-1:2004, 4.2.5 has 0.8 to 1.4")
+WIND = Quantity(unit="Pa", above=0.0, most=1e4, typical=650.0, slips={"kN/m2": 1e3})
+GAMMA_MU = Quantity(least=1.0, most=3.0, advice="1.3 is usual for scaffolds")
 SPECTRAL_RADIUS = Quantity(least=0.0, most=1.0, advice="0.5 is usual; 1 does not damp")
 NEWMARK_BETA = Quantity(above=0.0, most=1.0, advice="1/4 is the average acceleration")
 NEWMARK_GAMMA = Quantity(least=0.5, most=1.5, advice="1/2 is of second order and does not damp")

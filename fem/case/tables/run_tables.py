@@ -1,10 +1,11 @@
-"""The tables [initial], [static], [solver], [output] and [document]: a run, what it writes, and who signs it."""
+"""The tables [initial], [static], [wind], [solver], [output], [document]: a run, what it writes, and who signs it."""
 
 from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Field, Strict
 
 from fem.case.tables import quantities as q
+from fem.case.tables.problem import Rule, one_of
 from fem.case.tables.rules import SOLVER_RULES
 from fem.case.tables.table import CaseTable, case_key, optional_key
 
@@ -38,6 +39,36 @@ class StaticTable(CaseTable):
     )
     behaviour_factor: Annotated[float, q.BEHAVIOUR_FACTOR] = case_key("q", 1.5)
     importance_factor: Annotated[float, q.IMPORTANCE_FACTOR] = case_key("gamma_I", 1.0)
+
+
+class WindTable(CaseTable):
+    """The wind, on the lightest container: of a case, on it as it is; not combined with the earthquake."""
+
+    peak_velocity_pressure_Pa: Annotated[float, q.WIND] | None = optional_key(
+        "q_p at the top of the container", 650.0
+    )
+    german_zone: Annotated[int, Strict(), q.Quantity(least=1, most=4)] | None = optional_key(
+        "wind zone, in place of q_p: simplified pressure", 2
+    )
+    german_place: Literal["inland", "coast", "North Sea islands"] = case_key(
+        '"inland" | "coast" | "North Sea islands"', "inland"
+    )
+    terrain: Literal["0", "I", "II", "III", "IV"] | None = optional_key(
+        "category of EN 1991-1-4, in place of q_p: with basic_velocity_m_s", "II"
+    )
+    basic_velocity_m_s: Annotated[float, q.Quantity(unit="m/s", above=0.0, most=60.0)] | None = optional_key(
+        "v_b, with terrain", 25.0
+    )
+    gamma_mu: Annotated[float, q.GAMMA_MU] = case_key("partial factor on friction under wind", 1.0)
+
+    rules = (
+        one_of("wind.peak_velocity_pressure_Pa", "german_zone", "terrain"),
+        Rule(
+            "wind.basic_velocity_m_s",
+            lambda wind: (wind.basic_velocity_m_s is None) == (wind.terrain is None),
+            "and terrain belong together",
+        ),
+    )
 
 
 class SolverTable(CaseTable):

@@ -6,9 +6,9 @@ import pytest
 from cases import named_case
 
 from contact.stepping.observables import SLIDING
-from fem.case.case import CaseError
 from fem.case.overrides import parse_override
 from fem.case.tables.boxes import MICROSLIP
+from fem.case.validation import CaseError
 
 
 def case_of(name, changes):
@@ -60,3 +60,23 @@ def test_a_fall_of_friction_within_microslip_is_refused_with_what_to_give(key):
         ):
             named_case("seed_stack", changes | loose)
     assert MICROSLIP == SLIDING
+
+
+REFUSED = """
+least | container.shape=cylinder & container.depth_m=2 | depth_m = width_m = 1.1 m, its diameter
+least | container.shape=cylinder & support.kind=flat | ends of its diameter
+least | container.shape=cylinder & support.casting_m=[0.1, 0.1, 0.0] | no castings
+least | container.shape=cylinder & container.wall_m=0.008 & container.post_m=[0.1, 0.01] | no posts
+least | container.shape=cylinder & container.mesh_file=a.msh | no mesh_file
+least | container.shape=cylinder & container.wall_m=0.008 & floor.preset=concrete C25/30 |
+  floor.corner_patch_m on a slab
+uneven | container.shape=cylinder | boxes of one diameter on one axis
+least | wind.terrain=II | basic_velocity_m_s and terrain belong together
+least | wind.german_zone=2 & wind.terrain=II | exactly one of the three must be given
+"""
+
+
+@pytest.mark.parametrize(("name", "changes", "says"), rows(REFUSED))
+def test_a_cylinder_and_a_wind_that_cannot_be_are_refused_with_a_sentence(name, changes, says):
+    with pytest.raises(CaseError, match=re.escape(says)):
+        case_of(name, changes)

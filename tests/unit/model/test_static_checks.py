@@ -4,11 +4,15 @@ import json
 import math
 
 import pytest
+from cases import named_case
 from hypothesis import given
 from hypothesis import strategies as st
 
+from fem.assessment.code_note import code_note
 from fem.case.tables.run_tables import StaticTable
-from fem.model.static_checks import CheckResult, static_checks
+from fem.case.validation import CaseError
+from fem.model.geometry import build_container
+from fem.model.static_checks import CheckResult, static_checks, static_checks_of
 
 CODE = StaticTable(ground_acceleration_m_s2=1.6, soil_factor=1.5, corner_period_s=0.8, behaviour_factor=1.5)
 
@@ -180,3 +184,25 @@ def test_a_floor_that_falls_with_gravity_leaves_no_capacity():
     assert static.own_motion_vertical.overturning.utilisation == math.inf
     assert static.to_result().own_motion_vertical.least_weight_N == 0.0
     assert block().own_motion_vertical is None
+
+
+@pytest.mark.parametrize(("shape", "base"), [("prism", 2.1), ("cylinder", 1.2)])
+def test_the_wind_is_a_row_beside_the_static_rules_and_nowhere_else(shape, base):
+    # EN 1991-1-4, 7.6, 7.9 and figure 7.36 by hand: 4 x 1.1 m, slenderness 2 x 4/1.1, psi = 0.6 + 0.098 lg 7.27
+    keys = {"container.boxes": 4, "container.shape": shape, "wind.peak_velocity_pressure_Pa": 650.0}
+    case = named_case("least", keys | {"wind.gamma_mu": 1.3})
+    force = 1.5 * base * (0.6 + 0.098 * math.log10(8.0 / 1.1)) * 650.0 * 4.4
+    found = static_checks_of(case, build_container(case), 0.0)
+    assert found.wind.sliding.utilisation == pytest.approx(force * 1.3 / (0.9 * 98100.0 * 0.4))
+    assert found.wind.overturning.utilisation == pytest.approx(force * 2.0 / (0.9 * 98100.0 * 0.55))
+    assert "psi_2 of wind is 0" in code_note(found.to_result())
+    still = named_case("least", {"container.boxes": 4, "container.shape": shape})
+    without = static_checks_of(still, build_container(still), 0.0)
+    assert (without.wind, code_note(without.to_result())) == (None, "")
+    assert "wind" not in without.to_result().to_json()
+
+
+def test_a_container_too_high_for_the_wind_is_refused_with_a_sentence():
+    case = named_case("least", {"container.boxes": 20, "wind.peak_velocity_pressure_Pa": 650.0})
+    with pytest.raises(CaseError, match=r"\[wind\] .* up to 15 m, got 20 m; leave the table out"):
+        static_checks_of(case, build_container(case), 0.0)
