@@ -1,5 +1,6 @@
 """A response curve that is stopped or killed continues to the same bytes, whatever its friction has been through."""
 
+import json
 import os
 import signal
 
@@ -44,6 +45,10 @@ def files_of(folder):
     }
 
 
+def slain():
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
 @pytest.fixture(scope="module")
 def asked():
     case = load_case("seed_stack_plateau", SLIPPING)
@@ -75,4 +80,16 @@ def test_a_slipping_curve_stopped_again_and_again_continues_to_the_same_bytes(tm
             assert act is killed
         stopped += 1
     assert stopped >= 3
+    assert files_of(folder) == files_of(whole)
+
+
+def test_a_curve_that_is_killed_keeps_its_points_and_continues_to_the_same_bytes(tmp_path, asked, whole):
+    folder = tmp_path / "slain"
+    child = os.fork()
+    if child == 0:
+        run_response(asked, folder=folder, reporter=Stopping(90, slain))
+        os._exit(0)
+    assert os.WTERMSIG(os.waitpid(child, 0)[1]) == signal.SIGKILL
+    assert json.loads((folder / "response.json").read_text())["points"]
+    run_response(asked, folder=folder, resume=True)
     assert files_of(folder) == files_of(whole)
