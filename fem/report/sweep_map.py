@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem.assessment.sureness import REGIME_UNSURE, SURE, UNSURE
+from fem.figures.paper_marks import LABEL, marks_of
 from fem.figures.style import STATE_COLOURS, VERMILLION
 from fem.html.units import typeset
 from fem.report.animation import colour_scale, packed
@@ -85,7 +86,9 @@ def map_data(table: SweepTable, folder: Path) -> dict[str, Any]:
             columns.append(column)
     return {
         "axes": [
-            {"key": axis.key, "label": axis_label(axis), "values": list(axis.values)} for axis in table.axes
+            {"key": axis.key, "label": axis_label(axis), "values": list(axis.values)}
+            | {"marks": list(marks_of(table.info.case, axis.key))}
+            for axis in table.axes
         ],
         "columns": columns,
         "derived": [
@@ -101,6 +104,7 @@ def map_data(table: SweepTable, folder: Path) -> dict[str, Any]:
             for name, label, colour, found_any in OUTCOMES
         ],
         "colours": colour_scale("viridis", COLOURS),
+        "marked": LABEL,
         "command": command_line("run", str(folder / "base.toml")),
     }
 

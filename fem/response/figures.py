@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fem.figures import style
+from fem.figures.paper_marks import LABEL, marks_of
 from fem.response.lasting import coexistences, frequencies_of, lasting_at, of_first_model, shown
 from fem.response.records import PointRecord
 from fem.response.request import ResponseRequest
@@ -97,6 +98,9 @@ def draw_curves(request: ResponseRequest, records: Sequence[PointRecord]) -> Fig
         for several in coexisting:
             axes.axvspan(several.from_Hz, several.to_Hz, color="#DDDDDD", alpha=0.6, linewidth=0, zorder=0)
         axes.axvline(request.own_frequency, color=style.GREY, linestyle=":", linewidth=0.8)
+        for value in marks_of(request.case.name, "motion.frequency_Hz"):
+            label = LABEL if axes is rotation else "_"
+            axes.axvline(value, color=style.ORANGE, linestyle="-.", linewidth=0.9, label=label)
         _frequency_axis(axes, request)
     for axes in panels[:-1]:
         axes.tick_params(labelbottom=False)

@@ -27,11 +27,11 @@ from fem.results.figures import SLIPPED, TURNED
 from fem.results.files import write_atomically
 from fem.results.outcome import ENDINGS, Outcome
 from fem.runtime.arrays import FloatArray
-from fem.study.answers import falling_in_words
+from fem.study.answers import Answer, StudyAnswer, falling_in_words
 from fem.study.axes import MOTION_FILE, Axis, axis_label, axis_name
 from fem.study.design import Ensemble, MapChoice, UnknownInputs
 from fem.study.fragility import Fragility, Lognormal, PointRow, Resampled
-from fem.study.sweep_table import RATIOS, SweepTable
+from fem.study.sweep_table import RATIOS, SweepTable, sweep_answer
 
 OUTCOME_COLOURS = {**style.STATE_COLOURS, "failed": style.VERMILLION, "": style.WHITE}
 #: shares of a cell and its copies that overturn, up to so much each; their brightness falls, so that the order is seen
@@ -86,7 +86,10 @@ def draw_maps(table: SweepTable, folder: Path, choice: MapChoice) -> list[str]:
     else:
         loose = ("joint_slip",) if np.isfinite(table.columns.get(JOINT_SLIP, np.nan)).any() else ()
         kinds = ("outcome", "outcome_print", "rotation", "slip", *loose)
-        figures = {kind: sweep_map(table, kind, choice) for kind in kinds}
+        answer = sweep_answer(table, folder.parent) if table.info.threshold else None
+        boundary = None if answer is None else safe_boundary(table, answer, choice)
+        figures = {"boundary": boundary} if boundary else {}
+        figures |= {kind: sweep_map(table, kind, choice) for kind in kinds}
     for name, figure in figures.items():
         write_atomically(folder / f"{name}.svg", style.svg_of(figure))
     return [f"{folder.name}/{name}.svg" for name in figures]
@@ -127,6 +130,81 @@ def sweep_map(table: SweepTable, kind: str, choice: MapChoice) -> Figure:
         norm=LogNorm(LEAST_SLIP_MM, largest),
         bar=f"slip [mm] (below {rounded(LEAST_SLIP_MM)}: none)",
     )
+
+
+def safe_boundary(table: SweepTable, answer: StudyAnswer[Answer], choice: MapChoice) -> Figure | None:
+    """The boundary of the safe region and its band over the two axes of the maps, of a sweep with thresholds.
+
+    The line joins, at each value of the other axis, where the first run overturned. The band begins behind the last
+    cell whose copies all agree with it: from there to the line the container stands, but what is not known may overturn
+    it. None where the thresholds lie along neither axis, or a smaller value is not the safer one.
+    """
+    across, up = _plane(table, choice)
+    if answer.axis not in (across, up) or not answer.rising or not (across.is_numeric and up.is_numeric):
+        return None
+    other = up if answer.axis is across else across
+    groups: dict[str, list[tuple[float, float, float]]] = {}
+    for row in (row for row in answer.rows if other.key in row.point):
+        found, known = row.found, np.array(answer.axis.values, dtype=float)
+        fell = np.nan if found.overturned_from is None else found.overturned_from
+        unsure = min([low for low, _ in found.unsure], default=np.inf)
+        safe = known[known < min(unsure, np.inf if np.isnan(fell) else fell)]
+        name = ", ".join(
+            f"{axis_name(axis)} {value_label(row.point[axis.key])} {axis.unit}".strip()
+            for axis in answer.others
+            if axis is not other
+        )
+        sure_to = safe[-1] if safe.size else known[0]
+        groups.setdefault(name, []).append((float(row.point[other.key]), float(sure_to), float(fell)))
+    columns = min(2, len(groups))
+    rows = -(-len(groups) // columns)
+    with style.house_style():
+        figure = Figure(figsize=(style.WIDTH, 0.9 + 2.5 * rows), layout="constrained")
+        subplots = list(figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=True).flat)
+        for axes in subplots[len(groups) :]:
+            axes.set_visible(False)
+        for k, (axes, (name, found_at)) in enumerate(zip(subplots, groups.items(), strict=False)):
+            places, sure_to, fell = np.array(sorted(found_at)).T
+            least, most = float(answer.axis.values[0]), float(answer.axis.values[-1])
+            fill = axes.fill_betweenx if answer.axis is across else axes.fill_between
+            ends = np.where(np.isnan(fell), most, fell)
+            fill(
+                places,
+                least,
+                sure_to,
+                color=style.SKY,
+                alpha=0.35,
+                linewidth=0,
+                label="stands, and so do its copies",
+            )
+            fill(
+                places,
+                sure_to,
+                ends,
+                color=style.ORANGE,
+                alpha=0.45,
+                linewidth=0,
+                label="band: a copy may overturn",
+            )
+            points = (fell, places) if answer.axis is across else (places, fell)
+            axes.plot(*points, "o-", color=style.BLACK, markersize=3.5, label="first overturned")
+            marked = [marks_of(table.info.case, axis.key) for axis in (across, up)]
+            crosses = np.array(list(product(*marked))).reshape(-1, 2).T
+            axes.plot(
+                *crosses, "P", color=style.VERMILLION, markersize=7, label=LABEL, clip_on=False, zorder=3
+            )
+            for axis, scale in ((across, axes.set_xscale), (up, axes.set_yscale)):
+                scale("log" if axis.scale == "log" else "linear")
+            axes.set_title(name, fontsize=8.5)
+            if k % columns == 0:
+                axes.set_ylabel(axis_label(up))
+            if k + columns >= len(groups):
+                axes.set_xlabel(axis_label(across))
+        figure.legend(handles=subplots[0].get_legend_handles_labels()[0], loc="outside lower center", ncols=4)
+        figure.suptitle(
+            _titled(table, "Boundary of the safe region, and its band", 0), x=0.01, ha="left", fontsize=10.0
+        )
+    return figure
 
 
 def rotation_curve(table: SweepTable) -> Figure:
@@ -354,6 +432,8 @@ def draw_fragility(
         capsize=2.0,
         label=f"counted, {100.0 * ensemble.confidence:g} % interval",
     )
+    for k, value in enumerate(marks_of(ensemble.base.name, axis.key)):
+        axes.axvline(value, color=style.GREY, linestyle=":", label="_" if k else LABEL)
     limit = f"{100.0 * ensemble.probability:g} %"
     axes.axhline(ensemble.probability, color=style.GREY, linewidth=0.8, linestyle=":", label=limit)
     axes.set_ylim(-0.02, 1.02)

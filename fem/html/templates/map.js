@@ -85,9 +85,25 @@
     }
     ticks(a, columnCount, (i) => [left + (i + 0.5) * frame.w, top + rowCount * frame.h], true, wide);
     if (b >= 0) ticks(b, rowCount, (j) => [left, top + (rowCount - 0.5 - j) * frame.h], false, wide);
+    marks(a, b);
     pen.strokeStyle = MARK; pen.lineWidth = 2.5;
     pen.strokeRect(left + place[a] * frame.w - 1, top + (b < 0 ? 0 : rowCount - 1 - place[b]) * frame.h - 1, frame.w + 2, frame.h + 2);
     legend(column, scale);
+  };
+  // Dotted lines at the values of the paper's example, between the middles of the cells beside them.
+  const marks = (a, b) => {
+    pen.strokeStyle = INK; pen.lineWidth = 1.5; pen.setLineDash([2, 3]);
+    for (const [axis, horizontal] of [[a, true], [b, false]]) for (const mark of axis < 0 ? [] : sweep.axes[axis].marks) {
+      const known = sweep.axes[axis].values, k = known.findIndex((value) => value >= mark * (1 - 1e-6));
+      if (k < 0 || mark < known[0] * (1 - 1e-6)) continue;
+      const at = 0.5 + (k === 0 ? 0 : k - Math.max(0, (known[k] - mark) / (known[k] - known[k - 1])));
+      const x = frame.left + at * frame.w, y = frame.top + (frame.rowCount - at) * frame.h;
+      pen.beginPath();
+      if (horizontal) { pen.moveTo(x, frame.top); pen.lineTo(x, frame.top + frame.rowCount * frame.h); }
+      else { pen.moveTo(frame.left, y); pen.lineTo(frame.left + frame.columnCount * frame.w, y); }
+      pen.stroke();
+    }
+    pen.setLineDash([]);
   };
   // The labels that are shortest on the whole, so round ones where there are any: the first and every how manieth.
   const shortest = (words, least) => {
@@ -123,6 +139,8 @@
       const item = document.createElement("span"), patch = document.createElement("span");
       patch.className = "swatch"; patch.style.background = colour; item.append(patch, text); box.append(item);
     };
+    const [a, b] = axes();
+    if ([a, b].some((axis) => axis >= 0 && sweep.axes[axis].marks.length)) box.append(`dotted: ${sweep.marked}`);
     if (column.names) { column.names.forEach((name, k) => { if (column.values.includes(k)) swatch(column.colours[k], name); }); return; }
     const seen = new Set(outcome.values);
     sweep.outcomes.forEach((one, k) => { if (seen.has(k) && (column.words || !one.found || k === fell)) swatch(one.colour, one.label); });

@@ -87,6 +87,9 @@ def test_cells_carry_their_outcomes_and_values(folder):
     data = map_data(open_sweep(folder), folder)
     words = [data["outcomes"][k]["name"] for k in column(data, "outcome")]
     assert words == ["rest", "rest", "slide", "rest", "overturned", "failed"]
+    assert [axis["marks"] for axis in data["axes"]] == [[2.4, 4.0], [0.4]] and data[
+        "marked"
+    ] == "the paper's example"
     np.testing.assert_allclose(column(data, "max_slip_m")[:5], 0.001 * np.arange(5), rtol=1e-6)
     assert np.isnan(column(data, "rotation_ratio")[5])
     assert words_in(data, "sure") == ["sure", "regime unsure", "unsure", "sure", "sure", "unsure"]

@@ -10,8 +10,8 @@ from matplotlib.colors import to_rgb, to_rgba
 from fem.figures.style import svg_of
 from fem.study.axes import Axis, axis_label
 from fem.study.design import MapChoice
-from fem.study.maps import PRINTED_SHARES, SHARE_COLOURS, draw_maps, sweep_map
-from fem.study.sweep_table import SweepResult, SweepTable
+from fem.study.maps import PRINTED_SHARES, SHARE_COLOURS, draw_maps, safe_boundary, sweep_map
+from fem.study.sweep_table import SweepResult, SweepTable, sweep_answer
 
 FREQUENCY = Axis(
     key="motion.angular_frequency_rad_s", values=(1.0, 2.0, 4.0, 8.0, 16.0), scale="log", unit="rad/s"
@@ -153,6 +153,33 @@ def test_maps_are_the_same_bytes_again(tmp_path):
     assert (tmp_path / names[0]).read_bytes() == first
     assert b"A &lt;title&gt; &amp; more" in first
     assert svg_of(sweep_map(table, "outcome", MapChoice())).encode() == first
+
+
+def test_a_sweep_with_thresholds_begins_with_the_boundary_of_the_safe_region_and_its_band(tmp_path):
+    aspect = Axis(key="free.aspect_ratio", values=(1.0, 2.0, 4.0, 6.0, 8.0), scale="linear")
+    table = table_of(MODEL, MU, aspect)
+    cell = np.arange(len(table["status"]))
+    ratio, mu = np.array(aspect.values)[cell % 5], cell // 5 % 3
+    fallen = ratio > np.array([4.0, 4.0, 2.0])[mu]  # first at 6, 6 and 4
+    table.columns["outcome"] = np.where(fallen, "overturned", "rock").astype(object)
+    table.columns["status"] = np.where(fallen, "overturned", "completed").astype(object)
+    table.columns["unsure"] = (ratio == np.array([4.0, 2.0, 8.0])[mu]).astype(float)
+    info = replace(table.info, threshold={"axis": aspect.key}, case="seed_stack_plateau")
+    table = replace(table, info=info)
+    choice = MapChoice(x=aspect.key, y=MU.key)
+    assert draw_maps(table, tmp_path / "maps", choice)[0] == "maps/boundary.svg"
+    figure = safe_boundary(table, sweep_answer(table, tmp_path), choice)
+    assert [axes.get_title() for axes in figure.axes] == ["model rigid", "model reduced"]
+    for axes in figure.axes:
+        first, paper = axes.lines
+        assert first.get_xydata().tolist() == [[6.0, 0.2], [6.0, 0.3], [4.0, 0.4]]
+        assert paper.get_xydata() == pytest.approx(np.array([[1.0 / 1.1, 0.4], [4.0 / 1.1, 0.4]]))
+        safe, band = (collection.get_paths()[0].vertices for collection in axes.collections)
+        for least, most, part in ((1.0, [2.0, 1.0, 2.0], safe), ([2.0, 1.0, 2.0], [6.0, 6.0, 4.0], band)):
+            for mu, low, high in zip(MU.values, np.broadcast_to(least, 3), most, strict=True):
+                ends = part[np.isclose(part[:, 1], mu), 0]
+                assert (ends.min(), ends.max()) == (low, high)
+    assert safe_boundary(table, sweep_answer(table, tmp_path), MapChoice(x="solver.model", y=MU.key)) is None
 
 
 def test_one_axis_makes_a_curve(tmp_path):
