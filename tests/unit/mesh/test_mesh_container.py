@@ -8,7 +8,6 @@ import pytest
 from mesh.cells import areas_and_centroids, quadrature, signed_areas
 from mesh.container import ContainerMesh, build_container_mesh
 from mesh.elevation import Elevation
-from mesh.errors import MeshError
 from mesh.fill import MassFill
 from mesh.geometry import ContainerGeometry, Section
 from mesh.quality import scaled_jacobian
@@ -80,16 +79,6 @@ def test_cells_are_counter_clockwise_rectangles_that_tile_the_container(geometry
     require_tiling(mesh.points, mesh.quads, 1.1, 4.0)
 
 
-def test_bolted_boxes_share_the_nodes_between_them():
-    mesh = build_container_mesh(STACK, FILL, element_size=0.1)
-    single = build_container_mesh(dataclasses.replace(STACK, boxes=1), FILL, element_size=0.1)
-    on_lid = int((single.points[:, 1] == 1.0).sum())
-    assert len(mesh.points) == 4 * len(single.points) - 3 * on_lid
-    assert len(np.unique(mesh.points, axis=0)) == len(mesh.points)
-    for height in (1.0, 2.0, 3.0):
-        assert (mesh.points[:, 1] == height).sum() == on_lid
-
-
 def test_ring_of_every_box_has_the_thickness_of_the_wall_and_the_depth_of_the_container():
     mesh = build_container_mesh(STACK, FILL, element_size=0.1)
     area = signed_areas(mesh.points, mesh.quads)
@@ -98,15 +87,6 @@ def test_ring_of_every_box_has_the_thickness_of_the_wall_and_the_depth_of_the_co
     assert (mesh.thickness[wall] == 1.2).all()
     assert (mesh.thickness[~wall] == 0.016).all()
     assert mesh.areal_density[wall] == pytest.approx(np.full(wall.sum(), 7850.0 * 1.2), rel=1e-15)
-
-
-def test_base_points_run_from_corner_to_corner():
-    mesh = build_container_mesh(STACK, FILL, element_size=0.1)
-    base = mesh.points[mesh.base_points]
-    assert (base[:, 1] == 0.0).all()
-    assert (np.diff(base[:, 0]) > 0.0).all()
-    assert base[[0, -1], 0].tolist() == [-0.55, 0.55]
-    assert len(base) == (mesh.points[:, 1] == 0.0).sum() == 14
 
 
 def test_mesh_is_symmetric_to_the_last_bit():
@@ -122,58 +102,3 @@ def test_feet_end_on_a_base_point(foot):
     assert left == pytest.approx(right, rel=1e-12)
     assert left == pytest.approx(foot, rel=1.0 / 8.0)
     assert np.isclose(mesh.points[mesh.base_points, 0] + 0.55, left, rtol=1e-12, atol=0.0).any()
-
-
-def test_a_foot_without_a_mesh_line_is_refused_with_the_nearest():
-    mesh = build_container_mesh(STACK, FILL, element_size=0.5)
-    with pytest.raises(MeshError, match=r"no base point ends a foot of 0.15 m: the nearest is 0.008 m"):
-        mesh.elevation.foot_widths(0.15)
-
-
-def test_arrays_are_read_only_and_owned():
-    mesh = block()
-    for name in ("points", "quads", "region", "thickness", "areal_density"):
-        with pytest.raises(ValueError, match="read-only"):
-            getattr(mesh, name)[0] = 0
-    points = mesh.points.copy()
-    copied = dataclasses.replace(mesh, elevation=Elevation(points, mesh.quads))
-    points[0] = 99.0
-    assert copied.points[0].tolist() == [-0.55, 0.0]
-
-
-@pytest.mark.parametrize(
-    ("changes", "reason"),
-    [
-        (lambda m: {"region": m.region[:-1]}, "region must have one value a cell"),
-        (lambda m: {"region": m.region + 4}, r"values of Region, got \[7\]"),
-        (lambda m: {"thickness": 0.0 * m.thickness}, "smallest is 0.0 m"),
-        (lambda m: {"thickness": np.nan * m.thickness}, "thickness must be positive and finite"),
-        (lambda m: {"areal_density": -m.areal_density}, "not negative"),
-        (lambda m: {"areal_density": 0.0 * m.areal_density}, "no mass"),
-        (
-            lambda m: {"elevation": Elevation(m.points + np.array([0.0, 0.1]), m.quads)},
-            "base must stand on z = 0, its lowest point is at z = 0.1",
-        ),
-        (lambda m: {"elevation": Elevation(m.points + np.array([0.1, 0.0]), m.quads)}, "centred on x = 0"),
-    ],
-)
-def test_arrays_that_do_not_make_a_container_are_refused(changes, reason):
-    mesh = block()
-    with pytest.raises(MeshError, match=reason):
-        dataclasses.replace(mesh, **changes(mesh))
-
-
-def test_containers_of_different_mass_share_their_cells():
-    light, heavy = (
-        build_container_mesh(STACK, dataclasses.replace(FILL, mass=mass), element_size=0.25)
-        for mass in (FILL.mass, 2.0 * FILL.mass)
-    )
-    assert heavy.elevation is light.elevation
-    assert heavy.mass == pytest.approx(2.0 * light.mass, rel=1e-12)
-
-
-def test_absurd_sizes_are_refused_before_memory_is_taken():
-    # 267 cells through a wall of 8 mm, 36133 and 32800 between walls.
-    cells = (36133 + 2 * 267) * (32800 + 2 * 267) * 4
-    with pytest.raises(MeshError, match=f"the mesh would have {cells} cells"):
-        build_container_mesh(STACK, FILL, element_size=3e-5)

@@ -1,13 +1,10 @@
 """Meshes from files: what is read back, what is refused and by which name."""
 
-import dataclasses
-
 import meshio
 import numpy as np
 import pytest
 from mesh_writer import write_container_mesh
 
-from mesh.cells import signed_areas
 from mesh.container import ContainerMesh, build_container_mesh
 from mesh.errors import MeshError, MeshQualityError
 from mesh.files import read_container_mesh
@@ -66,27 +63,6 @@ def test_a_mesh_comes_back_as_it_was_written(tmp_path, suffix, geometry, centroi
 GROUPS = {"wall": 42, "sheet": 7, "fill": 13}  # numbers are arbitrary: only names count
 
 
-@pytest.mark.parametrize("binary", [True, False])
-def test_gmsh_2_physical_groups_are_read_by_name_and_boundary_lines_passed_over(tmp_path, binary):
-    mesh = stack()
-    numbers = np.array(list(GROUPS.values()))[mesh.region]
-    base = np.column_stack([mesh.base_points[:-1], mesh.base_points[1:]])
-    raw = meshio.Mesh(
-        np.column_stack([mesh.points, 0 * mesh.points[:, 0]]),
-        [("line", base), ("quad", mesh.quads)],
-        cell_data={
-            "gmsh:physical": [np.full(len(base), 99), numbers],
-            "gmsh:geometrical": [np.full(len(base), 5), numbers],
-        },
-        field_data={name: np.array([number, 2]) for name, number in GROUPS.items()}
-        | {"base": np.array([99, 1])},
-    )
-    meshio.gmsh.write(tmp_path / "mesh.msh", raw, fmt_version="2.2", binary=binary)
-    again = read_container_mesh(tmp_path / "mesh.msh", STACK, FILL)
-    assert (again.region == mesh.region).all()
-    assert again.inertia == pytest.approx(mesh.inertia, rel=1e-12)
-
-
 def gmsh_4_text(mesh: ContainerMesh) -> str:
     """The mesh as Gmsh 4.1 writes it (its manual, MSH file format): a surface a region, one curve."""
     regions = [region for region in Region if (mesh.region == region).any()]
@@ -126,23 +102,6 @@ def test_gmsh_4_physical_groups_are_read_by_name(tmp_path):
     assert again.inertia == pytest.approx(mesh.inertia, rel=1e-9)
 
 
-@pytest.mark.parametrize("suffix", [".vtu", ".vtk"])
-def test_sets_that_meshio_turned_into_one_field_are_read(tmp_path, suffix):
-    fill = MassFill(mass=2500.0, centroid_height=0.42)
-    mesh = stack(fill)
-    sets = {region.name.lower(): [np.flatnonzero(mesh.region == region)] for region in list(Region)[:3]}
-    path = written(tmp_path / f"mesh{suffix}", mesh, tags=None, cell_sets=sets)
-    assert (read_container_mesh(path, STACK, fill).region == mesh.region).all()
-
-
-def test_one_flag_a_region_is_read(tmp_path):
-    mesh = stack()
-    flags = {name: [(mesh.region == Region[name.upper()]).astype(np.int32)] for name in ("wall", "fill")}
-    path = written(tmp_path / "mesh.vtu", mesh, tags=None, cell_data=flags)
-    assert b"vtkZLibDataCompressor" in path.read_bytes()  # as meshio writes
-    assert (read_container_mesh(path, STACK, FILL).region == mesh.region).all()
-
-
 @pytest.mark.parametrize("columns", [(0, 1), (0, 2), (1, 2)])
 def test_elevation_may_lie_in_the_x_y_or_the_x_z_plane_anywhere(tmp_path, columns):
     mesh = stack()
@@ -154,16 +113,6 @@ def test_elevation_may_lie_in_the_x_y_or_the_x_z_plane_anywhere(tmp_path, column
     else:
         again = read_container_mesh(path, STACK, FILL)
         assert again.points == pytest.approx(mesh.points, abs=1e-14)
-
-
-def test_clockwise_cells_are_turned(tmp_path):
-    mesh = stack()
-    quads = mesh.quads.copy()
-    quads[::2] = quads[::2, ::-1]
-    path = written(tmp_path / "mesh.vtu", mesh, cells=[("quad", quads)])
-    again = read_container_mesh(path, STACK, FILL)
-    assert signed_areas(again.points, again.quads).min() > 0.0
-    assert again.inertia == pytest.approx(mesh.inertia, rel=1e-13)
 
 
 @pytest.mark.parametrize("kind", ["quad8", "quad9"])
@@ -185,20 +134,6 @@ def test_corners_of_straight_quadratic_cells_are_taken_and_curved_ones_refused(t
         assert (len(again.points), again.quads.shape) == (len(mesh.points), mesh.quads.shape)
 
 
-def test_distorted_cells_of_a_file_carry_mass_and_centroid_too(tmp_path):
-    fill = MassFill(mass=2500.0, centroid_height=0.43)
-    mesh = stack()
-    # Shake the points that belong to no wall: rows are no longer straight, so the level cuts cells askew.
-    free = np.ones(len(mesh.points), dtype=bool)
-    free[np.unique(mesh.quads[mesh.region == Region.WALL])] = False
-    points = mesh.points.copy()
-    points[free] += np.random.default_rng(3).uniform(-0.05, 0.05, (free.sum(), 2))
-    again = read_container_mesh(written(tmp_path / "mesh.vtu", mesh, points=points), STACK, fill)
-    assert again.mass == pytest.approx(5000.0, rel=1e-9)
-    assert again.centroid[1] == pytest.approx(0.93, rel=1e-9)
-    assert again.areal_density.min() > 0.0
-
-
 @pytest.mark.parametrize(
     ("tags", "region", "reason"),
     [
@@ -213,37 +148,6 @@ def test_wrong_tags_are_refused_by_name(tmp_path, tags, region, reason):
     mesh = stack()
     region = None if region is None else np.full(len(mesh.quads), region)
     refused(written(tmp_path / "mesh.vtu", mesh, tags=tags, region=region), reason)
-
-
-def test_wrong_physical_names_are_refused_by_name(tmp_path):
-    path = tmp_path / "mesh.msh"
-    write_container_mesh(path, stack())
-    path.write_text(path.read_text().replace('"fill"', '"filling"'))
-    refused(path, r"no region.*wall \(\d+ cells\), filling \(\d+ cells\).*mean fill by filling")
-
-
-def test_cells_without_tags_or_in_two_regions_are_refused(tmp_path):
-    mesh = stack()
-    wall = (mesh.region == Region.WALL).astype(np.int32)
-    for data, reason in (
-        ({}, "found no tags at all"),
-        (
-            {"wall": [wall], "fill": [1 + 0 * wall]},
-            f"{wall.sum()} cells are in several regions, the first is cell 0",
-        ),
-        ({"wall": [wall]}, f"{(wall == 0).sum()} cells are in no region"),
-    ):
-        refused(written(tmp_path / "mesh.vtu", mesh, tags=None, cell_data=data), reason)
-
-
-def test_regions_must_suit_the_section(tmp_path):
-    mesh = stack()
-    refused(
-        written(tmp_path / "empty.vtu", mesh, region=np.minimum(mesh.region, Region.SHEET)),
-        "no cell can carry the rest: tag the cells with fill as fill",
-    )
-    shell = written(tmp_path / "shell.vtu", mesh)
-    refused(shell, r"tagged wall, fill do not belong to this section \(solid\)", BLOCK)
 
 
 @pytest.mark.parametrize(("kind", "count"), [("triangle", 3), ("triangle6", 6), ("hexahedron", 8)])
@@ -265,12 +169,6 @@ def test_dimensions_must_be_those_of_the_geometry_and_both_are_named(tmp_path, f
         assert (again.width, again.height) == (1.1, 2.0)
     else:
         refused(path, rf"mesh is {1.1 * factor:.9g} m wide .*the container 1.1 m and 2 m")
-
-
-def test_cells_astride_two_boxes_are_refused(tmp_path):
-    tall = dataclasses.replace(BLOCK, height=2.0, boxes=1)
-    mesh = build_container_mesh(tall, MassFill(mass=5000.0, centroid_height=1.0), element_size=0.65)
-    refused(written(tmp_path / "mesh.vtu", mesh), r"2 cells lie in two boxes.*every 1.0 m", BLOCK)
 
 
 def test_cracks_hanging_points_overlaps_and_holes_are_refused(tmp_path):
@@ -312,12 +210,6 @@ def test_distorted_cells_and_positions_that_are_no_numbers_are_refused(tmp_path)
 def test_formats_that_are_more_than_numbers_are_refused(tmp_path, suffix):
     (tmp_path / f"mesh{suffix}").write_text("$MeshFormat")
     refused(tmp_path / f"mesh{suffix}", r"is not read; known are .msh \(Gmsh\), .vtu")
-
-
-def test_a_missing_file_and_a_folder_are_refused(tmp_path):
-    (tmp_path / "folder.msh").mkdir()
-    for name in ("mesh.msh", "folder.msh"):
-        refused(tmp_path / name, "no such file")
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,6 @@ from mesh.container import ContainerMesh, build_container_mesh
 from mesh.errors import MeshError
 from mesh.fill import MassFill
 from mesh.geometry import ContainerGeometry, CornerPost, Section
-from mesh.stack import StackedBox, build_bolted_mesh, build_loose_mesh
 
 POST = CornerPost(width=0.12, wall=0.006)
 BARE = ContainerGeometry(width=1.1, height=1.0, depth=1.2, wall=0.008)
@@ -49,14 +48,6 @@ def test_posts_add_their_section_to_every_row_and_their_steel_to_the_walls():
         build_container_mesh(POSTED, MassFill(mass=0.99 * walls, centroid_height=0.5), element_size=0.1)
 
 
-def test_boxes_that_differ_and_loose_ones_have_the_posts_of_equal_ones():
-    boxes = [StackedBox(geometry=POSTED, fill=FILL, axis=0.0, bottom=one * 1.0) for one in range(2)]
-    equal = build_container_mesh(replace(POSTED, boxes=2), FILL, element_size=0.1)
-    for mesh in (build_bolted_mesh(boxes, element_size=0.1), build_loose_mesh(boxes, element_size=0.1)):
-        assert np.array_equal(mesh.thickness, equal.thickness)
-        assert mesh.areal_density == pytest.approx(equal.areal_density, rel=1e-12)
-
-
 @pytest.mark.parametrize(
     ("changes", "says"),
     [
@@ -68,8 +59,3 @@ def test_boxes_that_differ_and_loose_ones_have_the_posts_of_equal_ones():
 def test_posts_without_room_are_refused(changes, says):
     with pytest.raises(MeshError, match=says):
         replace(POSTED, **changes)
-
-
-def test_a_post_of_more_wall_than_width_is_refused():
-    with pytest.raises(MeshError, match="leave no room in a post"):
-        CornerPost(width=0.1, wall=0.06)

@@ -73,11 +73,6 @@ def test_loose_boxes_share_no_node_and_equal_boxes_are_alike():
     assert (lower.areal_density == upper.areal_density).all()
 
 
-def test_boxes_beside_one_another_are_no_stack():
-    with pytest.raises(MeshError, match="share no face"):
-        build_bolted_mesh((box(), box(axis=1.2, bottom=1.0)), element_size=0.5)
-
-
 def written(path, mesh, *, region="solid", merged=True):
     """A mesh as a VTU file, with regions; not merged, each box has its own points."""
     points, quads = mesh.points, mesh.quads
