@@ -10,7 +10,6 @@ is u_x of node 0, u_z of node 0, u_x of node 1, ... Loads point along +x and +z;
 gradient of the strain energy, so equilibrium reads internal force = load.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Protocol
@@ -25,19 +24,12 @@ from skfem import (
     ElementQuad1,
     ElementQuad2,
     ElementVector,
-    FacetBasis,
-    LinearForm,
     MeshQuad,
 )
 from skfem.helpers import ddot, sym_grad, trace
 
 from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid import elasticity
-
-#: A field over the elevation: (x, z) of any shape (...) -> the two components, shape (2, ...).
-VectorField = Callable[[FloatArray, FloatArray], Any]
-#: (x, z) of the midpoints of edges -> whether each edge is chosen.
-EdgeChoice = Callable[[FloatArray, FloatArray], NDArray[np.bool_]]
 
 _ELEMENTS = {1: ElementQuad1, 2: ElementQuad2}
 _QUADRATURE_DEGREE = 5  # in each direction: 3 x 3 Gauss points
@@ -217,44 +209,19 @@ class FiniteElements:
         """Equivalent stress of `nodal_stress`, shape (n,) [Pa]."""
         return elasticity.von_mises(self.nodal_stress(displacement).T)
 
-    def area_load(self, density: VectorField) -> FloatArray:
-        """Consistent nodal forces of a load per area of elevation [N/m2], shape (n, 2) [N]."""
-        return np.stack([_load(self._basis, density, i) for i in range(2)], axis=1)
-
-    def edge_load(self, chosen: EdgeChoice, density: VectorField) -> FloatArray:
-        """Consistent nodal forces of a load per length of boundary edge [N/m], shape (n, 2) [N].
-
-        `chosen` picks outer edges by their midpoints. A unit load gives the tributary lengths of the nodes.
-        """
-        mesh = self._basis.mesh
-        facets = mesh.facets_satisfying(lambda x: chosen(x[0], x[1]), boundaries_only=True)
-        edge = FacetBasis(mesh, self._basis.elem, facets=facets, intorder=_QUADRATURE_DEGREE)
-        return np.stack([_load(edge, density, i) for i in range(2)], axis=1)
-
-    def l2_distance(self, displacement: FloatArray, reference: VectorField) -> float:
-        """Root of the integral over the elevation of |displacement - reference|^2 [m2]."""
-        basis = Basis(self._basis.mesh, self._basis.elem, intorder=_QUADRATURE_DEGREE + 4)
-        x, z = basis.global_coordinates()
-        exact = np.broadcast_arrays(*reference(x, z), x)[:2]
-        errors = [np.array(basis.interpolate(displacement[:, i])) - exact[i] for i in range(2)]
-        return float(np.sqrt(sum(np.sum(basis.dx * error**2) for error in errors)))
-
     def displacement_gradient(self, displacement: FloatArray) -> FloatArray:
         """H_ij = d u_i / d X_j at the quadrature points, shape (2, 2, m, q)."""
         return np.einsum("jcqb,cbi->ijcq", self.gradient, np.asarray(displacement)[self.cells], optimize=True)
 
 
 def assemble(mesh: QuadMesh, *, youngs_modulus: float, poisson_ratio: float, order: int) -> FiniteElements:
-    """The finite elements of a mesh; their matrices are assembled on first use.
-
-    Raises:
-        ValueError: elastic constants out of range.
-    """
+    """The finite elements of a mesh, assembled on first use; ValueError: elastic constants out of range."""
     lame = elasticity.plane_stress_lame(youngs_modulus, poisson_ratio)
     basis = _scalar_basis(mesh, order)
     cells = np.ascontiguousarray(basis.element_dofs.T).astype(np.int64)
     nodes = np.ascontiguousarray(basis.doflocs.T)
     nodes[: len(mesh.points)] = mesh.points  # exactly, not through the mapping
+    base = np.flatnonzero(np.abs(nodes[:, 1]) <= 1e-9 * np.ptp(nodes[:, 1]))
     return FiniteElements(
         order=order,
         youngs_modulus=youngs_modulus,
@@ -263,7 +230,7 @@ def assemble(mesh: QuadMesh, *, youngs_modulus: float, poisson_ratio: float, ord
         cells=cells,
         region=np.asarray(mesh.region),
         box=np.asarray(mesh.box),
-        base_nodes=_base_nodes(nodes),
+        base_nodes=base[np.argsort(nodes[base, 0], kind="stable")],
         thickness=mesh.thickness,
         areal_density=mesh.areal_density,
         lame=lame,
@@ -292,12 +259,6 @@ def _at_points(basis: Basis, values: NDArray[np.floating]) -> FloatArray:
     return np.repeat(np.asarray(values, dtype=float)[:, None], basis.X.shape[1], axis=1)
 
 
-def _base_nodes(nodes: FloatArray) -> IntArray:
-    height = np.ptp(nodes[:, 1])
-    base = np.flatnonzero(np.abs(nodes[:, 1]) <= 1e-9 * height)
-    return base[np.argsort(nodes[base, 0], kind="stable")]
-
-
 def _recovery_operator(basis: Basis, cells: IntArray, thickness: FloatArray) -> csr_array:
     """Values at the quadrature points -> fitted in each cell, averaged at the nodes, shape (n, m q)."""
     bilinear = [np.stack([np.ones_like(X), X, Z, X * Z], axis=1) for X, Z in (basis.X, basis.elem.doflocs.T)]
@@ -314,11 +275,3 @@ def _recovery_operator(basis: Basis, cells: IntArray, thickness: FloatArray) -> 
     recovery = (diags_array(1.0 / total) @ summed).tocsr()
     recovery.eliminate_zeros()
     return recovery
-
-
-def _load(basis: Any, density: VectorField, component: int) -> FloatArray:
-    @LinearForm
-    def form(v: Any, w: Any) -> Any:
-        return density(*w.x)[component] * v
-
-    return form.assemble(basis)

@@ -71,13 +71,9 @@ def block_pattern(matrix: csr_array) -> BlockPattern:
 def factor_blocks(
     pattern: BlockPattern, matrix: FloatArray, lower: FloatArray, inverse_pivots: FloatArray
 ) -> None:
-    """Factor a matrix.
+    """Factor a matrix of blocks (c, 4), xx, xz, zx, zz, in the order of `matrix_blocks`.
 
-    Args:
-        pattern: which blocks exist.
-        matrix: (c, 4) its blocks, in the order of `matrix_blocks`; xx, xz, zx, zz.
-        lower: (b, 4) blocks of L, written.
-        inverse_pivots: (n, 4) inverse of D, written.
+    Written are the blocks (b, 4) of L, and the inverse (n, 4) of D.
     """
     work, pivots, rows = pattern.work, pattern.pivots, pattern.rows
     for j in range(pattern.place.size):

@@ -10,14 +10,9 @@ SIDES = {4: ((0, 1), (1, 2), (2, 3), (3, 0)), 9: ((0, 4, 1), (1, 5, 2), (2, 6, 3
 
 
 def outline_edges(cells: IntArray, kind: NDArray[np.integer]) -> IntArray:
-    """Pairs of neighbouring nodes on sides that belong to one cell, or to cells of different kinds.
+    """Pairs of neighbouring nodes (k, 2) on sides that belong to one cell, or to cells of different kinds.
 
-    Args:
-        cells: nodes of each cell in the order of VTK, shape (m, 4 or 9).
-        kind: of each cell, such as its box, shape (m,).
-
-    Returns:
-        Shape (k, 2).
+    `cells`: nodes of each in the order of VTK, (m, 4 or 9); `kind`: of each, such as its box, (m,).
     """
     sides = cells[:, SIDES[cells.shape[1]]].reshape(-1, len(SIDES[cells.shape[1]][0]))
     ends = np.sort(sides[:, [0, -1]], axis=1)

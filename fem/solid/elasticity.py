@@ -31,12 +31,9 @@ class LamePair(NamedTuple):
 
 
 def plane_stress_lame(youngs_modulus: float, poisson_ratio: float) -> LamePair:
-    """Lamé pair for which 2 shear E + first tr(E) I is the plane-stress law [Pa].
+    """Lamé pair for which 2 shear E + first tr(E) I is the plane-stress law [Pa]; ValueError: constants out of range.
 
     Timoshenko and Goodier, Theory of Elasticity (1970), section 16, solved for the stresses.
-
-    Raises:
-        ValueError: Young's modulus not positive, or Poisson's ratio outside ]-1, 0.5].
     """
     if not 0.0 < youngs_modulus < np.inf:
         raise ValueError(f"Young's modulus must be positive and finite, got {youngs_modulus} Pa")
@@ -143,14 +140,7 @@ def with_own_scratch(blocks: CellBlocks) -> CellBlocks:
 def element_forces(
     blocks: CellBlocks, first: float, shear: float, displacement: FloatArray, out: FloatArray
 ) -> float:
-    """Gradient of the strain energy by the displacements, and the energy [J].
-
-    Args:
-        blocks: the cells.
-        first, shear: the Lamé pair [Pa].
-        displacement: (n, 2) [m].
-        out: (n, 2) forces [N], written.
-    """
+    """Gradient of the strain energy by the displacements (n, 2), into `out` [N], and the energy [J]."""
     _, k, _ = blocks.cells.shape
     points, nodal, local = blocks.weights.shape[1], blocks.nodal, blocks.local
     energy = 0.0

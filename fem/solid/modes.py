@@ -36,10 +36,7 @@ class ElasticModes:
 
 
 def rigid_modes(elements: FiniteElements) -> FloatArray:
-    """Translations along x and z and small rotation about the centroid, M-orthonormal, shape (3, n, 2).
-
-    Unit motions divided by sqrt(mass), sqrt(mass) and sqrt(polar inertia).
-    """
+    """Translations along x and z and small rotation about the centroid, M-orthonormal, shape (3, n, 2)."""
     nodal_mass = elements.nodal_mass
     arm = elements.nodes - nodal_mass @ elements.nodes / nodal_mass.sum()
     modes = np.zeros((3, *elements.nodes.shape))
@@ -74,16 +71,7 @@ def elastic_mode_table(modes: ElasticModes) -> list[dict[str, float]]:
 
 
 def write_modes(elements: FiniteElements, modes: ElasticModes, folder: Path) -> Path:
-    """Write `modes.vtu` with every shape as a point vector, scaled to a largest displacement of 1 m.
-
-    Points and vectors are (x, z, 0); ParaView's Warp By Vector wants three components.
-
-    Returns:
-        The file written.
-
-    Raises:
-        OSError: the folder cannot be made or written.
-    """
+    """Write `modes.vtu` with every shape as a point vector (x, z, 0), scaled to a largest displacement of 1 m."""
     folder.mkdir(parents=True, exist_ok=True)
     names = [f"mode {i:02d} ({f:.6g} Hz)" for i, f in enumerate(modes.frequencies_Hz, start=1)]
     largest = np.linalg.norm(modes.shapes, axis=2).max(axis=1)

@@ -143,11 +143,9 @@ class FullBody:
         nodal.cached_step[slot] = step
 
     def advance(self, run: RunState, until: float) -> int:
-        """`contact.stepping.integrator.advance` with the factors there are."""
         return int(advance_nodal(self._linked, run, until))
 
     def leave_alone(self, run: RunState, floor_velocity: float, lift_velocity: float) -> None:
-        """`contact.stepping.integrator.enter_floor_frame`."""
         enter_floor_frame_nodal(self._linked, run, floor_velocity, lift_velocity)
 
     @property
@@ -156,7 +154,6 @@ class FullBody:
         return self.nodal if self.line is None else LinkedBody(body=self.nodal, line=self.line)
 
     def memory(self) -> dict[str, FloatArray]:
-        """Arrays of the last residual by name; everything else follows from the state."""
         return {name: getattr(self.nodal, name).copy() for name in REMEMBERED}
 
     def recall(self, memory: Mapping[str, FloatArray]) -> None:
@@ -198,9 +195,7 @@ Body = ModalBody | LooseStack | LinkedBody | NodalModel
 
 
 def advance_body(body: Body, run: RunState, until: float) -> int:
-    """`contact.stepping.integrator.advance` for any body, compiled; factors of the full model are made where they
-    are missing.
-    """
+    """`contact.stepping.integrator.advance` for any body, compiled; missing factors of the full model are made."""
     if isinstance(body, ModalBody | LooseStack | LinkedBody):
         return advance_compiled(body, run, until)
     while True:
@@ -216,16 +211,6 @@ def leave_body_alone(body: Body, run: RunState, floor_velocity: float, lift_velo
         enter_floor_frame_compiled(body, run, floor_velocity, lift_velocity)
     else:
         body.leave_alone(run, floor_velocity, lift_velocity)
-
-
-def _rounding(elements: FiniteElements) -> float:
-    """Rounding error of the internal forces at a node from that of the coordinates [N].
-
-    In very thin walls, whose membrane stiffness is enormous, it exceeds the tolerance of a step: the iterations would
-    end only by chance.
-    """
-    stiffest = float(abs(elements.stiffness).sum(axis=1).max())
-    return UNIT_ROUNDOFF * stiffest * float(np.abs(elements.nodes).max())
 
 
 def _on_blocks(mass: csr_array, pattern: bsr_array) -> FloatArray:
@@ -246,13 +231,16 @@ def _without_factors(
     mass = csr_array(elements.mass)
     links = csr_array((np.ones(len(stiffness.indices)), stiffness.indices, stiffness.indptr), shape=(n, n))
     pattern = block_pattern(links)
+    # Of very thin walls the coordinates' rounding exceeds the tolerance: iterations would end only by chance.
+    stiffest = float(abs(elements.stiffness).sum(axis=1).max())
+    rounding = UNIT_ROUNDOFF * stiffest * float(np.abs(elements.nodes).max())
     return NodalBody(
         mass=body.mass,
         inertia=body.inertia,
         gravity=float(body.gravity),
         downhill=float(body.downhill),
         damping=float(body.damping),
-        tolerance=max(RESIDUAL_TOLERANCE * body.mass * float(body.gravity), _rounding(elements)),
+        tolerance=max(RESIDUAL_TOLERANCE * body.mass * float(body.gravity), rounding),
         first=elements.lame.first,
         shear=elements.lame.shear,
         node=np.ascontiguousarray(elements.nodes),

@@ -67,15 +67,11 @@ complete_nodal_stack = compiled(complete_compiled.py_func, sources=SOURCES)
 
 
 class FullStack:
-    """A loose stack of boxes with all their nodes.
+    """A loose stack of boxes with all their nodes, from the floor up.
 
-    Args:
-        boxes: from the floor up, their nodes where the undeformed box stands; their base points are their corners,
-            their monitors those of the uppermost box first.
-        responses: of each box to forces at its corners; boxes with the same one are equal.
-        normal_stiffness, tangential_stiffness: (4 N - 2 + k,) of the contact points at full weight [N/m].
-        tolerance: error of a contact point at which the iterations of a step stop [m].
-        held: the k points of sides that come last; `line` has their links.
+    Base points of a box are its corners, at full weight on the given springs [N/m]; the monitors are those of the
+    uppermost box first. Boxes with the same response to forces at their corners are equal. `tolerance`: error of a
+    contact point at which the iterations of a step stop [m]; `held`: points of sides, whose links are in `line`.
     """
 
     def __init__(
@@ -113,11 +109,9 @@ class FullStack:
         self.stack = self._compose()
 
     def advance(self, run: RunState, until: float) -> int:
-        """`contact.stepping.integrator.advance` with the factors there are."""
         return int(advance_nodal(self._linked, run, until))
 
     def leave_alone(self, run: RunState, floor_velocity: float, lift_velocity: float) -> None:
-        """`contact.stepping.integrator.enter_floor_frame`."""
         enter_floor_frame_nodal(self._linked, run, floor_velocity, lift_velocity)
 
     @property
@@ -135,18 +129,7 @@ class FullStack:
         velocity: tuple[float, float] = (0.0, 0.0),
         lift_velocity: float = 0.0,
     ) -> None:
-        """Write the initial state of a stack at rest on its floor, and moving with a velocity.
-
-        Args:
-            contact: its laws; the stiffness is written.
-            state: written, completed.
-            gravity: toward the floor, with the acceleration of the floor upward [m/s2].
-            place: of the floor, along x and upward [m]; velocity: of the stack, absolute [m/s].
-            lift_velocity: of the floor, upward [m/s].
-
-        Raises:
-            SettlingError: the stack does not stand.
-        """
+        """Write the initial state, as `contact.stepping.stack_body.settle_stack`."""
         centre = np.array([box.centroid for box in self.boxes])
         point = np.array([box.elements.nodes[box.base] - box.centroid for box in self.boxes])
         downhill = self.boxes[0].downhill

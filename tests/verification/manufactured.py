@@ -12,6 +12,7 @@ from functools import partial
 from typing import Any
 
 import numpy as np
+from loads import area_load, edge_load, l2_distance
 from meshes import PlainMesh, mapped_mesh
 from scipy.sparse.linalg import spsolve
 from verification.bodies import Flight, free_run
@@ -94,14 +95,14 @@ def static_error(order: int, cells: int) -> float:
     elements = assemble(curved_block(cells), youngs_modulus=E, poisson_ratio=NU, order=order)
     turn, strain = 0.4, 1.0
     x, z = elements.nodes.T
-    held = elements.edge_load(lambda x, z: x > -np.inf, lambda x, z: (1.0, 0.0))[:, 0] > 0.0  # all round
+    held = edge_load(elements, lambda x, z: x > -np.inf, lambda x, z: (1.0, 0.0))[:, 0] > 0.0  # all round
     inside, free = ~held, np.flatnonzero(~np.repeat(held, 2))
-    load = elements.area_load(lambda x, z: static_source(x, z, turn, strain)).ravel()[free]
+    load = area_load(elements, lambda x, z: static_source(x, z, turn, strain)).ravel()[free]
     displacement = turned_and_strained(x, z, turn, strain).T.copy()
     for _ in range(12):
         residual = elements.internal_force(displacement).ravel()[free] - load
         if np.abs(residual).max() < 1e-13 * E * THICKNESS:
-            return elements.l2_distance(displacement, lambda x, z: turned_and_strained(x, z, turn, strain))
+            return l2_distance(elements, displacement, lambda x, z: turned_and_strained(x, z, turn, strain))
         correction = spsolve(elements.tangent(displacement)[free][:, free], residual)
         displacement[inside] -= correction.reshape(-1, 2)
     raise NewtonError(f"manufactured solution, {cells} cells of order {order}: no convergence")
@@ -192,10 +193,10 @@ class ContinuumBody(DrivenBody):
                 moved.append(turned_and_strained(x, z, *turn_and_strain(t)) + rise)
             return DENSITY * THICKNESS * second_difference(moved) / (12.0 * H * H)
 
-        load = self.elements.area_load(lambda x, z: static_source(x, z, turn, strain) + inertia(x, z))
+        load = area_load(self.elements, lambda x, z: static_source(x, z, turn, strain) + inertia(x, z))
         for axis, coordinate, sign in ((0, 0.0, -1.0), (0, 1.0, 1.0), (1, 0.0, -1.0), (1, 1.0, 1.0)):
             face = partial(_on_face, axis, coordinate)
-            load += self.elements.edge_load(face, partial(_traction, axis, sign, turn, strain))
+            load += edge_load(self.elements, face, partial(_traction, axis, sign, turn, strain))
         return load + self.weight
 
 
@@ -227,7 +228,7 @@ def dynamic_error(order: int, cells: int, step: float) -> float:
     displacement = flight.state.position.reshape(-1, 2) - elements.nodes
     turn, strain = turn_and_strain(flight.time)
     rise = np.array([0.3 * flight.time, HEIGHT + 2.0 * flight.time**2])
-    return elements.l2_distance(displacement - rise, lambda x, z: turned_and_strained(x, z, turn, strain))
+    return l2_distance(elements, displacement - rise, lambda x, z: turned_and_strained(x, z, turn, strain))
 
 
 def unit_square(cells: int, order: int) -> FiniteElements:

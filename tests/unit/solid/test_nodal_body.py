@@ -63,20 +63,6 @@ def test_substitution_solves_with_the_newmark_matrix(model):
     assert nodal.permuted[nodal.order] == pytest.approx(expected, abs=1e-10 * np.abs(expected).max())
 
 
-def test_the_oldest_factors_make_room():
-    model = build_model(load_case("seed_stack_plateau", COARSE))
-    body, scheme = model.body, model.run.problem.scheme
-    assert not nodal_kernels.prepared(body.nodal, STEP)
-    body.prepare(scheme, STEP)
-    assert nodal_kernels.prepared(body.nodal, STEP)
-    slots = body.nodal.cached_step.size - 1
-    steps = STEP * (1.0 + 0.01 * np.arange(1, slots + 1))
-    for step in steps:
-        body.prepare(scheme, float(step))
-    assert not nodal_kernels.prepared(body.nodal, STEP)
-    assert all(nodal_kernels.prepared(body.nodal, float(step)) for step in steps)
-
-
 def test_forces_and_energy_are_those_of_the_elements_less_the_source(model):
     body, state = model.body, model.run.old
     shaken = np.random.default_rng(3)
