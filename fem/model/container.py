@@ -76,27 +76,21 @@ class Container:
 
         Of a loose stack those of its boxes, of equal boxes once.
         """
-        if self.boxes:
-            return self._modes_of_boxes(count)
-        if count > self.free_modes:
+        if not self.boxes and count > self.free_modes:
             return elastic_modes(self.elements, count)
-        basis = self.basis
-        shapes = basis.shapes[:count]
-        frequencies = basis.angular_frequencies[:count] / (2.0 * math.pi)
-        return ElasticModes(frequencies_Hz=frequencies, shapes=shapes * signs_of(shapes))
-
-    def _modes_of_boxes(self, count: int) -> ElasticModes:
-        frequencies, shapes = [], []
+        if not self.boxes:
+            shapes = self.basis.shapes[:count]
+            frequencies = self.basis.angular_frequencies[:count] / (2.0 * math.pi)
+            return ElasticModes(frequencies_Hz=frequencies, shapes=shapes * signs_of(shapes))
+        own, parts = [], []
         distinct = {id(box): (box, nodes) for box, nodes in zip(self.boxes, self.box_nodes, strict=True)}
         for box, nodes in distinct.values():
             modes = elastic_modes(box.elements, count)
-            frequencies.append(modes.frequencies_Hz)
-            shapes.append(np.zeros((count, *self.elements.nodes.shape)))
-            shapes[-1][:, nodes] = modes.shapes
-        rising = np.argsort(np.concatenate(frequencies), kind="stable")[:count]
-        return ElasticModes(
-            frequencies_Hz=np.concatenate(frequencies)[rising], shapes=np.concatenate(shapes)[rising]
-        )
+            own.append(modes.frequencies_Hz)
+            parts.append(np.zeros((count, *self.elements.nodes.shape)))
+            parts[-1][:, nodes] = modes.shapes
+        rising = np.argsort(np.concatenate(own), kind="stable")[:count]
+        return ElasticModes(frequencies_Hz=np.concatenate(own)[rising], shapes=np.concatenate(parts)[rising])
 
 
 def modes_of_a_body(case: Case) -> int:
@@ -105,18 +99,15 @@ def modes_of_a_body(case: Case) -> int:
 
 
 def discretise(case: Case, mesh: ContainerMesh | None = None) -> Container:
-    """Build elements, contact nodes and elastic modes of a case's container.
-
-    Args:
-        case: its container.
-        mesh: where it is built already.
-
-    Raises:
-        CaseError, MeshError: bad input.
-    """
+    """Build elements, contact nodes and elastic modes of a case's container; `mesh`: where it is built already."""
     use_one_blas_thread()
     if case.neighbour:
-        return _in_a_row(case, mesh)
+        known: dict[str, Container] = {}  # equal ones are built once
+        keys = [repr((alone.container, alone.support)) for alone in case.row]
+        for number, (key, alone) in enumerate(zip(keys, case.row, strict=True)):
+            if key not in known:
+                known[key] = _neighbour(number, alone) if number else discretise(alone, mesh)
+        return _beside_one_another(case, [known[key] for key in keys])
     mesh = mesh or build_container(case)
     support = build_support(case, mesh)
     require_memory(case, node_count(mesh, case.solver.order), support.index.size)
@@ -149,20 +140,10 @@ def changed_container(case: Case, container: Container, own: Case) -> Container:
 
 
 def adapted_container(case: Case, container: Container, own: Case) -> Container | None:
-    """The container of a case that differs from another case in the places of its mass, or in what touches the floor.
+    """The container of a case from that of another case, `own`, with other places of its mass or contacts; else None.
 
     Elements and elastic modes stay where the same points touch; a shift of the mass by some hundredths changes them by
-    less than its own square.
-
-    Args:
-        case: of which the container is wanted.
-        container: of the other case, `own`.
-
-    Returns:
-        The container; None where other points touch.
-
-    Raises:
-        CaseError, MeshError: bad input.
+    less than its own square. None where other points touch.
     """
     given, there = case.container, own.container
     if case.neighbour:
@@ -174,7 +155,9 @@ def adapted_container(case: Case, container: Container, own: Case) -> Container 
         mesh = build_container(case)
         boxes = tuple(replace(box, mesh=box_mesh(mesh, number)) for number, box in enumerate(container.boxes))
         container = replace(container, mesh=mesh, boxes=boxes)
-    if _touching(case) != _touching(own):
+    if any(getattr(case.support, key) != getattr(own.support, key) for key in ("kind", "camber_m")) or (
+        case.foot != own.foot
+    ):
         if case.foot != own.foot:  # the mesh has a line at its inner end
             return None
         support = build_support(case, container.mesh)
@@ -182,12 +165,6 @@ def adapted_container(case: Case, container: Container, own: Case) -> Container 
             return None
         container = replace(container, support=support)
     return container
-
-
-def _touching(case: Case) -> tuple[object, ...]:
-    """What says which points of a base touch, and how high they stand."""
-    support = case.support
-    return support.kind, case.foot, support.camber_m
 
 
 def without_links(case: Case, container: Container) -> Container:
@@ -267,18 +244,6 @@ def _loose(case: Case, mesh: ContainerMesh, elements: FiniteElements, support: S
     )
     touching = make_faces(elements.nodes[container.corners], np.ones(0), np.ones(0)).corner[:, TOUCHING]
     return replace(container, nodes=np.append(container.corners[touching], _nodes_held(case, container)))
-
-
-def _in_a_row(case: Case, mesh: ContainerMesh | None) -> Container:
-    """The containers of a row, of which equal ones are built once."""
-    known: dict[str, Container] = {}
-    row = []
-    for number, alone in enumerate(case.row):
-        key = repr((alone.container, alone.support))
-        if key not in known:
-            known[key] = _neighbour(number, alone) if number else discretise(alone, mesh)
-        row.append(known[key])
-    return _beside_one_another(case, row)
 
 
 def _beside_one_another(case: Case, row: Sequence[Container]) -> Container:

@@ -85,7 +85,10 @@ def find_equilibrium(
             stance = _stance(case, container, contact, gravity)
             body, force = _body(case, container, contact, stance), stance.force[: contact.cap.size]
             contact = with_links(case, contact, [container.mesh.mass])
-            compression = _compression(container, stance) if case.solver.model != "rigid" else 0.0
+            compression = 0.0
+            if case.solver.model != "rigid":
+                pressed = stance.with_points(container.nodes.size).force
+                compression = _strain(container.elements, container.response, pressed, stance.rotation)
     except SettlingError as error:
         slope = case.floor.slope_percent
         table = (
@@ -111,11 +114,7 @@ def find_equilibrium(
 
 
 def _of_row(case: Case, container: Container, gravity: float) -> Equilibrium:
-    """The containers of a row, each at rest for itself: their sides carry nothing.
-
-    Raises:
-        CaseError: one that does not stand, or jams.
-    """
+    """The containers of a row, each at rest for itself: their sides carry nothing."""
     penalty = None if case.floor.is_slab else normal_penalty(case, container.mesh)
     row = [find_equilibrium(*alone, gravity, penalty) for alone in zip(case.row, container.row, strict=True)]
     meshes = [settled.mesh for settled in container.row]
@@ -163,27 +162,13 @@ def _linked(stack: LooseStack | FullStack, line: FloatArray | None) -> LooseStac
 
 def same_equilibrium(case: Case, other: Case) -> bool:
     """Whether two cases of one container share an equilibrium, if their floors begin with one vertical acceleration."""
+    tables = ("contact", "support", "joints", "floor", "initial", "links", "neighbour", "gravity_m_s2")
+    mass = ("centroid_m", "eccentricity_m", "damping_ratio", "fill_damping_ratio")
     return (
-        case.contact == other.contact
-        and case.support == other.support
-        and case.joints == other.joints
-        and case.floor == other.floor
-        and case.initial == other.initial
-        and case.links == other.links
-        and case.neighbour == other.neighbour
-        and case.container.centroid_m == other.container.centroid_m
-        and case.container.eccentricity_m == other.container.eccentricity_m
-        and case.container.damping_ratio == other.container.damping_ratio
-        and case.container.fill_damping_ratio == other.container.fill_damping_ratio
-        and case.gravity_m_s2 == other.gravity_m_s2
+        all(getattr(case, key) == getattr(other, key) for key in tables)
+        and all(getattr(case.container, key) == getattr(other.container, key) for key in mass)
         and case.solver.model == other.solver.model
     )
-
-
-def _compression(container: Container, stance: Stance) -> float:
-    """Largest compressive strain of the container under its contact forces [-]."""
-    force = stance.with_points(container.nodes.size).force
-    return _strain(container.elements, container.response, force, stance.rotation)
 
 
 def _strain(elements: FiniteElements, response: StaticResponse, force: FloatArray, rotation: float) -> float:
@@ -194,11 +179,7 @@ def _strain(elements: FiniteElements, response: StaticResponse, force: FloatArra
 
 
 def _contact(case: Case, container: Container, springs: FloatArray) -> Contact:
-    """The floor under so many springs, those of the base first.
-
-    Raises:
-        CaseError: the base is so round that the container does not stand on it.
-    """
+    """The floor under so many springs, those of the base first."""
     mesh, chosen, camber = container.mesh, case.contact, container.support.camber
     corner = 0.5 * float(springs[: camber.size].sum())
     if case.floor.is_slab:

@@ -123,11 +123,7 @@ def corner_patch(case: Case) -> tuple[float, float]:
 
 
 def half_space_of(case: Case) -> HalfSpace:
-    """What is under the container.
-
-    Raises:
-        CaseError: the floor is no slab.
-    """
+    """What is under the container; CaseError: the floor is no slab."""
     floor = case.floor
     if floor.youngs_modulus_Pa is None or floor.poisson_ratio is None:
         raise CaseError('[floor] kind = "slab" is needed')
@@ -135,11 +131,7 @@ def half_space_of(case: Case) -> HalfSpace:
 
 
 def slab_of(case: Case, mass: float) -> Slab:
-    """The slab of a case under a container of this mass [kg].
-
-    Raises:
-        CaseError: the floor is no slab.
-    """
+    """The slab of a case under a container of this mass [kg]; CaseError: the floor is no slab."""
     floor, below = case.floor, half_space_of(case)
     if floor.bearing_strength_Pa is None:
         raise CaseError('[floor] kind = "slab" is needed')
@@ -201,9 +193,7 @@ def pivot_share(case: Case, mesh: ContainerMesh) -> float:
     """Width between the points about which a container turns, over that of its base [-].
 
     Castings and worn edges stand inside its sides, and a weak floor carries it inside the edge of what touches.
-
-    Raises:
-        CaseError: the mass centre is not between these points.
+    CaseError: the mass centre is not between these points.
     """
     inset, beside = pivot_inset(case, mesh), abs(mesh.centroid[0])
     share = case.effective_width - 2.0 * inset / mesh.width

@@ -80,10 +80,5 @@ def plastic_work(force: float, capacity: float, stiffness: float) -> float:
     The spring below has stored F^2/(2 k) when the corner stands still; a corner that gives way at F_c leaves
     F_c^2/(2 k) in the spring and takes the rest (energy of an elastoplastic spring, as in Biggs, Introduction to
     Structural Dynamics, 1964, ch. 2).
-
-    Args:
-        force: of the elastic corner [N].
-        capacity: F_c, at which the corner gives way [N].
-        stiffness: k, of the floor under the corner [N/m].
     """
     return max(force**2 - capacity**2, 0.0) / (2.0 * stiffness)

@@ -18,12 +18,9 @@ def frame_bytes(nodes: int) -> float:
 
 
 def frame_interval(case: Case, nodes: int, duration: float) -> float:
-    """Time between the fields that a run keeps [s]; 0: none.
+    """Time between the fields that a run of at most this duration [s] keeps [s]; 0: none; `nodes`: of the elements.
 
-    Args:
-        case: whose "auto" is the shortest of `INTERVALS` of which the frames take no more than `MOST_BYTES`.
-        nodes: of the elements.
-        duration: of the run, at most [s].
+    "auto" is the shortest of `INTERVALS` of which the frames take no more than `MOST_BYTES`.
     """
     if case.output.fields_s != "auto":
         return case.output.fields_s

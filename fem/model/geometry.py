@@ -18,9 +18,7 @@ def build_container(case: Case) -> ContainerMesh:
     """The case's container: from its mesh file if it names one, else structured; loose boxes share no node.
 
     Raises:
-        MeshError: too many cells, walls heavier than the box, an impossible mass centre or foot, a mesh file
-            that does not fit the case.
-        CaseError: the mesh file is missing in the folder of the case.
+        CaseError, MeshError: a mesh file that is missing or does not fit; walls, posts or a mass that are impossible.
     """
     mesh, beside = _centred(case), case.container.eccentricity_m
     return with_mass_beside(mesh, beside) if beside else mesh

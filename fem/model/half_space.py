@@ -52,12 +52,9 @@ class HalfSpace:
         return self.shear_modulus * half_short**3 / (1.0 - self.poisson_ratio) * shape
 
     def vertical_dashpot(self, area: float, density: float) -> float:
-        """Waves that a patch sends down, rho V_La A, V_La = 3.4 V_s/(pi (1 - nu)) Lysmer's velocity [N s/m].
+        """Waves that a patch [m2] sends down, rho V_La A, V_La = 3.4 V_s/(pi (1 - nu)) Lysmer's velocity [N s/m].
 
         The limit of high frequencies, and a lower bound for elongated patches at low ones (Gazetas, Fig. 15.18).
-
-        Args:
-            area: of the patch [m2]; density: of the half-space [kg/m3].
         """
         shear_velocity = math.sqrt(self.shear_modulus / density)
         return density * 3.4 * shear_velocity / (math.pi * (1.0 - self.poisson_ratio)) * area

@@ -13,12 +13,10 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from contact.stepping.body import ANGULAR_VELOCITY, ROTATION, State
-from fem.case.case import Case
 from fem.case.tables.links import held_above
 from fem.model.model import Model
 from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid.assembly import FiniteElements
-from mesh.container import ContainerMesh
 
 #: columns of a joint's motion: momentum [kg m/s], angular momentum about their own mass centre [kg m2/s] and mass
 #: centre of the boxes above [m], the joint's centre [m], the container's rotation [rad]
@@ -49,12 +47,7 @@ class Joints:
     middle_shape: FloatArray  #: (m, J, 2) mean of each mode at both ends of the joint [1/sqrt(kg)]
 
     def motion(self, position: FloatArray, velocity: FloatArray, rotation: FloatArray) -> FloatArray:
-        """Momenta and positions at k instants, shape (k, J, 8); see the columns above.
-
-        Args:
-            position, velocity: coordinates of the body, shape (k, n_d).
-            rotation: of the container, shape (k,) [rad].
-        """
+        """Momenta and positions at k instants, (k, J, 8), from coordinates and rates (k, n_d) and rotations (k,)."""
         out = np.empty((len(rotation), self.height.size, MOTION_COLUMNS))
         out[:, :, TURN] = rotation[:, None]
         if self.full:
@@ -66,15 +59,7 @@ class Joints:
         return out
 
     def forces(self, motion: FloatArray, interval: float) -> FloatArray:
-        """Mean normal force [N], shear [N] and moment [Nm] between consecutive instants.
-
-        Args:
-            motion: at k + 1 instants, shape (k + 1, J, 8).
-            interval: between them [s].
-
-        Returns:
-            Shape (k, J, 3).
-        """
+        """Mean normal force [N], shear [N] and moment [Nm], (k, J, 3), between instants of a motion (k + 1, J, 8)."""
         before, after = motion[:-1], motion[1:]
         mean = 0.5 * (before + after)
         weight, pull = self.mass * self.gravity, self.mass * self.downhill
@@ -141,16 +126,19 @@ class Joints:
 def joints_of(model: Model, heights: FloatArray | None = None) -> Joints | None:
     """The joints of a model's stack; None for a single box, for boxes without bolts, and where links hold upper boxes.
 
-    Args:
-        model: what is stepped.
-        heights: (J,) of mesh lines taken for joints; those between the boxes, if not given [m].
+    `heights`: (J,) of mesh lines taken for joints; those between the boxes, if not given [m].
     """
     container = model.container
     mesh, elements, shapes = container.mesh, container.elements, container.basis.shapes
-    lines = joint_heights(model.case) if heights is None else np.asarray(heights, dtype=float)
+    bottoms = [box.bottom for box in model.case.stack[1:]]
+    lines = np.asarray(bottoms if heights is None else heights, dtype=float)
     if lines.size == 0 or model.case.container.is_loose or held_above(model.case):
         return None
-    layers = _layers(elements, mesh, np.append(lines, np.inf))
+    middle = mesh.elevation.areas_and_centroids[1][:, 1]
+    layers = tuple(
+        elements.mass_of(np.flatnonzero((low < middle) & (middle < high)), mesh.areal_density)
+        for low, high in pairwise([*lines, np.inf])
+    )
     arm = elements.nodes - np.asarray(mesh.centroid)
     spin = np.column_stack([arm[:, 1], -arm[:, 0]])  # velocities of a unit rotation
     nodal = _summed_from_above(np.array([layer @ np.ones(len(arm)) for layer in layers]))
@@ -176,15 +164,6 @@ def joints_of(model: Model, heights: FloatArray | None = None) -> Joints | None:
     )
 
 
-def _layers(elements: FiniteElements, mesh: ContainerMesh, height: FloatArray) -> tuple[csr_array, ...]:
-    """Consistent masses (n, n) of the cells between consecutive heights (J + 1,) [kg]."""
-    middle = mesh.elevation.areas_and_centroids[1][:, 1]
-    return tuple(
-        elements.mass_of(np.flatnonzero((low < middle) & (middle < high)), mesh.areal_density)
-        for low, high in pairwise(height)
-    )
-
-
 def _summed_from_above(values: FloatArray) -> FloatArray:
     """Cumulative sums over the first axis, from the uppermost layer down."""
     return np.cumsum(values[::-1], axis=0)[::-1]
@@ -198,11 +177,6 @@ def _moment(arm: FloatArray, momentum: FloatArray) -> FloatArray:
 def _about(place: FloatArray, motion: FloatArray) -> FloatArray:
     """Angular momentum about places (k, J, 2), > 0 toward +x [kg m2/s]."""
     return motion[:, :, SPIN] + _moment(motion[:, :, CENTRE] - place, motion[:, :, MOMENTUM])
-
-
-def joint_heights(case: Case) -> FloatArray:
-    """Heights of the joints between the boxes of a case above the floor, from the floor up, shape (J,) [m]."""
-    return np.array([box.bottom for box in case.stack[1:]])
 
 
 def _ends(elements: FiniteElements, height: float) -> tuple[int, int]:

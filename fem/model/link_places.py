@@ -43,11 +43,7 @@ def overlapped(case: Case, number: int, overlap: float) -> CaseError:
 
 
 def require_room(case: Case, mesh: ContainerMesh) -> None:
-    """Refuse a tilt that overlaps a link, before a model does: of an undeformed container on its corner.
-
-    Raises:
-        CaseError: with the first that is overlapped.
-    """
+    """Refuse, as a CaseError, a tilt of an undeformed container that overlaps a link, before a model does."""
     turn = case.initial.rotation_rad
     corner = math.copysign(0.5 * pivot_share(case, mesh) * mesh.width, turn)
     for number, link in enumerate(case.links, 1):

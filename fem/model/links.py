@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from contact.interface.contact_points import SidePoint
 from contact.interface.penalty import damping_ratio_of
@@ -90,30 +91,32 @@ def with_links(case: Case, contact: Contact, masses: Sequence[float]) -> Contact
         return contact
     mu = [link.mu if isinstance(link, StopTable) else 0.0 for link in links]
     stiffness = [link.stiffness_N_m for link in links]
-    nothing = [0.0] * len(links)
-    added: dict[str, Any] = {
-        "normal_stiffness": stiffness,
-        "tangential_stiffness": stiffness,
-        "cap": [math.inf if link.strength_N is None else link.strength_N for link in links],
-        "cap_growth": nothing,
-        "relaxation_time": [dashpot_of(link, masses[holder_of(case, link)]) for link in links],
-        "mu_static": mu,
-        "mu_kinetic": mu,
-        "weakening": nothing,
-        "camber": nothing,
-    }
-    return contact._replace(
-        **{name: np.append(getattr(contact, name), given) for name, given in added.items()},  # type: ignore[arg-type]
+    return appended(
+        contact,
+        len(links),
+        normal_stiffness=stiffness,
+        tangential_stiffness=stiffness,
+        cap=[math.inf if link.strength_N is None else link.strength_N for link in links],
+        relaxation_time=[dashpot_of(link, masses[holder_of(case, link)]) for link in links],
+        mu_static=mu,
+        mu_kinetic=mu,
     )
 
 
-def lines_at(case: Case, place: FloatArray, width: float) -> FloatArray | None:
-    """The lines of the links of a case, (k, 5); None where it has none.
+def appended(contact: Contact, count: int, **given: ArrayLike) -> Contact:
+    """A contact with so many further points; what is not given of them is 0, but for an infinite cap."""
+    longer: dict[str, Any] = {}
+    for name, own in contact._asdict().items():
+        if isinstance(own, np.ndarray):
+            value = given.get(name, math.inf if name == "cap" else 0.0)
+            longer[name] = np.append(own, np.broadcast_to(value, count))
+    return contact._replace(**longer)
 
-    Args:
-        case: its links.
-        place: (k, 2) of their points where the container stands on x = 0 [m].
-        width: of the container, of a row of all together [m].
+
+def lines_at(case: Case, place: FloatArray, width: float) -> FloatArray | None:
+    """The lines of the links of a case, (k, 5), whose points (k, 2) are at these places [m]; None where it has none.
+
+    `width`: of the container, of a row of all together [m].
     """
     if not case.links:
         return None

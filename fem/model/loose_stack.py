@@ -20,7 +20,7 @@ from fem.case.case import Case
 from fem.case.tables.boxes import shared_face
 from fem.model.bounce import bounce_of
 from fem.model.container import BoxModel, Container
-from fem.model.links import side_points
+from fem.model.links import appended, side_points
 from fem.model.support import base_points
 from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid.nodal_body import FullBody
@@ -34,44 +34,31 @@ TURNED_STEPS = 4  #: without line search, where points turn: corners that rattle
 
 
 def with_joints(case: Case, floor: Contact, mass: float, penalty: float) -> Contact:
-    """The contact of the floor under the lowest box, extended by the joints between the boxes.
+    """The contact of the floor under the lowest box, extended by the joints between boxes of this `mass` in all [kg].
 
-    Args:
-        case: of a loose stack.
-        floor: of its two corners on the floor.
-        mass: of all boxes [kg].
-        penalty: normal stiffness of a face over width times depth [Pa/m].
+    `penalty`: normal stiffness of a face over width times depth [Pa/m].
     """
     stack, friction, chosen, depth = case.stack, case.joint_friction, case.contact, case.container.depth_m
     faces = [shared_face(*pair) for pair in pairwise(stack)]
     springs = np.repeat([0.5 * penalty * (right - left) * depth for left, right in faces], POINTS)
     damping = relaxation_time(case.joints.dashpot, mass, penalty * stack[0].width * depth)
 
-    def extended(of_floor: FloatArray, of_joints: FloatArray | float) -> FloatArray:
-        return np.concatenate([of_floor, np.broadcast_to(of_joints, springs.shape)])
-
-    return floor._replace(
-        normal_stiffness=extended(floor.normal_stiffness, springs),
-        tangential_stiffness=extended(floor.tangential_stiffness, chosen.tangential_ratio * springs),
-        cap=extended(floor.cap, math.inf),
-        cap_growth=extended(floor.cap_growth, 0.0),
-        relaxation_time=extended(floor.relaxation_time, damping),
-        mu_static=extended(floor.mu_static, friction["mu_static"]),
-        mu_kinetic=extended(floor.mu_kinetic, friction["mu_kinetic"]),
-        weakening=extended(floor.weakening, friction["weakening_m"]),
-        camber=extended(floor.camber, 0.0),
-        held_step=HELD_SHARE * math.sqrt(mass / float(floor.normal_stiffness.sum())),
-        turned_steps=TURNED_STEPS,
+    joints = appended(
+        floor,
+        springs.size,
+        normal_stiffness=springs,
+        tangential_stiffness=chosen.tangential_ratio * springs,
+        relaxation_time=damping,
+        mu_static=friction["mu_static"],
+        mu_kinetic=friction["mu_kinetic"],
+        weakening=friction["weakening_m"],
     )
+    held_step = HELD_SHARE * math.sqrt(mass / float(floor.normal_stiffness.sum()))
+    return joints._replace(held_step=held_step, turned_steps=TURNED_STEPS)
 
 
 def stack_of(case: Case, container: Container, contact: Contact, tolerance: float) -> LooseStack | FullStack:
-    """The boxes of a loose stack as one body.
-
-    Args:
-        contact: of all its points at full weight.
-        tolerance: error of a corner at which the iterations of a step stop [m].
-    """
+    """The boxes of a loose stack as one body; `tolerance`: error of a corner at which a step stops iterating [m]."""
     numbers = range(len(container.boxes))
     springs = contact.normal_stiffness.copy(), contact.tangential_stiffness.copy()
     damping = bounce_of(case, container, contact).material_damping

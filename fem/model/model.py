@@ -10,9 +10,6 @@ from typing import Any
 
 import numpy as np
 
-from contact.interface.equilibrium import Stance
-from contact.interface.laws import ELASTIC_STICK
-from contact.interface.workspace import Contact
 from contact.motion.base_motion import BaseMotion
 from contact.motion.kernel import floor_motion
 from contact.stepping import modal_kernels
@@ -50,7 +47,6 @@ from fem.model.validity import require_stiff_corner
 from fem.runtime.arrays import FloatArray
 from fem.solid.nodal_body import Body, FullBody
 from fem.solid.nodal_stack import FullStack
-from fem.solid.reduction import StaticResponse
 
 HISTORY_CHUNK, FRAME_CHUNK = 1024, 64
 #: the same of the full model, whose coordinates are many
@@ -125,10 +121,9 @@ def build_model(
     """Discretise a case, settle it on its floor and write its initial state.
 
     Args:
-        container: of the case, where it is built already.
+        container, motions: of the case, where they are built already.
         equilibrium: of that container, where `same_equilibrium` allows its reuse; computed again where the
             vertical motion begins otherwise.
-        motions: of the floor, where they are built already.
 
     Raises:
         CaseError, MeshError: bad input, no equilibrium at the start.
@@ -189,6 +184,9 @@ def build_model(
     interval = case.output.history_s
     fields = frame_interval(case, len(container.elements.nodes), duration)
     stacked = case.container.bolted_joints > 0  # the forces in its joints follow from the motion
+    # of a full model one, of which the stress is looked at soon
+    windows = min(math.ceil(duration / STRAIN_WINDOW) + 1, MOST_STRAINED)
+    strained = {"full": 1, "reduced": windows, "rigid": 0}[case.solver.model]
     run = make_run(
         scheme=scheme,
         contact=contact,
@@ -215,7 +213,7 @@ def build_model(
         ),
         joints=_joints(case, container, static, row),
         links=len(case.links) + len(case.neighbour),
-        strained=_strained_steps(case, duration),
+        strained=strained,
         stress=_watched_stresses(case, container),
     )
     if full:  # its first steps settle vibrations of the mesh, which a large step would turn into a jump off the floor
@@ -287,14 +285,6 @@ def _watched_stresses(case: Case, container: Container) -> Stresses:
     )
 
 
-def _strained_steps(case: Case, duration: float) -> int:
-    """How many steps are kept for the largest stress: of a full model one, of which the stress is looked at soon."""
-    if case.solver.model == "full":
-        return 1
-    windows = min(math.ceil(duration / STRAIN_WINDOW) + 1, MOST_STRAINED)
-    return windows if case.solver.model == "reduced" else 0
-
-
 def _chunk(wanted: int, largest_step: float, interval: float) -> int:
     """Samples to keep at a time: never fewer than two largest steps make."""
     return max(wanted, 2 * math.ceil(largest_step / interval) + 4)
@@ -307,10 +297,7 @@ def _begun(
     floor: tuple[float, float, float],
     velocity: tuple[float, float],
 ) -> State:
-    """The initial state of one body at its stance, on a floor given by its places and its upward velocity [m], [m/s].
-
-    `velocity`: that it has with the floor, where it starts so, along x and upward [m/s].
-    """
+    """The initial state of one body at its stance, on a floor of these places and upward velocity [m], [m/s]."""
     assert equilibrium.stance is not None
     body: Any = equilibrium.body
     own = body.body if isinstance(body, LinkedBody) else body
@@ -319,25 +306,13 @@ def _begun(
     stance = equilibrium.stance.moved(floor[0], floor[1])
     if case.starts_moving:
         stance = stance.moving(*velocity)
-    _place(own, state, stance, container.response, floor, equilibrium.contact)
-    return state
-
-
-def _place(
-    body: Any,
-    state: State,
-    stance: Stance,
-    response: StaticResponse,
-    floor: tuple[float, float, float],
-    contact: Contact,
-) -> None:
-    """Write the initial state: the stance on the floor, given by its places and its upward velocity."""
     state.force[:] = stance.force
-    if contact.friction == ELASTIC_STICK:  # friction regularised in velocity has no springs
-        state.stick[:] = -stance.force[:, 0] / contact.tangential_stiffness
-    if isinstance(body, FullBody):
-        body.place(state, stance, response)
-        body.start(state, *floor)
+    if case.contact.sticks:  # friction regularised in velocity has no springs
+        state.stick[:] = -stance.force[:, 0] / equilibrium.contact.tangential_stiffness
+    if isinstance(own, FullBody):
+        own.place(state, stance, container.response)
+        own.start(state, *floor)
     else:
-        modal_kernels.place(body, state, stance)
-        modal_kernels.start(body, state, *floor)
+        modal_kernels.place(own, state, stance)
+        modal_kernels.start(own, state, *floor)
+    return state

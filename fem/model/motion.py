@@ -37,57 +37,21 @@ BOUNDED = [
 ]
 
 
-def build_motion(case: Case) -> SingleMotion:
-    """The motion [motion] of the case.
-
-    Raises:
-        CaseError: the file of a table is missing or is no table of motion; an impossible motion.
-    """
-    return _built(case, "motion")
-
-
-def build_vertical(case: Case) -> SingleMotion:
-    """The motion [vertical] of the case, positive upward.
-
-    Raises:
-        CaseError: as `build_motion`.
-    """
-    return _built(case, "vertical")
-
-
 def build_motions(
     case: Case, before: tuple[Case, BaseMotion, BaseMotion] | None = None
 ) -> tuple[BaseMotion, BaseMotion]:
     """How the floor of the case moves along x, which is along a slope, and up and down, which is normal to one.
 
-    Args:
-        case: with these motions.
-        before: another case with its motions, which are taken where they are recorded and the same.
-
-    Raises:
-        CaseError: as `build_motion`.
+    `before`: another case with its motions, which are taken where they are recorded and the same.
     """
     turn = case.floor.turn
-    if before is not None and case.motion.kind == "table" and same_record(case, before[0]):
+    if before is not None and case.motion.kind == "table":
         other, motion, vertical = before
-        if turn == other.floor.turn and (case.vertical == other.vertical or not turn):
-            return motion, vertical if case.vertical == other.vertical else build_vertical(case)
-    motions = build_motion(case), build_vertical(case)
+        same = case.motion == other.motion and case.folder == other.folder and case.recorded is other.recorded
+        if same and turn == other.floor.turn and (case.vertical == other.vertical or not turn):
+            return motion, vertical if case.vertical == other.vertical else build_motion(case, "vertical")
+    motions = build_motion(case), build_motion(case, "vertical")
     return along_and_normal(*motions, turn) if turn else motions
-
-
-def same_record(case: Case, other: Case) -> bool:
-    """Whether the floors of two cases follow one record along x."""
-    return case.motion == other.motion and case.folder == other.folder and case.recorded is other.recorded
-
-
-def _built(case: Case, table: MotionKey) -> SingleMotion:
-    try:
-        return _build(case, table)
-    except CaseError:
-        raise
-    except ValueError as error:
-        raise CaseError(f"[{table}] {error}") from error
 
 
 def motions_end(*motions: BaseMotion) -> float:
@@ -96,11 +60,7 @@ def motions_end(*motions: BaseMotion) -> float:
 
 
 def longest_run(case: Case, *motions: BaseMotion) -> float:
-    """Simulated time of a run on its motions, at most [s].
-
-    Raises:
-        CaseError: a record so long that its samples, frames or steps would be too many.
-    """
+    """Simulated time of a run on its motions, at most [s]; CaseError: a record too long for its samples or steps."""
     if "table" not in (case.motion.kind, case.vertical.kind) or not ends_at_rest(case):
         return longest_time(case)
     longest = motions_end(*motions) + MOST_FREE_MOTION
@@ -165,18 +125,13 @@ def _extremes_of(motion: BaseMotion, begin: float, end: float) -> FloatArray:
     if isinstance(motion, TableMotion):  # samples, and where acceleration and then velocity pass through zero
         times = motion.times
         for row in (2, 1):
-            times = np.unique(np.append(times, _zeros(times, motion.evaluate(times)[row])))
+            before, after = (values := motion.evaluate(times)[row])[:-1], values[1:]
+            through = before * after < 0.0
+            share = before[through] / (before[through] - after[through])
+            times = np.unique(np.append(times, times[:-1][through] + share * np.diff(times)[through]))
         return times
     cycles = min(math.ceil((end - begin) / motion.time_scale), MOST_CYCLES)
     return np.linspace(begin, end, CYCLE_SAMPLES * max(cycles, 1) + 1)
-
-
-def _zeros(times: FloatArray, values: FloatArray) -> FloatArray:
-    """Instants at which the straight lines through the samples pass through zero [s]."""
-    before, after = values[:-1], values[1:]
-    through = before * after < 0.0
-    share = before[through] / (before[through] - after[through])
-    return np.asarray(times[:-1][through] + share * np.diff(times)[through])
 
 
 def peaks_in_run(
@@ -229,6 +184,20 @@ def _plausible(motion: TableMotion, table: MotionKey) -> TableMotion:
         f"[{table}] file: its accelerations reach {peak:.4g} m/s2, at most {q.PEAK_ACCELERATION.most:g} m/s2 are "
         f"accepted; {guess}"
     )
+
+
+def build_motion(case: Case, table: MotionKey = "motion") -> SingleMotion:
+    """The motion [motion] of the case, or [vertical], positive upward.
+
+    Raises:
+        CaseError: the file of a table is missing or is no table of motion; an impossible motion.
+    """
+    try:
+        return _build(case, table)
+    except CaseError:
+        raise
+    except ValueError as error:
+        raise CaseError(f"[{table}] {error}") from error
 
 
 def _build(case: Case, table: MotionKey) -> SingleMotion:

@@ -56,11 +56,6 @@ def stressed_nodes(case: Case, elements: FiniteElements, basis: ReducedBasis, lo
 
 
 def stress_bounds(stress: FloatArray, angular_frequencies: FloatArray) -> FloatArray:
-    """Largest von Mises stress of nodes, over the root of twice the strain energy, shape (n,) [Pa/sqrt(J)].
-
-    Args:
-        stress: of each mode at the nodes, shape (3, m, n) [Pa].
-        angular_frequencies: of the modes, shape (m,) [rad/s].
-    """
+    """Largest von Mises stress of nodes for modes (3, m, n) [Pa], over the root of twice the strain energy, (n,)."""
     rooted = np.tensordot(VON_MISES_ROOT, stress / angular_frequencies[:, None], axes=1)
     return np.asarray(np.linalg.norm(np.moveaxis(rooted, -1, 0), ord=2, axis=(1, 2)))

@@ -61,8 +61,7 @@ class BodyRecovery:
     def largest_von_mises(self, position: FloatArray) -> float:
         """Largest counted nodal von Mises stress over rows of coordinates (n_s, n_d) [Pa]; 0 without modes.
 
-        Rows are taken by falling strain energy, and only nodes are evaluated whose bound, the root of twice that energy
-        times `_bounds`, reaches the largest stress so far.
+        Rows are taken by falling strain energy; only nodes are evaluated whose bound reaches the largest stress so far.
         """
         if self.full or not len(self.shapes) or not len(position):
             return 0.0

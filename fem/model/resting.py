@@ -44,12 +44,7 @@ class BodyAtRest:
         return cls(gravity=static.gravity, slenderness=slenderness, slope=static.slope)
 
     def moves_at(self, horizontal: FloatArray, upward: FloatArray | float, mu_static: float) -> float:
-        """The factor on a motion at which the body first uplifts or slips; infinite where none does.
-
-        Args:
-            horizontal, upward: accelerations of the floor, shape (n,) [m/s2].
-            mu_static: friction; infinite: uplift alone.
-        """
+        """The factor on a motion (n,) at which the body first uplifts or slips; infinite where none does."""
         kept, pushing = self._pushed(horizontal, upward, mu_static)
         strongest = float(np.max(pushing))
         return kept / strongest if strongest > 0.0 else math.inf

@@ -65,11 +65,7 @@ def contact_restitution(case: Case, static: StaticChecks) -> float | None:
 
 
 def require_loss(case: Case, static: StaticChecks) -> None:
-    """Refuse impacts that would leave more than there was before them.
-
-    Raises:
-        CaseError: with the largest factor.
-    """
+    """Refuse, as a CaseError, impacts that would leave more than there was before them."""
     factor = case.contact.restitution_over_housner or 1.0
     left = contact_restitution(case, static) or factor * static.housner_restitution
     left = max([left, *(factor * above.housner_restitution for above in blocks_on_joints(case))])
@@ -93,11 +89,9 @@ def apparent_restitution(
     """Restitution of a rigid container on its support; None outside the table.
 
     Args:
-        support: corners | feet | flat.
-        foot_over_width: length of a foot over the width, feet only [-].
-        slenderness: height of the mass centre over half the width [-].
-        damping_ratio: of the contact, c/(2 sqrt(k m)) with the whole mass on one corner [-].
-        housner: Housner's restitution of the container [-].
+        support: corners | feet | flat; foot_over_width: feet only.
+        slenderness: height of the mass centre over half the width.
+        damping_ratio: of the contact, c/(2 sqrt(k m)) with the whole mass on one corner; housner: his restitution.
     """
     calibration = read_calibrations()[support]
     foot = float(calibration.foot[0]) if support != "feet" else foot_over_width or 0.0

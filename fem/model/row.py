@@ -23,7 +23,7 @@ from contact.stepping.stack_body import make_stack, start_stack
 from fem.case.case import Case, CaseError
 from fem.case.tables.neighbours import places_of
 from fem.model.container import Container, facing
-from fem.model.links import OVERLAP, dashpot_of, side_points
+from fem.model.links import OVERLAP, appended, dashpot_of, side_points
 from fem.model.loose_stack import make_stack_state
 from fem.runtime.arrays import FloatArray
 from fem.solid.nodal_body import rotation_matrix
@@ -31,15 +31,11 @@ from mesh.container import ContainerMesh
 
 
 def require_no_jam(case: Case, meshes: Sequence[ContainerMesh]) -> None:
-    """Refuse friction regularised in velocity that can jam a corner as it lands.
+    """Refuse friction regularised in velocity that can jam a corner as it lands, as a CaseError with the limit.
 
     Friction mu on a corner at the distances x and z from the mass centre presses it into the floor faster than its
     normal force lifts it where mu > (I/m + x^2) / (x z): the paradox of Painleve. The springs of the other law take it
-    up; this law has forces that jump, and the steps shrink without end: of one container alone with small tolerances,
-    of a row almost always.
-
-    Raises:
-        CaseError: with the limit of the container that jams first.
+    up; this law has forces that jump, and the steps shrink without end.
     """
     if case.contact.friction == "elastic-stick":
         return
@@ -66,35 +62,24 @@ def contact_of_row(case: Case, contacts: Sequence[Contact], masses: Sequence[flo
         mass = masses[left] * masses[right] / (masses[left] + masses[right])
         sides.append((0.5 * neighbour.stiffness_N_m, dashpot_of(neighbour, mass), neighbour.mu))
     stiffness, relaxation, mu = (np.repeat(column, POINTS_OF_GAP) for column in zip(*sides, strict=True))
-    nothing = np.zeros_like(mu)
-    added = {
-        "normal_stiffness": stiffness,
-        "tangential_stiffness": stiffness,
-        "cap": np.full_like(mu, math.inf),
-        "cap_growth": nothing,
-        "relaxation_time": relaxation,
-        "mu_static": mu,
-        "mu_kinetic": mu,
-        "weakening": nothing,
-        "camber": nothing,
-    }
-    arrays: Any = {
-        name: np.concatenate([*(getattr(contact, name) for contact in contacts), of_sides])
-        for name, of_sides in added.items()
-    }
-    return contacts[0]._replace(resolution=contacts[0].resolution * (1.0 + ASIDE * len(sides)), **arrays)
+    names = [name for name, part in contacts[0]._asdict().items() if isinstance(part, np.ndarray)]
+    arrays: Any = {name: np.concatenate([getattr(own, name) for own in contacts]) for name in names}
+    floor = contacts[0]._replace(resolution=contacts[0].resolution * (1.0 + ASIDE * len(sides)), **arrays)
+    return appended(
+        floor,
+        mu.size,
+        normal_stiffness=stiffness,
+        tangential_stiffness=stiffness,
+        relaxation_time=relaxation,
+        mu_static=mu,
+        mu_kinetic=mu,
+    )
 
 
 def body_of_row(
     case: Case, bodies: Sequence[ModalBody], containers: Sequence[Container], contact: Contact
 ) -> LooseStack:
-    """The containers of a row as one body.
-
-    Args:
-        case: of the row.
-        bodies: of the containers alone, with their points over the floor; containers: they.
-        contact: of all points at full weight.
-    """
+    """The containers of a row as one body; `bodies`: they alone, with their points over the floor."""
     meshes = [container.mesh for container in containers]
     places = places_of(case, [mesh.width for mesh in meshes])
     inset = [
@@ -121,12 +106,7 @@ def _with_corners(body: ModalBody, mesh: ContainerMesh) -> ModalBody:
 
 
 def corners_at_rest(body: LooseStack, stances: Sequence[Stance | None]) -> FloatArray:
-    """Corners of the containers of a row at rest, each in its own frame, (N, 4, 2) [m].
-
-    Args:
-        body: of the row.
-        stances: of the containers at rest; None of one that starts tilted, which counts as undeformed.
-    """
+    """Corners of the containers of a row at rest, each in its own frame, (N, 4, 2) [m]; without a stance undeformed."""
     boxes = body.body.boxes
     standing: FloatArray = boxes.rest[:, None] + boxes.point
     for b, stance in enumerate(stances):
@@ -136,14 +116,9 @@ def corners_at_rest(body: LooseStack, stances: Sequence[Stance | None]) -> Float
 
 
 def measure_gaps(body: LooseStack, standing: FloatArray, contact: Contact) -> None:
-    """Place the containers of a row so that its gaps are those at rest.
+    """Place the containers of a row so that its gaps are those at rest, with their corners (N, 4, 2) there [m].
 
-    All lean on uneven springs.
-
-    Args:
-        body: of the row with undeformed containers at its gaps, which is changed.
-        standing: corners of the containers at rest, (N, 4, 2) [m].
-        contact: of its own stiffness, which is written.
+    All lean on uneven springs. `contact` has a stiffness of its own, which is written.
     """
     boxes, faces, floor = body.body.boxes, body.faces, 2 * len(standing)
     undeformed = boxes.rest[:, None] + boxes.point
@@ -172,11 +147,9 @@ def begin_row(
     place: tuple[float, float],
     lift_velocity: float,
 ) -> State:
-    """The initial state of a row from those of its containers alone.
+    """The initial state of a row from those of its containers alone; `contact` has a stiffness of its own, written.
 
     Args:
-        contact: of its own stiffness, which is written.
-        alone: states of the containers, each completed on the floor.
         place: of the floor, along x and upward [m]; lift_velocity: of it, upward [m/s].
 
     Raises:

@@ -242,15 +242,11 @@ def static_checks(
 
     Args:
         mass: M of all boxes with fill [kg].
-        centroid: z_c above the floor [m].
-        inertia: polar in the plane about the mass centre [kg m2].
+        centroid: z_c above the floor [m]; inertia: polar about the mass centre [kg m2].
         width: a, of the base between the points about which it turns [m].
         beside: distance of the mass centre from the middle of the base, to either side [m]. All values are those of
             the nearer corner, about which it tilts first; the restitution is that of the impact there.
-        gravity: g [m/s2].
-        mu_static, mu_kinetic: coefficients of friction [-].
-        peak_floor_acceleration: largest |acceleration| of the floor in this run [m/s2].
-        peak_vertical_acceleration: .. up or down; None: the floor does not move so.
+        peak_floor_acceleration, peak_vertical_acceleration: largest of the floor in this run [m/s2]; None: it has none.
         code: values of the lateral force method; None: it is left out.
         initial_rotation: phi_0 of Eq. (2) [rad]; where it is 0, half the slenderness angle is taken, as an
             ordinary rotation of a rocking container.

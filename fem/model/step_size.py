@@ -68,10 +68,8 @@ def largest_step_of(
     A pulse or record much shorter than the run sets small steps only while it lasts, by closely spaced instants.
 
     Args:
-        case: its solver and output.
         rocking: frequency parameter, of a row the largest of all [1/s].
         duration: its `longest_run` [s].
-        motions: of the floor.
 
     Raises:
         CaseError: a given step that is too long for a motion.
@@ -106,8 +104,7 @@ def largest_step_of(
 def _apart(instants: list[float], end: float, least: float) -> FloatArray:
     """The instants (rising, before `end`) and the end, without those closer than `least` to their neighbour or the end.
 
-    A motion that changes twice within the smallest step does not shorten it: the inertia over the square of such a step
-    would overflow or be noise.
+    The inertia over the square of a step below the smallest would overflow or be noise.
     """
     if np.diff([0.0, *instants, end]).min() >= least:
         return np.array([*instants, end])
@@ -119,10 +116,9 @@ def _apart(instants: list[float], end: float, least: float) -> FloatArray:
 
 
 def _struck_mass(case: Case, container: Container) -> float:
-    """Effective mass of a corner in the first instant of an impact [kg].
+    """Effective mass of a corner in the first instant of an impact [kg]; of a loose stack the least of all boxes.
 
-    For a rigid container that of the whole, rotating body; for an elastic one little more than the corner's own. Of a
-    loose stack the least of all boxes.
+    For a rigid container that of the whole, rotating body; for an elastic one little more than the corner's own.
     """
     mesh, corner = container.mesh, container.nodes[0]
     if container.boxes and case.solver.model != "full":
@@ -142,12 +138,10 @@ def control_of(
     contact: Contact,
     row: Sequence[StaticChecks] = (),
 ) -> Control:
-    """Limits of the stepping, from the time scales and energies of container and contact.
+    """Limits of the stepping, from the time scales and energies of container and contact; `largest`: step [s].
 
-    Args:
-        largest: step [s].
-        row: of each container of a row alone. The one that takes least to overturn sets the limits of energy, the one
-            that rocks most slowly how long nothing may move at rest.
+    `row`: of each container of a row alone. The one that takes least to overturn sets the limits of energy, the one
+    that rocks most slowly how long nothing may move at rest.
     """
     mesh, base = container.mesh, container.support.index.size
     bodies = [alone.mesh for alone in container.row] or [mesh]

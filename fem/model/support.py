@@ -33,12 +33,7 @@ LEAST_POINTS = 5  #: of a base that rolls: fewer are a polygon of two or three s
 
 
 def build_support(case: Case, mesh: ContainerMesh) -> Support:
-    """The base nodes that can touch the floor, each with its share of the base.
-
-    Raises:
-        CaseError: the feet do not fit the mesh, or a cambered base has too few points to roll.
-        MeshError: no mesh line ends a foot.
-    """
+    """The base nodes that can touch the floor, each with its share of the base; CaseError where they do not fit."""
     chosen, x = case.support, base_positions(mesh, case.solver.order)
     feet = (0.0, 0.0) if case.foot is None else mesh.elevation.foot_widths(case.foot)
     kind = "flat" if case.rolls else chosen.kind

@@ -22,13 +22,7 @@ MEMORY_SHARE = 0.8  #: of the machine's memory that may be used
 
 
 def require_stiff_contact(case: Case, mesh: ContainerMesh, stiffness: float) -> None:
-    """Refuse contact springs into which the container would sink deep under its weight.
-
-    `stiffness` is that of the whole base [N/m].
-
-    Raises:
-        CaseError: with the depth.
-    """
+    """Refuse, as a CaseError, contact springs of the whole base [N/m] into which the container would sink deep."""
     weight, size = mesh.mass * case.gravity_m_s2, min(mesh.width, mesh.height)
     if weight <= LARGEST_SINKING * size * stiffness:
         return
@@ -51,14 +45,10 @@ def require_stiff_contact(case: Case, mesh: ContainerMesh, stiffness: float) -> 
 
 
 def require_bearing(case: Case, mesh: ContainerMesh, use: float = 0.0) -> None:
-    """Refuse a slab into which the container would sink at once, at rest or as soon as one side lifts off.
+    """Refuse, as a CaseError, a slab into which the container would sink at once, or where one side lifts off.
 
-    `use` is the largest force of a point at rest over its cap.
-
-    Also a full model whose corners turn inside the edges, where it has no nodes.
-
-    Raises:
-        CaseError: with the least patch that bears it.
+    `use` is the largest force of a point at rest over its cap. Also a full model whose corners turn inside the edges,
+    where it has no nodes.
     """
     if not case.floor.is_slab:
         return
@@ -90,19 +80,11 @@ def require_bearing(case: Case, mesh: ContainerMesh, use: float = 0.0) -> None:
 
 
 def require_stiff_corner(case: Case, *, width: float, depth: float, stored: float) -> None:
-    """Refuse a tilted start whose contact springs store more than the energy to overturn the container.
+    """Refuse, as a CaseError, a tilted start whose springs store more than the energy to overturn the container.
 
-    Tilted, the container stands on one corner. On a flat base this corner has only the stiffness of the length of base
-    beside it, and "auto" never chooses a penalty above 3 E/h: a soft container can sink in by many widths. The
-    springs, and not the container, would then decide the motion.
-
-    Args:
-        width: of the container [m].
-        depth: by which the corner sinks in at the start [m].
-        stored: energy of the springs at the start over the energy to overturn the container [-].
-
-    Raises:
-        CaseError: with the depth.
+    On a flat base one corner has only the stiffness of the length of base beside it: a soft container can sink in by
+    many widths, and the springs, not the container, would decide the motion. `width`, and `depth` of the corner [m];
+    `stored`: energy of the springs over that to overturn.
     """
     if case.initial.rotation_rad == 0.0 or stored <= 1.0:
         return
@@ -116,13 +98,7 @@ def require_stiff_corner(case: Case, *, width: float, depth: float, stored: floa
 
 
 def require_stiff_container(case: Case, compression: float) -> None:
-    """Refuse a container whose weight alone compresses it beyond what its material can carry.
-
-    `compression` is the largest compressive strain under the weight [-].
-
-    Raises:
-        CaseError: with the compression.
-    """
+    """Refuse, as a CaseError, a container that its weight compresses beyond what its material can carry."""
     if compression < 1.0 - LEAST_STRETCH:
         return
     raise CaseError(
@@ -141,11 +117,7 @@ def required_memory(case: Case, nodes: int, contact_nodes: int) -> float:
 
 
 def require_memory(case: Case, nodes: int, contact_nodes: int) -> None:
-    """Refuse a container that does not fit into this machine's memory.
-
-    Raises:
-        CaseError: with the memory required and present.
-    """
+    """Refuse, as a CaseError, a container that does not fit into this machine's memory."""
     required, present = required_memory(case, nodes, contact_nodes), _machine_memory()
     if required > MEMORY_SHARE * present:
         raise CaseError(

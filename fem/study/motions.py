@@ -18,7 +18,7 @@ from fem.case.case import Case, CaseError, case_hash
 from fem.case.recorded import MotionKey
 from fem.figures.motions import draw_spectra
 from fem.figures.style import svg_of
-from fem.model.motion import build_motion, build_vertical
+from fem.model.motion import build_motion
 from fem.records.intensity import Intensity, intensity
 from fem.records.spectrum import evenly_sampled, log_spaced_periods, response_spectrum
 from fem.results.figures import types_of
@@ -51,7 +51,7 @@ class FloorComponent:
     @property
     def motion(self) -> TableMotion:
         """The samples, read again unless they were read lately."""
-        return _table(build_vertical(self.case) if self.table == "vertical" else build_motion(self.case))
+        return _table(build_motion(self.case, self.table))
 
     @property
     def step_s(self) -> float:

@@ -8,7 +8,6 @@ import pytest
 from cases import named_case
 
 from contact.reference.rigid_block import RigidBlock
-from fem.case.case import CaseError
 from fem.case.tables.unknown_inputs import ranges_of
 from fem.model.model import build_model
 from fem.run.outcome import run_without_history
@@ -36,14 +35,6 @@ def test_the_band_takes_the_restitution_up_to_that_of_plates():
         plates = block.restitution_on_plates(0.2) / block.housner_restitution
         assert most is None or plates > most
         assert ends[restitution][1] == pytest.approx(most or plates)
-
-
-@pytest.mark.parametrize(
-    "key", ["support.casting_bears", "support.casting_tilt_m", "uncertainty.casting_tilt_m"]
-)
-def test_how_castings_bear_is_no_key_any_more(key):
-    with pytest.raises(CaseError, match=f"{key.partition('.')[2]}' is no longer there; castings "):
-        named_case("seed_stack_plateau", {key: 1.0})
 
 
 def test_feet_are_at_rest_on_the_points_that_are_least_crushed():

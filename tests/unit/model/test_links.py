@@ -5,9 +5,6 @@ import pytest
 from runs import SOLID, STACK
 
 from contact.stepping.links import LinkedBody
-from fem.case.case import load_case
-from fem.case.columns import history_columns
-from fem.model.joints import joints_of
 from fem.model.links import side_points
 from fem.model.model import build_model
 
@@ -39,16 +36,6 @@ def test_a_reduced_container_has_its_points_where_they_are_asked_for():
     side = side[np.argsort(nodes[side, 1])]
     expected = [np.interp(0.13, nodes[side, 1], shapes[0, side, c]) for c in range(2)]
     assert body.shape[-3, :, 0] == pytest.approx(expected, rel=1e-12)
-
-
-@pytest.mark.parametrize(("height", "joints"), [(0.1, 3), (1.0, 3), (1.5, 0)])
-def test_joints_are_left_out_where_a_link_holds_an_upper_box(height, joints):
-    stop = {**STOPS[0], "height_m": height}
-    case = load_case("seed_stack_plateau", ["solver.model=rigid"]).with_values({"stop": [stop]})
-    names = history_columns(case)
-    assert sum(name.startswith("joint_") for name in names) == 3 * joints
-    assert (joints_of(build_model(case)) is None) == (joints == 0)
-    assert "stop_1_force_N" in names
 
 
 @pytest.mark.parametrize("model", ["rigid", "reduced", "full"])

@@ -7,7 +7,6 @@ from cases import LEAST
 from fem.case.case import Case, CaseError, case_from, read_case
 from fem.model.container import discretise
 from fem.model.model import build_model
-from fem.model.recovery import recovery_of
 from fem.solid.reduction import static_response
 
 BOX = "[[container.box]]\n"
@@ -18,13 +17,6 @@ def loose(boxes: str = "boxes = 3\n", *, model: str = "reduced", more: str = "")
     container = f'joints = "loose"\nyoungs_modulus_Pa = 1e8\n{boxes}\n[contact]'
     text = LEAST.replace("[contact]", container)
     return read_case(f'{text}{more}\n[solver]\nmodel = "{model}"\nelement_size_m = 0.5\n')
-
-
-def test_equal_boxes_are_analysed_once():
-    three = discretise(loose()).boxes
-    assert three[0] is three[1] is three[2]
-    lower, upper = discretise(loose(UNEQUAL)).boxes
-    assert lower is not upper
 
 
 @pytest.mark.parametrize("modes", [1, 20])
@@ -58,23 +50,6 @@ def test_joints_have_a_dashpot_of_their_own_on_any_floor(floor):
         assert contact.relaxation_time[2:] == pytest.approx(
             2.0 * ratio * np.sqrt(mass / contact.normal_stiffness[2])
         )
-
-
-@pytest.mark.parametrize("model", ["rigid", "reduced", "full"])
-def test_a_stack_at_rest_is_where_its_mesh_is(model):
-    built = build_model(loose(UNEQUAL, model=model))
-    frame = recovery_of(built).frame(built.run.old.position, built.run.old.velocity)
-    assert np.abs(frame.displacement).max() < 2e-3  # it sinks in, and is strained, under its weight
-    assert np.abs(frame.velocity).max() == 0.0
-    assert built.run.old.boxes[:, 2] == pytest.approx([0.0, 0.1], abs=1e-4)
-    assert built.run.old.boxes[:, 3] == pytest.approx([0.5, 1.3], abs=2e-3)
-
-
-def test_contact_nodes_are_the_corners_that_touch():
-    container = discretise(loose(UNEQUAL, model="rigid"))
-    # two corners on the floor; left corners of the joint, the upper box's first; then its right corners
-    expected = [[-0.55, 0.0], [0.55, 0.0], [-0.3, 1.0], [-0.55, 1.0], [0.5, 1.0], [0.55, 1.0]]
-    assert container.elements.nodes[container.nodes] == pytest.approx(np.array(expected))
 
 
 def test_joints_have_their_own_friction_and_the_springs_of_the_face_they_share():

@@ -1,14 +1,10 @@
 """Recorded motions that are read but doubtful, and such as cannot be meant: each has its own message."""
 
-import json
-
 import numpy as np
 import pytest
 from cases import BLOCK
 
-from fem.__main__ import main
 from fem.case.case import CaseError, read_case
-from fem.case.recorded import recorded_motion
 from fem.model.motion import build_motion, motion_notes
 
 KEYS = '"table"\nfile = "floor.csv"\nquantity = "{}"\nunit = "{}"\nbaseline = "{}"\n{}'
@@ -56,27 +52,3 @@ def test_accelerations_that_cannot_be_meant_are_refused_with_the_guess(tmp_path)
         motion(tmp_path, 4.0 * np.cos(2.0 * np.pi * TIMES), unit="g")
     with pytest.raises(CaseError, match=r"is the unit right|looks like"):
         motion(tmp_path, 50.0 * np.sin(2.0 * np.pi * TIMES), quantity="displacement", unit="m")
-
-
-def notes_of(folder, values, extra=""):
-    return " ".join(recorded_motion(case_of(folder, values, extra=extra), "motion").notes)
-
-
-def test_an_unusual_peak_is_told_and_one_that_is_named_is_not(tmp_path):
-    wave = np.cos(2.0 * np.pi * TIMES)
-    assert notes_of(tmp_path, 4.0 * wave) == ""
-    low = notes_of(tmp_path, 0.353 * wave)
-    assert "0.353 m/s2 = 0.036 g, hardly moves a container" in low and "3.46 m/s2 if the values were g" in low
-    assert "30 m/s2 = 3.1 g, is beyond almost all records" in notes_of(tmp_path, 30.0 * wave)
-    assert notes_of(tmp_path, 50.0 * wave, "scale_to_m_s2 = 50.0") == ""
-    assert "beyond" in notes_of(tmp_path, 4.0 * wave, "scale = 10.0")
-    assert notes_of(tmp_path, 400.0 * wave, "scale = 0.01") == ""
-
-
-def test_run_and_check_tell_of_a_drift(tmp_path, capsys):
-    motion(tmp_path, np.full(TIMES.size, 0.1))
-    assert main(["check", str(tmp_path / "case.toml"), "--json"]) == 0
-    assert any("it drifts" in note for note in json.loads(capsys.readouterr().out)["notes"])
-    out = tmp_path / "out"
-    assert main(["run", str(tmp_path / "case.toml"), "--out", str(out), "-q", "--no-band"]) == 0
-    assert any("it drifts" in warning for warning in json.loads((out / "run.json").read_text())["warnings"])
