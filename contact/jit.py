@@ -153,8 +153,8 @@ def compiled(
     """Decorator: compile a function of numbers, arrays and named tuples on first call, and cache the machine code.
 
     The plain function stays available as `.py_func`. `inline` asks LLVM to put the function into its callers whatever
-    its size, because passing the tuples of arrays that the kernels use is expensive. `sources` are files outside this
-    package whose functions it calls.
+    its size, because passing the tuples of arrays is expensive. `sources` are files outside this package whose
+    functions it calls.
     """
     if function is None:
         return partial(compiled, inline=inline, sources=sources)

@@ -37,10 +37,7 @@ def zeros_of(layout: type, **sizes: int) -> dict[str, NDArray[Any]]:
 
 
 def exchanging(layout: Any, *names: str) -> Any:
-    """A function, also for kernels, that makes a tuple of this class from one with the same fields and others in place.
-
-    It takes that tuple, and by name the fields that are others.
-    """
+    """A function, also for kernels: a tuple of this class from another one and, by name, the fields that are others."""
     return _making(layout, ("whole", *names), {name: name for name in names})
 
 
@@ -58,10 +55,7 @@ def room_of(layout: type, **sizes: int) -> tuple[int, int]:
 
 
 def parts_of(layout: Any, declared: type, **sizes: int) -> Any:
-    """A function for kernels that makes a tuple whose arrays are parts of its `numbers`, or of `counts`, in turn.
-
-    It takes a tuple with the fields that have no size, the numbers and the counts.
-    """
+    """A function for kernels that makes a tuple whose arrays are parts of its `numbers`, or `counts`, in turn."""
     fields, begin = {"numbers": "numbers"}, {"numbers": 0, "counts": 0}
     for name, array in zeros_of(declared, **sizes).items():
         if array.size > 0:

@@ -51,11 +51,9 @@ class KernelLibrary(JITCodeLibrary):
 class PieceLibrary(KernelLibrary):
     """Code for the libraries that link it."""
 
-    def _optimize_final_module(self) -> None:
-        """No-op: the callers optimise it."""
+    def _optimize_final_module(self) -> None: ...
 
     def _finalize_final_module(self) -> None:
-        """Finalise without emitting machine code."""
         self._finalized = True
 
 
@@ -65,11 +63,9 @@ class BeginKernel(LoweringPass):
 
     _name = "begin_kernel"
 
-    def __init__(self) -> None:
-        LoweringPass.__init__(self)
+    def __init__(self) -> None: ...
 
     def run_pass(self, state: Any) -> bool:
-        """Change the state of the compilation; returns that it has changed."""
         state.library = KernelLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
         state.library.enable_object_caching()
         return True
@@ -81,11 +77,9 @@ class BeginPiece(LoweringPass):
 
     _name = "begin_piece"
 
-    def __init__(self) -> None:
-        LoweringPass.__init__(self)
+    def __init__(self) -> None: ...
 
     def run_pass(self, state: Any) -> bool:
-        """Change the state of the compilation; returns that it has changed."""
         state.library = PieceLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
         state.flags.no_compile = True
         return True
@@ -97,11 +91,9 @@ class EndPiece(LoweringPass):
 
     _name = "end_piece"
 
-    def __init__(self) -> None:
-        LoweringPass.__init__(self)
+    def __init__(self) -> None: ...
 
     def run_pass(self, state: Any) -> bool:
-        """Change the state of the compilation; returns that it has changed."""
         lowered = state["cr"]
         name, nothing = lowered.fndesc.qualname, 0
         key = _dynfunc.make_function(
@@ -125,7 +117,6 @@ class KernelCompiler(CompilerBase):
             gc.set_threshold(youngest, *older)
 
     def define_pipelines(self) -> list[Any]:
-        """The passes of numba's compiler with one of this module."""
         passes = DefaultPassBuilder.define_nopython_pipeline(self.state)
         passes.add_pass_after(BeginKernel, AnnotateTypes)
         passes.finalize()
@@ -136,7 +127,6 @@ class PieceCompiler(CompilerBase):
     """numba's compiler, but for pieces."""
 
     def define_pipelines(self) -> list[Any]:
-        """The passes of numba's compiler with those of this module."""
         passes = DefaultPassBuilder.define_nopython_pipeline(self.state)
         passes.add_pass_after(BeginPiece, AnnotateTypes)
         passes.add_pass_after(EndPiece, NativeLowering)

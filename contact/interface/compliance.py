@@ -3,21 +3,19 @@
 Arrays as in `contact.interface.solver`.
 """
 
-from contact.arrays import FloatArray
-from contact.interface.dense import factor_dense, factor_four, substitute_dense, substitute_four
+from contact.arrays import FloatArray, IntArray
 from contact.interface.workspace import Workspace
 from contact.jit import compiled
 
 FEW_POINTS = 2  #: up to so many, the rows of the compliance are taken one by one
+#: LU: size up to which columns are eliminated one by one, and rows are exchanged by constant indices
+SMALL, TINY = 8, 4
 WORTH_KEEPING = 5  #: active points from which an old factorisation is reused before a new one is computed
 
 
 @compiled(inline=True)
 def add_modes(across: FloatArray, amplitude: FloatArray, out: FloatArray) -> None:
-    """Add displacements (2 n,) of modes (m, 2 n) with these amplitudes (m,), four modes at a time.
-
-    Sums keep the order of the modes.
-    """
+    """Add displacements (2 n,) of modes (m, 2 n) with these amplitudes, four at a time in the order of the modes."""
     if out.size == 4:  # two points, a loop of fixed length
         w, x, y, z = out[0], out[1], out[2], out[3]
         for k in range(amplitude.size):
@@ -102,14 +100,10 @@ def turned_compliance(
     turn: float,
     out: FloatArray,
 ) -> None:
-    """Compliance (2 n, 2 n) of many points: that of the rigid body and a share of that of the modes, turned.
+    """Compliance (2 n, 2 n) of many points: that of the rigid body and a share of that of the modes, as `add_turned`.
 
-    As `add_turned`, but blocks below the diagonal follow from those above it.
-
-    Args:
-        elastic: (2 n, 2 n) in the body's frame [m/N].
-        arm: (n, 2) points relative to the mass centre [m].
-        drift: compliance of the body against a force [m/N]; turn: against a moment [1/(N m)].
+    `arm`: (n, 2) points from the mass centre [m]; `drift`: compliance of the body against a force [m/N], `turn` against
+    a moment [1/(N m)]. Blocks below the diagonal follow from those above it.
     """
     for i in range(arm.shape[0]):
         along, up = elastic[2 * i], elastic[2 * i + 1]
@@ -127,16 +121,131 @@ def turned_compliance(
             out[a, 2 * i], out[b, 2 * i], out[a, 2 * i + 1], out[b, 2 * i + 1] = xx, xz, zx, zz
 
 
+@compiled(inline=True)
+def take_pivot(size: int, matrix: FloatArray, pivot: IntArray, k: int) -> bool:
+    """Bring the row with the largest entry of column k to row k; False if there is none."""
+    chosen, largest = k, abs(matrix[k, k])
+    for i in range(k + 1, size):
+        if abs(matrix[i, k]) > largest:
+            chosen, largest = i, abs(matrix[i, k])
+    pivot[k] = chosen
+    if not largest > 0.0:
+        return False
+    if size <= TINY:
+        for i in range(k + 1, size):
+            if chosen == i:
+                for j in range(size):
+                    matrix[k, j], matrix[i, j] = matrix[i, j], matrix[k, j]
+    elif chosen != k:
+        for j in range(size):
+            matrix[k, j], matrix[chosen, j] = matrix[chosen, j], matrix[k, j]
+    return True
+
+
 @compiled
-def add_columns(force: FloatArray, compliance: FloatArray, out: FloatArray) -> None:
-    """Displacements (2 n,) under forces (n, 2), by columns of a symmetric compliance: several rows at once."""
-    for a in range(out.size):
-        out[a] = 0.0
-    for j in range(force.shape[0]):
-        along, up = force[j, 0], force[j, 1]
-        if up != 0.0 or along != 0.0:
-            for a in range(out.size):
-                out[a] += compliance[2 * j, a] * along + compliance[2 * j + 1, a] * up
+def eliminate_pair(size: int, matrix: FloatArray, pivot: IntArray, k: int) -> bool:
+    """Eliminate columns k and k + 1 in one pass over the rest, whose sums keep their order: the same bits."""
+    if not take_pivot(size, matrix, pivot, k):
+        return False
+    for i in range(k + 1, size):
+        matrix[i, k] /= matrix[k, k]
+        matrix[i, k + 1] -= matrix[i, k] * matrix[k, k + 1]
+    if not take_pivot(size, matrix, pivot, k + 1):
+        return False
+    # Slices begin at zero, so that the compiler takes several columns at once.
+    first, second = matrix[k, k + 2 : size], matrix[k + 1, k + 2 : size]
+    factor = matrix[k + 1, k]
+    for j in range(second.size):
+        second[j] -= factor * first[j]
+    for i in range(k + 2, size):
+        matrix[i, k + 1] /= matrix[k + 1, k + 1]
+        factor, other, row = matrix[i, k], matrix[i, k + 1], matrix[i, k + 2 : size]
+        for j in range(row.size):
+            row[j] = row[j] - factor * first[j] - other * second[j]
+    return True
+
+
+@compiled(inline=True)
+def eliminate_column(size: int, matrix: FloatArray, pivot: IntArray, k: int) -> bool:
+    """Eliminate column k; False if there is no pivot."""
+    if not take_pivot(size, matrix, pivot, k):
+        return False
+    for i in range(k + 1, size):
+        factor = matrix[i, k] / matrix[k, k]
+        matrix[i, k] = factor
+        if factor != 0.0:
+            for j in range(k + 1, size):
+                matrix[i, j] -= factor * matrix[k, j]
+    return True
+
+
+@compiled(inline=True)
+def factor_dense(size: int, matrix: FloatArray, pivot: IntArray) -> bool:
+    """LU decomposition with row pivoting of the leading size x size block, in place; False if singular."""
+    done = 0
+    while size - done > SMALL:
+        if not eliminate_pair(size, matrix, pivot, done):
+            return False
+        done += 2
+    regular = True
+    for k in range(done, size):
+        regular = regular and eliminate_column(size, matrix, pivot, k)
+    return regular
+
+
+@compiled(inline=True)
+def exchange_entry(size: int, pivot: IntArray, vector: FloatArray, k: int) -> None:
+    """Exchange entry k as the rows of the matrix."""
+    if size <= TINY:
+        for i in range(k + 1, size):
+            if pivot[k] == i:
+                vector[k], vector[i] = vector[i], vector[k]
+    elif pivot[k] != k:
+        vector[k], vector[pivot[k]] = vector[pivot[k]], vector[k]
+
+
+@compiled(inline=True)
+def substitute_entry(
+    begin: int, end: int, factors: FloatArray, vector: FloatArray, k: int, diagonal: float
+) -> None:
+    """Take the known entries from `begin` to `end` from entry k, and divide by the diagonal."""
+    total = vector[k]
+    for j in range(begin, end):
+        total -= factors[k, j] * vector[j]
+    vector[k] = total / diagonal
+
+
+@compiled(inline=True)
+def substitute_dense(size: int, factors: FloatArray, pivot: IntArray, vector: FloatArray) -> None:
+    """Solve with the factors of `factor_dense`, in place."""
+    for k in range(size):
+        exchange_entry(size, pivot, vector, k)
+    for k in range(1, size):
+        substitute_entry(0, k, factors, vector, k, 1.0)
+    for k in range(size - 1, -1, -1):
+        substitute_entry(k + 1, size, factors, vector, k, factors[k, k])
+
+
+@compiled(inline=True)
+def factor_four(matrix: FloatArray, pivot: IntArray) -> bool:
+    """`factor_dense` of four rows, without a loop over the columns: all indices are constants."""
+    first = eliminate_column(4, matrix, pivot, 0) and eliminate_column(4, matrix, pivot, 1)
+    return first and eliminate_column(4, matrix, pivot, 2) and eliminate_column(4, matrix, pivot, 3)
+
+
+@compiled(inline=True)
+def substitute_four(factors: FloatArray, pivot: IntArray, vector: FloatArray) -> None:
+    """Solve with the factors of `factor_four`, in place."""
+    exchange_entry(4, pivot, vector, 0)
+    exchange_entry(4, pivot, vector, 1)
+    exchange_entry(4, pivot, vector, 2)
+    substitute_entry(0, 1, factors, vector, 1, 1.0)
+    substitute_entry(0, 2, factors, vector, 2, 1.0)
+    substitute_entry(0, 3, factors, vector, 3, 1.0)
+    substitute_entry(4, 4, factors, vector, 3, factors[3, 3])
+    substitute_entry(3, 4, factors, vector, 2, factors[2, 2])
+    substitute_entry(2, 4, factors, vector, 1, factors[1, 1])
+    substitute_entry(1, 4, factors, vector, 0, factors[0, 0])
 
 
 @compiled(inline=True)
@@ -144,7 +253,13 @@ def move_points(velocity_slope: float, force: FloatArray, work: Workspace) -> No
     """Points and velocities that follow from contact forces, by the condensed compliance."""
     n = force.shape[0]
     if n > FEW_POINTS:
-        add_columns(force, work.compliance, work.solution)
+        for a in range(work.solution.size):
+            work.solution[a] = 0.0
+        for j in range(n):  # by columns of the symmetric compliance: several rows at once
+            along, up = force[j, 0], force[j, 1]
+            if up != 0.0 or along != 0.0:
+                for a in range(work.solution.size):
+                    work.solution[a] += work.compliance[2 * j, a] * along + work.compliance[2 * j + 1, a] * up
         for i in range(n):
             for k in range(2):
                 moved = work.solution[2 * i + k]
@@ -170,10 +285,7 @@ def has_tangent(work: Workspace, i: int) -> bool:
 
 @compiled(inline=True)
 def factor_is_current(step: float, work: Workspace) -> bool:
-    """Whether the factors were computed for these tangents and this step size.
-
-    The compliance has turned with the body since then; such a Newton step converges more slowly, but it converges.
-    """
+    """Whether the factors were computed for these tangents and this step size; the body has turned since then."""
     if work.factored_step[0] != step or work.factored_count[0] < WORTH_KEEPING:
         return False
     for i in range(work.slope.shape[0]):
@@ -195,39 +307,6 @@ def enter_tangent(work: Workspace, a: int, i: int, b: int, j: int) -> None:
     if a == b:
         work.matrix[2 * a, 2 * a] += 1.0
         work.matrix[2 * a + 1, 2 * a + 1] += 1.0
-
-
-# Of two points the active ones are not listed: constant indices let the compiler keep all arrays in registers.
-@compiled(inline=True)
-def factor_few(work: Workspace) -> bool:
-    """`factor_tangent` of two points."""
-    first, second = has_tangent(work, 0), has_tangent(work, 1)
-    work.factored_count[0] = int(first) + int(second)
-    if first and second:
-        for i in range(2):
-            for j in range(2):
-                enter_tangent(work, i, i, j, j)
-        return factor_four(work.matrix, work.pivot)
-    if first:
-        enter_tangent(work, 0, 0, 0, 0)
-    elif second:
-        enter_tangent(work, 0, 1, 0, 1)
-    return not (first or second) or factor_dense(2, work.matrix, work.pivot)
-
-
-@compiled(inline=True)
-def change_few(work: Workspace) -> None:
-    """`newton_change` of two points."""
-    for i in range(2):
-        for k in range(2):
-            work.change[2 * i + k] = work.law[i, k] - work.force[i, k]
-    first, second = has_tangent(work, 0), has_tangent(work, 1)
-    if first and second:
-        substitute_four(work.matrix, work.pivot, work.change)
-    elif first:
-        change_one(work, 0, 1)
-    elif second:
-        change_one(work, 1, 0)
 
 
 @compiled(inline=True)
@@ -255,8 +334,20 @@ def change_one(work: Workspace, i: int, j: int) -> None:
 @compiled(inline=True)
 def factor_tangent(step: float, work: Workspace) -> bool:
     """Factor 1 + D G over the points whose law has a tangent, and store for which tangents and step."""
+    # Of two points the active ones are not listed: constant indices let the compiler keep all arrays in registers.
     if work.force.shape[0] == FEW_POINTS:
-        return factor_few(work)
+        first, second = has_tangent(work, 0), has_tangent(work, 1)
+        work.factored_count[0] = int(first) + int(second)
+        if first and second:
+            for i in range(2):
+                for j in range(2):
+                    enter_tangent(work, i, i, j, j)
+            return factor_four(work.matrix, work.pivot)
+        if first:
+            enter_tangent(work, 0, 0, 0, 0)
+        elif second:
+            enter_tangent(work, 0, 1, 0, 1)
+        return not (first or second) or factor_dense(2, work.matrix, work.pivot)
     count = 0
     for i in range(work.force.shape[0]):
         if has_tangent(work, i):
@@ -277,13 +368,19 @@ def factor_tangent(step: float, work: Workspace) -> bool:
 
 @compiled(inline=True)
 def newton_change(work: Workspace) -> None:
-    """Change of the contact forces (1 + D G) df = law - f, with the present factors.
-
-    A point without tangent takes the force of its law; the change acts on the other points.
-    """
+    """Change of the contact forces (1 + D G) df = law - f; a point without tangent takes the force of its law."""
     n = work.force.shape[0]
     if n == FEW_POINTS:
-        change_few(work)
+        for i in range(2):
+            for k in range(2):
+                work.change[2 * i + k] = work.law[i, k] - work.force[i, k]
+        first, second = has_tangent(work, 0), has_tangent(work, 1)
+        if first and second:
+            substitute_four(work.matrix, work.pivot, work.change)
+        elif first:
+            change_one(work, 0, 1)
+        elif second:
+            change_one(work, 1, 0)
         return
     count = work.factored_count[0]
     for i in range(2 * n):

@@ -36,12 +36,9 @@ def make_faces(
     tangential_stiffness: FloatArray,
     held: Sequence[SidePoint] = (),
 ) -> Faces:
-    """The contact points of boxes that stand on one another.
+    """The contact points of boxes that stand on one another, with corners (4 N, 2) in the undeformed stack [m].
 
-    Args:
-        corner: (4 N, 2) corners of the undeformed stack [m].
-        normal_stiffness, tangential_stiffness: (4 N - 2 + k,) springs of the points at full weight [N/m].
-        held: the k points of sides that come last.
+    `normal_stiffness`, `tangential_stiffness`: (4 N - 2 + k,) at full weight [N/m]; `held`: k points of sides.
     """
     boxes = len(corner) // CORNERS
     joints = [
@@ -72,8 +69,7 @@ def make_row(
         pairs: (g, 2) left and right body of those that face each other.
         distance: (g,) how much further to the right the frame of the right one is [m].
         inset: (N,) of the points over the floor from the sides, over the width of the base.
-        normal_stiffness, tangential_stiffness: (2 N + 4 g + k,) springs of the points at full weight [N/m].
-        held: the k points of sides that come last.
+        normal_stiffness, tangential_stiffness: (2 N + 4 g + k,) at full weight [N/m]; held: k points of sides.
     """
     floor = [
         _on_floor(b, end + (1.0 - 2.0 * end) * inset[b]) for b in range(len(inset)) for end in (0.0, 1.0)

@@ -1,4 +1,4 @@
-"""Equilibrium before the motion begins: settled under gravity, or tilted on one corner.
+"""Equilibrium before the motion begins: settled under gravity, tilted on one corner, or stacked.
 
 Both need only the rigid body, the contact springs and the elastic compliance at the base points (inertia relief:
 gravity is a uniform field and does not strain a free body).
@@ -10,13 +10,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from contact.arrays import BoolArray, FloatArray
+from contact.interface.contact_points import points_of_joint
+from contact.interface.faces import CORNERS, Faces, linearise_points
 
 #: contact force over the weight below which a point of the settled base counts as open
 ROUNDING = 1e-12
 ROUNDING_OF_CAMBER = 1e-9  #: the same of a cambered base, whose springs are stiff beside its heights
 #: steps in which points that carry change all at once without fewer being wrong; steps in all, for each point
 SPARE, MOST_STEPS = 3, 10
-MOST_ROUNDS = 100
+MOST_ROUNDS, MOST_ROUNDS_OF_STACK = 100, 50
+ROUNDING_OF_PLACES = 1e-14  #: of a corner, over its distance from the origin
 
 
 class SettlingError(ArithmeticError):
@@ -34,10 +37,7 @@ class Stance:
     force: FloatArray  #: (n, 2) tangential and normal [N]
 
     def turning(self, angular_velocity: float, point: FloatArray) -> "Stance":
-        """The same stance with an angular velocity [rad/s]: > 0 about the right corner, < 0 about the left corner.
-
-        `point`: base points relative to the mass centre, sorted by x, shape (n, 2) [m].
-        """
+        """The same stance turning [rad/s]: > 0 about the right corner, < 0 about the left one of the points (n, 2)."""
         arm = point[-1] if angular_velocity > 0.0 else point[0]
         velocity = (-angular_velocity * float(arm[1]), angular_velocity * float(arm[0]))
         return replace(self, velocity=velocity, angular_velocity=angular_velocity)
@@ -94,9 +94,8 @@ def standing(
     Args:
         weight: toward the floor [N]; centroid: of the undeformed container, x from its middle, z above the base [m].
         point: (n, 2) base points relative to the centroid [m].
-        compliance: (2n, 2n) elastic compliance in the body's frame, inertia relief [m/N].
-        normal_stiffness: (n,) [N/m].
-        camber: (n,) height of the points above the lowest one of an upright base [m].
+        compliance: (2n, 2n) elastic, in the body's frame, inertia relief [m/N].
+        normal_stiffness: (n,) [N/m]; camber: (n,) height above the lowest point of an upright base [m].
         shear_ratio: friction uphill over the normal force: the slope of a floor that falls toward +x.
 
     Raises:
@@ -173,13 +172,9 @@ def tilted(
 
     Args:
         rotation: not 0 [rad]; angular_velocity: about that corner [rad/s].
-        mass, inertia: [kg, kg m2].
         gravity: toward the floor; downhill: along a floor that falls toward +x [m/s2].
-        point: (n, 2) base points relative to the mass centre, sorted by x [m].
         corner_x: position of that corner of a level base on the floor [m].
-        compliance: (2n, 2n) elastic compliance in the body's frame, inertia relief [m/N].
-        normal_stiffness: (n,) [N/m]; mu_static: limits the friction at the corner.
-        camber: (n,) height of the points above the lowest one of an upright base [m].
+        point, compliance, normal_stiffness, camber: as of `standing`; mu_static: limits the friction at the corner.
 
     Raises:
         SettlingError: the corner would have to pull.
@@ -243,13 +238,7 @@ def pressed(
 ) -> tuple[FloatArray, float]:
     """Normal forces (n,) [N] on unilateral springs under a load that moves up and down alone, and its rise [m].
 
-    Args:
-        load: downward [N].
-        height: (n,) of the points above the load's own place [m].
-        compliance: (n, n) elastic, of the points [m/N]; stiffness: (n,) of their springs [N/m].
-
-    Raises:
-        SettlingError: no state is found.
+    `height`: (n,) of the points above the load's own place [m]; `compliance`: (n, n) elastic [m/N].
     """
     carrying, changes = height <= height.min(), _Changes()
     for _ in range(MOST_STEPS * height.size):
@@ -269,3 +258,121 @@ def pressed(
             return np.maximum(normal, 0.0), float(solution[m])
         carrying = carrying ^ changes.of(wrong, carrying, gap, normal)
     raise SettlingError("the tilted base does not settle on its points")
+
+
+@dataclass(frozen=True, kw_only=True)
+class StackedStances:
+    """Poses and contact forces of N boxes at rest; n contact points."""
+
+    centre: FloatArray  #: (N, 2) mass centres above the floor [m]
+    rotation: FloatArray  #: (N,) [rad]
+    force: FloatArray  #: (n, 2) tangential and normal [N]
+    corner_force: FloatArray  #: (4 N, 2) along x and z [N]
+
+
+def stacked(
+    *,
+    faces: Faces,
+    centre: FloatArray,
+    point: FloatArray,
+    compliance: FloatArray,
+    load: FloatArray,
+) -> StackedStances:
+    """Rest of a stack on the springs of its contact points, each joint with just the friction that it needs.
+
+    The friction of a joint is shared in proportion to the normal forces. Centres stay where they are along x.
+
+    Args:
+        faces: the contact points; those of no weight and those of sides carry nothing.
+        centre: (N, 2) of the boxes in the undeformed stack [m]; point: (N, 4, 2) corners from there [m].
+        compliance: (N, 8, 8) elastic at the corners, inertia relief [m/N].
+        load: (N, 2) forces on the mass centres, along x and upward [N].
+
+    Raises:
+        SettlingError: what is above a joint acts outside the face below.
+    """
+    boxes, n = len(centre), faces.weight.size
+    joint = np.zeros(n, dtype=np.int64)
+    for j in range(boxes):
+        joint[points_of_joint(j)] = j
+    standing = points_of_joint(boxes - 1).stop
+    springs = faces.weight * faces.normal_stiffness
+    springs[standing:] = 0.0
+    carrying = springs > 0.0
+    height: FloatArray = centre[:, 1].copy()
+    rotation: FloatArray = np.zeros(boxes)
+    ratio: FloatArray = np.zeros(boxes)
+    force, corner_force = np.zeros((n, 2)), np.zeros((CORNERS * boxes, 2))
+    weight, stiffest, place = float(np.abs(load).sum()), float(springs.max()), np.zeros((n, 2))
+    force[:standing, 1] = weight / standing
+    for _ in range(MOST_ROUNDS_OF_STACK):
+        cosine, sine = np.cos(rotation), np.sin(rotation)
+        turn = np.moveaxis(np.array([[cosine, sine], [-sine, cosine]]), -1, 0)  # of each box
+        bend = np.einsum("bij,bcjdk,blk->bcidl", turn, compliance.reshape(-1, CORNERS, 2, CORNERS, 2), turn)
+        bend = bend.reshape(boxes, 2 * CORNERS, 2 * CORNERS)
+        elastic = np.einsum("bij,bj->bi", bend, corner_force.reshape(boxes, -1)).reshape(boxes, CORNERS, 2)
+        arm = point @ np.swapaxes(turn, 1, 2) + elastic
+        middle = np.column_stack([centre[:, 0], height])
+        corner = (middle[:, None] + arm).reshape(-1, 2)
+        linearise_points(faces, corner, place)
+        gradient = np.zeros((n, 2, CORNERS * boxes, 2))  # of the points by all corners
+        for i in range(n):
+            for corner_of_point in range(faces.parts[i]):
+                gradient[i, :, faces.corner[i, corner_of_point]] += faces.gradient[i, :, corner_of_point]
+        # how corners move with their box: along x, upward, and as it turns
+        rigid = np.zeros((boxes, CORNERS, 2, boxes, 3))
+        for b in range(boxes):
+            rigid[b, :, 0, b, 0] = rigid[b, :, 1, b, 1] = 1.0
+            rigid[b, :, 0, b, 2], rigid[b, :, 1, b, 2] = arm[b, :, 1], -arm[b, :, 0]
+        by_rigid = np.tensordot(gradient, rigid.reshape(CORNERS * boxes, 2, 3 * boxes), 2)  # (n, 2, 3 N)
+        pulled = gradient.reshape(n, 2, boxes, -1)
+        by_force = np.einsum("nabi,bij,mcbj->namc", pulled, bend, pulled)
+        # Unknowns: normal forces, heights and rotations, ratios of friction to normal force.
+        chosen = np.flatnonzero(carrying)
+        m = chosen.size
+        along = np.zeros((n, boxes))
+        along[np.arange(n), joint] = 1.0
+        system, right = np.zeros((m + 3 * boxes, m + 3 * boxes)), np.zeros(m + 3 * boxes)
+        columns = [3 * b + k for k in (1, 2) for b in range(boxes)]
+        tangential = ratio[joint]
+        gaps = by_force[:, 1, :, 1] + by_force[:, 1, :, 0] * tangential  # of the normal forces
+        shear = np.einsum("nm,m,mb->nb", by_force[:, 1, :, 0], force[:, 1], along)
+        system[:m, :m] = gaps[np.ix_(chosen, chosen)] + np.diag(1.0 / springs[chosen])
+        system[:m, m : m + 2 * boxes] = by_rigid[chosen, 1][:, columns]
+        system[:m, m + 2 * boxes :] = shear[chosen]
+        present = np.einsum("nmc,mc->n", by_force[:, 1], force)
+        right[:m] = present[chosen] - place[chosen, 1] + shear[chosen] @ ratio
+        balance = by_rigid[:, 1] + by_rigid[:, 0] * tangential[:, None]
+        system[m:, :m] = balance[chosen].T
+        moved = (by_rigid[:, 0] * force[:, 1, None]).T @ along
+        system[m:, m + 2 * boxes :] = moved
+        right[m:] = -np.column_stack([load, np.zeros(boxes)]).ravel() + moved @ ratio
+        # Equations in newtons, unknowns in multiples of the weight and of its deflection: gaps in metres beside
+        # forces in newtons have a condition of the stiffness squared, and the rounding of the solution decided.
+        rows = np.concatenate([np.full(m, stiffest), np.ones(3 * boxes)]) / weight
+        units = np.concatenate([np.full(m, weight), np.full(2 * boxes, weight / stiffest), np.ones(boxes)])
+        try:
+            solution = units * np.linalg.solve(rows[:, None] * system * units, rows * right)
+        except np.linalg.LinAlgError:
+            break
+        normal = np.zeros(n)
+        normal[chosen] = solution[:m]
+        change = solution[m : m + 2 * boxes].reshape(2, boxes)
+        ratio = np.asarray(solution[m + 2 * boxes :], dtype=float)
+        before, force = force, np.column_stack([ratio[joint] * normal, normal])
+        gap = place[:, 1] + by_rigid[:, 1][:, columns] @ solution[m : m + 2 * boxes]
+        gap += np.einsum("nmc,mc->n", by_force[:, 1], force) - present
+        height, rotation = height + change[0], rotation + change[1]
+        corner_force = np.tensordot(force, gradient, 2)
+        wrong = np.where(carrying, normal < -ROUNDING * weight, springs * gap < -ROUNDING * weight)
+        carrying = carrying ^ wrong
+        # Springs see the rounding of the positions.
+        rounding = max(ROUNDING * weight, ROUNDING_OF_PLACES * float(np.abs(corner).max()) * stiffest)
+        if not wrong.any() and np.abs(force - before).max() <= rounding:
+            return StackedStances(
+                centre=np.column_stack([centre[:, 0], height]),
+                rotation=rotation,
+                force=force,
+                corner_force=corner_force,
+            )
+    raise SettlingError("what stands on a box acts outside the face below it")

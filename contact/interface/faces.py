@@ -74,11 +74,7 @@ def is_of_one_box(faces: Faces, i: int) -> bool:
 
 @compiled(inline=True)
 def place_on_face(faces: Faces, i: int, corner: FloatArray) -> tuple[float, float, float, float, float]:
-    """Place of a point on its face.
-
-    Returns:
-        The share of the face to its left; the gap [m]; direction of the face, x and z; its length [m].
-    """
+    """Share of the face to the left of a point; the gap [m]; direction of the face, x and z; its length [m]."""
     touching, left, right = faces.corner[i, TOUCHING], faces.corner[i, LEFT], faces.corner[i, RIGHT]
     along_x, along_z = corner[right, 0] - corner[left, 0], corner[right, 1] - corner[left, 1]
     x, z = corner[touching, 0] - corner[left, 0] + faces.apart[i], corner[touching, 1] - corner[left, 1]
@@ -193,15 +189,10 @@ def move_corners(work: Workspace) -> None:
 
 @compiled(inline=True)
 def condense_points(faces: Faces, corners: Workspace, work: Workspace) -> None:
-    """Free positions, free velocities and compliance of the contact points, from those of the corners.
+    """Free positions, free velocities and compliance of the points in `work`, from those of the corners.
 
-    Linearised about the positions `corners.point`, with `faces.gradient` of the same. Points of no weight get none.
-
-    Args:
-        faces: the contact points.
-        corners: the corners: free, free_velocity, and the compliance of each box, diagonal blocks (8, 8).
-        work: of the points; free holds their place at `corners.point`, and is written with free_velocity and
-            compliance.
+    Linearised about `corners.point`, with `faces.gradient` of the same; `work.free` holds the points there. Of the
+    corners' compliance the diagonal blocks (8, 8) count. Points of no weight get none.
     """
     n = work.free.shape[0]
     for i in range(n):

@@ -22,11 +22,7 @@ FRICTION_LAWS = {"elastic-stick": ELASTIC_STICK, "regularised": REGULARISED}
 
 
 def require_known_friction(code: int) -> None:
-    """Refuse a law of friction that the kernels do not handle.
-
-    Raises:
-        ValueError: there is no law of this code.
-    """
+    """Refuse a law of friction that the kernels do not handle, as a ValueError."""
     if code not in FRICTION_LAWS.values():
         known = ", ".join(f"{value} ({name})" for name, value in FRICTION_LAWS.items())
         raise ValueError(f"there is no friction law of code {code}; known: {known}")
@@ -40,15 +36,7 @@ def normal_force(
 
     k p + c min(rate, p/step), never negative, zero when open, and at most the cap, at which the floor crushes. The
     point cannot have moved into the floor faster than p/step within a step that began outside: this makes the force
-    continuous at first touch.
-
-    Args:
-        penetration: > 0 below the floor [m].
-        rate: its rate at the end of the step [m/s].
-        stiffness: k of this point [N/m].
-        damping: c of this point [N s/m].
-        cap: largest force [N]; infinite: the floor does not crush.
-        step: the time step [s].
+    continuous at first touch. `penetration` [m] is positive below the floor, `rate` is that at the end of the step.
     """
     if penetration <= 0.0:
         return 0.0, 0.0, 0.0
@@ -68,13 +56,9 @@ def normal_force(
 def rolling_lead(rotation: float, rate: float, time: float, radius: float, reach: float) -> float:
     """How far the resultant of a base that rolls is ahead of the place where it touches [m].
 
-    A base of radius R touches at x = R theta from its middle, at most at its edge. The resultant is where it would
-    touch a time `time` later, so that small rocking has the moment N R (theta + time theta'): a viscous damping of the
-    rolling, which vanishes about an edge and never takes the resultant out of the base.
-
-    Args:
-        rotation: theta [rad]; rate: theta' [rad/s].
-        time: [s]; radius: R [m]; reach: half the width of the base [m].
+    A base of radius R touches at x = R theta from its middle, at most at its edge (`reach`). The resultant is where it
+    would touch a time `time` later, so that small rocking has the moment N R (theta + time theta'): a viscous damping
+    of the rolling, which vanishes about an edge and never takes the resultant out of the base.
     """
     here = min(max(radius * rotation, -reach), reach)
     return min(max(radius * (rotation + time * rate), -reach), reach) - here
@@ -88,12 +72,7 @@ def stick_trial(stiffness: float, relaxation_time: float, elongation: float, sli
 
 @compiled(inline=True)
 def stick_friction(trial: float, limit: float) -> tuple[float, float, float]:
-    """Return mapping: tangential force [N], and its derivatives by trial force and by limit [-].
-
-    Args:
-        trial: force on the container if the point sticks [N].
-        limit: mu N >= 0 [N].
-    """
+    """Return mapping: tangential force [N] of a trial force within a limit mu N, and its derivatives by both [-]."""
     if trial > limit:
         return limit, 0.0, 1.0
     if trial < -limit:
@@ -103,10 +82,9 @@ def stick_friction(trial: float, limit: float) -> tuple[float, float, float]:
 
 @compiled
 def relaxed_stick(stick: float, force: float, stiffness: float, relaxation_time: float, step: float) -> float:
-    """Elongation [m] of a Kelvin-Voigt element after one step under a constant force.
+    """Elongation [m] of a Kelvin-Voigt element after a step under a constant force: k s + c s' = F, with c/k its time.
 
-    While it slides or crushes, the slider keeps the element at the limit force: k s + c s' = F, c/k the relaxation
-    time, integrated exactly, so that large steps end at s = F/k.
+    It is integrated exactly, so that large steps end at s = F/k.
     """
     rest = force / stiffness
     if relaxation_time <= 0.0:
@@ -138,11 +116,10 @@ def regularised_friction(
 
 @compiled(inline=True)
 def stribeck_mu(mu_static: float, mu_kinetic: float, stribeck_velocity: float, slip_velocity: float) -> float:
-    """Coefficient of friction at a slip velocity [m/s].
+    """Coefficient of friction at a slip velocity: mu_k + (mu_s - mu_k) exp(-(v/v_s)^2), v_s the Stribeck velocity.
 
-    mu_k + (mu_s - mu_k) exp(-(v/v_s)^2), v_s the Stribeck velocity [m/s] (Armstrong-Helouvry, Dupont and Canudas de
-    Wit, Automatica 30 (1994) 1083, Eq. 7 with exponent 2). Where v_s = 0 the coefficient does not depend on the
-    velocity: it is `mu_static`, which the caller lowers once the support slides.
+    Armstrong-Helouvry, Dupont and Canudas de Wit, Automatica 30 (1994) 1083, Eq. 7 with exponent 2. Where v_s = 0 the
+    coefficient does not depend on the velocity.
     """
     if stribeck_velocity <= 0.0:
         return mu_static
@@ -152,10 +129,7 @@ def stribeck_mu(mu_static: float, mu_kinetic: float, stribeck_velocity: float, s
 
 @compiled
 def weakened_mu(mu_static: float, mu_kinetic: float, weakening: float, slid: float) -> float:
-    """Coefficient of friction after sliding `slid` [m] since the support broke loose.
-
-    Linear from static to kinetic over the slip distance `weakening` [m]; 0: at once.
-    """
+    """Coefficient of friction after sliding `slid` [m]: linear from static to kinetic over `weakening` [m]."""
     if slid >= weakening:
         return mu_kinetic
     return mu_static + (mu_kinetic - mu_static) * slid / weakening

@@ -27,12 +27,9 @@ def choose_normal_penalty(
     element_size: float,
     foot: float = 0.0,
 ) -> float:
-    """Penalty [Pa/m] for `corners`, `feet` or `flat`.
+    """Penalty [Pa/m] for `corners`, `feet` or `flat`; lengths in m, weight in N, modulus in Pa, angle in rad.
 
-    Args:
-        kind: of the support.
-        weight: of the container [N]; width, height (of the stack), depth: [m].
-        slenderness_angle: [rad]; youngs_modulus: [Pa]; element_size: [m]; foot: its length, feet only [m].
+    `height` is that of the stack; `foot` the length of one, for feet only.
     """
     limit = STIFFEST * youngs_modulus / element_size
     if kind == "corners":
@@ -50,12 +47,7 @@ def choose_normal_penalty(
 
 
 def relaxation_time(damping_ratio: float, mass: float, base_stiffness: float) -> float:
-    """Dashpot over spring of the contact [s]: c/(2 sqrt(k m)) of the mass on half the base's stiffness.
-
-    Args:
-        damping_ratio: of the whole mass on the spring of one corner [-].
-        mass: [kg]; base_stiffness: of all points together [N/m].
-    """
+    """Dashpot over spring of the contact [s]: the damping ratio is of the mass [kg] on half the stiffness [N/m]."""
     return 2.0 * damping_ratio * math.sqrt(mass / (0.5 * base_stiffness))
 
 

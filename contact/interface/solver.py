@@ -42,7 +42,6 @@ def evaluate_laws(
     contact: Contact,
     step: float,
     velocity_slope: float,
-    mu: FloatArray,
     start: FloatArray,
     stick: FloatArray,
     work: Workspace,
@@ -50,14 +49,10 @@ def evaluate_laws(
     """Forces of the laws at `work.point`, and minus their derivatives by the points' positions.
 
     Args:
-        contact: the floor.
-        step: the time step [s].
         velocity_slope: derivative of an end velocity by an end position, gamma/(beta h) [1/s].
-        mu: (n,) coefficients of friction of the elastic-stick law in this step; the regularised law depends on the
-            slip velocity instead, between the two coefficients in `contact`.
-        start: (n, 2) points at the beginning of the step, relative to the floor [m].
-        stick: (n,) elongation of the stuck tangential springs at the beginning of the step [m].
-        work: point and velocity are read, law, slope and excess are written.
+            start: (n, 2) points at the beginning of the step, relative to the floor [m].
+        stick: (n,) elongation of the stuck tangential springs then [m].
+        work: point, velocity and mu are read, law, slope and excess are written.
     """
     for i in range(work.point.shape[0]):
         normal, by_gap, by_rate = normal_force(
@@ -82,16 +77,16 @@ def evaluate_laws(
                 elongation = stick[i] + work.point[i, 0] - start[i, 0]
                 trial_slope += stiffness
             trial = stick_trial(stiffness, contact.relaxation_time[i], elongation, work.velocity[i, 0])
-            force, by_trial, by_limit = stick_friction(trial, mu[i] * normal)
+            force, by_trial, by_limit = stick_friction(trial, work.mu[i] * normal)
             work.excess[i, 0], work.excess[i, 1] = trial - force, trial_slope
             work.law[i, 0] = force
             work.slope[i, 0] = by_trial * trial_slope
-            work.slope[i, 1] = by_limit * mu[i] * work.slope[i, 2]
+            work.slope[i, 1] = by_limit * work.mu[i] * work.slope[i, 2]
         elif contact.friction == REGULARISED:
             force, by_normal, by_velocity = regularised_friction(
                 normal,
                 work.velocity[i, 0],
-                contact.mu_static[i],
+                work.mu[i],
                 contact.mu_kinetic[i],
                 contact.regularisation_velocity,
             )
@@ -102,22 +97,20 @@ def evaluate_laws(
 
 
 @compiled(inline=True)
-def return_held_points(
-    contact: Contact, velocity_slope: float, mu: FloatArray, start: FloatArray, work: Workspace
-) -> bool:
+def return_held_points(contact: Contact, velocity_slope: float, start: FloatArray, work: Workspace) -> bool:
     """Move points that were held by the floor back to where they were before the step, to linearise there first.
 
-    `work.force` is a guess from before the step. In the positions that follow from it, its error is multiplied by
-    compliance times stiffness: where this exceeds one, the old position is the better guess. An open point, a
-    crushing one or a sliding spring has no stiffness, so there the force is the better guess. Writes the shifts to
-    `work.trial` and returns whether any point was moved.
+    `work.force` is a guess from before the step. Its error in position is multiplied by compliance times stiffness:
+    where this exceeds one, the old position is the better guess. Writes the shifts to `work.trial`; whether any moved.
     """
     placed = False
     for i in range(work.force.shape[0]):
         tangential, normal = work.force[i, 0], work.force[i, 1]
         closed = normal > 0.0 and start[i, 1] < 0.0
         magnified = 1.0 + contact.relaxation_time[i] * velocity_slope
-        stuck = closed and contact.friction == ELASTIC_STICK and abs(tangential) < SLIDING * mu[i] * normal
+        stuck = (
+            closed and contact.friction == ELASTIC_STICK and abs(tangential) < SLIDING * work.mu[i] * normal
+        )
         for k in range(2):
             stiffness = contact.tangential_stiffness[i] if k == 0 else contact.normal_stiffness[i]
             held = stuck if k == 0 else closed and normal < SLIDING * work.cap[i]
@@ -131,27 +124,18 @@ def return_held_points(
     return placed
 
 
-@compiled(inline=True)
-def extrapolate_laws(work: Workspace) -> None:
-    """Extrapolate the forces of the laws along their tangents to the points before `return_held_points`."""
-    for i in range(work.force.shape[0]):
-        work.law[i, 0] += work.slope[i, 0] * work.trial[i, 0] + work.slope[i, 1] * work.trial[i, 1]
-        work.law[i, 1] += work.slope[i, 2] * work.trial[i, 1]
-
-
 @compiled
 def linearise_in_old_states(
     contact: Contact,
     velocity_slope: float,
-    mu: FloatArray,
     start: FloatArray,
     stick: FloatArray,
     work: Workspace,
 ) -> bool:
     """Linearise points that were closed in the state that they were in: elastic or crushing, stuck or sliding.
 
-    `work.force` holds the forces from before the step. The laws of one state are linear: where the points stay in their
-    states, the first Newton step solves the problem wherever it begins. Returns whether there is such a point.
+    The laws of one state are linear: where the points stay in their states, the first Newton step solves the problem
+    wherever it begins. Returns whether there is such a point.
     """
     closed = False
     for i in range(work.force.shape[0]):
@@ -166,7 +150,7 @@ def linearise_in_old_states(
             work.slope[i, 2] = stiffness + damping * velocity_slope
         else:
             work.law[i, 1], work.slope[i, 2] = work.cap[i], 0.0
-        if abs(tangential) < SLIDING * mu[i] * normal:
+        if abs(tangential) < SLIDING * work.mu[i] * normal:
             stiffness, elongation = contact.tangential_stiffness[i], stick[i] + work.point[i, 0] - start[i, 0]
             work.law[i, 0] = stick_trial(
                 stiffness, contact.relaxation_time[i], elongation, work.velocity[i, 0]
@@ -175,7 +159,7 @@ def linearise_in_old_states(
             work.slope[i, 1] = 0.0
             work.excess[i, 0] = 0.0
         else:
-            limit = mu[i] if tangential > 0.0 else -mu[i]
+            limit = work.mu[i] if tangential > 0.0 else -work.mu[i]
             work.law[i, 0] = limit * work.law[i, 1]
             work.slope[i, 0], work.slope[i, 1] = 0.0, limit * work.slope[i, 2]
             work.excess[i, 0] = tangential  # only its sign is used
@@ -186,8 +170,8 @@ def linearise_in_old_states(
 def stick_where_turned(iteration: int, work: Workspace) -> bool:
     """Linearise as stuck what has changed from one limit of friction to the other since the last iteration.
 
-    Such a point sticks or nearly so. Its stick may cover so small a range of positions (a stiff dashpot, a short step)
-    that iterations between the two limits never meet it. Returns whether there is such a point.
+    Its stick may cover so small a range of positions (a stiff dashpot, a short step) that iterations never meet it.
+    Returns whether there is such a point.
     """
     turned = False
     for i in range(work.law.shape[0]):
@@ -204,11 +188,7 @@ def stick_where_turned(iteration: int, work: Workspace) -> bool:
 def press_where_turned(
     contact: Contact, step: float, velocity_slope: float, iteration: int, work: Workspace
 ) -> bool:
-    """Linearise as elastic what has changed from open to the cap, or back, since the last iteration.
-
-    The elastic range may be so small that iterations between its ends never meet it, as that of `stick_where_turned`.
-    Returns whether there is such a point.
-    """
+    """Linearise as elastic what has changed from open to the cap, or back, as `stick_where_turned`."""
     turned = False
     for i in range(work.law.shape[0]):
         level = 0
@@ -236,20 +216,14 @@ def solve_contact(
     contact: Contact,
     step: float,
     velocity_slope: float,
-    mu: FloatArray,
     start: FloatArray,
     stick: FloatArray,
     work: Workspace,
 ) -> int:
-    """Contact forces that satisfy all laws at the end of the step.
+    """Contact forces that satisfy all laws at the end of the step; the number of Newton iterations, -1: not converged.
 
-    Args:
-        contact, step, velocity_slope, mu, start, stick: as in `evaluate_laws`.
-        work: free, free_velocity and compliance are inputs; force is the first guess and the result; point
-            and velocity are the corresponding positions and velocities.
-
-    Returns:
-        Number of Newton iterations, or -1 if they did not converge.
+    Arguments as of `evaluate_laws`. Of `work`, free, free_velocity, compliance, cap and mu are inputs; force is the
+    first guess and the result; point and velocity are the corresponding positions and velocities.
     """
     n = work.force.shape[0]
     before = np.inf
@@ -260,12 +234,16 @@ def solve_contact(
         if not evaluated:
             move_points(velocity_slope, work.force, work)
             if iteration == 0 and not many and step > contact.held_step:
-                placed = return_held_points(contact, velocity_slope, mu, start, work)
-            evaluate_laws(contact, step, velocity_slope, mu, start, stick, work)
-            if placed:
-                extrapolate_laws(work)
+                placed = return_held_points(contact, velocity_slope, start, work)
+            evaluate_laws(contact, step, velocity_slope, start, stick, work)
+            if placed:  # along the tangents to the points before
+                for i in range(n):
+                    work.law[i, 0] += (
+                        work.slope[i, 0] * work.trial[i, 0] + work.slope[i, 1] * work.trial[i, 1]
+                    )
+                    work.law[i, 1] += work.slope[i, 2] * work.trial[i, 1]
             if iteration == 0 and many and step > contact.held_step:
-                placed = linearise_in_old_states(contact, velocity_slope, mu, start, stick, work)
+                placed = linearise_in_old_states(contact, velocity_slope, start, stick, work)
         residual, largest, stiffest = 0.0, contact.force_scale, 0.0
         for i in range(n):
             stiffest = max(stiffest, work.slope[i, 0], work.slope[i, 2])
@@ -295,7 +273,7 @@ def solve_contact(
             if iteration < FULL_STEPS or (turned and iteration < contact.turned_steps) or share < 1e-3:
                 break
             move_points(velocity_slope, work.force, work)
-            evaluate_laws(contact, step, velocity_slope, mu, start, stick, work)
+            evaluate_laws(contact, step, velocity_slope, start, stick, work)
             after = 0.0
             for i in range(n):
                 for k in range(2):

@@ -38,11 +38,7 @@ class Support:
 
 
 def tributary_lengths(x: FloatArray, order: int) -> FloatArray:
-    """Integrals of the shape functions along a row of nodes (n,), sorted [m]; order 1 or 2.
-
-    Raises:
-        ValueError: the nodes do not form whole elements of that order.
-    """
+    """Integrals of the shape functions along a row of nodes (n,) [m]; ValueError: no whole elements of the order."""
     if (x.size - 1) % order or x.size < order + 1:
         raise ValueError(f"{x.size} base nodes do not form elements of order {order}")
     weights = np.array([[0.5, 0.5], [1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0]][order - 1])
@@ -55,9 +51,7 @@ def tributary_lengths(x: FloatArray, order: int) -> FloatArray:
 def choose_support(
     kind: str, x: FloatArray, *, depth: float, order: int, feet: tuple[float, float] = (0.0, 0.0)
 ) -> Support:
-    """Select the supporting points among the base nodes at x (n,), sorted [m].
-
-    `feet`: lengths of the left and the right foot in the mesh.
+    """The supporting points among the base nodes at x (n,), sorted [m]; `feet`: lengths of the left and the right one.
 
     Raises:
         ValueError: unknown kind, or feet that are missing, overlap, or do not end at a mesh line.
@@ -66,40 +60,23 @@ def choose_support(
         raise ValueError(f"[support] kind must be one of {', '.join(KINDS)}, got {kind!r}")
     width = float(x[-1] - x[0])
     if kind == "corners":
-        return Support(
-            kind=kind,
-            index=np.array([0, x.size - 1]),
-            length=np.full(2, 0.5 * width),
-            depth=depth,
-            camber=np.zeros(2),
-            sinking=np.zeros(2),
-        )
-    if kind == "flat":
-        return Support(
-            kind=kind,
-            index=np.arange(x.size),
-            length=tributary_lengths(x, order),
-            depth=depth,
-            camber=np.zeros(x.size),
-            sinking=np.zeros(x.size),
-        )
-    if not (min(feet) > 0.0 and sum(feet) < width):
-        raise ValueError(
-            f"[support] foot_m must be positive and below half the width, got {feet} m of {width} m"
-        )
-    near = 1e-9 * width
-    left = np.flatnonzero(x <= x[0] + feet[0] + near)
-    right = np.flatnonzero(x >= x[-1] - feet[1] - near)
-    if (left.size - 1) % order or (right.size - 1) % order or min(left.size, right.size) < order + 1:
-        raise ValueError(f"[support] foot_m: the feet of {feet} m do not end at a mesh line")
-    return Support(
-        kind=kind,
-        index=np.concatenate([left, right]),
-        length=np.concatenate([tributary_lengths(x[left], order), tributary_lengths(x[right], order)]),
-        depth=depth,
-        camber=np.zeros(left.size + right.size),
-        sinking=np.zeros(left.size + right.size),
-    )
+        index, length = np.array([0, x.size - 1]), np.full(2, 0.5 * width)
+    elif kind == "flat":
+        index, length = np.arange(x.size), tributary_lengths(x, order)
+    else:
+        if not (min(feet) > 0.0 and sum(feet) < width):
+            raise ValueError(
+                f"[support] foot_m must be positive and below half the width, got {feet} m of {width} m"
+            )
+        near = 1e-9 * width
+        left = np.flatnonzero(x <= x[0] + feet[0] + near)
+        right = np.flatnonzero(x >= x[-1] - feet[1] - near)
+        if (left.size - 1) % order or (right.size - 1) % order or min(left.size, right.size) < order + 1:
+            raise ValueError(f"[support] foot_m: the feet of {feet} m do not end at a mesh line")
+        index = np.concatenate([left, right])
+        length = np.concatenate([tributary_lengths(x[foot], order) for foot in (left, right)])
+    level = np.zeros(index.size)
+    return Support(kind=kind, index=index, length=length, depth=depth, camber=level, sinking=level)
 
 
 #: points nearer to the edge than this share of the usual distance are left out, where the base is cambered
@@ -109,12 +86,7 @@ EVENNESS = 1e-6
 
 
 def cambered(support: Support, x: FloatArray, camber: float) -> Support:
-    """The support on a base whose edges stand higher than its middle by `camber` [m].
-
-    Args:
-        support: feet, or a flat base.
-        x: (n,) of its points, symmetric about the middle of the base [m].
-        camber: d > 0 [m].
+    """The support, feet or a flat base with points at x (n,), whose edges stand higher than its middle by `camber` [m].
 
     The base is z = d (x/b)^2, of curvature k = 2 d/b^2, and turned by theta it touches at theta/k. On springs it
     touches with two neighbours at a distance s. Where each of them sinks by c under the whole weight, its part of the

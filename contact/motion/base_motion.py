@@ -1,8 +1,9 @@
 """Base motion: harmonic motion, pulses, no motion; tables of recorded motion are in `contact.motion.table`.
 
 The floor moves along x, positive toward +x; SI units. `compiled` gives the data for `floor_motion`; `break_times` (the
-acceleration jumps or its formula changes), `span` and `time_scale` are for the step control. `peak_acceleration` and
-`peak_within` are magnitudes, for the static checks. The four classes have the same methods.
+acceleration jumps or its formula changes), `span` and `time_scale` are for the step control; `peak_acceleration` and
+`peak_within`, magnitudes, are for the static checks. `evaluate` gives displacement, velocity and acceleration at times
+(n,) as rows (3, n). The four classes have the same methods.
 """
 
 import math
@@ -42,11 +43,9 @@ class NoMotion:
     """A floor at rest."""
 
     def compiled(self) -> FloorMotion:
-        """Data for `floor_motion`."""
         return as_floor_motion(UNIFORM, (0.0, 0.0, 0.0))
 
     def evaluate(self, times: FloatArray) -> FloatArray:
-        """Displacement, velocity, acceleration at the times [s], shape (3, n_times)."""
         return floor_history(self.compiled(), times)
 
     @property
@@ -76,15 +75,12 @@ class NoMotion:
 
 @dataclass(frozen=True, kw_only=True)
 class HarmonicMotion:
-    """x = A sin(Omega t + phase), from t = 0, tapered at both ends if asked.
+    """x = A sin(Omega t + phase), from t = 0, tapered at both ends if asked; ValueError where a number is out of range.
 
     The taper is a quintic window (C2) on the displacement; velocity and acceleration are its exact
     derivatives. With `cycles`, the drive ends at the first instant of zero velocity of A sin(Omega t + phase)
     after so many cycles, and the floor stays there (tapered: at zero displacement). Otherwise it continues; a
     taper then ends at `duration`.
-
-    Raises:
-        ValueError: a number out of range, or ramps too long to reach the full amplitude.
     """
 
     amplitude: float  #: A [m]
@@ -155,13 +151,11 @@ class HarmonicMotion:
         return self.peak_acceleration
 
     def compiled(self) -> FloorMotion:
-        """Data for `floor_motion`."""
         return as_floor_motion(
             HARMONIC, (self.amplitude, self.angular_frequency, self.phase, self.ramp, self.end_time)
         )
 
     def evaluate(self, times: FloatArray) -> FloatArray:
-        """Displacement, velocity, acceleration at the times [s], shape (3, n_times)."""
         return floor_history(self.compiled(), times)
 
 
@@ -199,12 +193,9 @@ def _peak_between(motion: HarmonicMotion, low: float, high: float) -> float:
 
 @dataclass(frozen=True, kw_only=True)
 class PulseMotion:
-    """One pulse of floor acceleration; afterwards the floor keeps the velocity reached.
+    """One pulse of floor acceleration, after which the floor keeps its velocity; ValueError: a number out of range.
 
     `rectangular`: constant; `half-sine`: half a period; `sine`: one period, after which the velocity is zero.
-
-    Raises:
-        ValueError: an unknown shape, a pulse that has no length, or a number that is not finite.
     """
 
     shape: PulseShape
@@ -251,11 +242,9 @@ class PulseMotion:
         return float(np.abs(self.evaluate(instants[instants <= duration])[2]).max())
 
     def compiled(self) -> FloorMotion:
-        """Data for `floor_motion`."""
         return as_floor_motion(PULSE_KINDS[self.shape], (self.acceleration, self.pulse, self.delay))
 
     def evaluate(self, times: FloatArray) -> FloatArray:
-        """Displacement, velocity, acceleration at the times [s], shape (3, n_times)."""
         return floor_history(self.compiled(), times)
 
 
@@ -320,7 +309,6 @@ class SumOfMotions:
         return as_floor_motion(SUM if numbers else PIECEWISE, tuple(numbers), breaks=knots, coefficients=rows)
 
     def evaluate(self, times: FloatArray) -> FloatArray:
-        """Displacement, velocity, acceleration at the times [s], shape (3, n_times)."""
         return floor_history(self.compiled(), times)
 
 
@@ -343,11 +331,7 @@ BaseMotion = SingleMotion | SumOfMotions
 def along_and_normal(
     horizontal: SingleMotion, vertical: SingleMotion, slope: float
 ) -> tuple[BaseMotion, BaseMotion]:
-    """A horizontal and a vertical motion as those along a floor and normal to it.
-
-    Args:
-        slope: angle of the floor, > 0: it falls toward +x [rad].
-    """
+    """A horizontal and a vertical motion along a floor and normal to it; `slope` > 0: it falls toward +x [rad]."""
     cosine, sine = math.cos(slope), math.sin(slope)
     return (
         _combined(_scaled(horizontal, cosine), _scaled(vertical, -sine)),

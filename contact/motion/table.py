@@ -26,8 +26,7 @@ class TableMotion:
     """Samples of the floor's acceleration or displacement at increasing times.
 
     Raises:
-        ValueError: fewer than two samples, lengths that differ, times or values that are not finite, times
-            that decrease or repeat, or an unknown quantity.
+        ValueError: lengths that differ, fewer than two samples, or times that do not increase or are not finite.
     """
 
     times: FloatArray  #: increasing, shape (n,) [s]
@@ -39,7 +38,12 @@ class TableMotion:
         times, values = (np.array(a, dtype=np.float64) for a in (self.times, self.values))
         object.__setattr__(self, "times", times)
         object.__setattr__(self, "values", values)
-        _check_samples(times, values)
+        if times.ndim != 1 or times.shape != values.shape or times.size < 2:
+            raise ValueError(
+                f"motion table: two samples or more are needed, got times {times.shape} and values {values.shape}"
+            )
+        if not (np.isfinite([times, values]).all() and (np.diff(times) > 0.0).all()):
+            raise ValueError("motion table: times and values must be finite, and times must increase")
         if self.quantity not in ("acceleration", "displacement"):
             raise ValueError(
                 f"motion table: unknown quantity {self.quantity!r}; known: acceleration, displacement"
@@ -87,7 +91,6 @@ class TableMotion:
         return {}
 
     def compiled(self) -> FloorMotion:
-        """Data for `floor_motion`: displacement, velocity, acceleration, jerk from each sample on."""
         return self._compiled
 
     @cached_property
@@ -102,32 +105,4 @@ class TableMotion:
         )
 
     def evaluate(self, times: FloatArray) -> FloatArray:
-        """Displacement, velocity, acceleration at the times [s], shape (3, n_times)."""
         return floor_history(self.compiled(), times)
-
-
-def _check_samples(times: FloatArray, values: FloatArray) -> None:
-    if times.ndim != 1 or times.shape != values.shape:
-        raise ValueError(
-            f"motion table: times {times.shape} and values {values.shape} must be two columns of one length"
-        )
-    if times.size < 2:
-        raise ValueError(f"motion table: two samples or more are needed, got {times.size}")
-    for name, column, unit in (("time", times, " s"), ("value", values, "")):
-        if not np.isfinite(column).all():
-            row = int(np.flatnonzero(~np.isfinite(column))[0])
-            raise ValueError(
-                f"motion table: {name} of sample {row + 1} is not a finite number ({column[row]}{unit})"
-            )
-    steps = np.diff(times)
-    if (steps < 0.0).any():
-        row = int(np.flatnonzero(steps < 0.0)[0])
-        raise ValueError(
-            f"motion table: times must increase, but sample {row + 2} ({times[row + 1]} s) is earlier than "
-            f"sample {row + 1} ({times[row]} s); sort the table"
-        )
-    if (steps == 0.0).any():
-        row = int(np.flatnonzero(steps == 0.0)[0])
-        raise ValueError(
-            f"motion table: time {times[row]} s occurs twice (samples {row + 1} and {row + 2}); keep one"
-        )

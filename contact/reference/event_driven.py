@@ -79,13 +79,10 @@ def flow(
     """Follow one regime until a guard falls or the end is reached.
 
     Args:
-        rate: right-hand side; None for a body at rest, whose state does not change.
+        rate: right-hand side; None for a body at rest, whose state (n,) does not change.
         guards: what ends the regime.
-        state: at the start, shape (n,).
-        start, end: [s].
-        floor: acceleration of the floor.
-        scale: size of each component of the state, shape (n,); errors are kept at 1e-12 of the larger of
-            1 % of this and the component itself.
+        scale: size of each component of the state (n,); errors are kept at 1e-12 of the larger of 1 % of this and
+            the component itself.
         regime: kept with every piece.
         first_step: guess of the first step [s]; a short one keeps brief hops from being stepped over.
 
@@ -120,10 +117,10 @@ def first_crossing(
     start: float,
     end: float,
 ) -> tuple[float, str] | None:
-    """The first instant after `start` at which a margin has fallen below zero, and whose.
+    """The first instant after `start` at which a margin has fallen below zero, on its far side, and whose.
 
     Margins are sampled inside the step, and a dip between samples is looked into, so that a limit which is
-    exceeded for a moment only is not missed. The time returned lies on the far side of the crossing.
+    exceeded for a moment only is not missed.
     """
     earliest: tuple[float, str] | None = None
     times = np.linspace(start, end, SAMPLES_PER_STEP + 1)
@@ -145,15 +142,9 @@ def first_crossing(
 
 
 def sample(pieces: Sequence[Piece], times: FloatArray, size: int) -> tuple[FloatArray, NDArray[np.int64]]:
-    """States and regimes at given times; nan and -1 where the motion had not begun or had ended.
+    """States (n, size) and regimes (n,) at given times; nan and -1 where the motion had not begun or had ended.
 
-    Args:
-        pieces: in order of time.
-        times: shape (n,) [s]; at an event the state after it is given, at the end the last one.
-        size: number of components of a state.
-
-    Returns:
-        States, shape (n, size), and regimes, shape (n,).
+    At an event the state after it is given, at the end the last one.
     """
     states = np.full((times.size, size), np.nan)
     regimes = np.full(times.size, -1, dtype=np.int64)
@@ -170,11 +161,7 @@ def sample(pieces: Sequence[Piece], times: FloatArray, size: int) -> tuple[Float
 
 
 def turning_point(piece: Piece, *, component: int) -> tuple[float, FloatArray] | None:
-    """Time [s] and state at which a rate falls through zero within a piece, or None.
-
-    Args:
-        component: index of the rate in the state.
-    """
+    """Time [s] and state at which this component of the state falls through zero within a piece, or None."""
 
     def rate(time: float) -> float:
         return float(piece.interpolant(time)[component])

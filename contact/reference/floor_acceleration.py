@@ -42,11 +42,7 @@ class FloorSegment:
 
 @dataclass(frozen=True, kw_only=True)
 class FloorAcceleration:
-    """A floor acceleration as a function of time, smooth between its breaks.
-
-    Raises:
-        ValueError: breaks that do not increase, or a time scale that is not positive.
-    """
+    """A floor acceleration as a function of time, smooth between its breaks; ValueError where these do not increase."""
 
     function: Callable[[float], float]  #: time [s] -> acceleration, positive toward +x [m/s2]
     break_times: tuple[float, ...] = ()  #: increasing instants of jumps and kinks [s]

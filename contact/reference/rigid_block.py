@@ -15,12 +15,7 @@ HOMOGENEOUS_INERTIA_RATIO = 4.0 / 3.0
 
 @dataclass(frozen=True, kw_only=True)
 class RigidBlock:
-    """A rigid body with a base of two corners, symmetric about the vertical through its centroid.
-
-    Raises:
-        ValueError: a length or gravity that is not positive and finite, or an inertia about the corner
-            that is not larger than mass times radius squared.
-    """
+    """A rigid body with a base of two corners, symmetric about the vertical; ValueError: a number out of range."""
 
     half_width: float  #: B, from the centroid to a corner along x [m]
     centroid_height: float  #: H, of the centroid above the base [m]

@@ -93,19 +93,15 @@ def simulate_rocking(
     rest_energy: float = REST_ENERGY,
     stop_at_impact: bool = False,
 ) -> RockingMotion:
-    """Follow the block until it has overturned (90 degrees) or the duration is over.
+    """Follow the block until it has overturned (90 degrees) or the duration [s] is over.
 
     Args:
-        block: the body; friction is taken to be enough, see `impact_friction_need` for an impact.
-        floor: acceleration of the floor.
-        duration: [s].
         rotation: at the start, positive about the right corner [rad].
         angular_velocity: at the start; at rotation 0 its sign chooses the corner [rad/s].
         restitution: ratio of angular velocities at impact, 0 to 1; None: Housner's, and 0 where his is
             negative (the block then comes to lie on its base).
-        rest_energy: an impact that leaves less than this share of the overturning energy ends in rest,
-            where rest is possible under the floor acceleration of the moment. The impacts of free
-            rocking would otherwise accumulate (Zeno).
+        rest_energy: an impact that leaves less than this share of the overturning energy ends in rest, where rest is
+            possible: the impacts of free rocking would otherwise accumulate (Zeno).
         stop_at_impact: end at the first impact, to look at a first swing alone.
 
     Raises:

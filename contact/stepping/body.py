@@ -102,10 +102,7 @@ def _parts_of_a_state(
 def implements(
     operation: Callable[..., Any], *bodies: type, inline: bool = False
 ) -> Callable[[Kernel], Kernel]:
-    """Decorator: compiled callers of `operation` use this function when the body is of one of these classes.
-
-    `inline` asks LLVM to put it into its callers, as in `contact.jit.compiled`.
-    """
+    """Decorator: compiled callers of `operation` use this function for bodies of these classes."""
 
     def register(implementation: Kernel) -> Kernel:
         def choose(body: Any, *arguments: Any) -> Kernel | None:
@@ -142,10 +139,7 @@ def predict(body: Any, scheme: Scheme, step: float, old: State, new: State) -> N
 def release(
     body: Any, scheme: Scheme, step: float, old: State, new: State, work: Workspace, ground: Ground
 ) -> None:
-    """Base points without contact force, and their compliance, from the iterate in `new`.
-
-    Writes `work.free`, `work.free_velocity` (relative to the floor) and `work.compliance`.
-    """
+    """Write the base points without contact force, and their compliance, from the iterate in `new`, to `work`."""
     body.release(scheme, step, old, new, work, ground)
 
 

@@ -4,7 +4,7 @@ import math
 
 from contact.jit import compiled, inlined
 from contact.stepping.body import ANGULAR_VELOCITY, CENTRE_X, CENTRE_Z, ROTATION
-from contact.stepping.joints import in_a_row, points_of
+from contact.stepping.joints import points_of
 from contact.stepping.observables import FALLEN, NEVER, OPENING, REST, ROCK, ROCKING, SLIDE, SLIDE_ROCK
 from contact.stepping.scheme import hermite
 from contact.stepping.state import RunState
@@ -15,16 +15,9 @@ LYING_MARGIN = 2e-3
 POINTS_OF_GAP = 4  #: contact points of two bodies that face each other
 
 
-@inlined
-def follow_boxes(run: RunState, step: float, loose: bool | None) -> None:
-    """Update openings, rotations, falls and the mode of a loose stack from the step about to be accepted."""
-    if loose is not None:
-        follow_stack(run, step)
-
-
 @compiled
-def follow_stack(run: RunState, step: float) -> None:
-    """`follow_boxes` of a loose stack.
+def follow_boxes(run: RunState, step: float) -> None:
+    """Update openings, rotations, falls and the mode of a loose stack from the step about to be accepted.
 
     A box falls when it has turned by 90 degrees, or when a corner of an upper box meets the floor.
     """
@@ -57,22 +50,12 @@ def follow_stack(run: RunState, step: float) -> None:
     track.modes |= 1 << track.mode
 
 
-@inlined
-def follow_gaps(run: RunState, step: float, loose: bool | None, apart: float) -> None:
-    """Update the records of the gaps of a row from the step [s] about to be accepted.
-
-    A touch is another hit where the bodies have been further `apart` [m] since the last one.
-    """
-    if loose is not None:
-        for g in range(run.joints.shape[0] - 1 if in_a_row(run) else 0):
-            follow_gap(run, step, g, apart)
-
-
 @compiled
 def follow_gap(run: RunState, step: float, g: int, apart: float) -> None:
-    """`follow_gaps` of one gap; its force is that of its four points together.
+    """Update the record of one gap of a row; its force is that of its four points together.
 
-    A point of no weight is a corner beside the other body's side: its distance says nothing of the gap.
+    A touch is another hit where the bodies have been further `apart` [m] since the last one. A point of no weight is a
+    corner beside the other body's side: its distance says nothing of the gap.
     """
     old, new, record = run.old, run.attempt.new, run.links[g]
     first = run.joints[run.joints.shape[0] - 1].end + POINTS_OF_GAP * g
@@ -119,10 +102,9 @@ def rotation_of(run: RunState, j: int) -> float:
 
 @inlined
 def has_footing(run: RunState, j: int) -> bool:
-    """Whether what is on a joint can rest there by itself.
+    """Whether what is on a joint can rest there by itself: beyond its slenderness angle it leans, or hangs on a tie.
 
-    On the floor it cannot beyond its slenderness angle: there it leans on a stop or on the next body, or hangs on a
-    tie. On a box its mass centre must be between the ends of the face below.
+    On a box its mass centre must be between the ends of the face below.
     """
     if run.joints[j].below < 0:
         return bool(abs(rotation_of(run, j)) <= run.joints[j].angle)

@@ -94,15 +94,10 @@ def filter_contents(
     cutoff: float,
     largest: float,
 ) -> float:
-    """Advance the filter by one interval, in place; returns the largest filtered acceleration so far [m/s2].
+    """Advance the filter by one interval [s], in place; returns the largest filtered acceleration so far [m/s2].
 
-    Args:
-        contents: (8, 2 n) of x and z of each point in turn: rows `POSITION` and the following, the last four scratch.
-        monitor: (n, 4) displacement relative to the floor [m] and velocity [m/s] of the points at its end.
-        floor: displacement of the floor then, along x and upward [m].
-        step: length of the interval [s].
-        cutoff: w [rad/s].
-        largest: size of the acceleration, horizontal and vertical together, up to its beginning [m/s2].
+    `contents`: (8, 2 n) of x and z of each point in turn; `monitor`: (n, 4) displacement relative to the floor [m]
+    and velocity [m/s] at its end; `floor`: its displacement then, along x and upward [m]; `cutoff`: w [rad/s].
     """
     decay, per_step = cutoff / math.sqrt(2.0), 1.0 / step  # the poles are at decay (-1 +- i)
     lag = 1.0 / decay

@@ -42,8 +42,7 @@ def _rests_beside(state: State, other: int, point: int, distance: float) -> bool
 def closing_time(control: Control, state: State, horizon: float) -> float:
     """Time until a base point touches the floor with more than the closing speed [s], or the horizon.
 
-    Extrapolated from velocity and acceleration; 0 for a point that has just touched. A point beside a closed one (a
-    wide base closes point by point) adds no mass of its own and is left to the ledger.
+    A point beside a closed one (a wide base closes point by point) adds no mass of its own and is left to the ledger.
     """
     first = horizon
     n = state.point.shape[0]
@@ -160,10 +159,9 @@ def ledger_allowance(run: RunState, step: float) -> float:
 
 @compiled
 def change_level(level: int, used: float, not_held: bool, most: int = GROWTH) -> int:
-    """Level of the next step, given the used share of the allowed imbalance.
+    """Level of the next step, given the used share of the allowed imbalance, of third order in the step.
 
-    The imbalance of a step is of third order: half the step has an eighth of it. Shortly after a rejection
-    (`not_held` false) the step grows only if almost nothing was used; by `most` levels if next to nothing was.
+    Shortly after a rejection (`not_held` false) the step grows only if almost nothing was used.
     """
     if used > 8.0:
         return level + 2 * STEPS_PER_OCTAVE
@@ -184,10 +182,9 @@ def change_level(level: int, used: float, not_held: bool, most: int = GROWTH) ->
 
 @compiled(inline=True)
 def grown_level(level: int, used: float, not_held: bool) -> int:
-    """`change_level` after an accepted step, where steps are eager.
+    """`change_level` after an accepted step where steps are eager: the imbalance doubles from level to level.
 
-    The imbalance is of third order: it doubles from level to level. The step grows until it would be about half the
-    allowed one; soon after a rejection, by one level.
+    The step grows until it would be about half the allowed one; soon after a rejection, by one level.
     """
     if used > 0.7:
         return level + 1

@@ -38,11 +38,7 @@ from contact.stepping.step import indent
 
 @inlined
 def lose_at_impacts(body: Any, run: RunState, loose: bool | None) -> None:
-    """Exchange the pivots that are due in the step about to be accepted.
-
-    `loose`: of a loose stack or a row, see `contact.stepping.body.stands_loose`; its first landing is that of the
-    container itself, which `update_observables` follows.
-    """
+    """Exchange the pivots that are due in the step about to be accepted; the container's landing is known already."""
     new = run.attempt.new
     for j in range(run.joints.shape[0]):
         joint = run.joints[j]
@@ -82,12 +78,7 @@ def place_of(run: RunState, j: int, i: int) -> tuple[float, float]:
 
 @inlined
 def lose_at_impact(body: Any, run: RunState, j: int, landed: int, loose: bool | None) -> None:
-    """Multiply the angular momentum about a corner in the attempted step's new state, and book it.
-
-    Args:
-        j: the joint; landed: -1 its left side, 1 the right one.
-        loose: of a loose stack or a row, see `contact.stepping.body.stands_loose`.
-    """
+    """Multiply the angular momentum about the `landed` corner (-1 left, 1 right) of joint j, and book it."""
     new, share, change = run.attempt.new, run.joints[j].impact_share, run.attempt.change
     begin, end = points_of(run, j)
     corner = begin if landed == -1 else end - 1

@@ -15,7 +15,7 @@ from contact.jit import compiled, inlined
 from contact.motion.kernel import UNIFORM
 from contact.stepping import modal_kernels  # noqa: F401 - registers the operations of a modal body
 from contact.stepping.body import complete, prepared, shift_velocity, stands_loose, weigh
-from contact.stepping.boxes import follow_boxes, follow_gaps, has_fallen
+from contact.stepping.boxes import follow_boxes, follow_gap, has_fallen
 from contact.stepping.contents import follow_contents, shift_contents
 from contact.stepping.control import (
     GROWTH,
@@ -31,19 +31,19 @@ from contact.stepping.control import (
 from contact.stepping.impact import lose_at_impacts
 from contact.stepping.joints import (
     begin_friction,
+    in_a_row,
     settle_friction,
-    slide_apart,
-    slide_joints,
+    slide_points,
     update_joints,
     weaken_friction,
 )
-from contact.stepping.ledger import FRICTION, IMBALANCE, dissipation, spring_energy
+from contact.stepping.ledger import IMBALANCE, dissipation, spring_energy
 from contact.stepping.ledger import ROWS as LEDGER_ROWS
 from contact.stepping.links import follow_links, links_of, reach_strength
 from contact.stepping.observables import FALLEN, IMPACT_GAP, NEVER, update_observables
 from contact.stepping.sampling import keep_most_strained_step, sample
 from contact.stepping.state import RunState
-from contact.stepping.step import account, attempt, copy_state, indent
+from contact.stepping.step import account, attempt, indent
 
 WEAKENING_LIMIT = 8  #: repetitions of a step for friction that weakens with its slip
 HELD_STEPS = 6  #: after a rejection
@@ -73,7 +73,8 @@ def close_step(run: RunState, step: float, iterations: int) -> None:
     clock.steps += 1
     clock.iterations += iterations
     clock.smallest_step = min(clock.smallest_step, step)
-    copy_state(run.old, run.attempt.new)
+    for i in range(run.old.numbers.size):  # all but the monitored points
+        run.old.numbers[i] = run.attempt.new.numbers[i]
     if run.joints.shape[0] > 1:
         clock.spring_energy = spring_energy(run.problem.contact, run.old.point, run.old.stick)
         for j in range(run.joints.shape[0]):
@@ -97,10 +98,7 @@ def _is_full(run: RunState) -> bool:
 
 @inlined
 def enter_floor_frame(body: Any, run: RunState, floor_velocity: float, lift_velocity: float) -> None:
-    """Change to the frame of the floor at the end of its motion, where its velocity is this, along x and upward [m/s].
-
-    The floor is at rest in this frame; the container gets no impulse.
-    """
+    """Change to the frame of the floor as its motion ends, with this velocity [m/s]; nothing gets an impulse."""
     shift_velocity(body, run.old, (floor_velocity, lift_velocity, 0.0), (0, run.joints.shape[0]))
     shift_contents(run.contents, (floor_velocity, lift_velocity))
     complete(body, run.old, run.floor[0, 0], run.lift[0, 0], 0.0)
@@ -135,8 +133,7 @@ def advance(body: Any, run: RunState, until: float) -> int:
             iterations = attempt(body, run, step)
             if iterations < 0:
                 break
-            slide_joints(run, step)
-            slide_apart(run, step, loose, links)
+            slide_points(run, step, loose, links)
             if not weaken_friction(run):
                 break
         if iterations < 0:
@@ -168,22 +165,11 @@ def advance(body: Any, run: RunState, until: float) -> int:
         update_joints(run, step)
         counts = IMPACT_GAP * control.width * control.slenderness_angle
         follow_links(run, step, links, counts)
-        follow_gaps(run, step, loose, counts)
-        update_observables(
-            track,
-            run.joints[0],
-            control,
-            run.problem.contact.camber,
-            run.old,
-            run.attempt.new,
-            clock.time + step,
-            step,
-            run.joints[0].slides == 1,
-            run.floor,
-            run.lift,
-            run.attempt.change[FRICTION],
-        )
-        follow_boxes(run, step, loose)
+        update_observables(run, step)
+        if loose is not None:
+            follow_boxes(run, step)
+            for gap in range(run.joints.shape[0] - 1 if in_a_row(run) else 0):
+                follow_gap(run, step, gap, counts)
         follow_contents(body, run, step)
         clock.samples = sample(run, run.buffers.history, clock.samples, clock.samples_drained, step, loose)
         clock.frames = sample(run, run.buffers.frames, clock.frames, clock.frames_drained, step, loose)

@@ -30,10 +30,11 @@ def points_of(run: RunState, j: int) -> tuple[int, int]:
 
 
 @inlined
-def _kinetic_friction(run: RunState, j: int, slid: float) -> float:
-    """Coefficient of friction, at no velocity, of a sliding joint after a path of `slid` [m]."""
+def friction_of(run: RunState, j: int, slid: float) -> float:
+    """Coefficient of friction of a joint at no velocity; where it slides, after a path of `slid` [m]."""
     contact, first = run.problem.contact, points_of(run, j)[0]
-    if contact.stribeck_velocity > 0.0 and contact.weakening[first] <= 0.0:
+    falls_with_velocity = contact.stribeck_velocity > 0.0 and contact.weakening[first] <= 0.0
+    if run.joints[j].sliding == 0 or falls_with_velocity or contact.friction == REGULARISED:
         return contact.mu_static[first]
     return weakened_mu(contact.mu_static[first], contact.mu_kinetic[first], contact.weakening[first], slid)
 
@@ -42,10 +43,7 @@ def _kinetic_friction(run: RunState, j: int, slid: float) -> float:
 def begin_friction(run: RunState) -> None:
     """Coefficients of friction of the joints at the beginning of a step."""
     for j in range(run.joints.shape[0]):
-        joint = run.joints[j]
-        joint.mu = run.problem.contact.mu_static[points_of(run, j)[0]]
-        if joint.sliding == 1:
-            joint.mu = _kinetic_friction(run, j, joint.slip_since_break)
+        run.joints[j].mu = friction_of(run, j, run.joints[j].slip_since_break)
 
 
 @compiled(inline=True)
@@ -55,18 +53,10 @@ def weaken_friction(run: RunState) -> bool:
     for j in range(run.joints.shape[0]):
         joint = run.joints[j]
         if joint.sliding == 1 and run.problem.contact.weakening[points_of(run, j)[0]] > 0.0:
-            weakened = _kinetic_friction(run, j, joint.slip_since_break + abs(joint.slip_step))
+            weakened = friction_of(run, j, joint.slip_since_break + abs(joint.slip_step))
             if abs(weakened - joint.mu) > WEAKENING_TOLERANCE:
-                joint.mu = weakened
-                changed = True
+                joint.mu, changed = weakened, True
     return changed
-
-
-@compiled(inline=True)
-def slide_joints(run: RunState, step: float) -> None:
-    """Sliding of all joints after a converged step of this size [s], none of which stops."""
-    for j in range(run.joints.shape[0]):
-        slide(run, j, step, SLIDES_ON)
 
 
 @compiled(inline=True)
@@ -137,22 +127,15 @@ def holding_force(run: RunState, j: int, loose: bool | None, links: LinkedBody |
     around them. In an impact the normal force is larger. On a floor that accelerates upward by a_v gravity is g + a_v;
     a slope acts as an acceleration of the floor uphill. What links push is taken from what the joint must hold.
     """
-    track, pushed = run.track[0], (0.0, 0.0, 0.0)
+    new, track = run.attempt.new, run.track[0]
     if loose is not None:
         if not in_a_row(run):
-            if links is not None:
-                pushed = load_of_links(run, links, j, run.attempt.new.boxes[j])
-            return holding_in_stack(run, j, pushed)
+            return holding_in_stack(run, j, load_of_links(run, links, j, new.boxes[j]))
         first, last = run.joints[j].begin, run.joints[j].end - 1
-        stands = (run.attempt.new.force[first, 1] > 0.0) == (run.attempt.new.force[last, 1] > 0.0)
-        return holding_on_floor(
-            run, j, run.attempt.new.boxes[j], stands, first, last, load_from_beside(run, j)
-        )
-    if links is not None:
-        pushed = load_of_links(run, links, j, run.attempt.new.pose)
-    stands = track.left_open == track.right_open
-    last = run.problem.control.base_points - 1
-    return holding_on_floor(run, j, run.attempt.new.pose, stands, 0, last, pushed)
+        stands = (new.force[first, 1] > 0.0) == (new.force[last, 1] > 0.0)
+        return holding_on_floor(run, j, new.boxes[j], stands, first, last, load_from_beside(run, j))
+    stands, last = track.left_open == track.right_open, run.problem.control.base_points - 1
+    return holding_on_floor(run, j, new.pose, stands, 0, last, load_of_links(run, links, j, new.pose))
 
 
 @inlined
@@ -172,12 +155,9 @@ def holding_on_floor(
     last: int,
     pushed: tuple[float, float, float],
 ) -> tuple[float, float]:
-    """`holding_force` of a body on the floor.
+    """`holding_force` of a body on the floor, which `stands` on both sides of its base, points `first` to `last`.
 
-    Args:
-        pose: of the body; stands: on both sides of its base; first, last: its outermost base points.
-        pushed: other forces on it than those of floor and gravity, along x and upward [N], and their moment about its
-            mass centre [Nm].
+    `pushed`: forces on it but those of floor and gravity, x and z [N], and their moment about its centre [Nm].
     """
     new, joint = run.attempt.new, run.joints[j]
     acceleration = run.floor[1, 2] - run.problem.control.downhill - pushed[0] / joint.mass
@@ -255,9 +235,7 @@ def load_from_above(run: RunState, j: int) -> tuple[float, float, float]:
 
 @compiled
 def holding_in_stack(run: RunState, j: int, pushed: tuple[float, float, float]) -> tuple[float, float]:
-    """`holding_force` of a joint of a loose stack: of the box on it, under the present forces from above.
-
-    What links push it, along x and upward [N] and about its mass centre [Nm], is added to the forces from above.
+    """`holding_force` of a box of a loose stack, under the present forces from above and those of links, `pushed`.
 
     The box stands on the face below, which moves it and turns it; or it rocks on that face as a container on its floor.
     With t along the face and n across it, F and M from above, a the acceleration of the place about which it turns,
@@ -319,10 +297,10 @@ def holding_in_stack(run: RunState, j: int, pushed: tuple[float, float, float]) 
 
 @inlined
 def carrier_of(run: RunState, j: int) -> int:
-    """The box that moves what is below a joint, -1: the floor.
+    """The box that moves what is below a joint, -1: the floor; one that sticks and stands moves with what is below.
 
-    A box that sticks to what is below it and stands on both sides of its base moves with that. On its springs it swings
-    about this motion, most of all when the friction on top of it turns round: that does not end a stop.
+    On its springs it swings about this motion, most of all when the friction on top of it turns round: that does not
+    end a stop.
     """
     box = run.joints[j].below
     while box >= 0 and run.joints[box].slides == 0:
@@ -356,17 +334,12 @@ def acceleration_of(run: RunState, box: int, x: float, z: float) -> tuple[float,
 def slide(run: RunState, j: int, step: float, holding: float) -> None:
     """Sliding of the points of a joint and elongation of their springs after a converged step.
 
-    Writes `attempt.slip` and `new.stick` of the points. Of the joint it writes `motion` - ALL loaded points slide one
-    way, SOME or NO_POINT; AIRBORNE without a load -, the force-weighted sliding [m], and the force-weighted
-    velocity of the loaded points at the end of the step [m/s].
+    Of the joint it writes `motion` - ALL loaded points slide one way, SOME or NO_POINT; AIRBORNE without a load -, the
+    force-weighted sliding [m], and the force-weighted velocity at the end of the step [m/s].
 
-    Args:
-        run: with a converged step in `new`.
-        j: the joint.
-        step: [s].
-        holding: of a joint that stops sliding in this step, the tangential force with which its springs start [N], else
-            SLIDES_ON. With the forces of the slide, the motion would have to wind them up first, and the dashpots make
-            that overshoot.
+    `holding`: of a joint that stops sliding in this step, the tangential force with which its springs start [N], else
+    SLIDES_ON. With the forces of the slide, the motion would have to wind them up first, and the dashpots make that
+    overshoot.
     """
     stops = holding < SLIDES_ON
     contact, new, work, joint = run.problem.contact, run.attempt.new, run.work, run.joints[j]
@@ -439,8 +412,10 @@ def slide_point(run: RunState, i: int, step: float, start: float) -> None:
 
 
 @inlined
-def slide_apart(run: RunState, step: float, loose: bool | None, links: LinkedBody | None) -> None:
-    """Sliding of the points of no joint after a converged step of this size [s], each for itself."""
+def slide_points(run: RunState, step: float, loose: bool | None, links: LinkedBody | None) -> None:
+    """Sliding of all joints, none of which stops, and of the other points, each for itself, after a step [s]."""
+    for j in range(run.joints.shape[0]):
+        slide(run, j, step, SLIDES_ON)
     if links is not None or loose is not None:
         for i in range(points_of(run, run.joints.shape[0] - 1)[1], run.attempt.new.point.shape[0]):
             slide_point(run, i, step, SLIDES_ON)
@@ -456,15 +431,12 @@ def rub_apart(run: RunState, loose: bool | None, links: LinkedBody | None) -> No
 
 @compiled(inline=True)
 def update_joints(run: RunState, step: float) -> None:
-    """Update the joints from the step about to be accepted; `integrator.close_step` adds its sliding."""
+    """Update the joints from the step about to be accepted, all but `slip`."""
     old, new = run.old, run.attempt.new
     for j in range(run.joints.shape[0]):
         joint = run.joints[j]
-        joint.slip_since_break = (
-            joint.slip_since_break + abs(joint.slip_step)
-            if joint.sliding == 1 or joint.motion == ALL
-            else 0.0
-        )
+        slides = joint.sliding == 1 or joint.motion == ALL
+        joint.slip_since_break = joint.slip_since_break + abs(joint.slip_step) if slides else 0.0
         joint.sliding = joint.slides
         tangential, normal, before = 0.0, 0.0, 0.0
         begin, end = points_of(run, j)

@@ -14,7 +14,7 @@ of a step. The imbalance is the remainder: > 0 numerical loss, < 0 numerical gai
 from contact.arrays import FloatArray
 from contact.interface.workspace import Contact
 from contact.jit import compiled
-from contact.stepping.body import CENTRE_Z
+from contact.stepping.body import CENTRE_Z, State
 
 #: rows of the ledger [J]
 BASE_WORK, FRICTION, CONTACT_DAMPING, MATERIAL_DAMPING, CRUSHING, IMPACTS, IMBALANCE = 0, 1, 2, 3, 4, 5, 6
@@ -39,14 +39,7 @@ def spring_energy(contact: Contact, point: FloatArray, stick: FloatArray) -> flo
 
 @compiled(inline=True)
 def work_of_lift(mass: float, pose: FloatArray, pose_new: FloatArray, lift: FloatArray, step: float) -> float:
-    """Work of the vertical floor motion in a step [J]: of the inertia force -m a_v over the rise above the floor.
-
-    Args:
-        mass: of the container [kg].
-        pose, pose_new: (6,) of the container before and after the step, see `contact.stepping.body`.
-        lift: (2, 3) height, velocity and acceleration of the floor before and after it.
-        step: [s].
-    """
+    """Work of the vertical floor motion in a step [J]: of the inertia force -m a_v over the rise above the floor."""
     gained = lift[1, 1] - lift[0, 1]
     if gained == 0.0:
         return 0.0
@@ -54,47 +47,20 @@ def work_of_lift(mass: float, pose: FloatArray, pose_new: FloatArray, lift: Floa
 
 
 @compiled(inline=True)
-def contact_losses(
-    contact: Contact,
-    point: FloatArray,
-    point_new: FloatArray,
-    force: FloatArray,
-    force_new: FloatArray,
-    stick: FloatArray,
-    stick_new: FloatArray,
-    slip: FloatArray,
-) -> tuple[float, float]:
-    """Friction heat and contact damping of one step [J].
-
-    Args:
-        contact: the floor.
-        point, point_new: (n, 2) base points relative to the floor before and after [m].
-        force, force_new: (n, 2) contact forces on the container, tangential and normal [N].
-        stick, stick_new: (n,) elongations of the tangential springs [m].
-        slip: (n,) sliding of the points in this step [m].
-    """
-    friction, damping = 0.0, 0.0
-    for i in range(point.shape[0]):
+def contact_losses(contact: Contact, old: State, new: State, slip: FloatArray) -> tuple[float, float, float]:
+    """Friction heat, contact damping and plastic work on the floor in one step [J]; `slip`: (n,) of the points [m]."""
+    friction, damping, crushing = 0.0, 0.0, 0.0
+    for i in range(slip.size):
         stiffness = contact.normal_stiffness[i]
-        before, after = max(0.0, -point[i, 1]), max(0.0, -point_new[i, 1])
-        dashpot = 0.5 * (force[i, 1] - stiffness * before + force_new[i, 1] - stiffness * after)
+        before, after = max(0.0, -old.point[i, 1]), max(0.0, -new.point[i, 1])
+        dashpot = 0.5 * (old.force[i, 1] - stiffness * before + new.force[i, 1] - stiffness * after)
         damping += dashpot * (after - before)
         stiffness = contact.tangential_stiffness[i]
-        dashpot = 0.5 * (-force[i, 0] - stiffness * stick[i] - force_new[i, 0] - stiffness * stick_new[i])
-        damping += dashpot * (stick_new[i] - stick[i])
-        friction -= 0.5 * (force[i, 0] + force_new[i, 0]) * slip[i]
-    return friction, damping
-
-
-@compiled(inline=True)
-def crushing_work(
-    force: FloatArray, force_new: FloatArray, crushed: FloatArray, crushed_new: FloatArray
-) -> float:
-    """Plastic work of one step on the floor [J]: forces (n, 2) and permanent indentations (n,) before and after."""
-    work = 0.0
-    for i in range(crushed.size):
-        work += 0.5 * (force[i, 1] + force_new[i, 1]) * (crushed_new[i] - crushed[i])
-    return work
+        dashpot = -old.force[i, 0] - stiffness * old.stick[i] - new.force[i, 0] - stiffness * new.stick[i]
+        damping += 0.5 * dashpot * (new.stick[i] - old.stick[i])
+        friction -= 0.5 * (old.force[i, 0] + new.force[i, 0]) * slip[i]
+        crushing += 0.5 * (old.force[i, 1] + new.force[i, 1]) * (new.crushed[i] - old.crushed[i])
+    return friction, damping, crushing
 
 
 @compiled(inline=True)

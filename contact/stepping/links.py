@@ -63,8 +63,7 @@ def make_lines(
 
     Args:
         direction: (k, 2) unit vectors that lead away from what holds the point.
-        place: (k, 2) of the points where the gaps are these [m].
-        gap: (k,) [m].
+        place: (k, 2) of the points where the gaps are these [m]; gap: (k,) [m].
         width: of the container [m]; points across their lines are told from those of the base by it.
         box: (k,) that has the point, of a loose stack or a row.
     """
@@ -190,10 +189,7 @@ def push_of_links(run: RunState, links: LinkedBody | None) -> float:
 def load_of_links(
     run: RunState, links: LinkedBody | None, box: int, pose: FloatArray
 ) -> tuple[float, float, float]:
-    """Force of the links of a box at the end of the attempted step, x and z [N], and its moment about its centre [Nm].
-
-    The moment is positive as the rotation; `pose` is that of the box.
-    """
+    """Force of the links of a box with this pose, x and z [N], and its moment about its centre [Nm]."""
     x, z, moment = 0.0, 0.0, 0.0
     if links is not None:
         line = links.line
@@ -218,10 +214,9 @@ def load_of_links(
 def shift_links(
     run: RunState, links: LinkedBody | None, turn: float, x: float, z: float, begin: int, end: int
 ) -> None:
-    """Subtract the velocity of a turn [rad/s] about a place over the floor from the points, which have no indentation.
+    """Subtract the velocity of a turn [rad/s] about a place over the floor from the points of some boxes.
 
-    Of a loose stack or a row, from those of the boxes from `begin` on, up to the one before `end`. Called between
-    `complete` and `indent`.
+    Called between `complete` and `indent`, where points have no indentation; `end` is behind the last box.
     """
     if links is not None:
         line = links.line
@@ -254,15 +249,11 @@ def reach_strength(run: RunState, links: LinkedBody | None) -> bool:
 def follow_links(run: RunState, step: float, links: LinkedBody | None, apart: float) -> None:
     """Update the records of the links from the step about to be accepted, and break those at their strength.
 
-    Args:
-        run: with a converged step.
-        step: [s].
-        links: the body with them.
-        apart: gap after which another touch is another hit [m].
+    `apart`: gap after which another touch is another hit [m].
     """
     if links is not None:
-        line = links.line
-        old, new = run.old, run.attempt.new
+        line, contact = links.line, run.problem.contact
+        old, new, change = run.old, run.attempt.new, run.attempt.change
         first, before = new.point.shape[0] - line.shape[0], run.links.shape[0] - line.shape[0]
         for k in range(line.shape[0]):
             i, record = first + k, run.links[before + k]
@@ -280,20 +271,15 @@ def follow_links(run: RunState, step: float, links: LinkedBody | None, apart: fl
                 if record.away > apart:
                     record.hits += 1
                 record.away = 0.0
-            if run.work.law[i, 1] >= run.problem.contact.cap[i]:
-                break_link(run, i)
+            if (
+                run.work.law[i, 1] >= contact.cap[i]
+            ):  # what its springs held, and yielded in this step, is damping
+                yielded = 0.5 * (old.force[i, 1] + new.force[i, 1]) * (new.crushed[i] - old.crushed[i])
+                held = 0.5 * contact.normal_stiffness[i] * new.point[i, 1] ** 2
+                held += 0.5 * contact.tangential_stiffness[i] * new.stick[i] ** 2
+                change[CRUSHING] -= yielded
+                change[CONTACT_DAMPING] += yielded + held
+                new.crushed[i] += BROKEN
+                new.point[i, 1] += BROKEN
+                new.stick[i] = 0.0
                 record.broken_at = run.clock[0].time + step
-
-
-@inlined
-def break_link(run: RunState, i: int) -> None:
-    """Open the point of a link for ever; what its springs held, and what they yielded in this step, is damping."""
-    old, new, change, contact = run.old, run.attempt.new, run.attempt.change, run.problem.contact
-    yielded = 0.5 * (old.force[i, 1] + new.force[i, 1]) * (new.crushed[i] - old.crushed[i])
-    held = 0.5 * contact.normal_stiffness[i] * new.point[i, 1] ** 2
-    held += 0.5 * contact.tangential_stiffness[i] * new.stick[i] ** 2
-    change[CRUSHING] -= yielded
-    change[CONTACT_DAMPING] += yielded + held
-    new.crushed[i] += BROKEN
-    new.point[i, 1] += BROKEN
-    new.stick[i] = 0.0

@@ -63,11 +63,7 @@ def weigh(stack: LooseStack, contact: Contact, old: State) -> None:
 
 @implements(interface.predict, LooseStack, inline=True)
 def predict(stack: LooseStack, scheme: Scheme, step: float, old: State, new: State) -> None:
-    """Coordinates after `step`, for the last acceleration.
-
-    The step begins with the derivatives at its old corners, not with those of the attempt before: a run that is resumed
-    has none of these.
-    """
+    """Coordinates after `step`, with derivatives at the old corners: those of an attempt a resumed run has not."""
     interface.predict(stack.body, scheme, step, old, new)
     linearise_points(stack.faces, old.corner, stack.faces.placed)
 

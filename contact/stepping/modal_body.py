@@ -77,8 +77,7 @@ def make_modal_body(
         gravity: toward the floor; downhill: along a floor that falls toward +x [m/s2].
         point: (n, 2) base points relative to the mass centre [m], sorted by x.
         rest: mass centre of the undeformed container standing on the floor [m].
-        shape: (n, 2, m) mass-normalised mode shapes at them.
-        frequencies: (m,) angular frequencies [rad/s]; damping_ratios: (m,) [-].
+        shape: (n, 2, m) mass-normalised mode shapes; frequencies: (m,) angular [rad/s]; damping_ratios: (m,) [-].
         monitor: (k, 2) points whose motion is followed; monitor_shape: (k, 2, m).
         tolerance: error of a base point at which the iterations of a step stop [m].
     """
@@ -117,18 +116,12 @@ def make_modal_body(
 
 @struct
 class BodyOnCorners(ModalBody):
-    """A body on two contact points: the same fields, but a separate type.
-
-    For this type the stepping is compiled with the known number of points, see `contact.stepping.block_on_corners`.
-    """
+    """A body on two contact points: of the same fields, but stepped with a known number of points."""
 
 
 @struct
 class BlockOnCorners(ModalBody):
-    """A rigid body on two contact points.
-
-    For this type the stepping is compiled with arrays of constant shape, see `contact.stepping.block_on_corners`.
-    """
+    """A rigid body on two contact points, stepped in registers: see `contact.stepping.block_on_corners`."""
 
 
 class LocalBlock(BlockOnCorners):
@@ -138,16 +131,20 @@ class LocalBlock(BlockOnCorners):
 MODAL = (ModalBody, BodyOnCorners, BlockOnCorners, LocalBlock)
 
 
+#: fields of a `ModalBody` that are written in a step
+SCRATCH = ("cached_step", "recent", "inverse", "elastic_compliance", "arm", "moved", "free_change")
+
+
+def own_scratch(body: ModalBody) -> ModalBody:
+    """The same body, or boxes of a stack, with scratch arrays of its own."""
+    own = body._replace(**{name: np.empty_like(getattr(body, name)) for name in SCRATCH})
+    own.cached_step[:], own.recent[:] = -1.0, 0
+    own.cached_step[..., -1] = 0.0
+    return own
+
+
 def with_own_scratch(body: ModalBody) -> ModalBody:
     """The same body with scratch arrays of its own; a rigid body on two points becomes a `BlockOnCorners`."""
     if body.stiffness.size == 0 and body.point.shape[0] == 2:  # the rest of its scratch is in registers
         return BlockOnCorners(*body._replace(arm=np.empty_like(body.arm)))
-    return body._replace(
-        cached_step=np.append(np.full(len(body.inverse), -1.0), 0.0),
-        recent=np.zeros(1, dtype=np.int64),
-        inverse=np.empty_like(body.inverse),
-        elastic_compliance=np.empty_like(body.elastic_compliance),
-        arm=np.empty_like(body.arm),
-        moved=np.empty_like(body.moved),
-        free_change=np.empty_like(body.free_change),
-    )
+    return own_scratch(body)

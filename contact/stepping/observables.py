@@ -18,7 +18,7 @@ from contact.arrays import FloatArray
 from contact.interface.workspace import Contact
 from contact.jit import compiled, inlined
 from contact.stepping.body import ANGULAR_VELOCITY, CENTRE_X, POTENTIAL, ROTATION, State
-from contact.stepping.ledger import work_of_lift
+from contact.stepping.ledger import FRICTION, work_of_lift
 from contact.stepping.scheme import hermite
 
 NEVER = math.inf  #: time of an event that has not happened
@@ -77,10 +77,7 @@ OBSERVABLES = np.dtype(
         ("mode", "i8"),
         ("left_open", "i8"),  # 1 while the left side carries nothing
         ("right_open", "i8"),
-        (
-            "turning_energy",
-            "f8",
-        ),  # potential energy above rest at the last turning point before the first impact
+        ("turning_energy", "f8"),  # above rest, at the last turning point before the first impact
         ("work_before", "f8"),  # of the floor's motion, from there to the first impact
         ("work_after", "f8"),  # .. and since
         ("heat", "f8"),  # of friction, since that turning point
@@ -106,15 +103,10 @@ def bearing_place(
 ) -> float:
     """Where a base stands on what is below it: the slip is how far this has moved [m].
 
-    The place of a point is how far it is from where it is along the undeformed base, less what its stuck spring has
+    The place of a point is how far it is from where it is `along` the undeformed base, less what its stuck spring has
     given way. They are weighted by the normal forces; in the air the point nearest to the ground counts. So rocking
     from corner to corner moves nothing, a flight moves what the base moves, and an upright container has moved as far
-    as its mass centre.
-
-    Args:
-        contact: its properties; along: (n,) `RunProblem.along`; state: of the run.
-        begin, end: the first point of the joint, and the one behind its last.
-        otherwise: returned where no point is on its face, as of a box that has fallen off.
+    as its mass centre. `otherwise` is returned where no point is on its face, as of a box that has fallen off.
     """
     total, place, lowest, nearest = 0.0, 0.0, math.inf, otherwise
     for i in range(begin, end):
@@ -170,34 +162,11 @@ def record_start(track: Any, control: Any, camber: FloatArray, state: State) -> 
 
 
 @inlined
-def update_observables(
-    track: Any,
-    joint: Any,
-    control: Any,
-    camber: FloatArray,
-    old: State,
-    new: State,
-    time: float,
-    step: float,
-    sliding: bool,
-    floor: FloatArray,
-    lift: FloatArray,
-    heat: float,
-) -> None:
-    """Update the observables with the accepted step from `old` to `new`.
-
-    Args:
-        track: record of OBSERVABLES; joint: that of the base.
-        control: the stepping's `Control`: constants of the container.
-        camber: height of the points above the lowest one of an upright base, (n,) [m].
-        old, new: states at both ends of the step.
-        time: at its end [s]; step: its length [s].
-        sliding: every loaded point slides.
-        floor, lift: (2, 3) displacement, velocity, acceleration of the floor before and after the step, along x and
-            upward.
-        heat: of friction in this step [J].
-    """
-    n = control.base_points
+def update_observables(run: Any, step: float) -> None:
+    """Update the observables of a run with the step [s] about to be accepted."""
+    track, joint, control = run.track[0], run.joints[0], run.problem.control
+    old, new, camber = run.old, run.attempt.new, run.problem.contact.camber
+    n, time = control.base_points, run.clock[0].time + step
     rotation = new.pose[ROTATION]
     track.max_rotation = max(track.max_rotation, abs(rotation))
     before, after = old.pose[ANGULAR_VELOCITY], new.pose[ANGULAR_VELOCITY]
@@ -250,7 +219,7 @@ def update_observables(
     if open_side:
         track.max_rocking = max(track.max_rocking, abs(rotation))
     rocking = open_side and abs(rotation) > ROCKING * control.slenderness_angle
-    track.mode = (ROCK if rocking else REST) + (SLIDE if sliding else REST)
+    track.mode = (ROCK if rocking else REST) + (SLIDE if joint.slides == 1 else REST)
     if track.overturned_at < time:
         track.mode = FALLEN
     track.modes |= 1 << track.mode
@@ -261,7 +230,7 @@ def update_observables(
     if lands(joint, counts, were, are, before, rocks):
         track.impacts += 1
         track.first_impact = min(track.first_impact, time)
-    follow_restitution(track, control, old, new, step, floor, lift, heat)
+    follow_restitution(run, step)
 
 
 @inlined
@@ -275,12 +244,8 @@ def lands(
 ) -> bool:
     """Whether an impact that counts falls in this step; written to the record of the joint where it does.
 
-    Args:
-        joint: record of what the container or box stands on.
-        counts: gap whose closing counts as an impact [m].
-        before, after: gaps at its left and right side at both ends of the step [m].
-        rate: angular velocity of what is on it, before the step [rad/s].
-        rocks: it has rocked.
+    `counts`: gap whose closing counts [m]; `before`, `after`: gaps at its left and right side at both ends of the step
+    [m]; `rate`: angular velocity of what is on the joint, before the step [rad/s]; `rocks`: it has rocked.
     """
     if after[0] > 0.0 and after[1] <= 0.0:
         joint.left_gap = max(joint.left_gap, after[0])
@@ -318,28 +283,13 @@ def exchanges_pivot(joint: Any, gaps: tuple[float, float], rate: float) -> int:
 
 @compiled(inline=True)
 def lifting_energy(control: Any, state: State, floor: float, sunk: float) -> float:
-    """Gravity potential above that of the container standing upright at its place on the floor [J].
-
-    Args:
-        control: constants of the container; state: of it.
-        floor: its displacement [m].
-        sunk: how much lower than in the beginning the container stands, where the floor is crushed [m].
-    """
+    """Gravity potential above that of the container standing upright at its place on the floor, lower by `sunk` [J]."""
     downhill = control.mass * control.downhill * (state.pose[CENTRE_X] - floor)
     return state.energy[POTENTIAL] - control.resting_energy + control.mass * control.gravity * sunk + downhill
 
 
 @inlined
-def follow_restitution(
-    track: Any,
-    control: Any,
-    old: State,
-    new: State,
-    step: float,
-    floor: FloatArray,
-    lift: FloatArray,
-    heat: float,
-) -> None:
+def follow_restitution(run: Any, step: float) -> None:
     """Restitution of the first impact: root of the energy of rocking after it over that before.
 
     Energy of rocking is the potential energy above rest at a turning point. The work of the floor's motion between a
@@ -349,11 +299,13 @@ def follow_restitution(
     Bounces on the way from one turning point to the other belong to the impact. There is no restitution if the
     container slides on the way (`SLIDING_HEAT`), or if it does not turn.
     """
+    track, control, old, new = run.track[0], run.problem.control, run.old, run.attempt.new
+    floor = run.floor
     moved = new.pose[CENTRE_X] - old.pose[CENTRE_X] - (floor[1, 0] - floor[0, 0])
     work = -control.mass * (floor[1, 1] - floor[0, 1]) / step * moved
-    work += work_of_lift(control.mass, old.pose, new.pose, lift, step)
+    work += work_of_lift(control.mass, old.pose, new.pose, run.lift, step)
     work += control.mass * control.downhill * moved
-    track.heat += heat
+    track.heat += run.attempt.change[FRICTION]
     if track.impacts == 0:
         track.work_before += work
     else:

@@ -79,8 +79,7 @@ def run_to_end(
     """Step a run from t = 0 to its end, in place; the result does not depend on other runs or threads.
 
     Args:
-        body: its container, or a loose stack of boxes, in floating frames. Runs may share it: the scratch arrays are
-            not touched.
+        body: its container, or a loose stack, in floating frames; runs may share it: its scratch is not touched.
         run: with samples at the interval of its history, if that has columns.
         duration: at most [s].
         rest_from: from here on the run ends where the container is at rest or has fallen [s].
@@ -140,17 +139,6 @@ def least_sunk(run: RunState, begin: int, end: int) -> float:
     return least
 
 
-@inlined
-def mean_of_row(run: RunState) -> float:
-    """How much lower the mass centre of a row is, where the floor is crushed [m]."""
-    sunk, mass = 0.0, 0.0
-    for j in range(run.joints.shape[0]):
-        joint = run.joints[j]
-        sunk += 0.5 * joint.mass * (run.old.crushed[joint.begin] + run.old.crushed[joint.end - 1])
-        mass += joint.mass
-    return sunk / mass
-
-
 @compiled
 def is_over(run: RunState, part: int) -> bool:
     """Whether a part of a run (DRIVEN, FREE or UNDECIDED) is over before its time; asked before each of its slices.
@@ -158,7 +146,6 @@ def is_over(run: RunState, part: int) -> bool:
     At rest, kinetic energy in the frame of the floor and gravity potential above that of the container resting there
     are together below a share of the energy to overturn, at every look for some time; the floor must not accelerate.
     Where something beside it may hold the container, the kinetic energy alone.
-    The times of the looks do not depend on the slices.
     """
     clock, track, control = run.clock[0], run.track[0], run.problem.control
     if part == DRIVEN:
@@ -176,8 +163,13 @@ def is_over(run: RunState, part: int) -> bool:
     moving = run.old.energy[KINETIC] + control.mass * floor_velocity * (
         0.5 * floor_velocity - run.old.pose[VELOCITY_X]
     )
-    if in_a_row(run):
-        sunk = mean_of_row(run)
+    if in_a_row(run):  # how much lower its mass centre is
+        sunk, mass = 0.0, 0.0
+        for j in range(run.joints.shape[0]):
+            joint = run.joints[j]
+            sunk += 0.5 * joint.mass * (run.old.crushed[joint.begin] + run.old.crushed[joint.end - 1])
+            mass += joint.mass
+        sunk = sunk / mass
     else:
         points = control.base_points
         sunk = 0.5 * (least_sunk(run, 0, (points + 1) // 2) + least_sunk(run, points // 2, points))
@@ -219,8 +211,11 @@ def advance_in_slices(
         status = advance_on(body, run, min(target, until))
         if kept.slip.size == 0:
             return status
-        if run.buffers.history.columns.shape[1] > 0:
-            keep_slip(run, kept)
+        samples = run.buffers.history
+        for i in range(clock.samples - clock.samples_drained if samples.columns.shape[1] > 0 else 0):
+            index = clock.samples_drained + i
+            if index * samples.interval <= kept.slip_until + 1e-9:
+                kept.slip[index % kept.slip.size] = samples.columns[i, ROW_SLIP]
         clock.samples_drained = clock.samples
         if status != REACHED:
             return status
@@ -232,13 +227,3 @@ def advance_in_slices(
         if run.track[0].overturned_at < NEVER:
             return OVERTURNED
     return REACHED
-
-
-@compiled
-def keep_slip(run: RunState, kept: KeptSamples) -> None:
-    """Write the slip of the new samples into the ring."""
-    clock, samples = run.clock[0], run.buffers.history
-    for i in range(clock.samples - clock.samples_drained):
-        index = clock.samples_drained + i
-        if index * samples.interval <= kept.slip_until + 1e-9:
-            kept.slip[index % kept.slip.size] = samples.columns[i, ROW_SLIP]

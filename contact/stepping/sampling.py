@@ -12,7 +12,6 @@ from contact.stepping.body import (
     STRAIN,
     VELOCITY_X,
     VELOCITY_Z,
-    State,
 )
 from contact.stepping.joints import points_of
 from contact.stepping.ledger import ROWS as LEDGER_ROWS
@@ -74,40 +73,22 @@ def write_columns(
         row[ROW_SHEAR] += force[i, 0]
         row[ROW_NORMAL] += force[i, 1]
     if loose is not None:
-        write_boxes(run, row, s, step, floor, lift)
+        for j in range(1, run.joints.shape[0]):
+            joint, first = run.joints[j], ROW_COLUMNS + BOX_COLUMNS * (j - 1)
+            p, q = run.old.boxes[j], run.attempt.new.boxes[j]
+            row[first + BOX_ROTATION] = hermite(
+                s, step, p[ROTATION], p[ANGULAR_VELOCITY], q[ROTATION], q[ANGULAR_VELOCITY]
+            )
+            row[first + BOX_SLIP] = joint.slip + s * joint.shift
+            row[first + BOX_OPENING] = (1.0 - s) * joint.opening + s * joint.opens
+            for k in range(2):
+                x, v = CENTRE_X + k, VELOCITY_X + k
+                row[first + BOX_CENTRE_X + k] = hermite(s, step, p[x], p[v], q[x], q[v])
+                row[first + BOX_CENTRE_X + k] -= floor if k == 0 else lift
     for k in range(3):
         row[ROW_KINETIC + k] = (1.0 - s) * old.energy[k] + s * new.energy[k]
     for k in range(LEDGER_ROWS):
         row[ROW_BASE_WORK + k] = run.ledger[k] + s * run.attempt.change[k]
-
-
-@compiled(inline=True)
-def write_boxes(run: RunState, row: FloatArray, s: float, step: float, floor: float, lift: float) -> None:
-    """What a row of a history holds of the upper boxes of a loose stack; `floor`, `lift`: place of the floor [m]."""
-    for j in range(1, run.joints.shape[0]):
-        joint, first = run.joints[j], ROW_COLUMNS + BOX_COLUMNS * (j - 1)
-        a, b = run.old.boxes[j], run.attempt.new.boxes[j]
-        row[first + BOX_ROTATION] = hermite(
-            s, step, a[ROTATION], a[ANGULAR_VELOCITY], b[ROTATION], b[ANGULAR_VELOCITY]
-        )
-        row[first + BOX_SLIP] = joint.slip + s * joint.shift
-        row[first + BOX_OPENING] = (1.0 - s) * joint.opening + s * joint.opens
-        for k in range(2):
-            x, v = CENTRE_X + k, VELOCITY_X + k
-            row[first + BOX_CENTRE_X + k] = hermite(s, step, a[x], a[v], b[x], b[v])
-            row[first + BOX_CENTRE_X + k] -= floor if k == 0 else lift
-
-
-@compiled(inline=True)
-def write_coordinates(samples: Samples, at: int, old: State, new: State, s: float, step: float) -> None:
-    """Coordinates and their rates at the share `s` of the step, where the samples keep them."""
-    for j in range(old.position.size):
-        if j < samples.position.shape[1]:
-            samples.position[at, j] = hermite(
-                s, step, old.position[j], old.velocity[j], new.position[j], new.velocity[j]
-            )
-        if j < samples.velocity.shape[1]:
-            samples.velocity[at, j] = (1.0 - s) * old.velocity[j] + s * new.velocity[j]
 
 
 @inlined
@@ -152,10 +133,9 @@ def largest_square(stress: Stresses, group: int, position: FloatArray) -> float:
 def sample(
     run: RunState, samples: Samples, written: int, origin: int, step: float, loose: bool | None
 ) -> int:
-    """Write the samples from the old time up to and including the new time; returns the number of samples so far.
+    """Write the samples up to and including the new time, of which `written` exist; returns the number so far.
 
-    `written` samples exist before, and the first `origin` of them are no longer in the arrays. Positions are
-    interpolated by cubics through positions and velocities of both ends, all else linearly.
+    The first `origin` of them are no longer in the arrays. Positions are interpolated by cubics, all else linearly.
     """
     old, new, clock = run.old, run.attempt.new, run.clock[0]
     end = clock.time + step
@@ -168,7 +148,12 @@ def sample(
         for i in range(new.point.shape[0]):
             for k in range(2):
                 samples.force[at, i, k] = (1.0 - s) * old.force[i, k] + s * new.force[i, k]
-        write_coordinates(samples, at, old, new, s, step)
+        for j in range(samples.position.shape[1]):
+            samples.position[at, j] = hermite(
+                s, step, old.position[j], old.velocity[j], new.position[j], new.velocity[j]
+            )
+        for j in range(samples.velocity.shape[1]):
+            samples.velocity[at, j] = (1.0 - s) * old.velocity[j] + s * new.velocity[j]
         samples.mode[at] = run.track[0].mode
         if samples.columns.shape[1] > 0:
             write_columns(run, samples.columns[at], samples.force[at], time, s, step, loose)

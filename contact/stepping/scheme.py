@@ -24,11 +24,7 @@ class Scheme(NamedTuple):
 
 
 def generalised_alpha(spectral_radius: float) -> Scheme:
-    """Chung and Hulbert's choice for a spectral radius at infinite frequency in [0, 1].
-
-    Raises:
-        ValueError: the spectral radius lies outside [0, 1].
-    """
+    """Chung and Hulbert's choice for a spectral radius at infinite frequency in [0, 1], else a ValueError."""
     if not 0.0 <= spectral_radius <= 1.0:
         raise ValueError(f"spectral_radius must lie in [0, 1], got {spectral_radius}")
     alpha_m = (2.0 * spectral_radius - 1.0) / (spectral_radius + 1.0)
@@ -42,11 +38,7 @@ def generalised_alpha(spectral_radius: float) -> Scheme:
 
 
 def newmark(newmark_beta: float, newmark_gamma: float) -> Scheme:
-    """The family without averaging.
-
-    Raises:
-        ValueError: not unconditionally stable (2 beta >= gamma >= 1/2 is asked for).
-    """
+    """The family without averaging; ValueError where it is not unconditionally stable (2 beta >= gamma >= 1/2)."""
     if not 2.0 * newmark_beta >= newmark_gamma >= 0.5:
         raise ValueError(
             f"newmark_beta and newmark_gamma must satisfy 2 beta >= gamma >= 1/2, got {newmark_beta}, {newmark_gamma}"

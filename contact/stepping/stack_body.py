@@ -10,9 +10,9 @@ import numpy as np
 
 from contact.arrays import FloatArray, IntArray
 from contact.interface.contact_points import SidePoint, make_faces, make_row
+from contact.interface.equilibrium import StackedStances, stacked
 from contact.interface.faces import CORNERS, Faces, linearise_points, weigh_points
 from contact.interface.laws import ELASTIC_STICK
-from contact.interface.stacking import StackedStances, stacked
 from contact.interface.workspace import Contact, Workspace, make_workspace
 from contact.jit import compiled, inlined
 from contact.layout import exchanging, row_of, shapes_of
@@ -20,7 +20,7 @@ from contact.stepping import body as interface
 from contact.stepping import modal_kernels  # noqa: F401 - registers the operations of a modal body
 from contact.stepping.body import Boxes, Frame, Ground, State, implements
 from contact.stepping.loose_stack import LooseStack
-from contact.stepping.modal_body import STEP_SLOTS, ModalBody, by_modes
+from contact.stepping.modal_body import STEP_SLOTS, ModalBody, by_modes, own_scratch
 from contact.stepping.scheme import Scheme
 from contact.structs import struct
 
@@ -58,8 +58,8 @@ def make_stack(
     """A loose stack of boxes, from the floor up; or bodies beside one another.
 
     Args:
-        boxes: each with its four corners as base points, see `contact.interface.faces`, and `rest` its mass centre in
-            the undeformed stack. Monitored points are those of the uppermost box first, then downwards.
+        boxes: each with its four corners as base points, and `rest` its mass centre in the undeformed stack. Monitored
+            points are those of the uppermost box first, then downwards.
         normal_stiffness, tangential_stiffness: of the contact points at full weight [N/m].
         row: of bodies beside one another what `make_row` says of them: pairs, distance, inset.
         held: points of sides that come last.
@@ -122,16 +122,8 @@ def make_stack(
 def stack_with_own_scratch(stack: LooseStack) -> LooseStack:
     """The same stack, of boxes in floating frames, with scratch arrays of its own."""
     body, faces = stack.body, stack.faces
-    boxes = body.boxes._replace(
-        cached_step=np.tile(np.append(np.full(STEP_SLOTS, -1.0), 0.0), (len(body.energy), 1)),
-        recent=np.zeros_like(body.boxes.recent),
-        **{
-            name: np.empty_like(getattr(body.boxes, name))
-            for name in ("inverse", "elastic_compliance", "arm", "moved", "free_change")
-        },
-    )
     return stack._replace(
-        body=body._replace(boxes=boxes, energy=np.empty_like(body.energy)),
+        body=body._replace(boxes=own_scratch(body.boxes), energy=np.empty_like(body.energy)),
         faces=faces._replace(
             weight=np.ones_like(faces.weight),
             placed=np.empty_like(faces.placed),
@@ -270,7 +262,7 @@ def prepared(stack: StackBody, step: float) -> bool:
 def stand(
     contact: Contact, state: State, faces: Faces, centre: FloatArray, point: FloatArray, **given: FloatArray
 ) -> StackedStances:
-    """`contact.interface.stacking.stacked`; writes the stiffness of the points, and their forces and springs."""
+    """`contact.interface.equilibrium.stacked`; writes the stiffness of the points, and their forces and springs."""
     weigh_points(faces, (centre[:, None] + point).reshape(-1, 2), state.point, contact)
     rest = stacked(faces=faces, centre=centre, point=point, **given)
     state.force[:] = rest.force
@@ -289,15 +281,12 @@ def settle_stack(
     velocity: tuple[float, float] = (0.0, 0.0),
     lift_velocity: float = 0.0,
 ) -> None:
-    """Write the initial state of a stack at rest on its floor, and moving with a velocity.
+    """Write the initial state of a stack at rest on its floor, and moving; the stiffness in `contact`, too.
 
     Args:
-        stack: of boxes in floating frames.
-        contact: its laws; the stiffness is written.
-        state: written, completed.
         gravity: toward the floor, with the acceleration of the floor upward [m/s2].
-        place: of the floor, along x and upward [m]; velocity: of the stack, absolute [m/s].
-        lift_velocity: of the floor, upward [m/s].
+        place: of the floor, along x and upward [m]; lift_velocity: of it, upward [m/s].
+        velocity: of the stack, absolute [m/s].
 
     Raises:
         SettlingError: the stack does not stand.
@@ -326,13 +315,7 @@ def settle_stack(
 
 
 def start_stack(stack: LooseStack, state: State, *, place: tuple[float, float], lift_velocity: float) -> None:
-    """Complete an initial state from its coordinates, their rates and the contact forces, with the acceleration.
-
-    Args:
-        stack: of boxes in floating frames, with the weights of its points.
-        state: written.
-        place: of the floor, along x and upward [m]; lift_velocity: of it, upward [m/s].
-    """
+    """Complete an initial state from its coordinates, their rates and the contact forces, with the acceleration."""
     body, modes = stack.body.boxes, stack.body.modes
     n, size = len(body.mass), 3 + modes
     flat = body.shape.reshape(n, 2 * CORNERS, modes)

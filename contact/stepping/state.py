@@ -35,21 +35,8 @@ ROWS = (
     *("base_work_J", "friction_J", "contact_damping_J", "material_damping_J", "crushing_J", "impact_J"),
     "imbalance_J",
 )
-(
-    ROW_ROTATION,
-    ROW_ANGULAR_VELOCITY,
-    ROW_SLIP,
-    ROW_UPLIFT,
-    ROW_CENTRE_X,
-    ROW_CENTRE_Z,
-    ROW_NORMAL,
-    ROW_SHEAR,
-    ROW_KINETIC,
-    ROW_STRAIN,
-    ROW_POTENTIAL,
-    ROW_BASE_WORK,
-    *_,
-) = range(len(ROWS))
+ROW_ROTATION, ROW_ANGULAR_VELOCITY, ROW_SLIP, ROW_UPLIFT, ROW_CENTRE_X, ROW_CENTRE_Z = range(6)
+ROW_NORMAL, ROW_SHEAR, ROW_KINETIC, ROW_STRAIN, ROW_POTENTIAL, ROW_BASE_WORK = range(6, 12)
 ROW_COLUMNS = len(ROWS)
 
 
@@ -158,10 +145,7 @@ JOINT_RECORD = np.dtype(
         # friction
         ("sliding", "i8"),  # 1 while every loaded point slides: kinetic friction
         ("slip_since_break", "f8"),  # path since the joint broke loose
-        (
-            "slip",
-            "f8",
-        ),  # displacement of the base over what is below since the start, signed, see `bearing_place`
+        ("slip", "f8"),  # of the base over what is below since the start, signed, see `bearing_place`
         ("stood_at", "f8"),  # `bearing_place` at the start
         ("slip_in_air", "f8"),  # the part of `slip` that was moved without a contact force
         ("slip_velocity", "f8"),  # force-weighted
@@ -210,13 +194,6 @@ LINK_RECORD = np.dtype(
 )
 
 
-def make_links(count: int) -> Any:
-    """A record array (count,) of LINK_RECORD at the start."""
-    links = np.zeros(count, LINK_RECORD)
-    links["broken_at"] = links["away"] = links["least_gap"] = NEVER
-    return links.view(np.recarray)
-
-
 def make_joints(
     mass: npt.ArrayLike,
     inertia: npt.ArrayLike,
@@ -226,13 +203,7 @@ def make_joints(
     impact_share: npt.ArrayLike = 1.0,
     in_a_row: bool = False,
 ) -> Any:
-    """A record array (N,) of JOINT_RECORD at the start.
-
-    Args:
-        mass, inertia, width, angle, impact_share: of the boxes (N,), from the floor up, or of bodies in a row, see
-            `JOINT_RECORD`.
-        in_a_row: each stands on the floor with two points.
-    """
+    """A record array (N,) of JOINT_RECORD at the start: boxes from the floor up, or `in_a_row`, each on two points."""
     boxes = np.atleast_1d(mass)
     number = np.arange(boxes.size)
     joints = np.zeros(boxes.size, JOINT_RECORD)
@@ -374,21 +345,6 @@ class RunState(NamedTuple):
         return arrays
 
 
-def places_along_base(
-    point: FloatArray, pose: FloatArray, floor: tuple[float, float], on_floor: bool
-) -> FloatArray:
-    """Where the points of a joint are along the base of the upright box on it, (n,) from below its mass centre [m].
-
-    Args:
-        point: (n, 2) of the joint; pose: of the box; floor: its place along x and upward [m].
-        on_floor: the box stands on the floor; on another box the points are along that already.
-    """
-    if not on_floor:
-        return point[:, 0].copy()
-    x, z = point[:, 0] + floor[0] - pose[CENTRE_X], point[:, 1] + floor[1] - pose[CENTRE_Z]
-    return x * math.cos(pose[ROTATION]) - z * math.sin(pose[ROTATION])
-
-
 def make_run(
     *,
     scheme: Scheme,
@@ -407,13 +363,13 @@ def make_run(
 ) -> RunState:
     """Assemble a run at t = 0.
 
-    `old` is the initial state, completed; `joints` those of a loose stack, see `make_joints`; `links`: so
-    many of the last contact points are those of links; `strained`: windows of which the most strained steps are kept,
-    by the stress at the points of `stress`, too.
+    Args:
+        old: the initial state, completed.
+        joints: of a loose stack or a row, see `make_joints`; links: how many of the last points are those of links.
+        strained: windows of which the most strained steps are kept, by the stress at the points of `stress`, too.
 
     Raises:
-        ValueError: the kernels do not handle the law of friction; an array of the contact does not have one
-            entry for each point.
+        ValueError: an unknown law of friction; an array of the contact without one entry for each point.
     """
     require_known_friction(contact.friction)
     n, monitors = old.point.shape[0], old.monitor.shape[0]
@@ -429,12 +385,17 @@ def make_run(
     clock["spring_energy"] = spring_energy(contact, old.point, old.stick)
     if joints is None:
         joints = make_joints(control.mass, control.inertia, control.width, control.slenderness_angle)
+    records = np.zeros(links, LINK_RECORD)
+    records["broken_at"] = records["away"] = records["least_gap"] = NEVER
     floor, lift = floor_motion(motion, 0.0), floor_motion(vertical, 0.0)
     along = np.zeros(n)
     for j, joint in enumerate(joints):
         points = slice(joint.begin, joint.end) if len(joints) > 1 else slice(0, n - links)
         pose = old.boxes[j] if len(old.boxes) else old.pose
-        along[points] = places_along_base(old.point[points], pose, (floor[0], lift[0]), joint.below < 0)
+        along[points] = old.point[points, 0]  # on another box; on the floor from below its mass centre
+        if joint.below < 0:
+            x, z = (old.point[points] + (floor[0], lift[0]) - pose[[CENTRE_X, CENTRE_Z]]).T
+            along[points] = x * math.cos(pose[ROTATION]) - z * math.sin(pose[ROTATION])
         along[points] -= old.stick[points]  # a base that is wound up at rest has not slipped
         joint.stood_at = bearing_place(contact, along, old, points.start, points.stop, 0.0)
     return RunState(
@@ -461,7 +422,7 @@ def make_run(
         ledger=np.zeros(LEDGER_ROWS),
         clock=clock.view(np.recarray),
         joints=joints,
-        links=make_links(links),
+        links=records.view(np.recarray),
         track=make_observables(),
         contents=np.zeros((8, 2 * (monitors - control.top_monitors))),
         strained=np.full((stress.group.size, strained, 1 + old.position.size), -1.0),

@@ -37,12 +37,10 @@ from contact.stepping.ledger import (
     IMPACTS,
     MATERIAL_DAMPING,
     contact_losses,
-    crushing_work,
     spring_energy,
     work_of_lift,
 )
 from contact.stepping.links import LinkedBody, links_of, push_of_links
-from contact.stepping.scheme import Scheme
 from contact.stepping.state import RunState
 
 FLIGHT = 1e-3  #: gap over half the width from which a base that rolls has left the floor
@@ -58,43 +56,10 @@ def copy_rows(target: FloatArray, source: FloatArray) -> None:
 
 
 @compiled(inline=True)
-def rebase_acceleration(scheme: Scheme, old: State, shortened: float) -> None:
-    """Shift the acceleration of the scheme to the lag of a step that is shorter by `shortened` [s].
-
-    The averaged equation places it (alpha_f - alpha_m) steps before the end of its step. Without the shift, a change of
-    the step would reduce the scheme to first order.
-    """
-    shift = (scheme.alpha_f - scheme.alpha_m) * shortened
-    if shift != 0.0:
-        for j in range(old.acceleration.size):
-            old.acceleration[j] += shift * old.jerk[j]
-
-
-@compiled(inline=True)
-def store_rates(step: float, old: State, new: State, work: Workspace) -> None:
-    """Velocities of the base points and rates of change over the step, for the step control."""
-    per_second = 1.0 / step
-    for i in range(new.descent.shape[0]):
-        new.descent[i, 0] = -work.velocity[i, 1]
-        new.descent[i, 1] = (new.descent[i, 0] - old.descent[i, 0]) * per_second
-        new.drift[i, 0] = work.velocity[i, 0]
-        new.drift[i, 1] = (new.drift[i, 0] - old.drift[i, 0]) * per_second
-    for j in range(new.jerk.size):
-        new.jerk[j] = (new.acceleration[j] - old.acceleration[j]) * per_second
-
-
-@compiled(inline=True)
 def indent(contact: Contact, point: FloatArray, crushed: FloatArray) -> None:
     """Add camber and indentations (n,) to the heights of points (n, 2), which makes them gaps [m]."""
     for i in range(point.shape[0]):
         point[i, 1] += contact.camber[i] + crushed[i]
-
-
-@compiled(inline=True)
-def grow_caps(contact: Contact, old: State, work: Workspace) -> None:
-    """Largest normal forces in a step, constant within it: they follow from the indentations before it."""
-    for i in range(work.cap.size):
-        work.cap[i] = contact.cap[i] * (1.0 + contact.cap_growth[i] * old.crushed[i])
 
 
 @compiled(inline=True)
@@ -187,18 +152,6 @@ def add_rolling(run: RunState, share: float, force: FloatArray) -> None:
         force[i, 1] += share * (point[i, 0] - middle)
 
 
-@compiled(inline=True)
-def rolling_loss(run: RunState) -> float:
-    """Energy that the couple of rolling takes in the attempted step [J]."""
-    clock, old, new, n = run.clock[0], run.old, run.attempt.new, run.problem.control.base_points
-    middle, loss = middle_of(old.point, n), 0.0
-    share = 0.5 * (clock.rolling_before + clock.rolling)
-    for i in range(n):
-        sunk = (old.point[i, 1] - old.crushed[i]) - (new.point[i, 1] - new.crushed[i])
-        loss += share * (old.point[i, 0] - middle) * sunk
-    return loss
-
-
 @inlined
 def attempt(body: Any, run: RunState, step: float) -> int:
     """Try one step and write the result to `run.attempt.new`; returns the number of iterations, or -1."""
@@ -206,19 +159,22 @@ def attempt(body: Any, run: RunState, step: float) -> int:
     clock = run.clock[0]
     floor, floor_velocity, floor_acceleration = floor_motion(run.problem.motion, clock.time + step)
     run.floor[1, 0], run.floor[1, 1], run.floor[1, 2] = floor, floor_velocity, floor_acceleration
-    if (
-        run.problem.vertical.kind != UNIFORM
-    ):  # else it stays where it is, and the call would cost as much as a tenth of a step
+    if run.problem.vertical.kind != UNIFORM:  # else the call would cost as much as a tenth of a step
         run.lift[1, 0], run.lift[1, 1], run.lift[1, 2] = rare_motion(run.problem.vertical, clock.time + step)
     lift, lift_velocity = run.lift[1, 0], run.lift[1, 1]
     ground = Ground(floor, floor_velocity, lift, lift_velocity)
     slope = scheme.newmark_gamma / (scheme.newmark_beta * step)
-    rebase_acceleration(scheme, old, clock.lag_step - step)
+    # The averaged equation lags by (alpha_f - alpha_m) steps: else a change of the step would make it of first order.
+    shift = (scheme.alpha_f - scheme.alpha_m) * (clock.lag_step - step)
+    if shift != 0.0:
+        for k in range(old.acceleration.size):
+            old.acceleration[k] += shift * old.jerk[k]
     clock.lag_step = step
     predict(body, scheme, step, old, new)
     copy_rows(work.force, old.force)
     contact = run.problem.contact
-    grow_caps(contact, old, work)
+    for i in range(work.cap.size):  # constant within the step
+        work.cap[i] = contact.cap[i] * (1.0 + contact.cap_growth[i] * old.crushed[i])
     # Friction follows the extrapolated velocity: its fall is a negative damping, not to be solved implicitly.
     for j in range(run.joints.shape[0]):
         begin, end = points_of(run, j)
@@ -235,7 +191,7 @@ def attempt(body: Any, run: RunState, step: float) -> int:
         indent(contact, work.free, old.crushed)
         if rolls:
             push_rolling(run, clock.rolling, slope)
-        solved = solve_contact(contact, step, slope, work.mu, old.point, old.stick, work)
+        solved = solve_contact(contact, step, slope, old.point, old.stick, work)
         if solved < 0:
             return -1
         clock.contact_iterations += solved
@@ -244,7 +200,14 @@ def attempt(body: Any, run: RunState, step: float) -> int:
         converged = respond(body, scheme, step, old, new, work) <= 1.0
         if converged:
             copy_rows(new.force, work.force)
-            store_rates(step, old, new, work)
+            per_second = 1.0 / step
+            for i in range(new.descent.shape[0]):
+                new.descent[i, 0] = -work.velocity[i, 1]
+                new.descent[i, 1] = (new.descent[i, 0] - old.descent[i, 0]) * per_second
+                new.drift[i, 0] = work.velocity[i, 0]
+                new.drift[i, 1] = (new.drift[i, 0] - old.drift[i, 0]) * per_second
+            for k in range(new.jerk.size):
+                new.jerk[k] = (new.acceleration[k] - old.acceleration[k]) * per_second
             complete(body, new, floor, lift, lift_velocity)
         if rolls:
             add_rolling(run, -clock.rolling, work.force)
@@ -267,16 +230,7 @@ def account(run: RunState, step: float, loose: bool | None, links: LinkedBody | 
         shear += 0.5 * (old.force[i, 0] + new.force[i, 0])
     if links is not None:  # what holds them moves with the floor
         shear += push_of_links(run, links)
-    friction, damping = contact_losses(
-        run.problem.contact,
-        old.point,
-        new.point,
-        old.force,
-        new.force,
-        old.stick,
-        new.stick,
-        run.attempt.slip,
-    )
+    friction, damping, crushing = contact_losses(run.problem.contact, old, new, run.attempt.slip)
     material = 0.0
     for j in range(new.damping.size):
         material += 0.5 * (old.damping[j] + new.damping[j]) * (new.position[j] - old.position[j])
@@ -285,7 +239,12 @@ def account(run: RunState, step: float, loose: bool | None, links: LinkedBody | 
         damping += run.clock[0].spring_energy - before
         before = run.clock[0].spring_energy
     if run.problem.contact.rolling_time > 0.0:
-        damping += rolling_loss(run)
+        n, loss = run.problem.control.base_points, 0.0
+        middle, share = middle_of(old.point, n), 0.5 * (run.clock[0].rolling_before + run.clock[0].rolling)
+        for i in range(n):
+            sunk = (old.point[i, 1] - old.crushed[i]) - (new.point[i, 1] - new.crushed[i])
+            loss += share * (old.point[i, 0] - middle) * sunk
+        damping += loss
     stored = spring_energy(run.problem.contact, new.point, new.stick) - before
     for row in (KINETIC, STRAIN, POTENTIAL):
         stored += new.energy[row] - old.energy[row]
@@ -296,14 +255,7 @@ def account(run: RunState, step: float, loose: bool | None, links: LinkedBody | 
     change[FRICTION] = friction
     change[CONTACT_DAMPING] = damping
     change[MATERIAL_DAMPING] = material
-    change[CRUSHING] = crushing_work(old.force, new.force, old.crushed, new.crushed)
+    change[CRUSHING] = crushing
     change[IMPACTS] = 0.0
-    change[IMBALANCE] = change[BASE_WORK] - friction - damping - material - change[CRUSHING] - stored
+    change[IMBALANCE] = change[BASE_WORK] - friction - damping - material - crushing - stored
     return friction + damping + material
-
-
-@compiled(inline=True)
-def copy_state(old: State, new: State) -> None:
-    """Copy `new` to `old`, all but the monitored points."""
-    for i in range(old.numbers.size):
-        old.numbers[i] = new.numbers[i]

@@ -15,8 +15,7 @@ from contact.interface.penalty import contact_frequency
 from contact.motion.base_motion import BaseMotion
 from contact.motion.kernel import PIECEWISE, SUM, floor_motion
 from contact.reference.floor_acceleration import FloorAcceleration
-from contact.reference.planar_block import PlanarBlock, simulate_planar_block
-from contact.reference.planar_motion import PlanarImpact, PlanarMode
+from contact.reference.planar_block import PlanarBlock, PlanarImpact, PlanarMode, simulate_planar_block
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import RockingImpact, RockingMotion, simulate_rocking
 from contact.stepping.observables import ROCKING, SLIDING

@@ -15,7 +15,7 @@ from collections.abc import Callable
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from contact.reference.planar_motion import PlanarMode
+from contact.reference.planar_block import PlanarMode
 from contact.reference.rigid_block import RigidBlock
 
 

@@ -13,8 +13,7 @@ from floors import sine_floor, still_floor
 from runs import FRICTION, SLENDERNESS, SOLID, STACK, TILTED, Keys, harmonic, run
 from verification.checks import MESH, PROGRAM, Findings, check
 
-from contact.reference.planar_block import PlanarBlock, simulate_planar_block
-from contact.reference.planar_motion import PlanarMode
+from contact.reference.planar_block import PlanarBlock, PlanarMode, simulate_planar_block
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
 from fem.model.model import build_model

@@ -6,8 +6,7 @@ The block shares no code with the stepping: Housner's impacts, exact events (`co
 import numpy as np
 import pytest
 
-from contact.reference.planar_block import PlanarBlock, simulate_planar_block
-from contact.reference.planar_motion import PlanarMode
+from contact.reference.planar_block import PlanarBlock, PlanarMode, simulate_planar_block
 from fem.assessment.rigid_check import block_of, floor_of
 from fem.model.model import build_model
 from fem.run.simulation import AFTERMATH

@@ -4,12 +4,11 @@ import numpy as np
 import pytest
 
 from contact.arrays import FloatArray
-from contact.interface.contact_points import EDGE, make_faces, points_of_joint
+from contact.interface.contact_points import make_faces
 from contact.interface.faces import (
     Faces,
     condense_points,
     linearise_points,
-    move_corners,
     place_points,
     share_forces,
     weigh_points,
@@ -148,18 +147,6 @@ def test_a_corner_loads_the_ends_of_its_face_by_the_lever_rule(share):
     assert shared[3] == pytest.approx([30.0 * share, -100.0 * share])
 
 
-def test_a_gap_is_bridged_by_a_pair_of_forces_on_the_face():
-    corners = undeformed([(1.0, 1.0), (1.0, 1.0)])
-    faces = faces_of(corners)
-    corners[4:, 1] += 0.05
-    linearise_points(faces, corners, np.zeros((6, 2)))
-    force, shared = np.zeros((6, 2)), np.zeros((8, 2))
-    force[2, 0] = 10.0
-    share_forces(faces, force, shared)
-    assert shared[2:4, 0].sum() == pytest.approx(-10.0)
-    assert shared[2:4, 1] == pytest.approx([-0.5, 0.5])  # 10 N over 0.05 m, on a lever of 1 m
-
-
 def test_forces_do_not_jump_where_corners_pass_the_edge_of_a_face():
     """A box pushed across an equal one by 2e-3 of the width, pressed in by a constant depth and lean."""
     width, depth, lean = 1.1, 3e-5, 1e-5
@@ -209,20 +196,3 @@ def test_a_corner_that_slides_onto_a_face_takes_over_where_it_is():
     weigh_points(faces, corners, points, contact_of(faces))
     assert points[2] == pytest.approx([0.3 + faces.origin[2], -1e-5], abs=1e-12)
     assert faces.weight[4] == 0.0 and points[4, 1] == 1.0  # the right one is beside it
-
-
-def test_corners_under_force_move_by_the_compliance_of_their_box():
-    under = make_workspace(8)
-    draw = np.random.default_rng(1)
-    for b in range(2):
-        under.compliance[8 * b : 8 * b + 8, 8 * b : 8 * b + 8] = draw.normal(size=(8, 8))
-    under.free[:], under.force[:] = draw.normal(size=(8, 2)), draw.normal(size=(8, 2))
-    move_corners(under)
-    assert under.point.ravel() == pytest.approx(under.free.ravel() + under.compliance @ under.force.ravel())
-
-
-def test_points_are_in_the_order_of_the_joints():
-    faces = faces_of(undeformed())
-    assert [points_of_joint(j) for j in range(3)] == [slice(0, 2), slice(2, 6), slice(6, 10)]
-    assert faces.corner[2:4, :3].tolist() == [[4, 2, 3], [2, 4, 5]]
-    assert faces.edge[2:6] == pytest.approx(EDGE * 0.9)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import fsolve
 
-from contact.interface.penalty import choose_normal_penalty, contact_frequency, relaxation_time
+from contact.interface.penalty import choose_normal_penalty, relaxation_time
 from contact.interface.support import choose_support, tributary_lengths
 
 UNEVEN = np.array([-0.55, -0.52, -0.40, -0.15, 0.20, 0.41, 0.55])
@@ -28,55 +28,10 @@ def test_tributary_lengths_integrate_what_the_elements_can_represent(order):
     assert (lengths > 0.0).all()
 
 
-@pytest.mark.parametrize(("count", "order"), [(1, 1), (4, 2), (2, 2), (1, 2)])
-def test_nodes_that_make_no_whole_elements_are_refused(count, order):
-    with pytest.raises(ValueError, match="do not form elements"):
-        tributary_lengths(np.linspace(0.0, 1.0, count), order)
-
-
-def test_corners_are_the_ends_of_the_base_and_share_it():
-    support = choose_support("corners", UNEVEN, depth=0.8, order=1)
-    assert support.index.tolist() == [0, 6]
-    assert support.normal_stiffness(1e9) == pytest.approx([1e9 * 0.55 * 0.8] * 2)
-
-
-def test_a_flat_base_is_every_node_and_carries_the_penalty_over_its_whole_area():
-    support = choose_support("flat", with_middles(UNEVEN), depth=0.8, order=2)
-    assert support.index.tolist() == list(range(13))
-    assert support.normal_stiffness(1e9).sum() == pytest.approx(1e9 * 1.1 * 0.8)
-
-
 def test_feet_are_the_nodes_within_their_length_and_nothing_between():
     support = choose_support("feet", UNEVEN, depth=0.8, order=1, feet=(0.15, 0.14))
     assert support.index.tolist() == [0, 1, 2, 5, 6]
     assert support.length == pytest.approx([0.015, 0.075, 0.06, 0.07, 0.07])
-
-
-def test_feet_of_second_order_elements_end_at_a_mesh_line_not_at_a_middle():
-    x = with_middles(UNEVEN)
-    assert choose_support("feet", x, depth=0.8, order=2, feet=(0.15, 0.14)).index.tolist() == [
-        0,
-        1,
-        2,
-        3,
-        4,
-        10,
-        11,
-        12,
-    ]
-    with pytest.raises(ValueError, match="do not end at a mesh line"):
-        choose_support("feet", x, depth=0.8, order=2, feet=(0.09, 0.14))
-
-
-@pytest.mark.parametrize("feet", [(0.0, 0.1), (0.1, -0.1), (0.6, 0.5), (math.nan, 0.1)])
-def test_feet_that_are_missing_or_overlap_are_refused(feet):
-    with pytest.raises(ValueError, match="foot_m"):
-        choose_support("feet", UNEVEN, depth=0.8, order=1, feet=feet)
-
-
-def test_an_unknown_support_names_the_known_ones():
-    with pytest.raises(ValueError, match="corners, feet, flat"):
-        choose_support("wheels", UNEVEN, depth=0.8, order=1)
 
 
 STACK = {
@@ -139,18 +94,6 @@ def test_a_wide_base_near_uplift_tilts_by_a_thousandth_of_the_slenderness_angle(
         assert springs.sum() == pytest.approx(springs_per_length * 2.0 * foot, rel=1e-3)
     tilt = tilt_on_a_bed(x, springs, STACK["weight"], 0.9 * 0.55)
     assert tilt == pytest.approx(1e-3 * STACK["slenderness_angle"], rel=1e-3)
-
-
-def test_a_short_foot_is_stiffer_than_the_strip_it_stands_for():
-    flat = choose_normal_penalty("flat", **STACK)
-    assert choose_normal_penalty("feet", **STACK, foot=0.3) == flat
-    # 2 W/(depth s tilt s): half the strip, four times the penalty.
-    assert choose_normal_penalty("feet", **STACK, foot=0.0825) == pytest.approx(4.0 * flat)
-
-
-def test_the_contact_frequency_follows_from_the_sinking_under_the_own_weight():
-    # m g = k u and omega^2 = k/m: omega^2 = g/u; the stack sinks by 1.771e-5 m: 118.4 Hz.
-    assert contact_frequency(1e4, 98_100.0 / 1.771e-5) == pytest.approx(118.45, abs=0.01)
 
 
 def test_the_damping_ratio_is_that_of_the_whole_mass_on_one_corner():

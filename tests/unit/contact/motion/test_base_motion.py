@@ -101,22 +101,6 @@ def test_break_times_within_the_run():
     assert MOTIONS["rectangular"].break_times == pytest.approx([0.25, 0.95])
 
 
-def test_acceleration_jumps_exactly_at_the_break_times():
-    for name in ("rectangular", "half-sine"):
-        motion = MOTIONS[name]
-        end = motion.break_times[-1]
-        assert motion.evaluate(np.array([end]))[2, 0] == 0.0
-        before = motion.evaluate(np.array([np.nextafter(end, 0.0)]))[2, 0]
-        assert before == pytest.approx(3.0 if name == "rectangular" else 0.0, abs=1e-12)
-    assert MOTIONS["rectangular"].evaluate(np.array([0.25]))[2, 0] == 3.0
-
-
-@pytest.mark.parametrize(("duration", "share"), [(20.0, 1.0), (0.1 * PERIOD, math.sin(0.2 * math.pi))])
-def test_peak_acceleration_of_a_drive_is_the_largest_that_the_floor_reaches(duration, share):
-    motion = tapered(ramp_cycles=0.0, duration=duration)
-    assert motion.peak_acceleration == pytest.approx(0.05 * OMEGA**2 * share, rel=1e-9)
-
-
 @pytest.mark.parametrize("ramp_cycles", [0.3, 0.5, 1.0, 2.0, 3.0, 10.0])
 @pytest.mark.parametrize("phase", [0.0, 0.9, 2.0])
 def test_peak_acceleration_includes_what_a_steep_ramp_adds(ramp_cycles, phase):
@@ -140,39 +124,6 @@ def test_pulse_leaves_the_floor_with_the_velocity_reached(shape, velocity, displ
     assert x == pytest.approx([0.0, 0.0, x_end, x_end + 2.0 * v_end], abs=1e-14)
     assert a[2] == a[3] == 0.0
     assert motion.peak_acceleration == 3.0 and motion.time_scale == 0.8
-
-
-def test_no_motion_is_rest():
-    assert (NoMotion().evaluate(np.linspace(-1.0, 9.0, 7)) == 0.0).all()
-    assert NoMotion().peak_acceleration == 0.0 and NoMotion().break_times.size == 0
-
-
-@pytest.mark.parametrize(
-    ("change", "word"),
-    [
-        ({"amplitude": -0.05}, "amplitude"),
-        ({"amplitude": math.nan}, "amplitude"),
-        ({"angular_frequency": 0.0}, "frequency"),
-        ({"duration": 0.0}, "duration"),
-        ({"phase": math.inf}, "phase"),
-        ({"ramp_cycles": -1.0}, "ramp"),
-        ({"cycles": 0.0}, "cycles"),
-        ({"ramp_cycles": 12.0}, "do not fit"),
-    ],
-)
-def test_harmonic_refuses(change, word):
-    with pytest.raises(ValueError, match=word):
-        tapered(**change)
-
-
-@pytest.mark.parametrize(
-    ("change", "word"),
-    [({"shape": "square"}, "shape"), ({"acceleration": math.nan}, "acceleration"), ({"pulse": 0.0}, "length"),
-     ({"delay": -0.1}, "delay")],
-)  # fmt: skip
-def test_pulse_refuses(change, word):
-    with pytest.raises(ValueError, match=word):
-        PulseMotion(**{"shape": "sine", "acceleration": 1.0, "pulse": 0.5, **change})
 
 
 class TestMotionsOnASlope:

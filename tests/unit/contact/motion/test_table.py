@@ -1,7 +1,5 @@
 """Tables of base motion: exact integrals, baselines, splines, and what is refused."""
 
-import math
-
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -64,10 +62,6 @@ def test_floor_is_at_rest_before_the_table_and_coasts_after_it():
     assert later[:2] == pytest.approx([end[0] + 3.0 * end[1], end[1]], rel=1e-14)
 
 
-def test_peak_acceleration_is_the_largest_sample():
-    assert TableMotion(times=TIMES, values=VALUES).peak_acceleration == np.abs(VALUES).max()
-
-
 @pytest.mark.parametrize("count", [2, 3, 40])
 def test_a_displacement_table_is_the_natural_spline(count):
     times, values = TIMES[:count], VALUES[:count]
@@ -77,24 +71,3 @@ def test_a_displacement_table_is_the_natural_spline(count):
     for order, row in enumerate(motion.evaluate(within)):
         largest = np.abs(spline(within, order)).max()
         assert row == pytest.approx(spline(within, order), rel=1e-9, abs=1e-9 * largest)
-
-
-@pytest.mark.parametrize(
-    ("times", "values", "words"),
-    [
-        ([0.0, 2.0, 1.0], [0.0, 1.0, 2.0], r"sample 3 \(1.0 s\) is earlier than sample 2"),
-        ([0.0, 1.0, 1.0], [0.0, 1.0, 2.0], r"time 1.0 s occurs twice \(samples 2 and 3\)"),
-        ([0.0, math.nan, 1.0], [0.0, 1.0, 2.0], "time of sample 2 is not a finite number"),
-        ([0.0, 1.0, 2.0], [0.0, 1.0, math.inf], "value of sample 3 is not a finite number"),
-        ([0.0], [1.0], "two samples or more are needed, got 1"),
-        ([0.0, 1.0], [1.0], "of one length"),
-    ],
-)
-def test_bad_samples_are_refused_each_with_its_own_message(times, values, words):
-    with pytest.raises(ValueError, match=words):
-        TableMotion(times=np.array(times), values=np.array(values))
-
-
-def test_an_unknown_quantity_is_refused():
-    with pytest.raises(ValueError, match="quantity"):
-        TableMotion(times=TIMES, values=VALUES, quantity="velocity")

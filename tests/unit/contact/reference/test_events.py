@@ -26,10 +26,6 @@ def test_a_limit_exceeded_between_samples_is_seen(centre):
     assert time == pytest.approx(centre - 1e-4, abs=1e-12)
 
 
-def test_a_limit_only_touched_is_no_event():
-    assert crossing_of(lambda t: (t - 0.3) ** 2 + 1e-8) is None
-
-
 def test_a_margin_that_starts_from_zero_and_rises_is_no_event():
     assert crossing_of(lambda t: t * (2.0 - t)) is None
 
@@ -37,16 +33,6 @@ def test_a_margin_that_starts_from_zero_and_rises_is_no_event():
 def test_a_hop_shorter_than_a_sample_is_not_stepped_over():
     time, _ = crossing_of(lambda t: t * (1e-5 - t))
     assert time == pytest.approx(1e-5, rel=1e-12)
-
-
-def test_the_earliest_of_several_guards_wins():
-    guards = [
-        Guard(name="late", margin=lambda state, a: 0.51 - float(state[0])),
-        Guard(name="early", margin=lambda state, a: 0.505 - float(state[0])),
-    ]
-    crossing = first_crossing(guards, lambda t: np.array([t]), lambda t: 0.0, 0.0, 1.0)
-    assert crossing is not None
-    assert crossing[1] == "early"
 
 
 def test_a_thrown_body_turns_and_lands_when_the_parabola_says():

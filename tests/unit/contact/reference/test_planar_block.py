@@ -1,20 +1,41 @@
+"""The planar block: its equations against Newton and Euler, its motions against rocking and sliding alone."""
+
 import math
 
 import numpy as np
 import pytest
 from floors import sine_floor, still_floor
+from hypothesis import given
+from hypothesis import strategies as st
 from rigid_slider import RigidSlider, simulate_sliding
 from scipy.optimize import brentq
 
 from contact.reference.floor_acceleration import Acceleration, FloorAcceleration
-from contact.reference.planar_block import PlanarBlock, simulate_planar_block
-from contact.reference.planar_equations import energy
-from contact.reference.planar_motion import PlanarMode
+from contact.reference.planar_block import (
+    PlanarBlock,
+    PlanarMode,
+    centroidal_ratio,
+    corner_impact,
+    rock,
+    simulate_planar_block,
+    slide_rock,
+)
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
 
 STACK = RigidBlock.homogeneous(width=1.1, height=4.0)
 BOX = RigidBlock.homogeneous(width=1.1, height=1.0)
+ODD = RigidBlock(half_width=0.5, centroid_height=0.8, gravity=9.81, inertia_ratio=1.25)
+
+
+def energy(block, side, state):
+    """Kinetic energy relative to the floor plus potential energy above rest, per mass [J/kg]."""
+    _, slip_velocity, tilt, tilt_rate = (float(value) for value in np.asarray(state))
+    lean = block.slenderness_angle - tilt
+    horizontal = slip_velocity + side * block.radius * math.cos(lean) * tilt_rate
+    vertical = block.radius * math.sin(lean) * tilt_rate
+    kinetic = 0.5 * (horizontal**2 + vertical**2 + tilt_rate**2 / centroidal_ratio(block))
+    return kinetic + block.gravity * (block.radius * math.cos(lean) - block.centroid_height)
 
 
 def test_with_friction_to_spare_it_is_the_rocking_block():
@@ -73,14 +94,6 @@ def test_endless_impacts_end_in_rest_or_in_sliding():
     assert names[-2:] == [PlanarMode.SLIDE, PlanarMode.REST]
 
 
-def test_a_block_too_slender_to_slide_upright_trips():
-    # mu_k above B/H: pushed along, it turns about its leading corner.
-    block = PlanarBlock(body=STACK, mu_static=0.4, mu_kinetic=0.4)
-    motion = simulate_planar_block(block, still_floor(), duration=0.05, slip_velocity=0.5)
-    assert motion.transitions[0].state.mode is PlanarMode.SLIDE_ROCK
-    assert motion.at(np.array([0.05])).rotation[0] > 0.0
-
-
 def test_a_jump_of_the_floor_that_exceeds_friction_for_an_instant_is_not_missed():
     # The stick limit of a rocking block is passed by a millionth at the jump, and is met again at once.
     block = PlanarBlock(body=STACK, mu_static=0.4, mu_kinetic=0.4)
@@ -105,29 +118,120 @@ def test_a_jump_of_the_floor_that_exceeds_friction_for_an_instant_is_not_missed(
             assert motion.transitions[1].time == 0.05
 
 
-def test_overturning_ends_the_motion():
-    block = PlanarBlock(body=STACK, mu_static=1.0, mu_kinetic=1.0)
-    motion = simulate_planar_block(block, still_floor(), duration=20.0, rotation=-0.3)
-    assert motion.outcome is PlanarMode.OVERTURNED
-    assert motion.end < 20.0
-    assert motion.largest_rotation == pytest.approx(0.5 * math.pi, abs=1e-12)
+#: tilt, its rate, and the floor's acceleration along x and upward
+MOTIONS = [
+    (0.0, 0.0, Acceleration(4.0)),
+    (0.1, 0.6, Acceleration(-3.0, 2.5)),
+    (0.7, -1.1, Acceleration(2.0, -4.0)),
+]
 
 
-def test_free_flight_is_reported_and_not_followed():
-    # Turning at 6 rad/s, the centroid would need a pull: g < R w^2 cos(al).
-    block = PlanarBlock(body=STACK, mu_static=1.0, mu_kinetic=1.0)
-    motion = simulate_planar_block(block, still_floor(), duration=1.0, rotation=0.01, angular_velocity=6.0)
-    assert motion.outcome is PlanarMode.OUTSIDE
-    assert motion.end == 0.0
-    assert np.isnan(motion.at(np.array([0.5])).rotation[0])
-    assert motion.at(np.array([0.5])).modes == (None,)
+def centroid(block, side, slip, tilt):
+    """Position of the centroid and rotation of a block whose corner has slipped, from plain geometry."""
+    corner = np.array([slip + side * block.half_width, 0.0])
+    upright = np.array([-side * block.half_width, block.centroid_height])
+    turn = side * tilt  # clockwise
+    rotation = np.array([[math.cos(turn), math.sin(turn)], [-math.sin(turn), math.cos(turn)]])
+    return corner + rotation @ upright
 
 
-def test_nonsense_is_refused():
-    with pytest.raises(ValueError, match="mu_kinetic must not exceed mu_static"):
-        PlanarBlock(body=STACK, mu_static=0.2, mu_kinetic=0.3)
-    block = PlanarBlock(body=STACK, mu_static=0.3, mu_kinetic=0.3)
-    with pytest.raises(ValueError, match="duration"):
-        simulate_planar_block(block, still_floor(), duration=math.inf)
-    with pytest.raises(ValueError, match="90 degrees"):
-        simulate_planar_block(block, still_floor(), duration=1.0, rotation=-1.6)
+def newton_euler_residual(block, side, tilt, rate, floor, contact):
+    """Forces and moment that are left over; the centroid's acceleration by differences of its path."""
+    h = 1e-4
+
+    def place(t):
+        slip = 0.5 * contact.slip_acceleration * t * t
+        return centroid(block, side, slip, tilt + rate * t + 0.5 * contact.tilt_acceleration * t * t)
+
+    acceleration = (place(h) - 2.0 * place(0.0) + place(-h)) / h**2
+    corner = np.array([side * block.half_width, 0.0]) - place(0.0)
+    force = np.array([contact.friction, contact.normal])
+    clockwise = corner[1] * force[0] - corner[0] * force[1]
+    inertia = (block.inertia_ratio - 1.0) * block.radius**2
+    return [
+        acceleration[0] + floor.x - force[0],
+        acceleration[1] + block.gravity + floor.z - force[1],
+        inertia * side * contact.tilt_acceleration - clockwise,
+    ]
+
+
+@pytest.mark.parametrize("block", [STACK, ODD])
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize(("tilt", "rate", "floor"), MOTIONS)
+def test_rocking_obeys_newton_and_euler(block, side, tilt, rate, floor):
+    contact = rock(block, side, tilt, rate, floor)
+    assert newton_euler_residual(block, side, tilt, rate, floor, contact) == pytest.approx(
+        [0.0] * 3, abs=1e-5
+    )
+
+
+@pytest.mark.parametrize("block", [STACK, ODD])
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize("direction", [1, -1])
+@pytest.mark.parametrize(("tilt", "rate", "floor"), MOTIONS)
+def test_slide_rocking_obeys_newton_euler_and_coulomb(block, side, direction, tilt, rate, floor):
+    contact = slide_rock(block, side, tilt, rate, floor, mu_kinetic=0.35, direction=direction)
+    assert newton_euler_residual(block, side, tilt, rate, floor, contact) == pytest.approx(
+        [0.0] * 3, abs=1e-5
+    )
+    assert contact.friction == pytest.approx(-direction * 0.35 * contact.normal, rel=1e-14)
+
+
+def test_painleve_is_reported_and_begins_at_four_thirds():
+    # homogeneous: 1 + 3 sin^2 - 3 mu sin cos vanishes first at tan(lean) = 1/2, mu = 4/3.
+    block = RigidBlock.homogeneous(width=1.0, height=2.0)
+    below = slide_rock(block, 1, 0.0, 0.0, Acceleration(-20.0), mu_kinetic=1.33, direction=1)
+    above = slide_rock(block, 1, 0.0, 0.0, Acceleration(-20.0), mu_kinetic=1.34, direction=1)
+    assert below.normal > 0.0
+    assert math.isnan(above.normal)
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_an_impact_with_enough_friction_is_housners(side):
+    impact = corner_impact(STACK, side, 0.0, -0.7, mu_static=0.21, mu_kinetic=0.0)
+    assert impact is not None
+    assert not impact.slides
+    assert impact.tilt_rate == pytest.approx(0.7 * STACK.housner_restitution, rel=1e-13)
+
+
+@given(
+    half_width=st.floats(0.05, 3.0),
+    inertia_ratio=st.floats(1.05, 1.9),
+    side=st.sampled_from([1, -1]),
+    slip_velocity=st.one_of(st.just(0.0), st.floats(-2.0, 2.0)),
+    mu_static=st.floats(0.0, 1.2),
+    share=st.floats(0.0, 1.0),
+)
+def test_no_impact_gains_energy_or_pulls(half_width, inertia_ratio, side, slip_velocity, mu_static, share):
+    block = RigidBlock(half_width=half_width, centroid_height=1.0, gravity=9.81, inertia_ratio=inertia_ratio)
+    mu_kinetic = share * mu_static
+    impact = corner_impact(block, side, slip_velocity, -0.8, mu_static=mu_static, mu_kinetic=mu_kinetic)
+    if impact is None:
+        return
+    before = energy(block, side, np.array([0.0, slip_velocity, 0.0, -0.8]))
+    after = energy(block, -side, np.array([0.0, impact.slip_velocity, 0.0, impact.tilt_rate]))
+    assert after <= before * (1.0 + 1e-12)
+    assert impact.normal_impulse > 0.0
+    assert impact.tilt_rate >= 0.0
+    limit = max(mu_static, mu_kinetic) * impact.normal_impulse
+    assert abs(impact.friction_impulse) <= limit * (1.0 + 1e-12) + 1e-15
+    if impact.slides:  # friction opposes the sliding it leaves
+        assert impact.friction_impulse * impact.slip_velocity <= 0.0
+
+
+@given(half_width=st.floats(0.05, 0.65), slip_velocity=st.floats(-1.0, 1.0), mu=st.floats(0.0, 1.2))
+def test_an_impact_balances_momentum(half_width, slip_velocity, mu):
+    block = RigidBlock(half_width=half_width, centroid_height=1.0, gravity=9.81)
+    impact = corner_impact(block, 1, slip_velocity, -0.8, mu_static=mu, mu_kinetic=mu)
+    assert impact is not None
+    if impact.tilt_rate == 0.0:  # both corners took part: the point of action is between them
+        return
+    horizontal = slip_velocity - 0.8, impact.slip_velocity - impact.tilt_rate
+    vertical = -half_width * 0.8, half_width * impact.tilt_rate
+    spin = -0.8, -impact.tilt_rate
+    inertia = block.radius**2 / 3.0
+    assert horizontal[1] - horizontal[0] == pytest.approx(impact.friction_impulse, abs=1e-12)
+    assert vertical[1] - vertical[0] == pytest.approx(impact.normal_impulse, abs=1e-12)
+    # new corner at (-B, -1) from the centroid, clockwise moment rz px - rx pz
+    moment = -1.0 * impact.friction_impulse + half_width * impact.normal_impulse
+    assert inertia * (spin[1] - spin[0]) == pytest.approx(moment, abs=1e-12)

@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 import pytest
-from floors import half_sine_pulse, rectangular_pulse, sine_floor, still_floor
-from two_block_motion import select, simulate_two_blocks
+from floors import sine_floor, still_floor
+from two_block_motion import simulate_two_blocks
 from two_blocks import (
     Footing,
     Pattern,
@@ -162,100 +162,3 @@ def test_a_stack_whose_joint_stays_closed_is_one_block():
     assert [hit.time for hit in two.impacts] == pytest.approx([hit.time for hit in one.impacts], abs=1e-9)
     times = np.linspace(0.0, 6.0, 50)
     assert two.at(times)[:, 2] == pytest.approx(one.at(times)[0], abs=1e-9)
-
-
-def test_on_a_heavy_block_the_upper_one_rocks_as_on_the_floor():
-    # 1e9 times as heavy, and wide: it does not move, and Housner's restitution holds.
-    plinth = StackedBlock.homogeneous(width=8.0, height=1.0, mass=1e12)
-    upper = StackedBlock.homogeneous(width=0.6, height=2.0, mass=1000.0)
-    stack = TwoBlockStack(lower=plinth, upper=upper, gravity=G, offset=1.0)
-    one = simulate_rocking(
-        RigidBlock.homogeneous(width=0.6, height=2.0), still_floor(), duration=2.0, rotation=0.1
-    )
-    two = simulate_two_blocks(stack, still_floor(), duration=2.0, state=(0.0, 0.0, 0.1, 0.0))
-    assert two.patterns == (Pattern.UPPER_ALONE,)
-    assert len(one.impacts) >= 3
-    assert [hit.time for hit in two.impacts] == pytest.approx([hit.time for hit in one.impacts], rel=1e-7)
-    found = [hit.rates[1] for hit in two.impacts]
-    assert found == pytest.approx([hit.velocity_after for hit in one.impacts], rel=1e-7)
-
-
-def start_of(stack, acceleration):
-    """The pattern in which the stack leaves its rest on a floor that accelerates so."""
-    footing = select(stack, np.zeros(4), Acceleration(acceleration))
-    return footing.pattern if footing is not None else None
-
-
-def test_equal_blocks_start_as_one_and_under_a_strong_jerk_opposite_ways():
-    # b half width, h half height: as one above g b/(2h), from moments about the corner; the joint opens on the
-    # other side from (a h + g b) (4/3)(b^2 + 4h^2) = (2 a h - g b)(10/3 h^2 - 2/3 b^2) on; on the same side never.
-    b, h = 0.55, 1.0
-    one = G * b / (2.0 * h)
-    opposite = G * b * (b**2 + 13.0 * h**2) / (2.0 * h * (h**2 - 2.0 * b**2))
-    assert start_of(EQUAL, 0.999 * one) is Pattern.REST
-    assert start_of(EQUAL, 1.001 * one) is start_of(EQUAL, 0.999 * opposite) is Pattern.AS_ONE
-    assert start_of(EQUAL, 1.001 * opposite) is Pattern.OPPOSITE_WAYS
-
-
-def test_a_slender_block_on_a_squat_one_starts_alone_and_both_start_the_same_way():
-    # alone above g b_2/h_2; then the lower block tips when moments of all about its corner vanish.
-    upper = ALONE.upper
-    alone = G * upper.half_width / upper.centroid_height
-    assert start_of(ALONE, 0.999 * alone) is Pattern.REST
-    assert start_of(ALONE, -1.001 * alone) is Pattern.UPPER_ALONE
-    b, c, height, mass = 0.7, 0.45, 0.9, ALONE.lower.mass
-    arm, rise = upper.half_width, upper.centroid_height
-    polar = upper.inertia + upper.mass * (arm**2 + rise**2)
-
-    def moment(a):
-        """About the lower block's corner, positive where it holds the block down."""
-        turning = upper.mass * (a * rise - G * arm) / polar
-        lever = b - arm
-        on_lower = (a - turning * rise, G + turning * arm)  # reaction at the upper foot, per mass
-        return mass * (G * b - a * c) + upper.mass * (on_lower[1] * lever - on_lower[0] * height)
-
-    low, high = alone, 5.0 * G
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if moment(middle) > 0.0 else (low, middle)
-    assert low > 1.1 * alone
-    assert start_of(ALONE, 0.9999 * low) is Pattern.UPPER_ALONE
-    assert start_of(ALONE, 1.0001 * low) is Pattern.SAME_WAY
-
-
-def test_the_mirror_image_through_all_patterns():
-    floor, other = (half_sine_pulse(peak=peak, duration=0.15) for peak in (-G, G))
-    times = np.linspace(0.0, 1.5, 151)
-    here = simulate_two_blocks(SLENDER_ON_BOX, floor, duration=1.5)
-    there = simulate_two_blocks(SLENDER_ON_BOX, other, duration=1.5)
-    assert set(here.patterns) == set(Pattern) - {Pattern.REST}
-    assert len(here.impacts) >= 3
-    assert here.at(times) == pytest.approx(-there.at(times), abs=1e-6)
-    mirrored = TwoBlockStack(lower=UNEQUAL.lower, upper=UNEQUAL.upper, gravity=G, offset=-UNEQUAL.offset)
-    here = simulate_two_blocks(UNEQUAL, floor, duration=1.5)
-    there = simulate_two_blocks(mirrored, other, duration=1.5)
-    assert here.at(times) == pytest.approx(-there.at(times), abs=1e-6)
-
-
-def test_a_floor_that_falls_ends_the_motion():
-    still = still_floor()
-    floor = still.with_vertical(rectangular_pulse(peak=-1.1 * G, duration=1.0, delay=0.5))
-    motion = simulate_two_blocks(EQUAL, floor, duration=1.0)
-    assert (motion.ended_by, motion.end) == ("leaves", 0.5)
-
-
-@pytest.mark.parametrize(
-    ("change", "word"), [({"offset": 1.2}, "mass centre"), ({"gravity": 0.0}, "gravity must be positive")]
-)
-def test_bad_stacks_are_refused(change, word):
-    with pytest.raises(ValueError, match=word):
-        TwoBlockStack(**({"lower": BOX, "upper": BOX, "gravity": G} | change))
-
-
-def test_bad_starts_are_refused():
-    with pytest.raises(ValueError, match="below 90 degrees"):
-        simulate_two_blocks(EQUAL, still_floor(), duration=1.0, state=(0.0, 0.0, 1.6, 0.0))
-    with pytest.raises(ValueError, match="duration must be positive"):
-        simulate_two_blocks(EQUAL, still_floor(), duration=0.0)
-    with pytest.raises(ValueError, match="half_width must be positive"):
-        StackedBlock.homogeneous(width=0.0, height=1.0, mass=1.0)

@@ -8,8 +8,7 @@ from floors import half_sine_pulse, rectangular_pulse, sine_floor, still_floor
 from rigid_slider import RigidSlider, simulate_sliding
 
 from contact.reference.floor_acceleration import FloorAcceleration
-from contact.reference.planar_block import PlanarBlock, simulate_planar_block
-from contact.reference.planar_motion import PlanarMode
+from contact.reference.planar_block import PlanarBlock, PlanarMode, simulate_planar_block
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import RockingOutcome, simulate_rocking
 
@@ -65,22 +64,6 @@ def test_a_slider_loses_what_friction_takes_of_a_changing_weight():
     motion = simulate_sliding(slider, floor, duration=0.5, slip_velocity=3.0)
     velocity = float(motion.at(np.array([0.5]))[1][0])
     assert velocity == pytest.approx(3.0 - 0.25 * (GRAVITY * 0.5 + 5.0 * 0.6 / math.pi), rel=1e-11)
-
-
-def test_uplift_and_slip_begin_where_the_weight_of_the_moment_allows_it():
-    # |a| against (g + a_v) B/H and mu (g + a_v): a ramp of a_v downward under a constant push.
-    push = 2.0
-    ramp = FloorAcceleration(function=lambda t: -10.0 * t, longest_step=math.inf)
-    floor = rectangular_pulse(peak=push, duration=2.0).with_vertical(ramp)
-    rocking = simulate_rocking(stack(), floor, duration=0.5)
-    assert rocking.uplifts[0] == pytest.approx((GRAVITY - push * 4.0 / 1.1) / 10.0, rel=1e-10)
-    sliding = simulate_sliding(
-        RigidSlider(mu_static=0.4, mu_kinetic=0.2, gravity=GRAVITY), floor, duration=0.5
-    )
-    assert sliding.intervals[0].end == pytest.approx((GRAVITY - push / 0.4) / 10.0, rel=1e-10)
-    both = simulate_planar_block(planar(mu=1.0), floor, duration=0.5)
-    assert both.transitions[1].time == pytest.approx(rocking.uplifts[0], rel=1e-12)
-    assert both.transitions[1].state.mode is PlanarMode.ROCK
 
 
 @pytest.mark.parametrize("push", [0.0, 1.0])

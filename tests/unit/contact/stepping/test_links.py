@@ -10,7 +10,7 @@ from contact.jit import compiled
 from contact.stepping import body as interface
 from contact.stepping import modal_kernels  # noqa: F401 - registers the operations of a modal body
 from contact.stepping.body import State, make_state
-from contact.stepping.links import LinkedBody, make_lines, place_links
+from contact.stepping.links import LinkedBody, make_lines
 from contact.stepping.modal_body import make_modal_body
 from contact.stepping.scheme import Scheme, generalised_alpha
 
@@ -82,12 +82,3 @@ def test_points_of_links_stand_where_the_condensed_problem_put_them():
     assert new.point[2, 1] == pytest.approx(0.55 + 0.1 - place[2, 0], abs=1e-12)
     assert new.point[3, 1] == pytest.approx(0.55 + 0.2 + place[3, 0], abs=1e-12)
     assert new.point[4, 1] == pytest.approx(0.03 - place[4, 1], abs=1e-12)
-
-
-def test_points_of_links_are_far_from_the_base_and_from_those_beside_them_along_their_faces():
-    body = make_body()
-    point = POINT + np.array([0.0, 2.0])
-    place_links(body.line, point)
-    links = point[-LINKS:, 0]
-    assert np.abs(np.diff(links)).min() > 4.0
-    assert np.abs(links).min() > 4.0 > 0.55 >= np.abs(point[:-LINKS, 0]).max()

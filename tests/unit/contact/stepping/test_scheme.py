@@ -28,23 +28,9 @@ def test_both_roots_at_infinite_frequency_are_the_spectral_radius(radius):
     assert abs(scheme.alpha_f / (scheme.alpha_f - 1.0)) == pytest.approx(radius, abs=1e-15)
 
 
-def test_without_dissipation_it_is_the_midpoint_form_of_average_acceleration():
-    assert generalised_alpha(1.0) == pytest.approx((0.25, 0.5, 0.5, 0.5))
-
-
 def test_the_default_radius_gives_the_printed_coefficients():
     # rho = 1/2: alpha_m = 0, alpha_f = 1/3, beta = 4/9, gamma = 5/6.
     assert generalised_alpha(0.5) == pytest.approx((4.0 / 9.0, 5.0 / 6.0, 0.0, 1.0 / 3.0))
-
-
-def test_newmark_averages_nothing():
-    assert newmark(0.3025, 0.6) == (0.3025, 0.6, 0.0, 0.0)
-
-
-@pytest.mark.parametrize("radius", [-1e-9, 1.0 + 1e-9, np.nan, np.inf])
-def test_a_spectral_radius_outside_its_range_is_refused(radius):
-    with pytest.raises(ValueError, match="spectral_radius"):
-        generalised_alpha(radius)
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from block_on_floor import GRAVITY, Block, rig
+from block_on_floor import GRAVITY
 from stack_on_floor import Box, joint_force, stack_rig
 
 from contact.interface.contact_points import points_of_joint
@@ -90,16 +90,6 @@ def test_the_ledger_holds_all_energy(elastic):
     assert shaken.joints.max_slip.max() > 0.05
     assert run.clock[0].least_imbalance > -1e-4 * reference
     assert run.clock[0].most_imbalance < 1e-2 * dissipation(run.ledger)
-
-
-def test_a_stack_of_one_box_moves_as_a_block_on_its_floor():
-    motion = HarmonicMotion(amplitude=4.0 / 6.928**2, angular_frequency=6.928, duration=20.0)
-    alone = stack_rig([Box(height=4.0, mass=10_000.0)], motion=motion)
-    block = rig(Block(), motion=motion).advance(3.0)
-    alone.advance(3.0)
-    assert int(alone.run.clock[0].samples) == int(block.clock.samples)
-    assert alone.columns[:, 0] == pytest.approx(block.rotation, abs=1e-9)
-    assert np.abs(block.rotation).max() > 0.05
 
 
 def test_stacks_with_scratch_of_their_own_do_not_disturb_one_another():
