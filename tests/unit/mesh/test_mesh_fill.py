@@ -12,7 +12,6 @@ from mesh.geometry import ContainerGeometry, Section
 from mesh.region import Region
 
 BOX = ContainerGeometry(width=1.1, height=1.0, depth=1.1, wall=0.008)
-BLOCK = ContainerGeometry(width=1.1, height=1.0, depth=1.1, section=Section.SOLID)
 
 
 @given(

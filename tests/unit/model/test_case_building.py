@@ -55,9 +55,6 @@ def test_auto_penalty_of_corners_sinks_in_by_the_promised_share_of_height_and_sw
     assert case.weight / stiffness == pytest.approx(min(1e-5 * 4.0, 6e-5 * swing), rel=1e-6)
 
 
-TABLE = 'kind = "table"\nfile = "floor.csv"\nquantity = "acceleration"\nunit = "g"\nscale = 2.0\n'
-
-
 @pytest.mark.parametrize(
     "overrides",
     [

@@ -23,17 +23,3 @@ def test_more_nodes_or_a_longer_run_keep_fewer_frames_and_a_given_interval_stays
     assert frame_interval(case, 600, 200.0) > INTERVALS[0]
     assert frame_interval(given, 100_000, 200.0) == 0.02
     assert frame_interval(case.without_fields(), 600, 20.0) == 0.0
-
-
-def test_time_after_a_pulse_in_which_the_container_usually_rests_counts_little():
-    pulse = load_case(
-        "rocking",
-        [
-            "motion.kind=pulse",
-            "motion.shape=sine",
-            "motion.pulse_s=1.0",
-            "motion.peak_acceleration_m_s2=2",
-            "solver.duration_s=auto",
-        ],
-    )
-    assert frame_interval(pulse, 2600, 61.0) == frame_interval(load_case("rocking"), 2600, 11.0)

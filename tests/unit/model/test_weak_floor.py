@@ -23,31 +23,6 @@ ASPHALT = {
     "floor.preset": "asphalt",
     "output.fields_s": 0.0,
 }
-BESIDE = """
-[container]
-width_m = 1.1
-height_m = 1.0
-depth_m = 1.0
-section = "solid"
-[[container.box]]
-mass_kg = 100
-[[container.box]]
-mass_kg = 1000
-offset_m = {offset}
-[contact]
-mu_static = 0.6
-[motion]
-kind = "harmonic"
-frequency_Hz = 1.0
-peak_acceleration_m_s2 = 0.5
-[solver]
-model = "rigid"
-[floor]
-kind = "slab"
-preset = "asphalt"
-corner_patch_m = {patch}
-bearing_strength_Pa = {strength}
-"""
 
 
 def on_asphalt(times, **values):

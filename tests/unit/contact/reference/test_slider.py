@@ -9,7 +9,6 @@ from contact.reference.floor_acceleration import FloorAcceleration
 
 GRAVITY = 9.81
 HALF = RigidSlider(mu_static=0.4, mu_kinetic=0.2, gravity=GRAVITY)
-EVEN = RigidSlider(mu_static=0.4, mu_kinetic=0.4, gravity=GRAVITY)
 
 
 def test_a_push_stops_after_the_distance_that_friction_allows():
