@@ -40,7 +40,6 @@ def batch(
             help="Whose run is repeated for sure and margin: the weakest tenth (at least 30), all, none."
         ),
     ] = "weakest",
-    strict: Annotated[bool, flag("Refuse the list if one of its rows is bad.")] = False,
     allow_outside: AllowOutside = False,
     pdf: Annotated[bool, flag("Print the short page to report-short.pdf, by Chromium or Chrome.")] = False,
     flags: StudyFlags = STUDY,
@@ -60,7 +59,7 @@ def batch(
     folder = flags.folder(listed.name)
     with flags.options() as options:
         result = importlib.import_module("fem.study.hall").run_hall(
-            listed, base, folder, motions=motion, checks=margins, strict=strict, **options
+            listed, base, folder, motions=motion, checks=margins, **options
         )
     page, pages = folder / PAGE, importlib.import_module("fem.report.study_page")
     if result.state == "finished" and not page.is_file():

@@ -29,7 +29,6 @@ def response(
         float | None, Parameter(name="--to", help="Highest frequency [Hz]; default: 30/11 of the case's own.")
     ] = None,
     count: Annotated[int, whole("Number of frequencies, both ends included.")] = 28,
-    scale: Annotated[Literal["linear", "log"], Parameter(help="Their spacing.")] = "linear",
     hold: Annotated[
         Literal["displacement", "acceleration"] | None,
         Parameter(
@@ -37,21 +36,9 @@ def response(
             help="Amplitude of the floor that is kept constant; default: the one that the case gives.",
         ),
     ] = None,
-    order: Annotated[
-        Literal["up-down", "down-up"], Parameter(help="Which way first; the motion continues at the turn.")
-    ] = "up-down",
     starts: Annotated[int, whole("Random states from which each frequency is begun as well; 0: none.")] = 8,
-    shell: Annotated[bool, flag("Follow the elastic container, too, up and down.")] = False,
     settle: Annotated[int, whole("Periods to leave out at each frequency.")] = 60,
     observe: Annotated[int, whole("Periods to observe at each frequency.")] = 48,
-    tolerance: Annotated[
-        float, Parameter(help="Distance below which two sections are equal, over the slenderness angle.")
-    ] = 5e-3,
-    largest_period: Annotated[int, whole("Longest period to look for, in periods of the floor.")] = 16,
-    limit_slip: Annotated[
-        float | None,
-        Parameter(help="Slip within the observed periods beyond which the container does not stand [m]."),
-    ] = None,
     out: Annotated[
         Path | None, Parameter(help="Folder of the results; default: outputs/NAME-response.")
     ] = None,
@@ -63,7 +50,7 @@ def response(
 ) -> int:
     """Sweep the frequency of the floor up and down and from random states, as a rigid body: what lasts, what falls.
 
-    --set solver.model=reduced follows the elastic container alone, --shell beside the rigid one.
+    --set solver.model=reduced follows the elastic container.
     """
     requests = importlib.import_module("fem.response.request")
     loaded = load_case(case, ("solver.model=rigid", *overrides))
@@ -73,16 +60,10 @@ def response(
         first_Hz=requests.FROM * own if first is None else first,
         last_Hz=requests.TO * own if last is None else last,
         count=count,
-        scale=scale,
         hold=hold,
-        order=order,
         starts=starts,
-        shell=shell,
         settle=settle,
         observe=observe,
-        tolerance=tolerance,
-        largest_period=largest_period,
-        limit_slip_m=limit_slip,
     )
     folder = out if out is not None else Path("outputs") / f"{loaded.name}-response"
     study = importlib.import_module("fem.response.run")

@@ -52,8 +52,6 @@ def page_of(info: "SweepResult", folder: Path) -> Iterator[str]:
     yield f"  {folder}: {table}, sweep.json" + "".join(f", {name}" for name in info.maps)
     if info.changes is not None:
         yield f"  {folder}: thresholds.csv, {info.changes} changes of outcome refined {info.held}".rstrip()
-    sets = ((row["where"], row["in_words"]) for row in info.motion_set or ())
-    yield from table_lines(sets, "motion_set.csv")
     if info.answer:
         tables = importlib.import_module("fem.study.sweep_table")
         answer = importlib.import_module("fem.study.sweep_table").sweep_answer(

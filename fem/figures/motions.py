@@ -1,7 +1,6 @@
-"""Figures of a set of motions: response spectra, and the share that overturns over the strength."""
+"""The response spectra of a set of motions, and their mean or fractiles."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -15,17 +14,6 @@ LINES = ("-", "--", ":", "-.")
 MOST_NAMED = 8  #: motions that the legend names
 NAMES_A_LINE = 3
 MOST_DRAWN = 100  #: motions that have a line each; fractiles of more
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class ShareCurve:
-    """Share of a set of motions that overturns, over the strength to which all are scaled."""
-
-    label: str
-    strengths: FloatArray  #: (n,)
-    share: FloatArray  #: (n,), nan where nothing was computed
-    low: FloatArray  #: (n,)
-    high: FloatArray  #: (n,)
 
 
 def draw_spectra(
@@ -85,35 +73,3 @@ def _legend_lines(motions: int) -> int:
     fractiles = 3 if motions > MOST_DRAWN else 0
     names = (motions if motions <= MOST_NAMED else fractiles) + (motions > 1)
     return -(-names // NAMES_A_LINE)
-
-
-def draw_shares(curves: Sequence[ShareCurve], *, title: str, label: str) -> Figure:
-    """Share of the motions that overturns over their strength, with intervals."""
-    with style.house_style():
-        figure, (axes,) = style.panels((3.0,), header=2 + -(-len(curves) // NAMES_A_LINE))
-        style.head(
-            figure, title, "share of the motions that overturn, worse sign of each, with 95 % intervals"
-        )
-        widths = [float(np.ptp(curve.strengths)) for curve in curves]
-        for k, curve in enumerate(curves):
-            known = np.isfinite(curve.share)
-            aside = 0.006 * widths[k] * (k - 0.5 * (len(curves) - 1))  # so that no interval hides another
-            axes.errorbar(
-                curve.strengths[known] + aside,
-                curve.share[known],
-                yerr=[(curve.share - curve.low)[known], (curve.high - curve.share)[known]],
-                color=COLOURS[k % len(COLOURS)],
-                linestyle=LINES[k // len(COLOURS) % len(LINES)],
-                marker="o",
-                markersize=3.0,
-                linewidth=0.9,
-                capsize=2.0,
-                label=curve.label or None,
-            )
-        axes.set_ylim(-0.02, 1.02)
-        axes.margins(x=0.02)
-        axes.set_ylabel("share that overturns [-]")
-        axes.set_xlabel(label)
-        if any(curve.label for curve in curves):
-            style.legend_above(axes, NAMES_A_LINE)
-        return figure

@@ -16,16 +16,16 @@ from fem.assessment.margin_words import FACTOR
 from fem.assessment.sure_words import deciding_in_words
 from fem.case.case import Case, load_case
 from fem.html.page import Page, Signature, html_of, svg_element
-from fem.html.units import ABSENT, figure_cell, figure_head, millimetres, number, ratio, short, typeset
+from fem.html.units import ABSENT, figure_cell, figure_head, millimetres, number, short, typeset
 from fem.records.units import STANDARD_GRAVITY
 from fem.report.comparison import case_rows
 from fem.report.sweep_map import counts, map_data, shown_quantities
 from fem.response.answer import lasting_in_words, range_of, response_answer, stable_in_words
-from fem.response.result import ResponseResult
+from fem.response.lasting import ResponseResult
 from fem.results.errors import FolderError
 from fem.results.figures import DURATION, PGA, PGD, PGV, SLIPPED, TURNED, Place, Shown, figures_of
 from fem.results.kinds import ENSEMBLE, HALL, RESPONSE
-from fem.results.outcome import COUNTED, ROCKING, SLIDING, Outcome
+from fem.results.outcome import COUNTED, Outcome
 from fem.runtime import units
 from fem.runtime.identity import command_line
 from fem.study.answers import (
@@ -43,10 +43,9 @@ from fem.study.axes import Axis, axis_label, in_words, unit_in_words
 from fem.study.driver import COMPLETED, StudyResult, read_study
 from fem.study.fragility import EnsembleResult
 from fem.study.list_file import HallResult
-from fem.study.motion_outcomes import MEAN_TURNED, WORST_TURNED, motions_at
 from fem.study.perturbation import input_in_words
 from fem.study.sure import CHANGES, change_columns
-from fem.study.sweep_table import SweepTable, open_sweep, shown_at, sweep_answer
+from fem.study.sweep_table import SweepTable, open_sweep, sweep_answer
 from fem.study.table import read_rows
 
 A_ROW = Mapping[str, Any]
@@ -56,7 +55,6 @@ Column = tuple[Any, ...]
 Again = tuple[str, str, Sequence[tuple[str, str]]]
 N = "number"
 MOST_DRAWING_BYTES = 400_000  #: of a drawing, as SVG
-MOST_POINTS = 12  #: beside one another in the table of outcomes
 STOOD = Shown("slip of those that stood", units.MILLIMETRES)
 CODE, LINK = Markup("<code>{}</code>"), Markup('<a href="#{}">{}</a>')
 TARGET = Markup('<span id="row-{}">{}</span>')
@@ -66,8 +64,8 @@ PEAK = "peak_acceleration_m_s2"
 MEASURES = {PEAK: PGA, "peak_velocity_m_s": PGV, "peak_displacement_m": PGD, "significant_s": DURATION}
 LOOKS = {"overturned": "bad", "invalid": "bad", "failed": "bad"}
 #: names of the result of a response curve that are options of its command, but for their underscores
-OPTIONS = ("count", "scale", "order", "starts", "settle", "observe", "tolerance", "largest_period")
-RENAMED = {"--from": "first_Hz", "--to": "last_Hz", "--hold": "held", "--limit-slip": "limit_slip_m"}
+OPTIONS = ("count", "starts", "settle", "observe")
+RENAMED = {"--from": "first_Hz", "--to": "last_Hz", "--hold": "held"}
 
 
 def sweep_report(folder: Path, *, signature: Signature | None = None) -> str:
@@ -118,7 +116,6 @@ def sweep_report(folder: Path, *, signature: Signature | None = None) -> str:
             ("base hash", info.base_hash),
         ],
         again=_again(folder, "sweep", name, case),
-        **(_motions_of_sweep(table) if info.motions else {}),
     )
 
 
@@ -172,22 +169,6 @@ def _thresholds(folder: Path, table: SweepTable) -> list[Column]:
         )
         for name, kind in columns.items()
     ]
-
-
-def _motions_of_sweep(table: SweepTable) -> dict[str, Any]:
-    """What each motion of a set did at each point of the other axes, and all together."""
-    points = list(motions_at(table.axes, {cell: shown_at(table, cell) for cell in range(len(table["cell"]))}))
-    rows, outcomes = table.info.motion_set or (), list[Column]()
-    if len(points) <= MOST_POINTS:
-        outcomes = [("motion", [one.motion for one in points[0][1]])]
-        for row, (_, at_point) in zip(rows, points, strict=True):
-            words = [
-                _outcome(one.outcome, one.turned)
-                + (f", {millimetres(one.slipped)} mm" if one.outcome in SLIDING else "")
-                for one in at_point
-            ]
-            outcomes.append((row["where"] or "outcome", words))
-    return {"motion_set": rows, "outcomes": outcomes}
 
 
 def ensemble_report(folder: Path, *, signature: Signature | None = None) -> str:
@@ -309,7 +290,6 @@ def response_report(folder: Path, *, signature: Signature | None = None) -> str:
     given = {f"--{name.replace('_', '-')}": name for name in OPTIONS} | RENAMED
     asked_for = {option: asked[key] for option, key in given.items() if key in asked}
     options = [word for option, value in asked_for.items() for word in (option, str(value))]
-    options += ["--shell"] * bool(asked.get("shell"))
     options += [] if case.solver.model == "rigid" else ["--set", f"solver.model={case.solver.model}"]
     unit, factor = ("mm", 1e3) if asked["held"] == "displacement" else ("m/s²", 1.0)
     stable = stable_in_words(info)
@@ -466,7 +446,7 @@ def _html(
 
     An unfinished study is not signed; without `again` it is a short page, without its end.
     """
-    motions = () if kind == "hall" else getattr(info, "motions", None) or ()
+    motions = getattr(info, "motions", None) or () if kind == "ensemble" else ()
     drawn = _figures(folder, getattr(info, "motion_figures", ()), kind, prefix="motion")
     page = Page(
         kind=f"Report of {'an' if kind == 'ensemble' else 'a'} {kind}",
@@ -575,13 +555,6 @@ def _measures(motions: Sequence[A_ROW]) -> list[Column]:
     ]
 
 
-def _outcome(outcome: str | None, turned: float | None) -> str:
-    """An outcome, and the rotation ratio of what rocked."""
-    if outcome is None:
-        return "failed"
-    return f"{outcome}, {ratio(turned)}" if outcome in ROCKING else outcome
-
-
 def _shown(columns: Sequence[Column]) -> list[dict[str, Any]]:
     """The columns of a table that show something, their cells as they are set."""
     shown = []
@@ -599,21 +572,6 @@ FILTERS: dict[str, Callable[..., Any]] = {
     "shown": _shown,
     "code": CODE.format,
     "input_in_words": input_in_words,
-    "share_interval": lambda row: f"{short(row['low'], 100.0, 3)} to {short(row['high'], 100.0, 3)} %",
-    "count": lambda row, name: str(row.get(name) or ""),
-    "worst_motion": lambda row: (
-        f"{row['worst_motion']}: {_outcome(row['worst_outcome'], row[WORST_TURNED])}"
-        if row["worst_motion"]
-        else ABSENT
-    ),
-    "largest_slip": lambda row: (
-        f"{millimetres(row['worst_slip_m'])} mm, {row['worst_slip_motion']}"
-        if row["worst_slip_m"]
-        else ABSENT
-    ),
-    "mean_ratio": lambda row: (
-        ratio(row[MEAN_TURNED]) + f" (of {row['stood']})" * (0 < row["stood"] < row["motions"])
-    ),
     "or_absent": lambda text: text or ABSENT,
     "target": lambda row: TARGET.format(row["row"], row["name"]),
 }

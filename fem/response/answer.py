@@ -1,8 +1,6 @@
 """The answer of a response curve in one sentence, and what lasts at each frequency in words."""
 
-import math
-from collections.abc import Iterator
-from typing import NamedTuple
+from collections.abc import Iterator, Sequence
 
 from fem.response.lasting import AtFrequency, Coexistence, DropOut
 from fem.response.records import PointRow
@@ -16,31 +14,10 @@ STABLE = "amplitudes do not diverge, and without drive the motion dies out"
 MOST_RANGES = 3  #: of frequencies that are named
 
 
-class Fates(NamedTuple):
-    """The points of a curve that have an outcome, by what became of the container."""
-
-    overturned: list[PointRow]
-    destroyed: list[PointRow]  #: one of its corners
-    slid: list[PointRow]  #: beyond the limit
-    standing: list[PointRow]
-
-    @property
-    def overturned_share(self) -> float | None:
-        """Of the points that do not stand; None where there is none."""
-        count = sum(map(len, self))
-        return 1.0 - len(self.standing) / count if count else None
-
-
-def fates_of(result: ResponseResult) -> Fates:
-    """What became of the container at each point."""
-    limit = math.inf if result.limit_slip is None else result.limit_slip
-    stands = [point for point in result.points if not point.fell and not point.says_nothing]
-    return Fates(
-        [point for point in result.points if point.fell],
-        [point for point in result.points if point.motion == Outcome.INVALID],
-        [point for point in stands if result.slid(point) > limit],
-        [point for point in stands if result.slid(point) <= limit],
-    )
+def overturned_share(points: Sequence[PointRow]) -> float | None:
+    """Of some points with an outcome, those that overturn or destroy a corner; None where there is none."""
+    known = [point for point in points if point.status != "failed"]
+    return sum(point.fell or point.says_nothing for point in known) / len(known) if known else None
 
 
 def fell_share(frequencies: tuple[AtFrequency, ...]) -> float | None:
@@ -54,8 +31,10 @@ def response_answer(result: ResponseResult) -> str | None:
     points = [point for point in result.points if point.status != "failed"]
     if result.state != "finished" or not points:
         return None
-    fates, failed = fates_of(result), len(result.points) - len(points)
-    limit = f"{slip_in_words(result.limit_slip or 0.0)} within {result.request.get('observe')} periods"
+    failed = len(result.points) - len(points)
+    destroyed = [point for point in points if point.motion == Outcome.INVALID]
+    overturned = [point for point in points if point.fell]
+    standing = [point for point in points if not point.fell and not point.says_nothing]
     frequencies = [point.frequency_Hz for point in points]
     every = f"every frequency {'with an outcome' if failed else 'tried'}, {_range(min(frequencies), max(frequencies))}"
     parts = [largest_in_words(result)]
@@ -63,25 +42,21 @@ def response_answer(result: ResponseResult) -> str | None:
         destroys = " or destroy a corner" if any(at.destroyed for at in result.frequencies) else ""
         count = sum(at.starts for at in result.frequencies)
         parts.append(f"{100.0 * result.starts_fell_share:.0f} % of {count} random starts overturn{destroys}")
-    if len(fates.standing) == len(points):
+    if len(standing) == len(points):
         parts.append(f"stood at {every}, up and down")
-        parts += [f"none slid beyond {limit}"] if result.limit_slip is not None else []
-    elif len(fates.overturned) == len(points):
+    elif len(overturned) == len(points):
         parts.append(f"overturned at {every}")
-    elif len(fates.destroyed) == len(points):
+    elif len(destroyed) == len(points):
         parts.append(f"not valid at {every}: a corner is destroyed")
     else:
         fallen = [f"{range_of(fall)} going {fall.direction}" for fall in result.drop_outs]
         parts += [f"overturned at {_listed(fallen)}"] if fallen else []
-        if fates.destroyed:
-            parts.append(f"not valid at {_counted(fates.destroyed)}: a corner is destroyed")
-        if fates.slid:
-            there = slip_in_words(result.slid(fates.slid[0]))
-            parts.append(f"slid beyond {limit} at {_counted(fates.slid)} (slip there {there})")
-        if count := len(fates.standing):
+        if destroyed:
+            parts.append(f"not valid at {_counted(destroyed)}: a corner is destroyed")
+        if count := len(standing):
             parts.append(f"stood at the other {f'{count} points' if count > 1 else 'point'}")
-    if fates.standing:
-        slid = max(fates.standing, key=lambda point: point.slip_stroke_m or 0.0)
+    if standing:
+        slid = max(standing, key=lambda point: point.slip_stroke_m or 0.0)
         if (slid.slip_stroke_m or 0.0) >= MILLIMETRES.least:
             stroke = slip_in_words(slid.slip_stroke_m or 0.0)
             parts.append(

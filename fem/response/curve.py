@@ -37,7 +37,6 @@ class Task:
 
     way: str  #: up | down: carried on; random: from random states; risen | sunk: from the motions of a neighbour
     number: int  #: of the frequency, from 0 for the lowest
-    model: str
     begins: bool = False  #: a sweep, as the case does
 
     @property
@@ -48,19 +47,12 @@ class Task:
 
 def plan_of(request: ResponseRequest) -> list[Task]:
     """All tasks, in the order in which they are computed."""
-    rising, own = range(request.count), request.case.solver.model
-
-    def sweep(way: str, model: str, *, begins: bool = False) -> list[Task]:
-        numbers = rising if way in ("up", "random", "risen") else reversed(rising)
-        return [Task(way=way, number=k, model=model, begins=begins and not i) for i, k in enumerate(numbers)]
-
-    first, second = request.order.split("-")
-    plan = [*sweep(first, own, begins=True), *sweep(second, own)]
-    if request.starts:
-        plan += [task for way in ("random", "risen", "sunk") for task in sweep(way, own)]
-    if request.shell:
-        plan += [*sweep(first, "reduced", begins=True), *sweep(second, "reduced")]
-    return plan
+    ways = ("up", "down", *(("random", "risen", "sunk") if request.starts else ()))
+    return [
+        Task(way=way, number=number, begins=(way, number) == ("up", 0))
+        for way in ways
+        for number in range(request.count)[:: -1 if way in ("down", "sunk") else 1]
+    ]
 
 
 def computed(
@@ -83,7 +75,7 @@ def computed(
         control: of its model.
         progress: called within a point with the time since its beginning [s], the rotation [rad] and the mode.
     """
-    case = request.case_at(task.number, task.model)
+    case = request.case_at(task.number)
     if task.carries:
         point = follow_point(request, case, container, task, None if task.begins else before, progress)
         return [point[0]], point[1]
@@ -182,8 +174,6 @@ def _judge(request: ResponseRequest, case: Case, driven: DrivenModel, orbit: Orb
     return classify(
         orbit.sections / scales,
         resting=_motion_of(driven, orbit) == Outcome.REST,
-        tolerance=request.tolerance,
-        largest_period=request.largest_period,
     )
 
 

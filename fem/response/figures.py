@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 from fem.figures import style
 from fem.figures.paper_marks import LABEL, marks_of
-from fem.response.lasting import coexistences, frequencies_of, lasting_at, of_first_model, shown
+from fem.response.lasting import coexistences, frequencies_of, lasting_at, shown
 from fem.response.records import PointRecord
 from fem.response.request import ResponseRequest
 from fem.results.figures import TURNED
@@ -27,7 +27,6 @@ LOOKS: dict[str, dict[str, Any]] = {
 }
 SMALL: dict[str, Any] = {"markersize": 3.5, "markeredgewidth": 0.0}
 DOTS: dict[str, Any] = {"linestyle": "none", "marker": "o", "markersize": 2.6, "markeredgewidth": 0.0}
-SHELL: dict[str, Any] = {"color": style.GREEN, "linewidth": 0.9}
 PORTRAITS = 5  #: frequencies whose motions are drawn
 COLUMNS = 3
 FREQUENCY = "frequency of the drive [Hz]"
@@ -35,17 +34,15 @@ FREQUENCY = "frequency of the drive [Hz]"
 
 def response_figures(request: ResponseRequest, records: Sequence[PointRecord]) -> dict[str, str]:
     """Figures as SVG documents, by name."""
-    own = of_first_model(records)
     with style.house_style():
         drawn = {"response_curve": draw_curves(request, records)} if records else {}
-        if any(record.stands for record in own):
-            drawn |= {"portraits": draw_portraits(own)}
+        if any(record.stands for record in records):
+            drawn |= {"portraits": draw_portraits(records)}
         return {name: style.svg_of(figure) for name, figure in drawn.items()}
 
 
 def draw_curves(request: ResponseRequest, records: Sequence[PointRecord]) -> Figure:
     """Largest rotation, share of the starts that fall, slip stroke and decay over frequency, up and down."""
-    own, shell = of_first_model(records), records[len(of_first_model(records)) :]
     slides = any(record.number("slip_stroke_m") > MILLIMETRES.least for record in records)
     heights = [2.6, *[0.8] * bool(request.starts), *[1.0] * slides, 1.0]
     figure, panels = style.panels(heights, gaps=(0.12,) * (len(heights) - 1), header=4, below=1.05)
@@ -55,7 +52,7 @@ def draw_curves(request: ResponseRequest, records: Sequence[PointRecord]) -> Fig
         *[(panels[-2], "slip_stroke_m", 1e3, "slip stroke [mm]", 1.0)] * slides,
         (life, "undriven_s", 1.0, "dies out in [s]", 1.0),
     ]
-    frequencies = list(frequencies_of(own))
+    frequencies = list(frequencies_of(records))
     coexisting = list(coexistences(frequencies))
     title = request.case.title or request.case.name
     style.head(
@@ -67,19 +64,17 @@ def draw_curves(request: ResponseRequest, records: Sequence[PointRecord]) -> Fig
     for axes, column, factor, label, least in drawn:
         for direction in ("up", "down"):
             look = LOOKS[direction]
-            beside = SHELL | {"linestyle": look["linestyle"]}
-            for label, drawn_so, of in ((direction, look, own), (f"shell, {direction}", beside, shell)):
-                if branch := _swept(of, direction):  # broken where there is no value
-                    axes.plot(
-                        [record.row.frequency_Hz for record in branch],
-                        [factor * record.number(column) for record in branch],
-                        label=label,
-                        **SMALL | drawn_so,
-                    )
+            if branch := _swept(records, direction):  # broken where there is no value
+                axes.plot(
+                    [record.row.frequency_Hz for record in branch],
+                    [factor * record.number(column) for record in branch],
+                    label=direction,
+                    **SMALL | look,
+                )
         axes.set_ylabel(label)
         axes.set_ylim(0.0, max(axes.get_ylim()[1], least))  # rounding is not to look like motion
-    _draw_ends(rotation, own)
-    for k, row in enumerate(one.row for one in shown(own) if one.row.direction == "start"):
+    _draw_ends(rotation, records)
+    for k, row in enumerate(one.row for one in shown(records) if one.row.direction == "start"):
         mark: dict[str, Any] = {
             "color": style.PURPLE,
             "marker": f"${row.period_n or '?'}$",
@@ -101,11 +96,12 @@ def draw_curves(request: ResponseRequest, records: Sequence[PointRecord]) -> Fig
         for value in marks_of(request.case.name, "motion.frequency_Hz"):
             label = LABEL if axes is rotation else "_"
             axes.axvline(value, color=style.ORANGE, linestyle="-.", linewidth=0.9, label=label)
-        _frequency_axis(axes, request)
+        margin = 0.015 * (request.last_Hz - request.first_Hz)
+        axes.set_xlim(request.first_Hz - margin, request.last_Hz + margin)
     for axes in panels[:-1]:
         axes.tick_params(labelbottom=False)
     life.set_xlabel(f"{FREQUENCY}; dotted: that of the case, {request.own_frequency:.4g} Hz")
-    ratio = (own[0].row.eta or 1.0) / own[0].row.frequency_Hz
+    ratio = (records[0].row.eta or 1.0) / records[0].row.frequency_Hz
     below = life.secondary_xaxis(
         -0.5, functions=(lambda f: np.multiply(f, ratio), lambda eta: np.divide(eta, ratio))
     )
@@ -181,11 +177,3 @@ def _draw_ends(axes: Axes, records: Sequence[PointRecord]) -> None:
                     transform=axes.get_xaxis_transform(),
                     label=f"{direction}: {words}",
                 )
-
-
-def _frequency_axis(axes: Axes, request: ResponseRequest) -> None:
-    if request.scale == "log":
-        axes.set_xscale("log")
-    margin = 0.015 * (request.last_Hz - request.first_Hz)
-    low = request.first_Hz / 1.03 if request.scale == "log" else request.first_Hz - margin
-    axes.set_xlim(low, request.last_Hz * 1.03 if request.scale == "log" else request.last_Hz + margin)

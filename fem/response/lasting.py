@@ -78,15 +78,10 @@ def differ(one: PointRecord, other: PointRecord) -> bool:
     return apart > max(APART_STROKE * one.row.amplitude_m, spread)
 
 
-def of_first_model(records: Sequence[PointRecord]) -> list[PointRecord]:
-    """The points of the model that the case asks for, without those of the shell beside it."""
-    return [record for record in records if record.row.model == records[0].row.model]
-
-
 def lasting_at(records: Sequence[PointRecord], number: int) -> list[list[PointRecord]]:
     """Points of one frequency that stand, by motion; of each the sweeps first, then the one that repeats best."""
     groups: list[list[PointRecord]] = []
-    for record in of_first_model(records):
+    for record in records:
         if record.row.number == number and record.stands:
             same = [group for group in groups if not differ(group[0], record)]
             if same:
@@ -102,7 +97,7 @@ def _roughness(record: PointRecord) -> tuple[bool, float, float]:
 
 def shown(records: Sequence[PointRecord]) -> list[PointRecord]:
     """The points of both sweeps, and one of each motion that they do not meet."""
-    swept = [record for record in of_first_model(records) if record.row.direction != "start"]
+    swept = [record for record in records if record.row.direction != "start"]
     groups = [group for number in _numbers(records) for group in lasting_at(records, number)]
     away = [group[0] for group in groups if all(record.row.direction == "start" for record in group)]
     return swept + away
@@ -115,7 +110,7 @@ def _numbers(records: Sequence[PointRecord]) -> list[int]:
 def frequencies_of(records: Sequence[PointRecord]) -> Iterator[AtFrequency]:
     """What lasts at each frequency, rising."""
     for number in _numbers(records):
-        rows = [record.row for record in of_first_model(records) if record.row.number == number]
+        rows = [record.row for record in records if record.row.number == number]
         random = [row for row in rows if row.began == "random" and row.status != "failed"]
         motions = [
             Lasting(
@@ -157,7 +152,7 @@ def coexistences(frequencies: Sequence[AtFrequency]) -> Iterator[Coexistence]:
 
 def drop_outs(records: Sequence[PointRecord]) -> Iterator[DropOut]:
     """Ranges of neighbouring frequencies, along each sweep, at which the container overturned."""
-    swept = [record.row for record in of_first_model(records) if record.row.direction != "start"]
+    swept = [record.row for record in records if record.row.direction != "start"]
     for (direction, fell), run in groupby(swept, lambda row: (row.direction, row.fell)):
         if fell:
             rows = list(run)

@@ -193,19 +193,6 @@ def csv_of_sections(records: Sequence[PointRecord]) -> str:
     return table_text(columns, rows)
 
 
-def csv_of_portraits(records: Sequence[PointRecord]) -> str:
-    """`portraits.csv`: rotation and angular velocity over the last periods, evenly in time."""
-    columns = ("direction", "frequency_Hz", "periods", *PORTRAIT_COLUMNS)
-    # to a millionth of a degree: pictures are made of these
-    rows = (
-        (*head, f"{k / SAMPLES_PER_PERIOD:.6g}", f"{rotation:.8g}", f"{rate:.8g}")
-        for record in records
-        for head in [(record.row.direction, record.row.frequency_Hz)]
-        for k, (rotation, rate) in enumerate(record.portrait)
-    )
-    return table_text(columns, rows)
-
-
 def packed(records: Sequence[PointRecord]) -> dict[str, np.ndarray]:
     """Points as a few plain arrays, which `unpacked` reads."""
     rows = [asdict(record.row) for record in records]

@@ -9,12 +9,8 @@ from typing import Literal
 import numpy as np
 
 from fem.case.case import Case, CaseError, case_hash
-from fem.case.tables.quantities import SLIP_LIMIT
-from fem.response.stability import LARGEST_PERIOD, TOLERANCE
 
 Hold = Literal["displacement", "acceleration"]
-Order = Literal["up-down", "down-up"]
-Scale = Literal["linear", "log"]
 
 #: of the case's own frequency, in steps of an eleventh: 0.3 to 3 Hz of the paper's motion, which is one of them
 FROM, TO, COUNT = 3.0 / 11.0, 30.0 / 11.0, 28
@@ -41,16 +37,10 @@ class ResponseRequest:
     first_Hz: float
     last_Hz: float
     count: int = COUNT  #: frequencies, both ends included
-    scale: Scale = "linear"
     hold: Hold | None = None  #: what of the drive stays the same; None: what the case states
-    order: Order = "up-down"
     starts: int = 0  #: random states from which each frequency is begun as well
-    shell: bool = False  #: a rigid container is followed as an elastic one, too
     settle: int = 60  #: periods of the drive left out at each frequency
     observe: int = 48  #: periods by which the long-time motion is judged
-    tolerance: float = TOLERANCE  #: within which two sections count as the same, see `fem.response.stability`
-    largest_period: int = LARGEST_PERIOD  #: tried, in periods of the drive
-    limit_slip_m: float | None = None  #: within the periods observed, beyond which a motion does not stand
 
     def __post_init__(self) -> None:
         self._require_followed_case()
@@ -64,33 +54,22 @@ class ResponseRequest:
         if not self.first_Hz < self.last_Hz:
             raise CaseError(
                 f"--from must be less than --to, got {self.first_Hz:g} Hz and {self.last_Hz:g} Hz; "
-                "both directions are swept anyway, --order says which first"
+                "both directions are swept anyway"
             )
         for name, number, least, most in (
             ("--count", self.count, 2, MOST_FREQUENCIES),
             ("--starts", self.starts, 0, MOST_STARTS),
             ("--settle", self.settle, 0, MOST_PERIODS),
             ("--observe", self.observe, LEAST_OBSERVED, MOST_PERIODS),
-            ("--largest-period", self.largest_period, 1, MOST_PERIODS),
         ):
             if not least <= number <= most:
                 raise CaseError(f"{name} must lie between {least} and {most}, got {number}")
-        if not 1e-6 <= self.tolerance <= 0.1:
-            raise CaseError(
-                f"--tolerance must lie between 1e-6 and 0.1 of the slenderness angle, got {self.tolerance:g}; "
-                f"{TOLERANCE:g} is usual"
-            )
         step = float(np.min(np.diff(self.frequencies) / self.frequencies[1:]))
         if step < CLOSEST:
             raise CaseError(
                 f"--from, --to and --count ask for frequencies {step:.1g} apart, below the resolution of "
                 f"{CLOSEST:g}; take fewer, or a wider range"
             )
-        if self.limit_slip_m is not None:
-            try:
-                SLIP_LIMIT.check(self.limit_slip_m)
-            except ValueError as error:
-                raise CaseError(f"--limit-slip {error}") from None
         for number in (0, self.count - 1):  # refused there, it is refused before anything is computed
             self.case_at(number)
 
@@ -132,10 +111,6 @@ class ResponseRequest:
                 'take --set solver.model="reduced" or "rigid"',
             ),
             (
-                self.shell and case.solver.model != "rigid",
-                '--shell adds the elastic container to a rigid one; leave it out, or --set solver.model="rigid"',
-            ),
-            (
                 not case.output.stop_when_overturned,
                 "[output] stop_when_overturned must be true: an overturned container has no response",
             ),
@@ -155,8 +130,7 @@ class ResponseRequest:
     @property
     def frequencies(self) -> np.ndarray:
         """Rising, shape (count,) [Hz]."""
-        space = np.geomspace if self.scale == "log" else np.linspace
-        return np.asarray(space(self.first_Hz, self.last_Hz, self.count))
+        return np.linspace(self.first_Hz, self.last_Hz, self.count)
 
     @property
     def own_frequency(self) -> float:
@@ -176,8 +150,8 @@ class ResponseRequest:
             return f"amplitude {1e3 * self.held_value:.4g} mm held"
         return f"peak acceleration {self.held_value:.4g} m/s² held"
 
-    def case_at(self, number: int, model: str | None = None) -> Case:
-        """The case at one of the frequencies, with another model where one is given."""
+    def case_at(self, number: int) -> Case:
+        """The case at one of the frequencies."""
         key = "motion.amplitude_m" if self.held == "displacement" else "motion.peak_acceleration_m_s2"
         period = 1.0 / float(self.frequencies[number])
         return self.case.with_values(
@@ -185,7 +159,6 @@ class ResponseRequest:
                 "motion.frequency_Hz": 1.0 / period,
                 key: self.held_value,
                 "solver.duration_s": (4.0 + 2.0 * math.ceil(self.case.motion.ramp_cycles)) * period,
-                "solver.model": model or self.case.solver.model,
                 "output.history_s": period / SAMPLES_PER_PERIOD,
                 "output.fields_s": 0.0,
             }
@@ -195,8 +168,6 @@ class ResponseRequest:
         """As the result states it, without the case."""
         numbers = asdict(self)
         del numbers["case"], numbers["hold"]
-        if self.limit_slip_m is None:
-            del numbers["limit_slip_m"]
         more = {
             "held_value": self.held_value,
             "frequencies_Hz": self.frequencies.tolist(),

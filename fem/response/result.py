@@ -20,15 +20,6 @@ class ResponseResult(StudyResult):
     frequencies: tuple[AtFrequency, ...] = ()  #: what lasts at each, whatever led to it
     coexisting: tuple[Coexistence, ...] = ()
     drop_outs: tuple[DropOut, ...] = ()
-    #: of the points with an outcome that do not stand: overturned, a corner destroyed, slid beyond the limit
+    #: of the points with an outcome that do not stand: overturned, a corner destroyed
     overturned_share: float | None = None
     starts_fell_share: float | None = None  #: of the random states, all frequencies; None without any
-
-    @property
-    def limit_slip(self) -> float | None:
-        """Slip within the periods observed beyond which a motion does not stand [m]."""
-        return self.request.get("limit_slip_m")
-
-    def slid(self, point: PointRow) -> float:
-        """Largest slip in the observed periods [m]: from the position at their start, or peak to peak in one."""
-        return max(point.slip_stroke_m or 0.0, point.slip_excursion_m or 0.0)

@@ -25,7 +25,7 @@ class Place(Flag):
 
     KEY = auto()  #: every row of a run that a study compares
     RUNS = auto()  #: the rows of the runs of a site
-    COLUMN = auto()  #: the tables of sweeps, the rows of `run_cases`
+    COLUMN = auto()  #: the tables of studies
     BAND = auto()  #: the members of a band, and its ranges
     SUMMARY = auto()  #: a row of the summary and the page of a run
     MAP = auto()  #: the map on the page of a sweep

@@ -436,23 +436,16 @@ def fragility_lines(result: EnsembleResult) -> Iterator[tuple[str, str]]:
     if fragility is None:
         return
     for fall in fragility.falls:
-        yield (
-            "falls",
-            f"from {fall.probability_weaker:.3f} at {fall.weaker:g} to {fall.probability_stronger:.3f} at "
-            f"{fall.stronger:g}: a stronger motion overturns less often",
-        )
+        words = "from {probability_weaker:.3f} at {weaker:g} to {probability_stronger:.3f} at {stronger:g}"
+        yield "falls", f"{words.format(**fall)}: a stronger motion overturns less often"
     fitted = fragility.lognormal
     if fitted is None:
         yield "lognormal", f"none: {fragility.no_lognormal}"
         return
-    parts = []
-    for name, unit in (("median", result.axes[0].unit), ("deviation", "")):
-        ends = fitted[f"{name}_interval"]
-        interval = f" ({ends[0]:.3g} to {ends[1]:.3g})" if ends else ""
-        parts.append(f"{name} {fitted[name]:.3g}{interval} {unit}".rstrip())
+    median = f"median {fitted.median:.3g} {result.axes[0].unit}".rstrip()
     fit = "" if fitted.adequate else "; the lognormal curve does not describe the counts"
     yield (
         "lognormal",
-        f"{', '.join(parts)}; misses {fitted.levels_missed} of {fitted.levels} intervals of "
+        f"{median}, deviation {fitted.deviation:.3g}; misses {fitted.levels_missed} of {fitted.levels} intervals of "
         f"{100.0 * result.confidence:g} % ({fitted.missed_by_chance} by chance){fit}",
     )

@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Annotated, Any, Literal, TypeVar, get_args
+from typing import Annotated, Any, Literal, Self, TypeVar, get_args
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, Strict, ValidationError
@@ -77,16 +77,18 @@ class AxisResult(JsonBlock):
     unit: str = ""
     following: dict[str, tuple[str | None, ...]] | None = None
 
+    @classmethod
+    def of(cls, axis: Axis) -> Self:
+        """An axis to be written."""
+        following = dict(axis.following) or None
+        return cls(key=axis.key, values=axis.values, scale=axis.scale, unit=axis.unit, following=following)
+
     @property
     def axis(self) -> Axis:
         """To name places on it."""
         following = {key: tuple(values) for key, values in (self.following or {}).items()}
         return Axis(
-            key=self.key,
-            values=self.values,
-            scale=self.scale or "list",
-            unit=self.unit,
-            following=following,
+            key=self.key, values=self.values, scale=self.scale or "list", unit=self.unit, following=following
         )
 
 
@@ -136,11 +138,7 @@ class AxisError(ValueError):
 
 
 def check_varied(key: str) -> FieldInfo:
-    """The field of a case that a dotted key names, which may vary.
-
-    Raises:
-        AxisError: an unknown key, or one that does not change a result.
-    """
+    """The field of a case that a dotted key names; AxisError for an unknown one, or one that may not vary."""
     field = field_of(key)
     for fixed in (key, key.partition(".")[0]):
         if fixed in NO_AXIS:
@@ -153,11 +151,7 @@ NAMED = TABLES | ROWS
 
 
 def field_of(key: str) -> FieldInfo:
-    """The field of a case that a dotted key names.
-
-    Raises:
-        AxisError: no case has such a key; names the nearest one.
-    """
+    """The field of a case that a dotted key names; AxisError with the nearest one if no case has it."""
     table, dot, name = key.rpartition(".")
     if not dot:
         if name in TOP:
@@ -177,12 +171,7 @@ def field_of(key: str) -> FieldInfo:
 
 
 def read_axis(key: str, given: Any) -> Axis:
-    """Read an axis: a list of values, or a range.
-
-    Raises:
-        AxisError: an unknown key, no values, a range without an end or that does not rise, a log scale
-            through zero, values that the key cannot have.
-    """
+    """Read an axis: a list of values, or a range; AxisError with what is wrong."""
     field = check_varied(key)
     quantity = quantity_of(field.annotation, field.metadata)
     unit = quantity.unit if quantity else ""
@@ -207,13 +196,10 @@ def read_axis(key: str, given: Any) -> Axis:
 
 
 def read_motion_files(given: Any) -> tuple[tuple[str, ...], dict[str, tuple[str | None, ...]]]:
-    """Read a set of motions: file names, and pairs of a horizontal and a vertical file.
+    """Read a set of motions: file names, and pairs of a horizontal and a vertical file; AxisError with what is wrong.
 
     Returns:
         The horizontal files, and the keys that go with each; none where no motion has a vertical component.
-
-    Raises:
-        AxisError: no list of names and pairs, a pair that lacks a file, a file named twice.
     """
     if not isinstance(given, list) or not given:
         raise AxisError(
@@ -254,11 +240,7 @@ def hint(name: object, known: Iterable[str]) -> str:
 
 
 def read_inline(model: type[ModelT], given: Mapping[str, Any], example: str) -> ModelT:
-    """An inline table of a study's file.
-
-    Raises:
-        AxisError: unknown, missing or bad keys; all of them, with the example.
-    """
+    """An inline table of a study's file; AxisError with all that is wrong, and the example."""
     try:
         return model.model_validate(given)
     except ValidationError as error:

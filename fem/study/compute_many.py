@@ -3,7 +3,7 @@
 import warnings
 from collections.abc import Hashable, Iterable, Sequence
 from functools import partial
-from typing import Literal, overload
+from typing import Literal, TypedDict, Unpack, overload
 
 from fem.case.case import Case
 from fem.model.geometry import build_container
@@ -23,37 +23,28 @@ _CONTAINERS = ContainerCache()
 Item = tuple[int, Case]
 
 
+class Wanted(TypedDict, total=False):
+    """What is found of each run, as for `fem.compute`."""
+
+    band: bool | None
+    margin: bool | None
+    check_rigid: bool
+    #: whether the members of a band find stresses, and forces in the joints of a stack, which takes twice as long
+    inner_forces: bool
+
+
+@overload
+def compute_many(cases: Iterable[Case], jobs: int | None = None, **wanted: Unpack[Wanted]) -> list[Run]: ...
 @overload
 def compute_many(
-    cases: Iterable[Case],
-    jobs: int | None = None,
-    *,
-    band: bool | None = None,
-    margin: bool | None = None,
-    check_rigid: bool = False,
-    inner_forces: bool = True,
-    errors: Literal["raise"] = "raise",
-) -> list[Run]: ...
-@overload
-def compute_many(
-    cases: Iterable[Case],
-    jobs: int | None = None,
-    *,
-    band: bool | None = None,
-    margin: bool | None = None,
-    check_rigid: bool = False,
-    inner_forces: bool = True,
-    errors: Literal["return"],
+    cases: Iterable[Case], jobs: int | None = None, *, errors: Literal["return"], **wanted: Unpack[Wanted]
 ) -> list[Run | ValueError]: ...
 def compute_many(
     cases: Iterable[Case],
     jobs: int | None = None,
     *,
-    band: bool | None = None,
-    margin: bool | None = None,
-    check_rigid: bool = False,
-    inner_forces: bool = True,
     errors: Literal["raise", "return"] = "raise",
+    **wanted: Unpack[Wanted],
 ) -> Sequence[Run | ValueError]:
     """Compute cases in memory, side by side; no file is written.
 
@@ -64,11 +55,9 @@ def compute_many(
     Args:
         cases: from `fem.load_case`, `fem.case_from` or `case.replace`, of any models.
         jobs: cores to use; default: all.
-        band, margin, check_rigid: as for `fem.compute`.
-        inner_forces: whether the members of a band find stresses, and forces in the joints of a stack, which takes
-            twice as long.
         errors: "raise" that of the first case that cannot be computed, which is looked for before any is computed; or
             "return" it in place of its run.
+        wanted: band, margin, check_rigid, inner_forces: see `Wanted`.
 
     Returns:
         The runs in the order of the cases, each the same as `fem.compute` gives, whatever `jobs` is.
@@ -84,27 +73,30 @@ def compute_many(
     jobs = cores() if jobs is None else jobs
     if jobs < 1:
         raise ValueError(f"compute_many: jobs must be at least 1, got {jobs}")
-    runs: dict[int, Run | ValueError] = _objections(all_cases)
-    if runs and errors == "raise":
-        raise next(error for error in runs.values() if isinstance(error, ValueError))
+    runs: dict[int, Run | ValueError] = {}
+    for number, case in enumerate(all_cases):
+        try:
+            build_container(case)
+            build_motions(case)
+        except ValueError as error:
+            runs[number] = _noted(error, number, len(all_cases))
+            if errors == "raise":
+                raise
     script = unguarded_script() if min(jobs, len(all_cases)) > 1 else None
     if script is not None:
-        unfit, fit = (
-            ("is no file that a process can load", "run it from a file")
-            if script == STDIN
-            else ('calls compute_many outside `if __name__ == "__main__":`', "put the call behind that line")
+        reason = (
+            "is no file that a process can load" if script == STDIN else 'lacks `if __name__ == "__main__":`'
         )
         warnings.warn(
-            f"{script} {unfit}, so its cases are computed by threads of this process only; {fit} to use several "
-            "processes",
+            f"{script} {reason}, so its cases are computed by threads of this process only; call compute_many behind "
+            "that line, in a script that is a file, to use several processes",
             stacklevel=2,
         )
     first: dict[Hashable, int] = {}
     for number, case in enumerate(all_cases):
         first.setdefault(container_key(case), number)
     order = sorted(range(len(all_cases)), key=lambda number: first[container_key(all_cases[number])])
-    wanted = WantedChecks(check_rigid=check_rigid, band=band, margin=margin, inner_forces=inner_forces)
-    work = partial(_compute, wanted, len(all_cases))
+    work = partial(_compute, WantedChecks(**wanted), len(all_cases))
     with LocalWorkers(jobs, WORTH_PROCESSES if script is None else IN_THREADS) as workers_of:
         for model in WORTH_PROCESSES:
             items = [(n, all_cases[n]) for n in order if all_cases[n].solver.model == model and n not in runs]
@@ -114,23 +106,11 @@ def compute_many(
             for chunk, results in chunks:
                 runs |= dict(zip((number for number, _ in chunk), results, strict=True))
                 if errors == "raise":
-                    for error in (result for result in results if isinstance(result, ValueError)):
-                        raise error
+                    for result in (one for one in results if isinstance(one, ValueError)):
+                        raise result
     if stop_requested():
         raise KeyboardInterrupt
     return [runs[number] for number in range(len(all_cases))]
-
-
-def _objections(cases: Sequence[Case]) -> dict[int, Run | ValueError]:
-    """What is wrong with the containers and motions of cases, by their numbers; little beside computing them."""
-    objections: dict[int, Run | ValueError] = {}
-    for number, case in enumerate(cases):
-        try:
-            build_container(case)
-            build_motions(case)
-        except ValueError as error:
-            objections[number] = _noted(error, number, len(cases))
-    return objections
 
 
 def _noted(error: ValueError, number: int, count: int) -> ValueError:

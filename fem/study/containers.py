@@ -17,6 +17,8 @@ from fem.model.support import normal_penalty
 #: values for keys of [support] that say how a container stands on its points
 STANDING = {"effective_width": 1.0, "casting_m": None, "rocking_damping_ratio": 0.0}
 
+MOST_PENALTIES = 4096  #: that are remembered
+
 
 def container_key(case: Case, *, mass: bool = True, gaps: bool = True) -> Hashable:
     """Equal for cases whose containers are the same, whatever floor they stand on and however they are damped.
@@ -113,24 +115,21 @@ def _from_the_same_tables(case: Case, other: Case) -> bool:
     )
 
 
-class PenaltyCache:
-    """Normal penalties of cases, by container and without its modes."""
+#: normal penalties, by container and without its modes
+_PENALTIES: dict[Hashable, float] = {}
 
-    def __init__(self, most: int = 4096) -> None:
-        self._most = most
-        self._held: dict[Hashable, float] = {}
 
-    def of(self, case: Case) -> float | None:
-        """Normal penalty of a case, chosen where it says "auto" [Pa/m]; None of a slab, which has none.
+def penalty_of(case: Case) -> float | None:
+    """Normal penalty of a case, chosen where it says "auto" [Pa/m]; None of a slab, which has none.
 
-        Raises:
-            CaseError, MeshError: bad input.
-        """
-        if case.floor.is_slab:
-            return None
-        key = container_key(case), case.contact.normal_penalty_Pa_m
-        if key not in self._held:
-            while len(self._held) >= self._most:
-                del self._held[next(iter(self._held))]
-            self._held[key] = normal_penalty(case, build_container(case))
-        return self._held[key]
+    Raises:
+        CaseError, MeshError: bad input.
+    """
+    if case.floor.is_slab:
+        return None
+    key = container_key(case), case.contact.normal_penalty_Pa_m
+    if key not in _PENALTIES:
+        if len(_PENALTIES) >= MOST_PENALTIES:
+            _PENALTIES.clear()
+        _PENALTIES[key] = normal_penalty(case, build_container(case))
+    return _PENALTIES[key]

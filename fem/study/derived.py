@@ -22,26 +22,9 @@ from fem.study.axes import AxisError
 Tree = tuple[Any, ...]
 
 FUNCTIONS: dict[str, tuple[Callable[..., float], int]] = {
-    "abs": (abs, 1),
-    "atan": (math.atan, 1),
-    "cos": (math.cos, 1),
-    "exp": (math.exp, 1),
-    "log": (math.log, 1),
-    "max": (max, 2),
-    "min": (min, 2),
-    "sin": (math.sin, 1),
-    "sqrt": (math.sqrt, 1),
-    "tan": (math.tan, 1),
+    name: (getattr(math, name), 1) for name in ("atan", "cos", "exp", "log", "sin", "sqrt", "tan")
 }
-OPERATORS: dict[type[ast.AST], str] = {
-    ast.Add: "+",
-    ast.Sub: "-",
-    ast.Mult: "*",
-    ast.Div: "/",
-    ast.Pow: "^",
-    ast.UAdd: "+",
-    ast.USub: "-",
-}
+FUNCTIONS = dict(sorted((FUNCTIONS | {"abs": (abs, 1), "max": (max, 2), "min": (min, 2)}).items()))
 ARITHMETIC: dict[str, Callable[[float, float], float]] = {
     "+": operator.add,
     "-": operator.sub,
@@ -49,11 +32,14 @@ ARITHMETIC: dict[str, Callable[[float, float], float]] = {
     "/": operator.truediv,
     "^": math.pow,
 }
-NUMBER = re.compile(r"(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
+OPERATORS: dict[type[ast.AST], str] = dict(
+    zip((ast.Add, ast.Sub, ast.Mult, ast.Div, ast.Pow, ast.UAdd, ast.USub), "+-*/^+-", strict=True)
+)
 KEY = re.compile(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)?", re.ASCII)
 WORD = re.compile(r"[A-Za-z_]\w*", re.ASCII)
-#: what Python may read, and an expression may not hold
-FOREIGN = re.compile(r"[^\w\s.+\-*/^(),]|,(?=\s*\))", re.ASCII)
+#: what Python may read, and an expression may not hold: signs, a comma at an end, 0x10, 1_000, 2j
+FOREIGN = re.compile(r"[^\w\s.+\-*/^(),]|,(?=\s*\))|\b\d[\d.]*[_a-df-zA-DF-Z]\w*", re.ASCII)
+OWN = "\u00f8"  #: before a key that is one of Python's words, such as free.lambda; no text holds it
 LONGEST = 400  #: characters
 
 
@@ -74,11 +60,7 @@ class Expression:
         return frozenset(_keys(self.tree))
 
     def value(self, values: Mapping[str, float]) -> float:
-        """Its value where the keys have these values.
-
-        Raises:
-            ExpressionError: a division by zero, a root of a negative number, a value that is not finite.
-        """
+        """Its value where the keys have these values; ExpressionError if that is not finite."""
         try:
             value = _value(self.tree, values)
         except ZeroDivisionError:
@@ -88,7 +70,7 @@ class Expression:
         except (ArithmeticError, ValueError, TypeError) as error:
             reason = str(error)
         else:
-            if not isinstance(value, complex) and math.isfinite(value):
+            if math.isfinite(value):
                 return float(value)
             reason = f"it is {value}, not a finite number"
         raise ExpressionError(
@@ -97,76 +79,48 @@ class Expression:
 
 
 def parse_expression(text: str) -> Expression:
-    """Parse a text.
-
-    Raises:
-        ExpressionError: it is no expression; says why and where.
-    """
+    """Parse a text; ExpressionError with the reason why it is no expression."""
     if len(text) > LONGEST:
         raise ExpressionError(f"is {len(text)} characters long; at most {LONGEST} are read")
-    return Expression(text, _Reader(text).tree())
-
-
-class _Reader:
-    """Turns a text into a tree."""
-
-    def __init__(self, text: str) -> None:
-        self._text = text
-
-    def tree(self) -> Tree:
-        text = self._text
-        if foreign := FOREIGN.search(text):
-            raise self._refused(f"unexpected {foreign[0]!r}", foreign.start())
-        # A key may be one of Python's words, such as free.lambda: in other letters it is none to Python.
-        other = WORD.sub(lambda word: word[0].swapcase() if iskeyword(word[0]) else word[0], text)
-        begin = len(text) - len(text.lstrip())
-        pieces = ["**" if sign == "^" else " " if sign.isspace() else sign for sign in other[begin:]]
-        #: position in the text of each character that Python reads
-        self._places = [begin + k for k, piece in enumerate(pieces) for _ in piece] + [len(text)]
+    reason = ""
+    if foreign := FOREIGN.search(text):
+        reason = f"unexpected {foreign[0]!r}"
+    else:
+        python = " ".join(text.replace("^", "**").split())
+        python = WORD.sub(lambda word: f"{OWN * iskeyword(word[0])}{word[0]}", python)
         try:
-            return self._tree(ast.parse("".join(pieces), mode="eval").body)
+            return Expression(text, _tree(ast.parse(python, mode="eval").body))
         except SyntaxError as error:
-            position = min(error.offset or len(self._places), len(self._places)) - 1  # 0: the end
-            raise self._refused(re.split("[.;]", error.msg)[0], self._places[position]) from None
+            reason = error.msg if error.lineno is None else re.split("[.;]", error.msg)[0]
         except (RecursionError, MemoryError):
             raise ExpressionError("is nested too deeply") from None
+        except OverflowError:
+            reason = "a number is too large"
+    raise ExpressionError(
+        f"= {text!r}: {reason}; it may hold numbers, keys such as contact.mu_static, + - * / ^ ( ) and functions"
+    )
 
-    def _tree(self, node: ast.expr) -> Tree:
-        source = self._source(node)
-        match node:
-            case ast.Constant() if NUMBER.fullmatch(source):
-                return ("number", float(source))
-            case ast.Name() | ast.Attribute() if KEY.fullmatch(source):
-                return ("number", math.pi) if source == "pi" else ("key", source)
-            case ast.UnaryOp(op=op, operand=part) if type(op) in OPERATORS:
-                return ("sign", OPERATORS[type(op)], self._tree(part))
-            case ast.BinOp(left=left, op=op, right=right) if type(op) in OPERATORS:
-                return (OPERATORS[type(op)], self._tree(left), self._tree(right))
-            case ast.Call(func=function, args=arguments, keywords=[]):
-                return self._call(self._source(function), arguments)
-        raise self._refused(f"{source!r} is no number, key, sum, product or power", self._begin(node))
 
-    def _call(self, name: str, arguments: list[ast.expr]) -> Tree:
-        if name not in FUNCTIONS:
-            raise ExpressionError(f"= {self._text!r}: no function {name!r} (known: {', '.join(FUNCTIONS)})")
-        wanted = FUNCTIONS[name][1]
-        if len(arguments) != wanted:
-            raise ExpressionError(
-                f"= {self._text!r}: {name} takes {wanted} argument{'s' * (wanted > 1)}, got {len(arguments)}"
-            )
-        return ("call", name, *map(self._tree, arguments))
-
-    def _begin(self, node: ast.expr) -> int:
-        return self._places[node.col_offset]
-
-    def _source(self, node: ast.expr) -> str:
-        return self._text[self._begin(node) : self._places[node.end_col_offset or 0]]
-
-    def _refused(self, reason: str, position: int) -> ExpressionError:
-        return ExpressionError(
-            f"= {self._text!r}: {reason} at character {position + 1}; it may hold numbers, keys such as "
-            "contact.mu_static, + - * / ^ ( ) and functions"
-        )
+def _tree(node: ast.expr) -> Tree:
+    """What is read of a node; raises a SyntaxError for one that no expression holds."""
+    source = ast.unparse(node).replace(OWN, "").replace(" ** ", "^")
+    match node:
+        case ast.Constant(value=int() | float() as number):
+            return ("number", float(number))
+        case ast.Name() | ast.Attribute() if KEY.fullmatch(source):
+            return ("number", math.pi) if source == "pi" else ("key", source)
+        case ast.UnaryOp(op=op, operand=part) if type(op) in OPERATORS:
+            return ("sign", OPERATORS[type(op)], _tree(part))
+        case ast.BinOp(left=left, op=op, right=right) if type(op) in OPERATORS:
+            return (OPERATORS[type(op)], _tree(left), _tree(right))
+        case ast.Call(func=function, args=arguments, keywords=[]):
+            name = ast.unparse(function)
+            if name not in FUNCTIONS:
+                raise SyntaxError(f"no function {name!r} (known: {', '.join(FUNCTIONS)})")
+            if len(arguments) != FUNCTIONS[name][1]:
+                raise SyntaxError(f"{name} takes {FUNCTIONS[name][1]} arguments, got {len(arguments)}")
+            return ("call", name, *map(_tree, arguments))
+    raise SyntaxError(f"{source!r} is no number, key, sum, product or power")
 
 
 def _keys(tree: Tree) -> Iterator[str]:
@@ -210,13 +164,8 @@ def read_derived(
 ) -> tuple[Derived, ...]:
     """The table [derived] of a study, in an order in which each key follows those it refers to.
 
-    Args:
-        content: of the table.
-        varied: keys that vary already.
-        check_key, check_reference: raise an `AxisError` for a key that cannot follow, or be referred to.
-
-    Raises:
-        CaseError: with the key and the reason.
+    `varied` vary already; `check_key` and `check_reference` raise an `AxisError` for a key that cannot follow, or be
+    referred to. CaseError with the key and the reason.
     """
     expressions: dict[str, Expression] = {}
     for key, text in content.items():
@@ -241,11 +190,7 @@ def read_derived(
 
 
 def with_derived(values: Mapping[str, Any], derived: Iterable[Derived], base: Case) -> dict[str, Any]:
-    """Values by key, those of the derived keys added.
-
-    Raises:
-        CaseError: an expression has no value.
-    """
+    """Values by key, those of the derived keys added; CaseError for an expression without a value."""
     complete = dict(values)
     for quantity in derived:
         known = {key: number_of(key, complete, base) for key in quantity.expression.keys}
@@ -258,11 +203,7 @@ def with_derived(values: Mapping[str, Any], derived: Iterable[Derived], base: Ca
 
 
 def number_of(key: str, values: Mapping[str, Any], base: Case) -> float:
-    """The number of a key: set in `values`, given in the base case, or a default.
-
-    Raises:
-        CaseError: it has none.
-    """
+    """The number of a key: set in `values`, given in the base case, or a default; CaseError if it has none."""
     number = float(values[key]) if key in values else value_in(base, key, values)
     if number is None:
         raise CaseError(f"{key!r} has no number; set it under [set], or let it vary")
@@ -292,11 +233,7 @@ def value_in(base: Case, key: str, values: Mapping[str, Any]) -> float | None:
 
 
 def _in_order(derived: Mapping[str, Expression]) -> list[str]:
-    """The derived keys so that each stands behind those it refers to.
-
-    Raises:
-        CaseError: some refer to one another in a circle.
-    """
+    """The derived keys so that each stands behind those it refers to; CaseError for a circle."""
     done: list[str] = []
     while len(done) < len(derived):
         left = {key: expression for key, expression in derived.items() if key not in done}

@@ -22,7 +22,7 @@ from fem.case.uncertainty import as_changed, drawn_values
 from fem.case.validation import CaseError
 from fem.runtime.arrays import FloatArray
 from fem.study.axes import MOTION_FILE, Axis, point_of, shape_of, with_following
-from fem.study.containers import PenaltyCache
+from fem.study.containers import penalty_of
 from fem.study.derived import (
     FREE,
     Derived,
@@ -66,11 +66,7 @@ class CaseMaker:
         self._templates: dict[tuple[str, ...], tuple[dict[str, Any], dict[str, dict[str, Any]]]] = {}
 
     def case(self, item: Item) -> Case:
-        """The case of a run.
-
-        Raises:
-            CaseError: an expression has no value, a relative quantity has none to scale, a bad case.
-        """
+        """The case of a run; CaseError for a bad one, and where a key to be computed from others has no value."""
         return self({**self.values(item.point, item.drawn), **item.more})
 
     def values(self, point: Mapping[str, Any], drawn: Mapping[str, Any] = {}) -> dict[str, Any]:
@@ -85,11 +81,7 @@ class CaseMaker:
         return {key: value for key, value in complete.items() if not key.startswith(FREE)}
 
     def __call__(self, values: Mapping[str, Any]) -> Case:
-        """The base with dotted keys set; alternatives are replaced.
-
-        Raises:
-            CaseError: as for a case file.
-        """
+        """The base with dotted keys set; alternatives are replaced. CaseError as for a case file."""
         given = values
         values = keys_in_effect(values, self._kinds)
         keys = tuple(values)
@@ -235,7 +227,12 @@ class Sweep(Design):
     perturbation: Perturbation
     threshold: Threshold | None
     maps: MapChoice
-    margin: bool = False  #: find the factor on the motion at which each cell overturns first
+
+    @property
+    def has_copies(self) -> bool:
+        """Whether its cells have copies."""
+        chosen = self.perturbation.cells
+        return chosen != "none" and (chosen != "auto" or self.base.solver.model != "full")
 
     @property
     def threshold_axis(self) -> Axis:
@@ -267,7 +264,6 @@ class Ensemble(Design):
     confidence: float
     probability: float  #: of overturning, to which the points are compared
     unknown_inputs: Unknown = "drawn"
-    copy_motions: bool | None = None  #: into the results; None: those of small sets
 
     @property
     def motions(self) -> Axis | None:
@@ -321,11 +317,10 @@ class UnknownInputs:
 
     def __init__(self, ensemble: Ensemble) -> None:
         self._ensemble = ensemble
-        self._penalties = PenaltyCache()
         cases = list(_cases(ensemble))
         varied = {axis.key for axis in ensemble.axes} | {quantity.key for quantity in ensemble.random}
         fixed = varied | {derived.key for derived in ensemble.derived}
-        ranges = (interval for case in cases for interval in ranges_of(case, self._penalties.of(case)))
+        ranges = (interval for case in cases for interval in ranges_of(case, penalty_of(case)))
         drawn = {interval.key for interval in ranges if interval.drawn is not None} - fixed
         #: keys of the inputs that are drawn
         self.keys = tuple(key for key in INPUTS if key in drawn) if ensemble.unknown_inputs == "drawn" else ()
@@ -345,7 +340,7 @@ class UnknownInputs:
         try:
             case = self._ensemble.make.case(draw)
             share = dict(zip(self.keys, shares, strict=True))
-            ranges = ranges_of(case, self._penalties.of(case))
+            ranges = ranges_of(case, penalty_of(case))
         except (CaseError, ValueError):
             return draw
         drawn = [interval for interval in ranges if interval.key in share]

@@ -186,16 +186,14 @@ class RowLog:
         self._path = path
         there = read_lines(path, columns)
         self.lines = [line for line in there if is_row(columns, line)]  #: already there
-        kept = table_of_lines(columns, self.lines).encode()
+        kept = table_of_lines(columns, self.lines)
         if damaged := len(there) - len(self.lines):
             warn(f"{path}: damaged rows, which are computed again: {damaged}")
+        if damaged or not self.lines:
             write_atomically(path, kept)
-        self._file = open(path, "r+b" if self.lines else "wb", buffering=0)  # noqa: SIM115
-        if self.lines:
-            self._file.truncate(len(kept))
-            self._file.seek(len(kept))
-        else:
-            self._file.write(kept)
+        self._file = open(path, "r+b", buffering=0)  # noqa: SIM115
+        self._file.truncate(len(kept.encode()))
+        self._file.seek(0, os.SEEK_END)
 
     def append(self, lines: Iterable[str]) -> None:
         """Write lines in one go.
@@ -206,15 +204,12 @@ class RowLog:
         if os.fstat(self._file.fileno()).st_nlink == 0:
             raise FolderLostError(self._path.parent)
         data = "".join(f"{line}\n" for line in lines).encode()
-        done = 0
-        while done < len(data):
-            done += self._file.write(data[done:])
-
-    def sync(self) -> None:
-        """Have what was written survive a power cut as well."""
-        os.fsync(self._file.fileno())
+        while data:
+            data = data[self._file.write(data) :]
 
     def close(self) -> None:
+        """Have what was written survive a power cut as well."""
+        os.fsync(self._file.fileno())
         self._file.close()
 
 
@@ -279,7 +274,6 @@ class LoggedRuns(Generic[ItemT]):
                     log.append(lines)
                     for line in lines:
                         self._note(line)
-            log.sync()
 
     def _id(self, item: ItemT) -> tuple[Any, ...]:
         return tuple(islice(self.key(item), self.ids))

@@ -1,7 +1,7 @@
-"""The unknown inputs, drawn over their ranges at every draw of an ensemble.
+"""An ensemble, from its file to its folder: the draws of each point, counted.
 
-What the file varies itself, by [axes], [random] or [derived], stays as it is there; the rest follows [uncertainty]
-of the case. These draws have random numbers of their own, so those of [random] do not depend on them.
+draws -> rows -> points with their intervals -> the fragility curve, figures, answer. The rows are logged as they are
+ready, so that an interrupted ensemble continues where it was, to the same files.
 """
 
 from collections.abc import Sequence
@@ -36,20 +36,14 @@ from fem.study.driver import (
 )
 from fem.study.fragility import POINT_COLUMNS, EnsembleResult, count_point, fragility_of
 from fem.study.maps import ensemble_figures
-from fem.study.motions import (
-    FloorMotionPair,
-    motion_cases,
-    motions_left_out,
-    read_motion_set,
-    write_motions,
-)
+from fem.study.motions import FloorMotionPair, motions_left_out, read_motion_set, write_motions
 from fem.study.runner import Row, Runner
 from fem.study.table import Columns, row_of, table_of_rows
 
 DRAWS = "draws.csv"
 #: numbers in a row of draws.csv besides what is drawn, of a point in its files, of a motion: spectrum and measures
 OF_A_DRAW, OF_A_POINT, OF_A_MOTION = 3, 50, 200
-MOST_COPIED = 100  #: motions of a set that is copied into the results unless the file says otherwise
+MOST_COPIED = 100  #: motions of a set that is copied into the results
 #: columns of a draw behind what is drawn
 SHOWN: Columns = {"outcome": str} | columns_of(Place.KEY) | {key: RUN_COLUMNS[key] for key in FELL_FIRST}
 
@@ -82,11 +76,6 @@ class DrawRows:
         if limit is not None and self.codes[at] == Ending.STANDING and self.slips[at] > limit:
             self.codes[at] = Ending.OVERTURNED
 
-    def by_replicate(self) -> list[dict[str, int]]:
-        """How many draws of each replicate stood, overturned and failed, over all points."""
-        blocks = self.codes.reshape(len(self.codes), self._ensemble.replicates, -1)
-        return [counts_of(block) for block in np.moveaxis(blocks, 1, 0)]
-
     def missing(self) -> list[Item]:
         """The draws that have no row."""
         cells = np.flatnonzero((self.codes == Ending.UNKNOWN).any(axis=1)).tolist()
@@ -94,14 +83,14 @@ class DrawRows:
         return [draw for draw in draws if self.codes[draw.cell, draw.draw] == Ending.UNKNOWN]
 
 
-def draw_row(row: Row) -> Row:
+def _draw_row(row: Row) -> Row:
     """The result of a draw, by the names of `SHOWN`."""
     figures = {key: row[key] for key in (TURNED, SLIPPED)}
     known = {
-        key: None if value is None or not np.isfinite(value) else value for key, value in figures.items()
+        key: value if value is not None and np.isfinite(value) else None for key, value in figures.items()
     }
-    outcome = {"outcome": COUNTED_AS[ending_of(row["status"], row["outcome"])]}
-    return outcome | known | {key: row[key] for key in FELL_FIRST}
+    outcome = COUNTED_AS[ending_of(row["status"], row["outcome"])]
+    return {"outcome": outcome} | known | {key: row[key] for key in FELL_FIRST}
 
 
 def run_ensemble(ensemble: Ensemble, *, folder: Path, **options: Unpack[StudyOptions]) -> EnsembleResult:
@@ -109,21 +98,24 @@ def run_ensemble(ensemble: Ensemble, *, folder: Path, **options: Unpack[StudyOpt
     with runner_of(**options) as reader:
         motions = read_motion_set(ensemble.base, sets_among(ensemble.random), reader)
         options["workers_of"] = reader.workers_of
-        request = ensemble_hash(ensemble, [motion.case_hash for motion in motions])
         unknown = UnknownInputs(ensemble)
-        few = ensemble.replicates <= MOST_COPIED
-        copied = motions if ensemble.copy_motions or (ensemble.copy_motions is None and few) else ()
-        begun = begun_result(ensemble, unknown, motions, request)
+        copied = [motion.case for motion in motions if ensemble.replicates <= MOST_COPIED]
+        begun = begun_result(ensemble, unknown, motions)
+        rows = table_bytes(
+            ensemble.count * ensemble.draws, OF_A_DRAW + len(ensemble.random) + len(unknown.keys)
+        )
+        files = sum(path.stat().st_size for case in copied for path in case.data_files.values())
+        points = table_bytes(ensemble.count, OF_A_POINT)
         study = Study(
             kind=ENSEMBLE,
-            request=request,
+            request=begun.asked,
             result=EnsembleResult,
             begun=begun,
             cases=[ensemble.base],
-            motions=[motion.case for motion in copied],
+            motions=copied,
             compute=partial(_compute, ensemble, unknown, motions, begun),
             texts={"ensemble.toml": ensemble.text, "base.toml": to_toml(ensemble.base)},
-            size=required_disk(ensemble, unknown, copied),
+            size=2 * rows + points + table_bytes(len(motions), OF_A_MOTION) + files,
             subject="the ensemble",
             way_out="take fewer draws",
             progress=lambda folder: "its draws so far",
@@ -150,7 +142,7 @@ def _compute(
         key=draws.key,
         ids=2,
         note=draws.note,
-        logged=draw_row,
+        logged=_draw_row,
     )
     log.run(runner, iter(draws.missing, []))
     complete = (draws.codes != Ending.UNKNOWN).all(axis=1)
@@ -175,65 +167,33 @@ def _compute(
     failed = all(point["failed"] == ensemble.draws for point in points)
     result = replace(result, status=FAILED if failed else COMPLETED, fragility=fragility)
     if motions:
-        measures = [
-            motion.numbers() | counts for motion, counts in zip(motions, draws.by_replicate(), strict=True)
-        ]
-        figures = write_motions(results, motions, measures, dict.fromkeys(COUNTED, int), runner)
-        result = replace(result, motions=tuple(measures), motion_figures=tuple(figures))
+        blocks = draws.codes.reshape(ensemble.count, ensemble.replicates, -1)
+        outcomes = [counts_of(block) for block in np.moveaxis(blocks, 1, 0)]
+        counted: Columns = dict.fromkeys(COUNTED, int)
+        result = replace(result, **write_motions(results, motions, outcomes, counted, runner))
     answer = ensemble_answer(result)
     return replace(result, answer=answer.sentence if answer else None)
 
 
-def required_disk(
-    ensemble: Ensemble, unknown: UnknownInputs, copied: Sequence[FloorMotionPair] = ()
-) -> float:
-    """Size of the folder of an ensemble [bytes]: the rows of the draws twice, a row a point, motions."""
-    columns = OF_A_DRAW + len(ensemble.random) + len(unknown.keys)
-    draws = 2 * table_bytes(ensemble.count * ensemble.draws, columns)
-    motions = table_bytes(ensemble.replicates if ensemble.motions else 0, OF_A_MOTION)
-    motions += sum(path.stat().st_size for motion in copied for path in motion.case.data_files.values())
-    return draws + table_bytes(ensemble.count, OF_A_POINT) + motions
-
-
-def ensemble_hash(ensemble: Ensemble, motions: Sequence[str] | None = None) -> str:
-    """A hash, equal for ensembles that give the same result.
-
-    Args:
-        motions: hashes of the cases of a set of motions, where they are known.
-    """
+def begun_result(
+    ensemble: Ensemble, unknown: UnknownInputs, motions: Sequence[FloorMotionPair]
+) -> EnsembleResult:
+    """The part of `ensemble.json` that is known beforehand."""
+    names = ("draws", "seed", "sampling", "replicates", "confidence", "probability", "unknown_inputs")
+    counted = {name: getattr(ensemble, name) for name in names} | {"limit_slip_m": ensemble.limit_slip_m}
+    random = [
+        [one.key, one.definition if isinstance(one, RandomChoice) else one.spread.model_dump()]
+        for one in ensemble.random
+    ]
     request = {
         "base": case_hash(ensemble.base),
         "axes": [[axis.key, list(axis.values)] for axis in ensemble.axes],
-        "random": [
-            [
-                quantity.key,
-                quantity.definition if isinstance(quantity, RandomChoice) else quantity.spread.model_dump(),
-            ]
-            for quantity in ensemble.random
-        ],
+        "random": random,
         "derived": [[derived.key, derived.expression.text] for derived in ensemble.derived],
+        "motions": [motion.case_hash for motion in motions],
     }
-    if motions is None:
-        motions = [case_hash(case) for case in motion_cases(ensemble.base, sets_among(ensemble.random))]
-    if motions:
-        request["motions"] = list(motions)
-    if ensemble.limit_slip_m is None:
-        return hash_of(request | _counted(ensemble))
-    return hash_of(request | _counted(ensemble) | {"limit_slip_m": ensemble.limit_slip_m})
-
-
-def _counted(ensemble: Ensemble) -> dict[str, Any]:
-    """How the draws are made and counted."""
-    names = ("draws", "seed", "sampling", "replicates", "confidence", "probability", "unknown_inputs")
-    return {name: getattr(ensemble, name) for name in names}
-
-
-def begun_result(
-    ensemble: Ensemble, unknown: UnknownInputs, motions: Sequence[FloorMotionPair], request: str
-) -> EnsembleResult:
-    """The part of `ensemble.json` that is known beforehand."""
     return EnsembleResult(
-        asked=request,
+        asked=hash_of(request | counted),
         ensemble=ensemble.name,
         title=ensemble.title,
         case=ensemble.base.name,
@@ -245,6 +205,5 @@ def begun_result(
         derived={derived.key: derived.expression.text for derived in ensemble.derived},
         drawn_over_uncertainty=tuple(unknown.keys),
         held=unknown.held,
-        limit_slip_m=ensemble.limit_slip_m,
-        **_counted(ensemble),
+        **counted,
     )

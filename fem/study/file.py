@@ -60,11 +60,7 @@ def read_study(origin: Origin, read: Callable[[dict[str, Any], Origin], StudyT])
 
 
 def read_as(name: str, model: type[TableT], content: Mapping[str, Any]) -> TableT:
-    """A table of the file; `name` is empty for the keys before the first one.
-
-    Raises:
-        CaseError: with one line for each reason why it cannot be used.
-    """
+    """A table of the file, empty for the keys before the first one; CaseError with a line for each reason."""
     given, _, problems = read_table(name, model, content)
     if problems:
         raise CaseError("\n".join(problem_lines(problems)))
@@ -74,11 +70,7 @@ def read_as(name: str, model: type[TableT], content: Mapping[str, Any]) -> Table
 def split_tables(
     data: Mapping[str, Any], known: Sequence[str]
 ) -> tuple[dict[str, Any], dict[str, dict[str, Any]]]:
-    """The keys before the first table, and the tables; a missing one is empty.
-
-    Raises:
-        CaseError: an unknown table, or a table written as a value.
-    """
+    """The keys before the first table, and the tables; CaseError for an unknown one, or one written as a value."""
     tables = {key: value for key, value in data.items() if isinstance(value, dict)}
     heading = {key: value for key, value in data.items() if key not in tables}
     for name in tables:
@@ -96,11 +88,7 @@ def split_tables(
 
 
 def flat(name: str, content: Mapping[str, Any]) -> dict[str, Any]:
-    """Dotted keys, whether they were written in quotes or, as TOML would have it, as tables in tables.
-
-    Raises:
-        CaseError: one is given in both ways.
-    """
+    """Dotted keys, whether they were written in quotes or, as TOML would have it, as tables in tables."""
     keys: dict[str, Any] = {}
     for key, value in content.items():
         # A table is a range of one key, but for `vertical.scale = [1, -1]`, which TOML reads as a table, too.
@@ -167,20 +155,10 @@ def _in_words_of_study(line: str, varied: Iterable[str]) -> str:
     return line
 
 
-def read_axes(
+def _read_axes(
     content: Mapping[str, Any], most: int, example: str, read: Callable[[str, Any], Axis]
 ) -> tuple[Axis, ...]:
-    """The table [axes].
-
-    Args:
-        content: of the table.
-        most: axes that there may be.
-        example: of an entry.
-        read: an axis from its key and what is given; may raise an `AxisError`.
-
-    Raises:
-        CaseError: with one line for each reason.
-    """
+    """The table [axes] of one to `most` keys, each read by `read`; CaseError with a line for each reason."""
     if not 1 <= len(content) <= most:
         raise CaseError(f"[axes] must hold one to {most} keys, got {len(content)}; for instance {example}")
     axes, problems = [], []
@@ -194,12 +172,8 @@ def read_axes(
     return tuple(axes)
 
 
-def require_verticals(axes: Iterable[Axis], varied: Iterable[str], base: Case) -> None:
-    """Refuse a motion alone in a set where a key of its vertical motion varies.
-
-    Raises:
-        CaseError: with the key and the motion.
-    """
+def _require_verticals(axes: Iterable[Axis], varied: Iterable[str], base: Case) -> None:
+    """Refuse a motion alone in a set where a key of its vertical motion varies."""
     motions = set_axis(axes)
     key = next((key for key in varied if key.startswith("vertical.")), None)
     if motions is None or key is None or (not motions.following and base.has_vertical):
@@ -214,11 +188,7 @@ def require_verticals(axes: Iterable[Axis], varied: Iterable[str], base: Case) -
 
 
 def require_once(changes: Mapping[str, Any], varied: Sequence[str], base: Case) -> None:
-    """Refuse a key of [set] that varies, and two that are one in this case: one of the two would have no effect.
-
-    Raises:
-        CaseError: with the key.
-    """
+    """Refuse a key of [set] that varies, and two that are one in this case: one of the two would have no effect."""
     effects = [next(iter(keys_in_effect({key: None}, base.kinds))) for key in varied]
     for key, effect in zip(varied, effects, strict=True):
         if {key, effect} & flat("set", changes).keys():
@@ -235,24 +205,24 @@ SWEEP_TABLES = ("set", "axes", "derived", "perturbation", "threshold", "maps")
 ENSEMBLE_TABLES = ("set", "axes", "random", "derived")
 
 
-class SweepHeading(CaseTable):
-    """The keys of a sweep file that stand before its first table."""
+class Heading(CaseTable):
+    """The keys of a study's file that stand before its first table."""
 
-    case: str = Field(default=DEFAULT_CASE, description="a shipped case, or a file beside the sweep file")
+    case: str = Field(default=DEFAULT_CASE, description="a shipped case, or a file beside this file")
     title: str = Field(default="", max_length=500, description="for people")
     limit_slip_m: Annotated[float, SLIP_LIMIT] | None = Field(
-        default=None, description="slip beyond which a cell does not stand in the answer"
-    )
-    margin: bool = Field(
-        default=False, description="find the factor on the motion at which each cell overturns first"
+        default=None,
+        description="slip beyond which a run does not stand in the answer, nor in the counts of draws",
     )
 
 
-class EnsembleHeading(CaseTable):
-    """The keys of an ensemble file that stand before its first table."""
+class SweepHeading(Heading):
+    """Those of a sweep."""
 
-    case: str = Field(default=DEFAULT_CASE, description="a shipped case, or a file beside the ensemble file")
-    title: str = Field(default="", max_length=500, description="for people")
+
+class EnsembleHeading(Heading):
+    """Those of an ensemble."""
+
     draws: Annotated[int, Strict()] = Field(default=128, ge=8, le=1_000_000, description="at each point")
     seed: Annotated[int, Strict()] = Field(default=1, ge=0, le=2**63 - 1, description="of the draws")
     sampling: Sampling = Field(default="independent", description="how the draws are spread")
@@ -263,33 +233,19 @@ class EnsembleHeading(CaseTable):
     probability: float = Field(
         default=0.05, gt=0.0, lt=1.0, description="of overturning, to which the points are compared"
     )
-    limit_slip_m: Annotated[float, SLIP_LIMIT] | None = Field(
-        default=None, description="slip beyond which a draw does not stand, and counts as one that overturned"
-    )
     unknown_inputs: Unknown = Field(
         default="drawn",
         description='inputs that this file does not vary: "drawn" over [uncertainty] of the case | "held"',
     )
-    copy_motions: bool | None = Field(
-        default=None, description="copy the motion files into the results; default: sets of up to 100"
-    )
 
 
 def load_sweep(name_or_path: str | Path) -> Sweep:
-    """Read a sweep file, or a shipped sweep.
-
-    Raises:
-        CaseError: with one line for each reason why it cannot be used.
-    """
+    """Read a sweep file, or a shipped sweep; CaseError with one line for each reason why it cannot be used."""
     return read_study(SWEEPS.find(name_or_path), _read_sweep)
 
 
 def load_ensemble(name_or_path: str | Path) -> Ensemble:
-    """Read an ensemble file, or a shipped one.
-
-    Raises:
-        CaseError: with one line for each reason why it cannot be used.
-    """
+    """Read an ensemble file, or a shipped one; CaseError with one line for each reason why it cannot be used."""
     return read_study(ENSEMBLES.find(name_or_path), _read_ensemble)
 
 
@@ -297,10 +253,10 @@ def _read_sweep(data: Mapping[str, Any], origin: Origin) -> Sweep:
     given, tables = split_tables(data, SWEEP_TABLES)
     heading = read_as("", SweepHeading, given)
     example = '"contact.mu_static" = [0.2, 0.3, 0.4]'
-    axes = read_axes(flat("axes", tables.get("axes", {})), MOST_AXES, example, _axis)
+    axes = _read_axes(flat("axes", tables.get("axes", {})), MOST_AXES, example, _axis)
     keys, values = [axis.key for axis in axes], {axis.key: axis.values for axis in axes}
     base = base_case(heading.case, tables.get("set", {}), origin, first_motion(axes), keys)
-    require_verticals(axes, keys, base)
+    _require_verticals(axes, keys, base)
 
     def check_reference(name: str) -> None:
         if not name.startswith(FREE):
@@ -331,7 +287,6 @@ def _read_sweep(data: Mapping[str, Any], origin: Origin) -> Sweep:
         threshold=_threshold(tables, axes),
         maps=_maps(tables.get("maps", {}), values),
         limit_slip_m=heading.limit_slip_m,
-        margin=heading.margin,
     )
     _try_cells(sweep)
     return sweep
@@ -376,11 +331,7 @@ def _maps(content: Mapping[str, Any], known: Mapping[str, tuple[Any, ...]]) -> M
 
 
 def _try_cells(sweep: Sweep) -> None:
-    """Make the cases at the corners of the grid, and those of every listed value.
-
-    Raises:
-        CaseError: one of them cannot be used, or an axis has no effect in any.
-    """
+    """Make the cases at the corners of the grid, and those of every listed value; refuse an axis without effect."""
     ends = [axis.values if axis.scale == "list" else (axis.values[0], axis.values[-1]) for axis in sweep.axes]
     idle = {axis.key for axis in sweep.axes}
     for corner in islice(product(*ends), TRIED):
@@ -411,7 +362,7 @@ def _read_ensemble(data: Mapping[str, Any], origin: Origin) -> Ensemble:
     given, tables = split_tables(data, ENSEMBLE_TABLES)
     heading, derived = read_as("", EnsembleHeading, given), tables.get("derived", {})
     example = '"motion.peak_acceleration_m_s2" = { from = 2.0, to = 10.0, count = 17 }'
-    axes = read_axes(tables.get("axes", {}), MOST_POINT_AXES, example, _point_axis)
+    axes = _read_axes(tables.get("axes", {}), MOST_POINT_AXES, example, _point_axis)
     keys = [axis.key for axis in axes]
     random = _random(tables.get("random", {}), keys)
     sets = sets_among(random)
@@ -421,7 +372,7 @@ def _read_ensemble(data: Mapping[str, Any], origin: Origin) -> Ensemble:
             '[set] "solver.model" must be "rigid" or "reduced": an ensemble of the full model would take weeks'
         )
     varied = [*keys, *(quantity.key for quantity in random)]
-    require_verticals(sets, varied, base)
+    _require_verticals(sets, varied, base)
     drawn = [quantity.key for quantity in random if not quantity.relative]
     require_once(tables.get("set", {}), [*keys, *drawn, *derived], base)
 

@@ -22,24 +22,6 @@ from fem.study.table import Columns
 
 
 @dataclass(frozen=True, kw_only=True)
-class Fall(JsonBlock):
-    """A stronger motion that overturns less often than a weaker one, beyond what the intervals allow."""
-
-    weaker: float
-    stronger: float
-    probability_weaker: float
-    probability_stronger: float
-
-
-@dataclass(frozen=True, kw_only=True)
-class Resampled(JsonBlock):
-    """The curves of the resamples."""
-
-    median: tuple[float, ...]
-    deviation: tuple[float, ...]
-
-
-@dataclass(frozen=True, kw_only=True)
 class FittedLognormal(JsonBlock):
     """The fitted curve, and how well it describes the counts."""
 
@@ -49,11 +31,6 @@ class FittedLognormal(JsonBlock):
     levels_missed: int
     missed_by_chance: int
     adequate: bool
-    median_interval: tuple[float, ...] | None = None  #: None where too few resamples have a curve
-    deviation_interval: tuple[float, ...] | None = None
-    resampled: Resampled | None = None
-
-    written_where_given = frozenset({"resampled"})
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,7 +38,8 @@ class Fragility(JsonBlock):
     """What the only axis of an ensemble shows."""
 
     axis: str  #: its key
-    falls: tuple[Fall, ...]
+    #: where a stronger motion overturns less often than a weaker one, beyond what the intervals allow
+    falls: tuple[dict[str, float], ...]
     lognormal: FittedLognormal | None = None
     no_lognormal: str | None = None  #: why there is none
 
@@ -106,7 +84,6 @@ class EnsembleResult(StudyResult):
         return tuple(axis.axis for axis in self.axes)
 
 
-BOOTSTRAPS = 1000
 SCORINGS = 60  #: of Fisher's method
 TIGHT = 1e-9  #: change of the coefficients at convergence
 STEEPEST = 200.0  #: 1/deviation beyond which the counts are a step
@@ -126,66 +103,50 @@ class Lognormal:
 
 
 def fit_lognormal(strengths: FloatArray, overturned: FloatArray, draws: FloatArray) -> Lognormal | None:
-    """The lognormal curve of largest likelihood; None where there is none (a step, no events, a falling curve).
+    """The lognormal curve of largest likelihood, by Fisher's scoring of the probit regression.
+
+    None where there is none: a step, no events, a falling curve.
 
     Args:
         strengths: (n,) positive; overturned: (n,) counts; draws: (n,) of which.
     """
-    slopes, intercepts, sound = _probit(np.log(strengths), overturned[None], draws)
-    if not sound[0]:
-        return None
-    return Lognormal(median=float(np.exp(-intercepts[0] / slopes[0])), deviation=float(1.0 / slopes[0]))
-
-
-def bootstrap_fits(
-    strengths: FloatArray,
-    counts: FloatArray,
-    sizes: FloatArray,
-    *,
-    seed: int,
-    independent: bool,
-    common: bool = False,
-) -> tuple[FloatArray, FloatArray]:
-    """Medians and deviations of curves fitted to resampled counts, shape (k,), k the resamples that have a fit.
-
-    Independent draws are resampled draw by draw, replicates as a whole.
-
-    Args:
-        strengths: (n,); counts: (n, r) overturned in each replicate; sizes: (n, r) draws that have an outcome.
-        seed: of the resampling.
-        independent: each replicate's draws are independent of one another.
-        common: a replicate is the same motion at every strength, so that all strengths are resampled alike.
-    """
-    generator = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(2**32 - 1,)))
-    totals = sizes.sum(axis=1)
-    if independent:
-        shares = np.divide(counts.sum(axis=1), totals, out=np.zeros(len(totals)), where=totals > 0.0)
-        drawn = generator.binomial(totals.astype(int), shares, size=(BOOTSTRAPS, len(totals))).astype(float)
+    logarithms = np.log(strengths)
+    middle = float(np.average(logarithms, weights=np.maximum(draws, 1e-9)))
+    x = logarithms - middle
+    slope = 1.0 / max(float(np.std(x)), 1e-9)
+    intercept = float(np.clip((np.mean((overturned + 0.5) / (draws + 1.0)) - 0.5) * 2.0, -1.0, 1.0))
+    for _ in range(SCORINGS):
+        z = np.clip(intercept + slope * x, -TAIL, TAIL)
+        density = np.exp(-0.5 * z * z) / np.sqrt(2.0 * np.pi)
+        p = ndtr(z)
+        spread = np.maximum(p * ndtr(-z), 1e-300)
+        weight, score = draws * density**2 / spread, density * (overturned - draws * p) / spread
+        a, b, c = weight.sum(), (weight * x).sum(), (weight * x * x).sum()
+        first, second = score.sum(), (score * x).sum()
+        determinant = max(a * c - b * b, 1e-300)
+        change = np.array([c * first - b * second, a * second - b * first]) / determinant
+        change = np.clip(change, -0.5 * (1.0 + abs(slope)), 0.5 * (1.0 + abs(slope)))
+        intercept, slope = intercept + float(change[0]), slope + float(change[1])
+        if np.abs(change).max() < TIGHT * (1.0 + abs(slope)):
+            break
     else:
-        levels_resampled = 1 if common else counts.shape[0]
-        picked = generator.integers(counts.shape[1], size=(BOOTSTRAPS, levels_resampled, counts.shape[1]))
-        levels = np.arange(len(totals))[:, None]
-        # Replicates lack the draws that failed; a resampled one counts as if it lacked the average number.
-        share = np.divide(counts, sizes, out=np.zeros_like(counts), where=sizes > 0.0)
-        drawn = share[levels, picked].mean(axis=2) * totals
-    slopes, intercepts, sound = _probit(np.log(strengths), drawn, totals)
-    return np.exp(-intercepts[sound] / slopes[sound]), 1.0 / slopes[sound]
+        return None
+    if not 1e-3 < slope < STEEPEST:
+        return None
+    return Lognormal(median=float(np.exp(-(intercept - slope * middle) / slope)), deviation=1.0 / slope)
 
 
-def falls(strengths: FloatArray, values: FloatArray, low: FloatArray, high: FloatArray) -> list[Fall]:
+def falls(
+    strengths: FloatArray, values: FloatArray, low: FloatArray, high: FloatArray
+) -> list[dict[str, float]]:
     """Where the curve falls: for each level, the weaker one whose interval lies highest above its own."""
     drops = []
     for k in range(1, len(strengths)):
         before = int(np.argmax(low[:k]))
         if high[k] < low[before]:
-            drops.append(
-                Fall(
-                    weaker=float(strengths[before]),
-                    stronger=float(strengths[k]),
-                    probability_weaker=float(values[before]),
-                    probability_stronger=float(values[k]),
-                )
-            )
+            drop = {"weaker": strengths[before], "stronger": strengths[k]}
+            drop |= {"probability_weaker": values[before], "probability_stronger": values[k]}
+            drops.append({name: float(value) for name, value in drop.items()})
     return drops
 
 
@@ -201,51 +162,12 @@ def misses_by_chance(levels: int, confidence: float) -> int:
     return int(np.argmax(bdtr(np.arange(levels + 1), levels, 1.0 - confidence) >= 0.95))
 
 
-def _probit(
-    logarithms: FloatArray, overturned: FloatArray, draws: FloatArray
-) -> tuple[FloatArray, FloatArray, np.ndarray]:
-    """Probit regressions p = Phi(intercept + slope x) side by side, by Fisher's scoring.
-
-    Args:
-        logarithms: (n,); overturned: (k, n); draws: (n,).
-
-    Returns:
-        Slopes (k,), intercepts (k,), and which of them are sound: converged, rising, and no step.
-    """
-    middle = float(np.average(logarithms, weights=np.maximum(draws, 1e-9)))
-    x = logarithms - middle
-    share = (overturned + 0.5) / (draws + 1.0)
-    count = len(overturned)
-    slope, intercept = np.full(count, 1.0 / max(float(np.std(x)), 1e-9)), np.zeros(count)
-    intercept += np.clip((share.mean(axis=1) - 0.5) * 2.0, -1.0, 1.0)
-    converged = np.zeros(count, dtype=bool)
-    for _ in range(SCORINGS):
-        z = np.clip(intercept[:, None] + slope[:, None] * x, -TAIL, TAIL)
-        density = np.exp(-0.5 * z * z) / np.sqrt(2.0 * np.pi)
-        p = ndtr(z)
-        spread = np.maximum(p * ndtr(-z), 1e-300)
-        weight = draws * density**2 / spread
-        score = density * (overturned - draws * p) / spread
-        a, b, c = weight.sum(axis=1), (weight * x).sum(axis=1), (weight * x * x).sum(axis=1)
-        first, second = score.sum(axis=1), (score * x).sum(axis=1)
-        determinant = np.maximum(a * c - b * b, 1e-300)
-        change = np.array([(c * first - b * second) / determinant, (a * second - b * first) / determinant])
-        change = np.clip(change, -0.5 * (1.0 + np.abs(slope)), 0.5 * (1.0 + np.abs(slope)))
-        intercept, slope = intercept + change[0], slope + change[1]
-        converged = np.abs(change).max(axis=0) < TIGHT * (1.0 + np.abs(slope))
-        if converged.all():
-            break
-    sound = converged & (slope > 1e-3) & (slope < STEEPEST)
-    return slope, intercept - slope * middle, sound
-
-
 #: columns of `points.csv` behind those of the axes
 POINT_COLUMNS: Columns = dict.fromkeys(("draws", *COUNTED), int)
 POINT_COLUMNS |= dict.fromkeys(("probability", "low", "high"), float) | {"region": str, SLIPPED: float}
 PointRow = dict[str, Any]  #: of a point, by the keys of the axes and these columns
 FEWEST_FITTED = 4  #: levels from which a curve is fitted
 NO_CURVE = "the counts are a step, fall, or hold nothing that overturned or nothing that stood"
-FEWEST_RESAMPLED = 0.9  #: share of the resamples that must have a curve, else there is no band
 
 
 def count_point(
@@ -293,52 +215,19 @@ def fragility_of(ensemble: Ensemble, codes: np.ndarray, points: Sequence[PointRo
         return replace(fragility, no_lognormal="the axis goes through zero")
     if known.sum() < FEWEST_FITTED:
         return replace(fragility, no_lognormal=f"fewer than {FEWEST_FITTED} levels")
-    # what does not stand, and draws with an outcome, in each replicate: (points, replicates)
-    blocks = codes[known].reshape(int(known.sum()), ensemble.replicates, -1)
-    counts = np.isin(blocks, NOT_STANDING).sum(axis=2).astype(float)
-    sizes = (blocks != Ending.FAILED).sum(axis=2).astype(float)
-    fitted = _lognormal(ensemble, strengths[known], counts, sizes, low[known], high[known])
-    return replace(fragility, lognormal=fitted, no_lognormal=None if fitted else NO_CURVE)
-
-
-def _lognormal(
-    ensemble: Ensemble,
-    strengths: FloatArray,
-    counts: FloatArray,
-    sizes: FloatArray,
-    low: FloatArray,
-    high: FloatArray,
-) -> FittedLognormal | None:
-    curve = fit_lognormal(strengths, counts.sum(axis=1), sizes.sum(axis=1))
+    counts = np.isin(codes[known], NOT_STANDING).sum(axis=1).astype(float)
+    sizes = (codes[known] != Ending.FAILED).sum(axis=1).astype(float)
+    curve = fit_lognormal(strengths[known], counts, sizes)
     if curve is None:
-        return None
-    medians, deviations = bootstrap_fits(
-        strengths,
-        counts,
-        sizes,
-        seed=ensemble.seed,
-        independent=ensemble.replicates == 1,
-        common=ensemble.motions is not None,
-    )
-    missed, by_chance = (
-        misses(curve, strengths, low, high),
-        misses_by_chance(len(strengths), ensemble.confidence),
-    )
+        return replace(fragility, no_lognormal=NO_CURVE)
+    missed = misses(curve, strengths[known], low[known], high[known])
+    by_chance = misses_by_chance(int(known.sum()), ensemble.confidence)
     fitted = FittedLognormal(
         median=curve.median,
         deviation=curve.deviation,
-        levels=len(strengths),
+        levels=int(known.sum()),
         levels_missed=missed,
         missed_by_chance=by_chance,
         adequate=missed <= by_chance,
     )
-    if len(medians) < FEWEST_RESAMPLED * BOOTSTRAPS:
-        return fitted
-    outside = 50.0 * (1.0 - ensemble.confidence)
-    ends = [outside, 100.0 - outside]
-    return replace(
-        fitted,
-        median_interval=tuple(np.percentile(medians, ends).tolist()),
-        deviation_interval=tuple(np.percentile(deviations, ends).tolist()),
-        resampled=Resampled(median=tuple(medians.tolist()), deviation=tuple(deviations.tolist())),
-    )
+    return replace(fragility, lognormal=fitted)

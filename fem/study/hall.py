@@ -95,10 +95,9 @@ class Hall(Design):
     @property
     def items(self) -> list[Item]:
         """All runs; those of a container follow one another."""
-        rows = enumerate(self.containers.values())
         return [
             Item(number, motion, keys, row.values)
-            for number, row in rows
+            for number, row in enumerate(self.containers.values())
             for motion, keys in enumerate(self.keys)
         ]
 
@@ -109,7 +108,7 @@ class Hall(Design):
         if self.named:
             words += ["--motion", self.named[item.draw].partition(",")[0].strip()]
         # with a vertical file of a pair, or that a motion among pairs has none
-        set_by_motion = {k: v for k, v in item.point.items() if k != MOTION_FILE}
+        set_by_motion = {key: value for key, value in item.point.items() if key != MOTION_FILE}
         for key, value in {**set_by_motion, **values}.items():
             words += ["--set", f"{key}={value if isinstance(value, str) else toml_value(value)}"]
         return command_line(*words)
@@ -129,33 +128,30 @@ class Hall(Design):
             build_motions(self.make.case(Item(0, 0, keys, values)))
         return case_hash(first)
 
+    def checked(self) -> "Hall":
+        """The list with every row checked before any is computed; equal rows are one container.
 
-def checked(hall: Hall, *, strict: bool) -> Hall:
-    """A list with every row checked before any is computed; equal rows are one container.
-
-    Raises:
-        CaseError: no good row; with `strict`, which refuses the whole list for one bad row, any bad row.
-    """
-    containers: dict[str, HallRow] = {}
-    numbers: dict[str, int] = {}  #: of the containers, by hash
-    seen: dict[str, dict[str, Any]] = {}  #: by what a row sets: its container, or why it is refused
-    rows = []
-    for row in hall.file.rows:
-        values = repr(sorted(row.values.items()))
-        if not row.reason and values not in seen:
-            try:
-                digest = hall.hash_of(row.values)
-                containers.setdefault(digest, row)
-                seen[values] = {"container": numbers.setdefault(digest, len(numbers))}
-            except ValueError as error:
-                seen[values] = {"reason": _in_words_of_list(str(error), hall.base)}
-        rows.append(row if row.reason else replace(row, **seen[values]))
-    bad = [f"{hall.name}, line {row.line} ({row.name}): {row.reason}" for row in rows if row.reason]
-    if not containers or (strict and bad):
-        more = [f"and {len(bad) - MOST_NAMED} more rows"] * (len(bad) > MOST_NAMED)
-        none = ["no row can be computed"] * (not containers)
-        raise CaseError("\n".join([*bad[:MOST_NAMED], *more, *none]))
-    return replace(hall, rows=tuple(rows), containers=containers)
+        Raises:
+            CaseError: no good row.
+        """
+        containers, numbers = dict[str, HallRow](), dict[str, int]()  # by hash: the first row, and its number
+        seen: dict[str, dict[str, Any]] = {}  # by what a row sets: its container, or why it is refused
+        rows = []
+        for row in self.file.rows:
+            values = repr(sorted(row.values.items()))
+            if not row.reason and values not in seen:
+                try:
+                    digest = self.hash_of(row.values)
+                    containers.setdefault(digest, row)
+                    seen[values] = {"container": numbers.setdefault(digest, len(numbers))}
+                except ValueError as error:
+                    seen[values] = {"reason": _in_words_of_list(str(error), self.base)}
+            rows.append(row if row.reason else replace(row, **seen[values]))
+        if not containers:
+            bad = [f"{self.name}, line {row.line} ({row.name}): {row.reason}" for row in rows]
+            more = [f"and {len(bad) - MOST_NAMED} more rows"] * (len(bad) > MOST_NAMED)
+            raise CaseError("\n".join([*bad[:MOST_NAMED], *more, "no row can be computed"]))
+        return replace(self, rows=tuple(rows), containers=containers)
 
 
 def read_motions(base: Case, named: Sequence[str], runner: Runner) -> tuple[FloorMotionPair, ...]:
@@ -179,12 +175,8 @@ def with_files_of_the_command_line(base: Case) -> Case:
     return base.from_origin(replace(origin, trusted=trusted, allow_outside=True))
 
 
-def say_time(file: HallFile, base: Case, motions: int, runner: Runner, *, force: bool) -> None:
-    """Say how long a long list takes, before its rows are read; refuse more than `MOST_RUNS` runs.
-
-    Raises:
-        CaseError: with the number, the time and the way out.
-    """
+def _say_time(file: HallFile, base: Case, motions: int, runner: Runner, *, force: bool) -> None:
+    """Say how long a long list takes, before its rows are read; refuse more than `MOST_RUNS` runs."""
     rows, each, jobs = file.table.count, 1.0, runner.jobs
     with suppress(ValueError):
         each = expected_s(base)
@@ -206,7 +198,7 @@ def _in_words_of_list(reason: str, base: Case) -> str:
     return "; ".join(line for line in lines if line and not line.startswith("with --set "))
 
 
-def ending_in(row: Row) -> str:
+def _ending_in(row: Row) -> str:
     """What a row counts as."""
     return REFUSED if row["status"] == REFUSED else COUNTED_AS[ending_of(row["status"], row["outcome"])]
 
@@ -216,7 +208,7 @@ def weakness(row: Row) -> tuple[float, ...]:
 
     Of a run alone neither margin nor static rule are known.
     """
-    ending, margin = ending_in(row), row.get("margin") or row.get("margin_tried_to")
+    ending, margin = _ending_in(row), row.get("margin") or row.get("margin_tried_to")
     turned, static, slip = (row.get(name) or 0.0 for name in (TURNED, "utilisation_overturning", SLIPPED))
     if ending in WORST_FIRST[:3] or (static and turned <= ROCKS):
         turned = 0.0
@@ -230,7 +222,6 @@ def run_hall(
     *,
     motions: tuple[str, ...] = (),
     checks: Checks = "weakest",
-    strict: bool = False,
     **options: Unpack[StudyOptions],
 ) -> HallResult:
     """Compute a hall into a folder; raises as `run_study`, and CaseError for bad input.
@@ -240,18 +231,32 @@ def run_hall(
         motions: files of motions in place of that of the case, "H" or "H,V" each; every container undergoes all.
         checks: which governing runs are repeated for `sure` and `margin`: those of the weakest tenth and of at least
             30 containers, all, or none.
-        strict: refuse the list for one bad row.
     """
     with runner_of(**options) as runner:
-        say_time(file, base, max(len(motions), 1), runner, force=options.get("force", False))
+        _say_time(file, base, max(len(motions), 1), runner, force=options.get("force", False))
         if motions and (named := [key for key in file.keys if key in (MOTION_FILE, VERTICAL_FILE)]):
             raise CaseError(f"{file.name}: column {named[0]!r} and --motion both name the motion; use one")
         pairs = read_motions(base, motions, runner) if motions else ()
-        hall = checked(
-            Hall(name=file.name, file=file, base=base, motions=pairs, named=motions), strict=strict
-        )
+        hall = Hall(name=file.name, file=file, base=base, motions=pairs, named=motions).checked()
         options["workers_of"] = runner.workers_of
-        begun = begun_list(hall, checks)
+        origin = base.origin_with({})
+        begun = HallResult(
+            hall=hall.name,
+            case=origin.place,
+            model=base.solver.model,
+            rows=len(hall.rows),
+            containers=sum(row.count for row in hall.rows),
+            distinct=len(hall.containers),
+            refused=sum(row.container is None for row in hall.rows),
+            kept=tuple(column for column, meaning in file.meanings.items() if not meaning),
+            columns=tuple(file.meanings),
+            asked=hash_of([[*hall.containers], [pair.case_hash for pair in pairs]]),
+            listed=hash_of([file.table.text, checks]),
+            motions=motions,
+            motion_covered=motions_left_out(base, pairs),
+            checks=checks,
+            allow_outside=origin.allow_outside or None,
+        )
         study = Study(
             kind=HALL,
             request=begun.asked,
@@ -268,28 +273,6 @@ def run_hall(
             motions=[pair.case for pair in pairs],
         )
         return run_study(study, folder, **options)
-
-
-def begun_list(hall: Hall, checks: Checks) -> HallResult:
-    """The part of `hall.json` that is known beforehand."""
-    file, origin = hall.file, hall.base.origin_with({})
-    return HallResult(
-        hall=hall.name,
-        case=origin.place,
-        model=hall.base.solver.model,
-        rows=len(hall.rows),
-        containers=sum(row.count for row in hall.rows),
-        distinct=len(hall.containers),
-        refused=sum(row.container is None for row in hall.rows),
-        kept=tuple(column for column, meaning in file.meanings.items() if not meaning),
-        columns=tuple(file.meanings),
-        asked=hash_of([[*hall.containers], [pair.case_hash for pair in hall.motions]]),
-        listed=hash_of([file.table.text, checks]),
-        motions=hall.named,
-        motion_covered=motions_left_out(hall.base, hall.motions),
-        checks=checks,
-        allow_outside=origin.allow_outside or None,
-    )
 
 
 def _compute(hall: Hall, begun: HallResult, results: ResultFolder, runner: Runner) -> HallResult:
@@ -332,7 +315,9 @@ def _compute(hall: Hall, begun: HallResult, results: ResultFolder, runner: Runne
     results.write_text(CHECKS, checks.table())
     for item, row in found:
         row |= checks.row(item)
-    return written(results, begun, hall, found)
+    for rank, (_, container) in enumerate(sorted(found, key=lambda pair: weakness(pair[1])), start=1):
+        container["rank"] = rank
+    return _written(results, begun, hall, found)
 
 
 def _governing(hall: Hall, items: Sequence[Item], runs: LoggedRuns[Item]) -> tuple[Item, Row]:
@@ -349,23 +334,21 @@ def _governing(hall: Hall, items: Sequence[Item], runs: LoggedRuns[Item]) -> tup
     row = {name: rows[item.draw][name] for name in OF_A_RUN}
     row |= {name: getattr(ruling, name) for name in STATIC}
     if names := [pair.name for pair in hall.motions]:
-        counts, slips = Counter(map(ending_in, rows)), [run[SLIPPED] or 0.0 for run in rows]
+        counts, slips = Counter(map(_ending_in, rows)), [run[SLIPPED] or 0.0 for run in rows]
         slid = slips.index(max(slips))
         under = names[item.draw], *(counts[word] for word in WORST_FIRST[:3]), slips[slid], names[slid]
         row |= zip(OF_MOTIONS, under, strict=True)
     return item, row
 
 
-def written(
+def _written(
     results: ResultFolder, begun: HallResult, hall: Hall, found: Sequence[tuple[Item, Row]]
 ) -> HallResult:
     """The finished result of a checked list, with the list written; the governing run and the row of each container."""
-    for rank, (_, container) in enumerate(sorted(found, key=lambda pair: weakness(pair[1])), start=1):
-        container["rank"] = rank
     table = tuple(_rows(hall, found))
     outcomes, tags = Counter[str](), dict[str, dict[str, Any]]()
     for row in table:
-        ending = ending_in(row)
+        ending = _ending_in(row)
         outcomes[row["outcome"] or ending] += row["count"]
         empty = {"tag": row["tag"], "containers": 0, "counts": Counter[str](), "margin": None}
         tag = tags.setdefault(row["tag"], empty)
@@ -382,7 +365,7 @@ def written(
     fields = ([*row["given"].values(), *(row[name] for name in RESULT_COLUMNS)] for row in table)
     results.write_text(TABLE, table_text((*result.columns, *RESULT_COLUMNS), fields))
     results.remove("report.html")  # the command makes another
-    return replace(result, answer=answer_of(result))
+    return replace(result, answer=_answer_of(result))
 
 
 def _rows(hall: Hall, found: Sequence[tuple[Item, Row]]) -> Iterator[Row]:
@@ -396,14 +379,14 @@ def _rows(hall: Hall, found: Sequence[tuple[Item, Row]]) -> Iterator[Row]:
         yield own | {name: results.get(name) for name in (*RESULT_COLUMNS, "command")}
 
 
-def answer_of(result: HallResult) -> str:
+def _answer_of(result: HallResult) -> str:
     """How many containers did what, and which is the weakest, in one sentence."""
     counts = dict(result.outcomes)
     refused = counts.pop(REFUSED, 0)
-    computed = result.containers - refused
     overturned, invalid, failed = (counts.get(word, 0) for word in ("overturned", "invalid", "failed"))
     under = f" under at least one of {len(result.motions)} motions" if len(result.motions) > 1 else ""
-    words = f"{overturned or 'none'} of {computed} containers overturned{under if overturned else ''}"
+    words = f"{overturned or 'none'} of {result.containers - refused} containers overturned"
+    words += under if overturned else ""
     words += f"; {invalid} destroyed a corner, which is not valid" if invalid else ""
     words += f"; {failed} have no outcome" if failed else ""
     words += f"; {result.refused} row{'s were' if result.refused != 1 else ' was'} refused" if refused else ""

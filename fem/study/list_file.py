@@ -133,36 +133,28 @@ class HallFile:
         return [meaning for meaning in self.meanings.values() if meaning and meaning not in OWN]
 
     @cached_property
-    def indices(self) -> dict[str, int]:
-        """Of the columns that are read, in the header."""
-        return {column: self.header.index(column) for column in self.meanings}
-
-    @cached_property
     def rows(self) -> tuple[HallRow, ...]:
-        """A row for each line.
-
-        Raises:
-            CaseError: there are none, values below no name, decimal commas and points.
-        """
+        """A row for each line; CaseError for none, values below no name, decimal commas and points."""
         numeric = [column for column, meaning in self.meanings.items() if meaning not in ("", NAME, TAG)]
         if not self.table.lines:
             raise CaseError(f"{self.path}: the list has a header and no rows; give one row a container")
         self.table.require_names()
-        self.table.require_one_decimal_mark(self.indices[column] for column in numeric)
-        return tuple(self._row(number, line) for number, line in enumerate(self.table.lines, start=1))
-
-    def _row(self, number: int, line: TableLine) -> HallRow:
-        given = {column: line.field(index) for column, index in self.indices.items()}
-        texts = dict(zip(self.meanings.values(), given.values(), strict=True))
-        problems: list[str] = []
-        count = _number(texts.get(COUNT) or "1", LARGEST_COUNT)
-        if count is None or not count.is_integer() or count < 1.0:
-            problems.append(f"count must be a whole number of at least 1, got {texts[COUNT]!r}")
-            count = 1.0
+        self.table.require_one_decimal_mark(self.header.index(column) for column in numeric)
+        places = {column: self.header.index(column) for column in self.meanings}
         named = [k for k, name in enumerate(self.header) if name]
+        return tuple(
+            self._row(number, line, places, named) for number, line in enumerate(self.table.lines, start=1)
+        )
+
+    def _row(self, number: int, line: TableLine, places: Mapping[str, int], named: Sequence[int]) -> HallRow:
+        given = {column: line.field(index) for column, index in places.items()}
+        texts = dict(zip(self.meanings.values(), given.values(), strict=True))
+        count, reason = number_in(texts.get(COUNT) or "1") or 0.0, ""
+        if not (count.is_integer() and 1.0 <= count <= LARGEST_COUNT):
+            count, reason = 1.0, f"count must be a whole number of at least 1, got {texts[COUNT]!r}"
         whole = len(line.fields) > named[-1] and not any(line.fields[len(self.header) :])
         if not whole:
-            problems = [f"{len(line.fields)} fields, and the header names {len(named)} columns"]
+            reason = f"{len(line.fields)} fields, and the header names {len(named)} columns"
         return HallRow(
             line=line.number,
             name=plain_text(texts.get(NAME, "")) or str(number),
@@ -170,16 +162,12 @@ class HallFile:
             tag=plain_text(texts.get(TAG, "")),
             given=given,
             values={key: _value(key, texts[key]) for key in self.keys if whole and texts[key]},
-            reason="; ".join(problems),
+            reason=reason,
         )
 
 
 def read_hall(path: Path) -> HallFile:
-    """Read a list; its rows are read on first use.
-
-    Raises:
-        CaseError: no such file, no text, no header, a column that names no key or a key twice.
-    """
+    """Read a list; its rows are read on first use. CaseError for what is no list, or a column that cannot be one."""
     try:
         text = decoded(read_regular(path, LARGEST_FILE))
     except ValueError as error:
@@ -198,11 +186,7 @@ def read_hall(path: Path) -> HallFile:
 
 
 def _meanings_of(path: Path, columns: Sequence[str]) -> dict[str, str]:
-    """What each column means; refuses a meaning that occurs twice.
-
-    Raises:
-        CaseError: every problem of the header.
-    """
+    """What each column means; CaseError with every problem of the header."""
     problems, meanings = [], dict[str, str]()
     for column, count in Counter(columns).items():
         if count > 1:
@@ -226,8 +210,7 @@ def _meanings_of(path: Path, columns: Sequence[str]) -> dict[str, str]:
 def _meaning(column: str) -> str:
     """What a column means: a dotted key, or a name of `OWN`; empty for one that is kept as it is.
 
-    Raises:
-        AxisError: it looks like a key and is none, or may be several.
+    AxisError for one that looks like a key and is none, or may be several.
     """
     table, dot, _ = column.partition(".")
     if dot and difflib.get_close_matches(table.lower(), NAMED, n=1, cutoff=LIKE):
@@ -265,12 +248,6 @@ def _nearest_name(column: str) -> str:
     stems = {stem(name): name for name in names} | OTHER_NAMES
     near = difflib.get_close_matches(stem(column), stems, n=1, cutoff=LIKE) if len(stem(column)) > 1 else []
     return stems[near[0]] if near else ""
-
-
-def _number(text: str, most: float) -> float | None:
-    """The number in a field; None where it is none, or larger."""
-    number = number_in(text)
-    return None if number is None or abs(number) > most else number
 
 
 def _value(key: str, text: str) -> Any:

@@ -26,11 +26,10 @@ from fem.html.units import rounded
 from fem.results.figures import SLIPPED, TURNED
 from fem.results.files import write_atomically
 from fem.results.outcome import ENDINGS, Outcome
-from fem.runtime.arrays import FloatArray
 from fem.study.answers import Answer, StudyAnswer, falling_in_words
 from fem.study.axes import MOTION_FILE, Axis, axis_label, axis_name
 from fem.study.design import Ensemble, MapChoice, UnknownInputs
-from fem.study.fragility import Fragility, Lognormal, PointRow, Resampled
+from fem.study.fragility import Fragility, Lognormal, PointRow
 from fem.study.sweep_table import RATIOS, SweepTable, sweep_answer
 
 OUTCOME_COLOURS = {**style.STATE_COLOURS, "failed": style.VERMILLION, "": style.WHITE}
@@ -410,11 +409,6 @@ def draw_fragility(
     if fragility is not None and (fitted := fragility.lognormal) is not None:
         strengths = np.linspace(float(axis.values[0]), float(axis.values[-1]), FINE)
         curve = Lognormal(median=fitted.median, deviation=fitted.deviation)
-        if fitted.resampled is not None:
-            low, high = band_of(fitted.resampled, strengths, ensemble.confidence)
-            axes.fill_between(
-                strengths, low, high, color=style.BLUE, alpha=0.18, linewidth=0, label="bootstrap band"
-            )
         word = "lognormal fitted" if fitted.adequate else "lognormal, which does not fit"
         axes.plot(strengths, curve.probability(strengths), color=style.BLUE, linestyle="--", label=word)
     known = [point for point in points if point["probability"] is not None]
@@ -478,19 +472,6 @@ def draw_boundary(ensemble: Ensemble, unknown: UnknownInputs, points: Sequence[P
         title=f"{ensemble.title or ensemble.name}\n{fill(_statement(ensemble, unknown), LINE)}",
         colours={words[region]: colour for region, colour in COLOURS.items()},
     )
-
-
-def band_of(resampled: Resampled, strengths: FloatArray, confidence: float) -> tuple[FloatArray, FloatArray]:
-    """Pointwise ends of the bootstrapped curves, shapes (n,)."""
-    curves = np.array(
-        [
-            Lognormal(median=median, deviation=deviation).probability(strengths)
-            for median, deviation in zip(resampled.median, resampled.deviation, strict=True)
-        ]
-    )
-    outside = 50.0 * (1.0 - confidence)
-    low, high = np.percentile(curves, [outside, 100.0 - outside], axis=0)
-    return low, high
 
 
 def _statement(ensemble: Ensemble, unknown: UnknownInputs) -> str:

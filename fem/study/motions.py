@@ -4,18 +4,17 @@ A set is the values of `motion.file` in a study: recorded motions, alone or with
 """
 
 import hashlib
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
 from itertools import repeat
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from contact.motion.table import TableMotion
 from fem.case.case import Case, CaseError, case_hash
-from fem.case.recorded import MotionKey
 from fem.figures.motions import draw_spectra
 from fem.figures.style import svg_of
 from fem.model.motion import build_motion
@@ -40,59 +39,26 @@ LARGE_SET = 32  #: motions from which several workers read them
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class FloorComponent:
-    """A horizontal or vertical motion, as the runs follow it; its samples are read when they are asked for."""
-
-    name: str  #: of its file
-    case: Case  #: whose motion it is
-    table: MotionKey  #: of the case
-    numbers: Mapping[str, Any]  #: length, interval, peaks and duration, by the names of `run.json`
-
-    @property
-    def motion(self) -> TableMotion:
-        """The samples, read again unless they were read lately."""
-        return _table(build_motion(self.case, self.table))
-
-    @property
-    def step_s(self) -> float:
-        """Mean interval of its samples [s]."""
-        return float(self.numbers["step_s"])
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
 class FloorMotionPair:
-    """One motion of a set."""
+    """One motion of a set; its samples are not kept."""
 
     case: Case  #: the base case with this motion
     keys: Mapping[str, Any]  #: that set it
-    horizontal: FloorComponent
-    vertical: FloorComponent | None
+    measures: tuple[
+        Mapping[str, Any], ...
+    ]  #: of the horizontal, and of the vertical component where there is one
+    contents: tuple[str, ...]  #: digests of these, equal for the same motion whatever its scale and sign
     left_out: str | None  #: the part of the motion that a run covers, where it ends before it
     case_hash: str  #: of its case
 
     @property
     def name(self) -> str:
         """File of the horizontal motion."""
-        return self.horizontal.name
-
-    @property
-    def components(self) -> tuple[FloorComponent, ...]:
-        """The horizontal motion, and the vertical one where there is one."""
-        return (self.horizontal,) if self.vertical is None else (self.horizontal, self.vertical)
+        return str(self.measures[0]["file"])
 
     def numbers(self) -> dict[str, Any]:
         """Those of the horizontal motion, and of the vertical one as `vertical`; None without one."""
-        vertical = None if self.vertical is None else self.vertical.numbers
-        return {**self.horizontal.numbers, "vertical": vertical}
-
-
-class MotionFacts(NamedTuple):
-    """What is kept of a motion of a set once it has been read."""
-
-    numbers: tuple[dict[str, Any], ...]  #: of its components
-    contents: tuple[str, ...]  #: digests, equal for the same motion whatever its scale and sign
-    left_out: str | None
-    case_hash: str
+        return {**self.measures[0], "vertical": next(iter(self.measures[1:]), None)}
 
 
 def motion_cases(base: Case, axes: Iterable[Axis]) -> list[Case]:
@@ -114,37 +80,26 @@ def read_motion_set(
         CaseError: a file that cannot be used, components that were not sampled together, two motions of one file, two
             files that hold the same motion.
     """
-    keys = _keys_of(axes)
-    make = CaseMaker(base)
-    pairs: list[FloorMotionPair] = []
-    contents: dict[str, str] = {}
-    owners: dict[Path, str] = {}
-    for names, facts in zip(keys, _each(runner, "motions read", keys, partial(_read, make)), strict=True):
-        case = make(names)
-        horizontal, *rest = _components_of(case, facts.numbers)
-        pair = FloorMotionPair(
-            case=case,
-            keys=names,
-            horizontal=horizontal,
-            vertical=rest[0] if rest else None,
-            left_out=facts.left_out,
-            case_hash=facts.case_hash,
-        )
-        for path in {real_path(pair.case.data_files[f"{part.table}.file"]) for part in pair.components}:
+    pairs = _each(runner, "motions read", _keys_of(axes), partial(_read, CaseMaker(base)))
+    contents, owners = dict[str, str](), dict[Path, str]()
+    for pair in pairs:
+        files = [
+            pair.case.data_files[f"{table}.file"] for table in ("motion", "vertical")[: len(pair.measures)]
+        ]
+        for path in set(map(real_path, files)):
             if path in owners:
                 raise CaseError(
                     f"{MOTION_FILE!r}: {owners[path]!r} and {pair.name!r} are motions of one file, {path.name}; those "
                     "of a set must be of different ones: leave one out"
                 )
             owners[path] = pair.name
-        for component, content in zip(pair.components, facts.contents, strict=True):
+        for measures, content in zip(pair.measures, pair.contents, strict=True):
             if content in contents:
                 raise CaseError(
-                    f"{MOTION_FILE!r}: {component.name!r} and {contents[content]!r} hold the same motion; those of a "
+                    f"{MOTION_FILE!r}: {measures['file']!r} and {contents[content]!r} hold the same motion; those of a "
                     "set must differ: leave one out"
                 )
-            contents[content] = component.name
-        pairs.append(pair)
+            contents[content] = measures["file"]
     return tuple(pairs)
 
 
@@ -165,20 +120,21 @@ def motions_left_out(base: Case, motions: Sequence[FloorMotionPair]) -> str | No
 def write_motions(
     place: ResultFolder,
     motions: Sequence[FloorMotionPair],
-    measures: Sequence[Mapping[str, Any]],
-    outcomes: Columns,
+    outcomes: Sequence[Mapping[str, Any]],
+    columns: Columns,
     runner: Runner | None = None,
-) -> list[str]:
-    """Write `motions.csv`, `spectra.csv` and the figure of the spectra; returns the names of figures.
+) -> dict[str, Any]:
+    """Write `motions.csv`, `spectra.csv` and the figure of the spectra; returns what the result says of them.
 
     Args:
-        measures: of each motion, with its outcomes by these columns.
+        outcomes: of each motion, by these columns.
     """
+    measures = [{**motion.numbers(), **outcome} for motion, outcome in zip(motions, outcomes, strict=True)]
 
     def upward(numbers: Mapping[str, Any]) -> dict[str, Any]:
         return {f"vertical_{name}": value for name, value in numbers.items()}
 
-    columns = MEASURED | outcomes
+    columns = MEASURED | columns
     if any(measure["vertical"] for measure in measures):
         columns |= upward(MEASURED)
     rows = ({**measure, **upward(measure["vertical"] or {})} for measure in measures)
@@ -186,23 +142,23 @@ def write_motions(
     periods, spectra = spectra_of(motions, runner)
     samples = np.column_stack([periods, *spectra.values()]).tolist()
     place.write_text("spectra.csv", table_text(["period_s", *spectra], samples))
-    vertical = [motion.vertical.name for motion in motions if motion.vertical is not None]
+    vertical = [measure["vertical"]["file"] for measure in measures if measure["vertical"]]
     place.write_text(SPECTRA, svg_of(draw_spectra(periods, spectra, vertical=vertical)))
-    return [SPECTRA]
+    return {"motions": tuple(measures), "motion_figures": (SPECTRA,)}
 
 
 def spectra_of(
     motions: Sequence[FloorMotionPair], runner: Runner | None = None
 ) -> tuple[FloatArray, dict[str, FloatArray]]:
     """Periods (k,) [s] that all motions resolve, and pseudo-accelerations (k,) [m/s2] by `file`, 5 % damping."""
-    step = max(component.step_s for motion in motions for component in motion.components)
+    step = max(measures["step_s"] for motion in motions for measures in motion.measures)
     periods = log_spaced_periods(step, longest_s=max(LONGEST_PERIOD_S, 10.0 * step))
     work = partial(_spectra, CaseMaker(motions[0].case), periods)
-    by_motion = _each(runner, "spectra", [motion.keys for motion in motions], work)
+    found = _each(runner, "spectra", [motion.keys for motion in motions], work)
     return periods, {
-        component.name: values
-        for motion, spectra in zip(motions, by_motion, strict=True)
-        for component, values in zip(motion.components, spectra, strict=True)
+        measures["file"]: values
+        for motion, spectra in zip(motions, found, strict=True)
+        for measures, values in zip(motion.measures, spectra, strict=True)
     }
 
 
@@ -225,51 +181,50 @@ def _each(
     return runner.each(what, items, work) if runner and len(items) >= LARGE_SET else list(map(work, items))
 
 
-def _components_of(case: Case, numbers: Iterable[Mapping[str, Any]]) -> tuple[FloorComponent, ...]:
-    tables: list[tuple[MotionKey, str | None]] = [("motion", case.motion.file)]
-    if case.vertical.kind == "table" and case.vertical.file is not None:
-        tables.append(("vertical", case.vertical.file))
-    return tuple(
-        FloorComponent(name=name or "", case=case, table=table, numbers=facts)
-        for (table, name), facts in zip(tables, numbers, strict=False)
+def _components(case: Case) -> Iterator[tuple[str, TableMotion]]:
+    """The horizontal motion of a case, and the vertical one where there is one; with the keys of their files."""
+    motions = {"motion.file": build_motion(case)}
+    if case.vertical.kind == "table":
+        motions["vertical.file"] = build_motion(case, "vertical")
+    for key, motion in motions.items():
+        if not isinstance(motion, TableMotion):
+            raise CaseError(
+                f'{MOTION_FILE!r}: the case has motion.kind other than "table"; take it out of [set]'
+            )
+        yield key, motion
+
+
+def _read(make: CaseMaker, keys: Mapping[str, Any]) -> FloorMotionPair:
+    case, measures, contents = make(keys), [], []
+    for key, motion in _components(case):
+        times, length = motion.times, float(np.ptp(motion.times))
+        name = (case.motion if key == MOTION_FILE else case.vertical).file
+        numbers = {
+            "file": name,
+            "duration_s": length,
+            "step_s": length / (times.size - 1),
+            "samples": times.size,
+        }
+        digest = hashlib.sha256(case.data_files[key].read_bytes()).hexdigest()
+        measures.append(numbers | asdict(intensity(times, motion.accelerations)) | {"sha256": digest})
+        contents.append(_content(motion))
+    return FloorMotionPair(
+        case=case,
+        keys=keys,
+        measures=tuple(measures),
+        contents=tuple(contents),
+        left_out=motion_left_out(case),  # asked now, while the file is in memory
+        case_hash=case_hash(case),
     )
 
 
-def _read(make: CaseMaker, keys: Mapping[str, Any]) -> MotionFacts:
-    case = make(keys)
-    numbers, contents = [], []
-    for component in _components_of(case, repeat({})):
-        motion = component.motion
-        times, file = motion.times, case.data_files[f"{component.table}.file"]
-        numbers.append(
-            {
-                "file": component.name,
-                "duration_s": float(np.ptp(times)),
-                "step_s": float(np.ptp(times)) / (times.size - 1),
-                "samples": times.size,
-            }
-            | asdict(intensity(times, motion.accelerations))
-            | {"sha256": hashlib.sha256(file.read_bytes()).hexdigest()}
-        )
-        contents.append(_content(motion))
-    # Asked now, while the file is in memory.
-    return MotionFacts(tuple(numbers), tuple(contents), motion_left_out(case), case_hash(case))
-
-
 def _spectra(make: CaseMaker, periods: FloatArray, keys: Mapping[str, Any]) -> list[FloatArray]:
-    motions = (component.motion for component in _components_of(make(keys), repeat({})))
     return [
         response_spectrum(
             *evenly_sampled(motion.times, motion.accelerations), periods
         ).pseudo_acceleration_m_s2
-        for motion in motions
+        for _, motion in _components(make(keys))
     ]
-
-
-def _table(motion: object) -> TableMotion:
-    if not isinstance(motion, TableMotion):
-        raise CaseError(f'{MOTION_FILE!r}: the case has motion.kind other than "table"; take it out of [set]')
-    return motion
 
 
 def _content(motion: TableMotion) -> str:

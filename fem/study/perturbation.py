@@ -62,49 +62,33 @@ class Perturbation(CaseTable):
 
     def changes(self, case: Case) -> Iterator[InputChange]:
         """What each copy of a case changes; what is small counts as a small share of a range."""
-        for values in self.members(case):
-            share = 1.0 if DASHPOT in values else SMALL
-            yield InputChange(kind="one", values=values, share=share)
-
-    def members(self, case: Case) -> Iterator[dict[str, Any]]:
-        """The keys that each copy of a case changes."""
         for factor in (1.0 - self.amplitude_share, 1.0 + self.amplitude_share):
             scaled = scaled_motion(case, factor)
             if scaled and factor != 1.0:
-                yield scaled
-        friction = case.contact
-        yield from self._frictions("contact", friction.mu_static, friction.mu_kinetic)
+                yield _small(scaled)
+        frictions = {"contact": {"mu_static": case.contact.mu_static, "mu_kinetic": case.contact.mu_kinetic}}
         if case.container.is_loose:
-            between = case.joint_friction
-            yield from self._frictions("joints", between["mu_static"], between["mu_kinetic"])
+            frictions["joints"] = case.joint_friction
+        for table, own in frictions.items():
+            for step in (-self.mu, self.mu) if self.mu else ():
+                moved = {key: max(0.0, own[key] + step) for key in ("mu_static", "mu_kinetic")}
+                # fifteen digits: 0.4 + 0.02 is 0.42
+                yield _small({f"{table}.{key}": float(f"{value:.15g}") for key, value in moved.items()})
         if case.motion.kind == "harmonic" and self.phase_rad > 0.0:
             for step in (-self.phase_rad, self.phase_rad):
-                yield {"motion.phase_rad": math.remainder(case.motion.phase_rad + step, TURN)}
-        if (
-            case.floor.is_slab
-            or friction.damping_ratio is None
-            or (
-                case.uncertainty.damping_ratio in HELD
-                and "contact_damping_ratios" not in self.model_fields_set
-            )
-        ):
-            return
-        for ratio in self.contact_damping_ratios:
-            if ratio != friction.damping_ratio:
-                yield {"contact.damping_ratio": ratio}
-
-    def _frictions(self, table: str, static: float, kinetic: float) -> Iterator[dict[str, Any]]:
-        """Both coefficients of the floor, or of loose boxes, a little smaller and larger."""
-        for step in (-self.mu, self.mu) if self.mu else ():
-            yield {
-                f"{table}.mu_static": _rounded(max(0.0, static + step)),
-                f"{table}.mu_kinetic": _rounded(max(0.0, kinetic + step)),
-            }
+                yield _small({"motion.phase_rad": math.remainder(case.motion.phase_rad + step, TURN)})
+        held = (
+            case.uncertainty.damping_ratio in HELD and "contact_damping_ratios" not in self.model_fields_set
+        )
+        own_ratio = case.contact.damping_ratio
+        if not (case.floor.is_slab or own_ratio is None or held):
+            for ratio in self.contact_damping_ratios:
+                if ratio != own_ratio:
+                    yield InputChange(kind="one", values={DASHPOT: ratio}, share=1.0)
 
 
-def _rounded(value: float) -> float:
-    """Fifteen digits: 0.4 + 0.02 is 0.42."""
-    return float(f"{value:.15g}")
+def _small(values: dict[str, Any]) -> InputChange:
+    return InputChange(kind="one", values=values, share=SMALL)
 
 
 def input_in_words(key: str) -> str:
@@ -165,12 +149,10 @@ def band_width(axes: Sequence[Axis], unsure: BoolArray, dimension: int) -> Float
     values = np.array(axis.values, dtype=float)
     middles = np.sqrt(values[:-1] * values[1:]) if axis.scale == "log" else 0.5 * (values[:-1] + values[1:])
     edges = np.concatenate([values[:1], middles, values[-1:]])
-    lines = np.moveaxis(unsure, dimension, -1).reshape(-1, values.size)
-    widths = np.zeros(lines.shape)
-    for line, width in zip(lines, widths, strict=True):
-        labels, count = ndimage.label(line)
-        for label in range(1, count + 1):
-            inside = np.flatnonzero(labels == label)
-            width[inside] = edges[inside[-1] + 1] - edges[inside[0]]
-    moved = np.moveaxis(unsure, dimension, -1).shape
-    return np.moveaxis(widths.reshape(moved), -1, dimension)
+    touching = np.zeros((3,) * unsure.ndim, dtype=bool)  # cells that belong together: along this axis
+    touching[tuple(slice(None) if k == dimension else 1 for k in range(unsure.ndim))] = True
+    widths = np.zeros(unsure.shape)
+    for stretch in ndimage.find_objects(ndimage.label(unsure, touching)[0]):
+        inside = stretch[dimension]
+        widths[stretch] = edges[inside.stop] - edges[inside.start]
+    return widths

@@ -5,11 +5,10 @@ status "failed" and the reason; it never has an outcome.
 """
 
 import time
-from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
-from operator import itemgetter
 from typing import Any, NamedTuple
 
 from fem.assessment.motion_words import covered_in_words, is_cut, missing_peak
@@ -30,10 +29,9 @@ from fem.run.recorder import Recorder
 from fem.run.simulation import simulate
 from fem.runtime.progress import Reporter, SilentReporter, clock_time
 from fem.runtime.signals import stop_requested
-from fem.runtime.threads import cores
-from fem.study.containers import ContainerCache, container_key
+from fem.study.containers import ContainerCache
 from fem.study.table import Columns
-from fem.study.workers import FoundT, ItemT, LocalWorkers, Pool, WorkersOf, hand_out, never
+from fem.study.workers import FoundT, ItemT, Pool, WorkersOf, hand_out, never
 
 #: cases handed to a core at a time
 CASES_AT_A_TIME = {"rigid": 16, "reduced": 4, "full": 1}
@@ -93,14 +91,13 @@ class Runner:
         by_model: dict[str, list[ItemT]] = {}
         for item in items:
             by_model.setdefault(model_of(item), []).append(item)
-        total, done, failed = sum(map(len, by_model.values())), 0, 0
-        self._say_expected(f"{total} {what}", by_model, make, expected_s if work is None else with_band_s)
-        self.reporter.start(0.0)
-        began = time.perf_counter()
-
-        def progress() -> str:
-            return _progress(what, done, total, failed, time.perf_counter() - began)
-
+        told = _Told(what, sum(map(len, by_model.values())), self.reporter)
+        cost, seconds = expected_s if work is None else with_band_s, 0.0
+        for group in by_model.values():
+            with suppress(ValueError):  # a case that cannot be computed is told in its row
+                seconds += len(group) * cost(make(group[0]))
+        say_expected(self.reporter, f"{told.total} {what}", seconds / self.jobs, self.jobs)
+        told.start()
         for model, group in sorted(by_model.items(), key=lambda pair: list(CASES_AT_A_TIME).index(pair[0])):
             pools = self.workers_of(model, len(group))
             chunks = hand_out(
@@ -113,27 +110,8 @@ class Runner:
             )
             for chunk, rows in chunks:
                 yield chunk[: len(rows)], rows
-                done += len(rows)
-                failed += sum(row["status"] == "failed" for row in rows)
-                if done < total:
-                    self.reporter.tell(progress)
-        self.reporter.finish()
-        if total and done == total and time.perf_counter() - began > TOLD_S:
-            self.reporter.message(progress())  # the last line does not stand at a time left
-
-    def _say_expected(
-        self,
-        what: str,
-        by_model: Mapping[str, Sequence[ItemT]],
-        make: Callable[[ItemT], Case],
-        cost: Callable[[Case], float],
-    ) -> None:
-        """How long the cases take, by the first of each model."""
-        seconds = 0.0
-        for group in by_model.values():
-            with suppress(ValueError):  # a case that cannot be computed is told in its row
-                seconds += len(group) * cost(make(group[0]))
-        say_expected(self.reporter, what, seconds / self.jobs, self.jobs)
+                told.more(len(rows), sum(row["status"] == "failed" for row in rows))
+        told.finish()
 
     def each(self, what: str, items: Sequence[ItemT], work: Callable[[ItemT], FoundT]) -> list[FoundT]:
         """Let the workers do some work for each item; it must be picklable.
@@ -145,37 +123,59 @@ class Runner:
             ValueError: that of the first item whose work raises one.
             KeyboardInterrupt: `stop` ended the work.
         """
-        self.reporter.start(0.0)
-        began, done = time.perf_counter(), 0
+        told = _Told(what, len(items), self.reporter)
+        told.start()
         ready: dict[int, list[FoundT | ValueError]] = {}
-        numbered = list(enumerate(items))
-        pools = self.workers_of("rigid", len(numbered))
-        chunks = hand_out(
-            numbered,
-            partial(_work_on, work),
-            pools,
-            at_a_time=_chunk_size("rigid", len(numbered), pools),
-            stop=self.stop,
-        )
-        results: list[FoundT] = []
-        for chunk, outcomes in chunks:
+        pools = self.workers_of("rigid", len(items))
+        size = _chunk_size("rigid", len(items), pools)
+        numbered, tried = list(enumerate(items)), partial(_work_on, work)
+        for chunk, outcomes in hand_out(numbered, tried, pools, at_a_time=size, stop=self.stop):
             ready[chunk[0][0]] = outcomes
-            while len(results) in ready:  # in order, so that the first error does not depend on the workers
-                for outcome in ready.pop(len(results)):
-                    if isinstance(outcome, ValueError):
-                        raise outcome
-                    results.append(outcome)
-            done += len(chunk)
-            if done < len(numbered):
-                self.reporter.tell(
-                    partial(_progress, what, done, len(numbered), 0, time.perf_counter() - began)
-                )
-        self.reporter.finish()
-        if len(results) < len(numbered):
+            told.more(len(chunk))
+        results: list[FoundT] = []
+        for _, outcomes in sorted(ready.items()):
+            for outcome in outcomes:
+                if isinstance(outcome, ValueError):
+                    raise outcome
+                results.append(outcome)
+        if len(results) < len(items):
             raise KeyboardInterrupt
-        if time.perf_counter() - began > TOLD_S:
-            self.reporter.message(_progress(what, done, done, 0, time.perf_counter() - began))
+        told.finish()
         return results
+
+
+@dataclass
+class _Told:
+    """The line of progress of some work."""
+
+    what: str
+    total: int
+    reporter: Reporter
+    done: int = 0
+    failed: int = 0
+    began: float = 0.0
+
+    def start(self) -> None:
+        self.reporter.start(0.0)
+        self.began = time.perf_counter()
+
+    def more(self, done: int, failed: int = 0) -> None:
+        self.done, self.failed = self.done + done, self.failed + failed
+        if self.done < self.total:
+            self.reporter.tell(self.line)
+
+    def finish(self) -> None:
+        self.reporter.finish()
+        if self.total and self.done == self.total and time.perf_counter() - self.began > TOLD_S:
+            self.reporter.message(self.line())  # the last line does not stand at a time left
+
+    def line(self) -> str:
+        elapsed, lost = time.perf_counter() - self.began, f", {self.failed} failed" if self.failed else ""
+        rate = self.done / elapsed if elapsed > 0.0 else 0.0
+        if self.done == self.total:
+            return f"{self.total} {self.what} in {clock_time(elapsed)}{lost}"
+        left = f"{clock_time((self.total - self.done) / rate)} left" if rate > 0.0 else "time left unknown"
+        return f"{self.done} of {self.total} {self.what}, {rate:.3g} per s, {left}{lost}"
 
 
 def _chunk_size(model: str, count: int, pools: Sequence[Pool]) -> int:
@@ -196,49 +196,6 @@ def _work_on(
         except ValueError as error:
             return [*results, error]
     return results
-
-
-def run_cases(
-    cases: Sequence[Case],
-    *,
-    jobs: int | None = None,
-    done: Callable[[int], None] = lambda count: None,
-    stop: Callable[[], bool] = never,
-) -> list[Row]:
-    """Run cases and return a row each, in their order; the rows do not depend on `jobs`.
-
-    No files are written, no fields are kept. Many cases are run by processes (`LocalWorkers`), so a script that calls
-    this needs the usual `if __name__ == "__main__":`.
-
-    Args:
-        cases: what to run, of any models and containers.
-        jobs: cores to use; all by default.
-        done: called with the number of rows that are ready.
-        stop: asked repeatedly; true ends the work.
-
-    Returns:
-        For each case `status` (completed | overturned | failed), `reason` (why it failed, else None), `wall_s`, and
-        every scalar of a verdict (`SCALARS`). Cases not reached have status "interrupted".
-    """
-    rows: list[Row] = [_row_without_outcome("interrupted", "stopped before its turn") for _ in cases]
-    first: dict[Hashable, int] = {}
-    for k, case in enumerate(cases):
-        first.setdefault(container_key(case), k)
-    order = sorted(range(len(cases)), key=lambda k: first[container_key(cases[k])])
-    finished = 0
-    with LocalWorkers(jobs or cores()) as workers_of:
-        runner = Runner(workers_of=workers_of, stop=stop)
-        for chunk, computed in runner.rows(
-            "cases",
-            [(k, cases[k]) for k in order],
-            itemgetter(1),
-            lambda item: item[1].solver.model,
-        ):
-            for (k, _), row in zip(chunk, computed, strict=True):
-                rows[k] = row
-            finished += len(chunk)
-            done(finished)
-    return rows
 
 
 def motion_left_out(case: Case) -> str | None:
@@ -316,43 +273,23 @@ def _row_without_outcome(status: str, reason: str | None) -> Row:
     return {"status": status, "reason": reason, "wall_s": 0.0} | dict.fromkeys((*SCALARS, *BOXES))
 
 
-def _progress(what: str, done: int, total: int, failed: int, elapsed: float) -> str:
-    """The line of progress."""
-    rate, lost = done / elapsed if elapsed > 0.0 else 0.0, f", {failed} failed" if failed else ""
-    if done == total:
-        return f"{total} {what} in {clock_time(elapsed)}{lost}"
-    left = f"{clock_time((total - done) / rate)} left" if rate > 0.0 else "time left unknown"
-    return f"{done} of {total} {what}, {rate:.3g} per s, {left}{lost}"
+#: what a repetition adds to a run; empty where there is none. The margin is a factor; where there is none, the largest
+#: one tried
+CHECKED: Columns = {"sure": str, "decided_by": str}
+CHECKED |= dict.fromkeys(("margin", "margin_low", "margin_high", "margin_tried_to"), float)
 
 
-#: the factor; where there is none, the largest one tried
-MARGIN: Columns = {"margin": float, "margin_tried_to": float}
-#: what a repetition adds to a run; empty where there is none
-CHECKED: Columns = {
-    "sure": str,
-    "decided_by": str,
-    "margin": float,
-    "margin_low": float,
-    "margin_high": float,
-} | MARGIN
+def check_chunk(make: Callable[[ItemT], Case], items: Sequence[ItemT]) -> list[Row]:
+    """Repeat some runs with their bands and margins; a row by `CHECKED`, empty of a run without an outcome.
 
-
-def check_chunk(
-    make: Callable[[ItemT], Case], items: Sequence[ItemT], checks: WantedChecks | None = None
-) -> list[Row]:
-    """Repeat some runs; a row by `CHECKED`, empty of a run without an outcome; none of a run that was stopped.
-
-    Args:
-        make: the case of an item.
-        items: the runs.
-        checks: what of each; None: all.
+    A run that was stopped has none.
     """
     rows = []
     for item in items:
         row: Row = dict.fromkeys(CHECKED) | {"status": "failed"}
         try:
             case = make(item).without_fields()
-            run = compute_on(_CONTAINERS.container_of(case), case, checks or WantedChecks())
+            run = compute_on(_CONTAINERS.container_of(case), case, WantedChecks())
             if stop_requested():
                 break
             verdict, margin = run.verdict, run.verdict.margin

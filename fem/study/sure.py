@@ -1,15 +1,15 @@
-"""The copies that a cell of a sweep may have: what each changes, by a name that is the same in every cell.
+"""How sure the cells of a sweep are: a cell is computed with its draws, copies of it in which inputs differ.
 
 Small changes of motion and contact (`perturbation`), and the changes by which a run tries its unknown inputs
-(`fem.case.uncertainty`). An input that is an axis is not varied: its effect is what the sweep shows.
+(`fem.case.uncertainty`); each has a name that is the same in every cell. An input that is an axis is not varied: its
+effect is what the sweep shows.
 """
 
 from collections import Counter
 from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
-from functools import partial
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -32,7 +32,6 @@ from fem.model.support import normal_penalty
 from fem.results.figures import TURNED, types_of
 from fem.results.outcome import Ending, ending_of
 from fem.run.bracket import Change, changes_of, least_width, values_to_try
-from fem.run.checks import WantedChecks
 from fem.run.solve import chosen_values
 from fem.runtime.arrays import BoolArray
 from fem.study.axes import Axis
@@ -40,38 +39,42 @@ from fem.study.containers import container_key
 from fem.study.design import Item, Sweep
 from fem.study.driver import LoggedRuns
 from fem.study.perturbation import SMALL, around, band_width, coarse_cells, near_cells
-from fem.study.runner import MARGIN, Runner, check_chunk
+from fem.study.runner import Runner
 from fem.study.sweep_table import SHOWN, TRIED_COLUMNS, CellRows, RunShown, shown_in
-from fem.study.table import Columns, fields_of, row_of, table_of_rows
+from fem.study.table import Columns, row_of, table_of_rows
 from mesh.container import ContainerMesh
 
-#: cells of which the copies are remembered
-REMEMBERED = 4096
-#: draws of a cell over those of the band of a run
-SHARE_OF_DRAWS = 0.25
+REMEMBERED = 4096  #: cells of which the copies are remembered
+SHARE_OF_DRAWS = 0.25  #: draws of a cell over those of the band of a run
+REACH = 2  #: cells around one with another outcome that try the same change
 #: what the copies of a deformable container, which take twenty times as long, leave out
 LEFT_OUT = (
     "values between the ends of a range, pairs, draws of all inputs at once, a tighter energy tolerance"
+)
+FIRST = ("status", "outcome", TURNED)
+COLUMNS = (
+    {"cell": int, "member": int, "change": str} | {key: SHOWN[key] for key in FIRST} | {"reason": str} | SHOWN
 )
 
 
 def left_out(sweep: Sweep) -> str:
     """What the copies of a sweep leave out of the band of a run, in words; nothing where they leave out nothing."""
-    chosen, rigid = sweep.perturbation.cells, sweep.base.solver.model == "rigid"
-    if chosen == "none" or (chosen == "auto" and sweep.base.solver.model == "full"):
+    if not sweep.has_copies:
         return "all"
-    cells = "cells away from a change of outcome" if chosen == "near" else ""
+    cells = "cells away from a change of outcome" if sweep.perturbation.cells == "near" else ""
+    rigid = sweep.base.solver.model == "rigid"
     return ", ".join(filter(None, (cells, "contact of the base", "" if rigid else LEFT_OUT)))
 
 
-@dataclass(frozen=True, kw_only=True)
-class Copy:
+class Copy(NamedTuple):
     """What a copy of a cell changes."""
 
     name: str  #: of the change, the same in all cells: its keys, and which one of these it is
     change: InputChange
-    #: that make its case of that of the cell: the change, and what a run of the cell chose
-    values: Mapping[str, Any]
+    values: Mapping[
+        str, Any
+    ]  #: that make its case of that of the cell: the change, and what a run of the cell chose
+    width: float  #: of the container [m]
 
     @property
     def drawn(self) -> bool:
@@ -84,119 +87,75 @@ class Copy:
         return self.change.share == SMALL
 
 
-class CellCopies:
-    """The copies of the cells of a sweep; those asked for last are remembered."""
-
-    def __init__(self, sweep: Sweep) -> None:
-        self._sweep = sweep
-        self._axes = {axis.key for axis in sweep.axes}
-        self._known: dict[int, tuple[float, tuple[Copy, ...]]] = {}
-        self._mesh: tuple[Hashable, ContainerMesh] | None = None  #: the last one, and its key
-
-    def of(self, cell: int) -> tuple[Copy, ...]:
-        """The copies of a cell: each change once, the draws last."""
-        return self._of(cell)[1]
-
-    def width(self, cell: int) -> float:
-        """Width of the container of a cell [m]."""
-        return self._of(cell)[0]
-
-    def _of(self, cell: int) -> tuple[float, tuple[Copy, ...]]:
-        if cell not in self._known:
-            if len(self._known) >= REMEMBERED:
-                self._known.clear()
-            case = self._sweep.case(cell)
-            self._known[cell] = case.stack[0].width, tuple(self._copies(case))
-        return self._known[cell]
-
-    def _copies(self, case: Case) -> Iterator[Copy]:
-        seen: list[object] = []
-        count = Counter[str]()
-        key = container_key(case)
-        if self._mesh is None or self._mesh[0] != key:
-            self._mesh = key, build_container(case)
-        mesh = self._mesh[1]
-        chosen = chosen_values(case, mesh, build_motions(case))
-        penalty = None if case.floor.is_slab else normal_penalty(case, mesh)
-        for change in (*self._sweep.perturbation.changes(case), *self._over_ranges(case, penalty)):
-            if change.values and change.values not in seen:
-                seen.append(change.values)
-                keys = "draw" if change.kind == "draw" else " ".join(change.values)
-                values = chosen | as_changed(case, change.values)
-                yield Copy(name=f"{keys} {count[keys]}", change=change, values=values)
-                count[keys] += 1
-
-    def _over_ranges(self, case: Case, penalty: float | None) -> Iterator[InputChange]:
-        """The changes of a run's band, without the inputs that are axes."""
-        count = self._sweep.perturbation.draws
-        if count is None:
-            count = round(SHARE_OF_DRAWS * case.uncertainty.draws)
-        changes, pairs, draws = all_changes(case, penalty, count)
-        if case.solver.model == "rigid":
-            changes = (*changes, *pairs, *draws)
-        else:
-            changes = tuple(
-                change for change in changes if change.share == 1.0 and TOLERANCE not in change.values
-            )
-        for change in changes:
-            if SUPPORT in change.values:  # as a rule takes longer than all other copies together
-                continue
-            kept = {key: value for key, value in change.values.items() if key not in self._axes}
-            coordinates = zip(change.values, change.place, strict=False)
-            yield replace(change, values=kept, place=tuple(x for key, x in coordinates if key in kept))
-
-
-FIRST = ("status", "outcome", TURNED)
-COLUMNS = (
-    {"cell": int, "member": int, "change": str} | {key: SHOWN[key] for key in FIRST} | {"reason": str} | SHOWN
-)
-#: cells around one with another outcome that try the same change
-REACH = 2
-
-
-@dataclass(frozen=True, kw_only=True)
-class PerturbedRow:
-    """A perturbed copy of a cell."""
+class Trial(NamedTuple):
+    """A copy that was computed."""
 
     copy: Copy
     run: RunShown
     level: int  #: how it differs from the cell, see `fem.assessment.sureness`; a failed one as if it ended otherwise
 
 
-class PerturbedRows:
-    """The perturbed copies of cells so far."""
+class Copies:
+    """The copies of the cells of a sweep, and those computed so far."""
 
     def __init__(self, sweep: Sweep, cells: CellRows) -> None:
-        self._cells = cells
-        self.copies = CellCopies(sweep)
-        self.rows: dict[int, dict[int, PerturbedRow]] = {}  #: by cell and number of the copy
-        self.log: LoggedRuns[Item] | None = None
+        self._sweep, self._cells = sweep, cells
+        self._known: dict[int, tuple[Copy, ...]] = {}
+        self._mesh: tuple[Hashable, ContainerMesh] | None = None  #: the last one, and its key
+        self.rows: dict[int, dict[int, Trial]] = {}  #: by cell and number of the copy
         #: by name: a change, and which cells' outcome it turns, (n_cells,)
         self.turned: dict[str, tuple[Copy, BoolArray]] = {}
+
+    def of(self, cell: int) -> tuple[Copy, ...]:
+        """The copies of a cell: each change once, the draws last; those asked for last are remembered."""
+        if cell not in self._known:
+            if len(self._known) >= REMEMBERED:
+                self._known.clear()
+            self._known[cell] = tuple(self._made(self._sweep.case(cell)))
+        return self._known[cell]
+
+    def _made(self, case: Case) -> Iterator[Copy]:
+        if self._mesh is None or self._mesh[0] != container_key(case):
+            self._mesh = container_key(case), build_container(case)
+        mesh = self._mesh[1]
+        chosen = chosen_values(case, mesh, build_motions(case))
+        penalty = None if case.floor.is_slab else normal_penalty(case, mesh)
+        seen, count = list[object](), Counter[str]()
+        for change in (*self._sweep.perturbation.changes(case), *self._over_ranges(case, penalty)):
+            if change.values and change.values not in seen:
+                seen.append(change.values)
+                keys = "draw" if change.kind == "draw" else " ".join(change.values)
+                values = chosen | as_changed(case, change.values)
+                yield Copy(f"{keys} {count[keys]}", change, values, case.stack[0].width)
+                count[keys] += 1
+
+    def _over_ranges(self, case: Case, penalty: float | None) -> Iterator[InputChange]:
+        """The changes of a run's band, without the inputs that are axes."""
+        draws, axes = self._sweep.perturbation.draws, {axis.key for axis in self._sweep.axes}
+        if draws is None:
+            draws = round(SHARE_OF_DRAWS * case.uncertainty.draws)
+        changes, pairs, drawn = all_changes(case, penalty, draws)
+        if case.solver.model == "rigid":
+            changes = (*changes, *pairs, *drawn)
+        else:
+            changes = tuple(one for one in changes if one.share == 1.0 and TOLERANCE not in one.values)
+        for change in changes:
+            if SUPPORT not in change.values:  # as a rule it takes longer than all other copies together
+                kept = {key: value for key, value in change.values.items() if key not in axes}
+                places = zip(change.values, change.place, strict=False)
+                yield replace(change, values=kept, place=tuple(x for key, x in places if key in kept))
 
     def note(self, line: str) -> None:
         """Add a line of the log."""
         row = row_of(COLUMNS, line)
-        cell, number = row["cell"], row["member"]
-        copy, own = self.copies.of(cell)[number], self._cells.runs[cell]
-        run = shown_in(row)
-        level = OTHER_END
-        if run.outcome is not None:
-            level = difference(own, run, self.copies.width(cell))
-        self.rows.setdefault(cell, {})[number] = PerturbedRow(copy=copy, run=run, level=level)
+        cell, run = row["cell"], shown_in(row)
+        copy, own = self.of(cell)[row["member"]], self._cells.runs[cell]
+        level = OTHER_END if run.outcome is None else difference(own, run, copy.width)
+        self.rows.setdefault(cell, {})[row["member"]] = Trial(copy, run, level)
         # Draws are to find what overturns; half of them turn rest to sliding, by the start alone.
         if level == OTHER_END or (run.outcome != own.outcome and not copy.drawn):
             nowhere: BoolArray = np.zeros(self._cells.kind.size, dtype=bool)
             self.turned.setdefault(copy.name, (copy, nowhere))[1][cell] = True
-
-    def unsure(self, *, drawn: bool = True) -> BoolArray:
-        """Which cells are unsure, (n_cells,): those that failed, or have a copy that ends otherwise or fails."""
-        unsure = ~self._cells.decided
-        for cell, copies in self.rows.items():
-            unsure[cell] |= any(
-                copy.level == OTHER_END for copy in copies.values() if drawn or not copy.copy.drawn
-            )
-        return unsure
 
     def sureness(self, cell: int) -> tuple[str, tuple[str, ...]]:
         """How sure a cell is, and the inputs that decide: the smallest change that turns its outcome first.
@@ -209,20 +168,11 @@ class PerturbedRows:
         most = max((row.level for row in rows), default=SAME)
         levels = [row.level if row.level == most else SAME for row in rows]
         alone = [
-            replace(copy.change, values=dict([*copy.change.values.items()][:1]))
-            if copy.small
-            else copy.change
-            for copy in (row.copy for row in rows)
+            replace(change, values=dict([*change.values.items()][:1])) if change.share == SMALL else change
+            for change in (row.copy.change for row in rows)
         ]
         word = {SAME: SURE, OTHER_REGIME: REGIME_UNSURE, OTHER_END: UNSURE}[most]
         return word, tuple(deciding_inputs(levels, alone))
-
-    def ratios(self, cell: int) -> tuple[float | None, float | None]:
-        """Least and largest rotation ratio of a cell and its copies; None where there is none."""
-        copies = self.rows.get(cell, {}).values()
-        ratios = [ratio for copy in copies if (ratio := copy.run[TURNED]) is not None]
-        own = float(self._cells.ratio[cell])
-        return (min(own, *ratios), max(own, *ratios)) if ratios and np.isfinite(own) else (None, None)
 
     def overturned_share(self, cell: int) -> float | None:
         """Share of a cell and all its copies that do not stand; None of a cell that failed.
@@ -230,140 +180,130 @@ class PerturbedRows:
         A copy that was not tried, because it turned no cell around this one, counts as the cell, and so does one that
         failed; draws count where some were tried.
         """
-        if self._cells.kind[cell] in (Ending.UNKNOWN, Ending.FAILED):
+        own, tried = self._cells.kind[cell], self.rows.get(cell, {}).values()
+        if own in (Ending.UNKNOWN, Ending.FAILED):
             return None
-        own, tried = self._cells.kind[cell] == Ending.STANDING, self.rows.get(cell, {}).values()
-        known = [trial.run.kind for trial in tried if trial.run.kind != Ending.FAILED]
-        turned = sum((kind == Ending.STANDING) != own for kind in known)
+        kinds = np.array([trial.run.kind for trial in tried], dtype=int)
+        turned = ((kinds == Ending.STANDING) != (own == Ending.STANDING)) & (kinds != Ending.FAILED)
         drawn = any(trial.copy.drawn for trial in tried)
-        share = turned / (1 + sum(drawn or not copy.drawn for copy in self.copies.of(cell)))
-        return share if own else 1.0 - share
+        share = int(turned.sum()) / (1 + sum(drawn or not copy.drawn for copy in self.of(cell)))
+        return share if own == Ending.STANDING else 1.0 - share
+
+    def band(self) -> tuple[dict[str, Any], Iterator[tuple[Any, ...]]]:
+        """What the copies say: a part of `sweep.json`, and for each cell the values of `band_columns`."""
+        sweep, cells = self._sweep, range(self._sweep.count)
+        found = [self.sureness(cell) for cell in cells]
+        unsure = np.array([word == UNSURE for word, _ in found])
+        everywhere = sweep.perturbation.cells != "near"  # else nothing is known of a cell that was left out
+        words = [
+            word if everywhere or unsure[cell] or cell in self.rows else ""
+            for cell, (word, _) in enumerate(found)
+        ]
+        grid = unsure.reshape(sweep.shape)
+        widths = [
+            band_width(sweep.axes, grid, k).ravel() for k, axis in enumerate(sweep.axes) if axis.is_numeric
+        ]
+
+        def values() -> Iterator[tuple[Any, ...]]:
+            for cell, word, (_, by) in zip(cells, words, found, strict=True):
+                copies = self.rows.get(cell, {}).values()
+                ratios = [ratio for copy in copies if (ratio := copy.run[TURNED]) is not None]
+                own, ends = float(self._cells.ratio[cell]), (None, None)
+                if ratios and np.isfinite(own):
+                    ends = min(own, *ratios), max(own, *ratios)
+                share = self.overturned_share(cell) if word else None
+                reach = (width[cell] for width in widths)
+                yield len(copies), unsure[cell], word, " ".join(by), *ends, share, *reach
+
+        counts = Counter(words)
+        deciding = Counter(key for word, by in found if word == UNSURE for key in by)
+        added = {
+            "perturbed": len(self.rows),
+            "copies": sum(map(len, self.rows.values())),
+            "unsure": counts[UNSURE],
+            "sure": {word: counts[word] for word in (SURE, REGIME_UNSURE, UNSURE)},
+            "decided_by": dict(deciding.most_common()),
+        }
+        return added, values()
 
 
-def band_rows(
-    sweep: Sweep, cells: CellRows, perturbed: PerturbedRows
-) -> tuple[Counter[str], Counter[str], Callable[[int], tuple[Any, ...]]]:
-    """What the perturbed copies add to the table.
-
-    Returns:
-        How many cells are sure, regime unsure, unsure; how many unsure ones each input decides; and for a cell the
-        values of `table.band_columns`.
-    """
-    everywhere = sweep.perturbation.cells != "near"
-    sureness = [perturbed.sureness(cell) for cell in range(sweep.count)]
-    unsure = np.array([word == UNSURE for word, _ in sureness])
-    grid = unsure.reshape(sweep.shape)
-    widths = [band_width(sweep.axes, grid, k).ravel() for k, axis in enumerate(sweep.axes) if axis.is_numeric]
-
-    def sure(cell: int) -> str:
-        """Nothing is known of a cell that was left out."""
-        return sureness[cell][0] if everywhere or unsure[cell] or cell in perturbed.rows else ""
-
-    def values(cell: int) -> tuple[Any, ...]:
-        copies = len(perturbed.rows.get(cell, {}))
-        by = " ".join(sureness[cell][1])
-        ratios = perturbed.ratios(cell)
-        share = perturbed.overturned_share(cell) if sure(cell) else None
-        return copies, unsure[cell], sure(cell), by, *ratios, share, *(width[cell] for width in widths)
-
-    counts = Counter(word for cell in range(sweep.count) if (word := sure(cell)))
-    return counts, Counter(key for word, by in sureness if word == UNSURE for key in by), values
-
-
-def perturb_cells(runner: Runner, sweep: Sweep, cells: CellRows, log: Path) -> PerturbedRows | None:
-    """Compute the perturbed copies of a sweep's cells.
-
-    Returns:
-        The copies, those that the log held already included; None where none are wanted.
-    """
-    chosen = sweep.perturbation.cells
-    if chosen == "none" or (chosen == "auto" and sweep.base.solver.model == "full"):
+def copy_cells(
+    runner: Runner, sweep: Sweep, cells: CellRows, path: Path
+) -> tuple[Copies, LoggedRuns[Item]] | None:
+    """Compute the copies of a sweep's cells, but for those that the log holds; None where none are wanted."""
+    if not sweep.has_copies:
         return None
-    perturbed = PerturbedRows(sweep, cells)
-    perturbed.log = LoggedRuns(
+    copies = Copies(sweep, cells)
+    log = LoggedRuns(
         what="perturbed copies",
-        path=log,
+        path=path,
         columns=COLUMNS,
         make=sweep.make.case,
         model_of=sweep.model_of,
         key=_key,
         ids=2,
-        note=perturbed.note,
+        note=copies.note,
     )
-    perturbed.log.run(runner, _missing(sweep, cells, perturbed))
-    return perturbed
+    log.run(runner, _missing(sweep, cells, copies))
+    return copies, log
 
 
-def _missing(sweep: Sweep, cells: CellRows, perturbed: PerturbedRows) -> Iterator[list[Item]]:
-    """Copies that are not there yet: single changes and pairs, then draws."""
+def _missing(sweep: Sweep, cells: CellRows, copies: Copies) -> Iterator[list[Item]]:
+    """Copies that are not there yet: single changes and pairs, then draws where nothing else made a cell unsure."""
     axes, shape = sweep.axes, sweep.shape
-    decided = cells.decided.reshape(shape)
     near = near_cells(axes, cells.kind.reshape(shape), cells.ratio.reshape(shape), sweep.perturbation.close)
     begin = near.copy()
-    match sweep.perturbation.cells:
-        case "all":
-            near[:] = begin[:] = True
-        case "auto":
-            begin |= coarse_cells(axes)
-    yield from _closing_in(sweep, perturbed, decided, drawn=False, begin=begin, small=near)
-    sure = decided & ~perturbed.unsure(drawn=False).reshape(shape)
-    yield from _closing_in(sweep, perturbed, sure, drawn=True, begin=begin | around(axes, ~sure), small=near)
+    if sweep.perturbation.cells == "all":
+        near[:] = begin[:] = True
+    elif sweep.perturbation.cells == "auto":
+        begin |= coarse_cells(axes)
+    yield from _closing_in(sweep, copies, cells.decided.reshape(shape), begin, near, drawn=False)
+    sure = cells.decided
+    for cell, tried in copies.rows.items():
+        sure[cell] &= not any(one.level == OTHER_END and not one.copy.drawn for one in tried.values())
+    sure = sure.reshape(shape)
+    yield from _closing_in(sweep, copies, sure, begin | around(axes, ~sure), near, drawn=True)
 
 
 def _closing_in(
-    sweep: Sweep,
-    perturbed: PerturbedRows,
-    among: BoolArray,
-    *,
-    drawn: bool,
-    begin: BoolArray,
-    small: BoolArray,
+    sweep: Sweep, copies: Copies, among: BoolArray, begin: BoolArray, small: BoolArray, *, drawn: bool
 ) -> Iterator[list[Item]]:
     """Missing copies of the cells to begin with, then of each change around the cells that it turns.
 
     Args:
-        sweep, perturbed: what is asked for, and what there is.
+        sweep, copies: what is asked for, and what there is.
         among: cells that may have them, in the shape of the axes.
+        begin: cells to begin with; small: of these, those that begin with small changes as well.
         drawn: the draws, or all others.
-        begin: cells to begin with, for small changes those of `small`.
-        small: as `begin`.
     """
-    seen: dict[str, BoolArray] = {}
+    reached: dict[str, BoolArray] = {}
 
-    def known(copy: Copy) -> BoolArray:
-        if copy.name not in seen:
-            seen[copy.name] = among & (small if copy.small else begin)
-        return seen[copy.name]
+    def reach(copy: Copy) -> BoolArray:
+        """The cells that have this change."""
+        return reached.setdefault(copy.name, among & (small if copy.small else begin))
+
+    def wanted(cell: int, copy: Copy) -> bool:
+        return copy.drawn == drawn and bool(reach(copy).flat[cell])
 
     here = among & begin
-    wanted: dict[str, BoolArray] | None = None
-
-    def wants(cell: int, copy: Copy) -> bool:
-        if wanted is None:
-            return copy.drawn == drawn and bool(known(copy).flat[cell])
-        return copy.name in wanted and bool(wanted[copy.name].flat[cell])
-
     while here.any():
-        yield _items(sweep, perturbed, here, wants)
-        here, wanted = np.zeros_like(among), {}
-        for name, (copy, turned) in perturbed.turned.items():
-            around_it = around(sweep.axes, turned.reshape(sweep.shape), REACH) & among & ~known(copy)
-            if copy.drawn == drawn and around_it.any():
-                wanted[name] = around_it
-                seen[name] |= around_it
-                here |= around_it
+        yield _items(sweep, copies, here, wanted)
+        here = np.zeros_like(among)
+        for copy, turned in copies.turned.values():
+            if copy.drawn == drawn:
+                more = around(sweep.axes, turned.reshape(sweep.shape), REACH) & among & ~reach(copy)
+                reached[copy.name] = reach(copy) | more
+                here |= more
 
 
-def _items(
-    sweep: Sweep, perturbed: PerturbedRows, cells: BoolArray, wants: Callable[[int, Copy], bool]
-) -> list[Item]:
+def _items(sweep: Sweep, copies: Copies, cells: BoolArray, wanted: Callable[[int, Copy], bool]) -> list[Item]:
     """Copies of cells that are not there yet: of one container together, and within it of one change."""
     items = []
     for cell in np.flatnonzero(cells).tolist():
-        known, item = perturbed.rows.get(cell, {}), sweep.item(cell)
+        known, item = copies.rows.get(cell, {}), sweep.item(cell)
         container = sweep.container_of(item)
-        for number, copy in enumerate(perturbed.copies.of(cell)):
-            if number not in known and wants(cell, copy):
+        for number, copy in enumerate(copies.of(cell)):
+            if number not in known and wanted(cell, copy):
                 made = item._replace(draw=number, unknown=copy.change.values, more=copy.values)
                 items.append((container, copy.name, made))
     return [item for _, _, item in sorted(items, key=lambda entry: (*entry[:2], entry[2].cell))]
@@ -375,8 +315,6 @@ def _key(item: Item) -> tuple[int, int, str]:
 
 #: columns of `thresholds.csv` behind those of the other axes
 CHANGES: Columns = {name: types_of(Change)[name] for name in ("low", "high", "value", "below", "above")}
-#: outcomes by value along the axis, by the first cell of each line of cells
-Lines = dict[int, dict[float, str]]
 
 
 def refine(runner: Runner, sweep: Sweep, cells: CellRows, log: Path) -> list[tuple[int, Change]] | None:
@@ -388,8 +326,16 @@ def refine(runner: Runner, sweep: Sweep, cells: CellRows, log: Path) -> list[tup
     wanted = sweep.threshold
     if wanted is None:
         return None
-    lines = _lines_of(sweep, cells)
-    along, least = wanted.axis, least_width(sweep.threshold_axis.values, wanted.resolution)
+    axis, along = sweep.threshold_axis, wanted.axis
+    least = least_width(axis.values, wanted.resolution)
+    numbers = np.moveaxis(np.arange(sweep.count).reshape(sweep.shape), sweep.axes.index(axis), -1)
+    #: outcomes by value along the axis, by the first cell of each line of cells
+    lines = {
+        line[0]: {
+            float(value): Ending(cells.kind[cell]).word for value, cell in zip(axis.values, line, strict=True)
+        }
+        for line in numbers.reshape(-1, len(axis.values)).tolist()
+    }
 
     def note(line: str) -> None:
         row = row_of(TRIED_COLUMNS, line)
@@ -427,38 +373,3 @@ def change_columns(axes: Sequence[Axis], along: str) -> Columns:
     """The columns of `thresholds.csv`: where on the other axes, and the bracket of a change."""
     words = {axis.key: any(isinstance(value, str | bool) for value in axis.values) for axis in axes}
     return {key: str if words[key] else float for key in words if key != along} | CHANGES
-
-
-def _lines_of(sweep: Sweep, cells: CellRows) -> Lines:
-    """What the cells themselves show."""
-    values = sweep.threshold_axis.values
-    dimension = sweep.axes.index(sweep.threshold_axis)
-    numbers = np.moveaxis(np.arange(sweep.count).reshape(sweep.shape), dimension, -1)
-    return {
-        int(line[0]): {
-            float(value): Ending(cells.kind[cell]).word for value, cell in zip(values, line, strict=True)
-        }
-        for line in numbers.reshape(-1, len(values))
-    }
-
-
-CHECKS = WantedChecks(band=False, margin=True)  #: as `run` makes them, without drawn inputs
-
-
-def find_margins(runner: Runner, sweep: Sweep, log: Path) -> dict[int, tuple[str, ...]]:
-    """The fields of `MARGIN` by cell, none where none are asked for; what the log holds is not computed again."""
-    if not sweep.margin:
-        return {}
-    margins = LoggedRuns[Item](
-        what="margins of cells",
-        path=log,
-        columns={"cell": int, **MARGIN},
-        make=sweep.make.case,
-        model_of=sweep.model_of,
-        key=lambda item: item[:1],
-        ids=1,
-        work=partial(check_chunk, checks=CHECKS),
-    )
-    items = sweep.by_container(map(sweep.item, range(sweep.count)))
-    margins.run(runner, iter(partial(margins.missing, items), []))
-    return {cell: tuple(fields_of(line)[1:]) for (cell,), line in margins.lines.items()}

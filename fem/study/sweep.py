@@ -12,7 +12,6 @@ from functools import partial
 from pathlib import Path
 from typing import Any, Unpack
 
-from fem.assessment.sureness import REGIME_UNSURE, SURE, UNSURE
 from fem.case.case import case_hash
 from fem.case.tables.duration import ends_at_rest, longest_time
 from fem.case.tables.uncertainty_table import UncertaintyTable
@@ -37,18 +36,9 @@ from fem.study.driver import (
     run_study,
 )
 from fem.study.maps import draw_maps
-from fem.study.motion_outcomes import write_set
 from fem.study.motions import FloorMotionPair, motion_cases, motions_left_out, read_motion_set
-from fem.study.runner import MARGIN, Runner
-from fem.study.sure import (
-    PerturbedRows,
-    band_rows,
-    find_margins,
-    left_out,
-    perturb_cells,
-    refine,
-    table_of_changes,
-)
+from fem.study.runner import Runner
+from fem.study.sure import copy_cells, left_out, refine, table_of_changes
 from fem.study.sweep_table import (
     TRIED,
     CellRows,
@@ -58,20 +48,16 @@ from fem.study.sweep_table import (
     open_sweep,
     sweep_answer,
 )
-from fem.study.table import Columns, fields_of, line_of, read_lines, table_of_lines
+from fem.study.table import fields_of, line_of, read_lines, table_of_lines
 
-ROWS, TABLE, MEMBERS, MARGINS, CHANGES, ANSWERS = (
+ROWS, TABLE, MEMBERS, CHANGES, ANSWERS = (
     "rows.csv",
     "table.csv",
     "members.csv",
-    "margins.csv",
     "thresholds.csv",
     "answers.csv",
 )
-#: how often `sweep.json` is updated [s]
-UPDATE_S = 10.0
-#: cells that a sweep may have unless it is forced
-MOST_CELLS = 1_000_000
+MOST_CELLS = 1_000_000  #: unless it is forced
 OF_A_CELL = 250  #: numbers, in the log, the table, the copies and the maps
 
 
@@ -92,7 +78,7 @@ def run_sweep(sweep: Sweep, folder: Path, **options: Unpack[StudyOptions]) -> Sw
         begun=replace(begun, band_hash=None),  # until the copies of another band are gone
         cases=[sweep.base],
         motions=[motion.case for motion in motions],
-        compute=partial(_compute, sweep, motions, begun),
+        compute=partial(_compute, sweep, begun),
         texts={"sweep.toml": sweep.text, "base.toml": toml_document(sweep.base.given())},
         size=table_bytes(sweep.count, OF_A_CELL),
         subject=f"the sweep ({sweep.count} cells)",
@@ -101,28 +87,6 @@ def run_sweep(sweep: Sweep, folder: Path, **options: Unpack[StudyOptions]) -> Sw
         again=partial(_again, sweep, begun),
     )
     return run_study(study, folder, **options)
-
-
-def sweep_hash(sweep: Sweep) -> str:
-    """Equal for sweeps whose rows are the same."""
-    base = sweep.base.model_copy(update={"uncertainty": UncertaintyTable()})  # of the copies alone
-    given = {key: value for key, value in base.given().items() if key not in ("title", "uncertainty")}
-    return hash_of(
-        [
-            case_hash(base),
-            toml_document(given),
-            [(axis.key, axis.values) for axis in sweep.axes],
-            [(quantity.key, repr(quantity.expression.tree)) for quantity in sweep.derived],
-            [case_hash(case) for case in motion_cases(sweep.base, sweep.axes)],
-        ]
-    )
-
-
-def band_hash(sweep: Sweep) -> str:
-    """Equal for sweeps that are perturbed, refined and answered in the same way."""
-    return hash_of(
-        repr((sweep.perturbation, sweep.base.uncertainty, sweep.threshold, sweep.limit_slip_m, sweep.margin))
-    )
 
 
 def check_size(sweep: Sweep, jobs: int, force: bool) -> None:
@@ -135,37 +99,36 @@ def check_size(sweep: Sweep, jobs: int, force: bool) -> None:
         return
     corners = [expected_s(case) for case in sweep.ends()] or [expected_s(sweep.base)]
     seconds = sweep.count * sum(corners) / len(corners) / jobs
-    sizes = " x ".join(str(size) for size in sweep.shape)
-    room = table_bytes(sweep.count, OF_A_CELL) / 1e9
     raise CaseError(
-        f"{sweep.name}: [axes] make {sizes} = {sweep.count} cells, more than {MOST_CELLS}: "
-        f"{expected_words(seconds, jobs)}, {room:.1f} GB on the "
-        "disk; take fewer values, or say --force"
+        f"{sweep.name}: [axes] make {' x '.join(map(str, sweep.shape))} = {sweep.count} cells, more than {MOST_CELLS}: "
+        f"{expected_words(seconds, jobs)}, {table_bytes(sweep.count, OF_A_CELL) / 1e9:.1f} GB on the disk; "
+        "take fewer values, or say --force"
     )
 
 
 def asked_of(sweep: Sweep, motions: Sequence[FloorMotionPair], jobs: int) -> SweepResult:
     """The part of `sweep.json` that is known beforehand."""
+    base = sweep.base.model_copy(update={"uncertainty": UncertaintyTable()})  # of the copies alone
+    given = {key: value for key, value in base.given().items() if key not in ("title", "uncertainty")}
+    rows_asked = [
+        case_hash(base),
+        toml_document(given),
+        [(axis.key, axis.values) for axis in sweep.axes],
+        [(quantity.key, repr(quantity.expression.tree)) for quantity in sweep.derived],
+        [case_hash(case) for case in motion_cases(sweep.base, sweep.axes)],
+    ]
+    band_asked = sweep.perturbation, sweep.base.uncertainty, sweep.threshold, sweep.limit_slip_m
     return SweepResult(
         sweep=sweep.name,
         title=sweep.title,
         case=sweep.base.name,
-        sweep_hash=sweep_hash(sweep),
-        band_hash=band_hash(sweep),
+        sweep_hash=hash_of(rows_asked),
+        band_hash=hash_of(repr(band_asked)),
         base_hash=case_hash(sweep.base),
         model=sweep.base.solver.model,
         duration_s=longest_time(sweep.base) if not ends_at_rest(sweep.base) else "auto",
         motion_covered=motions_left_out(sweep.base, motions),
-        axes=tuple(
-            AxisResult(
-                key=axis.key,
-                values=axis.values,
-                scale=axis.scale,
-                unit=axis.unit,
-                following=dict(axis.following) or None,
-            )
-            for axis in sweep.axes
-        ),
+        axes=tuple(map(AxisResult.of, sweep.axes)),
         derived={quantity.key: quantity.expression.text for quantity in sweep.derived},
         held=held_inputs(sweep.ends(), [axis.key for axis in sweep.axes]),
         perturbation=sweep.perturbation.model_dump(),
@@ -202,38 +165,15 @@ def _draw(place: ResultFolder, sweep: Sweep) -> tuple[str, ...]:
     return tuple(draw_maps(open_sweep(place.path), place.path / "maps", sweep.maps))
 
 
-def _compute(
-    sweep: Sweep,
-    motions: Sequence[FloorMotionPair],
-    begun: SweepResult,
-    place: ResultFolder,
-    runner: Runner,
-) -> SweepResult:
+def _compute(sweep: Sweep, begun: SweepResult, place: ResultFolder, runner: Runner) -> SweepResult:
     """Compute what is missing, and write tables and maps."""
     began, stop = time.perf_counter(), runner.stop
     if (place.earlier or {}).get("band_hash") != begun.band_hash:
-        place.remove(MEMBERS, MARGINS, TRIED, CHANGES, ANSWERS)
-    rows, updated = CellRows(sweep), 0.0
-
-    def counted() -> SweepResult:
-        """The result so far."""
-        return replace(begun, rows=len(rows.runs), outcomes=dict(sorted(rows.outcomes.items())))
-
-    def update() -> None:
-        """Write how many rows there are."""
-        nonlocal updated
-        updated = time.perf_counter()
-        place.check()
-        place.write_result(counted().to_json())
-
-    def note(line: str) -> None:
-        rows.note(line)
-        if time.perf_counter() - updated > UPDATE_S:
-            update()
+        place.remove(MEMBERS, TRIED, CHANGES, ANSWERS)
+    rows = CellRows(sweep)
 
     def missing() -> Iterator[list[Item]]:
-        left = sorted(set(range(sweep.count)) - rows.runs.keys())
-        yield sweep.by_container(map(sweep.item, left))
+        yield sweep.by_container(log.missing(map(sweep.item, range(sweep.count))))
 
     log = LoggedRuns[Item](
         what="cells",
@@ -243,34 +183,33 @@ def _compute(
         model_of=sweep.model_of,
         key=partial(_key, sweep),
         ids=1,
-        note=note,
+        note=rows.note,
     )
-    update()
-    _rows_of_table(place, sweep, rows.columns)
+    place.write_result(begun.to_json())  # with the hash of the band: copies of another are gone
+    _rows_of_table(place, rows)
     log.run(runner, missing())
-    copies = None if stop() else perturb_cells(runner, sweep, rows, place.path / MEMBERS)
+    copied = None if stop() else copy_cells(runner, sweep, rows, place.path / MEMBERS)
     changes = None if stop() else refine(runner, sweep, rows, place.path / TRIED)
-    margins = {} if stop() else find_margins(runner, sweep, place.path / MARGINS)
-    result = counted()
-    if copies is not None:
-        result = replace(result, perturbed=len(copies.rows), copies=sum(map(len, copies.rows.values())))
+    result = replace(begun, rows=len(rows.runs), outcomes=dict(sorted(rows.outcomes.items())))
     if stop():
         words = f"{result.rows} of {sweep.count} cells are computed"
         if result.rows == sweep.count:
-            words = "all cells are computed, their copies, margins or the changes between them are not"
+            words = "all cells are computed, their copies or the changes between them are not"
         return replace(result, status=INTERRUPTED, missing=words, wall_s=time.perf_counter() - began)
     place.check()
-    result = replace(
-        result,
-        status=FAILED if set(rows.outcomes) == {"failed"} else COMPLETED,
-        **_write_table(place, sweep, rows, log, copies, margins),
-    )
-    place.remove(MARGINS)  # they are columns of the table
+    result = replace(result, status=FAILED if set(rows.outcomes) == {"failed"} else COMPLETED)
+    columns = band_columns(sweep.axes)
+    bands: Iterator[tuple[Any, ...]] = iter([(None,) * len(columns)] * sweep.count)
+    if copied is not None:
+        copies, members = copied
+        found, bands = copies.band()
+        result = replace(result, **found)
+        place.write_text(MEMBERS, members.table())
+    lines = (f"{log.lines[cell,]},{line_of(band)}" for cell, band in enumerate(bands))
+    place.write_text(TABLE, table_of_lines((*rows.columns, *columns), lines))
     if changes is not None:
         place.write_text(CHANGES, table_of_changes(sweep, changes))
         result = replace(result, changes=len(changes))
-    if motions:
-        result = replace(result, **write_set(place, sweep, motions, rows))
     answer = sweep_answer(open_sweep(place.path), place.path)
     if answer:
         place.write_text(ANSWERS, answers_csv(answer))
@@ -282,40 +221,13 @@ def _compute(
     )
 
 
-def _write_table(
-    place: ResultFolder,
-    sweep: Sweep,
-    cells: CellRows,
-    log: LoggedRuns[Item],
-    copies: PerturbedRows | None,
-    margins: Mapping[int, Sequence[str]],
-) -> dict[str, Any]:
-    """Write `table.csv` and the copies; returns what they add to `sweep.json`."""
-    columns, added = band_columns(sweep.axes), dict[str, Any]()
-    bands = [line_of([None] * len(columns))] * sweep.count
-    if copies is not None:
-        counts, deciding, values = band_rows(sweep, cells, copies)
-        bands = [line_of(values(cell)) for cell in range(sweep.count)]
-        added = {
-            "unsure": counts[UNSURE],
-            "sure": {word: counts[word] for word in (SURE, REGIME_UNSURE, UNSURE)},
-            "decided_by": dict(deciding.most_common()),
-        }
-        assert copies.log is not None
-        place.write_text(MEMBERS, copies.log.table())
-    lines = (",".join([log.lines[cell,], band, *margins.get(cell, ())]) for cell, band in enumerate(bands))
-    place.write_text(TABLE, table_of_lines((*cells.columns, *columns, *(MARGIN if margins else ())), lines))
-    return added
-
-
-def _rows_of_table(place: ResultFolder, sweep: Sweep, columns: Columns) -> None:
+def _rows_of_table(place: ResultFolder, rows: CellRows) -> None:
     """Take the table of a finished sweep, whose band is to be another, for its log."""
     log, table = place.path / ROWS, place.path / TABLE
     if table.exists() and not log.exists():
-        bands = (*columns, *band_columns(sweep.axes))
-        lines = [*read_lines(table, bands), *read_lines(table, (*bands, *MARGIN))]
-        kept = (line_of(fields_of(line)[: len(columns)]) for line in lines)
-        place.write_text(ROWS, table_of_lines(columns, kept))
+        lines = read_lines(table, (*rows.columns, *band_columns(rows.axes)))
+        kept = (line_of(fields_of(line)[: len(rows.columns)]) for line in lines)
+        place.write_text(ROWS, table_of_lines(rows.columns, kept))
     place.remove(TABLE)
 
 

@@ -2,7 +2,7 @@
 
 import math
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -86,9 +86,6 @@ class SweepResult(StudyResult):
     sure: dict[str, int] | None = None  #: how many cells are sure, regime unsure, unsure
     decided_by: dict[str, int] | None = None  #: how many unsure cells each input decides
     changes: int | None = None  #: of outcome, refined; None where none are asked for
-    motions: tuple[dict[str, Any], ...] | None = None  #: measures and outcomes of each motion of a set
-    motion_set: tuple[dict[str, Any], ...] | None = None  #: a row for each point of the other axes
-    motion_figures: tuple[str, ...] = ()
     map_axes: dict[str, Any] = field(default_factory=dict)
     maps: tuple[str, ...] = ()
 
@@ -107,13 +104,6 @@ BAND: Columns = {
 }
 WIDTH = "band_width."  #: before the key of an axis
 WORDS = frozenset(name for name, kind in (FOUND | BAND).items() if kind in (str, tuple))
-
-
-def row_columns(axes: Sequence[Axis], derived: Iterable[str]) -> Columns:
-    """Columns of the row of a run; values of axes and what follows from them are read elsewhere."""
-    following = (key for axis in axes for key in axis.following)
-    values = (*(axis.key for axis in axes), *following, *derived)
-    return {"cell": int} | dict.fromkeys(values, str) | FOUND
 
 
 def band_columns(axes: Sequence[Axis]) -> tuple[str, ...]:
@@ -152,7 +142,7 @@ class SweepTable:
 
 
 def open_sweep(folder: Path | str) -> SweepTable:
-    """Read the folder of a sweep, a running or interrupted one too.
+    """Read the folder of a sweep, a running or interrupted one too, and one of an earlier version of the program.
 
     Raises:
         FolderError: it is not the folder of a sweep, or it is damaged.
@@ -162,14 +152,17 @@ def open_sweep(folder: Path | str) -> SweepTable:
     try:
         info = SweepResult.from_json(content)
         axes = tuple(entry.axis for entry in info.axes)
-        source = folder / "table.csv"
-        if not source.is_file():
-            source = folder / "rows.csv"
-        names = _header(source, ("cell", *(axis.key for axis in axes), "status", "outcome", TURNED))
-        lines = [fields_of(line) for line in read_lines(source, names)]
+        names: list[str] = ["cell", *(axis.key for axis in axes), "status", "outcome", TURNED]
+        sources = [path for name in ("table.csv", "rows.csv") if (path := folder / name).is_file()]
+        for source in sources[:1]:
+            with source.open(encoding="utf-8", newline="") as stream:
+                needed, names = names, fields_of(stream.readline().rstrip("\n"))
+            if missing := [name for name in needed if name not in names]:
+                raise ValueError(f"{source.name} has no column {missing[0]!r}")
+        lines = [fields_of(line) for source in sources[:1] for line in read_lines(source, names)]
         if info.state == "finished" and len(lines) != info.cells:
             raise ValueError(
-                f"{source.name} has {len(lines)} rows of {info.cells}; recompute it: "
+                f"table.csv has {len(lines)} rows of {info.cells}; recompute it: "
                 f"python -m fem sweep {info.sweep} --out {folder} --force"
             )
         return SweepTable(info=info, axes=axes, columns=_columns(axes, names, lines))
@@ -177,34 +170,17 @@ def open_sweep(folder: Path | str) -> SweepTable:
         raise FolderError(f"{folder}: damaged, or not the folder of a sweep ({error})") from None
 
 
-def _header(source: Path, needed: Sequence[str]) -> list[str]:
-    """The columns of a table, those of an earlier version of the program too; ValueError without the needed ones."""
-    if not source.is_file():
-        return list(needed)
-    with source.open(encoding="utf-8", newline="") as stream:
-        names = fields_of(stream.readline().rstrip("\n"))
-    if missing := [name for name in needed if name not in names]:
-        raise ValueError(f"{source.name} has no column {missing[0]!r}")
-    return names
-
-
 def _columns(
     axes: Sequence[Axis], names: Sequence[str], lines: Sequence[Sequence[str]]
 ) -> dict[str, NDArray[Any]]:
-    count = math.prod(shape_of(axes))
+    count, words = math.prod(shape_of(axes)), WORDS.union(*(axis.following for axis in axes))
     cells = np.array([int(fields[0]) for fields in lines], dtype=np.int64)
     columns: dict[str, NDArray[Any]] = {}
-    words = WORDS.union(*(axis.following for axis in axes))
-    grids = np.meshgrid(*(np.array(axis.values, dtype=object) for axis in axes), indexing="ij")
     for name, text in zip(names, zip(*lines, strict=True) if lines else [()] * len(names), strict=True):
-        if name in words:
-            column = np.full(count, "", dtype=object)
-            column[cells] = text
-        else:
-            column = np.full(count, np.nan)
-            column[cells] = list(map(_number, text))
-        columns[name] = column
+        columns[name] = np.full(count, "", dtype=object) if name in words else np.full(count, np.nan)
+        columns[name][cells] = text if name in words else list(map(_number, text))
     columns["cell"] = np.arange(count)
+    grids = np.meshgrid(*(np.array(axis.values, dtype=object) for axis in axes), indexing="ij")
     for axis, grid in zip(axes, grids, strict=True):
         has_words = any(isinstance(value, str | bool) for value in axis.values)
         columns[axis.key] = grid.ravel() if has_words else grid.ravel().astype(float)
@@ -212,12 +188,10 @@ def _columns(
 
 
 def _number(text: str) -> float:
-    """A field as a number: nan for an empty one, 1 and 0 for true and false."""
-    if text in ("true", "false"):
-        return float(text == "true")
+    """A field as a number: nan for an empty one and a word such as "auto", 1 and 0 for true and false."""
     try:
-        return float(text) if text else np.nan
-    except ValueError:  # a word in a column of numbers, such as "auto"
+        return float({"true": 1.0, "false": 0.0}.get(text, text))
+    except ValueError:
         return np.nan
 
 
@@ -239,23 +213,17 @@ COLUMNS |= dict.fromkeys(("stood_again", "no_outcome", "unsure", "answer"), str)
 
 def answers_csv(answer: StudyAnswer[Answer]) -> str:
     """`answers.csv`: one row for each combination of values of the other axes."""
-    columns = dict.fromkeys((axis.key for axis in answer.others), str) | COLUMNS
-    return table_of_rows(columns, map(_cells, answer.rows))
 
+    def cells(row: AnswerRow[Answer]) -> dict[str, Any]:
+        found = row.found
+        ranges = {"stood_again": found.stood_again, "no_outcome": found.failed, "unsure": found.unsure}
+        words = {key: "; ".join(f"{a!r} to {b!r}" for a, b in spans) for key, spans in ranges.items()}
+        numbers = found.stood_to, found.stood_slip, found.overturned_from, found.slip
+        return {**row.point, **dict(zip(COLUMNS, numbers, strict=False)), **words, "answer": row.sentence}
 
-def _cells(row: AnswerRow[Answer]) -> dict[str, Any]:
-    """A row of `answers.csv`, by column."""
-    answer = row.found
-    ranges = {"stood_again": answer.stood_again, "no_outcome": answer.failed, "unsure": answer.unsure}
-    return {
-        **row.point,
-        "stood_to": answer.stood_to,
-        f"stood_{SLIPPED}": answer.stood_slip,
-        "overturned_from": answer.overturned_from,
-        SLIPPED: answer.slip,
-        **{name: "; ".join(f"{low!r} to {high!r}" for low, high in spans) for name, spans in ranges.items()},
-        "answer": row.sentence,
-    }
+    return table_of_rows(
+        dict.fromkeys((axis.key for axis in answer.others), str) | COLUMNS, map(cells, answer.rows)
+    )
 
 
 def sweep_answer(table: SweepTable, folder: Path) -> StudyAnswer[Answer] | None:
@@ -307,29 +275,25 @@ def sweep_answer(table: SweepTable, folder: Path) -> StudyAnswer[Answer] | None:
 
 def _lines_of(table: SweepTable, axis: Axis, tried: Path) -> dict[int, list[Trial]]:
     """What is known along the axis, by the first cell of each line."""
-    dimension = table.axes.index(axis)
-    cells = np.moveaxis(np.arange(len(table["cell"])).reshape(table.shape), dimension, -1)
-    slip, unsure = table.columns.get(SLIPPED), table.columns.get("unsure")
+    cells = np.moveaxis(np.arange(len(table["cell"])).reshape(table.shape), table.axes.index(axis), -1)
+    nothing = np.full(len(table["cell"]), np.nan)
+    slip, unsure = (table.columns.get(name, nothing) for name in (SLIPPED, "unsure"))
     fell = table.columns.get("fell_in_row")
     lines: dict[int, list[Trial]] = defaultdict(list)
     for line in cells.reshape(-1, len(axis.values)).tolist():
         for cell, value in zip(line, axis.values, strict=True):
-            lines[line[0]].append(
-                Trial(
-                    value=float(value),
-                    line=line[0],
-                    kind=ending_of(table["status"][cell], table["outcome"][cell]),
-                    slip=None if slip is None or np.isnan(slip[cell]) else float(slip[cell]),
-                    unsure=None if unsure is None or np.isnan(unsure[cell]) else bool(unsure[cell]),
-                    fell="" if fell is None else str(fell[cell]),
-                )
+            trial = Trial(
+                value=float(value),
+                line=line[0],
+                kind=ending_of(table["status"][cell], table["outcome"][cell]),
+                slip=None if np.isnan(slip[cell]) else float(slip[cell]),
+                unsure=None if np.isnan(unsure[cell]) else bool(unsure[cell]),
+                fell="" if fell is None else str(fell[cell]),
             )
+            lines[line[0]].append(trial)
     for row in read_rows(tried, TRIED_COLUMNS):
-        first, kind = row["cell"], ending_of(row["status"], row["outcome"])
-        fell_first = row["fell_in_row"] or ""
-        lines[first].append(
-            Trial(value=row["value"], line=first, kind=kind, slip=row[SLIPPED], fell=fell_first)
-        )
+        kind, fell_first = ending_of(row["status"], row["outcome"]), row["fell_in_row"] or ""
+        lines[row["cell"]].append(Trial(row["value"], row["cell"], kind, row[SLIPPED], fell=fell_first))
     return lines
 
 
@@ -356,19 +320,16 @@ def shown_in(row: Mapping[str, Any]) -> RunShown:
     )
 
 
-def shown_at(table: SweepTable, cell: int) -> RunShown:
-    """What a cell of a table shows, but for the boxes of a loose stack."""
-    outcome, values = str(table["outcome"][cell]), {key: float(table[key][cell]) for key in FIGURES}
-    kind = ending_of(str(table["status"][cell]), outcome)
-    figures: dict[str, Any] = {key: value for key, value in values.items() if math.isfinite(value)}
-    return RunShown(kind=kind, outcome=None if kind is Ending.FAILED else outcome, **figures)
-
-
 class CellRows:
     """The rows of the cells, and what follows from them, cell by cell."""
 
     def __init__(self, sweep: Sweep) -> None:
-        self.columns = row_columns(sweep.axes, (quantity.key for quantity in sweep.derived))
+        self.axes = sweep.axes
+        following = (key for axis in sweep.axes for key in axis.following)
+        derived = (quantity.key for quantity in sweep.derived)
+        #: of the row of a run; values of axes and what follows from them are read elsewhere
+        self.columns: Columns = {"cell": int}
+        self.columns |= dict.fromkeys((*(axis.key for axis in sweep.axes), *following, *derived), str) | FOUND
         self.runs: dict[int, RunShown] = {}
         self.kind: IntArray = np.full(sweep.count, Ending.UNKNOWN)  #: endings, (n_cells,)
         self.ratio: FloatArray = np.full(sweep.count, np.nan)  #: (n_cells,)

@@ -1,6 +1,5 @@
 """The cores of this machine as pools of workers, and how chunks of a list are handed to them."""
 
-import ast
 import linecache
 import math
 import os
@@ -83,19 +82,18 @@ class LocalWorkers:
         self._held = ExitStack()
         #: released for each process at the end; a dead one blocks no other
         self._over: Semaphore | None = None
-        self._pools: dict[tuple[type[Executor], int], Executor] = {}
+        self._pools: dict[tuple[bool, int], Executor] = {}  #: by whether it is of processes, and how many
 
     def __call__(self, model: str, count: int) -> Sequence[Pool]:
         jobs, least = self._jobs, self._worth[model]
         if least < math.inf and _may_fork():
             least = min(least, WORTH_FORKS[model])
-        worth = count >= least
-        if model == "full" and worth:
-            return [self._processes(jobs)]
-        started = (ProcessPoolExecutor, jobs - 1) in self._pools
-        if jobs > 1 and (started or worth):
-            return [self._processes(jobs - 1), self._threads(1)]  # the thread second: it would rule out forks
-        return [self._threads(jobs)]
+        if model == "full" and count >= least:
+            return [self._pool(jobs, processes=True)]
+        if jobs > 1 and (count >= least or (True, jobs - 1) in self._pools):
+            # the thread second: it would rule out forks
+            return [self._pool(jobs - 1, processes=True), self._pool(1)]
+        return [self._pool(jobs)]
 
     def __enter__(self) -> Self:
         return self
@@ -103,26 +101,23 @@ class LocalWorkers:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        for kind_of_pool, count in self._pools:
-            for _ in range(count if kind_of_pool is ProcessPoolExecutor else 0):
+        for processes, count in self._pools:
+            for _ in range(count if processes else 0):
                 assert self._over is not None
                 self._over.release()
         self._held.close()
 
-    def _threads(self, count: int) -> Pool:
-        key = ThreadPoolExecutor, count
+    def _pool(self, count: int, *, processes: bool = False) -> Pool:
+        key = processes, count
         if key not in self._pools:
-            self._pools[key] = self._held.enter_context(ThreadPoolExecutor(count))
-        return Pool(self._pools[key], count)
-
-    def _processes(self, count: int) -> Pool:
-        key = ProcessPoolExecutor, count
-        if key not in self._pools:
-            context = get_context("fork" if _may_fork() else "spawn")
-            self._over = self._over or context.Semaphore(0)
-            executor = ProcessPoolExecutor(count, context, _end_with_parent, (os.getpid(), self._over))
+            executor: Executor = ThreadPoolExecutor(count) if not processes else self._processes(count)
             self._pools[key] = self._held.enter_context(executor)
         return Pool(self._pools[key], count)
+
+    def _processes(self, count: int) -> Executor:
+        context = get_context("fork" if _may_fork() else "spawn")
+        self._over = self._over or context.Semaphore(0)
+        return ProcessPoolExecutor(count, context, _end_with_parent, (os.getpid(), self._over))
 
 
 def _may_fork() -> bool:
@@ -210,33 +205,15 @@ def _signals_held() -> Iterator[None]:
 
 
 def unguarded_script() -> str | None:
-    """The script that is calling outside an `if` on `__name__`: a process would load it, and start it again.
+    """The main script, if it never asks for its `__name__`: a process would load it, and start it again.
 
     None where a process may be started; also for a notebook, whose processes load nothing. A script that Python reads
     from its standard input, which no process can load, is "<stdin>".
     """
-    frame = sys._getframe()
-    while frame.f_back is not None and not _is_main(frame.f_code.co_name, frame.f_globals):
-        frame = frame.f_back
-    main, path = sys.modules["__main__"], frame.f_code.co_filename
-    if path == STDIN and getattr(main, "__file__", None) == STDIN:
-        return STDIN
-    source = "".join(linecache.getlines(path))
-    if getattr(main, "__file__", None) is None or not source or frame.f_globals is not vars(main):
-        return None
-    guards = [
-        node
-        for node in ast.walk(ast.parse(source))
-        if isinstance(node, ast.If | ast.IfExp)
-        and any(isinstance(name, ast.Name) and name.id == "__name__" for name in ast.walk(node.test))
-    ]
-    inside = any(node.lineno <= frame.f_lineno <= (node.end_lineno or 0) for node in guards)
-    return None if inside else os.path.basename(path)
-
-
-def _is_main(name: str, variables: Mapping[str, object]) -> bool:
-    """Whether a frame is the top level of the main script."""
-    return name == "<module>" and variables.get("__name__") == "__main__"
+    path = getattr(sys.modules["__main__"], "__file__", None) or ""
+    source = "".join(linecache.getlines(path)) if path else ""
+    guarded = not path or (path != STDIN and (not source or "__name__" in source))
+    return None if guarded else os.path.basename(path)
 
 
 def _end_with_parent(parent: int, over: Semaphore) -> None:

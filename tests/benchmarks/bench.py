@@ -45,10 +45,10 @@ from fem.seismic.artificial import artificial_motions
 from fem.solid.nodal_body import advance_body
 from fem.study.axes import read_axis
 from fem.study.file import load_sweep
-from fem.study.runner import run_cases
 from fem.study.sweep import run_sweep
 
 sys.path.append(str(Path(__file__).parents[1] / "rigs"))
+from case_rows import run_cases
 from moreau import slide_and_rock_batch
 
 Measured = float | tuple[float, str]  #: the number of the table, and what else was found

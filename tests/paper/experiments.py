@@ -10,6 +10,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from case_rows import run_cases
 from paper.cases import RIGID, SHELL, PaperCase
 from runs import Finished
 
@@ -23,7 +24,7 @@ from fem.run.recorder import Recorder
 from fem.run.simulation import simulate
 from fem.study.containers import ContainerCache
 from fem.study.design import CaseMaker
-from fem.study.runner import Row, run_cases
+from fem.study.runner import Row
 
 #: contact penalty over the one that "auto" chooses, and contact damping ratio, of the variants with a shell
 PENALTY_FACTORS = (1.0 / 3.0, 1.0, 3.0)

@@ -222,7 +222,7 @@ def _computed(
     if perturbed:
         near = np.flatnonzero(near_change(rows, x.values, y.values)).tolist()
         copies = {
-            k: [cases[k].but(change) for change in PERTURBATION.members(experiments.case(cases[k]))]
+            k: [cases[k].but(change.values) for change in PERTURBATION.changes(experiments.case(cases[k]))]
             for k in near
         }
         experiments.rows([copy for group in copies.values() for copy in group], also_failed=True)  # one batch

@@ -7,6 +7,7 @@ sign of the vertical 0.252; at 1.75 and 2.0 one of seven, with the vertical up t
 
 import numpy as np
 import pytest
+from case_rows import run_cases
 from running_example import SITE, k1
 
 from contact.motion.table import TableMotion
@@ -14,7 +15,6 @@ from contact.reference.rocking import RockingOutcome, simulate_rocking
 from fem.assessment.rigid_check import floor_of
 from fem.case.case import case_from
 from fem.seismic.artificial import artificial_motions, artificial_set
-from fem.study.runner import run_cases
 
 CASE = case_from(
     {

@@ -111,7 +111,7 @@ def test_a_script_without_a_guard_is_told_so_and_does_not_start_itself_again(tmp
         timeout=300,
     )
     assert found.stdout == "begun\n['slide', 'rest']\n"
-    said = 'UserWarning: study.py calls compute_many outside `if __name__ == "__main__":`'
+    said = 'UserWarning: study.py lacks `if __name__ == "__main__":`'
     assert found.stderr.count(said) == warned
     assert "Traceback" not in found.stderr
 

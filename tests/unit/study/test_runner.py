@@ -7,6 +7,7 @@ import sys
 from dataclasses import dataclass, field
 
 import pytest
+from case_rows import run_cases
 from worker_tasks import end_the_process, hear_the_group_end, held_back, who_works
 
 from fem.assessment.verdict import verdict_of
@@ -19,7 +20,7 @@ from fem.run.simulation import simulate
 from fem.runtime.progress import SilentReporter
 from fem.study.containers import ContainerCache, container_key
 from fem.study.design import CaseMaker
-from fem.study.runner import Runner, run_cases
+from fem.study.runner import Runner
 from fem.study.workers import WORTH_PROCESSES, LocalWorkers, WorkersLostError, hand_out
 
 SHORT = ["solver.duration_s=2", "output.fields_s=0"]

@@ -20,31 +20,15 @@ from fem.response.run import run_response
 from fem.results import kinds
 from fem.results.errors import FolderError, OutputError
 from fem.runtime.progress import SilentReporter
-from fem.site.request import load_site
-from fem.site.run import run_site
-from fem.site.size import size_axis
-from fem.site.size_run import run_size
-from fem.study.ensemble import run_ensemble
-from fem.study.file import load_ensemble, load_sweep
+from fem.study.file import load_sweep
 from fem.study.hall import run_hall
 from fem.study.list_file import read_hall
 from fem.study.sweep import run_sweep
 
-ENSEMBLE = """
-case = "seed_stack_plateau"
-draws = 16
-confidence = 0.9
-probability = 0.5
-[set]
-"solver.model" = "rigid"
-"solver.duration_s" = 1.5
-[axes]
-"motion.peak_acceleration_m_s2" = [2.0, 6.0, 12.0]
-[random]
-"motion.phase_rad" = { distribution = "uniform", from = 0.0, to = 6.2 }
-"""
 HALL = "name,width_m,boxes\n" + "".join(f"{k},{0.6 + 0.02 * k:.2f},2\n" for k in range(40))
 RIGID = ("solver.model=rigid", "contact.mu_static=1", "contact.mu_kinetic=1", "solver.element_size_m=1")
+#: a friction that has been through something when a response curve is interrupted
+SLIPPING = (*RIGID[::3], "contact.mu_static=0.3", "contact.mu_kinetic=0.15", "contact.weakening_m=0.005")
 
 
 class Interrupting(SilentReporter):
@@ -84,36 +68,12 @@ def sweep(tmp_path, other=False):
     return lambda folder, **options: run_sweep(asked, folder, **options)
 
 
-def ensemble(tmp_path, other=False):
-    path = tmp_path / "small.toml"
-    path.write_text(ENSEMBLE.replace("16", "24") if other else ENSEMBLE, encoding="utf-8")
-    asked = load_ensemble(path)
-    return lambda folder, **options: run_ensemble(asked, folder=folder, **options)
-
-
 def response(tmp_path, other=False):
-    case = load_case("seed_stack_plateau", RIGID)
+    case = load_case("seed_stack_plateau", SLIPPING)
     asked = ResponseRequest(
-        case=case, first_Hz=0.6, last_Hz=1.4, count=3, settle=6, observe=9 if other else 8
+        case=case, first_Hz=0.8, last_Hz=2.0, count=3, settle=4, observe=9 if other else 8, starts=2
     )
     return lambda folder, **options: run_response(asked, folder=folder, **options)
-
-
-def site_of(tmp_path, other):
-    path = tmp_path / "hall.toml"
-    path.write_text(SITE.replace("slip_m = 0.1", "slip_m = 0.2") if other else SITE, encoding="utf-8")
-    return load_site(path)
-
-
-def site(tmp_path, other=False):
-    asked = site_of(tmp_path, other)
-    return lambda folder, **options: run_site(asked, folder, **options)
-
-
-def size(tmp_path, other=False):
-    asked = site_of(tmp_path, other)
-    axis = size_axis(asked, "container.boxes", high=3.0)
-    return lambda folder, **options: run_size(asked, axis, folder, **options)
 
 
 def hall(tmp_path, other=False):
@@ -123,27 +83,16 @@ def hall(tmp_path, other=False):
     return lambda folder, **options: run_hall(asked, base, folder, checks="none", **options)
 
 
+pytestmark = pytest.mark.usefixtures("undrawn")
+
 STUDIES = pytest.mark.parametrize(
     ("study", "mark", "log"),
     [
         (sweep, "sweep.json", "rows.csv"),
-        # they share their drivers with sweep and hall
-        pytest.param(ensemble, "ensemble.json", "draws.csv", marks=pytest.mark.slow),
-        pytest.param(response, "response.json", "state.npz", marks=pytest.mark.slow),
-        pytest.param(site, "assess.json", "runs.csv", marks=pytest.mark.slow),
-        pytest.param(size, "size.json", "runs.csv", marks=pytest.mark.slow),
-        (hall, "hall.json", "runs.csv"),
+        (response, "response.json", "state.npz"),
     ],
-    ids=["sweep", "ensemble", "response", "site", "size", "hall"],
+    ids=["sweep", "response"],
 )
-
-
-@pytest.fixture(autouse=True)
-def short(undrawn, monkeypatch):
-    """Maps, pages and the repetition of deciding runs with another model are tested by themselves."""
-    monkeypatch.setattr("fem.site.run.confirmed", lambda *arguments: [])
-    monkeypatch.setattr("fem.site.run.site_report", lambda *arguments: "")
-    monkeypatch.setattr("fem.site.stages.SCANNED", (0.5,))
 
 
 @pytest.fixture(scope="module")
@@ -193,12 +142,12 @@ def test_an_interrupted_study_continues_to_the_same_files(tmp_path, whole, study
     assert files_of(folder) == files_of(whole(study))
 
 
-@pytest.mark.parametrize("study", [ensemble, hall])
+@pytest.mark.parametrize("study", [hall])
 def test_a_damaged_row_is_computed_again_and_one_of_no_run_is_refused(tmp_path, whole, study):
     run, folder = study(tmp_path), tmp_path / "out"
     with pytest.raises(KeyboardInterrupt):
         run(folder, reporter=Interrupting(1))
-    path = folder / ("draws.csv" if study is ensemble else "runs.csv")
+    path = folder / "runs.csv"
     header, first, second, *others = path.read_text().splitlines()
     path.write_text("\n".join([header, first, "777777" + second, *others, ""]))
     with pytest.raises(FolderError, match=r"damaged, no run of this study has the row 777777.*--force"):
@@ -227,12 +176,11 @@ def test_an_interrupted_study_says_what_is_missing_in_place_of_an_answer(tmp_pat
     assert re.fullmatch("no answer yet: .*; --resume continues", capsys.readouterr().out.strip())
     found = json.loads((folder / mark).read_text())
     assert (found["status"], found["state"], found["answer"]) == ("interrupted", "interrupted", None)
-    if study is not size:  # has no page
-        assert main(["report", str(folder), "-q"]) == 0
-        page = (folder / "report.html").read_text()
-        sentence = re.search(r'class="sentence"[^>]*>([^<]*)<', page)[1]
-        assert sentence.startswith("No answer yet: ")
-        assert 'id="signature"' not in page and "signature</div>" not in page
+    assert main(["report", str(folder), "-q"]) == 0
+    page = (folder / "report.html").read_text()
+    sentence = re.search(r'class="sentence"[^>]*>([^<]*)<', page)[1]
+    assert sentence.startswith("No answer yet: ")
+    assert 'id="signature"' not in page and "signature</div>" not in page
     assert run(folder, resume=True).state == "finished"
     found = json.loads((folder / mark).read_text())
     assert found["state"] == "finished" and found["answer"]

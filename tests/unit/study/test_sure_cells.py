@@ -15,9 +15,9 @@ from fem.study.axes import Axis
 from fem.study.draws import held_inputs
 from fem.study.file import load_sweep
 from fem.study.perturbation import around, coarse_cells
-from fem.study.sure import CellCopies, left_out
+from fem.study.sure import Copies, left_out
 from fem.study.sweep import run_sweep
-from fem.study.sweep_table import open_sweep
+from fem.study.sweep_table import CellRows, open_sweep
 
 pytestmark = pytest.mark.usefixtures("undrawn")
 
@@ -32,14 +32,18 @@ def sweep_of(tmp_path):
     return read
 
 
+def copies_of(sweep, cell=0):
+    return Copies(sweep, CellRows(sweep)).of(cell)
+
+
 def keys_of(sweep, cell=0):
     """The keys that the copies of a cell change, those of draws together."""
-    return {key for copy in CellCopies(sweep).of(cell) for key in copy.change.values}
+    return {key for copy in copies_of(sweep, cell) for key in copy.change.values}
 
 
 def test_every_copy_of_a_cell_is_another_case(sweep_of):
     sweep = sweep_of(SMALL)
-    copies = CellCopies(sweep).of(7)
+    copies = copies_of(sweep, 7)
     assert len({copy.name for copy in copies}) == len(copies)
     cases = [
         sweep.make.case(sweep.item(7)._replace(more=copy.change.values)).contact
@@ -78,7 +82,7 @@ def test_a_copy_of_a_cell_is_the_member_of_the_band_of_its_run(sweep_of):
     band = compute(sweep.case(0), band=True, margin=False).verdict.band
     members = {key_of(one.values): one for one in band.members if one.kind == "one"}
     found = {}
-    for copy in CellCopies(sweep).of(0):
+    for copy in copies_of(sweep):
         if key_of(copy.change.values) in members:
             model = build_model(sweep.make.case(sweep.item(0)._replace(more=copy.values)))
             found[key_of(copy.change.values)] = run_without_history(model, None)[0]
@@ -95,7 +99,7 @@ LOOSE = SMALL.replace("[axes]", '"container.joints" = "loose"\n[axes]')
 
 def test_copies_of_a_loose_cell_change_floor_and_joints_apart(sweep_of):
     sweep = sweep_of(LOOSE.replace("count = 5", "count = 2"))
-    copies = CellCopies(sweep).of(0)
+    copies = copies_of(sweep)
     own = sweep.case(0).joint_friction
     for copy in copies:
         case = sweep.make.case(sweep.item(0)._replace(more=copy.values))
@@ -134,7 +138,7 @@ def test_a_known_input_is_left_out(sweep_of, table, gone):
 def test_ratios_that_the_sweep_file_names_are_tried_even_if_damping_is_known(sweep_of):
     text = SMALL.replace("[axes]", '"uncertainty.damping_ratio" = "known"\n[axes]')
     text += "[perturbation]\ncontact_damping_ratios = [0.5]\n"
-    ratios = [copy.change.values.get("contact.damping_ratio") for copy in CellCopies(sweep_of(text)).of(0)]
+    ratios = [copy.change.values.get("contact.damping_ratio") for copy in copies_of(sweep_of(text))]
     assert [one for one in ratios if one is not None] == [0.5]
 
 
@@ -146,7 +150,7 @@ def test_an_axis_is_not_varied_over_its_range(sweep_of):
 
 def test_a_deformable_container_leaves_out_what_takes_long(sweep_of):
     sweep = sweep_of(SMALL.replace('model" = "rigid"', 'model" = "reduced"'))
-    copies = CellCopies(sweep).of(0)
+    copies = copies_of(sweep)
     assert {copy.change.kind for copy in copies} == {"one"}
     assert "container.damping_ratio" in {key for copy in copies for key in copy.change.values}
     assert "draws" in left_out(sweep)

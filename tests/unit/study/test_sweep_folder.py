@@ -14,7 +14,6 @@ from small_sweep import SMALL, rows_without_wall
 
 from fem.__main__ import main
 from fem.case.validation import CaseError
-from fem.run.compute import compute
 from fem.study.file import load_sweep
 from fem.study.sweep import check_size, run_sweep
 from fem.study.sweep_table import open_sweep
@@ -181,19 +180,3 @@ def test_a_kill_while_the_band_is_changed_leaves_no_copies_of_the_other(folder, 
         mine, alone = ((one / name).read_text().splitlines() for one in (folder, tmp_path / "alone"))
         assert [line.split(",")[1:3] for line in mine] == [line.split(",")[1:3] for line in alone]
     assert rows_without_wall(folder) == rows_without_wall(tmp_path / "alone")
-
-
-def test_the_margin_of_a_cell_is_that_of_its_run(tmp_path):
-    path = tmp_path / "two.toml"
-    motion = '"motion.angular_frequency_rad_s" = 3.0\n'
-    axes = '[axes]\n"motion.peak_acceleration_m_s2" = [4.0, 12.0]\n[perturbation]\ncells = "none"\n'
-    path.write_text("margin = true\n" + SMALL.split("[axes]")[0] + motion + axes, encoding="utf-8")
-    sweep = load_sweep(path)
-    run_sweep(sweep, tmp_path / "out", jobs=1)
-    table = open_sweep(tmp_path / "out")
-    for cell in range(2):
-        margin = compute(sweep.case(cell), band=False, margin=True).verdict.margin
-        found = None if np.isnan(table["margin"][cell]) else table["margin"][cell]
-        assert found == margin.factor
-        assert (table["margin_tried_to"][cell] == margin.largest_tried) == (margin.factor is None)
-    assert np.isfinite(table["margin"]).any()

@@ -7,11 +7,11 @@ from functools import cache
 import numpy as np
 import pytest
 import scipy.signal
+from case_rows import run_cases
 from runs import run
 
 from contact.stepping.contents import ACCELERATION, begin_contents, filter_contents
 from fem.case.case import load_case
-from fem.study.runner import run_cases
 
 CUTOFF, END = 2.0 * math.pi * 33.0, 0.3
 AT_REST = (0.0, 0.0)  # the floor
