@@ -47,7 +47,7 @@ GROUPS = {
         "ensemble": ("Estimate the probability of overturning, parameters uncertain.", "fragility -j 4"),
         "response": (
             "Compute the long-time motion over the frequency of the floor.",
-            "--shell",
+            "--from 0.3 --to 3",
         ),
         "assess": ("Verify a container at a site by EN 1998-1, time histories and rules.", "site -j 4"),
         "batch": (

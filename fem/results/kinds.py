@@ -57,9 +57,8 @@ SWEEP = ResultKind(
     request="sweep_hash",
     results="table.csv",
     own=(
-        *("rows.csv", "members.csv", "margins.csv", "tried.csv", "thresholds.csv", "answers.csv"),
+        *("rows.csv", "members.csv", "tried.csv", "thresholds.csv", "answers.csv"),
         *("table.csv", "maps/*.svg"),
-        *("motions.csv", "motion_set.csv", "spectra.csv", "figures/*.svg"),
     ),
     temporary=("rows.csv",),
 )
@@ -80,7 +79,7 @@ RESPONSE = ResultKind(
     mark="response.json",
     results="response.csv",
     own=(
-        *("response.csv", "starts.csv", "shell.csv", "sections.csv", "portraits.csv"),
+        *("response.csv", "starts.csv", "sections.csv"),
         *("case.toml", "state.npz", "figures/*.svg"),
     ),
     temporary=("state.npz",),

@@ -62,13 +62,6 @@ def test_a_resolution_finer_than_numbers_ends_between_two_neighbours():
     assert change.high == np.nextafter(change.low, np.inf)
 
 
-def test_without_a_change_nothing_is_tried():
-    def judge(values):
-        raise AssertionError(values)
-
-    assert refine_changes(SCAN, ["standing"] * 5, judge) == []
-
-
 def test_a_failed_value_is_a_third_kind():
     def judge(values):
         return ["failed" if 2.0 < v < 2.5 else "standing" for v in values]

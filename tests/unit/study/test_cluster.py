@@ -1,6 +1,5 @@
 """A sweep on a dask cluster: the same table as here; a scheduler that does not answer is reported at once."""
 
-import logging
 import socket
 import time
 
@@ -42,12 +41,6 @@ def test_a_cluster_gives_the_same_table(tmp_path, monkeypatch, capsys, address, 
     assert main(["sweep", "small.toml", "-q", "--out", "here"]) == 0
     assert rows_without_wall(tmp_path / "outputs" / "small") == rows_without_wall(tmp_path / "here")
     capsys.readouterr()
-
-
-def test_what_the_library_logs_when_a_scheduler_dies_is_not_shown(address):
-    with cluster(address):
-        for name in ("distributed.core", "distributed.client"):
-            assert not logging.getLogger(name).isEnabledFor(logging.ERROR)
 
 
 def test_a_cluster_gives_the_same_draws(tmp_path, monkeypatch, capsys, address):

@@ -88,14 +88,6 @@ def test_what_cannot_be_drawn(ensemble_of, body, told):
         ensemble_of(body)
 
 
-def test_draws_are_a_multiple_of_the_motions(ensemble_of, tmp_path):
-    ensemble_of()
-    text = (tmp_path / "try.toml").read_text(encoding="utf-8").replace("draws = 12", "draws = 14")
-    (tmp_path / "try.toml").write_text(text, encoding="utf-8")
-    with pytest.raises(CaseError, match=r"draws = 14 do not make 3 motions equally likely; take 12 draws"):
-        load_ensemble(tmp_path / "try.toml")
-
-
 def test_an_ensemble_tells_its_motions(ensemble_of, tmp_path):
     folder = tmp_path / "results"
     result = run_ensemble(ensemble_of(), folder=folder, jobs=1)

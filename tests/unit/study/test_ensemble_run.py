@@ -1,12 +1,10 @@
 """An ensemble from its file to its folder: seeded, the same on any number of cores, and refused."""
 
 import csv
-import json
 
 import numpy as np
 import pytest
 
-from fem.__main__ import main
 from fem.case.files import ENSEMBLES
 from fem.case.validation import CaseError
 from fem.results.outcome import Ending
@@ -97,13 +95,6 @@ def test_unknown_inputs_are_drawn_beside_those_of_the_file(tmp_path):
     assert UnknownInputs(held).draws_at(1) == held.draws_at(1)
 
 
-def test_known_inputs_are_held(tmp_path):
-    known = '"solver.duration_s" = 3.0\n"uncertainty.start" = "known"\n"uncertainty.weakening_m" = "known"'
-    unknown = UnknownInputs(load_ensemble(changed(tmp_path, ('"solver.duration_s" = 3.0', known))))
-    assert not {"motion.start", "contact.weakening_m"} & set(unknown.keys)
-    assert unknown.held == ""
-
-
 def test_joints_of_a_loose_stack_are_drawn_apart_from_the_floor(tmp_path):
     drawn = load_ensemble(changed(tmp_path, ("[axes]", '"container.joints" = "loose"\n[axes]')))
     unknown = UnknownInputs(drawn)
@@ -121,15 +112,6 @@ def test_unknown_inputs_do_not_follow_the_others(sampling):
     assert abs(np.corrcoef(one[:, 0], other[:, 0])[0, 1]) < 4.0 / np.sqrt(4096)
     both = np.mean((one[:, 0] < 0.5) & (other[:, 0] < 0.5))
     assert both == pytest.approx(0.25, abs=4.0 * np.sqrt(0.25 * 0.75 / 4096))
-
-
-def test_another_seed_draws_others_and_a_point_does_not_depend_on_its_neighbours():
-    def shares(seed, cell):
-        return draw_shares("independent", seed=seed, cell=cell, dimensions=2, draws=16, replicates=1)
-
-    assert np.array_equal(shares(1, 3), shares(1, 3))
-    assert not np.array_equal(shares(1, 3), shares(2, 3))
-    assert not np.array_equal(shares(1, 3), shares(1, 4))
 
 
 @pytest.mark.parametrize("sampling", ["latin-hypercube", "sobol"])
@@ -233,16 +215,6 @@ def test_shipped_ensembles_can_be_read(name):
 def test_a_file_that_cannot_be_used_is_refused_with_a_way_out(tmp_path, pairs, message):
     with pytest.raises(CaseError, match=message):
         load_ensemble(changed(tmp_path, *pairs))
-
-
-def test_the_command_prints_its_result(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    changed(tmp_path)
-    assert main(["ensemble", "e.toml", "-q", "--json", "-j", "1"]) == 0
-    result = json.loads(capsys.readouterr().out)
-    assert result == json.loads((tmp_path / "outputs" / "e" / "ensemble.json").read_text())
-    assert result["regions"] == {"below": 1, "undecided": 0, "above": 2}
-    assert (tmp_path / "outputs" / "e" / "figures" / "fragility.svg").is_file()
 
 
 def test_two_axes_make_a_boundary(tmp_path):

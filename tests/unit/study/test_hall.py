@@ -5,18 +5,16 @@ import io
 import json
 import re
 import shlex
-from pathlib import Path
 
 import pytest
 
 from fem.__main__ import main
 from fem.case.case import load_case
 from fem.case.validation import CaseError
-from fem.cli.batch import page_of
 from fem.results.figures import SCALARS
 from fem.run.compute import compute
 from fem.study.hall import run_hall, weakness
-from fem.study.list_file import HallResult, read_hall
+from fem.study.list_file import read_hall
 from fem.study.table import table_text
 
 BASE = """
@@ -245,19 +243,6 @@ def test_a_list_that_cannot_be_read_is_refused_in_a_sentence(tmp_path, text, wor
     assert words in str(error.value) and str(error.value).startswith(str(tmp_path / "hall.csv"))
 
 
-def test_the_terminal_says_of_a_container_what_the_summary_of_a_run_would(
-    tmp_path, base, monkeypatch, capsys
-):
-    monkeypatch.chdir(tmp_path)
-    path = listed(
-        tmp_path, "name,width_m,mu_static,motion.peak_acceleration_m_s2\nfalls,0.6,0.9,\nrests,2.4,0.9,0.01\n"
-    )
-    assert main(["batch", str(path), "--case", "base.toml", "-q"]) == 0
-    lines = {line.split()[0]: line for line in capsys.readouterr().out.splitlines() if line.startswith("  ")}
-    assert "overturned, overturns from " in lines["falls"] and "rotation ratio" not in lines["falls"]
-    assert "rest, does not overturn up to 4 times the motion, rotation ratio < 0.001, slip" in lines["rests"]
-
-
 def test_a_bad_row_has_its_reason(tmp_path, base, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     text = (
@@ -340,8 +325,3 @@ def test_the_page_of_a_finished_list_is_left_alone_and_a_missing_one_is_made(tmp
     assert main(command) == 0 and page.read_text(encoding="utf-8") == "signed"
     page.unlink()
     assert main(command) == 0 and page.is_file()
-
-
-def test_of_an_unfinished_list_no_file_is_named_that_is_not_there():
-    begun = HallResult(hall="h", case="c", asked="", model="rigid", rows=1, containers=1, distinct=1)
-    assert [*page_of(begun, Path("out"))][-1] == "  files      out"

@@ -1,6 +1,5 @@
 """Tables and logs: what is written reads back, a spreadsheet computes nothing of it, a removed log ends the study."""
 
-import re
 from contextlib import closing
 from pathlib import Path
 
@@ -21,13 +20,6 @@ def test_a_name_that_a_spreadsheet_would_compute_is_made_text(name):
     assert line == f"1.0,'{name}"
     assert fields_of(line) == ["1.0", name]
     assert line_of(fields_of(line)) == line
-
-
-def test_tables_are_written_in_one_place():
-    written = [
-        path for path in ROOT.rglob("fem/**/*.py") if re.search(r"csv\.(Dict)?[wW]riter", path.read_text())
-    ]
-    assert [path.name for path in written] == ["table.py"]
 
 
 @pytest.mark.parametrize("value", [-1.5, (-0.5, 2.0), "-1e-05 2.0", "a=1", None, "-inf"])

@@ -50,11 +50,6 @@ def test_names_and_pairs_stand_side_by_side():
     assert first_motion([axis]) == second  # the base case has a vertical motion if any motion has
 
 
-def test_names_alone_leave_the_vertical_motion_as_the_case_has_it():
-    axis = read_axis("motion.file", ["a.at2", "b.at2"])
-    assert first_motion([axis]) == {"motion.file": "a.at2"}
-
-
 @pytest.mark.parametrize(
     ("given", "told"),
     [
@@ -76,10 +71,6 @@ def test_names_alone_leave_the_vertical_motion_as_the_case_has_it():
 def test_what_is_no_set_of_motions(given, told):
     with pytest.raises(AxisError, match=told):
         read_axis("motion.file", given)
-
-
-def test_one_file_may_hold_both_components():
-    assert read_axis("motion.file", [["a.csv", "a.csv"]]).following["vertical.file"] == ("a.csv",)
 
 
 def test_the_motions_are_read_as_the_case_takes_them(base):
@@ -129,18 +120,6 @@ def test_spectra_are_those_of_each_motion(base):
     assert spectra["b_h.csv"] == pytest.approx(alone.pseudo_acceleration_m_s2)
 
 
-def test_a_motion_of_uneven_steps_has_the_spectrum_of_its_straight_lines(base, tmp_path):
-    even = np.loadtxt(tmp_path / "a_h.csv", delimiter=",", skiprows=1)
-    kept = np.delete(even, [7, 20, 33], axis=0)
-    np.savetxt(tmp_path / "uneven.csv", kept, delimiter=",")
-    lines = np.interp(even[:, 0], kept[:, 0], kept[:, 1])
-    bridged = base.with_values({"motion.gaps": "bridge"})
-    motions = read_motion_set(bridged, [read_axis("motion.file", ["uneven.csv", "b_h.csv"])])
-    periods, spectra = spectra_of(motions)
-    wanted = response_spectrum(0.02, lines, periods).pseudo_acceleration_m_s2
-    assert spectra["uneven.csv"] == pytest.approx(wanted, rel=1e-3)
-
-
 def test_motions_that_are_one_are_refused(base, tmp_path):
     # of a_h.csv: half as strong, of the other sign
     write_motion(tmp_path, "copy.csv", frequency=2.0, peak=-1.5)
@@ -167,8 +146,3 @@ def test_components_of_quite_different_length_or_step_are_refused(base, tmp_path
     write_motion(tmp_path, "other.csv", frequency=3.0, length=length, step=step)
     with pytest.raises(CaseError, match=r"a_h.csv and other.csv do not belong together"):
         read_motion_set(base, [read_axis("motion.file", [["a_h.csv", "other.csv"]])])
-
-
-def test_a_missing_file_is_named(base):
-    with pytest.raises(CaseError, match=r"gone\.csv"):
-        read_motion_set(base, [read_axis("motion.file", ["a_h.csv", "gone.csv"])])

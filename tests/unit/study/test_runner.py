@@ -1,10 +1,8 @@
 """A list of cases on all cores: each row is the run of its case, whatever runs beside it."""
 
 import os
-import re
 import signal
 import sys
-from dataclasses import dataclass, field
 
 import pytest
 from case_rows import run_cases
@@ -17,10 +15,8 @@ from fem.model.recovery import recovery_of
 from fem.results.figures import SCALARS
 from fem.run.recorder import Recorder
 from fem.run.simulation import simulate
-from fem.runtime.progress import SilentReporter
 from fem.study.containers import ContainerCache, container_key
 from fem.study.design import CaseMaker
-from fem.study.runner import Runner
 from fem.study.workers import WORTH_PROCESSES, LocalWorkers, WorkersLostError, hand_out
 
 SHORT = ["solver.duration_s=2", "output.fields_s=0"]
@@ -95,52 +91,6 @@ def test_what_ends_the_group_does_not_meet_a_worker_that_is_starting():
         found = list(hand_out(range(2), held_back, workers_of("full", 2), at_a_time=1))
     assert all(held >= {signal.SIGINT, signal.SIGTERM} for _, held in found)
     assert held_back([]).isdisjoint({signal.SIGINT, signal.SIGTERM})
-
-
-@dataclass
-class Told(SilentReporter):
-    """Keeps what is said."""
-
-    messages: list[str] = field(default_factory=list)
-
-    def message(self, text):
-        self.messages.append(text)
-
-
-@pytest.mark.parametrize(
-    ("model", "count", "words"),
-    [
-        ("rigid", 100, None),
-        ("rigid", 100_000, r"100000 cases: roughly \d+ min .* on 2 cores"),
-        ("full", 3, "3 cases: "),
-    ],
-)
-def test_what_takes_long_is_said_before_it_begins(model, count, words):
-    told = Told()
-    runner = Runner(workers_of=None, reporter=told, jobs=2)
-    items = range(count)
-    with pytest.raises(TypeError):  # it has no workers: nothing has begun
-        next(
-            runner.rows(
-                "cases",
-                items,
-                lambda item: load_case("rocking", [f"solver.model={model}"]),
-                lambda item: model,
-            )
-        )
-    assert [bool(re.match(words, one)) for one in told.messages] == ([True] if words else [])
-
-
-def test_long_work_ends_with_a_line_of_what_was_done(monkeypatch):
-    monkeypatch.setattr("fem.study.runner.TOLD_S", 0.0)
-    told, case = Told(), load_case("rocking", ["solver.model=rigid", *SHORT])
-    with LocalWorkers(1) as workers_of:
-        list(
-            Runner(workers_of=workers_of, reporter=told).rows(
-                "cells", range(2), lambda _: case, lambda _: "rigid"
-            )
-        )
-    assert [bool(re.fullmatch(r"2 cells in \d+ s", one)) for one in told.messages] == [True]
 
 
 def test_many_cases_are_shared_by_this_process_and_others():

@@ -39,26 +39,6 @@ def test_a_path_out_of_the_folder_is_refused(tmp_path, read, text, case):
         read(written(tmp_path / "inner", text, case))
 
 
-@READERS
-def test_a_link_out_of_the_folder_is_refused(tmp_path, read, text):
-    (tmp_path / "outside.toml").write_text("", encoding="utf-8")
-    path = written(tmp_path / "inner", text, "link.toml")
-    (tmp_path / "inner" / "link.toml").symlink_to(tmp_path / "outside.toml")
-    with pytest.raises(CaseError, match=r"leads out of the folder of .*many\.toml"):
-        read(path)
-
-
-@READERS
-@pytest.mark.parametrize("wrong", ["axes = 3\n", "derivd = {}\n"])
-def test_a_table_that_is_none_is_refused_by_name(tmp_path, read, text, wrong):
-    path = tmp_path / "many.toml"
-    path.write_text(
-        wrong + text.replace("[axes]", "[set.x]" if "axes" in wrong else "[axes]"), encoding="utf-8"
-    )
-    with pytest.raises(CaseError, match=r"axes must be a table|derivd"):
-        read(path)
-
-
 @pytest.mark.parametrize("collection, read", [(SWEEPS, load_sweep), (ENSEMBLES, load_ensemble)])
 def test_names_that_no_file_can_have_are_no_files(tmp_path, monkeypatch, collection, read):
     monkeypatch.chdir(tmp_path)

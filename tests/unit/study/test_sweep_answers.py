@@ -6,9 +6,6 @@ from itertools import product
 
 import pytest
 
-from fem.cli.console import print_result
-from fem.cli.sweep import page_of
-from fem.results.kinds import SWEEP
 from fem.study.sweep_table import BAND, FOUND, answers_csv, open_sweep, sweep_answer
 
 PEAK, MU = "motion.peak_acceleration_m_s2", "contact.mu_static"
@@ -62,15 +59,6 @@ def test_the_sentence_is_that_of_all_lines_and_a_row_is_that_of_one(folder):
     assert second["unsure"] == f"{0.4 * G!r} to {0.6 * G!r}"
 
 
-def test_what_was_tried_by_an_earlier_version_has_no_slip(folder):
-    text = (folder / "tried.csv").read_text().replace(",max_slip_m", "")
-    (folder / "tried.csv").write_text(
-        "\n".join(one.rpartition(",")[0] if ",0.0" in one else one for one in text.splitlines()) + "\n"
-    )
-    sentence = sweep_answer(open_sweep(folder), folder).sentence
-    assert "first overturned at 0.44 g (with mu static 0.5)" in sentence
-
-
 def test_a_set_of_motions_is_told_as_one_and_motion_by_motion(tmp_path):
     """Two motions with both signs under two frictions; the second overturns at 0.4 g with the other sign alone."""
     peaks = [0.2 * G, 0.4 * G]
@@ -111,14 +99,6 @@ def test_a_set_of_motions_is_told_as_one_and_motion_by_motion(tmp_path):
     assert [bool(row["overturned_from"]) for row in rows] == [False, True, False, False, False, True]
 
 
-def test_without_a_threshold_the_cells_answer_over_the_strength(folder):
-    info = json.loads((folder / "sweep.json").read_text())
-    (folder / "sweep.json").write_text(json.dumps(info | {"threshold": None}))
-    (folder / "tried.csv").unlink()
-    sentence = sweep_answer(open_sweep(folder), folder).sentence
-    assert "up to 0.4 g (slid up to 80 mm); first overturned at 0.6 g (slip there 80 mm" in sentence
-
-
 def test_missing_cells_give_no_answer(folder):
     lines = (folder / "table.csv").read_text().splitlines()
     (folder / "rows.csv").write_text("\n".join(lines[:-1]) + "\n")
@@ -126,12 +106,3 @@ def test_missing_cells_give_no_answer(folder):
     info = json.loads((folder / "sweep.json").read_text())
     (folder / "sweep.json").write_text(json.dumps(info | {"status": "interrupted"}))
     assert sweep_answer(open_sweep(folder), folder) is None
-
-
-def test_the_screen_ends_with_the_rows_and_the_sentence(folder, capsys):
-    info = open_sweep(folder).info
-    assert print_result(info, SWEEP, folder, page_of(info, folder), as_json=False) == 0
-    *_, first, second, last = capsys.readouterr().out.splitlines()
-    assert first.startswith("  mu static 0.3  stood in every motion tried")
-    assert second.startswith("  mu static 0.5  stood in every motion tried")
-    assert last == "as kept"

@@ -5,8 +5,6 @@ import json
 
 import pytest
 
-from fem.study.answers import answer_axis
-from fem.study.axes import AxisError, field_of
 from fem.study.file import load_sweep
 from fem.study.sweep import run_sweep
 
@@ -76,19 +74,3 @@ def test_the_table_of_a_row_says_who_overturned_and_what_its_links_carried(tmp_p
     assert float(strong["stop_force_N"]) == pytest.approx(1.0) and float(strong["link_velocity_m_s"]) > 0.0
     answer = json.loads((tmp_path / "out" / "sweep.json").read_text())["answer"]
     assert "first overturned at 0.163 g (first to overturn: neighbour 1, slip there" in answer
-
-
-def test_the_shipped_study_of_a_kerb_can_be_read():
-    sweep = load_sweep("kerb_gap")
-    assert sweep.shape == (20, 14)
-
-
-def test_the_shipped_study_of_a_neighbour_can_be_read():
-    sweep = load_sweep("neighbour_gap")
-    assert sweep.shape == (2, 20, 10)
-    assert answer_axis(sweep.axes).key == "neighbour.gap_m"
-
-
-def test_a_key_that_no_stop_has_is_no_axis():
-    with pytest.raises(AxisError, match="height_m"):
-        field_of("stop.heigth_m")
