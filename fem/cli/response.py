@@ -13,8 +13,8 @@ from fem.results.kinds import RESPONSE
 from fem.runtime.progress import ScreenReporter
 
 if TYPE_CHECKING:
+    from fem.response.lasting import ResponseResult
     from fem.response.request import ResponseRequest
-    from fem.response.result import ResponseResult
 
 
 def response(

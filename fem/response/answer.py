@@ -2,9 +2,8 @@
 
 from collections.abc import Iterator, Sequence
 
-from fem.response.lasting import AtFrequency, Coexistence, DropOut
+from fem.response.lasting import AtFrequency, Coexistence, DropOut, ResponseResult
 from fem.response.records import PointRow
-from fem.response.result import ResponseResult
 from fem.results.outcome import Outcome
 from fem.runtime.units import MILLIMETRES
 from fem.study.answers import slip_in_words

@@ -11,24 +11,30 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from contact.stepping.integrator import OVERTURNED, REACHED
 from contact.stepping.observables import ROCKING
+from contact.stepping.outcome import advance_compiled
 from contact.stepping.state import Control
-from fem.assessment.verdict import destroyed_corner
+from fem.assessment.verdict import audit, destroyed_corner
 from fem.case.case import Case
 from fem.model.container import Container
-from fem.response.decay import follow_decay
 from fem.response.lasting import differ, lasting_at
-from fem.response.model import DrivenModel, begin_drive, carry_drive
+from fem.response.model import DrivenModel, begin_drive, carry_drive, stop_drive
 from fem.response.orbit import Orbit, Progress, follow_periods, no_progress, orbit_of, step_until
 from fem.response.records import PORTRAYED, PointRecord, record_of
 from fem.response.request import ResponseRequest
-from fem.response.stability import LongTime, classify
+from fem.response.stability import Decay, LongTime, classify
 from fem.results.outcome import Outcome, least_slide
 
 WINDOWS = 4  #: a motion that is not settled is observed again, at most so many windows in all
 SEED = 1  #: of the random states
 REACH = (0.6, 0.7)  #: of random states: rotation over the slenderness angle al, angular velocity over al p
 PHASES = 3  #: sections of a motion from which it is followed to a neighbour, at most
+#: at rest: for so long, in 1/p, it neither turned beyond the limit of a verdict nor slid
+STILL = 2.0
+STILL_SLIP = 1e-6  #: over the width, between two checks
+LOOK = 0.02  #: between two checks, in 1/p
+PATIENCE = 400.0  #: followed at most, in 1/p
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -186,3 +192,31 @@ def _motion_of(driven: DrivenModel, orbit: Orbit) -> str:
     control = driven.run.problem.control
     rocks = orbit.extremes[:, 3].max(initial=0.0) > ROCKING * control.slenderness_angle
     return Outcome.of(slides=orbit.extremes[:, 4].max(initial=0.0) > least_slide(control.width), rocks=rocks)
+
+
+def follow_decay(case: Case, container: Container, driven: DrivenModel) -> Decay:
+    """Stop the floor at a turning point, which is no impulse, and follow the container until it rests or overturned.
+
+    Whether a motion dies out is condition (b) of stability in Knoedel and Hrabowski, section 2.
+
+    Returns:
+        dies out | overturns | goes on | failed, and the time from the stop until then [s].
+    """
+    stopped = stop_drive(case, container, driven)
+    run, control = stopped.run, stopped.run.problem.control
+    clock, track, joint = run.clock[0], run.track[0], run.joints[0]
+    look = LOOK / control.frequency_parameter
+    moved_at, limit = 0.0, ROCKING * control.slenderness_angle
+    while clock.time < PATIENCE / control.frequency_parameter:
+        track.max_rotation, travelled = 0.0, float(joint.slip_travel)
+        code = advance_compiled(stopped.body, run, float(clock.time) + look)
+        clock.samples_drained = clock.samples
+        if code == OVERTURNED:
+            return "overturns", float(track.overturned_at)
+        if code != REACHED:
+            return "failed", None
+        if track.max_rotation > limit or joint.slip_travel - travelled > STILL_SLIP * control.width:
+            moved_at = float(clock.time)
+        if clock.time - moved_at > STILL / control.frequency_parameter:
+            return "failed" if audit(stopped.model) else "dies out", moved_at
+    return "goes on", None

@@ -2,14 +2,16 @@
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import groupby
+from typing import Any
 
 import numpy as np
 
-from fem.response.records import PointRecord
+from fem.response.records import PointRecord, PointRow
 from fem.results.figures import TURNED
 from fem.results.json_block import JsonBlock
+from fem.study.driver import StudyResult
 
 APART = 0.02  #: difference of rotation ratios that counts at least
 APART_STROKE = 0.05  #: of slip strokes, over the floor's amplitude
@@ -163,3 +165,20 @@ def drop_outs(records: Sequence[PointRecord]) -> Iterator[DropOut]:
                 frequencies=len(rows),
                 carried=rows[0].began == "carried",
             )
+
+
+@dataclass(frozen=True, kw_only=True)
+class ResponseResult(StudyResult):
+    """All results of a response curve."""
+
+    asked: str  #: hash of the request
+    case: str = ""  #: its name
+    title: str = ""
+    request: dict[str, Any] = field(default_factory=dict)  #: without the case
+    points: tuple[PointRow, ...] = ()  #: up and down, in the order in which they were swept
+    frequencies: tuple[AtFrequency, ...] = ()  #: what lasts at each, whatever led to it
+    coexisting: tuple[Coexistence, ...] = ()
+    drop_outs: tuple[DropOut, ...] = ()
+    #: of the points with an outcome that do not stand: overturned, a corner destroyed
+    overturned_share: float | None = None
+    starts_fell_share: float | None = None  #: of the random states, all frequencies; None without any

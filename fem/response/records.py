@@ -11,10 +11,9 @@ import numpy as np
 from contact.stepping.state import Control
 from fem.assessment.verdict import relative_rotation
 from fem.case.case import Case
-from fem.response.decay import Decay
 from fem.response.orbit import EXTREME_COLUMNS, SECTION_COLUMNS, Orbit
 from fem.response.request import SAMPLES_PER_PERIOD
-from fem.response.stability import LongTime, amplitude_growth, amplitudes_diverge
+from fem.response.stability import Decay, LongTime, amplitude_growth, amplitudes_diverge
 from fem.results.figures import FIGURES, TURNED, Shown, declared_in
 from fem.results.json_block import JsonBlock
 from fem.results.outcome import Outcome

@@ -18,7 +18,7 @@ from fem.model.model import build_model
 from fem.response.answer import fell_share, overturned_share, response_answer
 from fem.response.curve import Task, computed, plan_of
 from fem.response.figures import response_figures
-from fem.response.lasting import coexistences, drop_outs, frequencies_of, shown
+from fem.response.lasting import ResponseResult, coexistences, drop_outs, frequencies_of, shown
 from fem.response.model import driven_model
 from fem.response.records import (
     PORTRAYED,
@@ -29,7 +29,6 @@ from fem.response.records import (
     unpacked,
 )
 from fem.response.request import SAMPLES_PER_PERIOD, ResponseRequest
-from fem.response.result import ResponseResult
 from fem.results.disk import table_bytes
 from fem.results.folder import ResultFolder
 from fem.results.kinds import RESPONSE

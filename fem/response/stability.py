@@ -20,6 +20,8 @@ SETTLING = 0.5
 GROWTH = 0.1
 NEGLIGIBLE = 0.01  #: of the slenderness angle: smaller amplitudes do not grow
 
+Decay = tuple[str, float | None]  #: fate of a motion without its drive, and time [s]
+
 
 @dataclass(frozen=True, kw_only=True)
 class LongTime:

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from fem.response.answer import fell_share, lasting_in_words, overturned_share, response_answer
-from fem.response.lasting import coexistences, differ, drop_outs, frequencies_of
+from fem.response.lasting import ResponseResult, coexistences, differ, drop_outs, frequencies_of
 from fem.response.records import PointRecord, PointRow
-from fem.response.result import ResponseResult
 
 
 def point(frequency, direction, ratio, long_time="periodic", status="completed", slip=0.0, motion="rock"):
