@@ -132,6 +132,7 @@ class Runner:
         for chunk, outcomes in hand_out(numbered, tried, pools, at_a_time=size, stop=self.stop):
             ready[chunk[0][0]] = outcomes
             told.more(len(chunk))
+        told.finish()
         results: list[FoundT] = []
         for _, outcomes in sorted(ready.items()):
             for outcome in outcomes:
@@ -140,7 +141,6 @@ class Runner:
                 results.append(outcome)
         if len(results) < len(items):
             raise KeyboardInterrupt
-        told.finish()
         return results
 
 
