@@ -76,42 +76,22 @@ class ResponseRequest:
     def _require_followed_case(self) -> None:
         """Refuse what a response curve cannot follow."""
         case, motion = self.case, self.case.motion
-        sweep = "take a sweep over motion.frequency_Hz"
-        needed = "for a response curve"
+        needed, other = "for a response curve", "take a sweep over motion.frequency_Hz"
+        alone = f"{needed}, which follows one body; {other}"
+        links, upright = bool(case.links or case.neighbour), case.output.stop_when_overturned
         for refused, words in (
             (motion.kind != "harmonic", f'[motion] kind must be "harmonic" {needed}, got "{motion.kind}"'),
-            (
-                motion.cycles is not None,
-                f"[motion] cycles = {motion.cycles or 0:g} ends the drive, a response curve needs one without an end; "
-                "leave the key out",
-            ),
+            (motion.cycles is not None, f"[motion] cycles must be left out {needed}: they end the drive"),
             (
                 case.has_vertical,
-                f'[vertical] kind must be "none" {needed}, got "{case.vertical.kind}": the frequency of the horizontal '
-                f"motion is swept, and a vertical one would have to be changed with it; take --set vertical.kind=none, "
-                "or a sweep over motion.frequency_Hz",
+                f'[vertical] kind must be "none" {needed}, got "{case.vertical.kind}"; {other}',
             ),
+            (case.floor.turn != 0.0, f'[floor] motion_along must be "floor" {needed} on a slope'),
+            (case.container.is_loose, f'[container] joints must be "bolted" {alone}'),
+            (links, f"[stop] and [tie] must be left out {alone}, and so must [neighbour]"),
+            (case.solver.model == "full", f'[solver] model must be "reduced" or "rigid" {needed}'),
             (
-                case.floor.turn != 0.0,
-                f'[floor] motion_along must be "floor" {needed} on a slope, whose motion has no part normal to the '
-                "floor; take --set floor.motion_along=floor",
-            ),
-            (
-                case.container.is_loose,
-                f'[container] joints must be "bolted" {needed}, which follows one body; {sweep}',
-            ),
-            (
-                bool(case.links or case.neighbour),
-                f"[stop] and [tie] must be left out {needed}, and so must [neighbour]: it follows one body that "
-                f"nothing holds; take --set stop=[] --set tie=[] --set neighbour=[], or {sweep[5:]}",
-            ),
-            (
-                case.solver.model == "full",
-                '[solver] model = "full" would take days over the hundreds of periods of a response curve; '
-                'take --set solver.model="reduced" or "rigid"',
-            ),
-            (
-                not case.output.stop_when_overturned,
+                not upright,
                 "[output] stop_when_overturned must be true: an overturned container has no response",
             ),
         ):

@@ -49,7 +49,7 @@ def test_what_is_held_is_what_the_case_states():
     [
         (("motion.amplitude_m=0",), {}, "needs a floor that moves"),
         (["motion.kind=none"], {}, r'\[motion\] kind must be "harmonic"'),
-        (["motion.cycles=5"], {}, r"\[motion\] cycles = 5 ends the drive"),
+        (["motion.cycles=5"], {}, r"\[motion\] cycles must be left out"),
         (["solver.model=full"], {}, r"reduced"),
         (
             ["tie=[{from = 'left', height_m = 0.5, stiffness_N_m = 1e6}]"],
