@@ -168,6 +168,24 @@ class Case(CaseContent):
         """This case with what is chosen for "auto", by dotted key: no change of a user, so none of its `overrides`."""
         return _read(with_overrides(self.given(), values), self._origin, values)
 
+    def other_side(self) -> "Case | None":
+        """This case turned by 90 degrees, its depth in the plane of the motion; None where that is the same or unknown.
+
+        Of a container with a mesh of its own, unequal boxes, or something beside it nobody says how it is turned.
+        """
+        box, castings = self.container, self.support.casting_m
+        alone = not (box.mesh_file or box.box or self.links or self.neighbour or self.floor.slope_percent)
+        if not alone or box.depth_m == box.width_m:
+            return None
+        turned: dict[str, Any] = {"container.width_m": box.depth_m, "container.depth_m": box.width_m}
+        for key, pair in (
+            ("support.casting_m", castings),
+            ("floor.corner_patch_m", self.floor.corner_patch_m),
+        ):
+            if isinstance(pair, list | tuple):
+                turned[key] = [pair[1], pair[0], *pair[2:]]
+        return self.with_values(turned)
+
     def replace(self, changes: Mapping[str, Any]) -> "Case":
         """This case with keys changed, for scripts: `case.replace({"contact.mu_static": 0.3})`.
 

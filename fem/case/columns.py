@@ -116,7 +116,7 @@ NEIGHBOURS = ColumnGroup(
         HistoryColumn("neighbour_{}_force_N", "N"),
     ),
 )
-#: a run that was compared with the rigid block (`fem.assessment.rigid_check`): nan where that is not followed
+#: a run that was compared with the rigid block (`fem.run.rigid_check`): nan where that is not followed
 ANALYTIC = ColumnGroup(lambda case: (), (HistoryColumn("analytic_rotation_rad", "rad", GROUND),))
 GROUPS = (ALWAYS, CRUSHING, IMPACTS, VERTICAL, JOINTS, BOXES, STOPS, TIES, NEIGHBOURS, ANALYTIC)
 

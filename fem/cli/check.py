@@ -5,22 +5,21 @@ import json
 import math
 from collections.abc import Iterator, Mapping
 from textwrap import fill
-from typing import Any
+from typing import Annotated, Any
 
-from fem.assessment.floor_words import floor_rows
-from fem.assessment.link_rows import link_rows
-from fem.assessment.motion_words import covered_in_words, is_cut, missing_peak, motion_in_words
 from fem.case.case import Case, case_hash, load_case
 from fem.case.files import is_site
 from fem.case.tables.duration import longest_time
 from fem.case.tables.motion_tables import FloorMotionTable
 from fem.case.validation import CaseError
-from fem.cli.console import WIDTH, AllowBaseline, AllowOutside, AsJson, CaseName, Motion, Overrides
+from fem.cli.console import WIDTH, AllowBaseline, AllowOutside, AsJson, CaseName, Motion, Overrides, flag
 from fem.model.geometry import build_container
 from fem.model.motion_summary import summary_from_keys
 from fem.results.disk import in_units
 from fem.results.run_result import MotionResult
+from fem.run.described import covered_in_words, floor_rows, is_cut, link_rows, missing_peak, motion_in_words
 from fem.run.preview import Preview
+from fem.run.static_words import sides_in_words, sides_of
 
 
 def check(
@@ -31,6 +30,7 @@ def check(
     motion: Motion = None,
     allow_outside: AllowOutside = False,
     allow_baseline: AllowBaseline = False,
+    both_sides: Annotated[bool, flag("Check the side across, too.")] = False,
     as_json: AsJson = False,
 ) -> None:
     """Print static checks, derived numbers and numerical settings of a case; nothing is computed or written.
@@ -50,9 +50,11 @@ def check(
     loaded = load_case(
         case, overrides, motion=motion, allow_outside=allow_outside, allow_baseline=allow_baseline
     )
-    preview = preview_of(loaded)
-    document = {"case": loaded.name, "asked_hash": case_hash(loaded)} | preview.to_json()
-    print(json.dumps(document, indent=2) if as_json else _page(preview, document))
+    other = loaded.other_side() if both_sides else None
+    for side in (loaded, *filter(None, (other,))):
+        preview = preview_of(side)
+        document = {"case": side.name, "asked_hash": case_hash(side)} | preview.to_json()
+        print(json.dumps(document, indent=2) if as_json else _page(preview, document))
 
 
 def preview_of(case: Case) -> Preview:
@@ -133,6 +135,8 @@ def _page(preview: Preview, document: dict[str, Any]) -> str:
                 f"    {action:<14} {kind:<12} {rule.demand / 1e3:8.3f}   {rule.capacity / 1e3:8.3f} "
                 f"{'k' + rule.unit:<4} {rule.utilisation:8.3f}{verdict}"
             )
+    sides = sides_of(case.stack[0].width, container.depth_m, static.to_result())
+    lines += [f"  {line}" for line in filter(None, [sides_in_words(sides).removeprefix(". ")])]
     lines += ["", *numerics_lines(numerics)]
     for note in document["notes"]:
         lines.append(

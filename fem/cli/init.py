@@ -47,5 +47,5 @@ def init(
 
 
 def _for_another_box(text: str) -> str:
-    """Without what holds for the first box and its site: the patch, which follows from the wall, and [static]."""
-    return re.sub(r"\[static\][^\[]*|corner_patch_m = .*\n", "", text)
+    """Without what holds for the first box and its site: [static], its patch, posts and plates that were assumed."""
+    return re.sub(r"\[static\][^\[]*|corner_patch_m = .*\n|(post_m|casting_m) = .*assumed.*\n", "", text)

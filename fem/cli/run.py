@@ -15,6 +15,8 @@ from fem.results.disk import free_disk, in_units
 from fem.results.folder import read_result
 from fem.runtime.progress import ScreenReporter
 
+OTHER_SIDE = "other-side"  #: the folder of the side across, in that of a run
+
 
 def run(
     case: console.CaseName = None,
@@ -40,6 +42,9 @@ def run(
             help="Find the factor on the motion at which it overturns; default: as a band, where it takes seconds.",
         ),
     ] = None,
+    both_sides: Annotated[
+        bool, console.flag("Compute the side across, too, in a folder of its own behind the first.")
+    ] = False,
     resume: console.Resume = False,
     force: console.Force = False,
     dry_run: Annotated[bool, console.flag("Print the plan and exit.")] = False,
@@ -63,20 +68,33 @@ def run(
         return 0
     solver = importlib.import_module("fem.run.run")
     options = solver.RunOptions(check_rigid=check_rigid, band=band, margin=margin, resume=resume, force=force)
-    result = solver.run_case(
-        loaded,
-        case_text=text_with_overrides(loaded),
-        folder=folder,
-        options=options,
-        reporter=ScreenReporter(quiet=quiet),
-    )
-    stopped = solver.was_stopped(result, options)
-    if as_json:
-        console.print_json(json.dumps(read_result(folder / "run.json"), indent=2))
-    else:
-        brief = importlib.import_module("fem.assessment.summary").brief_summary
-        whole = (folder / "summary.txt").read_text(encoding="utf-8")
-        print(whole if full else brief(result.typed_result, folder=folder), end="")
+    brief = importlib.import_module("fem.run.summary").brief_summary
+    other = loaded.other_side() if both_sides else None
+    code = 0
+    for side, place in ((loaded, folder), *([(other, folder / OTHER_SIDE)] if other is not None else [])):
+        result = solver.run_case(
+            side,
+            case_text=text_with_overrides(side),
+            folder=place,
+            options=options,
+            reporter=ScreenReporter(quiet=quiet),
+        )
+        stopped = solver.was_stopped(result, options)
+        if as_json:
+            console.print_json(json.dumps(read_result(place / "run.json"), indent=2))
+        else:
+            if other is not None:
+                print(
+                    f"{'Across' if side is other else 'As given'}, {side.container.width_m:g} m along the motion:"
+                )
+            whole = (place / "summary.txt").read_text(encoding="utf-8")
+            print(whole if full else brief(result.typed_result, folder=place), end="")
+        code = max(code, _ended(result, stopped, place))
+    return code
+
+
+def _ended(result: Any, stopped: bool, folder: Path) -> int:
+    """The exit code of a run; says how an interrupted one goes on."""
     if result.status == "interrupted":
         print(
             f"interrupted; run the same command with --resume to continue from {folder / 'checkpoint.npz'}",

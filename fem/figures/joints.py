@@ -11,11 +11,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from fem.assessment.joint_demands import edge_forces
 from fem.case.columns import JOINTS
 from fem.case.tables.boxes import shared_face
 from fem.figures import style
 from fem.html.units import rounded
+from fem.model.joints import edge_forces
 from fem.results.reader import RunData
 from fem.results.run_result import Verdict
 from fem.runtime.arrays import FloatArray

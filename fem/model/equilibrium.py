@@ -97,10 +97,11 @@ def find_equilibrium(
             else "[initial] no equilibrium at the start"
         )
         raise CaseError(f"{table}: {error}") from error
-    use = 0.0
     if case.initial.rotation_rad == 0.0:  # tilted, it sinks in at its edge until enough of the patch bears
-        use = float(np.max(force[:, 1] / contact.cap[: len(force)]))
-    require_bearing(case, container.mesh, use)
+        most = int(np.argmax(force[:, 1] / contact.cap[: len(force)]))
+        require_bearing(case, container.mesh, (float(force[most, 1]), float(contact.cap[most])))
+    else:
+        require_bearing(case, container.mesh)
     require_stiff_container(case, compression)
     return Equilibrium(
         penalty=penalty,

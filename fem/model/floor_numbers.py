@@ -82,3 +82,10 @@ def plastic_work(force: float, capacity: float, stiffness: float) -> float:
     Structural Dynamics, 1964, ch. 2).
     """
     return max(force**2 - capacity**2, 0.0) / (2.0 * stiffness)
+
+
+def drawn_level(slope_percent: float) -> str:
+    """The note beside a drawing of a sloping floor, which is drawn level; empty for a level floor."""
+    if not slope_percent:
+        return ""
+    return f"the floor falls {abs(slope_percent):g} % to the {'right' if slope_percent > 0.0 else 'left'}, drawn level"

@@ -189,3 +189,10 @@ def _ends(elements: FiniteElements, height: float) -> tuple[int, int]:
         line = line[np.isin(line, cells[above]) & np.isin(line, cells[~above])]
     x = nodes[line, 0]
     return int(line[np.argmin(x)]), int(line[np.argmax(x)])
+
+
+def edge_forces(
+    normal: FloatArray, moment: FloatArray, width: float | FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Compression at the left and the right edge of a joint of rigid faces [N]; negative: tension."""
+    return 0.5 * normal + moment / width, 0.5 * normal - moment / width

@@ -44,11 +44,11 @@ def require_stiff_contact(case: Case, mesh: ContainerMesh, stiffness: float) -> 
     )
 
 
-def require_bearing(case: Case, mesh: ContainerMesh, use: float = 0.0) -> None:
+def require_bearing(case: Case, mesh: ContainerMesh, at_rest: tuple[float, float] = (0.0, 1.0)) -> None:
     """Refuse, as a CaseError, a slab into which the container would sink at once, or where one side lifts off.
 
-    `use` is the largest force of a point at rest over its cap. Also a full model whose corners turn inside the edges,
-    where it has no nodes.
+    `at_rest`: force of the point of the base that is used most, and what it bears [N]. Also a full model whose corners
+    turn inside the edges, where it has no nodes.
     """
     if not case.floor.is_slab:
         return
@@ -59,14 +59,20 @@ def require_bearing(case: Case, mesh: ContainerMesh, use: float = 0.0) -> None:
             f'[solver] model = "full": on this floor a corner turns {1e3 * inset:.3g} mm inside its edge, and the '
             'full model bears where its nodes are; take "reduced" or "rigid", or feet of the length of the patch'
         )
-    use = max(use, LEAST_BEARING * mesh.mass * case.gravity_m_s2 / slab.cap)
+    (force, bears), lifted = at_rest, LEAST_BEARING * mesh.mass * case.gravity_m_s2
+    use = max(force / bears, lifted / slab.cap)
     if use <= 1.0:
         return
-    patch, force = f"{slab.patch[0]:g} x {slab.patch[1]:g} m", use * slab.cap
     carries = (
-        f"a corner must carry {1e-3 * force:.4g} kN, {LEAST_BEARING:g} times the weight where the other one lifts off, "
-        f"and has {1e-3 * slab.cap:.4g} kN on its patch of {patch}: the container would sink in at once"
+        f"a corner must carry {1e-3 * lifted:.4g} kN, {LEAST_BEARING:g} times the weight where the other one lifts "
+        f"off, and has {1e-3 * slab.cap:.4g} kN on its patch of {slab.patch[0]:g} x {slab.patch[1]:g} m: the container "
+        "would sink in at once"
     )
+    if lifted <= slab.cap:
+        carries = (
+            f"at rest one point of the base must carry {1e-3 * force:.4g} kN and bears {1e-3 * bears:.4g} kN: the "
+            "container would sink in there at once"
+        )
     if slab.yields_first:
         post = post_strength(case)
         if post is not None:

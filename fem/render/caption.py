@@ -11,10 +11,9 @@ import matplotlib
 import numpy as np
 import pyvista
 
-from fem.assessment.floor_words import drawn_level
-from fem.assessment.verdict import relative_rotation
 from fem.case.columns import NEIGHBOURS
 from fem.html.units import rounded
+from fem.model.floor_numbers import drawn_level
 from fem.render.scene import BAR, BOTTOM, SIDE, View
 from fem.results.errors import FolderError
 from fem.results.fields import Frame
@@ -59,7 +58,7 @@ def caption(run: OpenedRun, frame: Frame) -> tuple[str, str]:
     title = title if len(title) <= LONGEST else f"{title[: LONGEST - 3]}..."
     status = "" if run.status in ("completed", "overturned") else f" ({run.status})"
     degrees = f"{round(math.degrees(rotation), 2) + 0.0:.2f}".replace("-", "−")  # no minus zero
-    ratio = RATIO.text(relative_rotation(rotation, run.slenderness_angle))
+    ratio = RATIO.text(abs(rotation) / run.slenderness_angle)
     box = f" (box {most + 1})" if len(rotations) > 1 and not ratio.startswith("<") and ratio != "0" else ""
     lines = (
         f"t = {frame.time:.3f} s    {run.history.modes[sample]}",

@@ -19,10 +19,10 @@ from matplotlib.colors import to_hex
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
-from fem.assessment.drawn_links import DrawnLink, held_nodes
 from fem.model.model import Model
 from fem.results.fields import Fields, Frame
 from fem.results.history import History
+from fem.run.drawn_links import DrawnLink, held_nodes
 from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid.assembly import FiniteElements
 from fem.solid.edges import outline_edges

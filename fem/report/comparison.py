@@ -5,8 +5,6 @@ from typing import NamedTuple, assert_never
 
 from markupsafe import Markup
 
-from fem.assessment.link_rows import link_rows
-from fem.assessment.summary import own_motion_name, rule_says, run_lifted, run_slid, run_tilted
 from fem.case.case import Case
 from fem.case.tables.boxes import Box
 from fem.case.tables.motion_tables import FloorMotionTable
@@ -14,6 +12,9 @@ from fem.html.units import degrees, number, quantity, short, typeset
 from fem.model.container import modes_of_a_body
 from fem.model.static_checks import StaticChecks
 from fem.results.run_result import Verdict
+from fem.run.described import link_rows
+from fem.run.static_words import rule_says
+from fem.run.summary import own_motion_name, run_lifted, run_slid, run_tilted
 
 EDITION = "EN 1998-1:2004, "  #: of the clauses; the head of their column names it
 

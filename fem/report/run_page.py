@@ -9,29 +9,12 @@ from collections.abc import Callable
 from typing import Any
 
 from contact.reference.event_driven import EventError
-from fem.assessment.code_note import code_note
-from fem.assessment.drawn_links import drawn_links
-from fem.assessment.floor_words import drawn_level, floor_rows
-from fem.assessment.joint_tables import joints_note, unbolted
-from fem.assessment.loose_boxes import BOXES_NOTE, box_rows, largest_joint_slip
-from fem.assessment.margin_words import FACTOR
-from fem.assessment.ranges import impact_note, largest_ratio, largest_rotation, largest_slip, of_band
-from fem.assessment.rigid_check import check_against_rigid_block
-from fem.assessment.rule_or_run import governing
-from fem.assessment.summary import (
-    MARGIN_NOTE,
-    band_note,
-    lacks_margin,
-    outcome_sentence,
-    result_rows,
-    to_compare,
-)
-from fem.assessment.sureness import SURE, numerical
 from fem.case.case import Case
 from fem.case.tables.unknown_inputs import WORDS
 from fem.figures.cache import drawings_of
 from fem.html.page import Page, Signature, html_of
 from fem.html.units import number, quantity, short, typeset
+from fem.model.floor_numbers import drawn_level
 from fem.model.model import Model, build_model
 from fem.report.animation import (
     COLOURS,
@@ -50,15 +33,20 @@ from fem.results.history import History
 from fem.results.kinds import RUN
 from fem.results.outcome import Outcome
 from fem.results.reader import OpenedRun
-from fem.results.run_result import (
-    Energy,
-    Margin,
-    Numerics,
-    RigidCheckResult,
-    RunResult,
-    Verdict,
-    to_overturn,
+from fem.results.run_result import Energy, Numerics, RigidCheckResult, RunResult, Verdict, to_overturn
+from fem.run.card import card_of
+from fem.run.described import floor_rows
+from fem.run.drawn_links import drawn_links
+from fem.run.joints import BOXES_NOTE, box_rows, joints_note, largest_joint_slip, unbolted
+from fem.run.ranges import impact_note, largest_ratio, largest_rotation, largest_slip, of_band
+from fem.run.rigid_check import check_against_rigid_block
+from fem.run.static_words import code_note, governing
+from fem.run.summary import (
+    band_note,
+    result_rows,
+    to_compare,
 )
+from fem.run.sureness import REGIME_UNSURE, SURE, numerical
 from fem.solid.modes import FEW, elastic_mode_table
 
 #: figures beside the animation, in the order of reading; the others have their own sections
@@ -79,13 +67,11 @@ ENERGIES = {
 SAID: dict[str, Any] = {
     "BOXES_NOTE": BOXES_NOTE,
     "DEGREES": math.degrees(1.0),
-    "MARGIN_NOTE": MARGIN_NOTE,
     "band_note": band_note,
     "case_rows": case_rows,
     "governing": governing,
     "impact_note": impact_note,
     "joints_note": joints_note,
-    "lacks_margin": lacks_margin,
     "largest_joint_slip": largest_joint_slip,
     "largest_ratio": largest_ratio,
     "largest_rotation": largest_rotation,
@@ -123,7 +109,7 @@ def run_report(
     animation = animation_of(model, _fields(run, message), drawn_links(case, broken))
     played = {} if len(history) < 2 or brief else player_data(animation, history, model=model)
     finished, height, static = run.status in RUN.finished, model.container.mesh.height, model.static
-    first, _, further = outcome_sentence(result).partition(". ")
+    card = card_of(result)
     floor = [(name, typeset(value)) for name, value in floor_rows(result.floor)]
     peak = static.own_motion.sliding.demand * case.gravity_m_s2 / static.weight - static.downhill
     moves = case.motion.kind != "none" or case.has_vertical
@@ -135,9 +121,8 @@ def run_report(
         "brief": brief,
         "finished": finished,
         "standing": _standing(verdict) if finished else "open",
-        "sentences": (f"{first}." if further else first, further),
+        "sentences": (" ".join(card[:2]), " ".join(card[2:])),
         "sure": _sure(verdict),
-        "margin": _margin(verdict.margin),
         "sketch": sketch(
             case,
             centroid=static.centroid,
@@ -191,21 +176,12 @@ def _sure(verdict: Verdict) -> tuple[str, str]:
         return (verdict.sure, "by the static rule alone") if verdict.sure else ("not computed", "")
     named = ", ".join(WORDS.get(key, key) for key in verdict.decided_by)
     known = verdict.sure or ("unsure" if band.unsure else "same outcome")
+    if known == REGIME_UNSURE:
+        stands = "overturns" if verdict.outcome == Outcome.OVERTURNED else "stands"
+        known = f"sure that it {stands}, not how it moves"
     if verdict.sure == SURE and all(map(numerical, band.members[1:])):
         known = "no input varied"
     return known, f"{', '.join(band.outcomes)}{f'; decided by {named}' if named else ''}"
-
-
-def _margin(margin: Margin | None) -> tuple[str, str]:
-    """The least factor on the motion at which it overturns, as given or varied, and what it rests on."""
-    if margin is None:
-        return "", ""
-    found = [factor for factor in (margin.factor, margin.low) if factor is not None]
-    if not found:
-        return f"> {FACTOR.text(margin.largest_tried)}", "times this motion; none that was tried overturns it"
-    given = "" if margin.factor is None else FACTOR.text(margin.factor)
-    as_given = f"; with the inputs as given {given or 'none'}" if margin.low is not None else ""
-    return FACTOR.text(min(found)), f"times this motion overturn it first{as_given}"
 
 
 def _check(model: Model, history: History, result: RunResult, *, finished: bool) -> RigidCheckResult | None:

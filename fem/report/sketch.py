@@ -16,13 +16,13 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Arc, Rectangle
 from matplotlib.transforms import Affine2D
 
-from fem.assessment.drawn_links import drawn_links
 from fem.case.case import Case
 from fem.case.tables.boxes import Box, centre_above, shared_face
 from fem.case.tables.neighbours import places_of
 from fem.figures.style import BLACK, BLUE, GREY, house_style, svg_of
 from fem.html.page import svg_element
 from fem.html.units import degrees, quantity, short
+from fem.run.drawn_links import drawn_links
 
 WIDTH = 4.3  #: of the drawing [inch]
 WIDEST, TALLEST = 1.8, 2.6  #: of the container in it [inch]

@@ -10,7 +10,6 @@ from typing import NamedTuple
 
 from markupsafe import Markup
 
-from fem.assessment.summary import rule_says
 from fem.case.case import Case
 from fem.html.formula import formula_markup
 from fem.html.units import number, short
@@ -23,6 +22,7 @@ from fem.model.static_checks import (
     CodeChecks,
     StaticChecks,
 )
+from fem.run.static_words import rule_says
 
 PAPER = "Knoedel and Hrabowski"
 

@@ -12,8 +12,6 @@ from typing import Any
 import numpy as np
 from markupsafe import Markup, escape
 
-from fem.assessment.margin_words import FACTOR
-from fem.assessment.sure_words import deciding_in_words
 from fem.case.case import Case, load_case
 from fem.html.page import Page, Signature, html_of, svg_element
 from fem.html.units import ABSENT, figure_cell, figure_head, millimetres, number, short, typeset
@@ -26,6 +24,7 @@ from fem.results.errors import FolderError
 from fem.results.figures import DURATION, PGA, PGD, PGV, SLIPPED, TURNED, Place, Shown, figures_of
 from fem.results.kinds import ENSEMBLE, HALL, RESPONSE
 from fem.results.outcome import COUNTED, Outcome
+from fem.run.card import deciding_in_words, times
 from fem.runtime import units
 from fem.runtime.identity import command_line
 from fem.study.answers import (
@@ -417,11 +416,11 @@ def margin_words(row: A_ROW) -> str:
     """A margin with its range: "1.8 (1.5 to 2.1)", "1.8 (from 1.5)" where not all overturn, "> 4"; empty without."""
     margin, tried = row["margin"], row["margin_tried_to"]
     if margin is None:
-        return "" if tried is None else f"> {FACTOR.text(tried)}"
-    low, high = (FACTOR.text(row[name]) for name in ("margin_low", "margin_high"))
+        return "" if tried is None else f"> {times(tried)}"
+    low, high = (times(row[name]) for name in ("margin_low", "margin_high"))
     if not low:
-        return FACTOR.text(margin)
-    return f"{FACTOR.text(margin)} ({f'{low} to {high}' if high else f'from {low}'})"
+        return times(margin)
+    return f"{times(margin)} ({f'{low} to {high}' if high else f'from {low}'})"
 
 
 def _html(

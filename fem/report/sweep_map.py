@@ -12,13 +12,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fem.assessment.sureness import REGIME_UNSURE, SURE, UNSURE
 from fem.figures.paper_marks import LABEL, marks_of
 from fem.figures.style import STATE_COLOURS, VERMILLION
 from fem.html.units import typeset
 from fem.report.animation import colour_scale, packed
 from fem.results.errors import FolderError
 from fem.results.figures import Place, Shown, figures_of
+from fem.run.sureness import REGIME_UNSURE, SURE, UNSURE
 from fem.runtime import units
 from fem.runtime.identity import command_line
 from fem.study.axes import axis_label

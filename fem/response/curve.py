@@ -15,7 +15,6 @@ from contact.stepping.integrator import OVERTURNED, REACHED
 from contact.stepping.observables import ROCKING
 from contact.stepping.outcome import advance_compiled
 from contact.stepping.state import Control
-from fem.assessment.verdict import audit, destroyed_corner
 from fem.case.case import Case
 from fem.model.container import Container
 from fem.response.lasting import differ, lasting_at
@@ -25,6 +24,7 @@ from fem.response.records import PORTRAYED, PointRecord, record_of
 from fem.response.request import ResponseRequest
 from fem.response.stability import Decay, LongTime, classify
 from fem.results.outcome import Outcome, least_slide
+from fem.run.verdict import audit, destroyed_corner
 
 WINDOWS = 4  #: a motion that is not settled is observed again, at most so many windows in all
 SEED = 1  #: of the random states

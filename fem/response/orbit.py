@@ -15,8 +15,8 @@ from contact.stepping.body import ANGULAR_VELOCITY, ROTATION, VELOCITY_X
 from contact.stepping.integrator import FAILED, OVERTURNED, REACHED
 from contact.stepping.outcome import advance_compiled
 from contact.stepping.state import ROW_ANGULAR_VELOCITY, ROW_ROTATION, ROW_SLIP
-from fem.assessment.verdict import audit, softer_contact
 from fem.response.model import DrivenModel, with_sections
+from fem.run.verdict import audit, softer_contact
 from fem.runtime.arrays import FloatArray
 
 #: called with the time [s], the rotation [rad] and the mode

@@ -9,7 +9,6 @@ from typing import Annotated, Any
 import numpy as np
 
 from contact.stepping.state import Control
-from fem.assessment.verdict import relative_rotation
 from fem.case.case import Case
 from fem.response.orbit import EXTREME_COLUMNS, SECTION_COLUMNS, Orbit
 from fem.response.request import SAMPLES_PER_PERIOD
@@ -130,7 +129,7 @@ def record_of(
         known: further columns.
     """
     extremes, omega = orbit.extremes, case.angular_frequency
-    ratios = relative_rotation(extremes[:, 0], control.slenderness_angle)
+    ratios = abs(extremes[:, 0]) / control.slenderness_angle
     if judged is not None:
         known |= {
             "long_time": judged.kind,

@@ -33,8 +33,8 @@ from fem.results.disk import table_bytes
 from fem.results.folder import ResultFolder
 from fem.results.kinds import RESPONSE
 from fem.results.outcome import MODES
-from fem.run.checkpoint import changing, require_same
 from fem.run.expected import of_a_second, say_expected
+from fem.run.output import changing, require_same
 from fem.study.driver import COMPLETED, FAILED, INTERRUPTED, Study, StudyOptions, run_study
 from fem.study.runner import Runner
 

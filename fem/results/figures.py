@@ -3,7 +3,7 @@
 A field is a key of `run.json`. Its `Shown` says in which words and unit people read it, and where: as a column of the
 tables of studies, in the rows of the runs of a site, as a range over the band, as a row of the summary, on maps. A new
 quantity is recorded by the stepper (`contact.stepping`) and declared here; one that follows from several records is
-put together in `fem.assessment.verdict`. SI units, named in the keys; rotation > 0 toward +x, slip > 0 moves the
+put together in `fem.run.verdict`. SI units, named in the keys; rotation > 0 toward +x, slip > 0 moves the
 container to +x.
 """
 
@@ -128,7 +128,7 @@ class Figures(JsonBlock, Generic[ValueT]):
     slip_peak_to_peak_m: Annotated[ValueT | None, Shown("slip, peak to peak", MM, COLUMN)] = None
     #: total
     slip_travel_m: Annotated[
-        ValueT | None, Shown("path of slip", MM, COLUMN | SUMMARY, "joint.slip_travel", lowest=True)
+        ValueT | None, Shown("path of slip", MM, COLUMN | BAND | SUMMARY, "joint.slip_travel", lowest=True)
     ] = None
     #: largest |velocity| of the slip, while every loaded point slides
     max_slip_velocity_m_s: Annotated[
@@ -190,7 +190,7 @@ class Figures(JsonBlock, Generic[ValueT]):
     ] = None
     #: relative to the floor
     max_top_displacement_m: Annotated[
-        ValueT | None, Shown("displacement of the top", MM, COLUMN | SUMMARY)
+        ValueT | None, Shown("displacement of the top", MM, COLUMN | BAND | SUMMARY)
     ] = None
     #: of the contents
     max_acceleration_m_s2: Annotated[

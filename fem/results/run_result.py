@@ -174,14 +174,26 @@ class Band(LinkFigures[Reach], Figures[Reach]):
 
 
 @dataclass(frozen=True, kw_only=True)
+class Governing(JsonBlock):
+    """The least factor of all that were tried, on the case and its variations, at which it does not stand."""
+
+    factor: float | None = None  #: None: it stands under all that were tried
+    of: str = "case"  #: whose it is: case | variations
+    ending: str | None = None  #: overturned | invalid (a corner is destroyed)
+    variations: int = 0  #: with all unknown inputs drawn at once, up to the end of the case itself
+    variations_overturned: int = 0
+    variations_destroyed: int = 0
+    step: float | None = None  #: widest relative step below it: an island narrower than that may be missed
+
+
+@dataclass(frozen=True, kw_only=True)
 class Margin(JsonBlock):
     """How much stronger the motion may be (`fem.run.margin`); factors on the whole motion of the run."""
 
     factor: float | None = None  #: of the first overturning; None: none was found
     #: the largest factor below it that was tried; None: none stood, or none fell
     stands_up_to: float | None = None
-    #: least and largest factor of the first overturning over the draws and the run; at a tenth below `low` none of
-    #: them overturns; `high` None: not all overturn
+    #: least and largest factor of the first overturning over the draws and the run; `high` None: not all overturn
     low: float | None = None
     high: float | None = None
     draws: int = 0  #: in which all unknown inputs are drawn, without those that failed
@@ -197,6 +209,7 @@ class Margin(JsonBlock):
     #: and the largest factor tried so
     factor_without_links: float | None = None
     without_links_tried_to: float | None = None
+    governing: Governing | None = None  #: None: of a former version
 
     written_where_given = frozenset({"destroyed_from", "factor_without_links", "without_links_tried_to"})
 
@@ -253,7 +266,11 @@ class Verdict(RunFigures):
     corner_capacity_N: float | None = None
     plastic_work_J: float | None = None
     basis: str = "study"
-    first_line: str | None = None  #: the verdict in a few sentences, as on the page
+    first_line: str | None = None  #: the first line of the card
+    #: what it does, the margin that governs, how far it moves, how sure that is, the static rule: a line each
+    card: tuple[str, ...] = ()
+    place_m: float | None = None  #: slip beyond which it has left its place
+    place_is: str | None = None  #: whose that is: limit | width | gap
     #: sure | regime unsure: it stands, or falls, in all variations, but may move otherwise | unsure; None: not tried
     sure: str | None = None
     numerically_unsure: bool = False  #: more accurate steps change whether it stands
@@ -266,7 +283,7 @@ class Verdict(RunFigures):
     written_where_given = WHERE_GIVEN.union(
         {
             *("corner_capacity_N", "plastic_work_J", "bolt_tension_N", "bolt_shear_N"),
-            *("invalid_reason", "leans", "neighbours", "stress_from_corner_m"),
+            *("invalid_reason", "leans", "neighbours", "stress_from_corner_m", "place_m", "place_is"),
         }
     )
 
@@ -397,6 +414,24 @@ class RigidCheckResult(JsonBlock):
 
 
 @dataclass(frozen=True, kw_only=True)
+class Plane(JsonBlock):
+    """The static rule in one vertical plane of a container, under the motion of its run."""
+
+    width_m: float  #: of the base, along the motion
+    utilisation_sliding: float | None = None
+    utilisation_overturning: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sides(JsonBlock):
+    """The plane of a run and the one across it; a motion along y is taken to be as strong as that along x."""
+
+    governing: str  #: computed: that of the run | other
+    computed: Plane
+    other: Plane
+
+
+@dataclass(frozen=True, kw_only=True)
 class RunResult(JsonBlock):
     """All of `run.json`; a block that the run has not reached is None."""
 
@@ -406,6 +441,7 @@ class RunResult(JsonBlock):
     overrides: tuple[str, ...] | None = None  #: changes by the command line, as `table.key=value`
     case_hash: str | None = None
     static: StaticResult | None = None
+    sides: Sides | None = None  #: None of a square or round base
     motion: MotionResult | None = None
     floor: FloorNumbers | None = None  #: None: rigid and level
     versions: Mapping[str, str] | None = None

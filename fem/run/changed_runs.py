@@ -6,17 +6,17 @@ Long ones and those of the `full` model have one. How many fit a budget follows 
 not from the clock, so that a resumed or repeated study is the same.
 """
 
+import json
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
+from pathlib import Path
 from threading import Event, Lock
 
-from fem.assessment.joint_demands import joint_demands
-from fem.assessment.ranges import largest_bolt_forces
-from fem.assessment.verdict import verdict_of
 from fem.case.case import Case
 from fem.case.tables.input_keys import SUPPORT, TOLERANCE
+from fem.case.tables.input_ranges import Value
 from fem.case.uncertainty import InputChange, as_changed
 from fem.model.container import Container, adapted_container, discretise
 from fem.model.joints import Joints, joints_of
@@ -25,11 +25,14 @@ from fem.model.motion import build_motions
 from fem.model.recovery import Recovery, recovery_of
 from fem.model.validity import runs_in_memory
 from fem.results.figures import FELL_FIRST, Place
+from fem.results.files import to_json
 from fem.results.run_result import ChangedRun, JointDemand, Numerics, Verdict
-from fem.run.changed_runs_file import ChangedRunsFile, key_of
-from fem.run.outcome import run_without_history
+from fem.run.joints import joint_demands
+from fem.run.ranges import largest_bolt_forces
 from fem.run.recorder import Recorder
-from fem.run.simulation import simulate
+from fem.run.simulation import run_without_history, simulate
+from fem.run.verdict import verdict_of
+from fem.runtime.identity import program_identity
 from fem.runtime.threads import cores
 from fem.solid.nodal_body import full_model_memory
 
@@ -40,6 +43,54 @@ COST = 1.2  #: of a changed run over the run: stiffer floors and tighter toleran
 STEP_COST = (0.4e-6, 7e-9, 5e-9)
 DRAWN_TOLERANCE = 10.0  #: energy tolerance of draws at least, as of maps: 0.01 to 10 give the same outcomes
 STORED_S = 1.0  #: wall time between two notes of finished runs
+
+
+class ChangedRunsFile:
+    """The finished runs of a file; its methods may be called by several threads.
+
+    Args:
+        path: of the file.
+        case_hash: of the case that is changed.
+        write: replaces the file by a text; an OSError of it ends the work.
+        message: receives why a file is refused.
+    """
+
+    def __init__(
+        self, path: Path, *, case_hash: str, write: Callable[[str], None], message: Callable[[str], None]
+    ) -> None:
+        self._path, self._write, self._message = path, write, message
+        self._owner = {"case_hash": case_hash, "program": program_identity()}
+
+    def read(self) -> list[ChangedRun]:
+        """The finished runs."""
+        if not self._path.exists():
+            return []
+        try:
+            content = json.loads(self._path.read_text(encoding="utf-8"))
+            if any(content[key] != value for key, value in self._owner.items()):
+                raise ValueError("of another case or another version of the program")
+            return [ChangedRun.from_json(member) for member in content["members"]]
+        except (OSError, ValueError, KeyError, TypeError) as error:
+            self._message(f"{self._path} is refused ({error}): its members are computed again")
+            return []
+
+    def store(self, runs: Sequence[ChangedRun]) -> None:
+        """Store the finished runs, in an order that does not depend on which were finished first.
+
+        Raises:
+            OSError: the file cannot be written, or the folder was lost.
+        """
+        ordered = sorted(runs, key=lambda run: repr(key_of(run.values)))
+        self._write(to_json(self._owner | {"members": [run.to_json() for run in ordered]}))
+
+
+def key_of(values: Mapping[str, Value] | None) -> tuple[tuple[str, Value], ...]:
+    """Equal for runs that change the same inputs to the same values, within rounding."""
+    rounded = {
+        key: float(f"{value:.9g}") if isinstance(value, float) else value
+        for key, value in (values or {}).items()
+    }
+    return tuple(sorted(rounded.items()))
 
 
 @dataclass(frozen=True, kw_only=True)

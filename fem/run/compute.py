@@ -16,7 +16,7 @@ from fem.results.history import History
 from fem.results.reader import pyvista_grid
 from fem.results.run_result import RunResult, Verdict
 from fem.run.checks import WantedChecks, add_checks
-from fem.run.link_cells import LinkCells
+from fem.run.drawn_links import LinkCells
 from fem.run.opened import plotted
 from fem.run.output import Stopwatch
 from fem.run.recorder import Recorder

@@ -1,19 +1,19 @@
-"""How much stronger the motion may be: the least factor on it at which the container overturns.
+"""How much stronger the motion may be: the least factor on it at which a container overturns or destroys a corner.
 
 Both components of the floor's motion are multiplied by a factor. A scan tries factors up to `LARGEST`, of a container
-that overturned up to 1; then each change between standing and overturning is located, the first one first. Runs that
-are left halve the widest steps before the first one. The same is done near the first one with all unknown inputs drawn
-at once. An island narrower than the steps may be missed.
+that overturned up to 1, and none above one that destroys a corner. What ends the standing first is located; the runs
+that are left halve steps below it, the wide ones and those at which the container turns most before the others. The
+same is done with all unknown inputs drawn at once, each draw from the weakest motion up to its first end; of several
+draws the factors are staggered. An island narrower than the steps that are left may be missed: `Governing.step`.
 """
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
 from functools import cache
 from itertools import pairwise
+from typing import NamedTuple
 
-from fem.assessment.sureness import ending, numerical
-from fem.assessment.verdict import outcome_of
 from fem.case.case import Case, CaseError
 from fem.case.strength import scaled_motion
 from fem.case.tables.input_keys import TOLERANCE
@@ -25,34 +25,95 @@ from fem.model.equilibrium import same_equilibrium
 from fem.model.model import Model, build_model
 from fem.model.motion import peaks_in_run
 from fem.model.static_checks import static_checks_of
-from fem.results.outcome import Ending, Outcome, ending_of
-from fem.results.run_result import Margin, Numerics, RunResult, Verdict
-from fem.run.bracket import Change, changes_of
-from fem.run.changed_runs import cost_of, tolerance_of_draws, workers_for
-from fem.run.outcome import run_without_history
+from fem.results.outcome import NOT_STANDING, Ending, Outcome, ending_of
+from fem.results.run_result import Governing, Margin, Numerics, RunResult, Verdict
+from fem.run.changed_runs import cost_of, key_of, tolerance_of_draws, workers_for
 from fem.run.recorder import Recorder
-from fem.run.simulation import simulate
+from fem.run.simulation import run_without_history, simulate
+from fem.run.sureness import ending, numerical
+from fem.run.verdict import outcome_of
 
-LARGEST = 4.0
-#: of the scan: least ratio of neighbouring factors, most factors; largest number of runs with those that locate changes
-STEP, MOST_SCANNED, MOST_RUNS = 1.15, 15, 25
-LOCATING = 2  #: runs that locate a change in half a step of the scan
-#: width of a located change over its upper end; of the same change with drawn inputs, and the ratio of factors tried
-RESOLUTION, DRAWN_RESOLUTION, DRAWN_STEP = 0.02, 0.04, 1.1
+LARGEST, LEAST = 4.0, 0.05  #: factors
 #: share of the uplift acceleration below which nothing rocks, however soft and whatever is not known
 SURELY_AT_REST = 0.6
-LEAST = 0.05  #: smallest factor
-#: draws, of a model whose runs are cheap; at least; runs that one takes; processor time for all, and for the scan [s]
-DRAWS, LEAST_DRAWS, RUNS_A_DRAW, DRAWN_S, SCAN_S = 16, 6, 5, 2.5, 12.0
-
-#: endings that say whether it overturns; a run that failed does not, nor one that destroyed a corner
-SAID = (Ending.STANDING, Ending.OVERTURNED)
-#: the ending under a factor, by the values of a change
-Trial = Callable[[float], Ending]
+SCANNED, STEP = 15, 1.15  #: most factors of a first scan, and their least ratio
+#: width of a located end over the end, and of the finest steps below it; of drawn inputs
+RESOLUTION, FINEST, DRAWN_RESOLUTION = 0.01, 0.01, 0.04
+#: processor time of the runs of a case, and of its draws [s]; runs of a case at least and at most
+OWN_S, DRAWN_S, LEAST_RUNS, MOST_RUNS = 1.0, 1.2, 25, 120
+#: draws; of a model whose runs are dear; runs of one draw, and of these its first
+DRAWS, LEAST_DRAWS, RUNS_A_DRAW, RISING = 16, 6, 5, 3
+SCAN_S = 12.0  #: processor time up to which a margin is found unasked [s]
+BATCH = 4  #: steps halved side by side, on any machine
+STILL = 0.25  #: weight of a step at which nothing turns, over one at which the container nearly falls
 
 
 class StoppedError(Exception):
     """A request to stop was heard."""
+
+
+class Tried(NamedTuple):
+    """What one factor led to."""
+
+    ending: Ending
+    turned: float  #: largest |rotation| over the slenderness angle
+
+
+Trial = Callable[[float], Tried]
+
+
+class Search:
+    """The factors that were tried on one case."""
+
+    def __init__(self, trial: Trial, known: Mapping[float, Tried]) -> None:
+        self.trial, self.known = trial, dict(known)
+
+    def of(self, *endings: Ending) -> list[float]:
+        """The factors of these endings, from the least on."""
+        return sorted(factor for factor, tried in self.known.items() if tried.ending in endings)
+
+    def first(self, *endings: Ending) -> float | None:
+        """The least factor of these endings."""
+        return min(self.of(*endings), default=None)
+
+    @property
+    def end(self) -> float:
+        """The first factor at which it does not stand, else the largest one at which it does."""
+        return self.first(*NOT_STANDING) or max(self.of(Ending.STANDING), default=min(self.known))
+
+    def steps(self, up_to: float) -> list[tuple[float, float]]:
+        """Neighbouring factors up to one of those tried."""
+        return [(low, high) for low, high in pairwise(sorted(self.known)) if high <= up_to]
+
+    def weight(self, low: float, high: float) -> float:
+        """How much a step is worth to be halved."""
+        turned = max(min(1.0, self.known[factor].turned) for factor in (low, high))
+        return math.log(high / low) * (STILL + turned)
+
+    def scan(self, factors: Sequence[float], pool: Executor, side_by_side: int) -> None:
+        """Try rising factors; none above one that destroys a corner counts."""
+        for begin in range(0, len(factors), side_by_side):
+            some = factors[begin : begin + side_by_side]
+            self.known |= dict(zip(some, pool.map(self.trial, some), strict=True))
+            if (last := self.first(Ending.INVALID)) is not None:
+                self.known = {factor: tried for factor, tried in self.known.items() if factor <= last}
+                return
+
+    def rise(self, factors: Iterable[float]) -> None:
+        """Try rising factors up to the first at which it does not stand, or the run fails."""
+        for factor in factors:
+            self.known[factor] = self.trial(factor)
+            if self.known[factor].ending != Ending.STANDING:
+                return
+
+    def locate(self, resolution: float) -> None:
+        """Halve the step below the first end until it is narrow."""
+        while (end := self.first(*NOT_STANDING)) is not None:
+            below = [factor for factor in self.known if factor < end]
+            if not below or end - max(below) <= resolution * end:
+                return
+            middle = math.sqrt(max(below) * end)
+            self.known[middle] = self.trial(middle)
 
 
 def wants_margin(choice: bool | None, case: Case, result: RunResult) -> bool:
@@ -63,12 +124,12 @@ def wants_margin(choice: bool | None, case: Case, result: RunResult) -> bool:
     outcome = (result.verdict or Verdict()).outcome
     if choice is False or outcome in (None, Outcome.INVALID) or not scaled_motion(case, 1.0):
         return False
-    cost = MOST_RUNS * cost_of(result.numerics or Numerics())
+    cost = LEAST_RUNS * cost_of(result.numerics or Numerics())
     return bool(choice) or (case.solver.model != "full" and cost <= SCAN_S)
 
 
 def margin_of(model: Model, result: RunResult, *, drawn: bool, stop: Callable[[], bool]) -> Margin | None:
-    """Find the least factor on the motion at which a container overturns, and how uncertain it is.
+    """Find the least factor on the motion at which a container overturns or destroys a corner, and what governs.
 
     Args:
         model: of the run; all trials have its container.
@@ -79,75 +140,121 @@ def margin_of(model: Model, result: RunResult, *, drawn: bool, stop: Callable[[]
     Returns:
         The margin, or None if it was stopped.
     """
-    verdict = result.verdict or Verdict()
-    own = ending_of(result.status, verdict.outcome)
-    least = _least(model)
-    most = _largest(model.case)
-    trial = _trial(model, {}, stop)
+    verdict, cost = result.verdict or Verdict(), max(cost_of(result.numerics or Numerics()), 1e-9)
+    itself = Tried(ending_of(result.status, verdict.outcome), verdict.turned)
+    own, least = Search(_trial(model, {}, stop), {1.0: itself}), _least(model)
+    most, draws = _largest(model.case), []
     try:
-        with ThreadPoolExecutor(max_workers=workers_for(model, MOST_SCANNED)) as pool:
-            known = _searched(own, least, most, trial, pool)
-            least = min(known)
-            first, ended = _first(known), [factor for factor in known if known[factor] in SAID]
-            bare = _bare(model, least, most, pool, stop)
-            ends: list[float | None] = []
-            lowest = None
+        with ThreadPoolExecutor(max_workers=(workers := workers_for(model, SCANNED))) as pool:
+            _scan(own, least, most, pool, workers)
+            runs = LEAST_RUNS if model.case.solver.model == "full" else int(OWN_S / cost)
+            _narrow([own], min(MOST_RUNS, max(LEAST_RUNS, runs)), pool, RESOLUTION)
+            bare = _bare(model, least, most, pool, stop) if model.case.links or model.case.neighbour else None
+            in_band = None if itself.ending == Ending.OVERTURNED else _in_band(verdict)
+            begin = min(own.known) if in_band or itself.ending == Ending.OVERTURNED else 1.0
             if drawn:
-                start = first.high if first else max(ended)
-                changes = draws_of(model.case, model.penalty, _draws(model.case, result))
-                trials = [_trial(model, change.values, stop) for change in changes]
-                near = [pool.submit(_near, trial, start, least, most) for trial in trials]
-                ends = [future.result() for future in near]
-                by_band = 1.0 if own == Ending.STANDING and _overturns_in_band(verdict) else None
-                lowest = _lowest(pool, trials, [*ends, first.high if first else None, by_band], least)
+                drawn_runs = int(DRAWN_S / cost)
+                worst = _worst_draws(model, verdict, min(DRAWS, max(LEAST_DRAWS, drawn_runs // RUNS_A_DRAW)))
+                # what is not known to stand at `begin` falls just above it, too
+                draws = [
+                    Search(_trial(model, values, stop), {begin: Tried(Ending.STANDING, turned)})
+                    for values, turned in worst
+                ]
+                ratio = (own.end / begin) ** (1.0 / RISING)
+                rising = (  # staggered, the last of each where the case itself ends
+                    [begin * ratio ** (step + (k + 1) / len(draws)) for step in range(RISING - 1)] + [own.end]
+                    for k in range(len(draws))
+                )
+                list(pool.map(Search.rise, draws, rising))
+                _narrow(draws, drawn_runs, pool, DRAWN_RESOLUTION)
     except StoppedError:
         return None
-    factor = None if first is None else first.high
-    factors = [end for end in ends if end is None or not math.isnan(end)]
-    reached = [end for end in (factor, *factors) if end is not None]
+    said = own.of(Ending.STANDING, Ending.OVERTURNED)
+    factor, destroyed = own.first(Ending.OVERTURNED), own.first(Ending.INVALID)
+    falls = [draw.first(Ending.OVERTURNED) for draw in draws if not draw.of(Ending.INVALID, Ending.FAILED)]
+    reached = [
+        fall for fall in (factor, *(draw.first(Ending.OVERTURNED) for draw in draws)) if fall is not None
+    ]
+    if in_band == Ending.OVERTURNED:
+        reached.append(1.0)
     return Margin(
         factor=factor,
-        stands_up_to=None if first is None or first.low == 0.0 else first.low,
-        low=lowest,
-        high=max(reached) if factors and len(reached) == 1 + len(factors) else None,
-        draws=len(factors),
-        draws_standing=factors.count(None),
-        draws_failed=len(ends) - len(factors),
-        draws_tried_to=most if ends else None,
-        islands=_islands(known),
-        least_tried=min(ended),
-        largest_tried=max(ended),
-        runs=len(ended) - 1,
-        destroyed_from=min((factor for factor in known if known[factor] == Ending.INVALID), default=None),
+        stands_up_to=max(
+            (standing for standing in own.of(Ending.STANDING) if standing < (factor or 0.0)), default=None
+        ),
+        low=min(reached, default=None) if draws else None,
+        high=max(reached) if draws and len(reached) > len(draws) and None not in falls else None,
+        draws=len(falls),
+        draws_standing=falls.count(None),
+        draws_failed=len(draws) - len(falls),
+        draws_tried_to=own.end if draws else None,
+        islands=_islands(own),
+        least_tried=min(said),
+        largest_tried=max(said),
+        runs=len(said) - 1,
+        destroyed_from=destroyed,
         factor_without_links=None if bare is None else bare[0],
         without_links_tried_to=None if bare is None else bare[1],
+        governing=_governing(own, draws, in_band),
     )
 
 
-def _overturns_in_band(verdict: Verdict) -> bool:
-    """Whether a member of the band overturns under the motion of the run, by another input."""
+def _governing(own: Search, draws: Sequence[Search], in_band: Ending | None) -> Governing:
+    """The least factor of all that were tried at which a container does not stand, and what it rests on."""
+    counts = {
+        "variations": len(draws),
+        "variations_overturned": sum(draw.first(Ending.OVERTURNED) is not None for draw in draws),
+        "variations_destroyed": sum(draw.first(Ending.INVALID) is not None for draw in draws),
+    }
+    ends = [
+        (end, number) for number, search in enumerate((own, *draws)) if (end := search.first(*NOT_STANDING))
+    ]
+    factor, number = min(ends, default=(None, 0))
+    if in_band and (factor is None or factor > 1.0):
+        return Governing(factor=1.0, of="variations", ending=in_band.word, step=None, **counts)
+    search = (own, *draws)[number]
+    up_to = search.end if factor is None else factor
+    steps = [high / low - 1.0 for low, high in search.steps(up_to) if low >= min(1.0, up_to)]
+    return Governing(
+        factor=factor,
+        of="variations" if number else "case",
+        ending=None if factor is None else search.known[factor].ending.word,
+        step=max(steps, default=None),
+        **counts,
+    )
+
+
+def _worst_draws(model: Model, verdict: Verdict, count: int) -> list[tuple[Mapping[str, Value], float]]:
+    """The draws of all unknown inputs that turn most under the motion of the run, and how far, by its band."""
+    members = verdict.band.members if verdict.band else ()
+    turned = {key_of(member.values): member.turned for member in members}
+    draws = [change.values for change in draws_of(model.case, model.penalty)]
+    known = sorted(((turned.get(key_of(values), 0.0), -k) for k, values in enumerate(draws)), reverse=True)
+    return [(draws[-k], ratio) for ratio, k in known[:count]]
+
+
+def _in_band(verdict: Verdict) -> Ending | None:
+    """How a member of the band ends that does not stand under the motion of the run, by another input."""
     members = verdict.band.members[1:] if verdict.band else ()
-    return any(ending(member) == Ending.OVERTURNED and not numerical(member) for member in members)
+    ends = {ending(member) for member in members if member.outcome is not None and not numerical(member)}
+    return next((end for end in NOT_STANDING if end in ends), None)
 
 
 def _bare(
     model: Model, least: float, most: float, pool: Executor, stop: Callable[[], bool]
 ) -> tuple[float | None, float] | None:
-    """The first factor that overturns the container without stops, ties and neighbours, and the largest one tried.
-
-    None where it has none of them.
-    """
-    if not (model.case.links or model.case.neighbour):
-        return None
+    """The first factor that overturns the container without stops, ties and neighbours, and the largest one tried."""
     free = model.case.with_values({name: [] for name in ROWS})
     try:
         bare = build_model(free, without_links(model.case, model.container))
     except (ValueError, ArithmeticError, RuntimeError):  # it does not stand without them
         return None
     trial = _trial(bare, {}, stop)
-    known = _searched(trial(1.0), least, most, trial, pool)
-    first, ended = _first(known), [factor for factor in known if known[factor] in SAID]
-    return (None if first is None else first.high, max(ended)) if ended else None
+    search = Search(trial, {1.0: trial(1.0)})
+    _scan(search, least, most, pool, SCANNED)
+    search.locate(RESOLUTION)
+    said = search.of(Ending.STANDING, Ending.OVERTURNED)
+    return (search.first(Ending.OVERTURNED), max(said)) if said else None
 
 
 def _least(model: Model) -> float:
@@ -158,12 +265,8 @@ def _least(model: Model) -> float:
     row = zip(case.row, model.container.row, strict=True)
     rules = [model.static.ruling, *(static_checks_of(case, alone.mesh, *peaks).ruling for case, alone in row)]
     uses = [rule.overturning.utilisation for rule in rules]
-    if [
-        *case.stop,
-        *case.neighbour,
-        *(tie for tie in case.tie if tie.to == "wall"),
-    ]:  # what slides may fall over it
-        uses += [rule.sliding.utilisation or math.inf for rule in rules]
+    if [*case.stop, *case.neighbour, *(tie for tie in case.tie if tie.to == "wall")]:
+        uses += [rule.sliding.utilisation or math.inf for rule in rules]  # what slides may fall over it
     use = max((use for use in uses if use is not None), default=0.0)
     return LEAST if use <= 0.0 else min(LARGEST, max(LEAST, SURELY_AT_REST / use))
 
@@ -181,151 +284,65 @@ def _largest(case: Case) -> float:
     return 1.0
 
 
-def _scanned(least: float, largest: float) -> list[float]:
-    """Factors of the scan in steps of one ratio, 1 left out: that is the run."""
+def _scan(search: Search, least: float, most: float, pool: Executor, side_by_side: int) -> None:
+    """A first scan in steps of one ratio from `least` to `most`, of what overturned to 1, and further down there."""
+    largest = 1.0 if search.known[1.0].ending == Ending.OVERTURNED else most
     if least >= largest:
-        return [least]
-    count = min(MOST_SCANNED, math.ceil(math.log(largest / least) / math.log(STEP)))
-    ratio = (largest / least) ** (1.0 / count)
-    factors = [*(least * ratio**k for k in range(count)), largest]
-    return [factor for factor in factors if abs(factor - 1.0) > 1e-9]
+        factors = [least]
+    else:
+        count = min(SCANNED, math.ceil(math.log(largest / least) / math.log(STEP)))
+        factors = [*(least * (largest / least) ** (k / count) for k in range(count)), largest]
+    search.scan([factor for factor in factors if abs(factor - 1.0) > 1e-9], pool, side_by_side)
+    while search.known[lowest := min(search.known)].ending == Ending.OVERTURNED and lowest > LEAST:
+        lower = max(LEAST, lowest / STEP**2)
+        search.known[lower] = search.trial(lower)
 
 
-def _searched(own: Ending, least: float, most: float, trial: Trial, pool: Executor) -> dict[float, Ending]:
-    """The endings under the factors of a search; `own`: that of the run itself, `most`: largest factor allowed."""
-    scanned = _scanned(least, 1.0 if own == Ending.OVERTURNED else most)
-    known = {1.0: own} | dict(zip(scanned, pool.map(trial, scanned), strict=True))
-    while own == Ending.OVERTURNED and known[least] == Ending.OVERTURNED and least > LEAST:
-        least = max(LEAST, least / STEP**2)
-        known[least] = trial(least)
-    _locate(known, trial)
-    _narrow(known, trial)
-    return known
-
-
-def _locate(known: dict[float, Ending], trial: Trial) -> None:
-    """Halve the changes that are too wide, the lowest first, until all are narrow or no run is left."""
-    while len(known) <= MOST_RUNS:
-        middles = [
-            math.sqrt(change.low * change.high)
-            for change in _changes(known)
-            if change.high - change.low > RESOLUTION * change.high
+def _narrow(searches: Sequence[Search], runs: int, pool: Executor, resolution: float) -> None:
+    """Halve steps below the least end of several searches, until so many runs are made, and locate what ends first."""
+    while True:
+        end = min((search.end for search in searches), default=0.0)
+        for search in searches:
+            if search.end == end:
+                search.locate(resolution)
+        end = min((search.end for search in searches), default=0.0)
+        left = runs - sum(len(search.known) for search in searches)
+        wide = [
+            (search.weight(low, high), -low, number, high)
+            for number, search in enumerate(searches)
+            for low, high in search.steps(min(end, search.end))
+            if high > (1.0 + FINEST) * low
         ]
-        left = [middle for middle in middles if middle not in known]  # those that failed are
-        if not left:
+        chosen = sorted(wide, reverse=True)[: min(BATCH, left)]
+        if left <= 0 or not chosen:
             return
-        known[left[0]] = trial(left[0])
+        middles = [(searches[number], math.sqrt(-low * high)) for _, low, number, high in chosen]
+        found = pool.map(lambda middle: middle[0].trial(middle[1]), middles)
+        for (search, middle), tried in zip(middles, found, strict=True):
+            search.known[middle] = tried
 
 
-def _narrow(known: dict[float, Ending], trial: Trial) -> None:
-    """Halve the widest step before the first factor that overturns as long as runs are left; locate what it finds.
-
-    Of a container that stands, steps from its own motion on, the weakest of equal ones first: the question is how much
-    stronger that may be.
-    """
-    while len(known) <= MOST_RUNS - LOCATING:
-        first = _first(known)
-        end = max(known) if first is None else first.high
-        begin = 1.0 if end > 1.0 else 0.0
-        factors = sorted(factor for factor in known if begin <= factor <= end)
-        steps = list(pairwise(factors))
-        if not steps:
-            return
-        low, high = max(steps, key=lambda step: (round(step[1] / step[0], 6), -step[0]))
-        if high - low <= RESOLUTION * high:
-            return
-        middle = math.sqrt(low * high)
-        known[middle] = trial(middle)
-        if known[middle] == Ending.OVERTURNED:
-            _locate(known, trial)
-
-
-def _changes(known: dict[float, Ending]) -> list[Change]:
-    """Neighbouring factors of which one stands and the other overturns; others say nothing."""
-    words = {factor: ending.word for factor, ending in known.items() if ending in SAID}
-    return changes_of(words)
-
-
-def _first(known: dict[float, Ending]) -> Change | None:
-    """The first factor that overturns and the one below it, 0 where there is none; None if all stand."""
-    fallen = [factor for factor, ending in known.items() if ending == Ending.OVERTURNED]
-    if not fallen:
-        return None
-    falls = [change for change in _changes(known) if change.high == min(fallen)]
-    return falls[0] if falls else Change(low=0.0, high=min(fallen), below="", above=Ending.OVERTURNED.word)
-
-
-def _islands(known: dict[float, Ending]) -> tuple[tuple[float, float], ...]:
+def _islands(search: Search) -> tuple[tuple[float, float], ...]:
     """Where it stands again beyond the first factor that overturns: the least and the largest factor of each."""
     islands: list[list[float]] = []
-    fallen = False
-    for factor in sorted(known):
-        if known[factor] == Ending.OVERTURNED:
-            fallen = True
+    for factor in search.of(Ending.STANDING, Ending.OVERTURNED):
+        if search.known[factor].ending == Ending.OVERTURNED:
             islands.append([])
-        elif known[factor] == Ending.STANDING and fallen:
+        elif islands:
             islands[-1].append(factor)
     return tuple((island[0], island[-1]) for island in islands if island)
-
-
-def _near(trial: Trial, start: float, least: float, most: float) -> float | None:
-    """The factor near `start` from which a changed case overturns; None: none up to `most`; nan: not known."""
-    failed = False
-
-    def falls(factor: float) -> bool:
-        nonlocal failed
-        ending = trial(factor)
-        failed = failed or ending not in SAID
-        return ending == Ending.OVERTURNED
-
-    low, high = start, start
-    if falls(start):
-        while low > least and falls(low := max(least, low / DRAWN_STEP)):
-            high = low
-    else:
-        while low < most and not falls(high := min(most, low * DRAWN_STEP)):
-            low = high
-        if low >= most:
-            return math.nan if failed else None
-    while high - low > DRAWN_RESOLUTION * high:
-        middle = math.sqrt(low * high)
-        low, high = (low, middle) if falls(middle) else (middle, high)
-    return math.nan if failed else high
-
-
-def _lowest(
-    pool: Executor, trials: Sequence[Trial], ends: Sequence[float | None], least: float
-) -> float | None:
-    """The least of the factors found, or one below it at which a draw overturns as well, one step after the other."""
-    known = [end for end in ends if end is not None and not math.isnan(end)]
-    low = min(known, default=None)
-    while trials and low is not None and low > least:
-        below = max(least, low / DRAWN_STEP)
-        if Ending.OVERTURNED not in pool.map(lambda trial, factor=below: trial(factor), trials):
-            break
-        low = below
-    return low
-
-
-def _draws(case: Case, result: RunResult) -> int:
-    """How many draws the time allows."""
-    runs = DRAWN_S / max(cost_of(result.numerics or Numerics()), 1e-9)
-    return min(case.uncertainty.draws, DRAWS, max(LEAST_DRAWS, int(runs / RUNS_A_DRAW)))
 
 
 def _trial(model: Model, values: Mapping[str, Value], stop: Callable[[], bool]) -> Trial:
     """What runs the changed case under a factor."""
     own = model.case
-    coarse: dict[str, Value] = {
-        "output.fields_s": 0.0,
-        TOLERANCE: tolerance_of_draws(own),
-    }
+    coarse: dict[str, Value] = {"output.fields_s": 0.0, TOLERANCE: tolerance_of_draws(own)}
 
     @cache
     def container() -> Container:
         return changed_container(own.with_values(as_changed(own, values)), model.container, own)
 
-    def ending(factor: float) -> Ending:
+    def tried(factor: float) -> Tried:
         if stop():
             raise StoppedError
         try:
@@ -335,19 +352,20 @@ def _trial(model: Model, values: Mapping[str, Value], stop: Callable[[], bool]) 
             }
             case = own.with_values(as_changed(own, {**values, **scaled, **coarse}))
             shared = model.equilibrium if same_equilibrium(case, own) else None
-            return _ending(build_model(case, container(), shared), stop)
+            return _tried(build_model(case, container(), shared), stop)
         except (ValueError, ArithmeticError, RuntimeError):  # a motion too strong for its key, no equilibrium
-            return Ending.FAILED
+            return Tried(Ending.FAILED, 0.0)
 
-    return ending
+    return tried
 
 
-def _ending(model: Model, stop: Callable[[], bool]) -> Ending:
+def _tried(model: Model, stop: Callable[[], bool]) -> Tried:
     """What a trial counts as."""
     if model.case.solver.model != "full":
         verdict, error = run_without_history(model, None)
-        return Ending.FAILED if error else ending_of("completed", verdict.outcome)
-    ending = simulate(model, Recorder(model, None), stop=stop)
-    if ending.status == "interrupted":
+        return Tried(Ending.FAILED if error else ending_of("completed", verdict.outcome), verdict.turned)
+    end = simulate(model, Recorder(model, None), stop=stop)
+    if end.status == "interrupted":
         raise StoppedError
-    return ending_of(ending.status, outcome_of(model))
+    rotation = float(model.run.track[0].max_rotation)
+    return Tried(ending_of(end.status, outcome_of(model)), rotation / model.static.slenderness_angle)

@@ -6,25 +6,180 @@ place is cut off when the run resumes, and what lies before it must not have cha
 
 import hashlib
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any, TypedDict
 
 import numpy as np
+from numpy.typing import NDArray
 
+from contact.stepping.links import LinkedBody
+from contact.stepping.loose_stack import LooseStack
+from contact.stepping.modal_body import ModalBody
+from contact.stepping.state import RunState
 from fem.case.columns import history_columns
 from fem.model.model import Model
 from fem.model.recovery import recovery_of
+from fem.results.archive import CheckpointError, read_checkpoint, write_archive
 from fem.results.fields import FieldWriter, frame_name
 from fem.results.history import HistoryWriter, read_history
 from fem.results.run_files import RunFiles
-from fem.run.checkpoint import SavedState, misfit, read_state
-from fem.run.link_cells import LinkCells
+from fem.run.drawn_links import LinkCells
 from fem.run.recorder import Recorder
+from fem.run.simulation import BEGINNING, Progress
 from fem.runtime.arrays import FloatArray
 from fem.runtime.compilation import compilation_time
+from fem.runtime.identity import program_identity
+from fem.solid.nodal_stack import FullStack
+
+#: wall time between checkpoints [s]; the stepping pauses every five seconds or so, and writing frames takes time, too
+CHECKPOINT_S = 15.0
+RECORDED, BODY = "recorder.", "body."
+
+Arrays = dict[str, NDArray[Any]]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SavedState:
+    """A simulation as a checkpoint holds it."""
+
+    progress: Progress = BEGINNING
+    arrays: Arrays = field(default_factory=dict)  #: as `state_of` names them; empty: t = 0
+    notes: Mapping[str, Any] = field(default_factory=dict)  #: stored with them
+
+    def restore(self, model: Model, recorder: Recorder) -> None:
+        """Give run, body and recorder this state; they stay as they are at t = 0."""
+        if not self.arrays:
+            return
+        for name, array in changing(model).items():
+            np.copyto(array, self.arrays[name])
+        for name, array in _waiting(model.run, model.run.clock).items():  # the clock is restored by now
+            np.copyto(array, self.arrays[name])
+        if not isinstance(model.body, ModalBody | LooseStack | LinkedBody):
+            model.body.recall(_named(self.arrays, BODY))
+        recorder.recall(_named(self.arrays, RECORDED))
+
+
+class CheckpointWriter:
+    """Writes the checkpoint of a simulation: every 15 s, and when it is interrupted.
+
+    Args:
+        path: of the checkpoint.
+        case_hash: of the case that is simulated.
+        notes: called before a checkpoint is written; makes sure that it may be, and that the files it refers to have
+            reached the disk; returns what is stored with the state.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        model: Model,
+        recorder: Recorder,
+        *,
+        case_hash: str,
+        notes: Callable[[], Mapping[str, Any]],
+    ) -> None:
+        self._path, self._model, self._recorder = path, model, recorder
+        self._case_hash, self._notes, self._program = case_hash, notes, program_identity()
+        self._last = time.monotonic()
+
+    def __call__(self, progress: Progress, now: bool) -> None:
+        """Write the checkpoint if the last one is old enough, or `now`.
+
+        Raises:
+            OSError: it cannot be written, or the folder was lost.
+        """
+        if not now and time.monotonic() - self._last < CHECKPOINT_S:
+            return
+        about = {
+            "case_hash": self._case_hash,
+            "program": self._program,
+            "time_s": float(self._model.run.clock[0].time),
+            "progress": asdict(progress),
+            **self._notes(),
+        }
+        write_archive(self._path, about, state_of(self._model, self._recorder))
+        self._last = time.monotonic()
+
+
+def read_state(path: Path, model: Model, case_hash: str) -> SavedState:
+    """The state in a checkpoint; nothing is restored yet.
+
+    Raises:
+        CheckpointError: damaged, of another case or another version, or not of this model's run.
+    """
+    archive = read_checkpoint(path, case_hash=case_hash, program=program_identity())
+    require_same(path, archive.arrays, changing(model))
+    require_same(path, archive.arrays, _waiting(model.run, archive.arrays["clock"]))
+    try:
+        about = archive.about["progress"]
+        undriven, under_way = about["undriven"], about["slice"]
+        progress = Progress(
+            stepping_cpu_s=float(about["stepping_cpu_s"]),
+            undriven=None
+            if undriven is None
+            else (float(undriven[0]), float(undriven[1]), float(undriven[2])),
+            slice=None if under_way is None else (float(under_way[0]), int(under_way[1])),
+        )
+    except (KeyError, TypeError, ValueError, IndexError) as error:
+        raise misfit(path, f"its notes cannot be read ({error!r})") from None
+    return SavedState(progress=progress, arrays=archive.arrays, notes=archive.about)
+
+
+def misfit(path: Path, reason: str) -> CheckpointError:
+    """The error of a checkpoint that does not fit the run it is found with."""
+    return CheckpointError(path, f"does not fit this run: {reason}")
+
+
+def state_of(model: Model, recorder: Recorder) -> Arrays:
+    """Everything that changes in a run, by name; the arrays themselves, not copies."""
+    arrays = changing(model) | _waiting(model.run, model.run.clock)
+    if not isinstance(model.body, ModalBody | LooseStack | LinkedBody):
+        arrays |= {BODY + name: array for name, array in model.body.memory().items()}
+    return arrays | {RECORDED + name: array for name, array in recorder.memory().items()}
+
+
+def changing(model: Model) -> Arrays:
+    """All of a model that changes from step to step, but for its samples, by name; the arrays themselves."""
+    arrays = model.run.progress()
+    stack = model.body.stack if isinstance(model.body, FullStack) else model.body
+    # a step begins with the weights and the linearisation of the one before
+    if isinstance(stack, LooseStack):
+        arrays["faces.weight"], arrays["faces.gradient"] = stack.faces.weight, stack.faces.gradient
+        arrays["contact.normal_stiffness"] = model.run.problem.contact.normal_stiffness
+        arrays["contact.tangential_stiffness"] = model.run.problem.contact.tangential_stiffness
+    return arrays
+
+
+def _waiting(run: RunState, clock: NDArray[Any]) -> Arrays:
+    """The samples of a run that are in no file yet, as many as this clock says."""
+    arrays: Arrays = {}
+    for name, samples, so_far, gone in (
+        ("history", run.buffers.history, "samples", "samples_drained"),
+        ("frames", run.buffers.frames, "frames", "frames_drained"),
+    ):
+        count = int(clock[so_far][0] - clock[gone][0])
+        parts = samples._asdict().items()
+        arrays |= {f"{name}.{key}": array[:count] for key, array in parts if isinstance(array, np.ndarray)}
+    return arrays
+
+
+def _named(arrays: Arrays, prefix: str) -> Arrays:
+    return {name.removeprefix(prefix): array for name, array in arrays.items() if name.startswith(prefix)}
+
+
+def require_same(path: Path, arrays: Arrays, wanted: Arrays) -> None:
+    """Refuse arrays that are not those of this model's run.
+
+    Raises:
+        CheckpointError: names the first that does not fit.
+    """
+    for name, mine in wanted.items():
+        theirs = arrays.get(name)
+        if theirs is None or theirs.shape != mine.shape or theirs.dtype.descr != mine.dtype.descr:
+            raise misfit(path, f"its {name} is not that of this run")
 
 
 class Spent(TypedDict):

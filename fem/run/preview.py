@@ -6,19 +6,21 @@ from functools import cached_property
 from typing import Any
 
 from contact.interface.penalty import contact_frequency
-from fem.assessment.code_note import code_note
-from fem.assessment.motion_words import doubts
 from fem.case.case import Case
+from fem.case.columns import history_width
 from fem.case.tables.duration import ends_at_rest
 from fem.model.floor_numbers import floor_result
+from fem.model.frames import frame_bytes, frame_interval
 from fem.model.geometry import build_container, node_count
 from fem.model.link_places import require_room
 from fem.model.restitution import contact_restitution, require_loss
 from fem.model.static_checks import StaticChecks, static_checks_of
 from fem.model.support import build_support, normal_penalty
 from fem.model.validity import require_bearing, require_stiff_contact
+from fem.results.disk import BYTES_BESIDE, in_units, table_bytes
 from fem.results.run_result import FloorNumbers, MotionResult
-from fem.run.size import frames_of, required_disk, samples_of
+from fem.run.described import doubts
+from fem.run.static_words import code_note
 from mesh.container import ContainerMesh
 
 
@@ -162,3 +164,30 @@ class Preview:
             "numerics": self.numerics,
             "notes": self.notes,
         }
+
+
+BYTES_OF_A_CHECKPOINT_NODE = 500.0
+
+
+def samples_of(case: Case, duration: float) -> int:
+    """Rows of the history of a run of this duration [s]."""
+    return math.floor(duration / case.output.history_s * (1.0 + 1e-12)) + 1
+
+
+def frames_of(case: Case, nodes: int, duration: float) -> int:
+    """Frames of a run of this duration [s]; `nodes` of the elements."""
+    interval = frame_interval(case, nodes, duration)
+    return math.floor(duration / interval * (1.0 + 1e-12)) + 1 if interval else 0
+
+
+def required_disk(case: Case, nodes: int, duration: float) -> float:
+    """Size of the folder of a run of this duration [s], in bytes; `nodes` of the elements."""
+    history = table_bytes(samples_of(case, duration), history_width(case))
+    frames = frame_bytes(nodes) * frames_of(case, nodes, duration)
+    return history + frames + BYTES_OF_A_CHECKPOINT_NODE * nodes + BYTES_BESIDE
+
+
+def size_in_words(case: Case, nodes: int, duration: float) -> str:
+    """The run and what takes most of its space, for a refusal."""
+    frames = f"{frames_of(case, nodes, duration)} frames of {in_units(frame_bytes(nodes))}"
+    return f"the run ({frames}, {samples_of(case, duration)} rows of history)"

@@ -20,7 +20,7 @@ from fem.model.recovery import Recovery
 from fem.results.fields import FrameFields
 from fem.results.history import History, numbers_of
 from fem.results.outcome import MODES
-from fem.run.link_cells import LinkCells
+from fem.run.drawn_links import LinkCells
 from fem.runtime.arrays import FloatArray
 
 #: share of the largest strain energy from which the stress of a step is looked at

@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 from contact.motion.base_motion import BaseMotion
-from fem.assessment.summary import plain_summary
 from fem.case.case import Case, case_hash, to_toml
 from fem.figures.cache import write_figures
 from fem.model.container import discretise
@@ -25,13 +24,13 @@ from fem.results.kinds import RUN, typed_result
 from fem.results.reader import OpenedRun, open_run
 from fem.results.run_files import RunFiles, copy_data_files, require_free_names
 from fem.results.run_result import RunResult
-from fem.run.changed_runs_file import ChangedRunsFile
-from fem.run.checkpoint import CheckpointWriter
+from fem.run.changed_runs import ChangedRunsFile
 from fem.run.checks import WantedChecks, add_checks, lacks_band, lacks_checks, lacks_margin
 from fem.run.expected import expected_s, say_expected, with_band_s
-from fem.run.output import Start, Stopwatch, open_output, read_start
-from fem.run.size import required_disk, size_in_words
+from fem.run.output import CheckpointWriter, Start, Stopwatch, open_output, read_start
+from fem.run.preview import required_disk, size_in_words
 from fem.run.solve import begun, in_words, resolve, stepped
+from fem.run.summary import plain_summary
 from fem.runtime.compilation import compilation_announced
 from fem.runtime.progress import Reporter, SilentReporter
 from fem.runtime.signals import ending_at_once, interruptible
@@ -76,9 +75,13 @@ def run_case(
     motions = build_motions(case)
     case = resolve(case, mesh, motions)  # what is changed later on is this case, too
     request = case_hash(case)
-    known = finished_result(folder, request, options, reporter)
-    if known is not None and not lacks_checks(known, case, options) and not _lacks_figures(files, case):
-        return open_run(folder)
+    known = finished_result(folder, request, options)
+    if known is not None:
+        complete = not lacks_checks(known, case, options) and not _lacks_figures(files, case)
+        what = "; --force computes it again" if complete else ", but for what is added now"
+        reporter.message(f"{folder} holds this run already{what}")
+        if complete:
+            return open_run(folder)
 
     with (
         open_result_folder(
@@ -173,12 +176,11 @@ def compute_into(
     return result
 
 
-def finished_result(folder: Path, request: str, options: RunOptions, reporter: Reporter) -> RunResult | None:
+def finished_result(folder: Path, request: str, options: RunOptions) -> RunResult | None:
     """The result of a finished run of this case in a folder, unless it is to be overwritten."""
     mark = find_result(folder, RUN, request, force=options.force)
     if mark is None or mark.get("status") not in RUN.finished:
         return None
-    reporter.message(f"{folder} holds this run already; --force computes it again")
     return typed_result(RunResult, mark, folder / RUN.mark)
 
 

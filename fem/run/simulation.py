@@ -21,12 +21,17 @@ from contact.motion.kernel import floor_motion
 from contact.stepping.body import ROTATION
 from contact.stepping.control import most_attempts
 from contact.stepping.integrator import AFTERMATH_SLICE, FAILED, OVERTURNED, REACHED
-from contact.stepping.outcome import DRIVEN, FREE, UNDECIDED, is_over, on_resting_floor
+from contact.stepping.links import LinkedBody
+from contact.stepping.loose_stack import LooseStack
+from contact.stepping.modal_body import ModalBody
+from contact.stepping.outcome import DRIVEN, FREE, UNDECIDED, is_over, on_resting_floor, run_to_end
 from contact.stepping.state import RunState
-from fem.assessment.verdict import audit, relative_rotation, softer_contact
 from fem.model.model import Model
+from fem.model.recovery import Recovery
 from fem.results.outcome import MODES
+from fem.results.run_result import Verdict
 from fem.run.recorder import Recorder
+from fem.run.verdict import audit, end_of_drive, softer_contact, verdict_from
 from fem.runtime.progress import Reporter, SilentReporter
 from fem.solid.elasticity import least_volume_ratio
 from fem.solid.nodal_body import FullBody, advance_body, leave_body_alone
@@ -138,7 +143,7 @@ def simulate(
         code, progress = _advance(model, run, progress, pace)
         if progress.slice is None:
             recorder.drain(run)
-        ratio = relative_rotation(float(run.old.pose[ROTATION]), control.slenderness_angle)
+        ratio = abs(float(run.old.pose[ROTATION])) / control.slenderness_angle
         reporter.update(float(clock.time), ratio, MODES[int(track.mode)])
         if progress.slice is not None:
             continue
@@ -256,3 +261,42 @@ def stepping_failure(model: Model, residual: float) -> str:
         f"{prefix}the contact forces are out of balance by {residual:.2g} N after the last iteration {smallest_tried}; "
         f"try {softer}, contact.weakening_m > 0, or a smaller solver.step_s"
     )
+
+
+def run_without_history(model: Model, recovery: Recovery | None) -> tuple[Verdict, str | None]:
+    """Step a rigid or reduced model to its end, in place.
+
+    Args:
+        model: at t = 0.
+        recovery: of the stresses of its container; None leaves them out.
+
+    Returns:
+        Its verdict, and why it failed, if it did: a verdict that does not count then.
+    """
+    assert isinstance(model.body, ModalBody | LooseStack | LinkedBody)
+    run, duration, until = model.run, model.duration, end_of_drive(model)
+    if model.case.output.stop_when_still:  # its samples and contents are not wanted
+        history = run.buffers.history
+        samples = history._replace(columns=history.columns[:, :0].copy())
+        run = run._replace(buffers=run.buffers._replace(history=samples))
+    if recovery is None:  # nobody looks at the steps that strain it most
+        run = run._replace(strained=run.strained[:, :0].copy())
+    status, kept = run_to_end(
+        model.body,
+        run,
+        duration,
+        rest_from=model.rest_from,
+        aftermath=AFTERMATH / run.problem.control.slowest_rocking,
+        slip_until=until,
+        cycle=min(model.case.motion.period, duration),
+    )
+    interval = run.buffers.history.interval
+    count = int(run.clock[0].samples)
+    last = min(count - 1, int((until + 1e-9) / interval))
+    numbers = np.arange(max(0, last + 1 - kept.slip.size), last + 1)
+    stress = None if recovery is None else recovery.largest_of_steps(run.strained)
+    end = (count - 1) * interval if count else None
+    verdict = verdict_from(model, end, numbers * interval, kept.slip[numbers % kept.slip.size], stress)
+    if status == FAILED:
+        return verdict, stepping_failure(model, float(np.abs(run.work.law - run.work.force).max()))
+    return verdict, audit(model)

@@ -8,11 +8,6 @@ from dataclasses import replace
 from typing import Any
 
 from contact.motion.base_motion import BaseMotion
-from fem.assessment.joint_demands import joint_demands
-from fem.assessment.link_words import link_results
-from fem.assessment.summary import outcome_sentence
-from fem.assessment.verdict import energy_of, numerics_of, verdict_of
-from fem.assessment.warnings import warnings_for
 from fem.case.case import Case
 from fem.case.tables.duration import ends_at_rest, longest_time
 from fem.model.floor_numbers import floor_result
@@ -25,8 +20,14 @@ from fem.model.step_size import largest_step_of
 from fem.model.support import normal_penalty
 from fem.results.history import History
 from fem.results.run_result import RunResult
+from fem.run.card import card_of
+from fem.run.described import link_results
+from fem.run.joints import joint_demands
 from fem.run.recorder import Recorder
 from fem.run.simulation import BEGINNING, Progress, simulate
+from fem.run.static_words import sides_of
+from fem.run.verdict import energy_of, numerics_of, verdict_of
+from fem.run.warnings import warnings_for
 from fem.runtime.identity import versions
 from fem.runtime.progress import Reporter
 from mesh.container import ContainerMesh
@@ -77,7 +78,10 @@ def begun(model: Model, case_hash: str) -> RunResult:
         title=case.title,
         overrides=case.overrides or None,
         case_hash=case_hash,
-        static=model.static.to_result(),
+        static=(static := model.static.to_result()),
+        sides=sides_of(case.stack[0].width, case.container.depth_m, static)
+        if case.container.mesh_file is None
+        else None,
         motion=motion_result(case, model.motion, model.vertical),
         floor=floor_result(case, model.container.mesh, model.static),
         versions=versions(),
@@ -120,8 +124,9 @@ def stepped(
 
 
 def in_words(result: RunResult, case: Case) -> RunResult:
-    """The result with its warnings and the first line of its verdict, which follow from the rest."""
+    """The result with its warnings and the card of its verdict, which follow from the rest."""
     result = replace(result, warnings=tuple(warnings_for(result, case)))
     if result.verdict is None:
         return result
-    return replace(result, verdict=replace(result.verdict, first_line=outcome_sentence(result)))
+    card = card_of(result)
+    return replace(result, verdict=replace(result.verdict, first_line=card[0], card=card))

@@ -23,6 +23,9 @@ class DisplayUnit:
     figures: int = MANY  #: significant figures, without trailing zeros where they are four
     under: str = "<"  #: the word before that limit
     whole: bool = False  #: it counts
+    long: str = (
+        ""  #: the unit a thousand times as large, for sizes from there on; tables of one unit keep this one
+    )
 
     def text(
         self,
@@ -42,6 +45,8 @@ class DisplayUnit:
         """
         if value is None:
             return ""
+        if self.long and not bare and self.factor * max(map(abs, (value, *(reach or ())))) >= 1e3:
+            return self._longer().text(value, reach, figures=figures)
         kept = figures_of(reach, figures or self.figures)
         low, high = (self.in_figures(end, kept) for end in reach or (value, value))
         number = self.in_figures(value, kept)
@@ -52,10 +57,15 @@ class DisplayUnit:
         """A range alone, such as "0.6 to 32 mm"; its one number where the ends are shown alike, empty without one."""
         if reach is None:
             return ""
+        if self.long and self.factor * max(map(abs, reach)) >= 1e3:
+            return self._longer().range_text(reach)
         low, high = (self.in_figures(end, figures_of(reach, self.figures)) for end in reach)
         if 0.0 <= reach[0] < self.least < reach[1]:
             return f"up to {high} {self.name}".rstrip()
         return f"{low if low == high else f'{low} to {high}'} {self.name}".rstrip()
+
+    def _longer(self) -> "DisplayUnit":
+        return replace(self, name=self.long, factor=1e-3 * self.factor, long="")
 
     def in_figures(self, value: float, figures: int) -> str:
         """A number [SI] with so many significant figures, or the limit that it is below."""
@@ -78,11 +88,11 @@ def in_unit(value: float, factor: float) -> float:
 
 def in_figures(value: float, figures: int, factor: float = 1.0, least: float = 0.0, under: str = "<") -> str:
     """A number with so many significant figures, without an exponent where it has at most six digits."""
-    if 0.0 < abs(value) < least:
-        return f"{under} {factor * least:g}"
     number = in_unit(value, factor)
-    if number == 0.0:
+    if abs(number) < INVISIBLE:
         return "0"
+    if abs(value) < least:
+        return f"{under} {factor * least:g}"
     digits = figures - 1 - math.floor(math.log10(abs(float(f"{number:.{figures - 1}e}"))))
     if not -4 <= digits - figures + 1 <= 5 and abs(number) < 1e-4:
         return f"{number:.{figures - 1}e}"
@@ -104,13 +114,15 @@ def visible_number(value: float | None, factor: float = 1.0, form: str = ".4g") 
 
 
 COUNT, WHOLE, SECONDS = DisplayUnit(), DisplayUnit(whole=True), DisplayUnit(name="s")
-MILLIMETRES = DisplayUnit(name="mm", factor=1e3, least=1e-5)
+MILLIMETRES = DisplayUnit(name="mm", factor=1e3, least=1e-5, long="m")
+METRES = DisplayUnit(name="m")
 SHORT_MILLIMETRES = replace(MILLIMETRES, figures=3)
 #: what loose boxes slip at impacts is less known than that: their joints' dashpots decide it
 JOINT_MILLIMETRES = replace(SHORT_MILLIMETRES, least=1e-3, under="under")
 DEGREES = DisplayUnit(name="degrees", factor=math.degrees(1.0), least=math.radians(0.01), figures=3)
 #: of a rotation to the slenderness angle; a tenth of what counts as rocking
 RATIO = DisplayUnit(least=1e-3, figures=3)
-KILONEWTONS = DisplayUnit(name="kN", factor=1e-3)
+PERCENT = DisplayUnit(name="%", factor=100.0, least=1e-3, figures=FEW)
+KILONEWTONS = DisplayUnit(name="kN", factor=1e-3, least=10.0)
 VELOCITY, ACCELERATION = DisplayUnit(name="m/s", least=1e-5), DisplayUnit(name="m/s2")
 MEGAPASCALS = DisplayUnit(name="MPa", factor=1e-6)

@@ -12,7 +12,6 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Unpack
 
-from fem.assessment.ranges import largest_bolt_forces
 from fem.case.case import case_hash
 from fem.html.page import Signature
 from fem.results.disk import table_bytes
@@ -21,6 +20,7 @@ from fem.results.folder import ResultFolder
 from fem.results.kinds import SITE
 from fem.results.outcome import ENDINGS
 from fem.results.run_result import Band
+from fem.run.ranges import largest_bolt_forces
 from fem.runtime.identity import command_line, versions
 from fem.seismic.ground_motion import GroundMotion
 from fem.site.answer import FULFILLED, NOT_FULFILLED, answer_of, no_answer_yet

@@ -11,8 +11,6 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, NamedTuple
 
-from fem.assessment.motion_words import covered_in_words, is_cut, missing_peak
-from fem.assessment.verdict import verdict_of
 from fem.case.case import Case, CaseError
 from fem.model.container import Container
 from fem.model.equilibrium import Equilibrium, same_equilibrium
@@ -23,10 +21,11 @@ from fem.results.figures import BOXES, SCALARS
 from fem.results.run_result import Verdict
 from fem.run.checks import WantedChecks
 from fem.run.compute import compute_on
+from fem.run.described import covered_in_words, is_cut, missing_peak
 from fem.run.expected import expected_s, say_expected, with_band_s
-from fem.run.outcome import run_without_history
 from fem.run.recorder import Recorder
-from fem.run.simulation import simulate
+from fem.run.simulation import run_without_history, simulate
+from fem.run.verdict import verdict_of
 from fem.runtime.progress import Reporter, SilentReporter, clock_time
 from fem.runtime.signals import stop_requested
 from fem.study.containers import ContainerCache

@@ -13,16 +13,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from fem.assessment.sureness import (
-    OTHER_END,
-    OTHER_REGIME,
-    REGIME_UNSURE,
-    SAME,
-    SURE,
-    UNSURE,
-    deciding_inputs,
-    difference,
-)
 from fem.case.case import Case
 from fem.case.tables.input_keys import SUPPORT, TOLERANCE
 from fem.case.uncertainty import InputChange, all_changes, as_changed
@@ -33,6 +23,16 @@ from fem.results.figures import TURNED, types_of
 from fem.results.outcome import Ending, ending_of
 from fem.run.bracket import Change, changes_of, least_width, values_to_try
 from fem.run.solve import chosen_values
+from fem.run.sureness import (
+    OTHER_END,
+    OTHER_REGIME,
+    REGIME_UNSURE,
+    SAME,
+    SURE,
+    UNSURE,
+    deciding_inputs,
+    difference,
+)
 from fem.runtime.arrays import BoolArray
 from fem.study.axes import Axis
 from fem.study.containers import container_key
@@ -92,7 +92,7 @@ class Trial(NamedTuple):
 
     copy: Copy
     run: RunShown
-    level: int  #: how it differs from the cell, see `fem.assessment.sureness`; a failed one as if it ended otherwise
+    level: int  #: how it differs from the cell, see `fem.run.sureness`; a failed one as if it ended otherwise
 
 
 class Copies:

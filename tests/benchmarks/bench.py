@@ -30,14 +30,14 @@ import psutil
 import fem
 from contact.stepping.outcome import run_to_end
 from contact.stepping.state import make_samples
-from fem.assessment.rigid_check import block_of
 from fem.case.case import Case, load_case
 from fem.case.strength import scaled_motion
 from fem.figures.cache import write_figures
 from fem.model.container import discretise
 from fem.model.model import Model, build_model
-from fem.run.band import with_band
+from fem.run.checks import with_band
 from fem.run.recorder import Recorder
+from fem.run.rigid_check import block_of
 from fem.run.run import RunOptions, run_case
 from fem.run.simulation import simulate
 from fem.seismic.action import SiteAction, eurocode_shape

@@ -1,11 +1,11 @@
 """Build a model, step it, and judge what it did: the way from a case to a verdict, without files."""
 
 import fem
-from fem.assessment.verdict import verdict_of
 from fem.model.container import discretise
 from fem.model.geometry import build_container
 from fem.model.model import build_model
 from fem.run.recorder import Recorder
+from fem.run.verdict import verdict_of
 from fem.solid.nodal_body import advance_body
 
 case = fem.load_case("free_rocking", ["solver.model=rigid", "solver.duration_s=3"])

@@ -12,12 +12,12 @@ from collections.abc import Callable
 
 from random_cases import random_case
 
-from fem.assessment.verdict import GAIN_LIMIT, LOSS_LIMIT, LOSS_SHARE_LIMIT, energy_of, outcome_of
 from fem.case.case import Case, load_case
 from fem.model.model import build_model
 from fem.results.outcome import Outcome
 from fem.run.recorder import Recorder
 from fem.run.simulation import simulate
+from fem.run.verdict import GAIN_LIMIT, LOSS_LIMIT, LOSS_SHARE_LIMIT, energy_of, outcome_of
 
 STUCK, STUCK_EXTREME = 60.0, 120.0  #: CPU time [s]
 SHORT = ("solver.duration_s=2", "output.fields_s=0", "solver.element_size_m=0.5")

@@ -15,12 +15,12 @@ from paper.cases import RIGID, SHELL, PaperCase
 from runs import Finished
 
 from contact.reference.rigid_block import RigidBlock
-from fem.assessment.rigid_check import block_of
 from fem.case.case import Case
 from fem.model.model import Model, build_model
 from fem.model.support import normal_penalty
 from fem.results.outcome import ENDINGS, ROCKING
 from fem.run.recorder import Recorder
+from fem.run.rigid_check import block_of
 from fem.run.simulation import simulate
 from fem.study.containers import ContainerCache
 from fem.study.design import CaseMaker

@@ -14,9 +14,9 @@ from paper.figures import curve, draw_curves
 
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
-from fem.assessment.joint_demands import joint_demands
 from fem.model.recovery import recovery_of
 from fem.results.outcome import Outcome
+from fem.run.joints import joint_demands
 from fem.run.recorder import Recorder
 from fem.run.simulation import simulate
 

@@ -16,14 +16,14 @@ from contact.motion.kernel import FloorMotion, floor_motion
 from contact.reference.rigid_block import RigidBlock
 from contact.stepping import modal_kernels
 from contact.stepping.modal_body import ModalBody
-from fem.assessment.rigid_check import block_of
-from fem.assessment.verdict import outcome_of
 from fem.case.case import Case, read_case
 from fem.model.container import Container
 from fem.model.model import Model, build_model
 from fem.results.history import History
 from fem.run.recorder import Recorder
+from fem.run.rigid_check import block_of
 from fem.run.simulation import simulate
+from fem.run.verdict import outcome_of
 
 GRAVITY = 9.81
 Keys = dict[str, Any]  #: dotted keys of a case and their values

@@ -8,17 +8,17 @@ import tomllib
 from dataclasses import replace
 from pathlib import Path
 
-from fem.assessment.link_words import links_in_words
-from fem.assessment.rule_or_run import governing
-from fem.assessment.summary import brief_summary, outcome_sentence, plain_summary
-from fem.assessment.sure_words import sureness_in_words
-from fem.assessment.sureness import judged
-from fem.assessment.warnings import warnings_for
 from fem.case.case import load_case
 from fem.case.uncertainty import InputChange
 from fem.model.geometry import build_container
 from fem.model.model import static_checks_of
 from fem.results.run_result import ChangedRun, Energy, Numerics, RunResult, Verdict
+from fem.run.card import card_of
+from fem.run.described import links_in_words
+from fem.run.static_words import governing
+from fem.run.summary import brief_summary, plain_summary
+from fem.run.sureness import judged
+from fem.run.warnings import warnings_for
 
 # The stack of four under 4.0 m/s2: 40 kN against 39.24 kN, 80 kNm against 53.955 kNm (the paper, g = 9.81).
 CASE = load_case("seed_stack_plateau")
@@ -116,8 +116,7 @@ def told(asked):
     result, case = changed(asked)
     folder = Path("outputs/stack")
     parts = {
-        "first line": outcome_sentence(result),
-        "how sure": sureness_in_words(result) if result.verdict else "",
+        "card": "\n".join(card_of(result)),
         "rule or run": "\n".join(governing(result)) if result.verdict else "",
         "links": links_in_words(result) if result.verdict else "",
         "warnings": "\n".join(warnings_for(result, case)),

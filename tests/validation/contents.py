@@ -17,7 +17,7 @@ from validation.tables import measured_table
 
 from fem.model.container import discretise
 from fem.model.model import build_model
-from fem.run.outcome import run_without_history
+from fem.run.simulation import run_without_history
 from fem.seismic.action import SiteAction, eurocode_shape
 from fem.seismic.artificial import artificial_motions
 from fem.seismic.ground_motion import GroundMotion

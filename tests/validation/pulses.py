@@ -22,7 +22,7 @@ from fem.case.case import Case
 from fem.model.container import Container, discretise
 from fem.model.model import Model, build_model
 from fem.results.outcome import Outcome
-from fem.run.outcome import run_without_history
+from fem.run.simulation import run_without_history
 
 ANGLES = (0.16, 0.18, 0.20, 0.22, 0.25, 0.28, 0.32, 0.36, 0.40)  #: tried [rad]
 #: speeds of a single step that just overturns [m/s]; each gives the radius to an angle

@@ -32,7 +32,7 @@ from fem.model.container import Container
 from fem.model.model import build_model
 from fem.records.spectrum import evenly_sampled, response_spectrum
 from fem.results.outcome import Outcome
-from fem.run.outcome import run_without_history
+from fem.run.simulation import run_without_history
 from fem.runtime.arrays import BoolArray, FloatArray
 from fem.runtime.threads import cores
 from fem.study.runner import Runner

@@ -12,8 +12,8 @@ from running_example import SITE, k1
 
 from contact.motion.table import TableMotion
 from contact.reference.rocking import RockingOutcome, simulate_rocking
-from fem.assessment.rigid_check import floor_of
 from fem.case.case import case_from
+from fem.run.rigid_check import floor_of
 from fem.seismic.artificial import artificial_motions, artificial_set
 
 CASE = case_from(

@@ -22,8 +22,8 @@ from contact.motion.kernel import PIECEWISE, as_floor_motion
 from contact.reference.rigid_block import RigidBlock
 from contact.stepping.body import VELOCITY_Z
 from contact.stepping.scheme import generalised_alpha, newmark
-from fem.assessment.verdict import audit
 from fem.model.model import Model, build_model
+from fem.run.verdict import audit
 from fem.solid.assembly import assemble
 from fem.solid.reduction import static_response
 

@@ -12,6 +12,7 @@ from fem.case.tables.motion_tables import MotionTable, VerticalTable
 from fem.case.tables.run_tables import (
     DocumentTable,
     InitialTable,
+    LimitsTable,
     OutputTable,
     SolverTable,
     StaticTable,
@@ -31,6 +32,7 @@ TABLES: dict[str, type[CaseTable]] = {
     "initial": InitialTable,
     "static": StaticTable,
     "wind": WindTable,
+    "limits": LimitsTable,
     "solver": SolverTable,
     "output": OutputTable,
     "uncertainty": UncertaintyTable,
@@ -39,7 +41,7 @@ TABLES: dict[str, type[CaseTable]] = {
 
 
 #: tables that mean something by standing in a case file; the others have their defaults where they do not
-OPTIONAL = frozenset({"static", "wind", "document"})
+OPTIONAL = frozenset({"static", "wind", "limits", "document"})
 
 
 class CaseHeading(CaseTable):

@@ -1,4 +1,4 @@
-"""The tables [initial], [static], [wind], [solver], [output], [document]: a run, what it writes, and who signs it."""
+"""The tables [initial], [static], [wind], [limits], [solver], [output], [document]: a run, its files, who signs it."""
 
 from typing import Annotated, Literal
 
@@ -68,6 +68,14 @@ class WindTable(CaseTable):
             lambda wind: (wind.basic_velocity_m_s is None) == (wind.terrain is None),
             "and terrain belong together",
         ),
+    )
+
+
+class LimitsTable(CaseTable):
+    """What is allowed; no run changes for it."""
+
+    slip_m: Annotated[float | None, q.LENGTH] = optional_key(
+        "slip beyond which the container leaves its place; default: its width, or the gap to a neighbour", 0.1
     )
 
 

@@ -5,7 +5,7 @@ from cases import named_case
 
 from fem.model.container import changed_container, discretise
 from fem.model.model import build_model
-from fem.run.outcome import run_without_history
+from fem.run.simulation import run_without_history
 
 PULSE = {
     "solver.model": "rigid",

@@ -10,7 +10,7 @@ from cases import named_case
 from contact.reference.rigid_block import RigidBlock
 from fem.case.tables.unknown_inputs import ranges_of
 from fem.model.model import build_model
-from fem.run.outcome import run_without_history
+from fem.run.simulation import run_without_history
 
 
 @pytest.mark.parametrize("length", [0.05, 0.2, 0.4])

@@ -7,9 +7,8 @@ from fem.case.case import load_case
 from fem.model.model import build_model
 from fem.model.peaks import stressed_nodes
 from fem.model.recovery import recovery_of
-from fem.run.outcome import run_without_history
 from fem.run.recorder import Recorder
-from fem.run.simulation import simulate
+from fem.run.simulation import run_without_history, simulate
 
 
 @pytest.fixture(scope="module")

@@ -6,7 +6,7 @@ import pytest
 from fem.case.case import Case, case_from
 from fem.model.model import build_model
 from fem.run.compute import compute
-from fem.run.outcome import run_without_history
+from fem.run.simulation import run_without_history
 
 STEP = 0.01
 BOX = {

@@ -8,9 +8,8 @@ from contact.stepping.integrator import FAILED
 from contact.stepping.outcome import run_to_end
 from fem.case.case import CaseError, load_case
 from fem.model.model import build_model
-from fem.run.outcome import run_without_history
 from fem.run.recorder import Recorder
-from fem.run.simulation import simulate, stepping_failure
+from fem.run.simulation import run_without_history, simulate, stepping_failure
 
 PULSE = {
     "motion.kind": "pulse",

@@ -11,7 +11,7 @@ from floors import half_sine_pulse, one_sine_pulse
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
 from fem.model.model import build_model
-from fem.run.outcome import run_without_history
+from fem.run.simulation import run_without_history
 
 WEIGHT, LENGTH, EDGE = 98.1e3, 0.1, 0.55
 STRENGTH = 5e6  #: of asphalt [Pa]

@@ -8,13 +8,13 @@ import shutil
 import pytest
 
 from fem.__main__ import main
-from fem.assessment.joint_tables import unbolted
 from fem.case.case import load_case, read_case
 from fem.html.units import typeset
 from fem.model.model import build_model
 from fem.report.animation import animation_of
 from fem.report.run_page import Signature, run_report
 from fem.results.reader import open_run
+from fem.run.joints import unbolted
 from fem.run.run import RunOptions, run_case
 
 SECTIONS = """verdict-title asked assumptions static motion-title band modes block joints sheet

@@ -5,7 +5,7 @@ import re
 import pytest
 from cases import named_case
 
-from fem.assessment.floor_words import drawn_level
+from fem.model.floor_numbers import drawn_level
 from fem.report.comparison import case_rows
 from fem.report.sketch import sketch
 

@@ -5,8 +5,6 @@ from dataclasses import fields
 
 import pytest
 
-from fem.assessment.ranges import in_words
-from fem.assessment.summary import result_rows
 from fem.case.case import load_case
 from fem.report.sweep_map import QUANTITIES
 from fem.results.figures import (
@@ -20,6 +18,8 @@ from fem.results.figures import (
     summary_order,
 )
 from fem.results.run_result import Band, ChangedRun, RunResult, Verdict
+from fem.run.ranges import in_words
+from fem.run.summary import result_rows
 from fem.site.result import SiteRun
 from fem.site.runs import COLUMNS
 from fem.study.runner import run_chunk

@@ -19,7 +19,7 @@ import fem.study.sweep
 from fem.__main__ import main
 from fem.case.case import load_case
 from fem.model.geometry import build_container, node_count
-from fem.run.size import required_disk
+from fem.run.preview import required_disk
 
 COMMON = ("solver.model=rigid", "solver.duration_s=2", "output.figures=false", "output.fields_s=0.05")
 BESIDE = 4e6  #: told for a report, figures and a checkpoint, none of which are written here [bytes]

@@ -17,7 +17,7 @@ from fem.case.case import case_hash
 from fem.results.kinds import read_result
 from fem.results.run_result import ChangedRun
 from fem.run import changed_runs
-from fem.run.changed_runs_file import ChangedRunsFile
+from fem.run.changed_runs import ChangedRunsFile
 
 SHORT = (
     "solver.duration_s=0.5",

@@ -5,10 +5,10 @@ import pytest
 import pyvista
 
 import fem
-from fem.assessment.drawn_links import drawn_links
 from fem.model.model import build_model
 from fem.report.animation import animation_of, player_data
 from fem.results.fields import STOP, TIE
+from fem.run.drawn_links import drawn_links
 from fem.run.run import RunOptions, run_case
 
 SIDES = {"stiffness_N_m": 1e8}

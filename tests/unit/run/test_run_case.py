@@ -9,10 +9,10 @@ import pytest
 from floors import still_floor
 from interrupted_runs import run_command
 
-import fem.assessment.verdict
 import fem.model.equilibrium
 import fem.model.step_size
 import fem.run.run
+import fem.run.verdict
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
 from fem.__main__ import main
@@ -96,7 +96,7 @@ class TestEnd:
     def test_an_energy_balance_beyond_its_limits_fails_the_run_which_has_no_checks_then(
         self, tmp_path, monkeypatch
     ):
-        monkeypatch.setattr(fem.assessment.verdict, "GAIN_LIMIT", -1.0)
+        monkeypatch.setattr(fem.run.verdict, "GAIN_LIMIT", -1.0)
         found = run(tmp_path / "r", "rocking", "solver.duration_s=1", check_rigid=True, band=True)
         assert found.status == "failed"
         assert "of the energy to overturn" in found.result["error"]

@@ -15,7 +15,7 @@ import fem.results.archive
 import fem.results.fields
 import fem.results.files
 import fem.results.history
-import fem.run.checkpoint
+import fem.run.output
 from fem.__main__ import main
 from fem.results.archive import read_archive, write_archive
 from fem.results.history import read_history
@@ -107,7 +107,7 @@ def test_the_page_of_an_interrupted_run_is_not_signed(tmp_path, monkeypatch):
 
 def test_a_history_that_cannot_grow_ends_the_run_with_3(tmp_path, capsys, monkeypatch, whole):
     limit = (whole / "history.csv").stat().st_size // 2
-    monkeypatch.setattr(fem.run.checkpoint, "CHECKPOINT_S", 0.0)
+    monkeypatch.setattr(fem.run.output, "CHECKPOINT_S", 0.0)
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (limit, before[1]))
     try:
@@ -135,7 +135,7 @@ def test_a_history_that_cannot_grow_ends_the_run_with_3(tmp_path, capsys, monkey
     ids=["frame", "rename", "sync", "checkpoint"],
 )
 def test_a_disk_that_fills_up_ends_the_run_with_3(tmp_path, capsys, monkeypatch, whole, module, name, after):
-    monkeypatch.setattr(fem.run.checkpoint, "CHECKPOINT_S", 0.0)
+    monkeypatch.setattr(fem.run.output, "CHECKPOINT_S", 0.0)
     kept, calls = getattr(module, name), []
 
     def fills_up(*arguments, **options):
@@ -153,7 +153,7 @@ def test_a_disk_that_fills_up_ends_the_run_with_3(tmp_path, capsys, monkeypatch,
 
 
 def test_a_folder_removed_during_the_run_ends_it_with_3(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr(fem.run.checkpoint, "CHECKPOINT_S", 0.0)
+    monkeypatch.setattr(fem.run.output, "CHECKPOINT_S", 0.0)
     at_time(monkeypatch, 1.0, lambda: shutil.rmtree(tmp_path / "r"))
     assert command(tmp_path / "r") == 3
     message = capsys.readouterr().err
@@ -170,7 +170,7 @@ def test_a_folder_taken_by_another_run_is_left_to_it(tmp_path, capsys, monkeypat
         other[0].__enter__()
         (tmp_path / "r" / "run.json").write_text("theirs")
 
-    monkeypatch.setattr(fem.run.checkpoint, "CHECKPOINT_S", 0.0)
+    monkeypatch.setattr(fem.run.output, "CHECKPOINT_S", 0.0)
     at_time(monkeypatch, 1.0, take)
     assert command(tmp_path / "r") == 3
     assert "taken by another process" in capsys.readouterr().err

@@ -14,8 +14,8 @@ from interrupted_runs import COARSE, FLAT_SHELL, require_readable, require_same,
 #: the command line, with a checkpoint after every slice
 PROMPT = """
 import sys
-import fem.run.checkpoint, fem.run.simulation
-fem.run.checkpoint.CHECKPOINT_S = 0.0
+import fem.run.output, fem.run.simulation
+fem.run.output.CHECKPOINT_S = 0.0
 fem.run.simulation.SLICE_REDUCED = fem.run.simulation.SLICE_FULL = 0.01
 from fem.__main__ import main
 sys.exit(main(sys.argv[1:]))

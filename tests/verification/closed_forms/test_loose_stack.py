@@ -16,7 +16,7 @@ from contact.stepping.observables import NEVER
 from contact.stepping.outcome import run_to_end
 from fem.case.case import case_from
 from fem.model.model import build_model
-from fem.run.outcome import run_without_history
+from fem.run.simulation import run_without_history
 
 OMEGA = 6.928  #: of the default motion [rad/s]
 

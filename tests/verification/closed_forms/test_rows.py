@@ -14,13 +14,13 @@ from contact.stepping.body import stands_loose
 from contact.stepping.joints import holding_force
 from contact.stepping.ledger import CONTACT_DAMPING, FRICTION
 from contact.stepping.links import links_of
-from fem.assessment.verdict import verdict_of
 from fem.case.case import Case, CaseError, load_case
 from fem.case.tables.neighbours import case_of
 from fem.model.geometry import build_container
 from fem.model.model import build_model
 from fem.model.motion import build_motions
 from fem.run.solve import chosen_values
+from fem.run.verdict import verdict_of
 
 MASS, WIDTH, SPEED, GRAVITY = 1e4, 1.1, 0.5, 9.81
 BESIDE = {"side": "right", "gap_m": 0.1, "stiffness_N_m": 1e8}

@@ -16,7 +16,7 @@ from runs import Finished, run
 from contact.motion.base_motion import HarmonicMotion
 from fem.case.case import Case, CaseError, read_case
 from fem.model.model import build_model
-from fem.run.outcome import run_without_history
+from fem.run.simulation import run_without_history
 
 #: pulls for longer than any run here lasts
 PULL = {"vertical.kind": "pulse", "vertical.shape": "rectangular", "vertical.pulse_s": 50.0}

@@ -3,8 +3,6 @@
 The runs are those in which an independent review found verdicts that were sure and depended on unknown inputs.
 """
 
-import re
-
 import pytest
 from cases import named_case
 
@@ -69,8 +67,6 @@ def test_a_pull_beyond_stiction_slides_and_friction_decides_how_far(tmp_path):
     assert verdict.decided_by[0] == "contact.mu_kinetic"
     low, high = verdict.band.max_slip_m
     assert high > 10.0 * low
-    assert "Stands in all" in verdict.first_line and " Slip is 0.0" in verdict.first_line
-    assert "It may rest, depending on kinetic friction" in verdict.first_line
 
 
 @pytest.mark.parametrize("section", ["shell", "solid"])
@@ -82,10 +78,7 @@ def test_the_default_motion_hangs_on_the_fall_of_friction(tmp_path, section):
     assert {"contact.mu_kinetic", "contact.weakening_m"} >= {*verdict.decided_by[:1]}
     low, high = verdict.band.rotation_ratio
     assert low < 0.25 and high == pytest.approx(0.399, abs=0.02)  # the block without slip
-    assert re.search(
-        "depend(s|ing) on (kinetic friction|fall of friction|the fall of friction)", verdict.first_line
-    )
-    assert "contact." not in verdict.first_line
+    assert not any("contact." in line for line in verdict.card)
 
 
 @pytest.mark.parametrize(("model", "share"), [("rigid", 0.98), ("reduced", 0.92)])
@@ -99,9 +92,6 @@ def test_a_flat_base_that_rocks_below_uplift_is_not_sure(tmp_path, model, share)
     assert verdict.sure == "unsure" and verdict.decided_by[0] == "contact.normal_penalty_Pa_m"
     (floor,) = (one for one in verdict.band.members if one.kind == "floor")
     assert floor.rotation_ratio < 0.01
-    assert (
-        "below uplift of a rigid block, and on a floor thirty times as stiff it rests" in verdict.first_line
-    )
     page = " ".join((tmp_path / "summary.txt").read_text().split())
     assert f"the static rule stands at {share:.3f} and the run rocked. The rule governs" in page
 

@@ -19,10 +19,10 @@ from contact.reference.planar_block import PlanarBlock, PlanarImpact, PlanarMode
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import RockingImpact, RockingMotion, simulate_rocking
 from contact.stepping.observables import ROCKING, SLIDING
-from fem.assessment.loose_boxes import AS_ONE, joints_in_words
 from fem.model.model import Model
 from fem.results.history import ANALYTIC_COLUMN, History
 from fem.results.run_result import AnalyticBlock, PeakPair, RigidCheckResult, RunAndBlock, Verdict
+from fem.run.joints import AS_ONE, joints_in_words
 from fem.runtime.arrays import FloatArray
 
 STIFF_CONTAINER = 7.0  #: first elastic over contact frequency, from which an impact is a rigid block's

@@ -16,34 +16,19 @@ from rich.console import Console, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from fem.assessment.code_note import code_note
-from fem.assessment.floor_words import floor_rows
-from fem.assessment.joint_tables import joint_tables, titled_table
-from fem.assessment.link_words import fall_in_row, links_in_words
-from fem.assessment.loose_boxes import (
-    box_table,
-    fall_in_words,
-    joints_in_words,
-    largest_joint_slip,
-    leaning_in_words,
-)
-from fem.assessment.margin_words import margin_in_words
-from fem.assessment.motion_words import covered_in_words, missing_peak, motion_in_words
-from fem.assessment.ranges import bolt_forces, crushes, in_words, largest_ratio, largest_slip, of_band
-from fem.assessment.rule_or_run import governing
-from fem.assessment.sure_words import sureness_in_words
 from fem.results import run_result
 from fem.results.figures import BRIEF, FIGURES, SUMMARY, Place, summary_order
 from fem.results.kinds import RUN
-from fem.results.outcome import ENDINGS, ROCKING, SLIDING, Outcome
-from fem.runtime.units import DEGREES, INVISIBLE, MILLIMETRES, RATIO, visible_number
+from fem.results.outcome import ENDINGS, SLIDING, Outcome
+from fem.run.card import card_of
+from fem.run.described import fall_in_row, floor_rows, motion_in_words
+from fem.run.joints import box_table, joint_tables, largest_joint_slip, titled_table
+from fem.run.ranges import bolt_forces, crushes, in_words, largest_ratio, largest_slip, of_band
+from fem.run.static_words import code_note, governing, rule_says
+from fem.runtime.units import INVISIBLE, MILLIMETRES, PERCENT, RATIO, SHORT_MILLIMETRES, visible_number
 
 TEXT_WIDTH = 80
-LEANING = 0.01  #: tilt at the end over the slenderness angle from which it is said
-MARGIN_NOTE = (
-    "The rotation ratio is not a margin. The margin is the factor on the motion at which the container overturns; "
-    "--margin finds it."
-)
+CRUSHED = 1e-4  #: indentation from which a floor counts as crushed [m]
 
 
 def plain_summary(result: run_result.RunResult, *, folder: Path) -> str:
@@ -73,11 +58,10 @@ def _lines(parts: Iterator[RenderableType]) -> list[str]:
 
 def _brief_parts(result: run_result.RunResult, folder: Path) -> Iterator[RenderableType]:
     # Text, never markup: titles, folders and warnings may hold anything.
-    yield Text(result.title or result.case or folder.name)
-    yield Text(f"{outcome_sentence(result)}\n")
+    yield from _heading(result, folder)
     verdict, motion = result.verdict or run_result.Verdict(), result.motion or run_result.MotionResult()
     rows = [("floor motion", motion_in_words(motion)), *_figure_rows(result, BRIEF)]
-    rows.append(("outcomes of the band", _band(verdict.band)))
+    rows.append(("outcomes of the variations", _band(verdict.band)))
     yield from _table_of_pairs(_of_whom(verdict), [row for row in rows if row[1]])
     of_record = (*motion.notes, *(motion.vertical.notes if motion.vertical else ()))
     if of_record:  # what was read is no detail
@@ -86,10 +70,15 @@ def _brief_parts(result: run_result.RunResult, folder: Path) -> Iterator[Rendera
         yield _static_table(replace(result.static, code=None, code_q1=None), to_compare(result))
 
 
+def _heading(result: run_result.RunResult, folder: Path) -> Iterator[RenderableType]:
+    """The title and the card."""
+    yield Text(result.title or result.case or folder.name)
+    yield Text("\n".join(card_of(result)) + "\n")
+
+
 def _parts(result: run_result.RunResult, folder: Path) -> Iterator[RenderableType]:
     verdict = result.verdict or run_result.Verdict()
-    yield Text(result.title or result.case or folder.name)
-    yield Text(f"{outcome_sentence(result)}\n")
+    yield from _heading(result, folder)
     yield from _table_of_pairs(_of_whom(verdict), result_rows(result))
     if result.static is not None:
         yield _static_table(result.static, to_compare(result))
@@ -99,8 +88,6 @@ def _parts(result: run_result.RunResult, folder: Path) -> Iterator[RenderableTyp
     yield from box_table(result)
     if result.joints:
         yield from joint_tables(result.joints, verdict)
-    if lacks_margin(result):
-        yield Text(f"{MARGIN_NOTE}\n")
     if note := band_note(verdict.band):
         yield Text(f"{note}\n")
     if result.warnings:
@@ -113,67 +100,12 @@ def band_note(band: run_result.Band | None) -> str:
     kinds = {member.kind for member in band.members[1:]} if band is not None else set()
     if not kinds:
         return ""
-    at_once = ", and with all of them drawn at once" if "draw" in kinds else ""
+    at_once = ", and with all of them changed at random at once" if "draw" in kinds else ""
     return (
-        "The band repeats the run with changed inputs: one at a time to the ends of their ranges, which the case "
+        "The variations repeat the run with changed inputs: one at a time to the ends of their ranges, which the case "
         f"states or which follow from it{at_once}. Numbers in parentheses are the least and the largest of the runs "
         "that stand, or overturn, as this one does."
     )
-
-
-def lacks_margin(result: run_result.RunResult) -> bool:
-    """Whether a run rocked under a motion and has no margin: a reader may then take its rotation ratio for one."""
-    verdict, motion = result.verdict or run_result.Verdict(), result.motion or run_result.MotionResult()
-    moves = motion.kind != "none" or motion.vertical is not None
-    return moves and verdict.outcome in ROCKING and verdict.margin is None
-
-
-def outcome_sentence(result: run_result.RunResult) -> str:
-    """The first line of the verdict: what happened, and how sure that is."""
-    if result.status == "failed":
-        return f"No verdict: {result.error or 'the solution failed'}. Results up to there are kept."
-    outcome = _found(result)
-    if result.status in ("interrupted", "running"):
-        return f"Not finished ({result.status}). So far: {outcome}."
-    parts = (margin_in_words(result.verdict, result.motion), f"Result: {outcome}.", sureness_in_words(result))
-    return " ".join(part for part in parts if part)
-
-
-def _found(result: run_result.RunResult) -> str:
-    verdict, motion = result.verdict or run_result.Verdict(), result.motion or run_result.MotionResult()
-    if verdict.outcome is None:
-        return "no result yet"
-    if verdict.outcome == Outcome.INVALID:
-        return (
-            f"not valid: the corner is destroyed, {verdict.invalid_reason}; what else was found does not hold"
-        )
-    if verdict.outcome == Outcome.OVERTURNED:
-        at = verdict.overturned_at_s
-        fell = (
-            fall_in_words(verdict)
-            or fall_in_row(verdict)
-            or (leaning_in_words("", verdict) if verdict.leans else "")
-            or "overturned" + (f" at t = {at:.3f} s" if at is not None else "")
-        )
-        return "; ".join(filter(None, (fell, links_in_words(result))))
-    restored = ", returned upright" if verdict.restored else _leaning(verdict, result.static)
-    under = f" under {covered_in_words(motion)}{missing_peak(motion)}"
-    if result.status not in RUN.finished:
-        simulated = (result.numerics or run_result.Numerics()).simulated_s
-        under = "" if simulated is None else f" up to t = {simulated:.4g} s"
-    elif motion.kind == "none" and motion.vertical is None:  # it was pushed, or stood tilted
-        under = ""
-    outcome = f"{Outcome(verdict.outcome).verb}{restored} and did not overturn{under}"
-    return "; ".join(filter(None, (outcome, joints_in_words(verdict, result.static), links_in_words(result))))
-
-
-def _leaning(verdict: run_result.Verdict, static: run_result.StaticResult | None) -> str:
-    """How a container that stands again is left leaning, and what that takes of its capacity; empty if it stands."""
-    angle, tilt = (static or run_result.StaticResult()).slenderness_angle_rad, verdict.tilt_rad
-    if not angle or tilt is None or abs(tilt) < LEANING * angle:
-        return ""
-    leaning = DEGREES.text(abs(tilt), figures=2)
-    return f", left leaning by {leaning}: {abs(tilt) / angle:.0%} less capacity on that side,"
 
 
 def to_compare(result: run_result.RunResult) -> run_result.Verdict:
@@ -239,17 +171,6 @@ def own_motion_name(static: run_result.StaticResult) -> str:
     return f"own peak, {use * (uplift + downhill) - downhill:.3g} m/s2{slope}"
 
 
-def rule_says(check: str, utilisation: float | None) -> str:
-    """What the static rule concludes from a utilisation, for `sliding`, `overturning` or `lifting`."""
-    if not utilisation:  # a push or a tilt at the start is no load that the rule knows
-        return "-" if utilisation is None else "no demand"
-    if check == "lifting":
-        return "lifts off" if utilisation > 1.0 else "stays"
-    if check == "sliding":
-        return "slides" if utilisation > 1.0 else "holds"
-    return "overturns" if utilisation > 1.0 else "stands"
-
-
 def run_slid(verdict: run_result.Verdict) -> str:
     """Whether the run slid, and how far; of a loose stack, on the floor and between the boxes."""
     slip = largest_slip(verdict)
@@ -300,25 +221,27 @@ def _table_of_pairs(title: str, rows: Sequence[tuple[str, str]]) -> Iterator[Tab
 def result_rows(result: run_result.RunResult) -> list[tuple[str, str]]:
     """Name and value of each result in reading order; results that were not reached are left out."""
     verdict, motion = result.verdict or run_result.Verdict(), result.motion or run_result.MotionResult()
+    turns = verdict.outcome not in (Outcome.REST, Outcome.SLIDE, Outcome.HOP)
     #: rows behind that of a figure
     behind = {
         "slip_travel_m": [
             ("largest slip between boxes", ", ".join(filter(None, largest_joint_slip(verdict))))
         ],
-        "max_corner_force_N": [*floor_rows(result.floor), ("crushing", _crushing(verdict))],
+        "max_corner_force_N": [*floor_rows(result.floor, lands=turns), ("crushing", _crushing(verdict))],
     }
     states = [mode for mode in verdict.modes if mode != Outcome.OVERTURNED or not fall_in_row(verdict)]
     rows = [
         ("floor motion", motion_in_words(motion)),
         ("vertical motion", motion_in_words(motion.vertical or run_result.MotionResult())),
         ("simulated time", _simulated(verdict, result.numerics or run_result.Numerics())),
-        ("states seen", ", ".join(states)),
+        ("states seen", ", ".join(states) + _uncounted(verdict)),
     ]
     rows += _figure_rows(result, SUMMARY, behind)
     rows.append(("analytic block, same motion", _analytic(verdict.analytic)))
     rows += [
         ("bolts, largest tension and shear", bolt_forces(result)),
-        ("outcomes of the band", _band(verdict.band)),
+        ("margin in detail", _margin(verdict.margin)),
+        ("outcomes of the variations", _band(verdict.band)),
         *_rigid_rows(result.rigid_check, (result.static or run_result.StaticResult()).slenderness_angle_rad),
     ]
     return [(name, value) for name, value in rows if value]
@@ -335,6 +258,13 @@ def _figure_rows(
             name = FIGURES[key].words + (lowest if FIGURES[key].lowest else "")
             rows += [(name, in_words(result, key)), *(behind or {}).get(key, [])]
     return rows
+
+
+def _uncounted(verdict: run_result.Verdict) -> str:
+    """That a slip is no sliding, which the rows of the history call so; empty where none is."""
+    if verdict.slipped < MILLIMETRES.least or not {*SLIDING}.isdisjoint({*verdict.modes, verdict.outcome}):
+        return ""
+    return f"; slips of {MILLIMETRES.text(verdict.slipped, figures=2)} in history.csv are too small to count as sliding"
 
 
 def _simulated(verdict: run_result.Verdict, numerics: run_result.Numerics) -> str:
@@ -360,11 +290,37 @@ def _crushing(verdict: run_result.Verdict) -> str:
     """Whether a corner was crushed; by how much is no result."""
     if not crushes(verdict):
         return ""
-    return (
-        "a corner crushes at the surface strength; depth not predicted"
-        if verdict.max_indentation_m
-        else "none"
-    )
+    depth = verdict.max_indentation_m or 0.0
+    if depth >= CRUSHED:
+        return "a corner crushes at the surface strength; depth not predicted"
+    return f"none to speak of: {SHORT_MILLIMETRES.text(depth)}" if depth else "none"
+
+
+def _margin(margin: run_result.Margin | None) -> str:
+    """What was tried for the margin, and what the case does beyond it; empty where nothing was."""
+    if margin is None:
+        return ""
+    few = ".3g"
+    parts = [f"{margin.runs} factors from {margin.least_tried:{few}} to {margin.largest_tried:{few}}"]
+    again = [
+        f"{low:{few}}" if low == high else f"{low:{few}} to {high:{few}}" for low, high in margin.islands
+    ]
+    parts += [f"stands again at {' and at '.join(again)}"] if again else []
+    if (governs := margin.governing) is not None and governs.variations:
+        counts = (
+            (governs.variations_overturned, "overturn"),
+            (governs.variations_destroyed, "destroy a corner"),
+        )
+        does = [f"{count} {verb}" for count, verb in counts if count] or ["none overturns"]
+        most = margin.draws_tried_to or margin.largest_tried
+        parts.append(f"of the {governs.variations} worst variations {' and '.join(does)} up to {most:{few}}")
+    if governs is not None and governs.step:
+        parts.append(f"steps of at most {PERCENT.text(governs.step, figures=1)} below what governs")
+    if margin.without_links_tried_to is not None:
+        factor = margin.factor_without_links
+        falls = f"not up to {margin.without_links_tried_to:{few}}" if factor is None else f"at {factor:{few}}"
+        parts.append(f"alone, without what holds it or stands beside it, it overturns {falls}")
+    return "; ".join(parts)
 
 
 def _band(band: run_result.Band | None) -> str:

@@ -7,17 +7,17 @@ that raised it, the limit, and what can be done. No warning changes a verdict.
 import math
 from collections.abc import Callable
 
-from fem.assessment.motion_words import doubts
-from fem.assessment.ranges import plastic_corner
-from fem.assessment.sure_words import sureness_in_words
-from fem.assessment.sureness import REGIME_UNSURE, UNSURE, numerical
-from fem.assessment.verdict import GAIN_LIMIT, LOSS_LIMIT, LOSS_SHARE_LIMIT
 from fem.case.case import Case
 from fem.case.tables.duration import MOST_FREE_MOTION, ends_at_rest, longest_time
 from fem.case.tables.input_keys import WEAKENING
 from fem.case.tables.unknown_inputs import in_words
 from fem.results import run_result
 from fem.results.outcome import Outcome
+from fem.run.card import sureness
+from fem.run.described import doubts
+from fem.run.ranges import plastic_corner
+from fem.run.sureness import REGIME_UNSURE, UNSURE, numerical
+from fem.run.verdict import GAIN_LIMIT, LOSS_LIMIT, LOSS_SHARE_LIMIT
 
 # A tilt of one hundredth of the slenderness angle counts as rocking; the contact alone must stay well below.
 ROCKING_RATIO = 0.01
@@ -45,16 +45,14 @@ def warnings_for(result: run_result.RunResult, case: Case) -> list[str]:
 def verdict_is_unsure(result: run_result.RunResult, case: Case) -> str | None:
     """The outcome changes within the uncertainty of the inputs."""
     verdict = _verdict(result)
-    words = sureness_in_words(result)
-    if verdict.band is None or verdict.sure not in (UNSURE, None) or not words:
+    if verdict.band is None or verdict.sure not in (UNSURE, None) or verdict.outcome == Outcome.INVALID:
         return None
     failed = [member for member in verdict.band.members if member.outcome is None]
-    failures = (
-        f" The first that failed, with {in_words(failed[0].values or {})}: {failed[0].error}"
+    return sureness(result) + (
+        f". The first without an outcome, with {in_words(failed[0].values or {})}: {failed[0].error}"
         if failed
         else ""
     )
-    return f"{words[0].lower()}{words[1:]}{failures}"
 
 
 def friction_decides(result: run_result.RunResult, case: Case) -> str | None:

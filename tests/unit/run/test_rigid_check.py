@@ -8,15 +8,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fem.assessment.rigid_check import RigidCheck, block_of, check_against_rigid_block, first_peaks, floor_of
-from fem.assessment.verdict import verdict_of
 from fem.case.case import load_case
 from fem.model.model import Model, build_model
 from fem.results.history import read_history
 from fem.run.checks import wants_rigid_check
 from fem.run.recorder import Recorder
+from fem.run.rigid_check import RigidCheck, block_of, check_against_rigid_block, first_peaks, floor_of
 from fem.run.run import RunOptions, run_case
 from fem.run.simulation import simulate
+from fem.run.verdict import verdict_of
 
 ANGLE = math.atan(1.1 / 4.0)
 

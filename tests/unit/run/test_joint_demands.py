@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from cases import named_case
 
-from fem.assessment.joint_demands import edge_forces, joint_demands
 from fem.case.columns import ALWAYS, JOINTS
+from fem.model.joints import edge_forces
 from fem.results.history import History, numbers_of
+from fem.run.joints import joint_demands
 
 #: normal, shear, moment at 0, 1, 2 and 3 s: pressed in the middle; beyond a sixth of the width; beyond its edge, the
 #: left one open; lifted off

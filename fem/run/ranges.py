@@ -2,9 +2,9 @@
 
 from collections.abc import Sequence
 
-from fem.results.figures import FIGURES, SLIPPED, TURNED
+from fem.results.figures import FIGURES, SLIPPED, TURNED, Place
 from fem.results.run_result import Band, JointDemand, Numerics, RunResult, StaticResult, Verdict
-from fem.runtime.units import KILONEWTONS, Reach, figures_of
+from fem.runtime.units import FEW, KILONEWTONS, Reach, figures_of
 
 IMPACT = "impact, not for design unless the floor is known"
 STRUCK = "of spring and dashpot, not for design unless both are known"
@@ -29,8 +29,10 @@ def in_words(result: RunResult, key: str) -> str:
 
 
 def of_band(verdict: Verdict, key: str) -> str:
-    """A figure of the verdict with its range; empty where there is none."""
-    return FIGURES[key].text(getattr(verdict, key), reach_of(verdict, key))
+    """A figure of the verdict with its range, without one in two figures; empty where there is none."""
+    figure, reach = FIGURES[key], reach_of(verdict, key)
+    few = FEW if reach is None and Place.BAND in figure.places and not figure.unit.whole else None
+    return figure.unit.text(getattr(verdict, key), reach, figures=few)
 
 
 def reach_of(verdict: Verdict, key: str) -> Reach | None:
@@ -74,7 +76,8 @@ def largest_ratio(verdict: Verdict) -> str:
 def largest_rotation(verdict: Verdict) -> str:
     """The largest rotation alone, with the figures that the range of its ratio leaves."""
     figure = FIGURES["max_rotation_rad"]
-    figures = figures_of(reach_of(verdict, TURNED), figure.unit.figures)
+    reach = reach_of(verdict, TURNED)
+    figures = FEW if reach is None else figures_of(reach, figure.unit.figures)
     return figure.unit.text(verdict.max_rotation_rad, figures=figures)
 
 

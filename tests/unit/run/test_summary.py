@@ -5,8 +5,8 @@ from dataclasses import replace
 import pytest
 from typed_results import RESULT, changed, changes_asked
 
-from fem.assessment.summary import brief_summary, plain_summary
-from fem.assessment.warnings import warnings_for
+from fem.run.summary import brief_summary, plain_summary
+from fem.run.warnings import warnings_for
 
 
 def test_no_text_is_wide_or_long_or_calls_a_run_safe_or_verified(tmp_path):

@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from types import SimpleNamespace
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 
@@ -33,10 +33,7 @@ from fem.results.figures import BOX_FIGURES, FIGURES, BoxResult, Shown
 from fem.results.history import History
 from fem.results.outcome import Outcome, least_slide
 from fem.results.run_result import Energy, NeighbourResult, Numerics, Verdict, to_overturn
-from fem.runtime.arrays import FloatArray
 from fem.runtime.units import SECONDS
-
-RotationT = TypeVar("RotationT", float, FloatArray)
 
 CONTENTS_FILTER = "Butterworth low-pass of two poles, causal"  #: `contact.stepping.contents`
 MOST_RESTITUTION = 1.05
@@ -94,11 +91,6 @@ def _hops(model: Model) -> bool:
     return bool(model.run.track[0].max_flight > HOPPING * model.container.mesh.width)
 
 
-def relative_rotation(rotation: RotationT, slenderness_angle: float) -> RotationT:
-    """|rotation| over the slenderness angle [-], both in rad."""
-    return abs(rotation) / slenderness_angle
-
-
 def verdict_of(model: Model, history: History, largest_von_mises: float | None) -> Verdict:
     """The `verdict` of a result; what was not reached is None."""
     time, slip = history["time_s"], history["slip_m"]
@@ -109,7 +101,17 @@ def verdict_of(model: Model, history: History, largest_von_mises: float | None) 
         late = history["rotation_rad"][time >= time[-1] - 1.0 / model.static.frequency_parameter]
         if late.size > 1 and np.ptp(late) < STILL * model.static.slenderness_angle:
             verdict = replace(verdict, tilt_rad=float(late[-1]))
-    return verdict
+    place, whose = _place_of(model)
+    return replace(verdict, place_m=place, place_is=whose)
+
+
+def _place_of(model: Model) -> tuple[float, str]:
+    """The slip beyond which a container has left its place [m], and whose it is: stated, the gap beside, the width."""
+    case = model.case
+    if case.limits is not None and case.limits.slip_m is not None:
+        return case.limits.slip_m, "limit"
+    gaps = [(row.gap_m, "gap") for row in case.neighbour if row.gap_m > 0.0]
+    return min([*gaps, (model.container.mesh.width, "width")])
 
 
 def verdict_from(
@@ -144,7 +146,7 @@ def verdict_from(
         leans=(outcome == Outcome.OVERTURNED and math.isfinite(run.clock[0].rest_since)) or None,
         modes=_modes_seen(track.modes | _hops(model) << Outcome.HOP.code, outcome, slides=_slides(model)),
         max_rotation_rad=rotation,
-        rotation_ratio=relative_rotation(rotation, angle),
+        rotation_ratio=rotation / angle,
         flight_share=track.flight_time / track.rocking_time if track.rocking_time > 0.0 else None,
         slip_peak_to_peak_m=_peak_to_peak(model, end, time, slip),
         max_indentation_m=_indentation(model),
@@ -199,7 +201,7 @@ def neighbour_results(model: Model) -> tuple[NeighbourResult, ...]:
                 side=neighbour.side,
                 outcome=_outcome_in_row(joint),
                 max_rotation_rad=joint.max_rotation,
-                rotation_ratio=relative_rotation(joint.max_rotation, joint.angle),
+                rotation_ratio=joint.max_rotation / joint.angle,
                 max_slip_m=joint.max_slip,
                 residual_slip_m=joint.slip,
                 max_uplift_m=joint.max_opening,

@@ -1,1 +1,0 @@
-"""What a run found: verdict, comparison with the rigid block, joint demands, warnings, summary. It writes no file."""

@@ -1,0 +1,272 @@
+"""The joints of a stack: what those of bolted boxes must carry, and what loose boxes do on one another."""
+
+import math
+from collections.abc import Iterator, Sequence
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+from rich.box import SIMPLE
+from rich.console import RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from contact.stepping.observables import ROCKING
+from fem.case.columns import JOINTS
+from fem.case.tables.boxes import shared_face
+from fem.model.joints import edge_forces
+from fem.model.model import Model
+from fem.results.figures import BOX_FIGURES, BoxResult
+from fem.results.history import History
+from fem.results.outcome import least_slide
+from fem.results.run_result import BoxReach, JointDemand, RunResult, StaticResult, Verdict
+from fem.run.ranges import crushes, impact_note
+from fem.runtime.arrays import FloatArray
+from fem.runtime.units import JOINT_MILLIMETRES, SHORT_MILLIMETRES, visible_number
+
+
+def joint_demands(model: Model, history: History) -> tuple[JointDemand, ...] | None:
+    """The demands on all joints, from the floor up; None for a single box, or if nothing was sampled.
+
+    Of a container that overturned, until 90 degrees.
+    """
+    standing = history["time_s"] <= model.run.track[0].overturned_at
+    if history.joints == 0 or not standing.any():
+        return None
+    return tuple(_demands_of(model, history, joint, standing) for joint in range(1, history.joints + 1))
+
+
+def _demands_of(model: Model, history: History, joint: int, standing: NDArray[np.bool_]) -> JointDemand:
+    lower, upper = model.case.stack[joint - 1 : joint + 1]
+    start, end = shared_face(lower, upper)
+    width, mu = end - start, model.case.contact.mu_static
+    time = history["time_s"][standing]
+    normal, shear, moment = (history[name][standing] for name in JOINTS.names((joint,)))
+    left, right = edge_forces(normal, moment, width)
+    tension = max(0.0, -float(left.min())), max(0.0, -float(right.min()))
+    capacity = model.case.joints.bolt_capacity_N
+    carried = mu * np.maximum(normal, 0.0)
+    return JointDemand(
+        joint=joint,
+        height_m=upper.bottom,
+        min_normal_N=float(normal.min()),
+        max_normal_N=float(normal.max()),
+        max_shear_N=float(np.abs(shear).max()),
+        max_moment_Nm=float(np.abs(moment).max()),
+        bolt_tension_left_N=tension[0],
+        bolt_tension_right_N=tension[1],
+        bolt_utilisation=None if capacity is None else max(tension) / capacity,
+        bolt_shear_N=max(0.0, float((np.abs(shear) - carried).max())),
+        friction_needed=_friction_needed(normal, shear),
+        partly_opens_at_s=_first(time, np.abs(moment) > normal * width / 6.0),
+        opens_at_s=_first(time, np.minimum(left, right) < 0.0),
+        slides_at_s=_first(time, np.abs(shear) > carried),
+    )
+
+
+def _friction_needed(normal: FloatArray, shear: FloatArray) -> float | None:
+    """Least coefficient of friction at which the joint never slides; None if there is shear without compression."""
+    sheared = shear != 0.0
+    if np.any(normal[sheared] <= 0.0):
+        return None
+    return float(np.max(np.abs(shear[sheared]) / normal[sheared], initial=0.0))
+
+
+def _first(time: FloatArray, happens: NDArray[np.bool_]) -> float | None:
+    """Time of the first sample at which it happens [s]."""
+    return float(time[np.argmax(happens)]) if happens.any() else None
+
+
+MOST_JOINTS = 8  #: joints shown; of more, those with a largest value
+JOINTS_NOTE = (
+    "The boxes are bolted and move as one. The table gives the forces in their joints (means over the interval "
+    "of the history), the tension in the bolts along one edge, the shear in the bolts beyond static friction as on the "
+    "floor, and when a joint without bolts would open at an edge or slide."
+)
+OVERSTATED = (
+    "Where impacts are elastic, means over them overstate the friction needed, the forces in the bolts, and how often "
+    "joints without bolts would open or slide."
+)
+LOOSE_RUN = "A run of the stack with loose joints finds what boxes without bolts do."
+LARGEST = ("max_shear_N", "max_moment_Nm", "bolt_tension_left_N", "bolt_tension_right_N", "bolt_shear_N")
+
+
+def joints_note(verdict: Verdict) -> str:
+    """How to read the joints of a bolted stack, whose table is only an estimate of what loose boxes do."""
+    return " ".join(
+        [JOINTS_NOTE, *([OVERSTATED] if verdict.impacts and not crushes(verdict) else []), LOOSE_RUN]
+    )
+
+
+def titled_table(title: str, *columns: str) -> Table:
+    """An empty table; the numbers of a column that begins with > are aligned at the right."""
+    table = Table(
+        title=title, title_justify="left", box=SIMPLE, padding=(0, 1, 0, 0), show_header=any(columns)
+    )
+    for name in columns:
+        table.add_column(name.removeprefix(">"), justify="right" if name.startswith(">") else "left")
+    return table
+
+
+def joint_tables(every: Sequence[JointDemand], verdict: Verdict) -> Iterator[RenderableType]:
+    """Forces, and what bolts carry; one row a joint, from the floor up."""
+    note, kilo = impact_note(verdict), partial(visible_number, factor=1e-3)
+    forces = titled_table(
+        f"Forces in the joints between boxes{note}", "joint at", ">normal kN", ">shear kN", ">moment kNm"
+    )
+    bolts = titled_table(
+        f"Bolts{note}",
+        "joint at",
+        ">tension left, right kN",
+        ">shear kN",
+        ">friction needed",
+        "without bolts it",
+    )
+    joints = _shown(every)
+    for joint in joints:
+        place, normal = f"{joint.height_m:.4g} m", (joint.min_normal_N, joint.max_normal_N)
+        tension = (joint.bolt_tension_left_N, joint.bolt_tension_right_N)
+        used = "" if joint.bolt_utilisation is None else f" ({joint.bolt_utilisation:.2g})"
+        needed = "none suffices" if joint.friction_needed is None else f"{joint.friction_needed:.2g}"
+        forces.add_row(
+            place, " .. ".join(map(kilo, normal)), kilo(joint.max_shear_N), kilo(joint.max_moment_Nm)
+        )
+        bolts.add_row(
+            place, ", ".join(map(kilo, tension)) + used, kilo(joint.bolt_shear_N), needed, unbolted(joint)
+        )
+    yield from (forces, bolts)
+    if any(joint.bolt_utilisation is not None for joint in joints):
+        yield Text("In parentheses: the larger tension over the capacity of a bolt.\n")
+    left_out = len(every) - len(joints)
+    yield Text(
+        joints_note(verdict) + (f" {left_out} more joints are in run.json." if left_out else "") + "\n"
+    )
+
+
+def _shown(joints: Sequence[JointDemand]) -> Sequence[JointDemand]:
+    if len(joints) <= MOST_JOINTS:
+        return joints
+    chosen = {max(range(len(joints)), key=lambda j: getattr(joints[j], key)) for key in LARGEST}
+    return [joints[j] for j in sorted(chosen)]
+
+
+def unbolted(joint: JointDemand) -> str:
+    """What the joint would do without bolts."""
+    events = (("opens", joint.opens_at_s), ("slides", joint.slides_at_s))
+    instants = [f"{verb} at {instant:.3g} s" for verb, instant in events if instant is not None]
+    return ", ".join(instants) or "stays closed, sticks"
+
+
+AS_ONE = "the boxes moved as one"
+MOST_BOXES = 12  #: boxes in a table; of more, those with a largest value
+BOXES_NOTE = (
+    "The boxes stand on one another without bolts. Slip and opening of a box are over what is below it: the floor or "
+    "the next box; less slip than 1 mm is not resolved, because the dashpot of the joints decides it. The rotation "
+    "ratio is the largest rotation of any box over the slenderness angle of the whole stack."
+)
+
+
+def leaning_in_words(what: str, verdict: Verdict) -> str:
+    """That what is at rest where it cannot stand by itself counts as overturned; `what`: empty for the container."""
+    at = "" if verdict.overturned_at_s is None else f" from t = {verdict.overturned_at_s:.3f} s on"
+    rests = "came to rest where only what it leans on or hangs on holds it, and counts as overturned"
+    return f"{what} {rests}{at}".strip()
+
+
+def fall_in_words(verdict: Verdict) -> str:
+    """Which box of a loose stack fell, and when; empty if none did."""
+    if verdict.fell_box is None:
+        return ""
+    at, above = verdict.overturned_at_s, verdict.fell_box < len(verdict.boxes or ())
+    if verdict.leans:
+        return leaning_in_words(f"box {verdict.fell_box}", verdict)
+    when = f" at t = {at:.3f} s" if at is not None else ""
+    return f"box {verdict.fell_box} fell{when}{', with what stood on it' if above else ''}"
+
+
+def joints_in_words(verdict: Verdict, static: StaticResult | None) -> str:
+    """How the boxes of a loose stack moved on one another: the largest slip and opening; empty of one body."""
+    boxes = verdict.boxes or ()
+    if len(boxes) < 2:
+        return ""
+    slip_limit, opening_limit = limits(static or StaticResult())
+    moved = []
+    for verb, preposition, key, limit, unit in (
+        ("slid", "on", "max_slip_m", slip_limit, JOINT_MILLIMETRES),
+        ("opened", "from", "max_opening_m", opening_limit, SHORT_MILLIMETRES),
+    ):
+        most = _most(boxes, key, above=1)
+        if boxes[most][key] > limit:
+            moved.append(f"box {most + 1} {verb} {unit.text(boxes[most][key])} {preposition} box {most}")
+    return ", ".join(moved) or AS_ONE
+
+
+def largest_joint_slip(verdict: Verdict) -> tuple[str, str]:
+    """The largest slip of a box on another with its range, and which slid on which; empty of one body."""
+    boxes = verdict.boxes or ()
+    if len(boxes) < 2:
+        return "", ""
+    most = _most(boxes, "max_slip_m", above=1)
+    reach = _reaches(verdict)[most]
+    slip = JOINT_MILLIMETRES.text(boxes[most].max_slip_m, reach.max_slip_m if reach else None)
+    return slip, f"box {most + 1} on box {most}"
+
+
+def _most(boxes: Sequence[BoxResult], key: str, above: int = 0) -> int:
+    """Index of the box with the largest figure, from a given box upward."""
+    return max(range(above, len(boxes)), key=lambda k: abs(boxes[k][key] or 0.0))
+
+
+def limits(static: StaticResult) -> tuple[float, float]:
+    """Slip and opening from which a joint counts as sliding and rocking [m], by the limits of the whole stack."""
+    centroid, angle = static.centroid_m, static.slenderness_angle_rad
+    if centroid is None or angle is None:
+        return SHORT_MILLIMETRES.least, SHORT_MILLIMETRES.least
+    width = 2.0 * centroid * math.tan(angle)
+    return least_slide(width), ROCKING * angle * width
+
+
+def box_rows(result: RunResult) -> list[tuple[str, ...]]:
+    """Box, largest rotation in degrees, slip, slip left and opening in mm, whether it fell; from the floor up.
+
+    With their ranges over the band, and in how many of its runs the box fell first.
+    """
+    verdict = result.verdict or Verdict()
+    rows: list[tuple[str, ...]] = []
+    members = len(verdict.band.members) if verdict.band is not None else 0
+    for number, (box, reach) in enumerate(zip(verdict.boxes or (), _reaches(verdict), strict=True), 1):
+        of_band = f"in {reach.fell} of {members} runs" if reach and reach.fell else ""
+        figures = (
+            figure.text(box[key], reach[key] if reach else None, bare=True)
+            for key, figure in BOX_FIGURES.items()
+        )
+        rows.append((str(number), *figures, ", ".join(filter(None, ("fell" if box.fell else "", of_band)))))
+    return rows
+
+
+def _reaches(verdict: Verdict) -> Sequence[BoxReach | None]:
+    """The ranges of each box over the band, where there is one."""
+    ranges = verdict.band.boxes if verdict.band is not None else None
+    return ranges or [None] * len(verdict.boxes or ())
+
+
+def box_table(result: RunResult) -> Iterator[RenderableType]:
+    """One row a box, from the floor up; nothing of a container that moves as one body."""
+    rows = box_rows(result)
+    if not rows:
+        return
+    indices = _boxes_shown((result.verdict or Verdict()).boxes or ())
+    heads = (f">{figure.words} {figure.unit.name}" for figure in BOX_FIGURES.values())
+    table = titled_table("Boxes, from the floor up", "box", *heads, "")
+    for k in indices:
+        table.add_row(*(cell.replace(" (", "\n(").replace(", ", ",\n") for cell in rows[k]))
+    yield table
+    left_out = len(rows) - len(indices)
+    yield Text(BOXES_NOTE + (f" {left_out} more boxes are in run.json." if left_out else "") + "\n")
+
+
+def _boxes_shown(boxes: Sequence[BoxResult]) -> Sequence[int]:
+    if len(boxes) <= MOST_BOXES:
+        return range(len(boxes))
+    chosen = {_most(boxes, key) for key in BOX_FIGURES}
+    return sorted(chosen | {k for k, box in enumerate(boxes) if box.fell})
