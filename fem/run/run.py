@@ -4,6 +4,7 @@ case -> model (mesh, body, floor, equilibrium) -> step until done -> verdict -> 
 comparison with the rigid block and the band over unknown inputs.
 """
 
+import importlib
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
@@ -12,7 +13,6 @@ from typing import Any
 
 from contact.motion.base_motion import BaseMotion
 from fem.case.case import Case, case_hash, to_toml
-from fem.figures.cache import write_figures
 from fem.model.container import discretise
 from fem.model.geometry import build_container, node_count
 from fem.model.model import Model, build_model
@@ -217,8 +217,8 @@ def draw(model: Model, folder: Path, reporter: Reporter) -> None:
     """Draw the figures of the run in a folder, where they are wanted; they are no part of the result."""
     if not model.case.output.figures:
         return
-    try:
-        write_figures(open_run(folder), model.container)
+    try:  # importing matplotlib takes as long as many a run
+        importlib.import_module("fem.figures.cache").write_figures(open_run(folder), model.container)
     except Exception as error:  # a full disk, a history cut short, a fault of the drawing: never the run's
         reporter.message(
             f"figures were not drawn ({type(error).__name__}: {error}); the results are complete"

@@ -13,7 +13,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.legend import Legend
 
 import fem
-import fem.run.run
+import fem.figures.cache
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
 from fem.case.case import load_case
@@ -399,7 +399,7 @@ def test_a_fault_in_the_drawing_does_not_spoil_a_run(tmp_path, monkeypatch):
     def full(run, container):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(fem.run.run, "write_figures", full)
+    monkeypatch.setattr(fem.figures.cache, "write_figures", full)
     reporter = Collecting()
     run = run_into(tmp_path / "r", *CASES["rest"], reporter=reporter)
     assert run.status == "completed"
