@@ -15,7 +15,7 @@ from fem.model.recovery import recovery_of
 from fem.results.kinds import read_result
 from fem.results.reader import open_run
 from fem.results.run_result import ActionResult, Numerics, RunResult, StaticResult, Verdict
-from fem.run import band
+from fem.run import checks
 from fem.run.changed_runs import DRAWN_TOLERANCE, SHORT_S, cost_of, run_changes
 from fem.run.checks import plan_of, wants_band
 from fem.run.joints import joint_demands
@@ -156,13 +156,13 @@ class TestWhatDoesNotFitTheTime:
 
     def test_of_a_dear_band_one_change_of_each_of_the_first_inputs_stays(self):
         plan = self.plan(10_000_000)
-        assert len(plan.changes) == band.LEAST_MEMBERS
+        assert len(plan.changes) == checks.LEAST_MEMBERS
         inputs = [one.inputs for one in plan.changes]
         assert len(set(inputs)) == len(inputs) and inputs[0] == ("contact.mu_kinetic",)
         assert plan.changes[0].label == "contact.mu_kinetic = 0.4"
 
     def test_the_full_model_has_as_many_members_as_before(self):
-        assert len(self.plan(10, **{"solver.model": "full"}).changes) == band.LEAST_MEMBERS
+        assert len(self.plan(10, **{"solver.model": "full"}).changes) == checks.LEAST_MEMBERS
 
     def test_the_cost_grows_with_steps_and_base_points(self):
         cheap = Numerics(steps=1000, rejected=0, contact_nodes=2, unknowns=3)
@@ -170,9 +170,9 @@ class TestWhatDoesNotFitTheTime:
         assert cost_of(replace(cheap, contact_nodes=27)) > 10.0 * cost_of(cheap)
 
     def test_a_verdict_is_not_sure_where_changes_were_left_out(self, tmp_path, monkeypatch):
-        monkeypatch.setattr(band, "BUDGET_S", 0.0)
+        monkeypatch.setattr(checks, "BUDGET_S", 0.0)
         found = verdict_with_band(tmp_path, load_case("rocking", SHORT))
-        assert found.sure == "unsure" and len(found.band.members) == 1 + band.LEAST_MEMBERS
+        assert found.sure == "unsure" and len(found.band.members) == 1 + checks.LEAST_MEMBERS
         assert found.band.draws_left_out == 32
 
 
