@@ -314,7 +314,7 @@ UNKNOWN: tuple[UnknownNumber | UnknownChoice, ...] = (
     Choice(keys.VERTICAL_SIGN, "vertical_sign", "sign of the vertical motion", unless_stated=False,
            other=lambda case: -case.vertical.scale if case.vertical.kind in ("table", "pulse") else None),
     Choice(keys.START, "start", "start", _other_start, unless_stated=False),
-    Choice(keys.RAMP, "ramp", "how gradually the motion begins, in cycles", _other_ramp),
+    Choice(keys.RAMP, "ramp", "ramp of the motion", _other_ramp),
     Number(keys.STOP_GAP, "stop_gap_m", "gap of the stops", q.GAP, GAPS, power=1.0),
     Number(keys.STOP_STIFFNESS, "stop_stiffness_N_m", "stiffness of the stops", q.LINK_STIFFNESS, LINK_STIFFNESS),
     Number(keys.STOP_FRICTION, "stop_mu", "friction on the stops", q.FRICTION, LINK_FRICTION, power=1.0),
