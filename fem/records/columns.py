@@ -68,12 +68,7 @@ class _Header:
 
 
 def read_columns(source: MotionText, *, unit: str | None, sample_interval: float | None) -> Record:
-    """Read a file of one to four columns.
-
-    Raises:
-        RecordError: with the line: no numbers, another number of columns, columns that are no motion, contradictions,
-            no unit.
-    """
+    """Read a file of one to four columns; a RecordError gives the line that does not fit."""
     top = list(islice(_down_to_numbers(source.lines), MOST_HEADER))
     if not top or not _is_data(top[-1][1], stated_separator(source.line(1)) or " "):
         raise source.refused("no numbers were found; a motion file is needed")
@@ -102,30 +97,23 @@ def read_columns(source: MotionText, *, unit: str | None, sample_interval: float
         times = np.arange(len(table), dtype=np.float64) * step
     components = _components(source, table, header, times, unit, timeless)
     _require_facts(source, header, components)
-    return Record(components=components, name=source.name, format=NAME)
+    return Record(components=components)
 
 
 def rows_of(source: MotionText, first: int, count: int) -> FloatArray:
-    """The numbers from a line on, between commas or blanks, shape (n, count).
-
-    Raises:
-        RecordError: another number of columns, or what is no number; with the line.
-    """
+    """The numbers from a line on, between commas or blanks, shape (n, count)."""
     return _table(source, first, count, "," if "," in source.line(first) else None, False)
 
 
 def _down_to_numbers(lines: Sequence[str]) -> Iterator[tuple[int, str]]:
     """The lines down to the first of numbers, with their places, without empty ones; of comments their text."""
     mark = stated_separator(lines[0]) or " "
-    for place, line in enumerate(lines, start=1):
-        text = line.strip()
-        if COMMENT.match(text):
-            if text := text.strip("#%/ \t"):
-                yield place, text + "#"  # is no number, whatever it holds
-        elif text:
-            yield place, text
-            if _is_data(text, mark):
-                return
+    for place, text in enumerate(map(str.strip, lines), start=1):
+        comment = COMMENT.match(text)
+        if said := text.strip("#%/ \t") if comment else text:
+            yield place, said + "#" if comment else said  # a comment is no number, whatever it holds
+        if said and not comment and _is_data(text, mark):
+            return
 
 
 def _contents(lines: Sequence[str], first: int = 1) -> Iterator[tuple[int, str]]:
@@ -138,15 +126,10 @@ def _contents(lines: Sequence[str], first: int = 1) -> Iterator[tuple[int, str]]
 
 def _is_data(line: str, mark: str = " ") -> bool:
     """Whether a line holds numbers alone, or what is meant as such, between separators or this one."""
-    if line.endswith("#"):
-        return False
-    fields = [
-        text
-        for part in re.split(r"[;,\s]+", line.partition("#")[0].replace(mark, " "))
-        if (text := part.strip('"'))
-    ]
-    return bool(fields) and all(
-        text.lower() in NOT_NUMBERS or as_numbers([text]) is not None for text in fields
+    parts = re.split(r"[;,\s]+", line.partition("#")[0].replace(mark, " "))
+    fields = [text for part in parts if (text := part.strip('"')) and text.lower() not in NOT_NUMBERS]
+    return (
+        not line.endswith("#") and any(part.strip('"') for part in parts) and as_numbers(fields) is not None
     )
 
 
@@ -451,28 +434,19 @@ def _require_facts(source: MotionText, header: _Header, components: Sequence[Com
 
 
 def given_record(times: FloatArray, accelerations: Mapping[Direction, FloatArray]) -> Record:
-    """A record of accelerations in m/s2, by direction, at the same times.
-
-    Raises:
-        RecordError: numbers that are no motion, or not as many as there are times.
-    """
-    return Record(
-        components=tuple(
-            Component(times=times, readings=values, name=direction, direction=direction)
-            for direction, values in accelerations.items()
-        ),
-        name=GIVEN,
-        format=NAME,
-    )
+    """A record of accelerations in m/s2, by direction, at the same times; RecordError: they are no motion."""
+    components = [
+        Component(times=times, readings=values, name=direction, direction=direction)
+        for direction, values in accelerations.items()
+    ]
+    return Record(components=tuple(components), name=GIVEN, format=NAME)
 
 
 def written(record: Record) -> str:
     """Times and SI values of all components as a file of columns, which reads back to the same bits."""
     columns = [record.components[0].times, *(component.values for component in record.components)]
-    names = (
-        ["acceleration_m_s2"]
-        if len(columns) == 2
-        else [f"{component.name}_m_s2" for component in record.components]
-    )
+    names = [
+        f"{component.name if len(columns) > 2 else 'acceleration'}_m_s2" for component in record.components
+    ]
     rows = map(",".join, zip(*(map(repr, column.tolist()) for column in columns), strict=True))
     return "\n".join([",".join(["time_s", *names]), *rows, ""])

@@ -44,11 +44,7 @@ def recognises(source: MotionText) -> bool:
 
 
 def read(source: MotionText, unit: str | None) -> Record:
-    """Read all channels of a file.
-
-    Raises:
-        RecordError: raw counts, counts, units or numbers that do not fit; with the line.
-    """
+    """Read all channels; a RecordError gives the line that does not fit."""
     components, line = [], 1
     while line <= len(source.lines):
         component, line = _channel(source, line, unit)
@@ -57,13 +53,8 @@ def read(source: MotionText, unit: str | None) -> Record:
             if source.line(line).strip() and not END.search(source.line(line)):
                 raise source.refused("a channel or the end of the file is needed here", line)
             line += 1
-    return Record(
-        components=tuple(components),
-        name=source.name,
-        format=NAME,
-        event=source.line(2).strip(),
-        station=source.line(5).partition(":")[2].strip(),
-    )
+    station = source.line(5).partition(":")[2].strip()
+    return Record(components=tuple(components), event=source.line(2).strip(), station=station)
 
 
 def _channel(source: MotionText, line: int, unit: str | None) -> tuple[Component, int]:

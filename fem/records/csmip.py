@@ -33,11 +33,7 @@ def recognises(source: MotionText) -> bool:
 
 
 def read(source: MotionText, unit: str | None) -> Record:
-    """Read the accelerations of all channels of a file.
-
-    Raises:
-        RecordError: a file of spectra, no line that opens data, counts, units or numbers that do not fit.
-    """
+    """Read the accelerations of all channels; a RecordError gives the line that does not fit."""
     if "fourier" in source.line(1).lower():
         raise source.refused("spectra do not move a floor; take the file of volume 1 or 2", 1)
     components: list[Component] = []
@@ -66,15 +62,6 @@ def read(source: MotionText, unit: str | None) -> Record:
             components.append(regular_component(readings, step, settled, name=name))
     if not components:
         raise source.refused("no line gives number, interval and unit of accelerations")
-    return Record(
-        components=tuple(components),
-        name=source.name,
-        format=NAME,
-        event=source.line(3).strip(),
-        station=_station(source),
-    )
-
-
-def _station(source: MotionText) -> str:
     names = (line.partition("Station No.")[2] for line in source.lines[:13] if "station no." in line.lower())
-    return next(names, "").strip().partition(" ")[0]
+    station = next(names, "").strip().partition(" ")[0]
+    return Record(components=tuple(components), event=source.line(3).strip(), station=station)

@@ -28,11 +28,7 @@ def recognises(source: MotionText) -> bool:
 
 
 def read(source: MotionText, unit: str | None) -> Record:
-    """Read the one component of a file.
-
-    Raises:
-        RecordError: a line of the header, counts, units or numbers that do not fit; with the line.
-    """
+    """Read the one component; a RecordError gives the line that does not fit."""
     header = source.lines[:HEADING]
     line, counted = next((k, m) for k, m in enumerate(map(COUNT.fullmatch, header), start=1) if m)
     count = whole_number(source, counted[1], "number of samples", line)
@@ -50,10 +46,6 @@ def read(source: MotionText, unit: str | None) -> Record:
         if peak[2]:
             require_length(source, measured(source, peak[2], "duration"), count, step)
     name = next((m[1].strip() for m in map(COMPONENT.match, header) if m), "")
-    return Record(
-        components=(regular_component(readings, step, settled, name=name),),
-        name=source.name,
-        format=NAME,
-        station=source.line(6).partition(":")[2].strip().partition(" ")[0],
-        event=source.line(3).strip(),
-    )
+    component = regular_component(readings, step, settled, name=name)
+    station = source.line(6).partition(":")[2].strip().partition(" ")[0]
+    return Record(components=(component,), station=station, event=source.line(3).strip())

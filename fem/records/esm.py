@@ -19,11 +19,7 @@ def recognises(source: MotionText) -> bool:
 
 
 def read(source: MotionText, unit: str | None) -> Record:
-    """Read the one component of a file.
-
-    Raises:
-        RecordError: a key that is missing, counts, units or numbers that do not fit; with the line.
-    """
+    """Read the one component; a RecordError gives the key or the line that does not fit."""
     header: dict[str, str] = {}
     first = 1
     while first <= MOST_LINES and (match := KEY.match(source.line(first))):
@@ -47,8 +43,6 @@ def read(source: MotionText, unit: str | None) -> Record:
     component = regular_component(readings, step, settled, name=header.get("STREAM", ""))
     return Record(
         components=(component,),
-        name=source.name,
-        format=NAME,
         station=header.get("STATION_CODE", ""),
         event=header.get("EVENT_NAME", "") or header.get("EVENT_ID", ""),
         date=header.get("EVENT_DATE_YYYYMMDD", ""),

@@ -1,9 +1,11 @@
 """Read a motion file of any known format, which is recognised by its content, never by its name."""
 
+from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 
 from fem.records import cosmos, csmip, csmnc, esm, knet, peer, smc
+from fem.records.columns import NAME as COLUMNS
 from fem.records.columns import read_columns
 from fem.records.networks import NETWORKS
 from fem.records.record import Record, RecordError
@@ -15,12 +17,7 @@ FORMATS = (esm, knet, smc, cosmos, csmip, csmnc, *NETWORKS, peer)
 
 
 def read_record(path: Path, *, unit: str | None = None, sample_interval: float | None = None) -> Record:
-    """All components of a motion file, in SI units.
-
-    Args:
-        path: of the file.
-        unit: of its values, one of `STATED`; not needed where the file states it.
-        sample_interval: of a file of one column, which has no times [s].
+    """All components of a motion file; `unit` and `sample_interval` [s] where the file does not state them.
 
     Raises:
         RecordError: no such file, no motion, or one that contradicts itself or its unit; with the line.
@@ -30,22 +27,25 @@ def read_record(path: Path, *, unit: str | None = None, sample_interval: float |
     try:
         state = path.stat()
     except OSError:
-        return _read(path, 0, 0, unit, sample_interval)
-    return _read(path, state.st_mtime_ns, state.st_size, unit, sample_interval)
+        state = None
+    return _read(path, state and (state.st_mtime_ns, state.st_size), unit, sample_interval)
 
 
 @lru_cache(maxsize=64)  # the runs of a sweep and of a band follow the same motions: a set of 32 pairs
-def _read(path: Path, changed: int, size: int, unit: str | None, sample_interval: float | None) -> Record:
+def _read(
+    path: Path, state: tuple[int, int] | None, unit: str | None, sample_interval: float | None
+) -> Record:
     source = read_source(path)
     reader = next((form for form in FORMATS if form.recognises(source)), None)
     try:
         if reader is None:
-            return read_columns(source, unit=unit, sample_interval=sample_interval)
+            record = read_columns(source, unit=unit, sample_interval=sample_interval)
+            return replace(record, name=source.name, format=COLUMNS)
         if sample_interval is not None:
             raise source.refused(
                 f"sample_interval_s is for a file of one column, and this is a {reader.NAME} file"
             )
-        return reader.read(source, unit)
+        return replace(reader.read(source, unit), name=source.name, format=reader.NAME)
     except RecordError as error:
         named = str(error).startswith(source.name)
         raise error if named else RecordError(f"{source.name}: {error}") from None

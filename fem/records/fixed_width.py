@@ -20,21 +20,12 @@ def fortran_format(text: str) -> tuple[int, int] | None:
 def read_block(
     source: MotionText, first: int, count: int, *, per_line: int, width: int, largest: float = LARGEST_NUMBER
 ) -> tuple[FloatArray, int]:
-    """Numbers in full lines, but for the last.
+    """Numbers of a fixed width in full lines, but for the last, shape (count,), and the line behind them.
 
-    Args:
-        source: the file.
-        first: line of the first number, from 1.
-        count: numbers by the header.
-        per_line: numbers in a full line.
-        width: columns of each.
-        largest: magnitude that a number may have; headers write what they do not know as 1.7e38.
-
-    Returns:
-        The numbers, shape (count,), and the line behind them.
+    Headers write what they do not know as 1.7e38, beyond `largest`.
 
     Raises:
-        RecordError: fewer or more numbers than in the header, or a field that is no number.
+        RecordError: fewer or more numbers than the header says, or a field that is no number.
     """
     behind = first + -(-count // per_line)
     lines = [line.rstrip() for line in source.lines[first - 1 : behind - 1]]
@@ -54,10 +45,7 @@ def read_block(
 
 
 def read_separated(source: MotionText, first: int, count: int) -> tuple[FloatArray, int]:
-    """Numbers separated by blanks, any number of them in a line, up to the end of the file.
-
-    Returns and raises as `read_block`.
-    """
+    """Numbers between blanks, any number of them in a line, up to the end of the file; else as `read_block`."""
     lines = source.lines[first - 1 :]
     total = sum(len(line.split()) for line in lines)
     if total != count:
@@ -67,11 +55,7 @@ def read_separated(source: MotionText, first: int, count: int) -> tuple[FloatArr
 
 
 def read_values(source: MotionText, first: int, count: int, *, per_line: int, width: int) -> FloatArray:
-    """Numbers up to the end of the file, in full lines of a fixed width or between blanks, by the first line.
-
-    Raises:
-        RecordError: as `read_block`, and content after the numbers.
-    """
+    """Numbers up to the end of the file, in full lines of a fixed width or between blanks, by the first line."""
     line = source.line(first).rstrip()
     fields = [line[at : at + width] for at in range(0, len(line), width)]
     if len(fields) != min(per_line, count) or len(line) % width or as_numbers(fields) is None:

@@ -6,7 +6,6 @@ Fortran exponent D is one; a fraction is none.
 
 import re
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple
 
 import numpy as np
 
@@ -22,23 +21,6 @@ WORD = re.compile(rf"({NUMBER})\s*(?:[\[(]?\s*([A-Za-zµμ%][^\s\[\]()]*|1/s)\s*
 #: difference of a stated peak from that of the values from which they contradict each other, over the larger: far
 #: above what a correction changes, far below a wrong unit
 CONTRADICTION = 0.1
-KEY = re.compile(r"\s*([^:=]{2,60}?)\s*[:=]\s*(.*?)[\s,;]*")
-
-
-class Stated(NamedTuple):
-    """What a line of a header states."""
-
-    text: str
-    line: int
-
-
-def keyed(source: MotionText, last: int) -> dict[str, Stated]:
-    """The lines "KEY: value" or "KEY = value" up to a line, by key in lower case without double blanks."""
-    found: dict[str, Stated] = {}
-    for number, line in enumerate(source.lines[:last], start=1):
-        if match := KEY.fullmatch(line):
-            found.setdefault(" ".join(match[1].casefold().split()), Stated(match[2], number))
-    return found
 
 
 def measured(
@@ -49,15 +31,10 @@ def measured(
     *,
     units: Mapping[str, float] = TIMES,
 ) -> float:
-    """A number of a header above zero, in the unit whose factor is 1.
-
-    Args:
-        text: the number, and a unit behind it or none.
-        what, line: for the message.
-        units: their factors; without one the number is in that of factor 1.
+    """A number of a header above zero, in the unit whose factor is 1, as it is where none stands behind the number.
 
     Raises:
-        RecordError: it is no number from end to end, not above zero, or in another unit.
+        RecordError: about `what`: it is no number from end to end, not above zero, or in none of these units.
     """
     match = WORD.fullmatch(text.strip())
     numbers = as_numbers([match[1]]) if match else None
@@ -71,11 +48,7 @@ def measured(
 
 
 def whole_number(source: MotionText, text: str, what: str, line: int | None = None) -> int:
-    """A count of a header.
-
-    Raises:
-        RecordError: it is no whole number above zero, or more than a file may have.
-    """
+    """A count of a header; RecordError: it is no whole number above zero, or more than a file may have."""
     stripped = text.strip().removesuffix(".")
     if not stripped.isascii() or not stripped.isdigit() or len(stripped) > 9 or int(stripped) < 1:
         raise source.refused(f"the header gives no {what}", line)
@@ -120,11 +93,7 @@ def require_count(source: MotionText, count: int, stated: int, line: int | None 
 
 
 def require_interval(step: float, subject: str) -> None:
-    """Refuse an interval [s] that no sensor has.
-
-    Raises:
-        RecordError: beginning with `subject`, such as "the header gives".
-    """
+    """Refuse an interval [s] that no sensor has; the message begins with `subject`, such as "the header gives"."""
     if not INTERVALS[0] <= step <= INTERVALS[1]:
         raise RecordError(
             f"{subject} an interval of {step:g} s; it must be between {INTERVALS[0]:g} and {INTERVALS[1]:g} s"
@@ -139,17 +108,9 @@ def regular_component(
     name: str,
     direction: tuple[Direction | None, float] | None = None,
 ) -> Component:
-    """A component of evenly spaced samples from t = 0.
+    """A component of samples as the file gives them, `step` apart from t = 0 [s].
 
-    Args:
-        readings: as the file gives them, (n,).
-        step: between the samples [s].
-        unit: as by `settled_unit`.
-        name: of the component.
-        direction: as by `direction_of`; None: by its name.
-
-    Raises:
-        RecordError: no sensor has such an interval.
+    The unit is as by `settled_unit`, the direction as by `direction_of`; None: by its name.
     """
     require_interval(step, "the header gives")
     along, sense = direction or direction_of(name)

@@ -28,11 +28,7 @@ class Intensity:
 
 
 def intensity(times_s: FloatArray, acceleration: FloatArray) -> Intensity:
-    """Intensity measures of a motion.
-
-    Args:
-        times_s: rising, shape (n,) [s].
-        acceleration: at these times, shape (n,) [m/s2].
+    """Intensity measures of an acceleration [m/s2] at rising times [s], both of shape (n,).
 
     Arias (1970): pi/(2 g) times the integral of a^2. Trifunac and Brady (1975): the significant duration. Peaks of
     velocity between samples count; the displacement is that at samples.

@@ -1,18 +1,26 @@
-"""Files of K-NET and KiK-net (NIED, Japan): 17 lines of header, then 8 whole numbers in a line.
+"""Files of K-NET and KiK-net (NIED, Japan).
 
-The scale factor of the header makes them gal; they stand about an offset, so that their mean is subtracted.
+ASCII: 17 lines of header, then 8 whole numbers in a line, which the scale factor of the header makes gal. CSV: labels
+behind `#` over their values, "#Time,RelativeTime(s),N-S(gal),E-W(gal),U-D(gal)", then rows of as many columns. Both
+stand about an offset, so that their mean is subtracted.
 """
 
 import re
+from itertools import pairwise, takewhile
+
+import numpy as np
 
 from fem.records.fixed_width import read_values
-from fem.records.header import NUMBER, measured, regular_component, require_peak
-from fem.records.record import Record
-from fem.records.source import MotionText
+from fem.records.header import NUMBER, measured, regular_component, require_length, require_peak
+from fem.records.record import Component, Record
+from fem.records.source import MotionText, read_rows
+from fem.records.table import fields_in
 from fem.records.units import RATES, settled_unit
 from fem.records.words import direction_of
+from fem.runtime.arrays import FloatArray
 
 NAME = "K-NET"
+CSV, TIMES, GAL = "#K-NET CSV", ["Time", "RelativeTime(s)"], "(gal)"
 LINES, LABEL = 17, 18  #: of the header, and columns of its labels
 PER_LINE, WIDTH = 8, 9
 SCALE = re.compile(rf"({NUMBER})\s*\(gal\)\s*/\s*({NUMBER})", re.IGNORECASE)
@@ -22,39 +30,65 @@ SENSORS = {"1": "N-S", "2": "E-W", "3": "U-D", "4": "N-S", "5": "E-W", "6": "U-D
 
 def recognises(source: MotionText) -> bool:
     """Whether the header has the labels of NIED."""
-    return source.line(1).startswith("Origin Time") and source.line(6).startswith("Station Code")
+    ascii_labels = source.line(1).startswith("Origin Time") and source.line(6).startswith("Station Code")
+    return ascii_labels or source.line(1).startswith(CSV)
 
 
 def read(source: MotionText, unit: str | None) -> Record:
-    """Read the one component of a file.
-
-    Raises:
-        RecordError: a line of the header, counts, units or numbers that do not fit; with the line.
-    """
+    """Read the one component of an ASCII file, all of CSV; a RecordError gives the line that does not fit."""
+    settled = settled_unit("gal", unit, source.name)
+    if source.line(1).startswith(CSV):
+        return _read_csv(source, settled)
     step = 1.0 / measured(source, _value(source, 11), "sampling frequency", 11, units=RATES)
     duration = measured(source, _value(source, 12), "duration", 12)
     scale = SCALE.fullmatch(_value(source, 14))
     if scale is None:
         raise source.refused("the header gives no scale factor in gal", 14)
     factor = measured(source, scale[1], "scale factor", 14) / measured(source, scale[2], "scale factor", 14)
-    settled = settled_unit("gal", unit, source.name)
     count = round(duration / step)
     if not 1 <= count <= 10**8:
         raise source.refused("the header gives no number of samples", 12)
     counts = read_values(source, LINES + 1, count, per_line=PER_LINE, width=WIDTH)
-    sensor = _value(source, 13)
-    readings = (counts - counts.mean()) * factor
-    require_peak(source, [readings], _value(source, 15), 15)
-    component = regular_component(
-        readings, step, settled, name=sensor, direction=direction_of(SENSORS.get(sensor, sensor))
-    )
-    return Record(
-        components=(component,),
-        name=source.name,
-        format=NAME,
-        station=_value(source, 6),
-        date=_value(source, 1),
-    )
+    component = _component((counts - counts.mean()) * factor, step, settled, _value(source, 13))
+    require_peak(source, [component.readings], _value(source, 15), 15)
+    return Record(components=(component,), station=_value(source, 6), date=_value(source, 1))
+
+
+def _read_csv(source: MotionText, settled: tuple[str, bool]) -> Record:
+    header = [line[1:].strip() for line in takewhile(lambda line: line.startswith("#"), source.lines)]
+    below = dict(pairwise(header))
+    columns = fields_in(header[-1], ",")
+    sensors = [name.removesuffix(GAL) for name in columns[2:] if name.endswith(GAL)]
+    if columns[:2] != TIMES or not sensors or len(sensors) < len(columns) - 2:
+        raise source.refused(
+            "the header does not end with #Time,RelativeTime(s) and components in gal, as CSV of K-NET does; write one "
+            "component into a column, and give unit and sample_interval_s",
+            len(header),
+        )
+    step = 1.0 / measured(source, below.get("SamplingFrequency(Hz)", ""), "sampling frequency", units=RATES)
+    duration = measured(source, below.get("DurationTime(s)", ""), "duration")
+    lines = enumerate(source.lines[len(header) :], start=len(header) + 1)
+    rows = [(number, fields_in(line, ",")) for number, line in lines if line.strip()]
+    for number, row in rows:
+        if len(row) != len(columns):
+            raise source.refused(
+                f"{len(columns)} columns are needed as in the header, found {len(row)}", number
+            )
+    table = read_rows(source, ((number, row[1:]) for number, row in rows)).reshape(-1, len(sensors) + 1)
+    require_length(source, duration, len(table), step)
+    if np.abs(table[:, 0] - step * np.arange(len(table))).max() > 1.01 * step:  # printed to a few digits
+        raise source.refused("its times contradict the sampling frequency of the header")
+    components = [
+        _component(column - column.mean(), step, settled, sensor)
+        for column, sensor in zip(table.T[1:], sensors, strict=True)
+    ]
+    stations = (below[label].partition(",")[0] for label in header[:-1] if label.startswith("Code,"))
+    return Record(components=tuple(components), station=next(stations, ""))
+
+
+def _component(values: FloatArray, step: float, settled: tuple[str, bool], sensor: str) -> Component:
+    direction = direction_of(SENSORS.get(sensor, sensor))
+    return regular_component(values, step, settled, name=sensor, direction=direction)
 
 
 def _value(source: MotionText, number: int) -> str:

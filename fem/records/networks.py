@@ -6,28 +6,31 @@ PGA VALUES (gal) : (N-S) 21.8 (E-W) 26.0 (U-D) 9.8". JMA (Japan), CSV: "SAMPLING
 """
 
 import re
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from fem.records.columns import rows_of
-from fem.records.header import (
-    Stated,
-    keyed,
-    measured,
-    regular_component,
-    require_count,
-    require_peak,
-    whole_number,
-)
+from fem.records.header import measured, regular_component, require_count, require_peak, whole_number
 from fem.records.record import Record
 from fem.records.source import MotionText, as_numbers
 from fem.records.table import fields_in
 from fem.records.units import RATES, TIMES, settled_unit, unit_in_header
 
 HEADING = 130  #: lines in which the numbers must begin
+KEY = re.compile(r"\s*([^:=]{2,60}?)\s*[:=]\s*(.*?)[\s,;]*")
 
 
-@dataclass(frozen=True, kw_only=True)
-class Network:
+class _Stated(NamedTuple):
+    key: str = ""
+    text: str = ""
+    line: int = 0
+
+    @property
+    def parts(self) -> list[str]:
+        """Between slashes or bracketed names."""
+        return [part.strip() for part in re.split(r"/|\([^()]*\)", self.text) if part.strip()]
+
+
+class Network(NamedTuple):
     """A format by the beginnings of its keys, in lower case; empty: it has none."""
 
     NAME: str
@@ -44,62 +47,48 @@ class Network:
         return any(self.mark in line.casefold() for line in source.lines[:12])
 
     def read(self, source: MotionText, unit: str | None) -> Record:
-        """Read all channels of a file.
+        """Read all channels; a RecordError gives the key or the line that does not fit."""
+        matches = [(number, KEY.fullmatch(line)) for number, line in enumerate(source.lines[:HEADING], 1)]
+        keys = [_Stated(" ".join(m[1].casefold().split()), m[2], number) for number, m in matches if m]
 
-        Raises:
-            RecordError: a key that is missing, counts, units or numbers that do not fit; with the line.
-        """
-        keys = keyed(source, HEADING)
-
-        def stated(begin: str) -> tuple[str, Stated]:
-            found = next(((key, value) for key, value in keys.items() if key.startswith(begin)), None)
-            if found is None or not found[1].text:
+        def stated(begin: str) -> _Stated:
+            found = next((one for one in keys if begin and one.key.startswith(begin)), _Stated())
+            if begin and not found.text:
                 raise source.refused(
                     f"the header has no {begin.upper()}, as {self.NAME} has; write one component into a column, and "
                     "give unit and sample_interval_s"
                 )
             return found
 
-        (key, spelled), (step_key, interval) = stated(self.unit), stated(self.step)
-        bracketed = re.search(r"\(([^()]*)\)", key)
+        spelled, interval = stated(self.unit), stated(self.step)
+        bracketed = re.search(r"\(([^()]*)\)", spelled.key)
         unit_text = bracketed[1] if bracketed else spelled.text
         settled = settled_unit(unit_in_header(source, unit_text, "acceleration"), unit, source.name)
         first = next((k for k in range(2, HEADING) if _numbers_in(source.line(k)) > 1), HEADING)
         above = source.line(first - 1)
-        names = (
-            _listed(stated(self.names)[1].text)
-            if self.names
-            else fields_in(above, "," if "," in above else None)
-        )
-        rate = "rate" in step_key or "freq" in step_key
+        names = stated(self.names).parts if self.names else fields_in(above, "," if "," in above else None)
+        rate = "rate" in interval.key or "freq" in interval.key
         steps = {
             measured(source, text, "interval of the samples", interval.line, units=RATES if rate else TIMES)
-            for text in _listed(interval.text)[: len(names)]
+            for text in interval.parts[: len(names)]
         }
         if len(steps) != 1:
             raise source.refused("its channels have different intervals, or none", interval.line)
-        table = rows_of(source, first, len(names))
-        for text in _listed(stated(self.count)[1].text)[: len(names)] if self.count else ():
-            line = stated(self.count)[1].line
-            require_count(source, len(table), whole_number(source, text, "number of samples", line), line)
-        peaks = _listed(stated(self.peaks)[1].text) if self.peaks and settled[0] in ("gal", "cm/s2") else []
-        for column, peak in zip(table.T, peaks, strict=False):
-            require_peak(source, [column], peak, stated(self.peaks)[1].line)
+        table, counts = rows_of(source, first, len(names)), stated(self.count)
+        for text in counts.parts[: len(names)]:
+            count = whole_number(source, text, "number of samples", counts.line)
+            require_count(source, len(table), count, counts.line)
+        peaks = stated(self.peaks)
+        if settled[0] in ("gal", "cm/s2"):
+            for column, peak in zip(table.T, peaks.parts, strict=False):
+                require_peak(source, [column], peak, peaks.line)
         (step,) = (1.0 / found if rate else found for found in steps)
-        return Record(
-            components=tuple(
-                regular_component(column, step, settled, name=name.partition(";")[0].strip())
-                for column, name in zip(table.T, names, strict=True)
-            ),
-            name=source.name,
-            format=self.NAME,
-            station=keys.get(self.station, Stated("", 0)).text.partition(",")[0],
-        )
-
-
-def _listed(text: str) -> list[str]:
-    """The parts between slashes or bracketed names."""
-    return [part.strip() for part in re.split(r"/|\([^()]*\)", text) if part.strip()]
+        components = [
+            regular_component(column, step, settled, name=name.partition(";")[0].strip())
+            for column, name in zip(table.T, names, strict=True)
+        ]
+        station = next((one.text for one in keys if one.key == self.station), "").partition(",")[0]
+        return Record(components=tuple(components), station=station)
 
 
 def _numbers_in(line: str) -> int:

@@ -47,11 +47,7 @@ def recognises(source: MotionText) -> bool:
 
 
 def read(source: MotionText, unit: str | None) -> Record:
-    """Read the one component of a file.
-
-    Raises:
-        RecordError: counts, units or numbers that do not fit; with the line.
-    """
+    """Read the one component; a RecordError gives the line that does not fit."""
     last, counted, interval = _sampling(source) or _Sampling(1, "", "")
     count = whole_number(source, counted, "number of samples", last)
     step = measured(source, interval, "interval of the samples", last)
@@ -62,13 +58,8 @@ def read(source: MotionText, unit: str | None) -> Record:
     name = fields[-1] if len(fields) > 1 else ""
     readings = read_values(source, last + 1, count, per_line=PER_LINE, width=WIDTH)
     component = regular_component(readings, step, settled, name=name)
-    return Record(
-        components=(component,),
-        name=source.name,
-        format=NAME,
-        event=fields[0] if len(fields) > 1 else "",
-        station=fields[-2] if len(fields) > 2 else "",
-    )
+    event, station = fields[0] if len(fields) > 1 else "", fields[-2] if len(fields) > 2 else ""
+    return Record(components=(component,), event=event, station=station)
 
 
 def _sampling(source: MotionText) -> _Sampling | None:

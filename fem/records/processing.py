@@ -77,10 +77,7 @@ class BaselineChange:
 def trimmed(component: Component, start: float | None, end: float | None) -> Component:
     """The part of a component from `start`, which becomes t = 0, to `end`, in the times of its file [s].
 
-    Accelerations are interpolated at its ends, displacements are not.
-
-    Raises:
-        RecordError: nothing is left of it.
+    Accelerations are interpolated at its ends, displacements are not. RecordError: nothing is left of it.
     """
     times, readings = component.times, component.readings
     if start is None and end is None:
@@ -103,12 +100,7 @@ def trimmed(component: Component, start: float | None, end: float | None) -> Com
 
 
 def processed(component: Component, processing: Processing) -> Component:
-    """The component as the floor follows it, in SI.
-
-    Raises:
-        RecordError: nothing remains of it, velocities, a baseline or a peak for what has none, or a number that is
-            not finite.
-    """
+    """The component as the floor follows it, in SI. RecordError: nothing remains of it, or a key does not fit."""
     if component.quantity == "velocity":
         raise RecordError("velocities do not move a floor; accelerations or displacements are needed")
     if not math.isfinite(processing.scale):
@@ -130,11 +122,7 @@ def processed(component: Component, processing: Processing) -> Component:
 
 
 def baseline_change(component: Component, processing: Processing) -> BaselineChange | None:
-    """What the baseline changes, in the scale of the motion used; None without one.
-
-    Raises:
-        RecordError: as `processed`.
-    """
+    """What the baseline changes, in the scale of the motion used; None without one. Errors as `processed`."""
     if processing.baseline == "none":
         return None
     plain, level, made = (
@@ -157,14 +145,8 @@ def stated_baseline(
 ) -> str | None:
     """What the baseline changes, in words; None where that is too little to be reported.
 
-    Args:
-        name: of the record.
-        component, processing: as for `baseline_change`.
-        allowed: take one that changes a peak by more than a fifth.
-        way_out: what a user can do.
-
     Raises:
-        RecordError: it changes too much and is not allowed; or as `processed`.
+        RecordError: naming the record and the way out: it changes a peak by more than a fifth and is not allowed.
     """
     change = baseline_change(component, processing)
     if change is None or not change.is_said:

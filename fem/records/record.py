@@ -16,11 +16,8 @@ from fem.runtime.arrays import FloatArray
 Quantity = Literal["acceleration", "velocity", "displacement"]
 Direction = Literal["horizontal", "vertical"]
 PLURALS: dict[Quantity, str] = {
-    "acceleration": "accelerations",
-    "velocity": "velocities",
-    "displacement": "displacements",
-}
-
+    "acceleration": "accelerations", "velocity": "velocities", "displacement": "displacements",
+}  # fmt: skip
 #: largest difference of two sampling times that count as one, over the interval: what seven printed digits leave
 SAME_TIME = 1e-3
 LEAST_SHARED = 0.5  #: samples that components of one recording share, over those of the longer one
@@ -32,12 +29,7 @@ class RecordError(ValueError):
 
 @dataclass(frozen=True, kw_only=True, eq=False)  # arrays have no single truth value
 class Component:
-    """One component of a recorded motion.
-
-    Raises:
-        RecordError: fewer than two samples, lengths that differ, numbers that are not finite, times that do not
-            increase.
-    """
+    """One component of a recorded motion: two samples or more, finite, at times that increase, else RecordError."""
 
     times: FloatArray  #: increasing, shape (n,) [s]
     readings: FloatArray  #: in the unit of the file, shape (n,)
@@ -91,11 +83,7 @@ class Component:
         return float(np.median(np.diff(self.times)))
 
     def require_no_gap(self, name: str, ways_out: str = "") -> None:
-        """Refuse samples of which some are missing: an interval is twice the usual one or longer.
-
-        Raises:
-            RecordError: with the file of that name and the times.
-        """
+        """Refuse samples of which some are missing: an interval is twice the usual one or longer."""
         long = np.flatnonzero(np.diff(self.times) > (2.0 - SAME_TIME) * self.step)
         if long.size:
             before, behind = self.times[long[0] : long[0] + 2]
@@ -124,15 +112,10 @@ class Record:
     notes: tuple[str, ...] = ()  #: doubts that the file itself states
 
     def component(self, direction: Direction, *, quantity: Quantity, channel: str = "") -> Component:
-        """The component that moves the floor in a direction.
+        """The component of a quantity that moves the floor in a direction.
 
-        Directions stated in the file decide. A file of one component serves either direction unless it states the
-        other one.
-
-        Args:
-            direction: of the floor.
-            quantity: that is needed; components of another one are not looked at.
-            channel: number from 1, or name, of the component to take whatever its direction; empty: by direction.
+        Directions stated in the file decide; a component without one serves either. A channel, by number from 1 or
+        by name, is taken whatever its direction.
 
         Raises:
             RecordError: there is none, or more than one to choose from; the message names the channels.
@@ -152,23 +135,16 @@ class Record:
         ]
         if len(components) == 1:
             return components[0]
-        problem = (
-            f"no {direction} component"
-            if not components
-            else f"{len(components)} components may be the {direction} one"
-        )
+        several = f"{len(components)} components may be the {direction} one"
+        problem = several if components else f"no {direction} component"
         raise RecordError(
             f"{self.name}: {problem} ({self._channels()}); choose one as {self.name}#NUMBER or {self.name}#NAME"
         )
 
     def _by_channel(self, channel: str, quantity: Quantity) -> Component:
-        number = int(channel) if channel.isascii() and channel.isdigit() and len(channel) < 4 else 0
-        if 1 <= number <= len(self.components):
-            components = [self.components[number - 1]]
-        else:
-            components = [
-                component for component in self.components if component.name.casefold() == channel.casefold()
-            ]
+        by_number = [one for k, one in enumerate(self.components, start=1) if str(k) == channel.lstrip("0")]
+        by_name = [one for one in self.components if one.name.casefold() == channel.casefold()]
+        components = by_number or by_name
         if len(components) != 1:
             raise RecordError(f"{self.name}: no channel {channel[:40]!r} ({self._channels()})")
         if components[0].quantity != quantity:
@@ -185,14 +161,10 @@ class Record:
 
 
 def cut_together(components: Sequence[Component], names: Sequence[str]) -> tuple[list[Component], str]:
-    """Components of one motion, cut to the samples that all have, and a note where that cuts any.
-
-    Args:
-        components: of one recording, the part taken of each.
-        names: of each for messages.
+    """Components of one recording, cut to the samples that all have, and a note where that cuts any.
 
     Raises:
-        RecordError: they were not sampled together: interval or times differ; with both values.
+        RecordError: by their names: they were not sampled together, interval or times differ; with both values.
     """
     first = components[0]
     for other, name in zip(components[1:], names[1:], strict=True):

@@ -20,11 +20,8 @@ TITLE = re.compile(
     r"\s*\d\s+(UNKNOWN|(?:UN)?CORRECTED ACCELEROGRAM|VELOCITY|DISPLACEMENT|RESPONSE SPECTRA|FOURIER.*)\s*"
 )
 UNIT = {
-    "UNCORRECTED ACCELEROGRAM": "cm/s2",
-    "CORRECTED ACCELEROGRAM": "cm/s2",
-    "VELOCITY": "cm/s",
-    "DISPLACEMENT": "cm",
-}
+    "UNCORRECTED ACCELEROGRAM": "cm/s2", "CORRECTED ACCELEROGRAM": "cm/s2", "VELOCITY": "cm/s", "DISPLACEMENT": "cm",
+}  # fmt: skip
 UNKNOWN = "UNKNOWN"  #: type 0: values of any kind
 PER_LINE, WIDTH = 8, 10
 FASTEST = 1e5  #: samples in a second, above which the rate is none
@@ -36,11 +33,7 @@ def recognises(source: MotionText) -> bool:
 
 
 def read(source: MotionText, unit: str | None) -> Record:
-    """Read the one component of a file.
-
-    Raises:
-        RecordError: a spectrum, counts, units or numbers that do not fit; with the line.
-    """
+    """Read the one component; a RecordError gives the line that does not fit."""
     title = TITLE.fullmatch(source.line(1))
     kind = title[1] if title else ""
     if kind not in UNIT and kind != UNKNOWN:
@@ -60,24 +53,17 @@ def read(source: MotionText, unit: str | None) -> Record:
         comments = 0
     for number in range(line, line + max(comments, 0)):
         if not source.line(number).startswith("|"):
-            raise source.refused(
-                f'the header says {comments} lines of comments, each with "|" before it', number
-            )
+            raise source.refused(f'{comments} lines of comments, each with "|" before it, are needed', number)
     line += max(comments, 0)
     readings, behind = read_block(source, line, count, per_line=PER_LINE, width=WIDTH)
     require_end(source, behind, count)
     name = source.line(6).partition("component=")[2].strip() or source.line(6).partition("comp=")[2].strip()
     direction = _direction(name, whole[12], whole[13], whole[0])
     component = regular_component(readings, 1.0 / rate, settled, name=name, direction=direction)
-    return Record(
-        components=(component,),
-        name=source.name,
-        format=NAME,
-        station=source.line(6).partition("component=")[0].partition("=")[2].strip(),
-        notes=("its header flags a problem of the record, see the comments in the file",)
-        if whole[17] == 1.0 and whole[0] != 1.0
-        else (),
-    )
+    flagged = whole[17] == 1.0 and whole[0] != 1.0
+    notes = ("its header flags a problem of the record, see the comments in the file",) if flagged else ()
+    station = source.line(6).partition("component=")[0].partition("=")[2].strip()
+    return Record(components=(component,), station=station, notes=notes)
 
 
 def _direction(name: str, tilt: float, azimuth: float, null: float) -> tuple[Direction | None, float]:

@@ -42,11 +42,7 @@ class MotionText:
 
 
 def read_source(path: Path) -> MotionText:
-    """Read the text of a file.
-
-    Raises:
-        RecordError: no such file, empty, too large, or no text in lines.
-    """
+    """Read the text of a file; RecordError: no such file, empty, too large, or no text in lines."""
     try:
         content = read_regular(path, LARGEST_FILE)
     except ValueError as error:
@@ -111,11 +107,7 @@ def read_rows(
 ) -> FloatArray:
     """The numbers of rows of fields, each with its line, in one array of shape (n,).
 
-    They are read by blocks: the fields of a long file do not fit into little memory, and a bad one is looked for in
-    its block only.
-
-    Raises:
-        RecordError: with its line: a field is no number, or larger than it may be.
+    By blocks: the fields of a long file do not fit into little memory, and a bad one is looked for in its block only.
     """
     remaining, blocks = iter(rows), [np.empty(0)]
     while block := list(islice(remaining, BLOCK)):

@@ -75,12 +75,11 @@ def response_spectrum(
     Args:
         step_s: between samples [s].
         acceleration: of the floor, shape (n,) [m/s2].
-        periods_s: of the oscillators, shape (k,) [s].
+        periods_s: of the oscillators, shape (k,), at least two steps, below which the samples say nothing [s].
         damping_ratio: of the oscillators, below 1.
 
     Raises:
-        ValueError: an invalid step, damping ratio or acceleration; a period shorter than two steps, which the
-            samples do not describe.
+        ValueError: any of them is out of range.
 
     Nigam and Jennings (1969), Bulletin of the Seismological Society of America 59. Peaks between samples count: below
     ten samples a period the lines are sampled more densely, and each peak is that of a cubic.

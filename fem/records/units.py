@@ -1,8 +1,8 @@
 """Units of recorded motions and how headers spell them. A unit is never guessed: the file or its user states it."""
 
 import re
-from dataclasses import dataclass
 from itertools import takewhile
+from typing import NamedTuple
 
 from fem.records.record import PLURALS, Quantity, RecordError
 from fem.records.source import MotionText
@@ -10,32 +10,27 @@ from fem.records.source import MotionText
 STANDARD_GRAVITY = 9.80665  #: of a record in g (ISO 80000-3), not the gravity of the case [m/s2]
 
 
-@dataclass(frozen=True, kw_only=True)
-class Unit:
+class Unit(NamedTuple):
     """The quantity of a unit, and its factor to SI."""
 
     quantity: Quantity
     factor: float
 
 
-def _unit(quantity: Quantity, factor: float) -> Unit:
-    return Unit(quantity=quantity, factor=factor)
-
-
 UNITS = {
-    "m/s2": _unit("acceleration", 1.0),
-    "g": _unit("acceleration", STANDARD_GRAVITY),
-    "cm/s2": _unit("acceleration", 1e-2),
-    "gal": _unit("acceleration", 1e-2),
-    "mm/s2": _unit("acceleration", 1e-3),
-    "mg": _unit("acceleration", 1e-3 * STANDARD_GRAVITY),
-    "g/10": _unit("acceleration", 0.1 * STANDARD_GRAVITY),
-    "m/s": _unit("velocity", 1.0),
-    "cm/s": _unit("velocity", 1e-2),
-    "mm/s": _unit("velocity", 1e-3),
-    "m": _unit("displacement", 1.0),
-    "cm": _unit("displacement", 1e-2),
-    "mm": _unit("displacement", 1e-3),
+    "m/s2": Unit("acceleration", 1.0),
+    "g": Unit("acceleration", STANDARD_GRAVITY),
+    "cm/s2": Unit("acceleration", 1e-2),
+    "gal": Unit("acceleration", 1e-2),
+    "mm/s2": Unit("acceleration", 1e-3),
+    "mg": Unit("acceleration", 1e-3 * STANDARD_GRAVITY),
+    "g/10": Unit("acceleration", 0.1 * STANDARD_GRAVITY),
+    "m/s": Unit("velocity", 1.0),
+    "cm/s": Unit("velocity", 1e-2),
+    "mm/s": Unit("velocity", 1e-3),
+    "m": Unit("displacement", 1.0),
+    "cm": Unit("displacement", 1e-2),
+    "mm": Unit("displacement", 1e-3),
 }
 #: units that headers are known to give and that are not read
 FOREIGN = (
@@ -83,11 +78,7 @@ def units_in_words(line: str) -> list[str | None]:
 
 
 def settled_unit(stated: str | None, given_unit: str | None, name: str) -> tuple[str, bool]:
-    """The unit of some values, and whether their file states it.
-
-    Raises:
-        RecordError: neither states one, both do and they differ, or the file's is not read.
-    """
+    """The unit of some values, and whether their file states it; refused: none, two, or one not read."""
     if stated is None and given_unit is None:
         raise RecordError(f"{name}: the file does not state the unit of its values; {OTHERWISE}")
     if stated is not None and stated not in UNITS:
@@ -103,11 +94,7 @@ def settled_unit(stated: str | None, given_unit: str | None, name: str) -> tuple
 
 
 def unit_in_header(source: MotionText, spelled: str, quantity: Quantity) -> str:
-    """The unit that the header of a file spells for a quantity.
-
-    Raises:
-        RecordError: it is none that is known, or measures something else.
-    """
+    """The unit that a header spells for a quantity; RecordError: it is not known, or measures something else."""
     unit = unit_spelled(spelled)
     if unit is None:
         raise source.refused(f"the header gives {PLURALS[quantity]} in a unit that is not known")
