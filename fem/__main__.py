@@ -22,8 +22,9 @@ from cyclopts import App, CycloptsError, Group, MissingArgumentError, UnusedCliT
 
 from fem.runtime.late_modules import load_late
 from fem.runtime.left import left_words
-from fem.runtime.memory import shortage
+from fem.runtime.memory import memory_of, shortage
 from fem.runtime.signals import INTERRUPTED, NO_ANSWER, interruptions, raise_on_signal
+from fem.runtime.terminal import say
 from fem.runtime.threads import use_one_blas_thread
 
 BAD_INPUT, FAILED = 2, 3
@@ -78,15 +79,8 @@ GROUPS = {
     },
 }
 COMMANDS = [name for commands in GROUPS.values() for name in commands]
-READING = {
-    "check",
-    "init",
-    "list",
-    "completion",
-    "schema",
-    "docs",
-    "doctor",
-}  #: commands that compute nothing
+#: commands that compute; `run` looks at its case before it asks for memory
+COMPUTING = {*COMMANDS} - {"check", "init", "list", "completion", "schema", "docs", "doctor", "run"}
 #: import strings of commands that are not `fem.cli.NAME:NAME`
 PLACES = {"list": "fem.cli.list_cases:list_cases", "completion": "fem.__main__:completion"} | {
     command: f"fem.cli.evidence:{command}" for command in ("verify", "validate", "study")
@@ -120,7 +114,7 @@ def build_app(name: str = "python -m fem") -> App:
 
 def completion(shell: Literal["bash", "zsh", "fish"] = "bash", /) -> None:
     """Print the completion script of a shell for `unanchored`, the installed name of the program."""
-    print(build_app("unanchored").generate_completion(shell=shell))
+    say(build_app("unanchored").generate_completion(shell=shell))
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -137,7 +131,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             return _refuse(f"{name} {words}")
     if tokens and tokens[0] not in COMMANDS and tokens[0] not in FLAGS:
         return _refuse(_unknown_command(tokens[0]))
-    if tokens and (short := shortage(tokens[0] in set(COMMANDS) - READING, _jobs_of(tokens))):
+    if tokens and (short := shortage(memory_of(tokens[0] in COMPUTING, _jobs_of(tokens)))):
         return _refuse(short, FAILED)
     try:
         result = build_app()(tokens, exit_on_error=False, print_error=False)
@@ -207,14 +201,14 @@ def _jobs_of(tokens: Sequence[str]) -> int | None:
 def _interrupted(tokens: Sequence[str]) -> int:
     """End a command that could not say itself how far it came."""
     if "--json" in tokens:
-        print(NO_ANSWER, end="")
+        say(NO_ANSWER, end="")
     return _refuse("interrupted", INTERRUPTED)
 
 
 def _refuse(message: str, exit_code: int = BAD_INPUT) -> int:
     sys.stdout.flush()
     with suppress(OSError):  # nobody can be told: the exit code remains
-        print(message.strip(), file=sys.stderr, flush=True)
+        say(message.strip(), file=sys.stderr, flush=True)
     return exit_code
 
 

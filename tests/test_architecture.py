@@ -102,6 +102,22 @@ LOADING_LATE = {
     "mesh/files.py",
 }
 
+#: the modules that may open files for writing, replace and remove them, and the calls that do
+WRITERS = {"fem/runtime/own_files.py", "fem/runtime/user_files.py", "contact/jit.py"}
+WRITING = {
+    "write_text",
+    "write_bytes",
+    "unlink",
+    "rmtree",
+    "touch",
+    "mkdir",
+    "rename",
+    "symlink_to",
+    "hardlink_to",
+}
+WRITING |= {"copyfile", "copytree", "copy2", "mkdtemp", "makedirs", "savetxt", "FileIO"}
+WRITING_OF_OS = {"replace", "remove", "rename", "truncate", "copy", "move", "link", "symlink", "rmdir"}
+
 #: what `verify`, `validate` and `study` compute, from the ground up: a folder of the tests imports those above it here
 EVIDENCE = (("rigs",), ("evidence",), ("verification",), ("validation", "paper"))
 
@@ -321,6 +337,46 @@ def test_only_the_command_line_and_the_opening_import_by_string():
         and ast.unparse(node.func).split(".")[-1] in ("import_module", "__import__")
     }
     assert not {name for name in calls - LOADING_LATE if not name.startswith("fem/cli/")}
+
+
+def opens_for_writing(call: ast.Call, name: str) -> bool:
+    """Whether a call opens, changes or removes a file, as far as its name and mode tell."""
+    owner = ast.unparse(call.func.value) if isinstance(call.func, ast.Attribute) else ""
+    if name in WRITING or (owner in ("os", "shutil") and name in WRITING_OF_OS):
+        return True
+    if name == "savefig":  # into memory
+        return "stream" not in ast.unparse(call.args[0]) and "drawn" not in ast.unparse(call.args[0])
+    if name != "open" or owner == "os":
+        return name == "open" and "O_RDONLY" not in ast.unparse(call) and "devnull" not in ast.unparse(call)
+    given = [keyword.value for keyword in call.keywords if keyword.arg == "mode"]
+    modes = given or call.args[0 if owner else 1 :][:1]
+    return any(not isinstance(mode, ast.Constant) or set(str(mode.value)) & set("wax+") for mode in modes)
+
+
+def test_one_module_writes_and_removes_files():
+    """`fem.runtime.own_files` follows no link in a folder; kernels lie in a folder of their own, see `contact.jit`."""
+    wrong = [
+        f"{name_of(path)}:{node.lineno}: {ast.unparse(node)[:60]}"
+        for path, tree in TREES.items()
+        if name_of(path) not in WRITERS
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Call)
+        and opens_for_writing(node, ast.unparse(node.func).split(".")[-1].split("(")[0])
+    ]
+    assert not wrong
+
+
+def test_only_what_nothing_acts_in_reaches_the_terminal():
+    """Everything is printed by `fem.runtime.terminal.say`."""
+    wrong = [
+        f"{name_of(path)}:{node.lineno}"
+        for path, tree in TREES.items()
+        if name_of(path) != "fem/runtime/terminal.py"
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Call)
+        and ast.unparse(node.func) in ("print", "sys.stdout.write", "sys.stderr.write")
+    ]
+    assert not wrong
 
 
 def test_every_module_says_what_it_is():

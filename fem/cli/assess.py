@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from fem.cli.console import STUDY, AllowBaseline, AllowOutside, StudyFlags, flag, print_result, print_to_pdf
-from fem.results.files import write_atomically
 from fem.results.kinds import SITE
+from fem.runtime.own_files import write_atomically
 from fem.runtime.progress import ScreenReporter
 
 if TYPE_CHECKING:

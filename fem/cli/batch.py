@@ -10,9 +10,10 @@ from cyclopts import Parameter
 from fem.case.case import load_case
 from fem.cli.console import PAGE, STUDY, AllowOutside, StudyFlags, flag, print_result, print_short
 from fem.results.figures import TURNED, Place, figures_of
-from fem.results.files import write_atomically
 from fem.results.kinds import HALL
 from fem.results.outcome import Outcome
+from fem.runtime.own_files import write_atomically
+from fem.runtime.terminal import say
 from fem.study.answers import table_lines
 
 if TYPE_CHECKING:
@@ -65,7 +66,7 @@ def batch(
     if result.state == "finished" and not page.is_file():
         write_atomically(page, pages.hall_report(folder))
     if pdf and result.status == "completed":
-        print(print_short(folder, pages.hall_report))
+        say(print_short(folder, pages.hall_report))
     return print_result(result, HALL, folder, page_of(result, folder), as_json=flags.as_json)
 
 

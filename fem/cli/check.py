@@ -20,6 +20,7 @@ from fem.results.run_result import MotionResult
 from fem.run.described import covered_in_words, floor_rows, is_cut, link_rows, missing_peak, motion_in_words
 from fem.run.preview import Preview
 from fem.run.static_words import sides_in_words, sides_of
+from fem.runtime.terminal import say
 
 
 def check(
@@ -45,7 +46,7 @@ def check(
         request = files.load_site(case, allow_baseline=allow_baseline)
         outlook = previews.preview_of(request, allow_outside=allow_outside)
         lines = previews.preview_lines(outlook, request)
-        print(json.dumps(outlook.to_json(), indent=2) if as_json else "\n".join(lines))
+        say(json.dumps(outlook.to_json(), indent=2) if as_json else "\n".join(lines))
         return
     loaded = load_case(
         case, overrides, motion=motion, allow_outside=allow_outside, allow_baseline=allow_baseline
@@ -54,7 +55,7 @@ def check(
     for side in (loaded, *filter(None, (other,))):
         preview = preview_of(side)
         document = {"case": side.name, "asked_hash": case_hash(side)} | preview.to_json()
-        print(json.dumps(document, indent=2) if as_json else _page(preview, document))
+        say(json.dumps(document, indent=2) if as_json else _page(preview, document))
 
 
 def preview_of(case: Case) -> Preview:

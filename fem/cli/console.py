@@ -11,10 +11,12 @@ from cyclopts import Parameter, Token
 
 from fem.case.validation import CaseError
 from fem.results.errors import require_writable
-from fem.results.files import write_atomically
 from fem.results.kinds import ResultKind
+from fem.runtime.own_files import write_atomically
 from fem.runtime.progress import ScreenReporter
 from fem.runtime.signals import unheard
+from fem.runtime.terminal import say
+from fem.runtime.user_files import read_text
 
 if TYPE_CHECKING:
     from fem.study.driver import StudyOptions, StudyResult
@@ -82,7 +84,11 @@ Force = Annotated[bool, flag("Recompute and overwrite existing results.")]
 AsJson = Annotated[bool, flag("Print JSON.", "--json")]
 Scheduler = Annotated[
     str | None,
-    Parameter(show_default=False, help="Address of a dask scheduler, such as tcp://127.0.0.1:8786."),
+    Parameter(
+        show_default=False,
+        help="Address of a dask scheduler, such as tcp://127.0.0.1:8786. Whoever reaches it can run code on it and "
+        "on its workers; start all with the certificates of dask's TLS, and give tls://HOST:PORT.",
+    ),
 ]
 Quiet = Annotated[bool, flag("Print no progress.", "--quiet", "-q")]
 
@@ -162,7 +168,7 @@ STUDY = StudyFlags()
 def print_json(text: str) -> None:
     """Print a document, whole or not at all."""
     with unheard():
-        print(text.rstrip(), flush=True)
+        say(text.rstrip(), flush=True)
 
 
 def print_result(
@@ -174,7 +180,7 @@ def print_result(
         page: the lines before the last, which is the answer or what is missing.
     """
     if as_json:
-        print_json((folder / kind.mark).read_text(encoding="utf-8"))
+        print_json(read_text(folder / kind.mark))
     else:
-        print("\n".join([*page, *filter(None, [result.no_answer_yet or result.answer])]))
+        say("\n".join([*page, *filter(None, [result.no_answer_yet or result.answer])]))
     return EXIT_CODES[result.status]

@@ -4,6 +4,8 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from fem.results.errors import FolderError
+from fem.runtime.terminal import say
+from fem.runtime.user_files import read_text
 
 #: the packages whose folders hold a README for each room
 PACKAGES = ("fem", "mesh", "contact")
@@ -21,13 +23,13 @@ def docs(room: str = "", /) -> None:
     places = found()
     if not room:
         for name, path in places.items():
-            title = path.read_text(encoding="utf-8").partition("\n")[0].lstrip("# ")
-            print(f"{name:<12}{title}\n{'':12}{path}")
-        print("\npython -m fem docs NAME prints one of them.")
+            title = read_text(path).partition("\n")[0].lstrip("# ")
+            say(f"{name:<12}{title}\n{'':12}{path}")
+        say("\npython -m fem docs NAME prints one of them.")
         return
     if room not in places:
         raise FolderError(f"docs {room}: no such document; there are {', '.join(places)}")
-    print(places[room].read_text(encoding="utf-8"))
+    say(read_text(places[room]))
 
 
 def found() -> dict[str, Path]:

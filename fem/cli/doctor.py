@@ -9,6 +9,7 @@ from typing import Any
 
 from fem.cli.console import AsJson
 from fem.render.opengl import MEND, probe_rendering
+from fem.runtime.terminal import say
 from fem.runtime.threads import cores
 
 DISTRIBUTIONS = (
@@ -52,7 +53,7 @@ def doctor(*, as_json: AsJson = False) -> None:
         "disk_free_GB": round(free, 2),
         "remedies": remedies,
     }
-    print(json.dumps(report, indent=2) if as_json else _page(report))
+    say(json.dumps(report, indent=2) if as_json else _page(report))
 
 
 def _version(name: str) -> str | None:

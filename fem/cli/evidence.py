@@ -16,8 +16,10 @@ from fem.case.validation import CaseError, did_you_mean
 from fem.cli.console import ELSEWHERE_OUT, EXIT_CODES, AsJson, Force, Jobs, Quiet, flag, print_json
 from fem.results.disk import BYTES_BESIDE
 from fem.results.errors import require_writable, writing_into
-from fem.results.files import to_json, write_atomically
+from fem.results.json_text import to_json
+from fem.runtime.own_files import make_folder, write_atomically
 from fem.runtime.progress import ScreenReporter
+from fem.runtime.terminal import say
 
 TESTS = Path(__file__).parents[2] / "tests"  #: beside the program in a clone
 FAILED = 3
@@ -102,7 +104,7 @@ def _written(
     pages = from_clone("evidence.pages")
     require_writable(folder, ELSEWHERE_OUT, BYTES_BESIDE)
     with writing_into(folder, ELSEWHERE_OUT):
-        folder.mkdir(parents=True, exist_ok=True)
+        make_folder(folder)
     computed, pictures = compute()
     text = to_json(computed)
     document, page = json.loads(text), folder / f"{name}.html"
@@ -110,7 +112,7 @@ def _written(
         write_atomically(folder / f"{name}.json", text)
         write_atomically(page, pages.page_of(name, document, pictures))
     shown = f"{page} shows the tables and drawings"
-    print(text.rstrip() if as_json else "\n".join([*pages.LINES[name](document), shown]))
+    say(text.rstrip() if as_json else "\n".join([*pages.LINES[name](document), shown]))
     return 0 if document["passed"] else FAILED
 
 
@@ -144,6 +146,6 @@ def study(
     if as_json:
         print_json(to_json(document))
     else:
-        print("\n".join(from_clone("evidence.pages").LINES["study"](document)))
-        print(f"{folder / 'study.html'} shows the runs, figures and numbers behind them")
+        say("\n".join(from_clone("evidence.pages").LINES["study"](document)))
+        say(f"{folder / 'study.html'} shows the runs, figures and numbers behind them")
     return EXIT_CODES[document["status"]]

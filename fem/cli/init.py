@@ -9,6 +9,8 @@ from cyclopts import Parameter
 from fem.case.case import CaseError, load_case
 from fem.case.files import COLLECTIONS, COMMANDS
 from fem.case.template import case_template
+from fem.runtime.own_files import created
+from fem.runtime.terminal import say
 
 
 def init(
@@ -32,18 +34,18 @@ def init(
         text = _for_another_box(next(each for each in COLLECTIONS if each.kind == kind).text(name))
     path = to if to is not None else Path(f"{name or 'case'}.toml")
     try:
-        with path.open("x", encoding="utf-8") as stream:
-            stream.write(text)
+        with created(path) as stream:
+            stream.write(text.encode())
     except FileExistsError:
         raise CaseError(f"{path} exists and is not overwritten; give another name with --to") from None
     except OSError as error:
         raise CaseError(
             f"{path}: cannot be written ({error.strerror or error}); choose another place with --to"
         ) from None
-    print(f"{path} written; next:")
+    say(f"{path} written; next:")
     if kind == "case":
-        print(f"  python -m fem check {path}    static checks and settings, nothing is computed")
-    print(f"  python -m fem {COMMANDS[kind]} {path}")
+        say(f"  python -m fem check {path}    static checks and settings, nothing is computed")
+    say(f"  python -m fem {COMMANDS[kind]} {path}")
 
 
 def _for_another_box(text: str) -> str:

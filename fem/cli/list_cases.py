@@ -5,6 +5,7 @@ from textwrap import fill
 
 from fem.case.files import COLLECTIONS, COMMANDS, DEFAULT_CASE
 from fem.cli.console import WIDTH, AsJson
+from fem.runtime.terminal import say
 
 
 def list_cases(*, as_json: AsJson = False) -> None:
@@ -16,14 +17,14 @@ def list_cases(*, as_json: AsJson = False) -> None:
             ]
             for collection in COLLECTIONS
         }
-        print(json.dumps({"default": DEFAULT_CASE} | document, indent=2))
+        say(json.dumps({"default": DEFAULT_CASE} | document, indent=2))
         return
     width = max(len(name) for collection in COLLECTIONS for name in collection.names)
     for collection in COLLECTIONS:
-        print(f"{collection.kind.capitalize()}s: python -m fem {COMMANDS[collection.kind]} NAME")
+        say(f"{collection.kind.capitalize()}s: python -m fem {COMMANDS[collection.kind]} NAME")
         for name in collection.names:
             mark = " (default)" if name == DEFAULT_CASE else ""
-            print(
+            say(
                 fill(
                     collection.description(name) + mark,
                     WIDTH,
@@ -31,5 +32,5 @@ def list_cases(*, as_json: AsJson = False) -> None:
                     subsequent_indent=" " * (width + 2),
                 )
             )
-        print()
-    print("python -m fem init NAME writes any of them to a file.")
+        say()
+    say("python -m fem init NAME writes any of them to a file.")

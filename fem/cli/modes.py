@@ -15,9 +15,10 @@ from fem.figures.style import house_style, svg_of
 from fem.model.container import discretise
 from fem.model.geometry import build_container
 from fem.results.errors import require_writable, writing_into
-from fem.results.files import write_atomically
 from fem.run.expected import say_expected
+from fem.runtime.own_files import write_atomically
 from fem.runtime.progress import ScreenReporter
+from fem.runtime.terminal import say
 from fem.solid.assembly import FiniteElements, assemble
 from fem.solid.modes import ElasticModes, elastic_mode_table, elastic_modes, write_modes
 
@@ -57,21 +58,21 @@ def modes(
         write_atomically(figure, svg_of(drawn))
     rows = elastic_mode_table(shapes)
     if as_json:
-        print(
+        say(
             json.dumps(
                 {"case": loaded.name, "modes": rows, "file": str(path), "figure": str(figure)}, indent=2
             )
         )
         return
     bodies = "boxes, of equal boxes once" if loaded.container.is_loose else "container"
-    print(f"{loaded.name}: elastic modes of the free {bodies}\n")
-    print("  mode   frequency [Hz]   period [ms]   to the first")
+    say(f"{loaded.name}: elastic modes of the free {bodies}\n")
+    say("  mode   frequency [Hz]   period [ms]   to the first")
     for row in rows:
-        print(
+        say(
             f"  {row['mode']:4.0f}   {row['frequency_Hz']:14.3f}   {1e3 * row['period_s']:11.4f}   "
             f"{row['ratio_to_first']:12.3f}"
         )
-    print(f"\n{figure} shows the shapes, {path} in ParaView (Warp By Vector)")
+    say(f"\n{figure} shows the shapes, {path} in ParaView (Warp By Vector)")
 
 
 def _free_bodies(case: Case) -> tuple[FiniteElements, list[FiniteElements], Callable[[int], ElasticModes]]:

@@ -13,7 +13,9 @@ from fem.results.disk import BYTES_BESIDE
 from fem.results.errors import require_writable, writing_into
 from fem.results.reader import open_run
 from fem.run.expected import say_expected
+from fem.runtime.own_files import make_folder, place_in
 from fem.runtime.progress import ScreenReporter
+from fem.runtime.terminal import say
 
 OF_A_FRAME_S = 0.09  #: to draw it, without a graphics card [s]
 
@@ -34,8 +36,11 @@ def movie(
     require_writable(to.parent if to else run, ELSEWHERE_TO, BYTES_BESIDE)
     require_rendering()
     say_expected(ScreenReporter(quiet=quiet), f"up to {count} frames", OF_A_FRAME_S * count)
-    path.parent.mkdir(exist_ok=True)
     with writing_into(path.parent, ELSEWHERE_TO):
+        if to is None:
+            place_in(run, "figures/movie.gif")
+        else:
+            make_folder(path.parent)
         film = importlib.import_module("fem.render.movie")  # loads pyvista
         film.write_movie(opened, path, begin=begin, until=until, rate=fps)
-    print(path)
+    say(path)

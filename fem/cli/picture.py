@@ -1,6 +1,7 @@
 """`picture`: one instant of a run, or a recorded motion and its response spectrum."""
 
 import importlib
+import io
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -15,8 +16,9 @@ from fem.records.processing import Baseline, Processing, baseline_change, proces
 from fem.records.record import Component
 from fem.render.opengl import require_rendering
 from fem.results.errors import require_writable, writing_into
-from fem.results.files import write_atomically
 from fem.results.reader import open_run
+from fem.runtime.own_files import write_atomically
+from fem.runtime.terminal import say
 
 Source = Annotated[
     str,
@@ -73,12 +75,12 @@ def picture(
             for component, motion in zip(components, made, strict=True)
             for note in (*component.notes, *doubts(path.name, component, motion, scale=1.0, confirmed=False))
         ]
-        print(_write_motion(made, path, to))
-        print("\n".join(noted), end="\n" * bool(noted))
+        say(_write_motion(made, path, to))
+        say("\n".join(noted), end="\n" * bool(noted))
         for component in components:
             change = baseline_change(component, processing)
             if change is not None and change.is_said:
-                print(f"{component.name or path.name}: {change.in_words}")
+                say(f"{component.name or path.name}: {change.in_words}")
         return
     if not path.exists():
         raise CaseError(f"{run}: no such file or folder; give the folder of a run, or a motion file")
@@ -89,7 +91,7 @@ def picture(
     # Loads pyvista.
     pictures = importlib.import_module("fem.render.picture")
     with writing_into(to.parent if to else Path(run), ELSEWHERE_TO):
-        print(pictures.write_picture(opened, time=time, path=to))
+        say(pictures.write_picture(opened, time=time, path=to))
 
 
 def _write_motion(components: list[Component], path: Path, to: Path | None) -> Path:
@@ -104,5 +106,7 @@ def _write_motion(components: list[Component], path: Path, to: Path | None) -> P
         if target.suffix.lower() == ".svg":
             write_atomically(target, style.svg_of(figure))
         else:
-            figure.savefig(target, dpi=160)
+            drawn = io.BytesIO()
+            figure.savefig(drawn, dpi=160)
+            write_atomically(target, drawn.getvalue())
     return target

@@ -9,8 +9,9 @@ from cyclopts import Parameter
 from fem.cli.console import ELSEWHERE_TO, PAGE, SHORT_PAGE, Quiet, flag, print_to_pdf
 from fem.results.disk import BYTES_BESIDE
 from fem.results.errors import FolderError, require_writable, writing_into
-from fem.results.files import write_atomically
+from fem.runtime.own_files import make_folder, write_atomically
 from fem.runtime.progress import ScreenReporter
+from fem.runtime.terminal import say
 
 SUFFIXES = (".html", ".htm")
 #: what makes the page of a study, by the file that marks its folder
@@ -71,19 +72,27 @@ def report(
     reporter = ScreenReporter(quiet=quiet)
     pages = importlib.import_module("fem.report.run_page")
     signature = pages.Signature(author=author, checker=checker, revision=revision)
-    marks = [mark for mark in PAGES if (folder / mark).is_file()]
-    if marks:
-        module, _, name = PAGES[marks[0]].partition(":")
-        brief = {"brief": True} if short else {}
-        page = getattr(importlib.import_module(module), name)(folder, signature=signature, **brief)
-    else:
-        opened = importlib.import_module("fem.results.reader").open_run(folder)
-        page = pages.run_report(opened, signature=signature, brief=short, message=reporter.message)
+    mark = next((mark for mark in PAGES if (folder / mark).is_file()), "run.json")
+    try:
+        if mark in PAGES:
+            module, _, name = PAGES[mark].partition(":")
+            brief = {"brief": True} if short else {}
+            page = getattr(importlib.import_module(module), name)(folder, signature=signature, **brief)
+        else:
+            opened = importlib.import_module("fem.results.reader").open_run(folder)
+            page = pages.run_report(opened, signature=signature, brief=short, message=reporter.message)
+    except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
+        if not type(error).__module__ == "builtins":
+            raise  # has its words already
+        raise FolderError(
+            f"{folder / mark}: damaged, no page can be made of it ({type(error).__name__}: {error}); compute it again "
+            "with --force"
+        ) from error
     with writing_into(target.parent, ELSEWHERE_TO):
         write_atomically(target, page)
-    print(target)
+    say(target)
     if pdf:
-        print(print_to_pdf(target))
+        say(print_to_pdf(target))
 
 
 def _target(path: Path) -> Path:
@@ -93,7 +102,7 @@ def _target(path: Path) -> Path:
     if path.is_dir():
         raise FolderError(f"--to {path}: this is a folder; give the name of a file in it")
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
+        make_folder(path.parent)
     except OSError as error:
         reason = error.strerror or error
         raise FolderError(

@@ -12,8 +12,12 @@ from fem.case.case import Case, CaseError, load_case
 from fem.cli import console
 from fem.cli.check import numerics_lines, preview_of
 from fem.results.disk import free_disk, in_units
+from fem.results.errors import OutputError
 from fem.results.folder import read_result
+from fem.runtime.memory import memory_of_run, shortage
 from fem.runtime.progress import ScreenReporter
+from fem.runtime.terminal import say
+from fem.runtime.user_files import read_text
 
 OTHER_SIDE = "other-side"  #: the folder of the side across, in that of a run
 
@@ -63,9 +67,15 @@ def run(
     if dry_run or verbose:
         plan = plan_of(loaded, folder)
         text = json.dumps(plan, indent=2) if as_json else page_of_plan(loaded, plan)
-        print(text, file=sys.stdout if dry_run else sys.stderr)
+        say(text, file=sys.stdout if dry_run else sys.stderr)
     if dry_run:
         return 0
+    alone = (band, margin) == (False, False)
+    needed = memory_of_run(
+        rigid=loaded.solver.model == "rigid", alone=alone, figures=loaded.output.figures or check_rigid
+    )
+    if short := shortage(needed):
+        raise OutputError(short)
     solver = importlib.import_module("fem.run.run")
     options = solver.RunOptions(check_rigid=check_rigid, band=band, margin=margin, resume=resume, force=force)
     brief = importlib.import_module("fem.run.summary").brief_summary
@@ -84,11 +94,11 @@ def run(
             console.print_json(json.dumps(read_result(place / "run.json"), indent=2))
         else:
             if other is not None:
-                print(
+                say(
                     f"{'Across' if side is other else 'As given'}, {side.container.width_m:g} m along the motion:"
                 )
-            whole = (place / "summary.txt").read_text(encoding="utf-8")
-            print(whole if full else brief(result.typed_result, folder=place), end="")
+            whole = read_text(place / "summary.txt")
+            say(whole if full else brief(result.typed_result, folder=place), end="")
         code = max(code, _ended(result, stopped, place))
     return code
 
@@ -96,12 +106,12 @@ def run(
 def _ended(result: Any, stopped: bool, folder: Path) -> int:
     """The exit code of a run; says how an interrupted one goes on."""
     if result.status == "interrupted":
-        print(
+        say(
             f"interrupted; run the same command with --resume to continue from {folder / 'checkpoint.npz'}",
             file=sys.stderr,
         )
     elif stopped:
-        print(
+        say(
             "interrupted while it was repeated with other inputs; run the same command to continue",
             file=sys.stderr,
         )

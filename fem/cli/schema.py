@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 
 from fem.case.case import Case
+from fem.runtime.terminal import say
 
 
 def schema(
@@ -15,4 +16,4 @@ def schema(
     """Print the JSON schema of a kind of file: keys, types, units, ranges, defaults."""
     # The models of the other kinds take long to load.
     models = {} if kind == "case" else importlib.import_module("fem.cli.file_models").FILE_MODELS
-    print(json.dumps(models.get(kind, Case).model_json_schema(by_alias=True), indent=2))
+    say(json.dumps(models.get(kind, Case).model_json_schema(by_alias=True), indent=2))

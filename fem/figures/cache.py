@@ -6,18 +6,18 @@ same program from the same results, and not changed since.
 
 import hashlib
 import importlib
-import json
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from fem.figures.style import Drawing
-from fem.html.drawing import require_drawing
+from fem.html.drawing import Drawing, require_drawing
 from fem.model.container import Container
-from fem.results.files import to_json, write_atomically
+from fem.results.json_text import to_json
 from fem.results.reader import OpenedRun
 from fem.results.run_files import RunFiles
 from fem.runtime.identity import program_identity
+from fem.runtime.own_files import place_in, remove, write_atomically
+from fem.runtime.user_files import read_json, read_text
 
 
 def write_figures(run: OpenedRun, container: Container) -> list[Path]:
@@ -28,8 +28,7 @@ def write_figures(run: OpenedRun, container: Container) -> list[Path]:
         OSError: the folder or a file cannot be written.
     """
     files, drawings = run.place, _draw(run, container)
-    files.figures.mkdir(parents=True, exist_ok=True)
-    files.drawn.unlink(missing_ok=True)
+    remove(place_in(files.path, "figures/drawn.json"))
     for drawing in drawings:
         write_atomically(_svg(files, drawing.name), drawing.svg)
     metadata = _identity(files) | {"figures": [_metadata(drawing) for drawing in drawings]}
@@ -58,14 +57,14 @@ def _draw(run: OpenedRun, container: Container) -> list[Drawing]:
 def _cached(files: RunFiles) -> list[Drawing] | None:
     """The drawings in a folder; None if one is missing, changed or out of date."""
     try:
-        metadata = json.loads(files.drawn.read_text(encoding="utf-8"))
+        metadata = read_json(files.drawn)
         figures = metadata.pop("figures")
         # A name becomes a path, and ids in a page.
         if metadata != _identity(files) or not all(figure["name"].isidentifier() for figure in figures):
             return None
         drawings = []
         for figure in figures:
-            svg = _svg(files, figure["name"]).read_text(encoding="utf-8")
+            svg = read_text(_svg(files, figure["name"]))
             require_drawing(svg)
             drawings.append(Drawing(**(figure | {"svg": svg})))
         return drawings if [_metadata(drawing) for drawing in drawings] == figures else None

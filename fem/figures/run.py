@@ -22,6 +22,7 @@ from fem.figures.forces import forces_figure
 from fem.figures.joints import joints_figure
 from fem.figures.modes import modes_figure
 from fem.figures.recorded import spectrum_figure
+from fem.html.drawing import Drawing
 from fem.html.units import rounded
 from fem.model.container import Container
 from fem.results.history import History
@@ -70,7 +71,7 @@ def figure_of(run: RunData, name: str) -> Figure:
     return figure
 
 
-def draw_all(run: RunData, container: Container) -> list[style.Drawing]:
+def draw_all(run: RunData, container: Container) -> list[Drawing]:
     """The figures of a run as SVG, with the elastic modes of its container whatever the model.
 
     Raises:
@@ -89,7 +90,7 @@ def draw_all(run: RunData, container: Container) -> list[style.Drawing]:
     for name, figure in figures.items():
         svg = style.svg_of(figure)  # lays the figure out
         title = figure.texts[0].get_text()  # written by `head`
-        drawings.append(style.Drawing(name=name, title=title, cursor=style.cursor_axes(figure), svg=svg))
+        drawings.append(Drawing(name=name, title=title, cursor=style.cursor_axes(figure), svg=svg))
     return drawings
 
 

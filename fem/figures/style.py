@@ -10,7 +10,6 @@ import math
 import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from typing import Any
 
 import matplotlib
@@ -76,16 +75,6 @@ PLANE = "plane"
 #: share of the slenderness angle, or of the energy to overturn, from which that limit is drawn to scale
 NEAR_LIMIT = 0.15
 STRETCHES = 800  #: of a long curve, each drawn by its extremes: finer than print
-
-
-@dataclass(frozen=True, kw_only=True)
-class Drawing:
-    """A figure as SVG."""
-
-    name: str
-    title: str
-    cursor: dict[str, Any] | None  #: where a cursor moves over it, see `cursor_axes`
-    svg: str  #: the text of the file
 
 
 @contextmanager

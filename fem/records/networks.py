@@ -6,6 +6,7 @@ PGA VALUES (gal) : (N-S) 21.8 (E-W) 26.0 (U-D) 9.8". JMA (Japan), CSV: "SAMPLING
 """
 
 import re
+from dataclasses import dataclass
 from typing import NamedTuple
 
 from fem.records.columns import rows_of
@@ -30,7 +31,8 @@ class _Stated(NamedTuple):
         return [part.strip() for part in re.split(r"/|\([^()]*\)", self.text) if part.strip()]
 
 
-class Network(NamedTuple):
+@dataclass(frozen=True, kw_only=True)
+class Network:
     """A format by the beginnings of its keys, in lower case; empty: it has none."""
 
     NAME: str

@@ -10,8 +10,8 @@ import numpy as np
 
 from fem.render.picture import Scene
 from fem.results.errors import FolderError
-from fem.results.files import write_atomically
 from fem.results.reader import OpenedRun
+from fem.runtime.own_files import write_atomically
 
 WRITERS = {".gif": "imageio", ".mp4": "imageio_ffmpeg"}
 

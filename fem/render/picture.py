@@ -31,8 +31,8 @@ from fem.render.scene import (
 )
 from fem.results.errors import FolderError
 from fem.results.fields import Frame
-from fem.results.files import write_atomically
 from fem.results.reader import OpenedRun
+from fem.runtime.own_files import make_folder, place_in, write_atomically
 
 BODY, EDGE, SLAB, HATCH, ARROW, MARK = "#A9C1D6", "#333333", "#E4E1DC", "#A39E96", "#0072B2", "#222222"
 STRESS_MAP = "YlOrRd"  #: light at low stress, distinguishable by the colour-blind, grey in print
@@ -169,7 +169,10 @@ def write_picture(run: OpenedRun, *, time: float | None = None, path: Path | Non
         scene.close()
     content = io.BytesIO()
     image.save(content, format="PNG", optimize=True)
-    target.parent.mkdir(parents=True, exist_ok=True)
+    if path is None:
+        place_in(run.folder, f"figures/{target.name}")
+    else:
+        make_folder(path.parent)
     write_atomically(target, content.getvalue())
     return target
 

@@ -7,6 +7,7 @@ import tempfile
 from pathlib import Path
 
 from fem.results.errors import OutputError
+from fem.runtime.own_files import copy_file
 
 #: names of the program, in the order of trying; on Windows and macOS it stands where it is installed
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome", "msedge")
@@ -59,5 +60,5 @@ def print_page(page: Path) -> Path | None:
             raise PrintingError(f"{page}: {browser} did not print it ({error}); {BY_HAND}") from None
         if not printed.is_file():
             raise PrintingError(f"{page}: {browser} printed nothing; {BY_HAND}")
-        shutil.copyfile(printed, target)
+        copy_file(printed, target)
     return target

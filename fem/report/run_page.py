@@ -47,6 +47,7 @@ from fem.run.summary import (
     to_compare,
 )
 from fem.run.sureness import REGIME_UNSURE, SURE, numerical
+from fem.runtime.user_files import read_text
 from fem.solid.modes import FEW, elastic_mode_table
 
 #: figures beside the animation, in the order of reading; the others have their own sections
@@ -148,7 +149,7 @@ def run_report(
         "stepping": _stepping(case, result.numerics or Numerics()),
         "energies": _energies(case, result.energy or Energy()),
         "computed": f"{dt.datetime.fromtimestamp(run.place.result.stat().st_mtime):%Y-%m-%d %H:%M}",
-        "resolved": run.place.resolved.read_text(encoding="utf-8"),
+        "resolved": read_text(run.place.resolved),
     }
     page = Page(
         kind=f"{'Short report' if brief else 'Report'} of a run",

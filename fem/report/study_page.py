@@ -27,6 +27,7 @@ from fem.results.outcome import COUNTED, Outcome
 from fem.run.card import deciding_in_words, times
 from fem.runtime import units
 from fem.runtime.identity import command_line
+from fem.runtime.user_files import read_text
 from fem.study.answers import (
     Answer,
     HalfPoint,
@@ -517,7 +518,7 @@ def _figures(
         inside = path.resolve().is_relative_to(folder.resolve())
         if not inside or not path.is_file() or path.stat().st_size > MOST_DRAWING_BYTES:
             continue
-        text, label = path.read_text(encoding="utf-8"), path.stem.replace("_", " ")
+        text, label = read_text(path), path.stem.replace("_", " ")
         try:
             drawn.append((label, svg_element(text, label=label, prefix=f"{prefix}{k}")))
         except ValueError as error:
@@ -528,7 +529,7 @@ def _figures(
 
 
 def _text(path: Path) -> str:
-    return path.read_text(encoding="utf-8") if path.is_file() else ""
+    return read_text(path) if path.is_file() else ""
 
 
 def _again(folder: Path, study: str, name: str, case: Case) -> Again:

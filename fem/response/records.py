@@ -18,6 +18,7 @@ from fem.results.json_block import JsonBlock
 from fem.results.outcome import Outcome
 from fem.runtime import units
 from fem.runtime.arrays import FloatArray
+from fem.runtime.user_files import parsed_json
 from fem.study.table import table_text
 
 PORTRAYED = 16  #: last periods whose phase portrait is kept; of a periodic motion, one of its periods
@@ -209,5 +210,5 @@ def unpacked(arrays: dict[str, np.ndarray]) -> list[PointRecord]:
     parts = {name: np.split(arrays[name], ends[:, k]) for k, name in enumerate(ARRAYS)}
     return [
         PointRecord(row=PointRow(**row), **{name: parts[name][k] for name in ARRAYS})
-        for k, row in enumerate(json.loads(str(arrays["rows"])))
+        for k, row in enumerate(parsed_json(str(arrays["rows"])))
     ]

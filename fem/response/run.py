@@ -74,14 +74,14 @@ def _compute(
     plan = plan_of(request)
     status, done, records = _follow(request, plan, results, runner)
     swept = [record for record in records if record.row.direction != "start"]
-    results.write_text("response.csv", csv_of_rows(swept))
+    results.write("response.csv", csv_of_rows(swept))
     if request.starts:
-        results.write_text(
+        results.write(
             "starts.csv", csv_of_rows([record for record in records if record.row.direction == "start"])
         )
-    results.write_text("sections.csv", csv_of_sections(shown(records)))
+    results.write("sections.csv", csv_of_sections(shown(records)))
     for name, svg in response_figures(request, records).items():
-        results.write_text(f"figures/{name}.svg", svg)
+        results.write(f"figures/{name}.svg", svg)
     frequencies = tuple(frequencies_of(records))
     result = replace(
         begun,

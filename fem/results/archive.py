@@ -20,7 +20,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem.results.errors import FolderError
-from fem.results.files import write_atomically
+from fem.runtime.own_files import write_atomically
+from fem.runtime.user_files import parsed_json, read_own
 
 FORMAT = 1
 ABOUT = "about.json"
@@ -75,7 +76,7 @@ def read_archive(path: Path) -> Archive:
         CheckpointError: missing or damaged.
     """
     try:
-        about, arrays = _read(path.read_bytes())
+        about, arrays = _read(read_own(path))
     except OSError as error:
         raise CheckpointError(path, f"cannot be read ({error.strerror or error})") from None
     except Exception as error:  # a reader of broken archives fails in every way there is
@@ -110,7 +111,7 @@ def _read(content: bytes) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
     with zipfile.ZipFile(io.BytesIO(content)) as archive:
         if any(entry.compress_type != zipfile.ZIP_STORED for entry in archive.infolist()):
             raise ValueError("it is compressed")
-        page = json.loads(archive.read(ABOUT))
+        page = parsed_json(archive.read(ABOUT).decode())
         if not isinstance(page, dict):
             raise ValueError(f"{ABOUT} is not a table")
         names = [name for name in archive.namelist() if name != ABOUT]

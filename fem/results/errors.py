@@ -1,5 +1,6 @@
 """Errors of folders of results, each with a message that names the place, the reason and the way out."""
 
+import errno
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -48,6 +49,8 @@ def writing_into(folder: Path, way_on: str) -> Iterator[None]:
     except (FileExistsError, NotADirectoryError) as error:
         raise FolderError(f"{obstacle(Path(error.filename or folder))}; choose another place") from None
     except OSError as error:
+        if error.errno == errno.ELOOP:
+            raise FolderError(f"{error.filename} {error.strerror}") from None
         if isinstance(error, FileNotFoundError) and not existed:
             raise FolderError(f"{folder}: cannot be made ({error.strerror}); choose another place") from None
         raise OutputError(unwritable(folder, error, way_on)) from None

@@ -17,9 +17,10 @@ from xml.etree import ElementTree
 import numpy as np
 from numpy.typing import NDArray
 
-from fem.results.files import replacing
 from fem.results.vtu import FrameFormat
 from fem.runtime.arrays import FloatArray, IntArray
+from fem.runtime.own_files import place_in, remove, write_atomically
+from fem.runtime.user_files import read_text
 
 SERIES = "run.pvd"
 STOP, TIE = 10, 11  #: regions of the cells of stops and ties, which are behind all others
@@ -100,7 +101,7 @@ class FieldWriter:
         box: IntArray,
         kept_times: Sequence[float] = (),
     ) -> None:
-        folder.mkdir(parents=True, exist_ok=True)
+        place_in(folder.parent, f"{folder.name}/{SERIES}")
         self.folder = folder
         self._nodes = len(points)
         self._format = FrameFormat(
@@ -116,7 +117,7 @@ class FieldWriter:
         kept = {frame_name(i) for i in range(len(self._times))}
         for old in folder.glob("frame_*.vtu"):
             if old.name not in kept:
-                old.unlink()
+                remove(old)
 
     @property
     def times(self) -> tuple[float, ...]:
@@ -145,8 +146,7 @@ class FieldWriter:
             frame.time,
         )
         path = self.folder / frame_name(len(self._times))
-        with replacing(path) as part:
-            part.write_bytes(content)
+        write_atomically(path, content, to_disk=False)
         self._entries.append(_entry(len(self._times), frame.time))
         self._times.append(frame.time)
         if len(self._times) - self._listed > len(self._times) // PROMPT_FRAMES:
@@ -163,8 +163,7 @@ class FieldWriter:
             '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">\n'
             f"  <Collection>\n{''.join(self._entries)}  </Collection>\n</VTKFile>\n"
         )
-        with replacing(self.folder / SERIES) as part:
-            part.write_text(text, encoding="utf-8")
+        write_atomically(self.folder / SERIES, text, to_disk=False)
         self._listed = len(self._times)
 
 
@@ -273,7 +272,7 @@ def open_fields(folder: Path) -> Fields:
     """
     path = folder / SERIES
     try:
-        sets = ElementTree.fromstring(path.read_text(encoding="utf-8")).findall("./Collection/DataSet")
+        sets = ElementTree.fromstring(read_text(path)).findall("./Collection/DataSet")
         listed = [(float(entry.attrib["timestep"]), entry.attrib["file"]) for entry in sets]
     except (ElementTree.ParseError, KeyError, ValueError):
         raise ValueError(f"{path}: damaged, or not a series of frames") from None

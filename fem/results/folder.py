@@ -5,6 +5,8 @@ One JSON file marks the folder; it holds the status and the hash of what was ask
 replaced whole, one process writes at a time, and only files of results are ever removed.
 """
 
+import errno
+import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -16,11 +18,14 @@ import numpy as np
 from fem.results.archive import read_archive, write_archive
 from fem.results.disk import free_disk, in_units
 from fem.results.errors import OTHER_FOLDER, FolderError, writing_into
-from fem.results.files import remove_files, to_json, write_atomically
+from fem.results.json_text import to_json
 from fem.results.kinds import KINDS, ResultKind, read_result
-from fem.results.lock import FolderLock, locked_folder
+from fem.results.lock import LOCK_NAME, OWNER_NAME, FolderLock, locked_folder
 from fem.runtime.identity import program_identity, versions
+from fem.runtime.own_files import PART, matching_files, place_in, remove, remove_files, write_atomically
+from fem.runtime.terminal import say
 
+MOST_LISTED = 20  #: files of a user in a message
 REMEDY = f"{OTHER_FOLDER}, or overwrite it with --force"
 
 
@@ -93,11 +98,13 @@ class ResultFolder:
                     if other is not self.kind and (self.path / other.mark).is_file():
                         self.remove(other.mark, *other.own)
             for name, text in texts.items():
-                self.write_text(name, text)
+                self.write(name, text)
         except OSError as error:
             for name in (self.kind.mark, *texts) if was_empty else ():
                 with suppress(OSError):
-                    (self.path / name).unlink()
+                    remove(self.path / name)
+            if error.errno == errno.ELOOP:
+                raise FolderError(f"{error.filename} {error.strerror}") from None
             raise FolderError(f"{self.path}: cannot be written ({error.strerror}); {OTHER_FOLDER}") from None
 
     def check(self) -> None:
@@ -108,11 +115,9 @@ class ResultFolder:
         """Replace the marking file; numbers that are not finite become null."""
         write_atomically(self.path / self.kind.mark, to_json(mark))
 
-    def write_text(self, name: str, text: str) -> None:
+    def write(self, name: str, text: str) -> None:
         """Replace a file, in a subfolder if its name says so."""
-        place = self.path / name
-        place.parent.mkdir(parents=True, exist_ok=True)
-        write_atomically(place, text)
+        write_atomically(place_in(self.path, name), text)
 
     def write_arrays(self, name: str, arrays: Mapping[str, np.ndarray]) -> None:
         """Replace an npz file of plain arrays, to continue from; the folder must still be held."""
@@ -188,6 +193,9 @@ def open_result_folder(
         OutputError: a read-only place, a full disk, or a folder that was removed; in place of any OSError.
     """
     find_result(path, kind, request, force=force)  # before a lock is written into somebody's folder
+    with writing_into(path, way_on):
+        if force:
+            _require_consent(path, kind)
     with locked_folder(path) as lock:
         earlier = find_result(path, kind, request, force=force)
         with writing_into(path, way_on or "--resume continues"):
@@ -228,5 +236,23 @@ def find_result(path: Path, kind: ResultKind, request: str, *, force: bool = Fal
 
 
 def _names_in(path: Path) -> list[str]:
-    """Names of the files in a folder, without hidden ones: locks, set-up caches, half-written files."""
-    return [entry.name for entry in path.iterdir() if not entry.name.startswith(".")]
+    """Names in a folder, without the locks and half-written files of this program."""
+    names = [entry.name for entry in path.iterdir()]
+    return [name for name in names if name not in (LOCK_NAME, OWNER_NAME) and not PART.fullmatch(name)]
+
+
+def _require_consent(path: Path, kind: ResultKind) -> None:
+    """Ask before files are deleted from a folder that no result of this program marks."""
+    if any((path / known.mark).is_file() for known in KINDS):
+        return
+    names = [str(file.relative_to(path)) for file in matching_files(path, kind.own)]
+    if not names:
+        return
+    listed = ", ".join(names[:MOST_LISTED]) + (", .." if len(names) > MOST_LISTED else "")
+    asked = f"{path} holds no result of this program, and --force deletes files there: {listed}"
+    if not (sys.stdin and sys.stdin.isatty()):
+        raise FolderError(f"{asked}; delete them yourself, or {OTHER_FOLDER}")
+    say(asked, file=sys.stderr)
+    name = path.resolve().name
+    if input(f"the name of the folder, to delete them ({name}): ") != name:
+        raise FolderError(f"{path}: nothing was deleted; {OTHER_FOLDER}")

@@ -19,8 +19,9 @@ from typing import Any, Self
 import numpy as np
 
 from fem.case import columns
-from fem.results.files import write_atomically
 from fem.runtime.arrays import FloatArray
+from fem.runtime.own_files import appended, write_atomically
+from fem.runtime.user_files import read_text
 
 (ANALYTIC_COLUMN,) = columns.ANALYTIC.names((0,))
 KNOWN = frozenset(column.name for group in columns.GROUPS for column in group.columns)
@@ -126,9 +127,9 @@ class HistoryWriter:
             position = len(header)
         if not path.is_file() or path.stat().st_size < position:
             raise ValueError(f"{path}: the history ends before byte {position}, where the run is to resume")
-        self._file = open(path, "r+b", buffering=0)  # noqa: SIM115
+        self._file = appended(path, position)
         self._position = position
-        self._file.truncate(position)
+        self._file.seek(0)
         while self._file.tell() < position:
             self._digest.update(self._file.read(min(position - self._file.tell(), 1 << 20)))
 
@@ -235,5 +236,5 @@ def _is_known(name: str) -> bool:
 
 
 def _whole_lines(path: Path) -> list[str]:
-    text = path.read_text(encoding="utf-8")
+    text = read_text(path)
     return text[: text.rfind("\n") + 1].splitlines()

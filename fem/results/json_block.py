@@ -3,8 +3,11 @@
 from collections.abc import Callable, Mapping
 from dataclasses import fields
 from functools import cache
-from types import UnionType
+from types import NoneType, UnionType
 from typing import Any, ClassVar, Self, TypeVar, Union, get_args, get_origin, get_type_hints
+
+#: types of JSON, and what messages call them
+NAMED = {float: "number", int: "whole number", str: "text", bool: "truth value"}
 
 
 class JsonBlock:
@@ -18,14 +21,15 @@ class JsonBlock:
         """Read a block; missing keys and null take the default, unknown keys are ignored.
 
         Raises:
-            ValueError: the block is no object, or a required key is missing.
+            ValueError: the block is no table, a required key is missing, or one has a value of another type.
         """
+        if not isinstance(block, Mapping):
+            raise _WrongTypeError("", "table")
         try:
             readers = _readers(cls)  # type: ignore[arg-type]
-            return cls(
-                **{name: readers[name](block[name]) for name in readers if block.get(name) is not None}
-            )
-        except (AttributeError, TypeError) as error:
+            given = [name for name in readers if block.get(name) is not None]
+            return cls(**{name: _within(name, readers[name], block[name]) for name in given})
+        except TypeError as error:
             raise ValueError(f"cannot be read as {cls.__name__} ({error})") from None
 
     def __getitem__(self, key: str) -> Any:
@@ -51,6 +55,14 @@ def _plain(value: Any) -> Any:
     return [_plain(item) for item in value] if isinstance(value, tuple) else value
 
 
+class _WrongTypeError(ValueError):
+    """A value of another type than its key has."""
+
+    def __init__(self, key: str, what: str) -> None:
+        super().__init__(f"{key} is no {what}")
+        self.key, self.what = key, what
+
+
 @cache
 def _readers(kind: type[JsonBlock]) -> dict[str, Callable[[Any], Any]]:
     """For each field, what makes its value from JSON types."""
@@ -59,13 +71,61 @@ def _readers(kind: type[JsonBlock]) -> dict[str, Callable[[Any], Any]]:
 
 
 def _reader(hint: Any) -> Callable[[Any], Any]:
-    if get_origin(hint) in (UnionType, Union):  # X | None
-        hint = get_args(hint)[0]
+    """What makes a value from JSON types, where null is one of any type."""
+    parts = [part for part in get_args(hint) if part is not NoneType]
+    if get_origin(hint) in (UnionType, Union):
+        return _reader(parts[0]) if len(parts) == 1 else _scalar(tuple(parts))
     if isinstance(hint, TypeVar):  # a number, or the ends of a range
-        return lambda value: tuple(value) if isinstance(value, list) else value
-    if isinstance(hint, type) and issubclass(hint, JsonBlock):
-        return hint.from_json
-    if get_origin(hint) is tuple:
-        item = _reader(get_args(hint)[0])
-        return lambda values: tuple(item(value) for value in values)
-    return lambda value: value
+        number = _scalar((float,))
+        ends = _listed(number)
+        return lambda value: ends(value) if isinstance(value, list) else number(value)
+    kind = get_origin(hint) or hint
+    if isinstance(kind, type) and issubclass(kind, JsonBlock):
+        return kind.from_json
+    if kind is tuple:
+        return _listed(_reader(parts[0]))
+    if kind is dict:
+        return _table(_reader(parts[1]))
+    return _scalar((kind,)) if kind in NAMED else lambda value: value
+
+
+def _scalar(kinds: tuple[type, ...]) -> Callable[[Any], Any]:
+    """A value of one of some types; a whole number is a number, and true is none."""
+    if not set(kinds) <= set(NAMED):
+        return lambda value: value
+    taken = (*kinds, int) if float in kinds else kinds
+
+    def read(value: Any) -> Any:
+        right = isinstance(value, taken) and (not isinstance(value, bool) or bool in kinds)
+        if value is not None and not right:
+            raise _WrongTypeError("", " and no ".join(NAMED[kind] for kind in kinds))
+        return value
+
+    return read
+
+
+def _listed(read: Callable[[Any], Any]) -> Callable[[Any], Any]:
+    def items(values: Any) -> Any:
+        if not isinstance(values, list):
+            raise _WrongTypeError("", "list")
+        return tuple(_within(f"[{k}]", read, value) for k, value in enumerate(values))
+
+    return items
+
+
+def _table(read: Callable[[Any], Any]) -> Callable[[Any], Any]:
+    def items(values: Any) -> Any:
+        if not isinstance(values, dict):
+            raise _WrongTypeError("", "table")
+        return {key: _within(f".{key}", read, value) for key, value in values.items()}
+
+    return items
+
+
+def _within(key: str, read: Callable[[Any], Any], value: Any) -> Any:
+    """A value of a list or table, whose key is in the message."""
+    try:
+        return read(value)
+    except _WrongTypeError as error:
+        inner = f".{error.key}" if error.key and error.key[0] not in ".[" else error.key
+        raise _WrongTypeError(key + inner, error.what) from None

@@ -1,7 +1,5 @@
 """The kinds of results that have a folder: the file that marks each, and the files that each may replace."""
 
-import json
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,13 +7,12 @@ from typing import Any, TypeVar
 
 from fem.results.errors import FolderError
 from fem.results.json_block import JsonBlock
+from fem.runtime.user_files import read_json
 
 BlockT = TypeVar("BlockT", bound=JsonBlock)
 
 #: of a run, a site or a list
 PAGES = ("report.html", "report.pdf", "report-short.html", "report-short.pdf")
-#: ends of the names of numbers in the result of a run
-MEASURED = re.compile(r"_(m|m2|m3|s|s2|N|Nm|J|Pa|Hz|rad|ratio)$")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -139,7 +136,7 @@ def read_result(path: Path, kind: ResultKind = RUN) -> dict[str, Any]:
     """
     again = "compute it again with --force"
     try:
-        result = json.loads(path.read_text(encoding="utf-8"))
+        result = read_json(path)
     except OSError as error:
         raise FolderError(
             f"{path}: cannot be read ({error.strerror}); is this the folder of {kind.article} {kind.name}?"
@@ -148,9 +145,6 @@ def read_result(path: Path, kind: ResultKind = RUN) -> dict[str, Any]:
         result = None
     if not isinstance(result, dict) or not isinstance(result.get(kind.request), str):
         raise FolderError(f"{path}: damaged, or not the result of {kind.article} {kind.name}; {again}")
-    wrong = _not_a_number(result) if kind is RUN else None
-    if wrong is not None:
-        raise FolderError(f"{path}: damaged, {wrong} is not a number; {again}")
     return result
 
 
@@ -164,21 +158,3 @@ def typed_result(result: type[BlockT], content: Mapping[str, Any], path: Path) -
         return result.from_json(content)
     except ValueError as error:
         raise FolderError(f"{path}: damaged, {error}; compute it again with --force") from None
-
-
-def _not_a_number(content: Any) -> str | None:
-    """The first key that is named after a unit or a ratio and holds something else, or None."""
-    if isinstance(content, list):
-        return next((wrong for wrong in map(_not_a_number, content) if wrong is not None), None)
-    if not isinstance(content, dict):
-        return None
-    for key, value in content.items():
-        values = value if isinstance(value, list) else [value]
-        if MEASURED.search(key) and not all(
-            entry is None or isinstance(entry, int | float | dict) for entry in values
-        ):
-            return str(key)
-        wrong = _not_a_number(value)
-        if wrong is not None:
-            return wrong
-    return None

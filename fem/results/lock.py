@@ -26,7 +26,8 @@ from fem.results.errors import (
     OutputError,
     obstacle,
 )
-from fem.results.files import write_atomically
+from fem.runtime.own_files import make_folder, remove, write_atomically
+from fem.runtime.user_files import read_json
 
 LOCK_NAME, OWNER_NAME = ".lock", ".owner"
 #: attempts to make a folder that another process removes at the same time, and the pause between two [s]
@@ -86,7 +87,7 @@ def locked_folder(folder: Path) -> Iterator[FolderLock]:
         except OSError as error:
             if folder in missing:
                 with contextlib.suppress(OSError):
-                    (folder / LOCK_NAME).unlink()
+                    remove(folder / LOCK_NAME)
             raise OutputError(f"{folder}: cannot be written ({error.strerror}); {OTHER_FOLDER}") from None
         try:
             yield lock
@@ -94,7 +95,7 @@ def locked_folder(folder: Path) -> Iterator[FolderLock]:
             if lock.is_held:
                 for name in (OWNER_NAME, LOCK_NAME):  # while it is held: nobody can have taken it meanwhile
                     with contextlib.suppress(OSError):
-                        (folder / name).unlink()
+                        remove(folder / name)
     finally:
         file.release()
         for place in missing:
@@ -105,7 +106,7 @@ def locked_folder(folder: Path) -> Iterator[FolderLock]:
 def _acquire(folder: Path, file: FileLock) -> None:
     for last in [False] * (MOST_TRIES - 1) + [True]:
         try:
-            folder.mkdir(parents=True, exist_ok=True)
+            make_folder(folder)
             file.acquire()
             return
         except (FileExistsError, FileNotFoundError):
@@ -117,7 +118,7 @@ def _acquire(folder: Path, file: FileLock) -> None:
 def _owner_of(folder: Path) -> dict[str, Any]:
     """Who holds a folder, as far as the file tells."""
     try:
-        owner = json.loads((folder / OWNER_NAME).read_text(encoding="utf-8"))
+        owner = read_json(folder / OWNER_NAME)
     except (OSError, ValueError):
         return {}
     return owner if isinstance(owner, dict) else {}

@@ -20,6 +20,7 @@ from fem.results.kinds import KINDS, RUN, read_result
 from fem.results.run_files import RunFiles
 from fem.results.run_result import RunResult, Verdict
 from fem.runtime.arrays import FloatArray
+from fem.runtime.user_files import read_text
 
 if TYPE_CHECKING:
     from pyvista import UnstructuredGrid
@@ -37,8 +38,7 @@ class OpenedRun:
 
     def __repr__(self) -> str:
         """One line, for a notebook."""
-        outcome = (self.result.get("verdict") or {}).get("outcome")
-        suffix = f", {outcome}" if outcome else ""
+        suffix = f", {self.verdict.outcome}" if self.verdict.outcome else ""
         return f"<run {self.name!r} in {str(self.folder)!r}: {self.status}{suffix}>"
 
     @property
@@ -74,7 +74,7 @@ class OpenedRun:
         """Slenderness angle: beyond it the container falls if left alone [rad]."""
         try:
             return float(self.result["static"]["slenderness_angle_rad"])
-        except (KeyError, TypeError):
+        except (KeyError, TypeError, ValueError):
             raise FolderError(f"{self.place.result}: has no static block; run the case again") from None
 
     @cached_property
@@ -102,9 +102,8 @@ class OpenedRun:
         if not path.exists():
             return None
         try:
-            with path.open(encoding="utf-8") as stream:
-                names = stream.readline().strip().split(",")
-                rows = np.loadtxt(stream, delimiter=",", ndmin=2)
+            header, *lines = read_text(path).splitlines()
+            names, rows = header.split(","), np.loadtxt(lines, delimiter=",", ndmin=2)
             return dict(zip(names, rows.T, strict=True))
         except (OSError, ValueError) as error:
             raise FolderError(_unreadable(path, error)) from None

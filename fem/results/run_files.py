@@ -1,6 +1,5 @@
 """Places of the files of a run in its folder."""
 
-import shutil
 from collections.abc import Iterable
 from pathlib import Path, PurePath
 
@@ -8,8 +7,8 @@ from fem.case.case import Case, CaseError
 from fem.case.data_files import place_of
 from fem.case.recorded import recorded_motion
 from fem.records.columns import written
-from fem.results.files import write_atomically
 from fem.results.kinds import ResultKind
+from fem.runtime.own_files import copy_file, place_in, write_atomically
 from fem.runtime.user_files import real_path
 
 
@@ -67,21 +66,19 @@ def copy_data_files(case: Case, folder: Path, *, read: bool = False) -> None:
         CaseError: a motion file holds no motion; results go to others, and may not carry what else it holds.
     """
     if case.recorded is not None:
-        (folder / case.recorded.name).write_text(written(case.recorded), encoding="ascii")
+        write_atomically(folder / case.recorded.name, written(case.recorded))
     for key, file in case.files.items():
         if key == "motion.file" and not read:
             recorded_motion(case, "motion")
         elif key == "vertical.file" and not read:
             recorded_motion(case, "vertical")
-        path, target = file.path, folder / file.copy
-        target.parent.mkdir(parents=True, exist_ok=True)
+        path, target = file.path, place_in(folder, file.copy)
         if real_path(target) != real_path(path):
-            shutil.copyfile(path, target)
+            copy_file(path, target)
     own = {
         real_path(case.folder / neighbour.case) for neighbour in case.neighbour if neighbour.case is not None
     }
     for name, text in case.texts.items():
-        target = folder / name
-        target.parent.mkdir(parents=True, exist_ok=True)
+        target = place_in(folder, name)
         if real_path(target) not in own:
             write_atomically(target, text)

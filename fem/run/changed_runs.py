@@ -6,7 +6,6 @@ Long ones and those of the `full` model have one. How many fit a budget follows 
 not from the clock, so that a resumed or repeated study is the same.
 """
 
-import json
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -25,7 +24,7 @@ from fem.model.motion import build_motions
 from fem.model.recovery import Recovery, recovery_of
 from fem.model.validity import runs_in_memory
 from fem.results.figures import FELL_FIRST, Place
-from fem.results.files import to_json
+from fem.results.json_text import to_json
 from fem.results.run_result import ChangedRun, JointDemand, Numerics, Verdict
 from fem.run.joints import joint_demands
 from fem.run.ranges import largest_bolt_forces
@@ -34,6 +33,7 @@ from fem.run.simulation import run_without_history, simulate
 from fem.run.verdict import verdict_of
 from fem.runtime.identity import program_identity
 from fem.runtime.threads import cores
+from fem.runtime.user_files import read_json
 from fem.solid.nodal_body import full_model_memory
 
 SHORT_S = 5.0  #: estimated processor time up to which a run is stepped in one go [s]
@@ -66,7 +66,7 @@ class ChangedRunsFile:
         if not self._path.exists():
             return []
         try:
-            content = json.loads(self._path.read_text(encoding="utf-8"))
+            content = read_json(self._path)
             if any(content[key] != value for key, value in self._owner.items()):
                 raise ValueError("of another case or another version of the program")
             return [ChangedRun.from_json(member) for member in content["members"]]

@@ -24,6 +24,7 @@ from fem.run.solve import begun, in_words, resolve, stepped
 from fem.runtime.compilation import compilation_announced
 from fem.runtime.progress import SilentReporter
 from fem.runtime.signals import stop_requested
+from fem.runtime.terminal import say
 from fem.runtime.threads import use_one_blas_thread
 
 if TYPE_CHECKING:
@@ -146,7 +147,7 @@ def compute_on(container: Container | None, case: Case, wanted: WantedChecks) ->
     watch, silent = Stopwatch(), SilentReporter()
     mesh, motions = build_container(case), build_motions(case)
     case = resolve(case, mesh, motions)  # what is changed later on is this case, too
-    with compilation_announced(lambda text: print(text, file=sys.stderr)):
+    with compilation_announced(lambda text: say(text, file=sys.stderr)):
         model = build_model(case, container or discretise(case, mesh), motions=motions)
         keeper = FrameKeeper(**LinkCells(model).mesh)
         recorder = Recorder(model, recovery_of(model), frame_sink=keeper.keep)

@@ -111,14 +111,14 @@ def run_case(
 
             def write(text: str) -> None:
                 place.check()
-                place.write_text(files.band.name, text)
+                place.write(files.band.name, text)
 
             members = ChangedRunsFile(files.band, case_hash=request, write=write, message=reporter.warning)
             checked, block = add_checks(
                 result, model, lambda: _history_of(files), options, members, reporter=reporter, stop=stop
             )
             if block is not None:
-                place.write_text(files.rigid_check.name, block.table())
+                place.write(files.rigid_check.name, block.table())
                 add_analytic_rotation(files.history, block.analytic_rotation)
             if checked is not result:
                 if known is None:
@@ -204,7 +204,7 @@ def store(result: RunResult, case: Case, place: ResultFolder) -> RunResult:
     """
     place.check()
     result = in_words(result, case)
-    place.write_text(RunFiles(place.path).summary.name, plain_summary(result, folder=place.path))
+    place.write(RunFiles(place.path).summary.name, plain_summary(result, folder=place.path))
     place.write_result(result.to_json())
     if result.status in RUN.finished:
         place.remove("checkpoint.npz")

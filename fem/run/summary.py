@@ -25,6 +25,7 @@ from fem.run.described import fall_in_row, floor_rows, motion_in_words
 from fem.run.joints import box_table, joint_tables, largest_joint_slip, titled_table
 from fem.run.ranges import bolt_forces, crushes, in_words, largest_ratio, largest_slip, of_band
 from fem.run.static_words import code_note, governing, rule_says
+from fem.runtime.terminal import shown
 from fem.runtime.units import INVISIBLE, MILLIMETRES, PERCENT, RATIO, SHORT_MILLIMETRES, visible_number
 
 TEXT_WIDTH = 80
@@ -53,7 +54,7 @@ def _lines(parts: Iterator[RenderableType]) -> list[str]:
     console = Console(file=io.StringIO(), width=TEXT_WIDTH, color_system=None, highlight=False)
     with console.capture() as capture:
         console.print(*parts, sep="\n")
-    return [line.rstrip() for line in capture.get().splitlines()]
+    return [line.rstrip() for line in shown(capture.get()).splitlines()]
 
 
 def _brief_parts(result: run_result.RunResult, folder: Path) -> Iterator[RenderableType]:

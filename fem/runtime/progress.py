@@ -13,6 +13,8 @@ from rich.console import Console
 from rich.progress import Progress, TextColumn
 from rich.text import Text
 
+from fem.runtime.terminal import shown
+
 REDRAW_S = 0.1  #: between redraws of the line on a terminal
 PLAIN_S = 5.0  #: between plain lines
 
@@ -96,9 +98,9 @@ class ScreenReporter(Reporter):
             return
         self._due = self._now() + self._pause
         if self._bar.live.is_started:
-            self._bar.update(self._task, description=line(), refresh=True)
+            self._bar.update(self._task, description=shown(line()), refresh=True)
         else:
-            self._console.print(Text(line()), soft_wrap=True)
+            self._console.print(Text(shown(line())), soft_wrap=True)
 
     def message(self, text: str) -> None:
         """Print a sentence; a line in place stays below it."""
@@ -107,7 +109,7 @@ class ScreenReporter(Reporter):
 
     def warning(self, text: str) -> None:
         """Print a sentence, quiet or not."""
-        self._console.print(Text(text), soft_wrap=True)
+        self._console.print(Text(shown(text)), soft_wrap=True)
 
     def finish(self) -> None:
         """Remove the line."""

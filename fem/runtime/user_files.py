@@ -1,34 +1,85 @@
-"""Files that users name: they may be anything, such as a device without an end, a pipe that nobody fills, or a link."""
+"""Files that users name or that lie in their folders: each may be anything, such as a device without an end, a pipe
+that nobody fills, or a link."""
 
+import errno
+import json
 import os
 import stat
 from pathlib import Path
+from typing import Any
+
+LARGEST_RESULT = 2**31  #: file of a result [bytes]
+MOST_NESTED = 40  #: lists and tables in each other, in JSON
 
 
 def read_regular(path: Path, most: int) -> bytes:
-    """The content of a regular file; no more of it than the file states, for one of the kernel may never end.
-
-    Args:
-        path: of the file; links are followed.
-        most: that it may hold [bytes].
+    """The content of a regular file of a user; links are followed.
 
     Raises:
-        ValueError: without the path: there is none, it is no regular file, too large, or cannot be read.
+        ValueError: without the path: there is none, it is no regular file, larger than `most` bytes, or cannot be read.
     """
     try:
-        status = path.stat()
-        if stat.S_ISDIR(status.st_mode):
-            raise ValueError("is a folder, not a file")
-        if not stat.S_ISREG(status.st_mode):
-            raise ValueError("is a device or a pipe, not a regular file")
-        if status.st_size > most:
-            raise ValueError(f"is larger than {1e-6 * most:.3g} MB")
-        with path.open("rb") as stream:
-            return stream.read(status.st_size)
+        return read_own(path, most)
     except FileNotFoundError:
         raise ValueError("does not exist or is not a file") from None
     except OSError as error:
-        raise ValueError(f"cannot be read: {error.strerror}") from None
+        said = error.errno in (errno.EINVAL, errno.EFBIG, errno.EISDIR)
+        raise ValueError(f"{'' if said else 'cannot be read: '}{error.strerror}") from None
+
+
+def read_own(path: Path, most: int = LARGEST_RESULT) -> bytes:
+    """The content of a regular file, such as one of a result; no more than it states, for one may never end.
+
+    Raises:
+        OSError: there is none, it is no regular file, larger than `most` bytes, or cannot be read.
+    """
+    _require_regular(path.stat(), most, path)  # before it is opened, for opening may block
+    with open(path, "rb", opener=_unblocked) as stream:
+        return stream.read(_require_regular(os.fstat(stream.fileno()), most, path))
+
+
+def read_text(path: Path, errors: str = "strict") -> str:
+    """The text of a file of a result; OSError as `read_own`, ValueError where it is no text."""
+    return read_own(path).decode("utf-8", errors).replace("\r\n", "\n")
+
+
+def read_json(path: Path) -> Any:
+    """What a file of a result holds as JSON; OSError as `read_own`, ValueError where it is none."""
+    return parsed_json(read_text(path))
+
+
+def parsed_json(text: str) -> Any:
+    """What a text holds as JSON; ValueError where it is none, or nested more deeply than any of this program."""
+    try:
+        content = json.loads(text)
+    except RecursionError:
+        raise ValueError("its lists are nested too deeply") from None
+    level = [content]
+    for _ in range(MOST_NESTED):
+        level = [
+            item
+            for one in level
+            if isinstance(one, dict | list)
+            for item in (one.values() if isinstance(one, dict) else one)
+        ]
+    if level:
+        raise ValueError("its lists are nested too deeply")
+    return content
+
+
+def _unblocked(path: str, flags: int) -> int:
+    return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
+
+
+def _require_regular(status: os.stat_result, most: int, path: Path) -> int:
+    """The size of a regular file."""
+    if stat.S_ISDIR(status.st_mode):
+        raise OSError(errno.EISDIR, "is a folder, not a file", str(path))
+    if not stat.S_ISREG(status.st_mode):
+        raise OSError(errno.EINVAL, "is a device or a pipe, not a regular file", str(path))
+    if status.st_size > most:
+        raise OSError(errno.EFBIG, f"is larger than {1e-6 * most:.3g} MB", str(path))
+    return status.st_size
 
 
 def real_path(path: Path) -> Path:

@@ -12,6 +12,7 @@ import numpy as np
 from fem.records.columns import given_record, written
 from fem.records.units import STANDARD_GRAVITY
 from fem.runtime.arrays import FloatArray
+from fem.runtime.own_files import write_atomically
 
 AT2_PER_LINE = 5
 
@@ -25,7 +26,7 @@ def write_csv(path: Path, step: float, acceleration: FloatArray) -> None:
     """Write times and accelerations (n,) [m/s2]."""
     times = np.asarray(np.arange(acceleration.size) * step, dtype=np.float64)
     record = given_record(times, {"horizontal": acceleration})
-    path.write_text(written(record), encoding="ascii")
+    write_atomically(path, written(record), to_disk=False)
 
 
 def write_at2(path: Path, step: float, acceleration: FloatArray, described: str) -> None:
@@ -53,4 +54,4 @@ def write_at2(path: Path, step: float, acceleration: FloatArray, described: str)
         "ACCELERATION TIME SERIES IN UNITS OF G",
         f"NPTS= {values.size}, DT= {step!r} SEC",
     )
-    path.write_text("\n".join((*heading, *rows, "")), encoding="ascii")
+    write_atomically(path, "\n".join((*heading, *rows, "")), to_disk=False)

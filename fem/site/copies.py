@@ -1,7 +1,6 @@
 """What was asked, for the page and the simplified methods, and as files in the folder of results."""
 
 import hashlib
-import shutil
 import tomllib
 from contextlib import suppress
 from itertools import chain
@@ -12,6 +11,7 @@ from fem.case.data_files import place_of, split_channel
 from fem.case.toml import toml_document, toml_value
 from fem.results.kinds import ResultKind
 from fem.results.run_files import copy_data_files, require_free_name
+from fem.runtime.own_files import copy_file, place_in
 from fem.runtime.user_files import real_path
 from fem.seismic.floor_spectrum import text_of
 from fem.site.request import SiteRequest
@@ -62,9 +62,9 @@ def copy_files(request: SiteRequest, folder: Path) -> None:
     """Copy the mesh of the container, and the records, to where the copies of their files name them."""
     for path, place in _records(request).values():
         if not Path(place).is_absolute():
-            (folder / place).parent.mkdir(parents=True, exist_ok=True)
-            if real_path(folder / place) != real_path(path):
-                shutil.copyfile(path, folder / place)
+            target = place_in(folder, place)
+            if real_path(target) != real_path(path):
+                copy_file(path, target)
     with suppress(CaseError):  # the motion of the container, which is not used here, may be none
         copy_data_files(request.container, folder)
 

@@ -19,7 +19,8 @@ from fem.records.processing import Processing, stated_baseline
 from fem.records.record import Component, Direction, Record, RecordError, cut_together
 from fem.records.spectrum import response_spectrum
 from fem.runtime.arrays import FloatArray
-from fem.runtime.user_files import leads_out, real_path
+from fem.runtime.own_files import place_in
+from fem.runtime.user_files import leads_out, read_own, real_path
 from fem.seismic.action import LAST_PERIOD_ANNEX_A_S, LAST_PERIOD_S, MotionTarget, SiteAction
 from fem.seismic.artificial import artificial_set
 from fem.seismic.floor import HIGHEST_HZ, ONE_MODE_TO_S, PERIOD_FACTORS, floor_motion, one_mode, storey_modes
@@ -310,14 +311,13 @@ def set_result(
 
 def write_ground(folder: Path, ground: Sequence[GroundMotion]) -> list[SiteMotion]:
     """Write the motions of the ground as CSV and as AT2, and describe them, apart from their spectra."""
-    (folder / MOTIONS).mkdir(parents=True, exist_ok=True)
     described = []
     for number, motion in enumerate(ground, start=1):
         files = write_csv_files(folder, motion, motion.name)
         for letter, component in motion.lettered.items():
             name = f"{MOTIONS}/{motion.name}_{letter}.at2"
             heading = f"UNANCHORED, , {motion.name}, {HEADINGS[letter]}"
-            write_at2(folder / name, motion.step, component, heading)
+            write_at2(place_in(folder, name), motion.step, component, heading)
             files.append(name)
         measures, ends = motion.intensities, motion.ends
         described.append(
@@ -334,7 +334,7 @@ def write_ground(folder: Path, ground: Sequence[GroundMotion]) -> list[SiteMotio
                 end_displacement_m=ends[1],
                 spectrum_m_s2=(),
                 files=tuple(files),
-                sha256=tuple(hashlib.sha256((folder / name).read_bytes()).hexdigest() for name in files),
+                sha256=tuple(hashlib.sha256(read_own(folder / name)).hexdigest() for name in files),
             )
         )
     return described
@@ -342,10 +342,9 @@ def write_ground(folder: Path, ground: Sequence[GroundMotion]) -> list[SiteMotio
 
 def write_csv_files(folder: Path, motion: GroundMotion, stem: str) -> list[str]:
     """Write the components of a motion for the runs; returns the names in the folder of results."""
-    (folder / MOTIONS).mkdir(parents=True, exist_ok=True)
     files = {f"{MOTIONS}/{stem}_{letter}.csv": component for letter, component in motion.lettered.items()}
     for name, component in files.items():
-        write_csv(folder / name, motion.step, component)
+        write_csv(place_in(folder, name), motion.step, component)
     return list(files)
 
 

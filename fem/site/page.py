@@ -16,6 +16,7 @@ from fem.results.figures import FIGURES, TURNED, Place, declared_in, keys_of
 from fem.results.kinds import SITE
 from fem.results.outcome import Outcome
 from fem.runtime.arrays import FloatArray
+from fem.runtime.user_files import read_text
 from fem.site.answer import both_ways, ended, span_in_words, unit_of
 from fem.site.figures import draw_floor, draw_methods, draw_motion, draw_scan, draw_spectra
 from fem.site.result import BY_RULE, RESULT_FILE, RuleRange, SiteAnswer, SiteMethod, SiteMotion, SiteResult
@@ -163,8 +164,7 @@ def motion_figure(folder: Path, result: SiteResult, motion: SiteMotion) -> str:
 
 def _curve(path: Path) -> tuple[FloatArray, FloatArray]:
     try:
-        with open(path, encoding="utf-8", newline="") as file:
-            values = np.array(list(csv.reader(file))[1:], dtype=np.float64)
+        values = np.array(list(csv.reader(read_text(path).splitlines()))[1:], dtype=np.float64)
     except (OSError, ValueError) as error:
         raise FolderError(f"{path} cannot be read ({error}); compute it again") from None
     return values[:, 0], values[:, 1]
@@ -172,6 +172,6 @@ def _curve(path: Path) -> tuple[FloatArray, FloatArray]:
 
 def _text(path: Path) -> str:
     try:
-        return path.read_text(encoding="utf-8")
+        return read_text(path)
     except (OSError, ValueError) as error:
         raise FolderError(f"{path} cannot be read ({error})") from None

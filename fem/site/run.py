@@ -146,8 +146,8 @@ class Verification:
         result = self._result(motions, answer)
         if result.status == COMPLETED:
             if self.stages.rows.runs:
-                place.write_text(RUNS, self.stages.rows.table())
-            place.write_text(PAGE, site_report(place.path, result))
+                place.write(RUNS, self.stages.rows.table())
+            place.write(PAGE, site_report(place.path, result))
         return result
 
     def write_floors(self, *, ground: bool = False) -> None:

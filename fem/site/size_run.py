@@ -3,7 +3,6 @@
 Rows are logged as they are ready, so that an interrupted computation continues where it was.
 """
 
-import shutil
 import time
 from dataclasses import replace
 from functools import partial
@@ -14,6 +13,7 @@ from fem.results.folder import ResultFolder
 from fem.results.kinds import SIZE
 from fem.run.expected import expected_words
 from fem.runtime.identity import command_line
+from fem.runtime.own_files import remove_tree
 from fem.seismic.ground_motion import GroundMotion
 from fem.site.copies import copy_files, inputs_of, texts_of
 from fem.site.figures import draw_size
@@ -98,7 +98,7 @@ def _compute(
                     return replace(begun, status=INTERRUPTED, missing=left)
                 answers[value] = answer
     finally:
-        shutil.rmtree(working, ignore_errors=True)
+        remove_tree(working)
     place.check()
     result = size_result(axis, answers, begun)
     # by value, and in the order of each verification, whatever the order in which runs ended
@@ -107,8 +107,8 @@ def _compute(
         for value, work in sorted(tried.items())
         for key in work.stages.rows.in_order()
     )
-    place.write_text(RUNS, table_text({"value": float} | COLUMNS, rows))
-    place.write_text(FIGURE, draw_size(result, inputs_of(request)))
+    place.write(RUNS, table_text({"value": float} | COLUMNS, rows))
+    place.write(FIGURE, draw_size(result, inputs_of(request)))
     return replace(result, wall_s=time.perf_counter() - began)
 
 

@@ -16,6 +16,7 @@ from scipy.sparse.linalg import LinearOperator, eigsh
 
 from fem.results.vtu import FrameFormat
 from fem.runtime.arrays import FloatArray
+from fem.runtime.own_files import make_folder, write_atomically
 from fem.solid.assembly import FiniteElements, factorised
 
 FEW = 5  #: modes in the table and the figure of a run: one row of shapes
@@ -72,7 +73,7 @@ def elastic_mode_table(modes: ElasticModes) -> list[dict[str, float]]:
 
 def write_modes(elements: FiniteElements, modes: ElasticModes, folder: Path) -> Path:
     """Write `modes.vtu` with every shape as a point vector (x, z, 0), scaled to a largest displacement of 1 m."""
-    folder.mkdir(parents=True, exist_ok=True)
+    make_folder(folder)
     names = [f"mode {i:02d} ({f:.6g} Hz)" for i, f in enumerate(modes.frequencies_Hz, start=1)]
     largest = np.linalg.norm(modes.shapes, axis=2).max(axis=1)
     file = FrameFormat(
@@ -82,7 +83,7 @@ def write_modes(elements: FiniteElements, modes: ElasticModes, folder: Path) -> 
     )
     shapes = {n: _padded(s / a) for n, s, a in zip(names, modes.shapes, largest, strict=True)}
     path = folder / "modes.vtu"
-    path.write_bytes(file.frame(shapes))
+    write_atomically(path, file.frame(shapes))
     return path
 
 

@@ -20,12 +20,12 @@ from typing import Any, Generic, TypedDict, TypeVar, Unpack
 from fem.case.case import Case
 from fem.results.disk import BYTES_BESIDE
 from fem.results.errors import FolderError, FolderLostError
-from fem.results.files import write_atomically
 from fem.results.folder import ResultFolder, open_result_folder, program_of_results
 from fem.results.json_block import JsonBlock
 from fem.results.kinds import ResultKind, read_result, typed_result
 from fem.results.run_files import copy_data_files, require_free_names
 from fem.runtime.compilation import compilation_announced
+from fem.runtime.own_files import appended, write_atomically
 from fem.runtime.progress import Reporter, SilentReporter
 from fem.runtime.signals import interruptible
 from fem.runtime.threads import cores
@@ -191,9 +191,9 @@ class RowLog:
             warn(f"{path}: damaged rows, which are computed again: {damaged}")
         if damaged or not self.lines:
             write_atomically(path, kept)
-        self._file = open(path, "r+b", buffering=0)  # noqa: SIM115
-        self._file.truncate(len(kept.encode()))
-        self._file.seek(0, os.SEEK_END)
+        self._file = appended(path, len(kept) if self.lines else 0)
+        if not self.lines:
+            self._file.write(kept)
 
     def append(self, lines: Iterable[str]) -> None:
         """Write lines in one go.

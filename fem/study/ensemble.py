@@ -149,8 +149,8 @@ def _compute(
     points = [count_point(ensemble, int(k), draws.codes[k], draws.slips[k]) for k in np.flatnonzero(complete)]
     results.check()
     columns = dict.fromkeys((axis.key for axis in ensemble.axes), float) | POINT_COLUMNS
-    results.write_text("points.csv", table_of_rows(columns, points))
-    results.write_text(DRAWS, log.table())
+    results.write("points.csv", table_of_rows(columns, points))
+    results.write(DRAWS, log.table())
     regions = [point["region"] for point in points]
     result = replace(
         begun,
@@ -163,7 +163,7 @@ def _compute(
         return replace(result, missing=f"{len(points)} of {ensemble.count} points have all their draws")
     fragility = fragility_of(ensemble, draws.codes, points)
     for name, svg in ensemble_figures(ensemble, unknown, points, fragility).items():
-        results.write_text(f"figures/{name}.svg", svg)
+        results.write(f"figures/{name}.svg", svg)
     failed = all(point["failed"] == ensemble.draws for point in points)
     result = replace(result, status=FAILED if failed else COMPLETED, fragility=fragility)
     if motions:

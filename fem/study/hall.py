@@ -311,8 +311,8 @@ def _compute(hall: Hall, begun: HallResult, results: ResultFolder, runner: Runne
     if left := len(to_check()):
         return replace(begun, status=INTERRUPTED, missing=f"{left} of the weakest are still to be repeated")
     results.check()
-    results.write_text(RUNS, runs.table())
-    results.write_text(CHECKS, checks.table())
+    results.write(RUNS, runs.table())
+    results.write(CHECKS, checks.table())
     for item, row in found:
         row |= checks.row(item)
     for rank, (_, container) in enumerate(sorted(found, key=lambda pair: weakness(pair[1])), start=1):
@@ -363,7 +363,7 @@ def _written(
         table=table,
     )
     fields = ([*row["given"].values(), *(row[name] for name in RESULT_COLUMNS)] for row in table)
-    results.write_text(TABLE, table_text((*result.columns, *RESULT_COLUMNS), fields))
+    results.write(TABLE, table_text((*result.columns, *RESULT_COLUMNS), fields))
     results.remove("report.html")  # the command makes another
     return replace(result, answer=_answer_of(result))
 

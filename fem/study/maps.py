@@ -24,8 +24,8 @@ from fem.figures.heat_map import Look, MapAxis, Panel, draw_heat_map, value_labe
 from fem.figures.paper_marks import LABEL, marks_of
 from fem.html.units import rounded
 from fem.results.figures import SLIPPED, TURNED
-from fem.results.files import write_atomically
 from fem.results.outcome import ENDINGS, Outcome
+from fem.runtime.own_files import place_in, write_atomically
 from fem.study.answers import Answer, StudyAnswer, falling_in_words
 from fem.study.axes import MOTION_FILE, Axis, axis_label, axis_name
 from fem.study.design import Ensemble, MapChoice, UnknownInputs
@@ -79,7 +79,6 @@ SLIPS = {
 
 def draw_maps(table: SweepTable, folder: Path, choice: MapChoice) -> list[str]:
     """Write every map of a sweep into a folder as SVG; returns their names there."""
-    folder.mkdir(exist_ok=True)
     if len(table.axes) == 1 or sum(len(axis.values) > 1 for axis in table.axes) < 2:
         figures = {"rotation": rotation_curve(table)}
     else:
@@ -90,7 +89,7 @@ def draw_maps(table: SweepTable, folder: Path, choice: MapChoice) -> list[str]:
         figures = {"boundary": boundary} if boundary else {}
         figures |= {kind: sweep_map(table, kind, choice) for kind in kinds}
     for name, figure in figures.items():
-        write_atomically(folder / f"{name}.svg", style.svg_of(figure))
+        write_atomically(place_in(folder.parent, f"{folder.name}/{name}.svg"), style.svg_of(figure))
     return [f"{folder.name}/{name}.svg" for name in figures]
 
 

@@ -138,12 +138,12 @@ def write_motions(
     if any(measure["vertical"] for measure in measures):
         columns |= upward(MEASURED)
     rows = ({**measure, **upward(measure["vertical"] or {})} for measure in measures)
-    place.write_text("motions.csv", table_of_rows(columns, rows))
+    place.write("motions.csv", table_of_rows(columns, rows))
     periods, spectra = spectra_of(motions, runner)
     samples = np.column_stack([periods, *spectra.values()]).tolist()
-    place.write_text("spectra.csv", table_text(["period_s", *spectra], samples))
+    place.write("spectra.csv", table_text(["period_s", *spectra], samples))
     vertical = [measure["vertical"]["file"] for measure in measures if measure["vertical"]]
-    place.write_text(SPECTRA, svg_of(draw_spectra(periods, spectra, vertical=vertical)))
+    place.write(SPECTRA, svg_of(draw_spectra(periods, spectra, vertical=vertical)))
     return {"motions": tuple(measures), "motion_figures": (SPECTRA,)}
 
 

@@ -22,6 +22,7 @@ from fem.results.folder import ResultFolder
 from fem.results.kinds import SWEEP
 from fem.run.expected import expected_s, expected_words
 from fem.runtime.threads import cores
+from fem.runtime.user_files import read_own
 from fem.study.axes import AxisResult
 from fem.study.design import Item, Sweep
 from fem.study.draws import held_inputs
@@ -145,7 +146,7 @@ def asked_of(sweep: Sweep, motions: Sequence[FloorMotionPair], jobs: int) -> Swe
 def _progress(sweep: Sweep, folder: Path) -> str:
     """How many rows an unfinished sweep has; one without any is no loss."""
     log = folder / ROWS
-    rows = log.read_bytes().count(b"\n") - 1 if log.is_file() else 0
+    rows = read_own(log).count(b"\n") - 1 if log.is_file() else 0
     return f"{rows} of {sweep.count} rows" if rows > 0 else ""
 
 
@@ -204,15 +205,15 @@ def _compute(sweep: Sweep, begun: SweepResult, place: ResultFolder, runner: Runn
         copies, members = copied
         found, bands = copies.band()
         result = replace(result, **found)
-        place.write_text(MEMBERS, members.table())
+        place.write(MEMBERS, members.table())
     lines = (f"{log.lines[cell,]},{line_of(band)}" for cell, band in enumerate(bands))
-    place.write_text(TABLE, table_of_lines((*rows.columns, *columns), lines))
+    place.write(TABLE, table_of_lines((*rows.columns, *columns), lines))
     if changes is not None:
-        place.write_text(CHANGES, table_of_changes(sweep, changes))
+        place.write(CHANGES, table_of_changes(sweep, changes))
         result = replace(result, changes=len(changes))
     answer = sweep_answer(open_sweep(place.path), place.path)
     if answer:
-        place.write_text(ANSWERS, answers_csv(answer))
+        place.write(ANSWERS, answers_csv(answer))
     return replace(
         result,
         answer=answer.sentence if answer else None,
@@ -227,7 +228,7 @@ def _rows_of_table(place: ResultFolder, rows: CellRows) -> None:
     if table.exists() and not log.exists():
         lines = read_lines(table, (*rows.columns, *band_columns(rows.axes)))
         kept = (line_of(fields_of(line)[: len(rows.columns)]) for line in lines)
-        place.write_text(ROWS, table_of_lines(rows.columns, kept))
+        place.write(ROWS, table_of_lines(rows.columns, kept))
     place.remove(TABLE)
 
 

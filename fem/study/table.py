@@ -1,16 +1,20 @@
 """Tables of rows: columns with the types of their fields, and rows as lines of text.
 
-Numbers are written in the shortest form that reads back to the same bits. A text that a spreadsheet would compute, such
-as a file name that begins with "=", has an apostrophe before it.
+Numbers are written in the shortest form that reads back to the same bits. What a spreadsheet would compute in a text,
+such as a file name that begins with "=", has an apostrophe before it, also behind a semicolon, which separates columns
+where commas do not.
 """
 
 import csv
 import io
+import re
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+
+from fem.runtime.user_files import read_text
 
 #: by the names in the header, what the fields hold: text, one number, true or false; a tuple: several numbers
 Columns = dict[str, type]
@@ -24,11 +28,16 @@ READERS: dict[type, Callable[[str], Any]] = {
 }
 
 
+#: what other programs may take for a field of its own, and apostrophes that stand before a formula in it
+PART = re.compile(r"(?P<blanks> *)(?P<marks>'*)(?P<text>[^;|]+)")
+
+
 def line_of(values: Iterable[Any]) -> str:
     """Values as a line of a table, without its end."""
     text = io.StringIO()
-    csv.writer(text, lineterminator="").writerow([_text(value) for value in values])
-    return text.getvalue()
+    # fields with what may end a line are quoted, and so are those with a semicolon
+    csv.writer(text, lineterminator=";").writerow([_text(value) for value in values])
+    return text.getvalue()[:-1]
 
 
 def fields_of(line: str) -> list[str]:
@@ -37,8 +46,10 @@ def fields_of(line: str) -> list[str]:
 
 
 def plain_text(field: str) -> str:
-    """A field without the apostrophe before what a spreadsheet would compute."""
-    return field[1:] if field[:1] == "'" and _is_computed(field[1:]) else field
+    """A field without the apostrophes before what a spreadsheet would compute."""
+    return PART.sub(
+        lambda part: part[0].replace("'", "", int(bool(part["marks"]) and _is_computed(part["text"]))), field
+    )
 
 
 def row_of(columns: Columns, line: str) -> dict[str, Any]:
@@ -73,7 +84,7 @@ def table_of_lines(columns: Iterable[str], lines: Iterable[str]) -> str:
 
 def read_rows(path: Path, columns: Columns) -> list[dict[str, Any]]:
     """The rows of a whole table by column, None where it has no such column or value; none if the file is missing."""
-    header, *lines = path.read_text(encoding="utf-8").splitlines() if path.is_file() else [""]
+    header, *lines = read_text(path).splitlines() if path.is_file() else [""]
     names = fields_of(header)
     rows = (dict(zip(names, fields_of(line), strict=True)) for line in lines)
     return [
@@ -85,7 +96,7 @@ def read_rows(path: Path, columns: Columns) -> list[dict[str, Any]]:
 def read_lines(path: Path, columns: Iterable[str]) -> list[str]:
     """The whole lines of a table below its header; none if the file is missing, or has other columns."""
     try:
-        text = path.read_text(encoding="utf-8", errors="replace")
+        text = read_text(path, errors="replace")
     except FileNotFoundError:
         return []
     lines = text[: text.rfind("\n") + 1].split("\n")[:-1]
@@ -102,8 +113,10 @@ def _text(value: Any) -> str:
         return "true" if value else "false"
     if isinstance(value, float | np.floating):
         return repr(float(value))
-    text = " ".join(str(value).split())
-    return f"'{text}" if _is_computed(text) else text
+    return PART.sub(
+        lambda part: part["blanks"] + "'" * _is_computed(part["text"]) + part["marks"] + part["text"],
+        " ".join(str(value).split()),
+    )
 
 
 def _is_computed(text: str) -> bool:

@@ -12,9 +12,9 @@ from verification import suite
 from verification.checks import check
 from verification.suite import chosen_checks
 
-import fem.results.files
+import fem.runtime.own_files
 from fem.__main__ import main
-from fem.results.files import to_json
+from fem.results.json_text import to_json
 from fem.runtime.progress import SilentReporter
 
 
@@ -129,7 +129,7 @@ def test_a_topic_or_place_that_cannot_be_is_named_and_no_partial_table_is_left(
     def no_room(*_):
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
-    monkeypatch.setattr(fem.results.files.os, "fsync", no_room)
+    monkeypatch.setattr(fem.runtime.own_files.os, "fsync", no_room)
     assert main(["verify", "--out", str(tmp_path / "v"), "-q"]) == 3
     message = capsys.readouterr().err
     assert "verify.json: cannot be written (No space left on device)" in message and "--out DIR" in message

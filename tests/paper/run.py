@@ -89,7 +89,7 @@ def check_claims(
         document = _document(status, entries, began)
         results.check()
         results.write_result(document)
-        results.write_text(PAGE, paper_report(folder))
+        results.write(PAGE, paper_report(folder))
         return document
 
 
@@ -166,7 +166,7 @@ def _checked(claim: Claim, experiments: Experiments, results: ResultFolder) -> d
         entry |= {"verdict": Conclusion.UNDECIDED.value, "error": reason}
     else:
         for figure in result.figures:
-            results.write_text(f"{FIGURES}/{figure.name}.svg", figure.svg)
+            results.write(f"{FIGURES}/{figure.name}.svg", figure.svg)
         entry |= result.to_dict() | {"failed_runs": len(experiments.failed)}
     return entry | {"seconds": seconds}
 

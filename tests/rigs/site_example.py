@@ -12,7 +12,7 @@ from running_example import SITE, k1
 
 from fem.records.intensity import intensity
 from fem.records.spectrum import response_spectrum
-from fem.results.files import to_json
+from fem.results.json_text import to_json
 from fem.site.methods import site_methods
 from fem.site.result import (
     MOTIONS,

@@ -9,9 +9,10 @@ import pytest
 from interrupted_runs import files_of
 
 from fem.results.errors import FolderError, OutputError, writing_into
-from fem.results.files import to_json, write_atomically
 from fem.results.folder import open_result_folder, program_of_results, read_result
+from fem.results.json_text import to_json
 from fem.results.kinds import ENSEMBLE, PAPER, RESPONSE, RUN, SWEEP
+from fem.runtime.own_files import write_atomically
 
 TEXTS = {"case.toml": "title = 'é'\n", "resolved.toml": "schema = 1\n"}
 pytestmark = pytest.mark.parametrize(
@@ -35,7 +36,7 @@ def computed(path, kind, status="completed", request="ours", **options):
             return folder
         folder.begin(mark(kind, request=request), TEXTS)
         for name in own_files(kind):
-            folder.write_text(name, "old")
+            folder.write(name, "old")
         folder.write_result(mark(kind, status, request))
     return folder
 
@@ -90,7 +91,7 @@ def test_another_request_is_refused_and_force_replaces_it(tmp_path, kind):
 
 
 def test_foreign_files_are_refused_and_survive_force(tmp_path, kind):
-    for name in (f".{kind.mark}.part", ".lock", ".owner"):  # left by a kill: no obstacle
+    for name in (".part-0123456789abcdef", ".lock", ".owner"):  # left by a kill: no obstacle
         (tmp_path / name).write_text("{")
     (tmp_path / "thesis.tex").write_text("years of work")
     with pytest.raises(FolderError, match=rf"not empty and holds no {kind.name}.*--out.*--force"):

@@ -13,9 +13,9 @@ from interrupted_runs import files_of, require_readable, run_command
 
 import fem.results.archive
 import fem.results.fields
-import fem.results.files
 import fem.results.history
 import fem.run.output
+import fem.runtime.own_files
 from fem.__main__ import main
 from fem.results.archive import read_archive, write_archive
 from fem.results.history import read_history
@@ -128,7 +128,7 @@ def test_a_history_that_cannot_grow_ends_the_run_with_3(tmp_path, capsys, monkey
     ("module", "name", "after"),
     [
         (fem.results.fields.FrameFormat, "frame", 5),
-        (fem.results.files.os, "replace", 30),
+        (fem.runtime.own_files.os, "replace", 30),
         (fem.results.history.os, "fsync", 7),
         (fem.results.archive.zipfile.ZipFile, "writestr", 60),
     ],
@@ -148,7 +148,7 @@ def test_a_disk_that_fills_up_ends_the_run_with_3(tmp_path, capsys, monkeypatch,
     message = capsys.readouterr().err
     assert "No space left on device" in message and "--resume" in message
     require_readable(tmp_path / "r")
-    assert not list((tmp_path / "r").rglob("*.part"))
+    assert not list((tmp_path / "r").rglob(".part-*"))
     require_resumed(tmp_path / "r", whole, "--resume")
 
 

@@ -1,0 +1,278 @@
+"""A folder from somebody else: nothing is written through a link, nothing blocks, all is told by file and key."""
+
+import json
+import os
+import re
+import sys
+
+import numpy as np
+import pytest
+import study_folders
+
+from fem.__main__ import main
+from fem.results.errors import FolderError
+from fem.results.fields import FieldWriter
+from fem.results.folder import open_result_folder, read_result
+from fem.results.history import HistoryWriter
+from fem.results.json_text import to_json
+from fem.results.kinds import KINDS, RUN, SWEEP, typed_result
+from fem.results.run_result import RunResult
+from fem.runtime import own_files
+from fem.runtime.terminal import shown
+from fem.runtime.user_files import parsed_json
+from fem.study.driver import RowLog, StudyResult
+from fem.study.table import fields_of, line_of
+
+CASE = """schema = 1
+[container]
+width_m = 1.1
+height_m = 2.0
+weight_N = 24525.0
+[contact]
+mu_static = 0.4
+[motion]
+kind = "harmonic"
+amplitude_m = 0.05
+angular_frequency_rad_s = 7.0
+[solver]
+model = "rigid"
+duration_s = 0.2
+[output]
+figures = false
+fields_s = 0
+"""
+LINKED = "is a link, through which no results are written"
+
+
+@pytest.fixture
+def victim(tmp_path):
+    """A file of the user, which nothing may touch."""
+    path = tmp_path / "victim"
+    path.write_text("mine")
+    yield path
+    assert path.read_text() == "mine" and not path.is_symlink()
+
+
+@pytest.fixture
+def folder(tmp_path):
+    place = tmp_path / "out"
+    place.mkdir()
+    return place
+
+
+def begun(folder, kind=RUN, **options):
+    with open_result_folder(folder, kind, "ours", **options) as place:
+        place.begin({"status": "running", kind.request: "ours"})
+
+
+class TestWriting:
+    """Through no link, to no place that somebody else can foresee."""
+
+    @pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.name)
+    def test_half_written_files_have_names_that_nobody_can_foresee(self, folder, victim, kind, monkeypatch):
+        for name in (f".{kind.mark}.part", "..owner.part", ".owner", kind.mark):
+            (folder / name).symlink_to(victim)
+        names = []
+        replace = os.replace
+        monkeypatch.setattr(own_files.os, "replace", lambda a, b: (names.append(str(a)), replace(a, b)))
+        begun(folder, kind, force=True)
+        assert not (folder / kind.mark).is_symlink()
+        assert len(set(names)) == len(names) > 1 and all(own_files.PART.search(name) for name in names)
+
+    def test_hidden_files_count_where_a_folder_is_called_empty(self, folder):
+        (folder / ".bashrc").write_text("")
+        with pytest.raises(FolderError, match="is not empty and holds no run"):
+            begun(folder)
+
+    def test_a_file_is_made_with_the_mode_of_the_umask_and_replaces_a_link(self, folder, victim):
+        (folder / "a").symlink_to(victim)
+        before = os.umask(0o027)
+        try:
+            own_files.write_atomically(folder / "a", "new")
+        finally:
+            os.umask(before)
+        assert (folder / "a").read_text() == "new" and (folder / "a").stat().st_mode & 0o777 == 0o640
+        assert os.listdir(folder) == ["a"]
+
+    def test_a_new_file_follows_no_link(self, folder, victim):
+        (folder / "a").symlink_to(victim)
+        (folder / "b").symlink_to(folder / "nowhere")
+        for name in "ab":
+            with pytest.raises(FileExistsError):
+                own_files.created(folder / name)
+        assert main(["init", "--to", str(folder / "b")]) == 2 and not (folder / "nowhere").exists()
+
+    @pytest.mark.parametrize("how", ["symlink_to", "hardlink_to"])
+    def test_a_log_is_no_link(self, folder, victim, how):
+        log = folder / "rows.csv"
+        getattr(log, how)(victim)
+        for write in (
+            lambda: RowLog(log, {"a": float}, print),
+            lambda: HistoryWriter(log, ["time_s", "mode"], position=2),
+        ):
+            with pytest.raises(OSError, match=r"is (a link|another file's name, or no file), through which"):
+                write()
+
+    @pytest.mark.parametrize("subfolder", ["figures", "fields"])
+    def test_a_subfolder_is_no_link(self, folder, tmp_path, subfolder, capsys):
+        pictures = tmp_path / "pictures"
+        pictures.mkdir()
+        mine = [pictures / "a.svg", pictures / "frame_00001.vtu"]
+        for path in mine:
+            path.write_text("mine")
+        (folder / subfolder).symlink_to(pictures)
+        with pytest.raises(FolderError, match=rf"{subfolder} {LINKED}"):
+            begun(folder, force=True)
+        with pytest.raises(OSError, match=LINKED):
+            FieldWriter(
+                folder / subfolder,
+                points=np.zeros((4, 2)),
+                cells=np.zeros((1, 4)),
+                region=np.zeros(1),
+                box=[],
+            )
+        (tmp_path / "case.toml").write_text(CASE)
+        (folder / "run.json").write_text("{}")
+        assert main(["run", str(tmp_path / "case.toml"), "--out", str(folder), "--force", "-q"]) == 2
+        assert LINKED in capsys.readouterr().err
+        assert all(path.read_text() == "mine" for path in mine) and len(os.listdir(pictures)) == 2
+
+    def test_copies_follow_no_link(self, folder, tmp_path):
+        elsewhere = tmp_path / "elsewhere"
+        elsewhere.mkdir()
+        (folder / "data").symlink_to(elsewhere)
+        with pytest.raises(OSError, match=LINKED):
+            own_files.place_in(folder, "data/motions/a.csv")
+        assert not os.listdir(elsewhere)
+
+    def test_the_folder_itself_may_be_a_link(self, folder, tmp_path):
+        (tmp_path / "link").symlink_to(folder)
+        begun(tmp_path / "link")
+        assert (folder / "run.json").is_file()
+
+
+class TestForce:
+    """`--force` deletes files of a user from a folder without a mark of ours only by name."""
+
+    @pytest.fixture(autouse=True)
+    def files(self, folder):
+        (folder / "figures").mkdir()
+        for name in ("history.csv", "figures/a.svg", "thesis.tex"):
+            (folder / name).write_text("mine")
+
+    def test_it_lists_them_and_deletes_nothing(self, folder):
+        with pytest.raises(
+            FolderError, match=r"--force deletes files there: history\.csv, figures/a\.svg; delete"
+        ):
+            begun(folder, force=True)
+        assert (folder / "history.csv").exists() and not (folder / "run.json").exists()
+
+    @pytest.mark.parametrize(("answer", "deleted"), [("out", True), ("y", False), ("", False)])
+    def test_it_asks_for_the_name_of_the_folder(self, folder, monkeypatch, answer, deleted):
+        monkeypatch.setattr(sys.stdin, "isatty", lambda: True, raising=False)
+        monkeypatch.setattr("builtins.input", lambda _: answer)
+        if deleted:
+            begun(folder, force=True)
+        else:
+            with pytest.raises(FolderError, match="nothing was deleted"):
+                begun(folder, force=True)
+        assert (folder / "history.csv").exists() is not deleted and (folder / "thesis.tex").exists()
+
+    def test_a_folder_that_a_result_marks_needs_no_question(self, folder):
+        (folder / "run.json").write_text("damaged")
+        begun(folder, force=True)
+        assert not (folder / "history.csv").exists()
+
+
+class TestReading:
+    """Only regular files, within limits, of the types that keys have."""
+
+    @pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.name)
+    def test_a_pipe_does_not_block(self, folder, kind):
+        os.mkfifo(folder / kind.mark)
+        with pytest.raises(
+            FolderError, match=r"cannot be read \(is a device or a pipe, not a regular file\)"
+        ):
+            read_result(folder / kind.mark, kind)
+        (folder / kind.mark).unlink()
+        (folder / kind.mark).symlink_to("/dev/zero")
+        with pytest.raises(FolderError, match="is a device"):
+            read_result(folder / kind.mark, kind)
+
+    @pytest.mark.parametrize(
+        "text", ["[" * 200_000, '{"a":' * 5_000 + "1" + "}" * 5_000, "[" * 50 + "]" * 50]
+    )
+    def test_deep_nesting_is_refused(self, folder, text):
+        with pytest.raises(ValueError, match=r"nested too deeply|Expecting"):
+            parsed_json(text)
+        (folder / "run.json").write_text(text)
+        with pytest.raises(FolderError, match="damaged, or not the result of a run"):
+            read_result(folder / "run.json")
+
+    @pytest.mark.parametrize(
+        ("kind", "result", "content", "words"),
+        [
+            (RUN, RunResult, {"verdict": {"outcome": 5}}, "verdict.outcome is no text"),
+            (RUN, RunResult, {"verdict": {"max_slip_m": "x"}}, "verdict.max_slip_m is no number"),
+            (RUN, RunResult, {"verdict": 1}, "verdict is no table"),
+            (SWEEP, StudyResult, {"answer": ["yes"]}, "answer is no text"),
+            (SWEEP, StudyResult, {"versions": {"numpy": 3}}, "versions.numpy is no text"),
+            (SWEEP, StudyResult, {"versions": []}, "versions is no table"),
+        ],
+    )
+    def test_a_value_of_another_type_is_told_with_file_and_key(self, folder, kind, result, content, words):
+        with pytest.raises(FolderError, match=rf"{kind.mark}: damaged, {re.escape(words)}"):
+            typed_result(result, content, folder / kind.mark)
+
+    @pytest.mark.parametrize(
+        ("name", "more"),
+        [
+            ("ensemble", {"points": [{"motion.peak_acceleration_m_s2": "x", "probability": 0.1}]}),
+            ("ensemble", {"points": [3]}),
+            ("ensemble", {"axes": [{"key": "motion.peak_acceleration_m_s2", "values": [1.0, {}]}]}),
+            ("ensemble", {"random": {"contact.mu_static": True}}),
+            ("ensemble", {"random": {"contact.mu_static": {"distribution": "normal", "mean": [1, "a"]}}}),
+            ("response", {"frequencies": [None]}),
+            ("response", {"request": {"count": {"a": 1}}}),
+        ],
+    )
+    def test_a_page_of_damaged_results_is_refused_with_the_file(self, folder, capsys, name, more):
+        getattr(study_folders, f"{name}_folder")(folder, **more)
+        assert main(["report", str(folder), "-q"]) == 2
+        assert re.search(rf"{name}\.json: damaged, .*; compute it again", capsys.readouterr().err)
+        assert not (folder / "report.html").exists()
+
+
+class TestSpeaking:
+    """Texts of others neither act on the terminal nor in a spreadsheet."""
+
+    def test_control_characters_are_shown_as_escapes(self, tmp_path, capsys):
+        bad = "\x1b]0;x\x07\x9b2J\u202egnp.exe\u2066\u200b\r"
+        assert (
+            shown(f"ä{bad}\n\t")
+            == "ä"
+            + "".join(c if c.isascii() and c.isprintable() else f"\\u{ord(c):04x}" for c in bad)
+            + "\n\t"
+        )
+        assert json.loads(shown(to_json({"a": bad}))) == {"a": bad}
+        path = tmp_path / "case.toml"
+        title = "".join(f"\\u{ord(c):04x}" for c in bad)
+        path.write_text(f'schema = 1\ntitle = "{title}"\n' + CASE.partition("\n")[2])
+        assert main(["check", str(path)]) == 0
+        path.write_text(f"title = {bad}")
+        assert main(["check", str(path)]) == 2
+        assert main(["run", f"no{bad}where"]) == 2
+        told = "".join(capsys.readouterr())
+        assert "gnp.exe" in told and not set("\x1b\x07\x9b\u202e\u2066\u200b\r") & set(told)
+
+    @pytest.mark.parametrize(
+        ("text", "field"),
+        [
+            ("=1+1", "'=1+1"), ("A;=1+1", '"A;\'=1+1"'), ("x; @sum", '"x; \'@sum"'), ("-3.2", "-3.2"),
+            ("-3 m", "'-3 m"), ("a;b", '"a;b"'), ("\t=1", "'=1"), ("'=1", "''=1"), ("it's -5", "it's -5"),
+            ("a|+x", "a|'+x"),
+        ],
+    )  # fmt: skip
+    def test_what_a_spreadsheet_would_compute_is_marked_and_read_back(self, text, field):
+        line = line_of([text, -3.2])
+        assert line == f"{field},-3.2" and fields_of(line) == [text.strip(), "-3.2"]
