@@ -12,6 +12,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from keyword import iskeyword
 from typing import Any
+from warnings import catch_warnings, simplefilter
 
 from fem.case.case import Case
 from fem.case.overrides import keys_in_effect
@@ -89,7 +90,9 @@ def parse_expression(text: str) -> Expression:
         python = " ".join(text.replace("^", "**").split())
         python = WORD.sub(lambda word: f"{OWN * iskeyword(word[0])}{word[0]}", python)
         try:
-            return Expression(text, _tree(ast.parse(python, mode="eval").body))
+            with catch_warnings():
+                simplefilter("error")  # what Python doubts, such as 1if, is an error that is told in words
+                return Expression(text, _tree(ast.parse(python, mode="eval").body))
         except SyntaxError as error:
             reason = error.msg if error.lineno is None else re.split("[.;]", error.msg)[0]
         except (RecursionError, MemoryError):
@@ -105,7 +108,7 @@ def _tree(node: ast.expr) -> Tree:
     """What is read of a node; raises a SyntaxError for one that no expression holds."""
     source = ast.unparse(node).replace(OWN, "").replace(" ** ", "^")
     match node:
-        case ast.Constant(value=int() | float() as number):
+        case ast.Constant(value=number) if type(number) in (int, float):
             return ("number", float(number))
         case ast.Name() | ast.Attribute() if KEY.fullmatch(source):
             return ("number", math.pi) if source == "pi" else ("key", source)

@@ -1,6 +1,7 @@
 """Derived keys: arithmetic, and nothing that could be code."""
 
 import math
+import warnings
 
 import pytest
 from hypothesis import given
@@ -74,3 +75,11 @@ def test_any_text_is_an_expression_or_refused(text):
         assert math.isfinite(parsed.value(values))
     except ExpressionError:
         return
+
+
+@pytest.mark.parametrize("text", ["1if", "0x1in", "1jor", "1or 2", "(1)(2)", "'a'(1)"])
+def test_a_doubt_of_python_is_told_in_words_and_not_printed(text):
+    with warnings.catch_warnings(record=True) as caught, pytest.raises(ExpressionError):
+        warnings.simplefilter("always")
+        parse_expression(text)
+    assert not caught
