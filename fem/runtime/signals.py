@@ -14,7 +14,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from types import FrameType
 from typing import TYPE_CHECKING, Any
 
@@ -25,8 +25,10 @@ INTERRUPTED = 4  #: the exit code
 #: what `--json` prints of a command that was interrupted before it could say more
 NO_ANSWER = '{"state": "interrupted", "answer": null}\n'
 SAME_PRESS_S = 1.0  #: within which a further Ctrl-C belongs to the one before [s]
+UNHEARD_S = 2.0  #: after which a signal ends the process that no Python code has seen [s]
 AGAIN_S = 0.05  #: after which a lost signal is sent again [s]
 _raised: list[int] = []
+_heard = [-math.inf]  #: when Python has seen signals [s]
 _requests: list[list[int]] = []  #: signals received by each `interruptible` under way
 DEFAULTS: dict[signal.Signals, Any] = {
     signal.SIGINT: signal.default_int_handler,
@@ -41,9 +43,14 @@ def exit_on_signal() -> None:
 
 
 def raise_on_signal() -> None:
-    """From now on both signals raise KeyboardInterrupt."""
+    """From now on both signals raise KeyboardInterrupt, or end a process that C code holds."""
     _replace_defaults(_raise)
     sys.unraisablehook = _raise_again
+    with suppress(AttributeError, ValueError):  # Windows, or not the main thread
+        reader, writer = os.pipe()
+        os.set_blocking(writer, False)
+        signal.set_wakeup_fd(writer, warn_on_full_buffer=False)
+        threading.Thread(target=_end_where_unheard, args=(reader,), daemon=True).start()
 
 
 @contextmanager
@@ -61,6 +68,7 @@ def interruptible(reporter: "Reporter") -> Iterator[Callable[[], bool]]:
     def note(number: int, frame: FrameType | None) -> None:
         nonlocal last
         before, last = last, time.monotonic()
+        _heard.append(last)
         if received and number == signal.SIGINT:
             if last - before < SAME_PRESS_S:
                 return
@@ -92,7 +100,7 @@ def ending_at_once() -> Iterator[None]:
 @contextmanager
 def unheard() -> Iterator[None]:
     """Let neither signal cut off what is printed of finished work."""
-    with _handled_by(lambda number, frame: None):
+    with _handled_by(lambda number, frame: _heard.append(time.monotonic())):
         yield
 
 
@@ -124,12 +132,25 @@ def _exit(number: int, frame: FrameType | None) -> None:
     os._exit(INTERRUPTED)
 
 
+def _end_where_unheard(reader: int) -> None:
+    """End the process where the compiler, for one, holds the main thread when a signal comes that has nothing to save.
+
+    The operating system writes the number of each signal into a pipe.
+    """
+    while number := os.read(reader, 1):
+        since = time.monotonic() - 0.5 * UNHEARD_S  # Python may have seen it before this thread did
+        time.sleep(UNHEARD_S)
+        if _heard[-1] < since and number[0] in DEFAULTS and signal.getsignal(number[0]) is _raise:
+            _exit(number[0], None)
+
+
 def interruptions() -> int:
     """How often a signal has raised KeyboardInterrupt, of which a module in C makes other errors while it is loaded."""
     return len(_raised)
 
 
 def _raise(number: int, frame: FrameType | None) -> None:
+    _heard.append(time.monotonic())
     _raised.append(number)
     raise KeyboardInterrupt
 

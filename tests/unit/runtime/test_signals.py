@@ -5,6 +5,7 @@ import os
 import signal
 import subprocess
 import sys
+import time
 
 import pytest
 
@@ -137,3 +138,39 @@ def test_work_that_begins_after_a_request_to_stop_hears_it():
         os.kill(os.getpid(), signal.SIGTERM)
         with interruptible(SilentReporter()) as stop:
             assert stop()
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_process_that_c_code_holds_ends_all_the_same(number):
+    # As the compiler of the kernels does for many seconds, this does not let Python see the signal.
+    script = f"""
+import hashlib, threading, time
+from fem import __main__ as command_line
+def compute(*_, **__):
+    threading.Timer(0.2, os.kill, (os.getpid(), {int(number)})).start()
+    hashlib.pbkdf2_hmac("sha256", b"", b"", 100_000_000)
+command_line.build_app = lambda: compute
+command_line.program()
+"""
+    begin = time.monotonic()
+    assert outcome("-m", script) == (4, "interrupted\n")
+    assert time.monotonic() - begin < 12.0  # the work takes 20 s or more
+
+
+def test_a_signal_that_was_heard_ends_nothing_later():
+    script = """
+import time
+from fem.runtime import signals
+from fem.runtime.progress import SilentReporter
+signals.UNHEARD_S = 0.2
+signals.raise_on_signal()
+with signals.interruptible(SilentReporter()):
+    os.kill(os.getpid(), signal.SIGTERM)
+time.sleep(0.6)
+try:
+    os.kill(os.getpid(), signal.SIGTERM)
+except KeyboardInterrupt:
+    time.sleep(0.6)
+print("whole", file=sys.stderr)
+"""
+    assert outcome("-c", script) == (0, "whole\n")
