@@ -1,7 +1,8 @@
 """The cases of a sweep on a running dask.distributed cluster (the extra `cluster`).
 
 Chunks of cases go to the scheduler in place of this machine's cores; only this process writes files. The workers read
-mesh and motion files from the same paths, on a shared file system.
+mesh and motion files from the same paths, on a shared file system. Whoever reaches a scheduler runs code on it and its
+workers: dask offers TLS against that, configured by `distributed.comm.tls` for an address `tls://..`.
 """
 
 import asyncio
@@ -9,7 +10,7 @@ import logging
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
-from distributed import CancelledError, Client, KilledWorker, rpc
+from distributed import CancelledError, Client, KilledWorker, Security, rpc
 
 from fem.runtime.identity import program_identity
 from fem.study.workers import Pool, WorkersLostError, WorkersOf
@@ -69,7 +70,8 @@ def cluster(address: str) -> Iterator[WorkersOf]:
 
 
 async def _identity(address: str) -> object:
-    async with rpc(address) as scheduler:
+    secured = Security().get_connection_args("client") if address.startswith("tls:") else {}
+    async with rpc(address, connection_args=secured) as scheduler:
         return await scheduler.identity()
 
 
