@@ -16,6 +16,7 @@ from hypothesis import strategies as st
 from mesh_writer import mesh_of
 from pydantic.fields import FieldInfo
 
+from fem.case.case import Case
 from fem.case.files import CASES
 from fem.case.overrides import with_overrides
 from fem.case.tables.all_tables import TABLES, CaseHeading
@@ -44,6 +45,8 @@ class Input:
 FIELDS: dict[str, FieldInfo] = known_keys(CaseHeading) | {
     f"{table}.{key}": info for table, model in TABLES.items() for key, info in known_keys(model).items()
 }
+#: tables of which a case may have several
+LISTS = {name: get_args(Case.model_fields[name].annotation)[0] for name in ("stop", "tie", "neighbour")}
 #: ranges, for values that are meant to be valid, of what a run takes long for
 CHEAP = {
     "solver.duration_s": (1e-3, 0.4),
@@ -86,6 +89,8 @@ def cases_by_schema(draw: Draw) -> Tables:
     chosen = draw(st.sets(st.sampled_from(sorted(FIELDS)), max_size=9))
     values = {key: draw(values_of(key, present(tables, key))) for key in sorted(chosen)}
     tables = with_overrides(tables, values)
+    for name in draw(st.sets(st.sampled_from(sorted(LISTS)), max_size=1)):
+        tables[name] = draw(values_of_type(name, LISTS[name], None, None))
     bound_the_cost(tables)
     return tables
 
@@ -160,8 +165,10 @@ def values_of_type(key: str, kind: Any, quantity: Quantity | None, now: Any) -> 
         pair = st.lists(numbers(stated, None, float, None), min_size=2, max_size=2)
         return pair.map(sorted) if table == "uncertainty" else pair
     if isinstance(kind, type) and issubclass(kind, CaseTable):  # one of a list of tables
-        keys = {name: values_of_field(f"{key}.{name}", info, None) for name, info in known_keys(kind).items()}
-        return st.lists(st.fixed_dictionaries({}, optional=keys), min_size=1, max_size=3)
+        known = known_keys(kind)
+        keys = {name: values_of_field(f"{key}.{name}", info, None) for name, info in known.items()}
+        needed = {name: keys.pop(name) for name, info in known.items() if info.is_required()}
+        return st.lists(st.fixed_dictionaries(needed, optional=keys), min_size=1, max_size=3)
     if kind is bool:
         # figures take a second to draw
         return st.sampled_from((False,) * 20 + (True,)) if key == "output.figures" else st.booleans()
@@ -216,7 +223,7 @@ def written_value(value: Any) -> str:
 
 def document_of(tables: Tables, wrong: list[tuple[str, str, str, str]]) -> bytes:
     """The text of a case with these damages."""
-    top = {key: toml_value(value) for key, value in tables.items() if not isinstance(value, dict)}
+    top = {key: written_value(value) for key, value in tables.items() if not isinstance(value, dict)}
     text = {
         name: {key: written_value(value) for key, value in content.items()}
         for name, content in tables.items()
