@@ -119,14 +119,12 @@ def test_scales_are_a_factor_and_a_peak_behind_the_baseline():
     ("options", "words"),
     [
         ({"start": 9.5}, "nothing is left of it: its times are"),
-        ({"start": 3.0, "end": 2.0}, "nothing is left"),
-        ({"baseline": "cubic"}, "unknown baseline 'cubic'"),
+        ({"start": 3.0, "end": 2.0}, "nothing is left"), ({"baseline": "cubic"}, "unknown baseline 'cubic'"),
         ({"quantity": "displacement", "baseline": "mean"}, "corrects accelerations"),
         ({"quantity": "velocity"}, "velocities do not move a floor"),
-        ({"scale": math.nan}, "scale must be finite"),
-        ({"values": np.zeros(40), "peak": 1.0}, "all zero"),
+        ({"scale": math.nan}, "scale must be finite"), ({"values": np.zeros(40), "peak": 1.0}, "all zero"),
     ],
-)
+)  # fmt: skip
 def test_what_cannot_be_done_is_refused(options, words):
     with pytest.raises(ValueError, match=words):
         made(**options)

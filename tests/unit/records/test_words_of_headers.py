@@ -71,15 +71,10 @@ class TestColumnsThatAreNoMotion:
     @pytest.mark.parametrize(
         ("unit", "factor"),
         [
-            ("s", 1.0),
-            ("sec", 1.0),
-            ("ms", 1e-3),
-            ("msec", 1e-3),
-            ("milliseconds", 1e-3),
-            ("µs", 1e-6),
+            ("s", 1.0), ("sec", 1.0), ("ms", 1e-3), ("msec", 1e-3), ("milliseconds", 1e-3), ("µs", 1e-6),
             ("min", 60.0),
         ],
-    )
+    )  # fmt: skip
     def test_times_in_other_units_are_converted(self, tmp_path, unit, factor):
         rows = "".join(f"{0.05 * k / factor!r},{k % 2}\n" for k in range(5))
         (found,) = read(tmp_path, f"time [{unit}],a [g]\n{rows}").components
@@ -184,14 +179,6 @@ class TestDirectionsAndSigns:
         for component, values, one in zip(record.components, (FIRST, THIRD), found, strict=True):
             assert component.values == pytest.approx(-values if one == "down" else values, abs=1e-6)
             assert bool(component.notes) == (one == "down")
-
-    def test_either_order_is_the_same_motion(self, tmp_path):
-        one = read(tmp_path, files.columns([FIRST, THIRD], heading="t [s],NS [m/s2],UD [m/s2]"))
-        (tmp_path / "other").mkdir()
-        two = read(tmp_path / "other", files.columns([THIRD, FIRST], heading="t [s],UD [m/s2],NS [m/s2]"))
-        for direction in ("horizontal", "vertical"):
-            values = [record.component(direction, quantity="acceleration").values for record in (one, two)]
-            assert values[0] == pytest.approx(values[1])
 
     def test_two_horizontal_columns_are_no_vertical_one(self, tmp_path):
         record = read(tmp_path, files.columns([FIRST, SECOND], heading="t [s],NS [g],EW [g]"))
