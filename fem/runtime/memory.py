@@ -14,6 +14,11 @@ OF_A_CORE = 150  #: of each thread that computes: a report takes 946 on two core
 RIGID, FIGURES = 500, 120  #: of one rigid run, which takes 450, and of its figures
 
 
+def is_limited() -> bool:
+    """Whether a limit is set."""
+    return sys.platform != "win32" and resource.getrlimit(resource.RLIMIT_AS)[0] != resource.RLIM_INFINITY
+
+
 def memory_of(computing: bool, jobs: int | None = None) -> int:
     """What a command needs [MB] that computes, or reads alone, on so many cores; None: all."""
     return COMPUTING + OF_A_CORE * (jobs or cores()) if computing else READING

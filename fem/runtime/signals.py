@@ -42,10 +42,12 @@ def exit_on_signal() -> None:
     _replace_defaults(_exit)
 
 
-def raise_on_signal() -> None:
-    """From now on both signals raise KeyboardInterrupt, or end a process that C code holds."""
+def raise_on_signal(*, watched: bool = True) -> None:
+    """From now on both signals raise KeyboardInterrupt, or end a process that C code holds, where they are watched."""
     _replace_defaults(_raise)
     sys.unraisablehook = _raise_again
+    if not watched:
+        return
     with suppress(AttributeError, ValueError):  # Windows, or not the main thread
         reader, writer = os.pipe()
         os.set_blocking(writer, False)

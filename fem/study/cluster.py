@@ -41,7 +41,7 @@ def cluster(address: str) -> Iterator[WorkersOf]:
         # A client waits for ever for a peer that accepts the connection and does not answer.
         asyncio.run(asyncio.wait_for(_identity(address), ANSWER_S))
         client = Client(address, timeout=ANSWER_S)
-    except (OSError, TimeoutError, ValueError) as error:
+    except (OSError, TimeoutError, TypeError, ValueError) as error:  # TypeError: TLS without certificates
         reason = str(error).partition("\n")[0] or type(error).__name__
         raise SchedulerError(
             f"{named}: no answer within {ANSWER_S:g} s ({reason}); start one with 'dask scheduler' "
