@@ -205,7 +205,7 @@ SWEEP_TABLES = ("set", "axes", "derived", "perturbation", "threshold", "maps")
 ENSEMBLE_TABLES = ("set", "axes", "random", "derived")
 
 
-class Heading(CaseTable):
+class StudyHeading(CaseTable):
     """The keys of a study's file that stand before its first table."""
 
     case: str = Field(default=DEFAULT_CASE, description="a shipped case, or a file beside this file")
@@ -216,11 +216,11 @@ class Heading(CaseTable):
     )
 
 
-class SweepHeading(Heading):
+class SweepHeading(StudyHeading):
     """Those of a sweep."""
 
 
-class EnsembleHeading(Heading):
+class EnsembleHeading(StudyHeading):
     """Those of an ensemble."""
 
     draws: Annotated[int, Strict()] = Field(default=128, ge=8, le=1_000_000, description="at each point")
