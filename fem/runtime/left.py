@@ -12,10 +12,6 @@ LEFT = {
     "batch --strict": "a bad row has its reason in the list, on the screen and on the page",
     "response --shell": "follow the elastic container by itself with --set solver.model=reduced",
     "response --limit-slip": "the slip of each point is in response.csv",
-    "response --order": "the sweep goes up, then down",
-    "response --scale": "frequencies are evenly spaced; take --from, --to and --count of each part",
-    "response --tolerance": "two sections are equal within 5e-3 of the slenderness angle",
-    "response --largest-period": "periods of up to 16 are looked for",
     "movie --width": "a movie is as wide as a picture; any program for films scales it",
     "report --all-variations": "run --band varies the unknown inputs, run --margin the strength of the motion",
     "tie.to_height_m": "ties run to the floor or to a wall; tie each container of a row to one of these",
@@ -27,7 +23,10 @@ LEFT = {
     ".copy_motions": "sets of up to 100 motions are copied into the results",
     "motions.scatter": "it was part of [hazard]; leave it out",
     "fem.annual_rate": "integrate your fragility curve over your hazard curve",
-}
+} | dict.fromkeys(
+    [f"response --{name}" for name in ("order", "scale", "tolerance", "largest-period")],
+    "frequencies are evenly spaced, up and then down, and judged with the settings that were usual",
+)
 
 
 def left_words(name: str) -> str:
