@@ -17,8 +17,8 @@ from fem.case.tables.neighbours import NeighbourTable
 from fem.case.tables.run_tables import (
     DocumentTable,
     InitialTable,
-    LimitsTable,
     OutputTable,
+    RunLimitsTable,
     SolverTable,
     StaticTable,
     WindTable,
@@ -42,7 +42,7 @@ class CaseContent(CaseHeading):
     solver: SolverTable = Field(default_factory=SolverTable)
     output: OutputTable = Field(default_factory=OutputTable)
     uncertainty: UncertaintyTable = Field(default_factory=UncertaintyTable)
-    limits: LimitsTable | None = None  #: None: the width, or the gap beside it
+    limits: RunLimitsTable | None = None  #: None: the width, or the gap beside it
     document: DocumentTable | None = None  #: None: the pages bear no names
     stop: tuple[StopTable, ...] = ()
     tie: tuple[TieTable, ...] = ()

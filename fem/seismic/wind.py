@@ -122,7 +122,7 @@ def wind_force(body: LooseBody, pressure: float) -> WindForce:
     if body.height > LOW:
         raise ValueError(f"the wind row is for bodies up to {LOW:g} m, got {body.height:g} m")
     ratio, slenderness = body.width / body.depth, min(2.0 * body.height / body.depth, 70.0)
-    base = np.interp(math.log(ratio), np.log(DEPTH_RATIOS), FORCE_COEFFICIENTS)
+    base = float(np.interp(math.log(ratio), np.log(DEPTH_RATIOS), FORCE_COEFFICIENTS))
     if body.round:
         base = ROUND_COEFFICIENT
     end = np.interp(math.log(slenderness), np.log(SLENDERNESSES), END_EFFECTS)

@@ -108,7 +108,7 @@ def _tree(node: ast.expr) -> Tree:
     """What is read of a node; raises a SyntaxError for one that no expression holds."""
     source = ast.unparse(node).replace(OWN, "").replace(" ** ", "^")
     match node:
-        case ast.Constant(value=number) if type(number) in (int, float):
+        case ast.Constant(value=int() | float() as number) if not isinstance(number, bool):
             return ("number", float(number))
         case ast.Name() | ast.Attribute() if KEY.fullmatch(source):
             return ("number", math.pi) if source == "pi" else ("key", source)

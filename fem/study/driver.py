@@ -186,10 +186,9 @@ class RowLog:
         self._path = path
         there = read_lines(path, columns)
         self.lines = [line for line in there if is_row(columns, line)]  #: already there
-        kept = table_of_lines(columns, self.lines)
+        kept = table_of_lines(columns, self.lines).encode()
         if damaged := len(there) - len(self.lines):
             warn(f"{path}: damaged rows, which are computed again: {damaged}")
-        if damaged or not self.lines:
             write_atomically(path, kept)
         self._file = appended(path, len(kept) if self.lines else 0)
         if not self.lines:

@@ -425,8 +425,8 @@ def draw_fragility(
         capsize=2.0,
         label=f"counted, {100.0 * ensemble.confidence:g} % interval",
     )
-    for k, value in enumerate(marks_of(ensemble.base.name, axis.key)):
-        axes.axvline(value, color=style.GREY, linestyle=":", label="_" if k else LABEL)
+    for k, mark in enumerate(marks_of(ensemble.base.name, axis.key)):
+        axes.axvline(mark, color=style.GREY, linestyle=":", label="_" if k else LABEL)
     limit = f"{100.0 * ensemble.probability:g} %"
     axes.axhline(ensemble.probability, color=style.GREY, linewidth=0.8, linestyle=":", label=limit)
     axes.set_ylim(-0.02, 1.02)

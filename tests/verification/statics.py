@@ -13,6 +13,7 @@ import runs
 from evidence.findings import analytic, printed
 from verification.checks import Findings, check
 
+from contact.stepping.modal_body import ModalBody
 from fem.case.tables.run_tables import StaticTable
 from fem.model.model import build_model
 from fem.model.static_checks import StaticChecks, static_checks
@@ -183,6 +184,7 @@ def bodies_by_hand() -> Findings:
     """
     for name, (keys, parts, beside, above, half) in BODIES.items():
         body = build_model(runs.BOX.with_values({"solver.element_size_m": 0.1} | keys)).body
+        assert isinstance(body, ModalBody)
         mass = sum(part[0] for part in parts)
         x, z = (sum(part[0] * part[axis] for part in parts) / mass for axis in (1, 2))
         inertia = sum(
@@ -228,11 +230,12 @@ def cylinders() -> Findings:
         ("walls alone", {}, 2.0 * DISC + RING, walls),
         ("filled", {}, 2.0 * DISC + RING + 1500.0, walls + fill),
     ):
-        model = build_model(runs.BOX.with_values(ROUND | {"container.mass_kg": mass} | keys))
+        body = build_model(runs.BOX.with_values(ROUND | {"container.mass_kg": mass} | keys)).body
+        assert isinstance(body, ModalBody)
         exact = (mass, 0.5, inertia)
         for what, value, by_hand in zip(
             ("mass [kg]", "z of the mass centre [m]", "moment of inertia [kg m2]"),
-            (model.body.mass, model.body.rest[1], model.body.inertia),
+            (body.mass, body.rest[1], body.inertia),
             exact,
             strict=True,
         ):

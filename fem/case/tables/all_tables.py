@@ -12,8 +12,8 @@ from fem.case.tables.motion_tables import MotionTable, VerticalTable
 from fem.case.tables.run_tables import (
     DocumentTable,
     InitialTable,
-    LimitsTable,
     OutputTable,
+    RunLimitsTable,
     SolverTable,
     StaticTable,
     WindTable,
@@ -32,7 +32,7 @@ TABLES: dict[str, type[CaseTable]] = {
     "initial": InitialTable,
     "static": StaticTable,
     "wind": WindTable,
-    "limits": LimitsTable,
+    "limits": RunLimitsTable,
     "solver": SolverTable,
     "output": OutputTable,
     "uncertainty": UncertaintyTable,

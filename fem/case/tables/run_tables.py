@@ -71,7 +71,7 @@ class WindTable(CaseTable):
     )
 
 
-class LimitsTable(CaseTable):
+class RunLimitsTable(CaseTable):
     """What is allowed; no run changes for it."""
 
     slip_m: Annotated[float | None, q.LENGTH] = optional_key(
