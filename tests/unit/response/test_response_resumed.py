@@ -47,7 +47,7 @@ def files_of(folder):
 @pytest.fixture(scope="module")
 def asked():
     case = load_case("seed_stack_plateau", SLIPPING)
-    return ResponseRequest(case=case, first_Hz=0.8, last_Hz=2.0, count=3, settle=4, observe=8, starts=4)
+    return ResponseRequest(case=case, first_Hz=0.8, last_Hz=2.0, count=5, settle=4, observe=8, starts=2)
 
 
 @pytest.fixture(scope="module")
