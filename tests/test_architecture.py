@@ -94,6 +94,7 @@ LOADING_LATE = {
     "fem/case/uncertainty.py",
     "fem/figures/cache.py",
     "fem/run/opened.py",
+    "fem/run/run.py",
     "fem/results/fields.py",
     "fem/results/history.py",
     "fem/results/reader.py",
