@@ -37,6 +37,7 @@ def response(
         ),
     ] = None,
     starts: Annotated[int, whole("Random states from which each frequency is begun as well; 0: none.")] = 8,
+    shell: Annotated[bool, flag("Follow the elastic container, too, up and down.")] = False,
     settle: Annotated[int, whole("Periods to leave out at each frequency.")] = 60,
     observe: Annotated[int, whole("Periods to observe at each frequency.")] = 48,
     out: Annotated[
@@ -50,7 +51,7 @@ def response(
 ) -> int:
     """Sweep the frequency of the floor up and down and from random states, as a rigid body: what lasts, what falls.
 
-    --set solver.model=reduced follows the elastic container.
+    --set solver.model=reduced follows the elastic container alone, --shell beside the rigid one.
     """
     requests = importlib.import_module("fem.response.request")
     loaded = load_case(case, ("solver.model=rigid", *overrides))
@@ -62,6 +63,7 @@ def response(
         count=count,
         hold=hold,
         starts=starts,
+        shell=shell,
         settle=settle,
         observe=observe,
     )

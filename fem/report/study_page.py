@@ -290,6 +290,7 @@ def response_report(folder: Path, *, signature: Signature | None = None) -> str:
     given = {f"--{name.replace('_', '-')}": name for name in OPTIONS} | RENAMED
     asked_for = {option: asked[key] for option, key in given.items() if key in asked}
     options = [word for option, value in asked_for.items() for word in (option, str(value))]
+    options += ["--shell"] * bool(asked.get("shell"))
     options += [] if case.solver.model == "rigid" else ["--set", f"solver.model={case.solver.model}"]
     unit, factor = ("mm", 1e3) if asked["held"] == "displacement" else ("m/s²", 1.0)
     stable = stable_in_words(info)

@@ -43,6 +43,7 @@ class Task:
 
     way: str  #: up | down: carried on; random: from random states; risen | sunk: from the motions of a neighbour
     number: int  #: of the frequency, from 0 for the lowest
+    model: str
     begins: bool = False  #: a sweep, as the case does
 
     @property
@@ -53,10 +54,11 @@ class Task:
 
 def plan_of(request: ResponseRequest) -> list[Task]:
     """All tasks, in the order in which they are computed."""
-    ways = ("up", "down", *(("random", "risen", "sunk") if request.starts else ()))
+    own = request.case.solver.model
+    ways = [(way, own) for way in ("up", "down", *(("random", "risen", "sunk") if request.starts else ()))]
     return [
-        Task(way=way, number=number, begins=(way, number) == ("up", 0))
-        for way in ways
+        Task(way=way, number=number, model=model, begins=(way, number) == ("up", 0))
+        for way, model in [*ways, *[(way, "reduced") for way in ("up", "down") if request.shell]]
         for number in range(request.count)[:: -1 if way in ("down", "sunk") else 1]
     ]
 
@@ -81,7 +83,7 @@ def computed(
         control: of its model.
         progress: called within a point with the time since its beginning [s], the rotation [rad] and the mode.
     """
-    case = request.case_at(task.number)
+    case = request.case_at(task.number, task.model)
     if task.carries:
         point = follow_point(request, case, container, task, None if task.begins else before, progress)
         return [point[0]], point[1]

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 from fem.figures import style
 from fem.figures.paper_marks import LABEL, marks_of
-from fem.response.lasting import coexistences, frequencies_of, lasting_at, shown
+from fem.response.lasting import coexistences, frequencies_of, lasting_at, of_first_model, shown
 from fem.response.records import PointRecord
 from fem.response.request import ResponseRequest
 from fem.results.figures import TURNED
@@ -27,6 +27,7 @@ LOOKS: dict[str, dict[str, Any]] = {
 }
 SMALL: dict[str, Any] = {"markersize": 3.5, "markeredgewidth": 0.0}
 DOTS: dict[str, Any] = {"linestyle": "none", "marker": "o", "markersize": 2.6, "markeredgewidth": 0.0}
+SHELL: dict[str, Any] = {"color": style.GREEN, "linewidth": 0.9}
 PORTRAITS = 5  #: frequencies whose motions are drawn
 COLUMNS = 3
 FREQUENCY = "frequency of the drive [Hz]"
@@ -35,13 +36,16 @@ FREQUENCY = "frequency of the drive [Hz]"
 def response_figures(request: ResponseRequest, records: Sequence[PointRecord]) -> dict[str, str]:
     """Figures as SVG documents, by name."""
     with style.house_style():
-        drawn = {"response_curve": draw_curves(request, records)} if records else {}
-        if any(record.stands for record in records):
-            drawn |= {"portraits": draw_portraits(records)}
+        own = of_first_model(records)
+        drawn = {"response_curve": draw_curves(request, own, records[len(own) :])} if records else {}
+        if any(record.stands for record in own):
+            drawn |= {"portraits": draw_portraits(own)}
         return {name: style.svg_of(figure) for name, figure in drawn.items()}
 
 
-def draw_curves(request: ResponseRequest, records: Sequence[PointRecord]) -> Figure:
+def draw_curves(
+    request: ResponseRequest, records: Sequence[PointRecord], shell: Sequence[PointRecord] = ()
+) -> Figure:
     """Largest rotation, share of the starts that fall, slip stroke and decay over frequency, up and down."""
     slides = any(record.number("slip_stroke_m") > MILLIMETRES.least for record in records)
     heights = [2.6, *[0.8] * bool(request.starts), *[1.0] * slides, 1.0]
@@ -64,13 +68,15 @@ def draw_curves(request: ResponseRequest, records: Sequence[PointRecord]) -> Fig
     for axes, column, factor, label, least in drawn:
         for direction in ("up", "down"):
             look = LOOKS[direction]
-            if branch := _swept(records, direction):  # broken where there is no value
-                axes.plot(
-                    [record.row.frequency_Hz for record in branch],
-                    [factor * record.number(column) for record in branch],
-                    label=direction,
-                    **SMALL | look,
-                )
+            beside = SHELL | {"linestyle": look["linestyle"]}
+            for named, drawn_so, of in ((direction, look, records), (f"shell, {direction}", beside, shell)):
+                if branch := _swept(of, direction):  # broken where there is no value
+                    axes.plot(
+                        [record.row.frequency_Hz for record in branch],
+                        [factor * record.number(column) for record in branch],
+                        label=named,
+                        **SMALL | drawn_so,
+                    )
         axes.set_ylabel(label)
         axes.set_ylim(0.0, max(axes.get_ylim()[1], least))  # rounding is not to look like motion
     _draw_ends(rotation, records)

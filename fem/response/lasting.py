@@ -80,6 +80,11 @@ def differ(one: PointRecord, other: PointRecord) -> bool:
     return apart > max(APART_STROKE * one.row.amplitude_m, spread)
 
 
+def of_first_model(records: Sequence[PointRecord]) -> list[PointRecord]:
+    """The points of the model that the case asks for, without those of the shell beside it."""
+    return [record for record in records if record.row.model == records[0].row.model]
+
+
 def lasting_at(records: Sequence[PointRecord], number: int) -> list[list[PointRecord]]:
     """Points of one frequency that stand, by motion; of each the sweeps first, then the one that repeats best."""
     groups: list[list[PointRecord]] = []

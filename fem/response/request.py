@@ -39,6 +39,7 @@ class ResponseRequest:
     count: int = COUNT  #: frequencies, both ends included
     hold: Hold | None = None  #: what of the drive stays the same; None: what the case states
     starts: int = 0  #: random states from which each frequency is begun as well
+    shell: bool = False  #: a rigid container is followed as an elastic one, too
     settle: int = 60  #: periods of the drive left out at each frequency
     observe: int = 48  #: periods by which the long-time motion is judged
 
@@ -89,6 +90,10 @@ class ResponseRequest:
             (case.floor.turn != 0.0, f'[floor] motion_along must be "floor" {needed} on a slope'),
             (case.container.is_loose, f'[container] joints must be "bolted" {alone}'),
             (links, f"[stop] and [tie] must be left out {alone}, and so must [neighbour]"),
+            (
+                self.shell and case.solver.model != "rigid",
+                '--shell adds the elastic container to a rigid one; leave it out, or --set solver.model="rigid"',
+            ),
             (case.solver.model == "full", f'[solver] model must be "reduced" or "rigid" {needed}'),
             (
                 not upright,
@@ -130,8 +135,8 @@ class ResponseRequest:
             return f"amplitude {1e3 * self.held_value:.4g} mm held"
         return f"peak acceleration {self.held_value:.4g} m/s² held"
 
-    def case_at(self, number: int) -> Case:
-        """The case at one of the frequencies."""
+    def case_at(self, number: int, model: str | None = None) -> Case:
+        """The case at one of the frequencies, with another model where one is given."""
         key = "motion.amplitude_m" if self.held == "displacement" else "motion.peak_acceleration_m_s2"
         period = 1.0 / float(self.frequencies[number])
         return self.case.with_values(
@@ -139,6 +144,7 @@ class ResponseRequest:
                 "motion.frequency_Hz": 1.0 / period,
                 key: self.held_value,
                 "solver.duration_s": (4.0 + 2.0 * math.ceil(self.case.motion.ramp_cycles)) * period,
+                "solver.model": model or self.case.solver.model,
                 "output.history_s": period / SAMPLES_PER_PERIOD,
                 "output.fields_s": 0.0,
             }

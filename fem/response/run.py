@@ -18,7 +18,14 @@ from fem.model.model import build_model
 from fem.response.answer import fell_share, overturned_share, response_answer
 from fem.response.curve import Task, computed, plan_of
 from fem.response.figures import response_figures
-from fem.response.lasting import ResponseResult, coexistences, drop_outs, frequencies_of, shown
+from fem.response.lasting import (
+    ResponseResult,
+    coexistences,
+    drop_outs,
+    frequencies_of,
+    of_first_model,
+    shown,
+)
 from fem.response.model import driven_model
 from fem.response.records import (
     PORTRAYED,
@@ -51,7 +58,7 @@ def run_response(
         asked=request.hash, case=request.case.name, title=request.case.title, request=request.to_dict()
     )
     portrait = min(request.observe, PORTRAYED) * SAMPLES_PER_PERIOD * OF_A_SAMPLE
-    points = request.count * (2 + request.starts)
+    points = request.count * (2 + 2 * request.shell + request.starts)
     study = Study(
         kind=RESPONSE,
         request=request.hash,
@@ -73,23 +80,26 @@ def _compute(
     """Add the points that are missing, and write their tables and figures."""
     plan = plan_of(request)
     status, done, records = _follow(request, plan, results, runner)
-    swept = [record for record in records if record.row.direction != "start"]
+    own = of_first_model(records)
+    swept = [record for record in own if record.row.direction != "start"]
     results.write("response.csv", csv_of_rows(swept))
     if request.starts:
         results.write(
-            "starts.csv", csv_of_rows([record for record in records if record.row.direction == "start"])
+            "starts.csv", csv_of_rows([record for record in own if record.row.direction == "start"])
         )
-    results.write("sections.csv", csv_of_sections(shown(records)))
+    if request.shell:
+        results.write("shell.csv", csv_of_rows(records[len(own) :]))
+    results.write("sections.csv", csv_of_sections(shown(own)))
     for name, svg in response_figures(request, records).items():
         results.write(f"figures/{name}.svg", svg)
-    frequencies = tuple(frequencies_of(records))
+    frequencies = tuple(frequencies_of(own))
     result = replace(
         begun,
         status=status,
         points=tuple(record.row for record in swept),
         frequencies=frequencies,
         coexisting=tuple(coexistences(frequencies)),
-        drop_outs=tuple(drop_outs(records)),
+        drop_outs=tuple(drop_outs(own)),
         overturned_share=overturned_share([record.row for record in swept])
         if status != INTERRUPTED
         else None,
@@ -105,12 +115,14 @@ def _follow(
 ) -> tuple[str, int, list[PointRecord]]:
     """The points of all tasks, those already there included; with the status, and the tasks that are done."""
     saved, records, done, reporter = results.read_arrays(STATE), [], 0, runner.reporter
-    before, container = None, discretise(request.case_at(0))
-    control = build_model(request.case, container).run.problem.control
+    before, own = None, request.case.solver.model
+    containers = {model: discretise(request.case_at(0, model)) for model in {task.model for task in plan}}
+    control = build_model(request.case, containers[own]).run.problem.control
     if saved is not None:
         records, done = unpacked(saved), int(saved["done"])
         if "clock" in saved:
-            before = driven_model(request.case_at(plan[done - 1].number), container)
+            last = plan[done - 1]
+            before = driven_model(request.case_at(last.number, last.model), containers[last.model])
             parts = changing(before.model)
             require_same(results.path / STATE, saved, parts)
             for name, part in parts.items():
@@ -121,7 +133,7 @@ def _follow(
         n * periods / float(request.frequencies[task.number]) for n, task in zip(runs, plan, strict=True)
     ]
     seconds = sum(
-        span * of_a_second(request.case_at(task.number))
+        span * of_a_second(request.case_at(task.number, task.model))
         for span, task in zip(spans[done:], plan[done:], strict=True)
     )
     say_expected(reporter, f"{len(plan)} frequencies and starts", seconds)
@@ -134,10 +146,10 @@ def _follow(
         def progress(time: float, rotation: float, mode: int, behind: float = sum(spans[:done])) -> None:
             reporter.update(behind + time, abs(rotation) / control.slenderness_angle, MODES[mode])
 
-        found, before = computed(request, container, task, records, before, control, progress)
+        found, before = computed(request, containers[task.model], task, records, before, control, progress)
         records, done = records + found, done + 1
         carried = {} if before is None else changing(before.model)
         results.write_arrays(STATE, packed(records) | {"done": np.array(done)} | carried)
     reporter.finish()
-    failed = any(record.row.status == "failed" for record in records)
+    failed = any(record.row.status == "failed" for record in of_first_model(records))
     return FAILED if failed else COMPLETED, done, records

@@ -76,7 +76,7 @@ RESPONSE = ResultKind(
     mark="response.json",
     results="response.csv",
     own=(
-        *("response.csv", "starts.csv", "sections.csv"),
+        *("response.csv", "starts.csv", "shell.csv", "sections.csv"),
         *("case.toml", "state.npz", "figures/*.svg"),
     ),
     temporary=("state.npz",),

@@ -10,7 +10,6 @@ LEFT = {
     "--merge": "give the address of a dask scheduler with --scheduler; the result lies in one folder",
     "batch --site": "verify each container with assess, by a site file that names it",
     "batch --strict": "a bad row has its reason in the list, on the screen and on the page",
-    "response --shell": "follow the elastic container by itself with --set solver.model=reduced",
     "response --limit-slip": "the slip of each point is in response.csv",
     "movie --width": "a movie is as wide as a picture; any program for films scales it",
     "report --all-variations": "run --band varies the unknown inputs, run --margin the strength of the motion",

@@ -69,6 +69,7 @@ def test_what_is_held_is_what_the_case_states():
             "below the resolution of 1e-06; take fewer, or a wider range",
         ),
         ([], {"starts": -1}, "--starts must lie between 0 and 1000, got -1"),
+        (["solver.model=reduced"], {"shell": True}, "--shell adds the elastic container to a rigid one"),
         ([], {"count": 1}, "--count must lie between 2 and 2000, got 1"),
         ([], {"observe": 4}, "--observe must lie between 8"),
     ],
@@ -80,7 +81,7 @@ def test_a_request_that_cannot_be_met_is_refused(changes, values, message):
 
 def test_the_command_writes_its_tables_and_figures(tmp_path, capsys):
     line = ["response", "seed_stack_plateau", "--from", "0.9", "--to", "1.1", "--count", "2", "--json", "-q"]
-    line += ["--settle", "4", "--observe", "8", "--starts", "2", "--out", str(tmp_path / "r")]
+    line += ["--settle", "4", "--observe", "8", "--starts", "2", "--shell", "--out", str(tmp_path / "r")]
     for change in CHANGES:
         line += ["--set", change]
     assert main(line) == 0
@@ -93,8 +94,9 @@ def test_the_command_writes_its_tables_and_figures(tmp_path, capsys):
         assert float(row["rotation_ratio"]) == point["rotation_ratio"]
     with (tmp_path / "r" / "sections.csv").open() as file:
         assert len(list(csv.DictReader(file))) >= 4 * 8
-    with (tmp_path / "r" / "starts.csv").open() as file:
-        assert {row["direction"] for row in csv.DictReader(file)} == {"start"}
+    for name, models in (("starts", {"rigid"}), ("shell", {"reduced"})):
+        with (tmp_path / "r" / f"{name}.csv").open() as file:
+            assert {row["model"] for row in csv.DictReader(file)} == models
     names = {path.name for path in (tmp_path / "r" / "figures").iterdir()}
     assert names == {"response_curve.svg", "portraits.svg"}
 
