@@ -36,46 +36,39 @@ OWN_PACKAGES = {"fem", "mesh", "contact"}
 FLAGS = ("--help", "-h", "--version")
 #: group -> command -> what it does, and arguments as an example
 GROUPS = {
-    "Start": {
+    "Commands": {
         "run": ("Compute a case: does it rest, slide, rock or overturn?", "my-stack.toml"),
         "check": ("Print static checks and settings of a case without computing it.", "my-stack.toml"),
+        "report": ("Make one HTML page from a folder of results.", "outputs/my-stack"),
         "init": ("Write a commented case, sweep, ensemble or site file to start from.", "--to my-stack.toml"),
         "list": ("List the shipped cases, sweeps, ensembles and sites.", ""),
-        "completion": ("Print the completion script of a shell, for `unanchored`.", "bash"),
-    },
-    "Many runs": {
         "sweep": ("Compute a case over ranges of some keys, and map the outcome.", "outcome_map -j 4"),
-        "ensemble": ("Estimate the probability of overturning, parameters uncertain.", "fragility -j 4"),
-        "response": (
-            "Compute the long-time motion over the frequency of the floor.",
-            "--from 0.3 --to 3",
-        ),
-        "assess": ("Verify a container at a site by EN 1998-1, time histories and rules.", "site -j 4"),
         "batch": (
             "Compute a list of containers, and give it back with results.",
             "hall.csv --case my-stack.toml",
         ),
+        "assess": ("Verify a container at a site by EN 1998-1, time histories and rules.", "site -j 4"),
+    },
+    "More": {
+        "ensemble": ("Estimate the probability of overturning, parameters uncertain.", "fragility -j 4"),
         "size": (
             "Find the least width, tallest stack or strongest action that a site allows.",
             "site --over container.width_m",
         ),
-    },
-    "Look": {
-        "report": ("Make one HTML page from a folder of results.", "outputs/my-stack"),
+        "response": ("Compute the long-time motion over the frequency of the floor.", "--shell"),
         "picture": (
             "Draw one instant of a run, or a motion and its spectrum (PNG).",
             "outputs/my-stack --time 3.2",
         ),
         "movie": ("Animate a run (GIF or MP4).", "outputs/my-stack --to rocking.gif"),
         "modes": ("Compute elastic frequencies and shapes of the free container.", "my-stack.toml"),
-    },
-    "Trust": {
         "verify": ("Compare the program with reference solutions.", "--quick"),
         "validate": ("Predict laboratory experiments and compare with what was measured.", "--data motions"),
         "study": ("Check every claim of the paper (Knoedel and Hrabowski) by runs.", "seed -j 4"),
         "doctor": ("Report missing dependencies and how to install them.", ""),
         "docs": ("Print where the documents of the program are, or one of them.", "case"),
         "schema": ("Print the JSON schema of a case, sweep, ensemble or site file.", "sweep"),
+        "completion": ("Print the completion script of a shell, for `unanchored`.", "bash"),
     },
 }
 COMMANDS = [name for commands in GROUPS.values() for name in commands]

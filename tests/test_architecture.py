@@ -99,7 +99,6 @@ LOADING_LATE = {
     "fem/results/history.py",
     "fem/results/reader.py",
     "fem/run/checks.py",
-    "fem/run/run.py",
     "fem/site/motions.py",
     "mesh/files.py",
 }

@@ -129,7 +129,14 @@ class Case(CaseContent):
         trusted = self._origin.trusted
         if self.vertical.file is None and "motion.file" in trusted:
             trusted |= {"vertical.file"}
-        return data_files.find_data_files(self.folder, self._file_names(), trusted=trusted)
+        named = {"container.mesh_file": self.container.mesh_file}
+        for table, motion in (("motion", self.motion), ("vertical", self.vertical)):
+            if self.recorded is None:
+                named[f"{table}.file"] = motion.file if motion.kind == "table" else None
+        if self.recorded is None and self.vertical.kind == "table" and self.vertical.file is None:
+            # another component of the same file
+            named["vertical.file"] = data_files.without_channel(self.folder, self.motion.file)
+        return data_files.find_data_files(self.folder, named, trusted=trusted)
 
     @property
     def data_files(self) -> dict[str, Path]:
@@ -140,17 +147,6 @@ class Case(CaseContent):
     def recorded(self) -> Record | None:
         """The motion given by `with_motion`; None where a recorded motion has a file."""
         return self._origin.recorded
-
-    def _file_names(self) -> dict[str, str | None]:
-        named = {"container.mesh_file": self.container.mesh_file}
-        if self.recorded is not None:
-            return named
-        for table, motion in (("motion", self.motion), ("vertical", self.vertical)):
-            named[f"{table}.file"] = motion.file if motion.kind == "table" else None
-        if self.vertical.kind == "table" and self.vertical.file is None:
-            # another component of it
-            named["vertical.file"] = data_files.without_channel(self.folder, self.motion.file)
-        return named
 
     def resolved(self) -> dict[str, Any]:
         """Every key that is used, defaults included, by table; files are named as their copies in the results are."""

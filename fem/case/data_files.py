@@ -70,7 +70,15 @@ def find_data_files(
             continue
         path, channel = split_channel(folder, name)
         _require_file(folder, key, name, path, trusted=key in trusted)
-        files[key] = DataFile(path=path, channel=channel, copy=_copy(folder, name, channel, path, files))
+        plain = copied_name(folder, name)
+        copy = PurePosixPath(plain[: -len(channel) - 1] if channel else plain)
+        for other, file in files.items():
+            if file.copy == copy and real_path(file.path) != real_path(path):
+                raise CaseError(
+                    place_of("vertical.file")
+                    + f"has the name of the file of {other}, {copy.name!r}, and another folder; rename one of them"
+                )
+        files[key] = DataFile(path=path, channel=channel, copy=copy)
     return files
 
 
@@ -91,18 +99,6 @@ def outside_problems(tables: Mapping[str, Any], *, trusted: frozenset[str]) -> l
         if name is not None and dotted not in trusted and not stays_in_the_folder(name):
             problems.append(Problem(table=table, key=key, reason=outside_the_folder(name) + WAYS_OUT))
     return problems
-
-
-def _copy(folder: Path, name: str, channel: str, path: Path, others: Mapping[str, DataFile]) -> PurePosixPath:
-    plain = copied_name(folder, name)
-    copy = PurePosixPath(plain[: -len(channel) - 1] if channel else plain)
-    for key, other in others.items():
-        if other.copy == copy and real_path(other.path) != real_path(path):
-            raise CaseError(
-                place_of("vertical.file")
-                + f"has the name of the file of {key}, {copy.name!r}, and another folder; rename one of them"
-            )
-    return copy
 
 
 def _require_file(folder: Path, key: str, name: str, path: Path, *, trusted: bool) -> None:

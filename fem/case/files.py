@@ -176,7 +176,13 @@ def parse_case(origin: Origin) -> dict[str, Any]:
     except RecursionError as error:
         raise CaseError(f"{origin.place}: not a case file: lists or tables nested too deep") from error
     except ValueError as error:  # TOMLDecodeError, or a whole number of thousands of digits
-        raise CaseError(f"{origin.place}: not a TOML file: {error}{_slip_in(origin.text, error)}") from error
+        # the line that is no TOML and the way out, for the slips that people make
+        place, lines, slip = re.search(r"line (\d+)", str(error)), origin.text.splitlines(), ""
+        if place is not None and int(place[1]) <= len(lines):
+            line = lines[int(place[1]) - 1].strip()
+            advice = (advice for pattern, advice in SLIPS if re.search(pattern, line))
+            slip = "".join(f"\n  {words}" for words in (line[:80], *list(advice)[:1]))
+        raise CaseError(f"{origin.place}: not a TOML file: {error}{slip}") from error
     kinds = [kind for kind, marks in MARKS.items() if not marks.isdisjoint(data)]
     # An ensemble has axes, as a sweep has; a site file names its container, as a case does.
     more = {"sweep": "ensemble", "case": "site"}.get(origin.kind)
@@ -196,17 +202,6 @@ def is_site(name_or_path: str | Path) -> bool:
 def _other_kind(place: str, kind: str) -> str:
     article = "an" if kind == "ensemble" else "a"
     return f"{place}: this is {article} {kind} file: python -m fem {COMMANDS[kind]} {place}"
-
-
-def _slip_in(text: str, error: ValueError) -> str:
-    """The line that is no TOML and the way out, for the slips that people make."""
-    place = re.search(r"line (\d+)", str(error))
-    lines = text.splitlines()
-    if place is None or int(place[1]) > len(lines):
-        return ""
-    line = lines[int(place[1]) - 1].strip()
-    way_out = next((advice for pattern, advice in SLIPS if re.search(pattern, line)), "")
-    return f"\n  {line[:80]}" + (f"\n  {way_out}" if way_out else "")
 
 
 def _read_text(path: Path) -> str:

@@ -70,18 +70,6 @@ def _part(case: Case, table: MotionKey, component: Component) -> Component:
     return trimmed(component, start, keys.end_s if keys.end_s is not None else shared.end_s)
 
 
-def _taken(case: Case, table: MotionKey) -> tuple[Record, Component, list[str]]:
-    """The record of a table, and of its component the part that both motions have."""
-    record, component = _component(case, table)
-    if case.motion.kind == case.vertical.kind == "table":
-        try:
-            return (record, *_shared(case, table))
-        except RecordError:
-            if table == "vertical":  # which the message is about
-                raise
-    return record, _part(case, table, component), []
-
-
 def _shared(case: Case, table: MotionKey) -> tuple[Component, list[str]]:
     (record, component), (upright, other) = (_component(case, key) for key in TABLES)
     if component is other:
@@ -100,10 +88,19 @@ def _shared(case: Case, table: MotionKey) -> tuple[Component, list[str]]:
 
 def _recorded(case: Case, table: MotionKey) -> RecordedMotion:
     keys, shared = _keys(case, table)
-    record, component, notes = _taken(case, table)
-    scale = keys.scale
-    if keys is not shared and keys.scale_to_m_s2 is None:
-        scale *= _factor_to_peak(case)
+    record, component = _component(case, table)
+    part, notes = None, list[str]()
+    if case.motion.kind == case.vertical.kind == "table":
+        try:
+            part, notes = _shared(case, table)
+        except RecordError:
+            if table == "vertical":  # which the message is about
+                raise
+    component, scale = part or _part(case, table, component), keys.scale
+    if keys is not shared and keys.scale_to_m_s2 is None and case.motion.scale_to_m_s2 is not None:
+        # [motion] is scaled to a peak: its factor holds for both components of a recording
+        of_file = processed(_recorded(case, "motion").component, Processing(baseline=case.motion.baseline))
+        scale *= abs(case.motion.scale_to_m_s2) / float(np.abs(motion_of(of_file)[2]).max())
     processing = Processing(scale=scale, peak=keys.scale_to_m_s2, baseline=keys.baseline)
     made = processed(component, processing)
     notes = [*record.notes, *component.notes, *notes]
@@ -120,12 +117,3 @@ def _recorded(case: Case, table: MotionKey) -> RecordedMotion:
     of_motion = doubts(record.name, component, made, scale=scale, confirmed=confirmed)
     notes += [f"{table}.file: {note}" for note in of_motion]
     return RecordedMotion(record=record, component=component, motion=made, notes=tuple(notes))
-
-
-def _factor_to_peak(case: Case) -> float:
-    """The factor by which [motion] is scaled to a peak, which holds for both components of a recording; else 1."""
-    keys = case.motion
-    if keys.scale_to_m_s2 is None:
-        return 1.0
-    of_file = processed(_recorded(case, "motion").component, Processing(baseline=keys.baseline))
-    return abs(keys.scale_to_m_s2) / float(np.abs(motion_of(of_file)[2]).max())

@@ -16,10 +16,12 @@ from fem.case.tables.links import ROWS
 def resolved_tables(case: Any) -> dict[str, Any]:
     """Every key of a case that is used, defaults included, by table."""
     document = case.model_dump(by_alias=True, exclude={*TABLES, *ROWS})
-    absent = _absent(case)
+    level = not case.floor.is_slab and case.floor.slope_percent == 0.0
+    joints = case.container.is_loose and any(value is not None for value in vars(case.joints).values())
+    says_nothing = {"vertical": not case.has_vertical, "floor": level, "joints": not joints}
     for name in TABLES:
         table = getattr(case, name)
-        if table is None or name in absent:
+        if table is None or says_nothing.get(name, False):
             continue
         idle = table.idle_keys()
         if name == "contact" and case.floor.is_slab:
@@ -44,7 +46,15 @@ def resolved_tables(case: Any) -> dict[str, Any]:
         del document["support"]["effective_width"]
     if case.container.box is not None:
         del document["container"]["boxes"]
-        document["container"]["box"] = _boxes(case)
+        # with all that each takes from [container], so that the file reads back to the same boxes
+        document["container"]["box"] = [
+            {
+                **{"width_m": box.width, "height_m": box.height, "mass_kg": box.mass},
+                **{"centroid_m": box.centroid} | ({} if box.wall is None else {"wall_m": box.wall}),
+                "offset_m": table.offset_m,
+            }
+            for box, table in zip(case.stack, case.container.box, strict=True)
+        ]
     for name in ROWS:
         rows = [table.model_dump(by_alias=True, exclude_none=True) for table in getattr(case, name)]
         document |= {name: rows} if rows else {}
@@ -55,26 +65,3 @@ def resolved_tables(case: Any) -> dict[str, Any]:
             if key in table:
                 table[key] = copied_name(case.folder, table[key])
     return document
-
-
-def _absent(case: Any) -> set[str]:
-    """Tables that say nothing."""
-    level = not case.floor.is_slab and case.floor.slope_percent == 0.0
-    joints = case.container.is_loose and any(value is not None for value in vars(case.joints).values())
-    absent = {"vertical": not case.has_vertical, "floor": level, "joints": not joints}
-    return {name for name, says_nothing in absent.items() if says_nothing}
-
-
-def _boxes(case: Any) -> list[dict[str, float]]:
-    """Each box with all that it takes from [container], so that the file reads back to the same boxes."""
-    return [
-        {
-            "width_m": box.width,
-            "height_m": box.height,
-            "mass_kg": box.mass,
-            "centroid_m": box.centroid,
-            **({} if box.wall is None else {"wall_m": box.wall}),
-            "offset_m": table.offset_m,
-        }
-        for box, table in zip(case.stack, case.container.box, strict=True)
-    ]

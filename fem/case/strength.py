@@ -1,7 +1,5 @@
 """The floor's motion made stronger or weaker as a whole: the keys to set, by the kind of each component."""
 
-from typing import assert_never
-
 from fem.case.case import Case
 from fem.case.tables.motion_tables import FloorMotionTable
 
@@ -20,16 +18,8 @@ def scaled_motion(case: Case, factor: float) -> dict[str, float]:
 
 
 def _scaled(table: str, motion: FloorMotionTable, factor: float) -> dict[str, float]:
-    given = {key: getattr(motion, key) for key in _strength_keys(motion)}
+    of_a_table = "scale" if motion.scale_to_m_s2 is None else "scale_to_m_s2"
+    strengths = ("amplitude_m", "peak_acceleration_m_s2")
+    keys = {"none": (), "harmonic": strengths, "pulse": strengths, "table": (of_a_table,)}[motion.kind]
+    given = {key: getattr(motion, key) for key in keys}
     return {f"{table}.{key}": factor * value for key, value in given.items() if value is not None}
-
-
-def _strength_keys(motion: FloorMotionTable) -> tuple[str, ...]:
-    match motion.kind:
-        case "none":
-            return ()
-        case "harmonic" | "pulse":
-            return "amplitude_m", "peak_acceleration_m_s2"
-        case "table":
-            return ("scale" if motion.scale_to_m_s2 is None else "scale_to_m_s2",)
-    assert_never(motion.kind)

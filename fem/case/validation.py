@@ -87,7 +87,9 @@ def read_case_tables(data: Mapping[str, Any]) -> tuple[dict[str, Any], list[Prob
             reason = f"must be one table, got {_shown(value)}; write [{key}] above its keys"
             problems.append(Problem(table=key, key="", reason=reason))
         elif isinstance(value, dict) and key not in (*TABLES, *ROWS, *TOP):
-            problems.append(Problem(table=key, key="", reason=_unknown_table(key)))
+            near = did_you_mean(key, TABLES)
+            unknown = f"unknown table{'; ' + near if near else ''} (known: {', '.join(TABLES)})"
+            problems.append(Problem(table=key, key="", reason=left_words(f"[{key}]") or unknown))
         elif key not in TABLES and key not in ROWS:
             heading[key] = value
     read, partial, faults = read_table("", CaseHeading, heading)
@@ -243,9 +245,12 @@ def _reason(field: FieldInfo, details: list[ErrorDetails]) -> str:
         near = did_you_mean(value, choices) if isinstance(value, str) and not units else ""
         listed = " or ".join(f'"{choice}"' for choice in choices)
         return f"must be {listed}, got {_shown(value)}" + (f"; {near}" if near else "")
-    hint = (
-        _number_in_text(value, unit) if isinstance(value, str) and quantity and faults.keys() & KINDS else ""
-    )
+    hint = ""
+    if isinstance(value, str) and quantity and faults.keys() & KINDS:
+        try:
+            hint = f"; write {float(value)!r}"
+        except ValueError:
+            hint = f"; give the bare number{' in ' + unit if unit else ''}"
     return f"{requirement_of(detail)}, got {repr(value) if isinstance(value, float) else _shown(value)}{hint}"
 
 
@@ -280,14 +285,6 @@ def requirement_of(detail: ErrorDetails) -> str:
     return f"cannot be used ({detail['msg'].lower()})"
 
 
-def _number_in_text(text: str, unit: str) -> str:
-    """How to write a number that stands in quotes, or that TOML does not read as a number."""
-    try:
-        return f"; write {float(text)!r}"
-    except ValueError:
-        return f"; give the bare number{' in ' + unit if unit else ''}"
-
-
 def _shown(value: object) -> str:
     """A value of a TOML file in words."""
     if isinstance(value, bool):
@@ -314,10 +311,3 @@ def _unknown_key(table: str, key: str, known: Mapping[str, FieldInfo]) -> str:
     else:
         way_out = did_you_mean(key, known)
     return f"unknown key {key[:80]!r}{'; ' + way_out if way_out else ''} (known: {', '.join(known)})"
-
-
-def _unknown_table(name: str) -> str:
-    if words := left_words(f"[{name}]"):
-        return words
-    near = did_you_mean(name, TABLES)
-    return f"unknown table{'; ' + near if near else ''} (known: {', '.join(TABLES)})"

@@ -13,20 +13,8 @@ from fem.runtime.terminal import say
 from fem.runtime.threads import cores
 
 DISTRIBUTIONS = (
-    "unanchored",
-    "numpy",
-    "scipy",
-    "numba",
-    "scikit-fem",
-    "meshio",
-    "pyvista",
-    "matplotlib",
-    "pydantic",
-    "cyclopts",
-    "rich",
-    "jinja2",
-    "imageio",
-    "filelock",
+    *("unanchored", "numpy", "scipy", "numba", "scikit-fem", "meshio", "pyvista", "matplotlib"),
+    *("pydantic", "cyclopts", "rich", "jinja2", "imageio", "filelock"),
 )
 INSTALL_PACKAGES = "python -m pip install --upgrade unanchored"
 LEAST_FREE_GB = 1.0

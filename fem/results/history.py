@@ -187,7 +187,11 @@ def read_history(path: Path) -> History:
     """
     lines = _whole_lines(path)
     names = tuple(lines[0].split(",")) if lines else ()
-    if names[:1] != ("time_s",) or columns.MODE not in names or not all(map(_is_known, names)):
+    if (
+        names[:1] != ("time_s",)
+        or columns.MODE not in names
+        or not KNOWN.issuperset(re.sub(r"(?<=_)\d+(?=_)", "{}", name) for name in names)
+    ):
         raise ValueError(
             f"{path}: not a history; its first line must be {','.join(columns.ALWAYS.names((0,)))} .."
         )
@@ -229,10 +233,6 @@ def add_analytic_rotation(path: Path, rotation: FloatArray) -> None:
     lines = [f"{header},{ANALYTIC_COLUMN}"]
     lines += [f"{row},{value!r}" for row, value in zip(rows, rotation.tolist(), strict=True)]
     write_atomically(path, "\n".join(lines) + "\n")
-
-
-def _is_known(name: str) -> bool:
-    return re.sub(r"(?<=_)\d+(?=_)", "{}", name) in KNOWN
 
 
 def _whole_lines(path: Path) -> list[str]:

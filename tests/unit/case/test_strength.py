@@ -5,7 +5,7 @@ from motion_files import write_pair
 
 from fem.case.case import CaseError, load_case
 from fem.case.strength import scaled_motion
-from fem.model.motion import build_motion, build_vertical
+from fem.model.motion import build_motion
 from fem.study.design import CaseMaker
 from fem.study.file import require_once
 
@@ -24,7 +24,7 @@ def record(tmp_path):
 
 
 def peaks(case):
-    return build_motion(case).peak_acceleration, build_vertical(case).peak_acceleration
+    return build_motion(case).peak_acceleration, build_motion(case, "vertical").peak_acceleration
 
 
 @pytest.mark.parametrize(

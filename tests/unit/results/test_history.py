@@ -50,12 +50,13 @@ def test_columns_are_the_documented_ones_in_their_order_and_come_back_to_the_las
 
 def case_of(*, boxes=1, joints="bolted", vertical=False, crushing=False, restitution=None, **floor):
     """The tables of a case that decide on its columns."""
+    turns = bool(floor.get("slope_percent")) and floor.get("motion_along") != "floor"
     return SimpleNamespace(
-        container=SimpleNamespace(boxes=boxes, joints=joints),
-        floor=SimpleNamespace(kind="slab" if crushing else "rigid", **{"slope_percent": 0.0} | floor),
-        motion=SimpleNamespace(kind="harmonic"),
+        container=SimpleNamespace(boxes=boxes, is_loose=joints == "loose"),
+        floor=SimpleNamespace(is_slab=crushing),
+        has_normal=vertical or turns,
         states_restitution=restitution is not None,
-        vertical=SimpleNamespace(kind="pulse" if vertical else "none"),
+        **dict.fromkeys(("stop", "tie", "neighbour", "links"), ()),
     )
 
 

@@ -5,7 +5,7 @@ import pytest
 from motion_files import write_motion, write_pair
 
 from fem.case.case import CaseError, read_case
-from fem.model.motion import build_motion, build_vertical
+from fem.model.motion import build_motion
 from fem.records.intensity import intensity
 from fem.records.spectrum import response_spectrum
 from fem.study.axes import AxisError, first_motion, read_axis, with_following
@@ -97,9 +97,9 @@ def test_one_factor_scales_both_components_of_a_recording(base):
         (pair,) = read_motion_set(base.with_values(values), [axis])
         (own,) = read_motion_set(base, [axis])
         ratios = [
-            build(pair.case).values[k] / build(own.case).values[k]
-            for build in (build_motion, build_vertical)
-            for k in [np.abs(build(own.case).values).argmax()]
+            build_motion(pair.case, table).values[k] / build_motion(own.case, table).values[k]
+            for table in ("motion", "vertical")
+            for k in [np.abs(build_motion(own.case, table).values).argmax()]
         ]
         assert (3.0 * ratios[0], 2.0 * ratios[1]) == pytest.approx(peaks)
 
