@@ -13,7 +13,7 @@ from fem.case.tables.duration import longest_time
 from fem.case.tables.motion_tables import FloorMotionTable
 from fem.case.validation import CaseError
 from fem.cli.console import WIDTH, AllowBaseline, AllowOutside, AsJson, CaseName, Motion, Overrides, flag
-from fem.model.geometry import build_container
+from fem.model.geometry import build_container, node_count
 from fem.model.motion_summary import summary_from_keys
 from fem.results.disk import in_units
 from fem.results.run_result import MotionResult
@@ -21,6 +21,8 @@ from fem.run.described import covered_in_words, floor_rows, is_cut, link_rows, m
 from fem.run.preview import Preview
 from fem.run.static_words import sides_in_words, sides_of
 from fem.runtime.terminal import say
+
+MOST_NODES = 20_000  #: up to which a container is settled on its floor, in some 2 s
 
 
 def check(
@@ -59,16 +61,22 @@ def check(
 
 
 def preview_of(case: Case) -> Preview:
-    """What is known of a run of the case.
+    """What is known of a run of the case; a CaseError where a run would be refused before it steps.
 
-    A motion is evaluated only where it must be: compiled functions take long to load.
+    A motion is evaluated, and the container settled on its floor, only where it must be: compiled functions take long
+    to load.
     """
     summary, mesh, duration = summary_from_keys(case), build_container(case), longest_time(case)
     if summary is None:
         module = importlib.import_module("fem.model.motion")
         motions = module.build_motions(case)
         summary, duration = module.motion_result(case, *motions), module.longest_run(case, *motions)
-    return Preview(case=case, mesh=mesh, motion=summary, duration=duration)
+    preview = Preview(case=case, mesh=mesh, motion=summary, duration=duration)
+    if not preview.stands_plainly and node_count(mesh, case.solver.order) <= MOST_NODES:
+        motions = importlib.import_module("fem.model.motion").build_motions(case)
+        resolved = importlib.import_module("fem.run.solve").resolve(case, mesh, motions)
+        importlib.import_module("fem.model.model").build_model(resolved, motions=motions)
+    return preview
 
 
 def numerics_lines(numerics: Mapping[str, Any]) -> list[str]:

@@ -1,12 +1,9 @@
 """The floor, its motion, and what stands beside a container, in words: of a case, and of what happened."""
 
-import math
 
 from fem.case.case import Case
 from fem.case.tables.links import StopTable, TieTable
 from fem.case.tables.neighbours import NeighbourTable
-from fem.model.links import heights_of_links
-from fem.model.model import Model
 from fem.records.units import STANDARD_GRAVITY
 from fem.results.outcome import SLIDING, Outcome
 from fem.results.run_result import FloorNumbers, LinkResult, MotionResult, NeighbourResult, RunResult, Verdict
@@ -213,30 +210,6 @@ def _friction(link: StopTable | NeighbourTable) -> str:
 
 def _strength(link: StopTable | TieTable) -> str:
     return "" if link.strength_N is None else f", breaks at {1e-3 * link.strength_N:.4g} kN"
-
-
-def link_results(model: Model) -> tuple[tuple[LinkResult, ...] | None, tuple[LinkResult, ...] | None]:
-    """What stops and ties did in a model that was stepped, in the order of the case; None where there are none."""
-    case, container = model.case, model.container
-    records = model.run.links[len(case.neighbour) :]
-    heights = heights_of_links(case, container.elements.nodes[container.nodes])
-    results = [
-        LinkResult(
-            side=link.side,
-            height_m=height,
-            neighbour=link.neighbour if isinstance(link, TieTable) else None,
-            max_force_N=float(record.max_force),
-            hits=int(record.hits),
-            largest_closing_velocity_m_s=float(record.largest_closing_velocity),
-            gap_left_m=float(record.least_gap)
-            if math.isinf(record.broken_at) and math.isfinite(record.least_gap)
-            else None,
-            broken_at_s=None if math.isinf(record.broken_at) else float(record.broken_at),
-        )
-        for link, height, record in zip(case.links, heights, records, strict=True)
-    ]
-    stops = len(case.stop)
-    return tuple(results[:stops]) or None, tuple(results[stops:]) or None
 
 
 def links_in_words(result: RunResult) -> str:

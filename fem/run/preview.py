@@ -1,4 +1,4 @@
-"""What is known of a run before it is computed, for `check` and `run --dry-run`. No kernel is loaded."""
+"""What is known of a run before it is computed, for `check` and `run --dry-run`. Nothing here loads a kernel."""
 
 import math
 from dataclasses import dataclass
@@ -16,12 +16,16 @@ from fem.model.link_places import require_room
 from fem.model.restitution import contact_restitution, require_loss
 from fem.model.static_checks import StaticChecks, static_checks_of
 from fem.model.support import build_support, normal_penalty
-from fem.model.validity import require_bearing, require_stiff_contact
+from fem.model.validity import require_bearing, require_memory, require_stiff_contact
 from fem.results.disk import BYTES_BESIDE, in_units, table_bytes
 from fem.results.run_result import FloorNumbers, MotionResult
 from fem.run.described import doubts
 from fem.run.static_words import code_note
 from mesh.container import ContainerMesh
+
+#: model, step and scheme of most runs; weight over walls times stiffness, for one element, that squeezes no container
+PLAIN = {(model, "auto", "generalised-alpha") for model in ("rigid", "reduced")}
+SMALL_STRAIN = 0.01
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -32,6 +36,25 @@ class Preview:
     mesh: ContainerMesh
     motion: MotionResult
     duration: float  #: simulated time, at most [s]
+
+    @property
+    def stands_plainly(self) -> bool:
+        """Whether nothing at the start can refuse a run: a stiff container, upright on two points of a level floor.
+
+        A box alone, no vertical motion, the usual step and scheme. Two points carry less than `require_bearing` asks.
+        """
+        case, box, solver = self.case, self.case.container, self.case.solver
+        walls = float(self.mesh.thickness.min()) * solver.element_size_m * box.youngs_modulus_Pa
+        return (
+            case.support.kind == "corners"
+            and build_support(case, self.mesh).index.size == 2
+            and case.initial.rotation_rad == case.initial.angular_velocity_rad_s == 0.0
+            and case.floor.slope_percent == 0.0
+            and case.vertical.kind == "none"
+            and not (case.neighbour or case.links or box.is_loose or box.eccentricity_m)
+            and (solver.model, solver.step_s, solver.scheme) in PLAIN
+            and (solver.model == "rigid" or self.mesh.mass * case.gravity_m_s2 < SMALL_STRAIN * walls)
+        )
 
     @property
     def peak(self) -> float:
@@ -75,6 +98,7 @@ class Preview:
         nodes = node_count(mesh, solver.order)
         penalty = normal_penalty(case, mesh)
         springs = build_support(case, mesh).normal_stiffness(penalty)
+        require_memory(case, nodes, springs.size)
         stiffness = float(springs.sum())
         require_stiff_contact(case, mesh, stiffness)
         require_loss(case, self.static)

@@ -3,6 +3,7 @@
 `fem.run.compute` keeps a run in memory, `fem.run.run` in a folder; both call what is here.
 """
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
@@ -10,18 +11,19 @@ from typing import Any
 from contact.motion.base_motion import BaseMotion
 from fem.case.case import Case
 from fem.case.tables.duration import ends_at_rest, longest_time
+from fem.case.tables.links import TieTable
 from fem.model.floor_numbers import floor_result
 from fem.model.frames import frame_interval
 from fem.model.geometry import build_container, node_count
+from fem.model.links import heights_of_links
 from fem.model.model import Model
 from fem.model.motion import longest_run, motion_result
 from fem.model.static_checks import static_checks_of
 from fem.model.step_size import largest_step_of
 from fem.model.support import normal_penalty
 from fem.results.history import History
-from fem.results.run_result import RunResult
+from fem.results.run_result import LinkResult, RunResult
 from fem.run.card import card_of
-from fem.run.described import link_results
 from fem.run.joints import joint_demands
 from fem.run.recorder import Recorder
 from fem.run.simulation import BEGINNING, Progress, simulate
@@ -108,7 +110,7 @@ def stepped(
     history = recorder.history()
     stress = recorder.largest_von_mises if model.case.solver.model != "rigid" else None
     verdict = verdict_of(model, history, stress)
-    stops, ties = link_results(model)
+    stops, ties = _link_results(model)
     result = replace(
         result,
         status=ending.status,
@@ -121,6 +123,30 @@ def stepped(
         error=ending.error,
     )
     return result, history
+
+
+def _link_results(model: Model) -> tuple[tuple[LinkResult, ...] | None, tuple[LinkResult, ...] | None]:
+    """What stops and ties did in a model that was stepped, in the order of the case; None where there are none."""
+    case, container = model.case, model.container
+    records = model.run.links[len(case.neighbour) :]
+    heights = heights_of_links(case, container.elements.nodes[container.nodes])
+    results = [
+        LinkResult(
+            side=link.side,
+            height_m=height,
+            neighbour=link.neighbour if isinstance(link, TieTable) else None,
+            max_force_N=float(record.max_force),
+            hits=int(record.hits),
+            largest_closing_velocity_m_s=float(record.largest_closing_velocity),
+            gap_left_m=float(record.least_gap)
+            if math.isinf(record.broken_at) and math.isfinite(record.least_gap)
+            else None,
+            broken_at_s=None if math.isinf(record.broken_at) else float(record.broken_at),
+        )
+        for link, height, record in zip(case.links, heights, records, strict=True)
+    ]
+    stops = len(case.stop)
+    return tuple(results[:stops]) or None, tuple(results[stops:]) or None
 
 
 def in_words(result: RunResult, case: Case) -> RunResult:

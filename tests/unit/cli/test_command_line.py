@@ -352,6 +352,45 @@ class TestCheck:
         assert document["derived"]["peak_floor_acceleration_m_s2"] == pytest.approx(0.05 * 6.928**2)
         assert any("not credible" in note for note in document["notes"])
 
+    @pytest.mark.parametrize(
+        ("asked", "words"),
+        [
+            # by the table of the case, by its contact, and by its equilibrium at rest
+            ("seed_box floor.slope_percent=130", "between -60 and 60 per cent"),
+            ("seed_box container.wall_m=0.3", "more than the box with its fill"),
+            ("seed_box contact.normal_penalty_Pa_m=1e4", "would sink in by 2.03 m"),
+            ("sliding floor.bearing_strength_Pa=1e5", "a corner must carry 29.43 kN"),
+            ("seed_box solver.element_size_m=0.0005", "at most 2000000 are allowed"),
+            ("seed_box solver.step_s=0.5", "would step over the motion"),
+            ("seed_box solver.scheme=newmark contact.normal_penalty_Pa_m=1e13", "gains energy at impacts"),
+            ("seed_box initial.rotation_rad=0.2 initial.angular_velocity_rad_s=9", "have to pull"),
+            (
+                "seed_box vertical.kind=harmonic vertical.peak_acceleration_m_s2=12 vertical.frequency_Hz=3 "
+                "vertical.phase_rad=1.57",
+                "leaves nothing of gravity",
+            ),
+            (
+                "sliding support.kind=flat container.eccentricity_m=0.1 floor.bearing_strength_Pa=1e5",
+                "at rest one point of the base must carry 0.1814 kN and bears 0.1467 kN",
+            ),
+            ("seed_box container.youngs_modulus_Pa=1e6", "its own weight would compress the container"),
+            ("iso_20ft_two_loose floor.slope_percent=60", "beyond the lower edge"),
+            (
+                "iso_20ft_two_loose container.eccentricity_m=0.2 floor.slope_percent=50",
+                "what stands on a box acts outside",
+            ),
+        ],
+    )
+    def test_refuses_what_a_run_refuses_in_the_same_words(self, tmp_path, monkeypatch, capsys, asked, words):
+        monkeypatch.chdir(tmp_path)
+        said = []
+        for command in ("check", "run"):
+            name, *keys = asked.split(" ")
+            sets = [word for key in keys for word in ("--set", key)]
+            assert command_line.main([command, name, *sets]) == 2
+            said.append(capsys.readouterr().err)
+        assert words in said[0] and said[1] == said[0]
+
     def test_fits_80_columns(self, capsys):
         assert command_line.main(["check", "seed_box", "--set", "motion.start=rest"]) == 0
         assert max(len(line) for line in capsys.readouterr().out.splitlines()) < 80
