@@ -5,7 +5,8 @@ import math
 from contact.jit import compiled, inlined
 from contact.stepping.body import ANGULAR_VELOCITY, CENTRE_X, CENTRE_Z, ROTATION
 from contact.stepping.joints import points_of
-from contact.stepping.observables import FALLEN, NEVER, OPENING, REST, ROCK, ROCKING, SLIDE, SLIDE_ROCK
+from contact.stepping.modes import FALLEN, REST, ROCK, ROCKING, SLIDE, SLIDE_ROCK
+from contact.stepping.observables import NEVER, OPENING
 from contact.stepping.scheme import hermite
 from contact.stepping.state import RunState
 

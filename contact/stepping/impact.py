@@ -31,7 +31,8 @@ from contact.stepping.body import (
 from contact.stepping.joints import carrier_of, in_a_row, points_of, touching_corner
 from contact.stepping.ledger import BASE_WORK, IMBALANCE, IMPACTS
 from contact.stepping.links import links_of, shift_links
-from contact.stepping.observables import IMPACT_GAP, ROCKING, exchanges_pivot, lands
+from contact.stepping.modes import ROCKING
+from contact.stepping.observables import IMPACT_GAP, exchanges_pivot, lands
 from contact.stepping.state import RunState
 from contact.stepping.step import indent
 

@@ -40,7 +40,8 @@ from contact.stepping.joints import (
 from contact.stepping.ledger import IMBALANCE, dissipation, spring_energy
 from contact.stepping.ledger import ROWS as LEDGER_ROWS
 from contact.stepping.links import follow_links, links_of, reach_strength
-from contact.stepping.observables import FALLEN, IMPACT_GAP, NEVER, update_observables
+from contact.stepping.modes import FALLEN
+from contact.stepping.observables import IMPACT_GAP, NEVER, update_observables
 from contact.stepping.sampling import keep_most_strained_step, sample
 from contact.stepping.state import RunState
 from contact.stepping.step import account, attempt, indent

@@ -11,7 +11,8 @@ from contact.interface.laws import ELASTIC_STICK, REGULARISED, relaxed_stick, we
 from contact.jit import compiled, inlined
 from contact.stepping.body import ANGULAR_VELOCITY, CENTRE_X, CENTRE_Z, ROTATION, VELOCITY_X, VELOCITY_Z
 from contact.stepping.links import LinkedBody, load_of_links
-from contact.stepping.observables import SLIDING, bearing_place
+from contact.stepping.modes import SLIDING
+from contact.stepping.observables import bearing_place
 from contact.stepping.state import RunState
 
 NO_POINT, SOME, ALL, AIRBORNE = 0, 1, 2, 3  #: sliding of the loaded points of a joint

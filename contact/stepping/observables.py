@@ -15,10 +15,10 @@ from typing import Any
 import numpy as np
 
 from contact.arrays import FloatArray
-from contact.interface.workspace import Contact
 from contact.jit import compiled, inlined
 from contact.stepping.body import ANGULAR_VELOCITY, CENTRE_X, POTENTIAL, ROTATION, State
 from contact.stepping.ledger import FRICTION, work_of_lift
+from contact.stepping.modes import FALLEN, REST, ROCK, ROCKING, SLIDE, SLIDE_ROCK
 from contact.stepping.scheme import hermite
 
 NEVER = math.inf  #: time of an event that has not happened
@@ -33,19 +33,9 @@ TURNING_ON = 0.05
 #: outer part of the base about which the body turns when the rest is open, over the width
 PIVOT = 0.15
 ROLLING_PIVOT = 0.5  #: .. of a base that rolls: the side away from where it touches carries nothing
-#: rotation ratio above which motion with an open side is rocking
-ROCKING = 0.01
-
-#: path over the width that counts as sliding, and gap of a whole base over the width that counts as a hop
-SLIDING = HOPPING = 1e-4
-LEAST_SLIDE = 1e-3  #: .. and that path at least [m]
 #: friction heat between the turning points around an impact, over the energy before it, from which it slides: unloading
 #: points slip a little at every impact
 SLIDING_HEAT = 0.02
-
-#: modes of motion as stored in a history, and as bits in `modes`
-REST, SLIDE, ROCK, SLIDE_ROCK, FALLEN = 0, 1, 2, 3, 4
-HOP = 5  #: an outcome alone: see `max_flight`
 
 OBSERVABLES = np.dtype(
     [
@@ -99,7 +89,7 @@ def make_observables() -> Any:
 
 @inlined
 def bearing_place(
-    contact: Contact, along: FloatArray, state: State, begin: int, end: int, otherwise: float
+    contact: Any, along: FloatArray, state: State, begin: int, end: int, otherwise: float
 ) -> float:
     """Where a base stands on what is below it: the slip is how far this has moved [m].
 

@@ -20,6 +20,8 @@ def scaled_motion(case: Case, factor: float) -> dict[str, float]:
 def _scaled(table: str, motion: FloorMotionTable, factor: float) -> dict[str, float]:
     of_a_table = "scale" if motion.scale_to_m_s2 is None else "scale_to_m_s2"
     strengths = ("amplitude_m", "peak_acceleration_m_s2")
-    keys = {"none": (), "harmonic": strengths, "pulse": strengths, "table": (of_a_table,)}[motion.kind]
+    kinds = {"none": (), "harmonic": strengths, "pulse": strengths, "table": (of_a_table,)}
+    assert motion.kind in kinds, motion.kind
+    keys = kinds[motion.kind]
     given = {key: getattr(motion, key) for key in keys}
     return {f"{table}.{key}": factor * value for key, value in given.items() if value is not None}

@@ -13,7 +13,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from contact.stepping.observables import ROCKING
+from contact.stepping.modes import ROCKING
 from fem.figures import style
 from fem.figures.boxes import OPENING, ROTATION, SLIP, box_figure
 from fem.figures.checks import band_figure, rigid_check_figure

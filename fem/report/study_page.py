@@ -419,7 +419,7 @@ def margin_words(row: A_ROW) -> str:
     margin, tried = row["margin"], row["margin_tried_to"]
     if margin is None:
         return "" if tried is None else f"> {times(tried)}"
-    low, high = (times(row[name]) for name in ("margin_low", "margin_high"))
+    low, high = ("" if row[name] is None else times(row[name]) for name in ("margin_low", "margin_high"))
     if not low:
         return times(margin)
     return f"{times(margin)} ({f'{low} to {high}' if high else f'from {low}'})"

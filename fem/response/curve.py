@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from contact.stepping.integrator import OVERTURNED, REACHED
-from contact.stepping.observables import ROCKING
+from contact.stepping.modes import ROCKING
 from contact.stepping.outcome import advance_compiled
 from contact.stepping.state import Control
 from fem.case.case import Case

@@ -6,7 +6,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from contact.stepping import observables
+from contact.stepping import modes
 
 UPRIGHT_OR_FALLEN = ("completed", "overturned")  #: statuses of a run that has an outcome
 
@@ -14,12 +14,12 @@ UPRIGHT_OR_FALLEN = ("completed", "overturned")  #: statuses of a run that has a
 class Outcome(StrEnum):
     """What happened in a run, and the states of motion in its history; from the weakest to the worst."""
 
-    REST = "rest", observables.REST, "rested"
-    SLIDE = "slide", observables.SLIDE, "slid"
-    HOP = "hop", observables.HOP, "hopped"
-    ROCK = "rock", observables.ROCK, "rocked"
-    SLIDE_ROCK = "slide-rock", observables.SLIDE_ROCK, "slid, rocked"
-    OVERTURNED = "overturned", observables.FALLEN, "overturned"
+    REST = "rest", modes.REST, "rested"
+    SLIDE = "slide", modes.SLIDE, "slid"
+    HOP = "hop", modes.HOP, "hopped"
+    ROCK = "rock", modes.ROCK, "rocked"
+    SLIDE_ROCK = "slide-rock", modes.SLIDE_ROCK, "slid, rocked"
+    OVERTURNED = "overturned", modes.FALLEN, "overturned"
     #: a corner was destroyed, and the laws of its contact do not hold; no state of motion, and no code of the kernel
     INVALID = "invalid", 15, "not valid"
 
@@ -43,7 +43,7 @@ class Outcome(StrEnum):
 
 def least_slide(width: float) -> float:
     """The path from which a container of this width counts as sliding [m]."""
-    return max(observables.SLIDING * width, observables.LEAST_SLIDE)
+    return max(modes.SLIDING * width, modes.LEAST_SLIDE)
 
 
 #: by the code of the kernel

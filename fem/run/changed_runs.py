@@ -26,11 +26,10 @@ from fem.model.validity import runs_in_memory
 from fem.results.figures import FELL_FIRST, Place
 from fem.results.json_text import to_json
 from fem.results.run_result import ChangedRun, JointDemand, Numerics, Verdict
-from fem.run.joints import joint_demands
 from fem.run.ranges import largest_bolt_forces
 from fem.run.recorder import Recorder
 from fem.run.simulation import run_without_history, simulate
-from fem.run.verdict import verdict_of
+from fem.run.verdict import joint_demands, verdict_of
 from fem.runtime.identity import program_identity
 from fem.runtime.threads import cores
 from fem.runtime.user_files import read_json

@@ -1,6 +1,5 @@
 """The floor, its motion, and what stands beside a container, in words: of a case, and of what happened."""
 
-
 from fem.case.case import Case
 from fem.case.tables.links import StopTable, TieTable
 from fem.case.tables.neighbours import NeighbourTable

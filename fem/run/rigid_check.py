@@ -18,7 +18,7 @@ from contact.reference.floor_acceleration import FloorAcceleration
 from contact.reference.planar_block import PlanarBlock, PlanarImpact, PlanarMode, simulate_planar_block
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import RockingImpact, RockingMotion, simulate_rocking
-from contact.stepping.observables import ROCKING, SLIDING
+from contact.stepping.modes import ROCKING, SLIDING
 from fem.model.model import Model
 from fem.results.history import ANALYTIC_COLUMN, History
 from fem.results.run_result import AnalyticBlock, PeakPair, RigidCheckResult, RunAndBlock, Verdict

@@ -7,6 +7,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from contact.interface.penalty import contact_frequency
 from contact.stepping.body import ROTATION
@@ -22,17 +23,21 @@ from contact.stepping.ledger import (
     LOSS_SHARE_LIMIT,
     MATERIAL_DAMPING,
 )
-from contact.stepping.observables import HOPPING, ROCKING
+from contact.stepping.modes import HOPPING, ROCKING
 from fem.case.case import Case
+from fem.case.columns import JOINTS
+from fem.case.tables.boxes import shared_face
 from fem.model.bounce import bounce_of
 from fem.model.floor import YIELD_STRENGTH, is_steel_shell, post_strength, slab_of, steel_capacity
 from fem.model.floor_numbers import plastic_work
+from fem.model.joints import edge_forces
 from fem.model.model import Model
 from fem.model.peaks import casting_length
 from fem.results.figures import BOX_FIGURES, FIGURES, BoxResult, Shown
 from fem.results.history import History
 from fem.results.outcome import Outcome, least_slide
-from fem.results.run_result import Energy, NeighbourResult, Numerics, Verdict, to_overturn
+from fem.results.run_result import Energy, JointDemand, NeighbourResult, Numerics, Verdict, to_overturn
+from fem.runtime.arrays import FloatArray
 from fem.runtime.units import SECONDS
 
 CONTENTS_FILTER = "Butterworth low-pass of two poles, causal"  #: `contact.stepping.contents`
@@ -414,3 +419,55 @@ def _peak_to_peak(model: Model, last: float | None, time: np.ndarray, slip: np.n
     if cycle.size < 2:  # sampled more coarsely than a cycle
         return None
     return float(cycle.max() - cycle.min())
+
+
+def joint_demands(model: Model, history: History) -> tuple[JointDemand, ...] | None:
+    """The demands on all joints, from the floor up; None for a single box, or if nothing was sampled.
+
+    Of a container that overturned, until 90 degrees.
+    """
+    standing = history["time_s"] <= model.run.track[0].overturned_at
+    if history.joints == 0 or not standing.any():
+        return None
+    return tuple(_demands_of(model, history, joint, standing) for joint in range(1, history.joints + 1))
+
+
+def _demands_of(model: Model, history: History, joint: int, standing: NDArray[np.bool_]) -> JointDemand:
+    lower, upper = model.case.stack[joint - 1 : joint + 1]
+    start, end = shared_face(lower, upper)
+    width, mu = end - start, model.case.contact.mu_static
+    time = history["time_s"][standing]
+    normal, shear, moment = (history[name][standing] for name in JOINTS.names((joint,)))
+    left, right = edge_forces(normal, moment, width)
+    tension = max(0.0, -float(left.min())), max(0.0, -float(right.min()))
+    capacity = model.case.joints.bolt_capacity_N
+    carried = mu * np.maximum(normal, 0.0)
+    return JointDemand(
+        joint=joint,
+        height_m=upper.bottom,
+        min_normal_N=float(normal.min()),
+        max_normal_N=float(normal.max()),
+        max_shear_N=float(np.abs(shear).max()),
+        max_moment_Nm=float(np.abs(moment).max()),
+        bolt_tension_left_N=tension[0],
+        bolt_tension_right_N=tension[1],
+        bolt_utilisation=None if capacity is None else max(tension) / capacity,
+        bolt_shear_N=max(0.0, float((np.abs(shear) - carried).max())),
+        friction_needed=_friction_needed(normal, shear),
+        partly_opens_at_s=_first(time, np.abs(moment) > normal * width / 6.0),
+        opens_at_s=_first(time, np.minimum(left, right) < 0.0),
+        slides_at_s=_first(time, np.abs(shear) > carried),
+    )
+
+
+def _friction_needed(normal: FloatArray, shear: FloatArray) -> float | None:
+    """Least coefficient of friction at which the joint never slides; None if there is shear without compression."""
+    sheared = shear != 0.0
+    if np.any(normal[sheared] <= 0.0):
+        return None
+    return float(np.max(np.abs(shear[sheared]) / normal[sheared], initial=0.0))
+
+
+def _first(time: FloatArray, happens: NDArray[np.bool_]) -> float | None:
+    """Time of the first sample at which it happens [s]."""
+    return float(time[np.argmax(happens)]) if happens.any() else None

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from contact.reference.rigid_block import RigidBlock
-from contact.stepping.observables import ROCKING
+from contact.stepping.modes import ROCKING
 from fem.case.validation import CaseError
 from fem.results.outcome import least_slide
 from fem.runtime.arrays import FloatArray

@@ -275,8 +275,8 @@ def sweep_answer(table: SweepTable, folder: Path) -> StudyAnswer[Answer] | None:
 
 def _lines_of(table: SweepTable, axis: Axis, tried: Path) -> dict[int, list[Trial]]:
     """What is known along the axis, by the first cell of each line."""
-    cells = np.moveaxis(np.arange(len(table["cell"])).reshape(table.shape), table.axes.index(axis), -1)
-    nothing = np.full(len(table["cell"]), np.nan)
+    cells = np.moveaxis(np.arange(len(table["status"])).reshape(table.shape), table.axes.index(axis), -1)
+    nothing = np.full(len(table["status"]), np.nan)
     slip, unsure = (table.columns.get(name, nothing) for name in (SLIPPED, "unsure"))
     fell = table.columns.get("fell_in_row")
     lines: dict[int, list[Trial]] = defaultdict(list)

@@ -242,7 +242,13 @@ WRITTEN = {
     "CSMIP V1": Written("CSMIP", 6e-6, lambda a, b, c: csmip_v1([(a / G, "90 Deg"), (c / G, "Up")]), 2),
     "AFAD": Written("AFAD", 1e-8, in_gal(afad), 3),
     "JMA": Written("JMA CSV", 5e-6, in_gal(jma), 3),
-    "K-NET CSV": Written("K-NET", 1e-6, in_gal(knet_csv), 3, centred=True),
+    "K-NET CSV": Written(
+        "K-NET",
+        1e-6,
+        lambda *parts: knet_csv([100.0 * one[: parts[0].size] for one in parts]),
+        3,
+        centred=True,
+    ),
     "ASA": Written("ASA", 1e-7, in_gal(asa), 3),
     "CSMNC": Written("CSMNC", 1e-5, lambda a, b, c: csmnc(100.0 * a)),
     "count and interval": Written(

@@ -16,9 +16,9 @@ from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
 from fem.model.recovery import recovery_of
 from fem.results.outcome import Outcome
-from fem.run.joints import joint_demands
 from fem.run.recorder import Recorder
 from fem.run.simulation import simulate
+from fem.run.verdict import joint_demands
 
 
 def inertia_ratio(*, cylinder: bool, hollow: bool = False, height: float = HEIGHT) -> float:

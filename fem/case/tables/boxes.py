@@ -8,10 +8,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from contact.stepping.modes import SLIDING
 from fem.case.tables import quantities as q
 from fem.case.tables.problem import Rule, refused
 
-MICROSLIP = 1e-4  #: `contact.stepping.observables.SLIDING`, whose import takes a second: of the width
+MICROSLIP = SLIDING  #: over the width, up to which a base still sticks
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -105,7 +106,7 @@ def _falls_within_microslip(place: str) -> Rule:
     def reason(case: Any) -> str:
         stated, least = getattr(getattr(case, table), key), least_weakening(case)
         longest = stated[-1] if isinstance(stated, list) else stated
-        if not isinstance(longest, float) or not 0.0 < longest < least:
+        if not isinstance(longest, float) or not 0.0 < longest < (1.0 - 1e-9) * least:
             return ""
         return (
             f"{'ends at' if isinstance(stated, list) else '='} {longest:g} m, less than {least:g} m ({MICROSLIP:g} of "

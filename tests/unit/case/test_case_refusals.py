@@ -5,7 +5,7 @@ import re
 import pytest
 from cases import named_case
 
-from contact.stepping.observables import SLIDING
+from contact.stepping.modes import SLIDING
 from fem.case.overrides import parse_override
 from fem.case.tables.boxes import MICROSLIP
 from fem.case.validation import CaseError

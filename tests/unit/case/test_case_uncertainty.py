@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from cases import named_case
 
-from contact.stepping.observables import SLIDING
+from contact.stepping.modes import SLIDING
 from fem.case.case import CaseError, load_case, read_case, to_toml
 from fem.case.tables.all_tables import TABLES
 from fem.case.tables.input_ranges import UnknownNumber

@@ -5,7 +5,7 @@ import pickle
 
 import pytest
 
-from contact.stepping import observables
+from contact.stepping import modes
 from fem.results.outcome import MODES, Ending, Outcome, ending_of
 
 
@@ -17,9 +17,9 @@ def test_an_outcome_is_its_word():
 
 
 def test_every_mode_of_the_kernel_is_an_outcome():
-    assert MODES[observables.REST] == "rest" and MODES[observables.FALLEN] == "overturned"
-    assert MODES[observables.ROCK + observables.SLIDE] == "slide-rock"
-    assert len(MODES) == len(Outcome) - 1 == observables.HOP + 1 and Outcome.INVALID not in MODES.values()
+    assert MODES[modes.REST] == "rest" and MODES[modes.FALLEN] == "overturned"
+    assert MODES[modes.ROCK + modes.SLIDE] == "slide-rock"
+    assert len(MODES) == len(Outcome) - 1 == modes.HOP + 1 and Outcome.INVALID not in MODES.values()
 
 
 @pytest.mark.parametrize(

@@ -18,11 +18,10 @@ from fem.results.run_result import ActionResult, Numerics, RunResult, StaticResu
 from fem.run import checks
 from fem.run.changed_runs import DRAWN_TOLERANCE, SHORT_S, cost_of, run_changes
 from fem.run.checks import plan_of, wants_band
-from fem.run.joints import joint_demands
 from fem.run.recorder import Recorder
 from fem.run.run import RunOptions, run_case
 from fem.run.simulation import run_without_history, simulate
-from fem.run.verdict import verdict_of
+from fem.run.verdict import joint_demands, verdict_of
 
 COARSE = "solver.element_size_m=0.5"
 SHORT = ["solver.model=rigid", COARSE, "solver.duration_s=3.0", "output.fields_s=0", "output.figures=false"]

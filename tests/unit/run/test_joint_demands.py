@@ -9,7 +9,7 @@ from cases import named_case
 from fem.case.columns import ALWAYS, JOINTS
 from fem.model.joints import edge_forces
 from fem.results.history import History, numbers_of
-from fem.run.joints import joint_demands
+from fem.run.verdict import joint_demands
 
 #: normal, shear, moment at 0, 1, 2 and 3 s: pressed in the middle; beyond a sixth of the width; beyond its edge, the
 #: left one open; lifted off

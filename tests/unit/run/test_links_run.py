@@ -8,7 +8,7 @@ import pytest
 
 import fem
 from fem.case.case import CaseError, load_case
-from fem.cli.check import CaseFlags, check
+from fem.cli.check import check
 from fem.model.model import build_model
 from fem.run.run import RunOptions, run_case
 
@@ -53,10 +53,8 @@ def test_a_tilt_that_overlaps_a_stop_is_refused():
     with pytest.raises(CaseError, match=said) as built:
         build_model(case)
     with pytest.raises(CaseError, match=said) as checked:
-        check("rocking", flags=CaseFlags(overrides=(*KEYS, "initial.rotation_rad=0.1", "stop.height_m=1.0")))
+        check("rocking", overrides=[*KEYS, "initial.rotation_rad=0.1", "stop.height_m=1.0"])
     first, other = (float(re.search(said, str(one.value)).group(1)) for one in (built, checked))
     assert first == pytest.approx(other, abs=1e-3)
     wide = ["stop.gap_m=0.2", "tie.slack_m=0.2"]
-    check(
-        "rocking", flags=CaseFlags(overrides=(*KEYS, "initial.rotation_rad=0.1", "stop.height_m=1.0", *wide))
-    )
+    check("rocking", overrides=[*KEYS, "initial.rotation_rad=0.1", "stop.height_m=1.0", *wide])

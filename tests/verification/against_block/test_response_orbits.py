@@ -45,7 +45,7 @@ def request_of(*, first, last, count, settle=30, observe=12, **changes):
 
 def followed(request):
     """The point of the lowest frequency, from its start."""
-    task = Task(way="up", number=0, begins=True)
+    task = Task(way="up", number=0, model=request.case.solver.model, begins=True)
     point, _ = follow_point(request, request.case_at(0), discretise(request.case), task)
     return point
 

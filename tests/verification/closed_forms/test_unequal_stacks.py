@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from cases import LEAST
 
-from contact.stepping.observables import ROCKING
+from contact.stepping.modes import ROCKING
 from fem.case.case import Case, read_case
 from fem.model.geometry import build_container
 from fem.model.model import build_model
