@@ -297,7 +297,9 @@ class TestInit:
         assert [line for line in shipped if line in kept] == kept  # all else as it is
         mine, first = load_case(path), load_case(name)
         assert mine.floor.corner_patch_m is None and mine.static is None
-        if first.floor.is_slab:
+        if (
+            first.floor.is_slab and mine.support.casting_m is not None
+        ):  # a recipe leaves those of the paper out
             assert corner_patch(mine) == corner_patch(first)
 
     def test_without_a_name_writes_a_file_with_every_key_that_can_be_run(self, tmp_path):

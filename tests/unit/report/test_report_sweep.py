@@ -33,7 +33,7 @@ def folder(tmp_path):
         "status": "completed",
         "sweep": "boxes",
         "title": "</script><b>",
-        "case": "box",
+        "case": "seed_stack",
         "model": "rigid",
         "axes": axes,
         "derived": {"contact.mu_kinetic": f"0.5 * {MU}"},

@@ -85,7 +85,7 @@ def test_an_interrupted_run_is_readable_names_the_way_on_and_reaches_the_same_bi
     folder = tmp_path / "r"
     interrupted(folder, monkeypatch, number)
     page = capsys.readouterr()
-    assert "--resume" in page.err and "Not finished (interrupted)" in page.out
+    assert "--resume" in page.err and "Not finished (interrupted" in page.out
     result = read_result(folder / "run.json")
     assert result["status"] == "interrupted" and result["numerics"]["steps"] > 0
     assert result["verdict"]["band"] is None
@@ -102,7 +102,7 @@ def test_the_page_of_an_interrupted_run_is_not_signed(tmp_path, monkeypatch):
     interrupted(folder, monkeypatch, signal.SIGINT)
     assert main(["report", str(folder), "-q"]) == 0
     page = (folder / "report.html").read_text(encoding="utf-8")
-    assert "Not finished (interrupted)" in page and 'id="signature"' not in page
+    assert "Not finished (interrupted" in page and 'id="signature"' not in page
 
 
 def test_a_history_that_cannot_grow_ends_the_run_with_3(tmp_path, capsys, monkeypatch, whole):
