@@ -165,14 +165,20 @@ class Case(CaseContent):
         return _read(with_overrides(self.given(), values), self._origin, values)
 
     def other_side(self) -> "Case | None":
-        """This case turned by 90 degrees, its depth in the plane of the motion; None where that is the same or unknown.
+        """This case turned by 90 degrees, its depth in the plane of the motion; None where `turned` has no keys."""
+        turned = self.turned
+        return self.with_values(turned) if turned else None
+
+    @property
+    def turned(self) -> dict[str, Any]:
+        """The keys of `other_side`; none where that is the same or unknown.
 
         Of a container with a mesh of its own, unequal boxes, or something beside it nobody says how it is turned.
         """
         box, castings = self.container, self.support.casting_m
         alone = not (box.mesh_file or box.box or self.links or self.neighbour or self.floor.slope_percent)
         if not alone or box.depth_m == box.width_m:
-            return None
+            return {}
         turned: dict[str, Any] = {"container.width_m": box.depth_m, "container.depth_m": box.width_m}
         for key, pair in (
             ("support.casting_m", castings),
@@ -180,7 +186,7 @@ class Case(CaseContent):
         ):
             if isinstance(pair, list | tuple):
                 turned[key] = [pair[1], pair[0], *pair[2:]]
-        return self.with_values(turned)
+        return turned
 
     def replace(self, changes: Mapping[str, Any]) -> "Case":
         """This case with keys changed, for scripts: `case.replace({"contact.mu_static": 0.3})`.

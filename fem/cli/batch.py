@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from cyclopts import Parameter
 
 from fem.case.case import load_case
-from fem.cli.console import PAGE, STUDY, AllowOutside, StudyFlags, flag, print_result, print_short
+from fem.cli.console import PAGE, STUDY, AllowOutside, Overrides, StudyFlags, flag, print_result, print_short
 from fem.results.figures import TURNED, Place, figures_of
 from fem.results.kinds import HALL
 from fem.results.outcome import Outcome
@@ -41,6 +41,8 @@ def batch(
             help="Whose run is repeated for sure and margin: the weakest tenth (at least 30), all, none."
         ),
     ] = "weakest",
+    one_side: Annotated[bool, flag("Leave out a narrower side across; else the worse governs.")] = False,
+    overrides: Overrides = (),
     allow_outside: AllowOutside = False,
     pdf: Annotated[bool, flag("Print the short page to report-short.pdf, by Chromium or Chrome.")] = False,
     flags: StudyFlags = STUDY,
@@ -56,11 +58,11 @@ def batch(
         The list, as CSV.
     """
     listed = importlib.import_module("fem.study.list_file").read_hall(hall)
-    base = load_case(case, allow_outside=allow_outside)
+    base = load_case(case, overrides, allow_outside=allow_outside)
     folder = flags.folder(listed.name)
     with flags.options() as options:
         result = importlib.import_module("fem.study.hall").run_hall(
-            listed, base, folder, motions=motion, checks=margins, **options
+            listed, base, folder, motions=motion, checks=margins, one_side=one_side, **options
         )
     page, pages = folder / PAGE, importlib.import_module("fem.report.study_page")
     if result.state == "finished" and not page.is_file():
@@ -90,7 +92,7 @@ def page_of(result: "HallResult", folder: Path) -> Iterator[str]:
 
 def _row_in_words(row: dict[str, object]) -> str:
     """A container in a line."""
-    words = [str(row["outcome"] or row["reason"])]
+    words = [str(row["outcome"] or row["reason"]) + " across its depth" * (row["side"] == "depth")]
     if isinstance(row["margin"], float):
         words.append(f"overturns from {row['margin']:.3g} times the motion on")
     elif isinstance(row["margin_tried_to"], float):

@@ -351,7 +351,7 @@ def hall_report(folder: Path, *, signature: Signature | None = None, brief: bool
     outcomes = ", ".join(f"{word}: {number}" for word, number in info.outcomes.items())
     counted = dict.fromkeys(word for tag in info.tags for word in sorted(tag["counts"]))
     asked = ["--motion", *info.motions] if info.motions else []
-    asked += ["--margins", info.checks] * (info.checks != "weakest")
+    asked += ["--margins", info.checks] * (info.checks != "weakest") + ["--one-side"] * bool(info.one_side)
     command = command_line(
         "batch", "list.csv", "--case", "base.toml", *asked, allow_outside=bool(info.allow_outside)
     )
@@ -407,7 +407,8 @@ def _weakest(rows: Sequence[A_ROW], *, linked: bool) -> list[Column]:
             (figure_head(shown), [figure(row, name, shown) for row in rows], N)
             for name, shown in figures_of(Place.KEY).items()
         ),
-        key("utilisation", "utilisation_overturning", N, partial(number, figures=3)),
+        key("side", "side", empty="width"),
+        key("use against overturning, static", "utilisation_overturning", N, partial(number, figures=3)),
         key("motion", "motion"),
         key("runs overturned", "motions_overturned", N),
         key("runs not valid", "motions_invalid", N, empty=0),

@@ -11,6 +11,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
+from itertools import groupby
+from operator import itemgetter
 from pathlib import Path
 from typing import Any, Literal, Unpack
 
@@ -76,6 +78,7 @@ class Hall(Design):
     """A list of containers, and the motions that they undergo."""
 
     file: HallFile
+    one_side: bool = False  #: look only at the side that is given as the width
     motions: tuple[FloorMotionPair, ...] = ()  #: in place of that of the base case
     named: tuple[str, ...] = ()  #: these, as they were named on the command line
     rows: tuple[HallRow, ...] = ()  #: each with its container, or why it is refused
@@ -94,10 +97,11 @@ class Hall(Design):
 
     @property
     def items(self) -> list[Item]:
-        """All runs; those of a container follow one another."""
+        """All runs; those of a container follow one another, and those across stand behind the others."""
         return [
-            Item(number, motion, keys, row.values)
+            Item(number, motion + side * len(self.keys), keys, row.values, more=turned)
             for number, row in enumerate(self.containers.values())
+            for side, turned in enumerate([{}, row.across][: 1 + bool(row.across)])
             for motion, keys in enumerate(self.keys)
         ]
 
@@ -106,15 +110,17 @@ class Hall(Design):
         origin = self.base.origin_with({})
         words = ["run", origin.place, *["--allow-outside"] * origin.allow_outside]
         if self.named:
-            words += ["--motion", self.named[item.draw].partition(",")[0].strip()]
+            words += ["--motion", self.named[item.draw % len(self.named)].partition(",")[0].strip()]
+        for override in self.base.overrides:
+            words += ["--set", override]
         # with a vertical file of a pair, or that a motion among pairs has none
         set_by_motion = {key: value for key, value in item.point.items() if key != MOTION_FILE}
-        for key, value in {**set_by_motion, **values}.items():
+        for key, value in {**set_by_motion, **values, **item.more}.items():
             words += ["--set", f"{key}={value if isinstance(value, str) else toml_value(value)}"]
         return command_line(*words)
 
-    def hash_of(self, values: Mapping[str, Any]) -> str:
-        """The hash of a container's case under the first motion, once its mesh and motions can be built.
+    def first_of(self, values: Mapping[str, Any]) -> Case:
+        """A container's case under the first motion, once its mesh and motions can be built.
 
         Raises:
             CaseError, MeshError, RecordError: what a run would be refused for.
@@ -126,7 +132,7 @@ class Hall(Design):
         build_container(first)
         for keys in self.keys if moved else self.keys[:1]:
             build_motions(self.make.case(Item(0, 0, keys, values)))
-        return case_hash(first)
+        return first
 
     def checked(self) -> "Hall":
         """The list with every row checked before any is computed; equal rows are one container.
@@ -141,8 +147,10 @@ class Hall(Design):
             values = repr(sorted(row.values.items()))
             if not row.reason and values not in seen:
                 try:
-                    digest = self.hash_of(row.values)
-                    containers.setdefault(digest, row)
+                    first = self.first_of(row.values)
+                    narrower = first.container.depth_m < first.container.width_m and not self.one_side
+                    digest = case_hash(first)
+                    containers.setdefault(digest, replace(row, across=first.turned if narrower else {}))
                     seen[values] = {"container": numbers.setdefault(digest, len(numbers))}
                 except ValueError as error:
                     seen[values] = {"reason": _in_words_of_list(str(error), self.base)}
@@ -222,6 +230,7 @@ def run_hall(
     *,
     motions: tuple[str, ...] = (),
     checks: Checks = "weakest",
+    one_side: bool = False,
     **options: Unpack[StudyOptions],
 ) -> HallResult:
     """Compute a hall into a folder; raises as `run_study`, and CaseError for bad input.
@@ -231,15 +240,18 @@ def run_hall(
         motions: files of motions in place of that of the case, "H" or "H,V" each; every container undergoes all.
         checks: which governing runs are repeated for `sure` and `margin`: those of the weakest tenth and of at least
             30 containers, all, or none.
+        one_side: of a container with a narrower side across, too, look at its width alone; else the worse governs.
     """
     with runner_of(**options) as runner:
         _say_time(file, base, max(len(motions), 1), runner, force=options.get("force", False))
         if motions and (named := [key for key in file.keys if key in (MOTION_FILE, VERTICAL_FILE)]):
             raise CaseError(f"{file.name}: column {named[0]!r} and --motion both name the motion; use one")
         pairs = read_motions(base, motions, runner) if motions else ()
-        hall = Hall(name=file.name, file=file, base=base, motions=pairs, named=motions).checked()
+        hall = Hall(
+            name=file.name, file=file, base=base, motions=pairs, named=motions, one_side=one_side
+        ).checked()
         options["workers_of"] = runner.workers_of
-        origin = base.origin_with({})
+        origin, both = base.origin_with({}), any(row.across for row in hall.containers.values())
         begun = HallResult(
             hall=hall.name,
             case=origin.place,
@@ -250,7 +262,8 @@ def run_hall(
             refused=sum(row.container is None for row in hall.rows),
             kept=tuple(column for column, meaning in file.meanings.items() if not meaning),
             columns=tuple(file.meanings),
-            asked=hash_of([[*hall.containers], [pair.case_hash for pair in pairs]]),
+            asked=hash_of([[*hall.containers], [pair.case_hash for pair in pairs], *["both sides"] * both]),
+            one_side=one_side or None,
             listed=hash_of([file.table.text, checks]),
             motions=motions,
             motion_covered=motions_left_out(base, pairs),
@@ -277,7 +290,7 @@ def run_hall(
 
 def _compute(hall: Hall, begun: HallResult, results: ResultFolder, runner: Runner) -> HallResult:
     """Compute what is missing, and write the list with its results."""
-    items, motions = hall.items, len(hall.keys)
+    items = hall.items
     logged = partial(LoggedRuns[Item], make=hall.make.case, model_of=hall.model_of)
     runs = logged(
         what="runs",
@@ -292,7 +305,7 @@ def _compute(hall: Hall, begun: HallResult, results: ResultFolder, runner: Runne
     if runs.missing(items):
         words = f"{begun.runs} of {len(items)} runs are computed"
         return replace(begun, status=INTERRUPTED, missing=words)
-    found = [_governing(hall, items[k : k + motions], runs) for k in range(0, len(items), motions)]
+    found = [_governing(hall, [*own], runs) for _, own in groupby(items, key=itemgetter(0))]
     weakest = sorted(found, key=lambda pair: weakness(pair[1]))
     able = [item for item, row in weakest if row["outcome"] and hall.model_of(item) != "full"]
     count = {"none": 0, "all": len(able)}.get(begun.checks, max(math.ceil(SHARE * len(found)), LEAST))
@@ -323,20 +336,27 @@ def _compute(hall: Hall, begun: HallResult, results: ResultFolder, runner: Runne
 def _governing(hall: Hall, items: Sequence[Item], runs: LoggedRuns[Item]) -> tuple[Item, Row]:
     """The run in which a container does worst, the first of equals; and the results of the container.
 
-    These are those of that run, the static rule under its peak, and what all its motions do.
+    These are those of that run, the static rule under its peak, and what all its motions do. Of two sides the worse.
     """
-    rows = [runs.row(item) for item in items]
-    ranks = [*map(weakness, rows)]
-    item = items[ranks.index(min(ranks))]
-    case = hall.make.case(item)
-    peaks = peaks_in_run(case, *build_motions(case))
-    ruling = static_checks_of(case, build_container(case), *peaks).ruling.to_result()
-    row = {name: rows[item.draw][name] for name in OF_A_RUN}
-    row |= {name: getattr(ruling, name) for name in STATIC}
+    rows, motions, sides = [*map(runs.row, items)], len(hall.keys), list[tuple[Item, Row]]()
+    for first in range(0, len(items), motions):
+        worst = min(range(first, first + motions), key=lambda place: weakness(rows[place]))
+        case = hall.make.case(items[worst])
+        peaks = peaks_in_run(case, *build_motions(case))
+        ruling = static_checks_of(case, build_container(case), *peaks).ruling.to_result()
+        row = {name: rows[worst][name] for name in OF_A_RUN} | {"side": "depth" if first else "width"}
+        sides.append((items[worst], row | {name: getattr(ruling, name) for name in STATIC}))
+    item, row = min(sides, key=lambda side: weakness(side[1]))
+    rows = [min(rows[motion::motions], key=weakness) for motion in range(motions)]
     if names := [pair.name for pair in hall.motions]:
         counts, slips = Counter(map(_ending_in, rows)), [run[SLIPPED] or 0.0 for run in rows]
         slid = slips.index(max(slips))
-        under = names[item.draw], *(counts[word] for word in WORST_FIRST[:3]), slips[slid], names[slid]
+        under = (
+            names[item.draw % motions],
+            *(counts[word] for word in WORST_FIRST[:3]),
+            slips[slid],
+            names[slid],
+        )
         row |= zip(OF_MOTIONS, under, strict=True)
     return item, row
 

@@ -32,7 +32,7 @@ STATIC = dict.fromkeys(("utilisation_sliding", "utilisation_overturning"), float
 OF_MOTIONS: Columns = {"motion": str}
 OF_MOTIONS |= dict.fromkeys(("motions_overturned", "motions_invalid", "motions_failed"), int)
 OF_MOTIONS |= {"largest_slip_m": float, "largest_slip_motion": str}
-COLUMNS = OF_A_RUN | CHECKED | STATIC | OF_MOTIONS | {"rank": int}
+COLUMNS = OF_A_RUN | CHECKED | STATIC | OF_MOTIONS | {"rank": int, "side": str}
 FIRST = ("status", "reason", "outcome", *[*CHECKED][:3], TURNED, SLIPPED, "tilt_rad")
 #: behind the columns of the list
 RESULT_COLUMNS = {name: COLUMNS[name] for name in (*FIRST, *STATIC, *OF_MOTIONS, *CHECKED, *COLUMNS)}
@@ -42,7 +42,7 @@ RESULT_COLUMNS = {name: COLUMNS[name] for name in (*FIRST, *STATIC, *OF_MOTIONS,
 class HallResult(StudyResult):
     """All results of a hall."""
 
-    written_where_given = StudyResult.written_where_given | {"allow_outside"}
+    written_where_given = StudyResult.written_where_given | {"allow_outside", "one_side"}
     hall: str
     case: str
     asked: str  #: hash of what is computed
@@ -57,6 +57,7 @@ class HallResult(StudyResult):
     runs: int = 0
     checks: str = "weakest"  #: which runs are repeated: weakest | all | none
     checked: int = 0  #: containers whose run was repeated
+    one_side: bool | None = None  #: the width alone lies in the plane of the motion
     #: of containers, by count
     outcomes: dict[str, int] = field(default_factory=dict)
     #: what the containers of each tag did: stood, overturned, invalid, failed, refused
@@ -109,6 +110,7 @@ class HallRow:
     given: Mapping[str, str]  #: its fields by column
     values: Mapping[str, Any]  #: of the dotted keys that it sets
     reason: str  #: why it cannot be used; empty: it can
+    across: Mapping[str, Any] = field(default_factory=dict)  #: keys that turn it; none: no narrower side
     container: int | None = None  #: its number among those that differ, once the row is checked
 
 
@@ -147,7 +149,7 @@ class HallFile:
         )
 
     def _row(self, number: int, line: TableLine, places: Mapping[str, int], named: Sequence[int]) -> HallRow:
-        given = {column: line.field(index) for column, index in places.items()}
+        given = {column: plain_text(line.field(index)) for column, index in places.items()}
         texts = dict(zip(self.meanings.values(), given.values(), strict=True))
         count, reason = number_in(texts.get(COUNT) or "1") or 0.0, ""
         if not (count.is_integer() and 1.0 <= count <= LARGEST_COUNT):

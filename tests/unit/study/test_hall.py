@@ -203,6 +203,40 @@ def test_under_several_motions_the_worst_governs_and_the_largest_slip_is_told(tm
         assert result.table[0]["max_slip_m"] == alone.max_slip_m
 
 
+SIDES = "name,width_m,depth_m\nacross,2.4,1.0\nalong,1.0,2.4\nsquare,1.0,1.0\n"
+
+
+def test_the_narrower_side_governs_and_a_square_one_costs_nothing(tmp_path, base, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    command = ["batch", str(listed(tmp_path, SIDES)), "--case", "base.toml", "--margins", "none", "-q"]
+    assert main(command) == 0 and main([*command, "--out", "one", "--one-side"]) == 0
+    both, one = (
+        json.loads((tmp_path / folder / "hall.json").read_text(encoding="utf-8"))
+        for folder in ("outputs/hall", "one")
+    )
+    assert (both["runs"], one["runs"]) == (4, 3)
+    assert [row["side"] for row in both["table"]] == ["depth", "width", "width"]
+    assert {row["side"] for row in one["table"]} == {"width"}
+    assert [row["outcome"] for row in both["table"]] == ["overturned"] * 3
+    assert one["table"][0]["outcome"] != "overturned"
+    across = both["table"][0]
+    turned = compute(load_case("base.toml", shlex.split(across["command"])[6::2])).verdict
+    assert turned.overturned_at_s == across["overturned_at_s"]
+    page = (tmp_path / "one" / "report.html").read_text(encoding="utf-8")
+    assert "--margins none --one-side" in page
+
+
+def test_keys_set_on_the_command_line_are_those_of_every_row(tmp_path, base, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    command = ["batch", str(listed(tmp_path, SIDES)), "--case", "base.toml", "--margins", "none", "-q"]
+    assert main([*command, "--set", "motion.peak_acceleration_m_s2=0.5"]) == 0
+    found = json.loads((tmp_path / "outputs/hall/hall.json").read_text(encoding="utf-8"))
+    assert found["outcomes"] == {"rest": 3}
+    for row in found["table"]:
+        values = shlex.split(row["command"])[6::2]
+        assert compute(load_case("base.toml", values), band=False, margin=False).verdict.outcome == "rest"
+
+
 @pytest.mark.parametrize(
     ("text", "encoding"),
     [
