@@ -97,8 +97,16 @@ class UserTable:
                     f"{self.name}, line {line.number}: column {filled[0] + 1} has values and no name; name it in line 1"
                 )
 
-    def require_one_decimal_mark(self, columns: Iterable[int]) -> None:
-        """Refuse decimal commas and points in these columns, which hold numbers."""
+    @cached_property
+    def separator(self) -> str:
+        """What separates the columns."""
+        line, _, below = self.text.partition("\n")
+        stated = stated_separator(line)
+        first = next(filter(str.strip, (below if stated else self.text).split("\n", 99)), "")
+        return stated or next((mark for mark in ";\t" if mark in first), ",")
+
+    def require_one_decimal_mark(self, columns: Iterable[int]) -> str:
+        """The decimal mark in these columns, which hold numbers; commas and points are refused."""
         numeric, comma, point = [*columns], 0, 0
         for line in self.lines:
             for field in map(line.field, numeric):
@@ -111,14 +119,13 @@ class UserTable:
                 f"{self.name}: decimal commas (line {comma}) and decimal points (line {point}) in one list; use one of "
                 "them, and no sign between thousands"
             )
+        return "," if comma else "."
 
     def _lines(self) -> Iterator[TableLine]:
         line, _, below = self.text.partition("\n")
         stated = stated_separator(line)
         table = below if stated else self.text
-        first = next(filter(str.strip, table.split("\n", 99)), "")
-        separator = stated or next((mark for mark in ";\t" if mark in first), ",")
-        reader = csv.reader(io.StringIO(table, newline=""), delimiter=separator)
+        reader = csv.reader(io.StringIO(table, newline=""), delimiter=self.separator)
         try:
             for fields in ([field.strip() for field in line] for line in reader):
                 if any(fields):

@@ -57,7 +57,6 @@ from fem.study.list_file import (
 )
 from fem.study.motions import FloorMotionPair, motions_left_out, read_motion_set
 from fem.study.runner import CHECKED, Row, Runner, check_chunk
-from fem.study.table import table_text
 
 TABLE, RUNS, CHECKS = "hall.csv", "runs.csv", "checks.csv"
 RUN_COLUMNS = {"container": int, "motion": int} | OF_A_RUN
@@ -383,7 +382,7 @@ def _written(
         table=table,
     )
     fields = ([*row["given"].values(), *(row[name] for name in RESULT_COLUMNS)] for row in table)
-    results.write(TABLE, table_text((*result.columns, *RESULT_COLUMNS), fields))
+    results.write(TABLE, hall.file.with_results(fields))
     results.remove("report.html")  # the command makes another
     return replace(result, answer=_answer_of(result))
 

@@ -6,7 +6,7 @@ What is wrong with the list as a whole is an error; what is wrong with a row is 
 import difflib
 import re
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache, cached_property
 from pathlib import Path
@@ -22,7 +22,7 @@ from fem.runtime.user_files import read_regular
 from fem.study.axes import NAMED, NO_AXIS, AxisError, field_of
 from fem.study.driver import StudyResult
 from fem.study.runner import CHECKED
-from fem.study.table import Columns, plain_text
+from fem.study.table import Columns, line_of, plain_text
 
 REFUSED = "refused"  #: status of a row that cannot be computed
 #: columns of a run, as in its log
@@ -84,6 +84,7 @@ class HallResult(StudyResult):
         return [row for row in self.table if row["status"] == REFUSED]
 
 
+DIGITS = 4  #: of a figure in the list; `hall.json` has all
 LARGEST_FILE = 512 * 2**20  #: [bytes]
 #: tables whose keys a column may name without the table
 PLAIN_TABLES = ("container", "contact", "support", "floor")
@@ -135,13 +136,31 @@ class HallFile:
         return [meaning for meaning in self.meanings.values() if meaning and meaning not in OWN]
 
     @cached_property
+    def decimal_mark(self) -> str:
+        """Of its numbers, a point or a comma; CaseError for both."""
+        numeric = [column for column, meaning in self.meanings.items() if meaning not in ("", NAME, TAG)]
+        return self.table.require_one_decimal_mark(self.header.index(column) for column in numeric)
+
+    def with_results(self, rows: Iterable[Iterable[Any]]) -> str:
+        """The list with its results behind it, in its own separator and decimal mark, figures with four digits."""
+        separator, comma = self.table.separator, self.decimal_mark == ","
+        if (
+            separator == "," and comma
+        ):  # quoted fields in the list, which most programs would not read as numbers
+            separator = ";"
+        lines = ([*self.meanings, *RESULT_COLUMNS], *rows)
+        stated = f"sep={separator}\n" * (separator not in ",;\t")
+        return stated + "".join(
+            f"{line_of(line, separator=separator, comma=comma, digits=DIGITS)}\n" for line in lines
+        )
+
+    @cached_property
     def rows(self) -> tuple[HallRow, ...]:
         """A row for each line; CaseError for none, values below no name, decimal commas and points."""
-        numeric = [column for column, meaning in self.meanings.items() if meaning not in ("", NAME, TAG)]
         if not self.table.lines:
             raise CaseError(f"{self.path}: the list has a header and no rows; give one row a container")
         self.table.require_names()
-        self.table.require_one_decimal_mark(self.header.index(column) for column in numeric)
+        _ = self.decimal_mark
         places = {column: self.header.index(column) for column in self.meanings}
         named = [k for k, name in enumerate(self.header) if name]
         return tuple(

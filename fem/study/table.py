@@ -32,11 +32,13 @@ READERS: dict[type, Callable[[str], Any]] = {
 PART = re.compile(r"(?P<blanks> *)(?P<marks>'*)(?P<text>[^;|]+)")
 
 
-def line_of(values: Iterable[Any]) -> str:
-    """Values as a line of a table, without its end."""
+def line_of(values: Iterable[Any], *, separator: str = ",", comma: bool = False, digits: int = 0) -> str:
+    """Values as a line of a table, without its end; numbers with a decimal comma, and with so many digits, if asked."""
     text = io.StringIO()
     # fields with what may end a line are quoted, and so are those with a semicolon
-    csv.writer(text, lineterminator=";").writerow([_text(value) for value in values])
+    csv.writer(text, delimiter=separator, lineterminator=";").writerow(
+        [_text(value, comma, digits) for value in values]
+    )
     return text.getvalue()[:-1]
 
 
@@ -103,16 +105,17 @@ def read_lines(path: Path, columns: Iterable[str]) -> list[str]:
     return lines[1:] if lines[:1] == [line_of(columns)] else []
 
 
-def _text(value: Any) -> str:
+def _text(value: Any, comma: bool = False, digits: int = 0) -> str:
     """One field: nothing for None, text on one line, spaces between several numbers."""
     if value is None:
         return ""
     if isinstance(value, tuple):
-        return " ".join(map(_text, value))
+        return " ".join(_text(one, comma, digits) for one in value)
     if isinstance(value, bool | np.bool_):
         return "true" if value else "false"
     if isinstance(value, float | np.floating):
-        return repr(float(value))
+        number = f"{value:.{digits}g}" if digits else repr(float(value))
+        return number.replace(".", ",") if comma else number
     return PART.sub(
         lambda part: part["blanks"] + "'" * _is_computed(part["text"]) + part["marks"] + part["text"],
         " ".join(str(value).split()),
@@ -124,6 +127,6 @@ def _is_computed(text: str) -> bool:
     if text[:1] not in ("=", "+", "-", "@"):
         return False
     try:
-        return not [float(word) for word in text.split()]
+        return not [float(word.replace(",", ".")) for word in text.split()]
     except ValueError:
         return True

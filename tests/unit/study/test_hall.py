@@ -83,7 +83,7 @@ def test_a_row_is_the_run_by_itself_bit_for_bit(tmp_path, base, monkeypatch, cap
         for name in SCALARS:
             assert row[name] == getattr(alone, name), name
             if isinstance(row[name], float):
-                assert text[name] == repr(row[name])
+                assert text[name] == f"{row[name]:.4g}"
         assert row["sure"] == alone.sure and row["decided_by"] == (" ".join(alone.decided_by) or None)
         assert row["margin"] == alone.margin.factor and row["margin_low"] == alone.margin.low
         assert row["margin_high"] == alone.margin.high
@@ -201,6 +201,26 @@ def test_under_several_motions_the_worst_governs_and_the_largest_slip_is_told(tm
         )
         alone = compute(load_case("base.toml", words[8::2], motion=words[6]), band=False).verdict
         assert result.table[0]["max_slip_m"] == alone.max_slip_m
+
+
+@pytest.mark.parametrize(("first", "mark"), [("", ";"), ("", "\t"), ("sep=|\n", "|")])
+def test_results_stand_in_the_separator_and_the_decimal_mark_of_the_list(tmp_path, base, first, mark):
+    rows = [("name", "width_m", "note"), ("=A;1", "0,9", "-0,5"), ("B", "0,6", "+1 x")]
+    text = io.StringIO()
+    csv.writer(text, delimiter=mark, lineterminator="\n").writerows(rows)
+    path = listed(tmp_path, first + text.getvalue())
+    found = run_hall(read_hall(path), load_case(base), tmp_path / "out", checks="none").table
+    written = (tmp_path / "out" / "hall.csv").read_text(encoding="utf-8")
+    assert written.startswith(first)
+    kept = [*csv.DictReader(io.StringIO(written.removeprefix(first)), delimiter=mark)]
+    assert [(row["name"], row["width_m"], row["note"]) for row in kept] == [
+        ("'=A;1", "0,9", "-0,5"),  # a formula is marked, a number with a decimal comma is none
+        ("B", "0,6", "'+1 x"),
+    ]
+    for row, own in zip(kept, found, strict=True):
+        assert row["utilisation_overturning"] == f"{own['utilisation_overturning']:.4g}".replace(".", ",")
+    again = read_hall(tmp_path / "out" / "hall.csv")
+    assert [row.name for row in again.rows] == ["=A;1", "B"]
 
 
 SIDES = "name,width_m,depth_m\nacross,2.4,1.0\nalong,1.0,2.4\nsquare,1.0,1.0\n"
