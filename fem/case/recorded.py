@@ -6,12 +6,13 @@ from typing import Literal
 import numpy as np
 
 from fem.case.case import Case
-from fem.case.plausible import doubts
+from fem.case.plausible import USUAL_PEAKS, doubts
 from fem.case.tables.motion_tables import FloorMotionTable
 from fem.case.validation import CaseError
 from fem.records.files import read_record
 from fem.records.processing import Processing, motion_of, processed, stated_baseline, trimmed
 from fem.records.record import Component, Record, RecordError, cut_together
+from fem.records.units import STANDARD_GRAVITY
 
 MotionKey = Literal["motion", "vertical"]  #: the table of a motion: along x, or vertical
 TABLES: tuple[MotionKey, ...] = ("motion", "vertical")
@@ -114,6 +115,9 @@ def _recorded(case: Case, table: MotionKey) -> RecordedMotion:
     if baseline:
         notes.append(f"{table}.baseline: {baseline}")
     confirmed = keys.scale_to_m_s2 is not None
+    if confirmed and (peak := abs(keys.scale_to_m_s2 or 0.0)) < USUAL_PEAKS[0] <= peak * STANDARD_GRAVITY:
+        in_g = f"{peak:.3g} m/s2 = {peak / STANDARD_GRAVITY:.2g} g"
+        notes.append(f"{table}.scale_to_m_s2: {in_g}; is it in g, {peak * STANDARD_GRAVITY:.3g} m/s2?")
     of_motion = doubts(record.name, component, made, scale=scale, confirmed=confirmed)
     notes += [f"{table}.file: {note}" for note in of_motion]
     return RecordedMotion(record=record, component=component, motion=made, notes=tuple(notes))

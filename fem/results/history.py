@@ -83,6 +83,12 @@ class History:
             ) from None
         return pandas.DataFrame(dict(self) | {columns.MODE: list(self.modes)})
 
+    def __array__(self, *_: Any, **__: Any) -> Any:
+        """Refused: pandas and numpy would take the names of the columns for the samples."""
+        raise TypeError(
+            "a history is a table: take history.to_dataframe(), dict(history), history.values or one column"
+        )
+
     def __contains__(self, column: str) -> bool:
         return column in self.numbers
 

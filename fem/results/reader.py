@@ -7,6 +7,7 @@ time. An unfinished run opens as well, with the files it has. SI units; x to the
 import importlib
 from dataclasses import dataclass
 from functools import cached_property
+from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -40,6 +41,10 @@ class OpenedRun:
         """One line, for a notebook."""
         suffix = f", {self.verdict.outcome}" if self.verdict.outcome else ""
         return f"<run {self.name!r} in {str(self.folder)!r}: {self.status}{suffix}>"
+
+    def _repr_html_(self) -> str:
+        """That line, and the card of the verdict."""
+        return f"<p>{escape(repr(self))}</p><p>{self.verdict._repr_html_()}</p>"
 
     @property
     def folder(self) -> Path:

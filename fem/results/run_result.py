@@ -6,6 +6,7 @@ older version did not write, is None. Rotation > 0 toward +x, slip > 0 moves the
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from html import escape
 from typing import Any
 
 from fem.results.figures import WHERE_GIVEN, BoxFigures, Figures, LinkFigures, Place, RunFigures, keys_beside
@@ -291,6 +292,10 @@ class Verdict(RunFigures):
         """The block; of a loose stack with the box that fell, or null."""
         block = super().to_json()
         return block if self.boxes is None else block | {"fell_box": self.fell_box}
+
+    def _repr_html_(self) -> str:
+        """The card, for a notebook."""
+        return "<br>".join(map(escape, self.card)) or escape(repr(self))
 
 
 @dataclass(frozen=True, kw_only=True)

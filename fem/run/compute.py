@@ -2,6 +2,7 @@
 
 import sys
 from dataclasses import dataclass, replace
+from html import escape
 from typing import TYPE_CHECKING, Any
 
 from fem.case.case import Case, case_hash
@@ -45,6 +46,10 @@ class Run:
     def __repr__(self) -> str:
         """One line, for a notebook."""
         return f"<run {self.case.name!r}: {self.status}, {self.verdict.outcome}>"
+
+    def _repr_html_(self) -> str:
+        """That line, and the card of the verdict."""
+        return f"<p>{escape(repr(self))}</p><p>{self.verdict._repr_html_()}</p>"
 
     @property
     def status(self) -> str:

@@ -100,7 +100,7 @@ def compute(folder: Path | None) -> Experiment:
         source=series.source,
         licence=series.licence,
         tests=int(targets.sum()),
-        fitted=f"{DESCRIBED.fitted}, on {'the tests set apart' if series.set_apart else 'all other records'}; on "
+        fitted=f"{DESCRIBED.fitted}, on {'the tests marked fit' if series.set_apart else 'all other records'}; on "
         f"all that may be used: {'; '.join(fits)}",
         findings=tuple(findings),
         others=_others(others),

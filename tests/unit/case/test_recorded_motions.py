@@ -67,6 +67,13 @@ def test_the_vertical_component_follows_what_is_common_to_both():
     assert np.abs(both.values).max() == pytest.approx(1.5)
 
 
+@pytest.mark.parametrize(("peak", "noted"), [("0.32", True), ("0.04", False), ("0.6", False), ("3.2", False)])
+def test_a_peak_that_looks_like_g_is_noted(peak, noted):
+    case = load_case("case.toml", (f"motion.scale_to_m_s2={peak}",), motion="pair.csv")
+    words = "motion.scale_to_m_s2: 0.32 m/s2 = 0.033 g; is it in g, 3.14 m/s2?"
+    assert (words in recorded_motion(case, "motion").notes) is noted
+
+
 @pytest.mark.parametrize(
     ("motion", "changes", "words"),
     [

@@ -231,6 +231,11 @@ class TestInPython:
         monkeypatch.setitem(sys.modules, "pandas", SimpleNamespace(DataFrame=dict))
         assert list(self.HISTORY.to_dataframe()) == [*self.HISTORY.numbers, "mode"]
 
+    def test_it_is_not_taken_for_an_array_of_names(self):
+        # pandas.DataFrame(history) begins with this conversion
+        with pytest.raises(TypeError, match=r"take history\.to_dataframe\(\)"):
+            np.asarray(self.HISTORY)
+
     def test_without_pandas_the_way_out_is_named(self, monkeypatch):
         monkeypatch.setitem(sys.modules, "pandas", None)
         with pytest.raises(ImportError, match="python -m pip install pandas; or take"):

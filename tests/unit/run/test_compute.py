@@ -8,6 +8,7 @@ import pytest
 import fem
 from fem.case.case import CaseError
 from fem.results.fields import FieldError
+from fem.results.run_result import Verdict
 from fem.run.run import RunOptions, run_case
 
 ROCKING = ("solver.model=rigid", "solver.duration_s=1", "output.fields_s=0.25", "output.figures=false")
@@ -56,6 +57,8 @@ def test_a_run_in_memory_is_that_of_the_command(tmp_path, monkeypatch, name, ove
 def test_what_a_run_in_memory_offers():
     run = fem.compute(fem.load_case("free_rocking", ROCKING), band=False)
     assert repr(run) == "<run 'free_rocking': completed, rock>"
+    shown = Verdict(card=("Stands at < 2 & more.", "Margin."))._repr_html_()
+    assert shown == "Stands at &lt; 2 &amp; more.<br>Margin." and run.verdict.card[0] in run._repr_html_()
     assert run.verdict["outcome"] == run.verdict.outcome == run.result["verdict"]["outcome"] == "rock"
     assert run.history["rotation_rad"].dtype == np.float64
     with pytest.raises(KeyError, match="no key 'outcomes'; known: outcome, max_rotation_rad"):
