@@ -30,6 +30,15 @@ TITLES = {
     "validate": ("Validation", "Validation"),
     "study": ("Study", "The paper, claim by claim"),
 }
+#: conclusions of a study, in the order in which they are told
+FIRST = (
+    "refuted",
+    "confirmed within stated bounds",
+    "not computed",
+    "misprint",
+    "confirmed",
+    "remark",
+)
 Row = Mapping[str, Any]  #: of a document
 Document = Mapping[str, Any]
 
@@ -183,18 +192,28 @@ def missed_first(experiments: Sequence[Row]) -> list[Row]:
 
 
 def study_lines(document: Document) -> list[str]:
-    """One line a claim, for a terminal, and the counts."""
+    """One line a claim, for a terminal, by conclusion, those refuted and those bounded first; and the counts."""
+    entries = [entry for group in document["groups"] for entry in group["statements"]]
     groups = [
         (
-            group["title"],
-            [f"  {entry['name']:<26} {entry['verdict']:<31} {rule(entry)}" for entry in group["statements"]],
+            verdict,
+            [
+                f"  {entry['name']:<30} {bounds_or_rule(entry)}"
+                for entry in entries
+                if entry["verdict"] == verdict
+            ],
         )
-        for group in document["groups"]
+        for verdict in sorted({entry["verdict"] for entry in entries}, key=FIRST.index)
     ]
     counts = ", ".join(
         f"{count} {plural(name, count)}" for name, count in document["counts"].items() if count
     )
     return _table_lines(groups, f"{document['statements']} claims: {counts}")
+
+
+def bounds_or_rule(entry: Row) -> str:
+    """The bounds of a claim that holds within them alone; else how many comparisons hold."""
+    return str(entry["bounds"]) if entry["verdict"] == FIRST[1] else rule(entry)
 
 
 def rule(entry: Row) -> str:
