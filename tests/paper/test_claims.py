@@ -2,10 +2,12 @@
 
 import json
 import math
+from collections import Counter
 from dataclasses import replace
 
 import pytest
 from evidence.findings import at_most
+from evidence.pages import study_lines
 from paper import maps
 from paper.cases import STACK, PaperCase
 from paper.claims import Claim, ClaimFigure, ClaimResult, Conclusion, conclude
@@ -216,7 +218,7 @@ def test_a_damaged_study_is_refused(tmp_path, content):
 
 def test_names_of_claims_are_used_once():
     names = [claim.name for claim in all_claims()]
-    assert len(set(names)) == len(names) == 41
+    assert len(set(names)) == len(names) == 42
 
 
 def test_the_command_writes_page_and_document(tmp_path, capsys):
@@ -224,17 +226,29 @@ def test_the_command_writes_page_and_document(tmp_path, capsys):
         "numbers-one-box": "confirmed within stated bounds",
         "half-width": "misprint",
         "centre-or-base": "remark",
+        "four-models": "remark",
     }
     only = [word for name in names for word in ("--only", name)]
     assert main(["study", "seed", *only, "--json", "-q", "--out", str(tmp_path / "s")]) == 0
     document = json.loads(capsys.readouterr().out)
     verdicts = {one["name"]: one["verdict"] for group in document["groups"] for one in group["statements"]}
     assert verdicts == names
-    assert {name: count for name, count in document["counts"].items() if count} == dict.fromkeys(
-        names.values(), 1
+    assert {name: count for name, count in document["counts"].items() if count} == Counter(names.values())
+    first, last = (
+        study_lines(document).index(verdict) for verdict in ("confirmed within stated bounds", "remark")
     )
+    assert first < last and study_lines(document)[first + 1].endswith("g = 10 m/s²")
+    (models,) = next(
+        one["tables"]
+        for group in document["groups"]
+        for one in group["statements"]
+        if one["name"] == "four-models"
+    )
+    assert [row[1] for row in models["rows"]] == ["rock", "rock", "slide-rock", "slide-rock"]
+    assert models["rows"][0][2] == pytest.approx(models["rows"][1][2], rel=0.01)
     page = (tmp_path / "s" / "study.html").read_text()
-    assert page.count('<div class="claim">') == 3
+    assert page.count('<div class="claim">') == 4
+    assert page.index("What does not hold as it is written") < page.index("How a conclusion is reached")
     assert "comparisons of half-width" in page and "comparisons of centre-or-base" not in page
     assert "src=" not in page  # nothing to load
     assert page.count("<script") == 1 and 'id="save"' in page  # what keeps author and checker in a copy
