@@ -125,6 +125,7 @@ def four_models(experiments: Experiments) -> Evidence:
         verdict = fem.compute(case, band=False, margin=True).verdict
         gripping = case.replace({"contact.mu_kinetic": case.contact.mu_static})
         equal_friction.append(fem.compute(gripping, band=False, margin=False).verdict.rotation_ratio)
+        assert verdict.margin is not None
         least = verdict.margin.factor or f"not up to {verdict.margin.largest_tried:g}"
         row = verdict.outcome, verdict.rotation_ratio, verdict.max_slip_m, least, verdict.flight_share
         rows.append([name, *row])
