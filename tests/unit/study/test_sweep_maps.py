@@ -169,7 +169,7 @@ def test_a_sweep_with_thresholds_begins_with_the_boundary_of_the_safe_region_and
     choice = MapChoice(x=aspect.key, y=MU.key)
     assert draw_maps(table, tmp_path / "maps", choice)[0] == "maps/boundary.svg"
     figure = safe_boundary(table, sweep_answer(table, tmp_path), choice)
-    assert [axes.get_title() for axes in figure.axes] == ["model rigid", "model reduced"]
+    assert [axes.get_title(loc="left") for axes in figure.axes] == ["model rigid", "model reduced"]
     for axes in figure.axes:
         first, paper = axes.lines
         assert first.get_xydata().tolist() == [[6.0, 0.2], [6.0, 0.3], [4.0, 0.4]]
