@@ -68,7 +68,9 @@ def commanded(asked, capsys):
     if code == BAD_INPUT:
         assert (printed.out, sorted(Path().rglob("*"))) == ("", before)
     said = printed.out + printed.err + (f"[{code}]" if code else "")
-    pages = [Path(line) for line in printed.out.splitlines() if line.endswith(".html") and Path(line).is_file()]
+    pages = [
+        Path(line) for line in printed.out.splitlines() if line.endswith(".html") and Path(line).is_file()
+    ]
     if asked.startswith("init ") and code == 0:
         said += "".join(
             path.read_text(encoding="utf-8") for path in Path().glob("*.toml") if path not in before
