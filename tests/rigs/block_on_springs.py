@@ -108,7 +108,8 @@ def largest_corner_force(
                 anchors[corner] = None
                 continue
             at, speed = x + arm_x, vx + spin * arm_z
-            anchor = at if anchors[corner] is None else anchors[corner]
+            held = anchors[corner]
+            anchor = at if held is None else held
             hold = -stiffness * (at - anchor + relaxation_time * speed)
             if abs(hold) > friction * press:
                 hold = math.copysign(friction * press, hold)
