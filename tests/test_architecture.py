@@ -139,7 +139,7 @@ BUDGET = {
     "site": ("fem/site", 4_824, 136),
     "cli": ("fem/cli fem/__init__.py fem/__main__.py", 2_079, 49),
     "product": ("mesh contact fem", 57_123, 1_720),
-    "tests": ("tests", 45_635, 2_667),
+    "tests": ("tests", 45_646, 2_667),
 }
 
 
