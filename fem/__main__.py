@@ -22,7 +22,7 @@ from cyclopts import App, CycloptsError, Group, MissingArgumentError, UnusedCliT
 
 from fem.runtime.late_modules import load_late
 from fem.runtime.left import left_words
-from fem.runtime.memory import is_limited, memory_of, shortage
+from fem.runtime.memory import limit, memory_of, shortage
 from fem.runtime.signals import INTERRUPTED, NO_ANSWER, interruptions, raise_on_signal
 from fem.runtime.terminal import say
 from fem.runtime.threads import use_one_blas_thread
@@ -221,7 +221,7 @@ def program() -> NoReturn:
     Before 3.12, Python ends itself by SIGINT instead where an interrupt has once come through `exec` of a text, as in
     an import that makes a named tuple, however it was caught.
     """
-    raise_on_signal(watched=not is_limited())  # a thread takes 70 MB of address space
+    raise_on_signal(watched=limit() is None)  # a thread takes 70 MB of address space
     load_late()
     _take_any_stream()
     # A pass of the cyclic collector for every 700 objects would be a fifth of a short run, most of it over the

@@ -103,7 +103,7 @@ def rotation_of(run: RunState, j: int) -> float:
 
 @inlined
 def has_footing(run: RunState, j: int) -> bool:
-    """Whether what is on a joint can rest there by itself: beyond its slenderness angle it leans, or hangs on a tie.
+    """Whether what stands on a joint rests by itself: beyond its slenderness angle it leans or hangs on a tie.
 
     On a box its mass centre must be between the ends of the face below.
     """

@@ -5,9 +5,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-from fem.cli.console import STUDY, AllowBaseline, AllowOutside, StudyFlags, flag, print_result, print_to_pdf
+from fem.cli.console import STUDY, AllowBaseline, AllowOutside, StudyFlags, flag, print_result, print_short
 from fem.results.kinds import SITE
-from fem.runtime.own_files import write_atomically
 from fem.runtime.progress import ScreenReporter
 
 if TYPE_CHECKING:
@@ -57,10 +56,8 @@ def assess(
             request, folder, allow_outside=allow_outside or bool(motion), quick=quick, **options
         )
     if pdf and result.status == "completed":
-        page = importlib.import_module("fem.site.page").site_report(folder, result, brief=True)
-        short = folder / "report-short.html"
-        write_atomically(short, page)
-        ScreenReporter(quiet=flags.quiet).message(print_to_pdf(short))
+        report = importlib.import_module("fem.site.page").site_report
+        ScreenReporter(quiet=flags.quiet).message(print_short(folder, report))
     return print_result(result, SITE, folder, page_of(result, folder), as_json=flags.as_json)
 
 

@@ -61,7 +61,7 @@ def check(
 
 
 def preview_of(case: Case) -> Preview:
-    """What is known of a run of the case; a CaseError where a run would be refused before it steps.
+    """What is known of a run of the case; a CaseError where a run of up to `MOST_NODES` nodes would be refused.
 
     A motion is evaluated, and the container settled on its floor, only where it must be: compiled functions take long
     to load.

@@ -36,7 +36,7 @@ def run(
         bool | None,
         Parameter(
             show_default=False,
-            help="Repeat it over what is not known; default: all but a plain rest and the full model.",
+            help="Repeat it with its unknown inputs varied; default: all but a plain rest and the full model.",
         ),
     ] = None,
     margin: Annotated[

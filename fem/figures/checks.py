@@ -99,11 +99,11 @@ def band_figure(run: RunData) -> Figure | None:
     for axes in (above, below):
         axes.set_xlim(-0.6, len(groups) - 0.4)
     style.legend_above(above, columns=4)
-    sure = verdict.sure or ("unsure" if band.unsure else "the same outcome throughout")
+    sure = verdict.sure_in_words or ("unsure" if band.unsure else "the same outcome throughout")
     low, high = band[TURNED] or (0.0, 0.0)
     ratios = " to ".join(map(RATIO.text, (low, high)))
     statement = f"rotation ratio {ratios}; the large mark is the run itself"
-    style.head(figure, f"Band over what is not known, {sure}: {' or '.join(band.outcomes)}", statement)
+    style.head(figure, f"Variations of the inputs, {sure}: {' or '.join(band.outcomes)}", statement)
     return figure
 
 

@@ -101,10 +101,8 @@ def steel_capacity(case: Case) -> float | None:
         return 2.0 * post
     if not is_steel_shell(case) or wall is None or case.support.kind != "corners":
         return None
-    if (
-        case.container.is_round and case.floor.corner_patch_m is None
-    ):  # nobody knows how much of its edge bears
-        return None
+    if case.container.is_round and case.floor.corner_patch_m is None:
+        return None  # how much of a round edge bears is not known
     return YIELD_STRENGTH * wall * corner_patch(case)[1]
 
 

@@ -46,7 +46,7 @@ from fem.run.summary import (
     result_rows,
     to_compare,
 )
-from fem.run.sureness import REGIME_UNSURE, SURE, numerical
+from fem.run.sureness import SURE, numerical
 from fem.runtime.user_files import read_text
 from fem.solid.modes import FEW, elastic_mode_table
 
@@ -176,10 +176,7 @@ def _sure(verdict: Verdict) -> tuple[str, str]:
     if (band := verdict.band) is None:
         return (verdict.sure, "by the static rule alone") if verdict.sure else ("not computed", "")
     named = ", ".join(WORDS.get(key, key) for key in verdict.decided_by)
-    known = verdict.sure or ("unsure" if band.unsure else "same outcome")
-    if known == REGIME_UNSURE:
-        stands = "overturns" if verdict.outcome == Outcome.OVERTURNED else "stands"
-        known = f"sure that it {stands}, not how it moves"
+    known = verdict.sure_in_words or ("unsure" if band.unsure else "same outcome")
     if verdict.sure == SURE and all(map(numerical, band.members[1:])):
         known = "no input varied"
     return known, f"{', '.join(band.outcomes)}{f'; decided by {named}' if named else ''}"

@@ -11,6 +11,7 @@ from typing import Any
 
 from fem.results.figures import WHERE_GIVEN, BoxFigures, Figures, LinkFigures, Place, RunFigures, keys_beside
 from fem.results.json_block import JsonBlock
+from fem.results.outcome import Outcome
 from fem.runtime.units import Reach
 
 
@@ -296,6 +297,13 @@ class Verdict(RunFigures):
     def _repr_html_(self) -> str:
         """The card, for a notebook."""
         return "<br>".join(map(escape, self.card)) or escape(repr(self))
+
+    @property
+    def sure_in_words(self) -> str:
+        """How sure the outcome is, as people read it; empty where nothing was tried."""
+        if self.sure != "regime unsure":
+            return self.sure or ""
+        return f"sure that it {'overturns' if self.outcome == Outcome.OVERTURNED else 'stands'}, not how it moves"
 
 
 @dataclass(frozen=True, kw_only=True)

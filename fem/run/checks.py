@@ -81,7 +81,7 @@ def add_checks(
             verdict = replace(verdict, analytic=block.analytic_block(model, end))
             result = replace(result, verdict=verdict)
     if lacks_band(result, model.case, wanted) and not stop():
-        reporter.message("band: repeating the run over what is not known of its inputs")
+        reporter.message("band: repeating the run with its unknown inputs varied")
         judged = with_band(model, result, stop=stop, kept_in=members, inner_forces=wanted.inner_forces)
         if judged is not None:
             result = replace(result, verdict=judged)

@@ -11,12 +11,15 @@ if sys.platform != "win32":
 #: first step; with less, a module fails to load, or OpenBLAS asks again and again for a buffer.
 COMPUTING, READING = 700, 250
 OF_A_CORE = 150  #: of each thread that computes: a report takes 946 on two cores, and asks for ever with 800
-RIGID, FIGURES = 500, 120  #: of one rigid run, which takes 450, and of its figures
+RIGID, FIGURES = 500, 120  #: of one rigid run, and of its figures
 
 
-def is_limited() -> bool:
-    """Whether a limit is set."""
-    return sys.platform != "win32" and resource.getrlimit(resource.RLIMIT_AS)[0] != resource.RLIM_INFINITY
+def limit() -> int | None:
+    """The address space that the process may have [bytes]; None without a limit."""
+    if sys.platform == "win32":
+        return None
+    most, _ = resource.getrlimit(resource.RLIMIT_AS)
+    return None if most == resource.RLIM_INFINITY else most
 
 
 def memory_of(computing: bool, jobs: int | None = None) -> int:
@@ -31,9 +34,7 @@ def memory_of_run(*, rigid: bool, alone: bool, figures: bool) -> int:
 
 def shortage(needed: int) -> str:
     """What the limit on memory gives and is needed [MB], in words; empty where it is enough or none is set."""
-    if sys.platform == "win32":
+    most = limit()
+    if most is None or most >= needed << 20:
         return ""
-    limit, _ = resource.getrlimit(resource.RLIMIT_AS)
-    if limit == resource.RLIM_INFINITY or limit >= needed << 20:
-        return ""
-    return f"memory is limited to {limit >> 20} MB, and this needs {needed} MB or more; raise the limit (ulimit -v)"
+    return f"memory is limited to {most >> 20} MB, and this needs {needed} MB or more; raise the limit (ulimit -v)"

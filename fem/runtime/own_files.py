@@ -16,6 +16,8 @@ from io import FileIO
 from pathlib import Path, PurePath
 from typing import BinaryIO
 
+from fem.runtime.user_files import read_own
+
 #: flags of what is opened for writing; no link at the end of a path is followed
 FLAGS = sum(getattr(os, name, 0) for name in ("O_NOFOLLOW", "O_CLOEXEC", "O_BINARY"))
 PART = re.compile(r"\.part-[0-9a-f]{16}")  #: name of a half-written file
@@ -75,9 +77,8 @@ def write_atomically(path: Path, content: str | bytes, *, to_disk: bool = True) 
 
 
 def copy_file(source: Path, target: Path) -> None:
-    """Replace a file by a copy of another one; errors as `replacing`."""
-    with open(source, "rb") as given, replacing(target) as file:
-        shutil.copyfileobj(given, file)
+    """Replace a file by a copy of a regular one; errors as `read_own` and `replacing`."""
+    write_atomically(target, read_own(source))
 
 
 def make_folder(folder: Path) -> None:

@@ -57,7 +57,7 @@ class HallResult(StudyResult):
     runs: int = 0
     checks: str = "weakest"  #: which runs are repeated: weakest | all | none
     checked: int = 0  #: containers whose run was repeated
-    one_side: bool | None = None  #: the width alone lies in the plane of the motion
+    one_side: bool | None = None  #: whether only the width was looked at
     #: of containers, by count
     outcomes: dict[str, int] = field(default_factory=dict)
     #: what the containers of each tag did: stood, overturned, invalid, failed, refused

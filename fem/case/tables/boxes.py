@@ -40,7 +40,7 @@ class Box:
 
 def plan_share(container: Any) -> float:
     """Area of the plan of a container over its width times its depth [-]."""
-    return 0.25 * math.pi if container.shape == "cylinder" else 1.0
+    return 0.25 * math.pi if container.is_round else 1.0
 
 
 def mass_of_box(container: Any, gravity: float, volume: float) -> float | None:
@@ -224,9 +224,9 @@ def _offset(case: Any, box: Box) -> str:
 def _not_a_cylinder(case: Any) -> str:
     """What a cylinder does not have; empty where nothing speaks against one."""
     container, support = case.container, case.support
-    if container.shape != "cylinder":
+    if not container.is_round:
         return ""
-    boxes = boxes_of(container, case.gravity_m_s2)
+    boxes = case.stack
     slab = case.floor.kind == "slab" and case.floor.corner_patch_m is None
     faults = (
         (
