@@ -133,13 +133,13 @@ BUDGET = {
     "seismic": ("fem/seismic", 2_315, 62),
     "solid": ("fem/solid", 1_873, 64),
     "model": ("fem/model", 4_031, 125),
-    "run": ("fem/run", 5_760, 195),
+    "run": ("fem/run", 5_758, 195),
     "pages": ("fem/html fem/figures fem/render fem/report", 4_981, 122),
-    "study": ("fem/study fem/response", 8_114, 234),
+    "study": ("fem/study fem/response", 8_113, 234),
     "site": ("fem/site", 4_824, 136),
     "cli": ("fem/cli fem/__init__.py fem/__main__.py", 2_076, 49),
-    "product": ("mesh contact fem", 57_125, 1_720),
-    "tests": ("tests", 45_646, 2_667),
+    "product": ("mesh contact fem", 57_122, 1_720),
+    "tests": ("tests", 45_645, 2_667),
 }
 
 

@@ -23,10 +23,8 @@ from fem.run.verdict import GAIN_LIMIT, LOSS_LIMIT, LOSS_SHARE_LIMIT
 ROCKING_RATIO = 0.01
 NEAR = 0.5  #: share of a limit from which there is a warning
 REJECTED_SHARE = 0.05
-SLIPPED, SCATTER = (
-    1e-3,
-    0.2,
-)  #: slip over the width, and its change over the larger one, from which it is said
+#: slip over the width, and its change over the larger one, from which a scatter is said
+SLIPS, SCATTER = 1e-3, 0.2
 FLIGHT = 0.05  #: share of the rocking in the air from which it is said
 ROCKS = (Outcome.ROCK, Outcome.SLIDE_ROCK)
 #: largest von Mises stress over Young's modulus up to which `reduced` and `full` agree within 5 %: blocks of one to ten
@@ -111,7 +109,7 @@ def slip_follows_the_steps(result: run_result.RunResult, case: Case) -> str | No
     if own is None or finer is None or band.max_slip_m is None:
         return None
     low, high = band.max_slip_m
-    small = max(own, finer) < SLIPPED * case.stack[0].width or abs(own - finer) < SCATTER * max(own, finer)
+    small = max(own, finer) < SLIPS * case.stack[0].width or abs(own - finer) < SCATTER * max(own, finer)
     if small or not low <= finer <= high:  # it fell, or destroyed a corner
         return None
     return (

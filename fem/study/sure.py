@@ -71,9 +71,8 @@ class Copy(NamedTuple):
 
     name: str  #: of the change, the same in all cells: its keys, and which one of these it is
     change: InputChange
-    values: Mapping[
-        str, Any
-    ]  #: that make its case of that of the cell: the change, and what a run of the cell chose
+    #: that make its case of that of the cell: the change, and what a run of the cell chose
+    values: Mapping[str, Any]
     width: float  #: of the container [m]
 
     @property

@@ -297,9 +297,8 @@ class TestInit:
         assert [line for line in shipped if line in kept] == kept  # all else as it is
         mine, first = load_case(path), load_case(name)
         assert mine.floor.corner_patch_m is None and mine.static is None
-        if (
-            first.floor.is_slab and mine.support.casting_m is not None
-        ):  # a recipe leaves those of the paper out
+        # a recipe leaves the castings of the paper out
+        if first.floor.is_slab and mine.support.casting_m is not None:
             assert corner_patch(mine) == corner_patch(first)
 
     def test_without_a_name_writes_a_file_with_every_key_that_can_be_run(self, tmp_path):
