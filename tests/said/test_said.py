@@ -36,7 +36,7 @@ FLEETING = (
     (r"(computing time +|computed \| |computed in \| ).*(\n {20,}.*)?", r"\1TIME"),
     (r"(versions|hash|program) \| .*", r"\1 |"),
     (r"\n?(t = [\d.]+ of [\d.]+ s, .* left, |compiling the stepping kernels, ).*", ""),
-    (r"unanchored \d+\.\d+\.\d+( on [\d-]+)?", "unanchored"),
+    (r"unanchored \d[\w.+]*( on [\d-]+)?", "unanchored"),
     (r"\b[0-9a-f]{64}\b", "HASH"),
     (r"room for [\d.]+ .B", "room for SOME"),
     (r"roughly\s+[\d.]+\s+(s|min|h)(\s+on\s+\d+\s+cores)?", "roughly SOME"),
