@@ -106,7 +106,7 @@ def test_the_page_says_what_is_held_and_what_decides(folder):
     page = sweep_report(folder)
     assert "with mu_k = mu_s/2 falling at once" in page
     assert (
-        "<strong>regime unsure</strong>, 1: no copy" in page and "<strong>unsure</strong>, 2: whether" in page
+        "(<code>regime unsure</code>), 1: no copy" in page and "<strong>unsure</strong>, 2: whether" in page
     )
     assert "Unsure cells are decided by kinetic friction (1), start (1)." in page
     assert "Left out: pairs." in page
