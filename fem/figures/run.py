@@ -50,7 +50,7 @@ def figures_of(run: RunData) -> dict[str, Figure]:
     Raises:
         FolderError: the history is missing or damaged.
     """
-    if len(run.history) < 2:
+    if len(run.history.modes) < 2:
         return {}
     with style.house_style():
         drawn = {name: draw(run) for name, draw in FIGURES.items()}
@@ -65,7 +65,7 @@ def figure_of(run: RunData, name: str) -> Figure:
         FolderError: the history is missing or damaged.
     """
     with style.house_style():
-        figure = FIGURES[name](run) if name in FIGURES and len(run.history) > 1 else None
+        figure = FIGURES[name](run) if name in FIGURES and len(run.history.modes) > 1 else None
     if figure is None:
         raise ValueError(f"no figure {name!r} of this run; there are {', '.join(figures_of(run)) or 'none'}")
     return figure

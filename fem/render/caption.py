@@ -38,7 +38,7 @@ def rotations_at(run: OpenedRun, times: FloatArray) -> FloatArray:
         FolderError: the history is missing, damaged or empty.
     """
     history = run.history
-    if not len(history):
+    if not len(history.modes):
         raise FolderError(f"{run.place.history}: holds no sample yet")
     others = (ANALYTIC_COLUMN, *NEIGHBOURS.names(NEIGHBOURS.numbers(run.case)))
     names = [name for name in history.numbers if name.endswith("rotation_rad") and name not in others]
@@ -53,7 +53,7 @@ def caption(run: OpenedRun, frame: Frame) -> tuple[str, str]:
     rotations = rotations_at(run, np.array([frame.time]))[:, 0]
     most = int(np.argmax(np.abs(rotations)))
     rotation = float(rotations[most])
-    sample = min(int(np.searchsorted(run.history["time_s"], frame.time - 1e-9)), len(run.history) - 1)
+    sample = min(int(np.searchsorted(run.history["time_s"], frame.time - 1e-9)), len(run.history.modes) - 1)
     title = run.typed_result.title or run.name
     title = title if len(title) <= LONGEST else f"{title[: LONGEST - 3]}..."
     status = "" if run.status in ("completed", "overturned") else f" ({run.status})"

@@ -221,7 +221,7 @@ def _corners(body: BodyFit) -> IntArray:
 
 def player_data(animation: Animation, history: History, *, model: Model) -> dict[str, Any]:
     """What the script `player.js` reads, of a run with samples."""
-    stride = max(1, math.ceil(len(history) / MOST_SAMPLES))
+    stride = max(1, math.ceil(len(history.modes) / MOST_SAMPLES))
     names = COLUMNS | (LIFT if history.vertical else {})
     further = range(2, len(animation.centroid) + 1)
     for k in further:

@@ -108,7 +108,7 @@ def run_report(
     links = (*(result.stops or ()), *(result.ties or ()))
     broken = [math.inf if link.broken_at_s is None else link.broken_at_s for link in links]
     animation = animation_of(model, _fields(run, message), drawn_links(case, broken))
-    played = {} if len(history) < 2 or brief else player_data(animation, history, model=model)
+    played = {} if len(history.modes) < 2 or brief else player_data(animation, history, model=model)
     finished, height, static = run.status in RUN.finished, model.container.mesh.height, model.static
     card = card_of(result)
     floor = [(name, typeset(value)) for name, value in floor_rows(result.floor)]
@@ -184,7 +184,7 @@ def _sure(verdict: Verdict) -> tuple[str, str]:
 
 def _check(model: Model, history: History, result: RunResult, *, finished: bool) -> RigidCheckResult | None:
     """The comparison with the analytic block: that of the run, or else made now; None of an unfinished run."""
-    if result.rigid_check is not None or not finished or result.verdict is None or len(history) < 2:
+    if result.rigid_check is not None or not finished or result.verdict is None or len(history.modes) < 2:
         return result.rigid_check
     try:
         return check_against_rigid_block(model, history, result.verdict).result

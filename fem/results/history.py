@@ -11,10 +11,10 @@ import hashlib
 import importlib
 import os
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Self
+from typing import Any, NoReturn, Self
 
 import numpy as np
 
@@ -27,13 +27,17 @@ from fem.runtime.user_files import read_text
 KNOWN = frozenset(column.name for group in columns.GROUPS for column in group.columns)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class History:
-    """Samples of a run."""
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class History(dict[str, Any]):
+    """Samples of a run: name of a column -> its samples, shape (n_samples,), so that pandas takes it as a table."""
 
     numbers: tuple[str, ...]  #: names of the columns
     values: FloatArray  #: (n_samples, n_columns), in the units that the names end with
     modes: tuple[str, ...]  #: state of motion at each sample, length n_samples
+
+    def __post_init__(self) -> None:
+        self.update(zip(self.numbers, self.values.T, strict=True))
+        self[columns.MODE] = np.array(self.modes, dtype=str)
 
     @classmethod
     def empty(cls) -> Self:
@@ -56,13 +60,6 @@ class History:
         values = np.column_stack([self.values, rotation])
         return replace(self, numbers=(*self.numbers, ANALYTIC_COLUMN), values=values)
 
-    def keys(self) -> tuple[str, ...]:
-        """Names of the columns of numbers, so that `dict(history)` has them all."""
-        return self.numbers
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self.numbers)
-
     @property
     def units(self) -> dict[str, str]:
         """Unit of each column; empty of a pure number."""
@@ -79,32 +76,16 @@ class History:
             pandas = importlib.import_module("pandas")
         except ModuleNotFoundError:
             raise ImportError(
-                "a table of pandas needs pandas: python -m pip install pandas; or take dict(history)"
+                "a table of pandas needs pandas: python -m pip install pandas; or take history[column]"
             ) from None
-        return pandas.DataFrame(dict(self) | {columns.MODE: list(self.modes)})
-
-    def __array__(self, *_: Any, **__: Any) -> Any:
-        """Refused: pandas and numpy would take the names of the columns for the samples."""
-        raise TypeError(
-            "a history is a table: take history.to_dataframe(), dict(history), history.values or one column"
-        )
-
-    def __contains__(self, column: str) -> bool:
-        return column in self.numbers
-
-    def __len__(self) -> int:
-        return len(self.modes)
+        return pandas.DataFrame(self)
 
     def __repr__(self) -> str:
         """One line, for a notebook."""
-        return f"<history: {len(self)} samples of {', '.join(self.numbers)}>"
+        return f"<history: {len(self.modes)} samples of {', '.join(self.numbers)}>"
 
-    def __getitem__(self, column: str) -> FloatArray:
-        """A column of numbers by its name, shape (n_samples,); KeyError names the columns there are."""
-        try:
-            return self.values[:, self.numbers.index(column)]
-        except ValueError:
-            raise KeyError(f"no column {column!r}; known: {', '.join(self.numbers)}") from None
+    def __missing__(self, column: str) -> NoReturn:
+        raise KeyError(f"no column {column!r}; known: {', '.join(self)}")
 
 
 class HistoryWriter:

@@ -74,8 +74,8 @@ def check_against_rigid_block(model: Model, history: History, verdict: Verdict) 
         ValueError: the history has less than two samples.
         EventError: the block changes its state too often.
     """
-    if len(history) < 2:
-        raise ValueError(f"rigid check: the history needs two samples and has {len(history)}")
+    if len(history.modes) < 2:
+        raise ValueError(f"rigid check: the history needs two samples and has {len(history.modes)}")
     time, angle = history["time_s"], model.static.slenderness_angle
     reference = follow_block(model, float(time[-1]))
     rotation, rate = reference.at(time)

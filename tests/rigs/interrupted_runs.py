@@ -49,6 +49,6 @@ def require_readable(folder: Path) -> None:
     read_result(folder / "run.json")
     if (folder / "history.csv").exists():
         whole_lines = (folder / "history.csv").read_bytes().count(b"\n")
-        assert len(read_history(folder / "history.csv")) == whole_lines - 1
+        assert len(read_history(folder / "history.csv").modes) == whole_lines - 1
     if (folder / "fields" / "run.pvd").exists():
         assert all(frame.points.size for frame in open_fields(folder / "fields"))

@@ -36,7 +36,7 @@ def test_columns_are_the_documented_ones_in_their_order_and_come_back_to_the_las
     )
     history = read_history(path)
     assert history.values.tobytes() == rows.tobytes()
-    assert history.modes == tuple(MODES) and len(history) == 7
+    assert history.modes == tuple(MODES) and len(history.modes) == 7
     for column, name in {
         4: "rotation_rad",
         15: "imbalance_J",
@@ -164,8 +164,8 @@ def test_a_killed_writer_leaves_whole_lines_and_at_most_a_torn_last_one(tmp_path
     process.stdout.close()
     history = read_history(path)
     # every sample is one that was written, in its order: nothing is made up, nothing but the end is missing
-    assert len(history) == path.read_bytes().count(b"\n") - 1 > 100
-    counted = np.arange(NUMBERS) + float(NUMBERS) * (np.arange(len(history)) % 50)[:, None]
+    assert len(history.modes) == path.read_bytes().count(b"\n") - 1 > 100
+    counted = np.arange(NUMBERS) + float(NUMBERS) * (np.arange(len(history.modes)) % 50)[:, None]
     assert np.array_equal(history.values, counted)
 
 
@@ -181,7 +181,7 @@ def test_wherever_a_file_is_torn_its_whole_lines_are_read_and_nothing_else(tmp_p
         path.write_bytes(data[:end])
         history = read_history(path)
         count = data[:end].count(b"\n") - 1
-        assert len(history) == count
+        assert len(history.modes) == count
         assert history.values.tobytes() == ROWS[:count].tobytes()
         assert history.modes == tuple(MODES[:count])
     path.write_bytes(data[: settled + 40])
@@ -221,20 +221,14 @@ class TestInPython:
         modes=("rest", "rock"),
     )
 
-    def test_its_columns_are_keys_with_units(self):
+    def test_it_is_a_table_of_columns_with_units(self):
         table = dict(self.HISTORY)
-        assert list(table) == list(self.HISTORY) == list(self.HISTORY.keys()) == list(self.HISTORY.numbers)
-        assert table["joint_1_moment_Nm"].tolist() == [1.0, 3.0]
+        assert list(table) == [*self.HISTORY.numbers, "mode"]
+        assert table["joint_1_moment_Nm"].tolist() == [1.0, 3.0] and table["mode"].tolist() == [
+            "rest",
+            "rock",
+        ]
         assert self.HISTORY.units == {"time_s": "s", "joint_1_moment_Nm": "Nm", "box_2_rotation_rad": "rad"}
-
-    def test_a_table_of_pandas_has_the_modes_too(self, monkeypatch):
-        monkeypatch.setitem(sys.modules, "pandas", SimpleNamespace(DataFrame=dict))
-        assert list(self.HISTORY.to_dataframe()) == [*self.HISTORY.numbers, "mode"]
-
-    def test_it_is_not_taken_for_an_array_of_names(self):
-        # pandas.DataFrame(history) begins with this conversion
-        with pytest.raises(TypeError, match=r"take history\.to_dataframe\(\)"):
-            np.asarray(self.HISTORY)
 
     def test_without_pandas_the_way_out_is_named(self, monkeypatch):
         monkeypatch.setitem(sys.modules, "pandas", None)
