@@ -65,6 +65,6 @@ def velocity_ratio(run: Finished) -> float:
 
 def difference(one: Finished, other: Finished, *, until: float = math.inf) -> float:
     """Largest |difference| of rotation at common samples up to a time [s], over the slenderness angle."""
-    count = min(len(one.history), len(other.history))
+    count = min(len(one.history.modes), len(other.history.modes))
     apart = np.abs(one.history["rotation_rad"][:count] - other.history["rotation_rad"][:count])
     return float(apart[times(one)[:count] < until].max()) / one.model.static.slenderness_angle
