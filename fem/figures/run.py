@@ -41,6 +41,12 @@ PHASES: dict[str, dict[str, Any]] = {
     "lands": {"color": style.GREY, "linewidth": 0.5, "linestyle": ":"},
 }
 ON_THE_FLOOR, IN_THE_AIR, LANDS = range(3)
+#: one curve over time: column, factor, label
+CURVES = {
+    "rotation": ("rotation_rad", math.degrees(1.0), "rotation [degrees]"),
+    "slip": ("slip_m", 1e3, "slip [mm]"),
+    "uplift": ("uplift_m", 1e3, "uplift [mm]"),
+}
 LANDING_FORCE = 2.0  #: times weight: a larger force is that of a landing
 
 
@@ -69,6 +75,21 @@ def figure_of(run: RunData, name: str) -> Figure:
     if figure is None:
         raise ValueError(f"no figure {name!r} of this run; there are {', '.join(figures_of(run)) or 'none'}")
     return figure
+
+
+def draw_curve(run: RunData, name: str, axes: Axes) -> Figure:
+    """Draw rotation, slip or uplift over time into axes that hold other runs, too; returns their figure.
+
+    Raises:
+        ValueError: another figure, which has axes of its own.
+        FolderError: the history is missing or damaged.
+    """
+    if name not in CURVES:
+        raise ValueError(f"figure {name!r} has axes of its own; with ax=: {', '.join(CURVES)}")
+    column, factor, label = CURVES[name]
+    axes.plot(run.history["time_s"], factor * run.history[column], label=run.name)
+    axes.set(xlabel=style.TIME, ylabel=label)
+    return axes.figure.figure
 
 
 def draw_all(run: RunData, container: Container) -> list[Drawing]:

@@ -29,6 +29,7 @@ from fem.runtime.terminal import say
 from fem.runtime.threads import use_one_blas_thread
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from fem.results.reader import UnstructuredGrid
@@ -90,9 +91,9 @@ class Run:
     def rigid_check(self) -> None:
         """The table of the analytic block, which is in a folder only."""
 
-    def plot(self, name: str = "rotation") -> "Figure":
+    def plot(self, name: str = "rotation", ax: "Axes | None" = None) -> "Figure":
         """A figure of the run, see `plotted`: `run.plot("slip").savefig("slip.png")`."""
-        return plotted(self, name)
+        return plotted(self, name, ax)
 
     def grid(self, time: float) -> "UnstructuredGrid":
         """The frame nearest to a time [s] as a pyvista grid in the x-y plane, where the container stood.

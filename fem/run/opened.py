@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from fem.results import reader
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 
@@ -15,9 +16,9 @@ if TYPE_CHECKING:
 class PlottedRun(reader.OpenedRun):
     """The folder of a run, which also draws its figures: a layer above the files."""
 
-    def plot(self, name: str = "rotation") -> "Figure":
+    def plot(self, name: str = "rotation", ax: "Axes | None" = None) -> "Figure":
         """A figure of the run, see `plotted`: `run.plot("slip").savefig("slip.png")`."""
-        return plotted(self, name)
+        return plotted(self, name, ax)
 
 
 def open_run(folder: str | Path) -> PlottedRun:
@@ -33,17 +34,19 @@ def open_run(folder: str | Path) -> PlottedRun:
     return PlottedRun(place=run.place, result=run.result)
 
 
-def plotted(run: reader.RunData, name: str) -> "Figure":
+def plotted(run: reader.RunData, name: str, ax: "Axes | None" = None) -> "Figure":
     """A figure of a run as matplotlib draws it on a report's page; a notebook shows what is returned.
 
     Args:
         run: in a folder or in memory.
         name: rotation, slip, uplift, base_motion, forces, energy, phase_portrait; where the run has such data:
             spectrum, joints, rigid_check, band.
+        ax: draw rotation, slip or uplift into these axes, beside what they hold.
 
     Raises:
-        ValueError: this run has no such figure; with those that it has.
+        ValueError: this run has no such figure, or it cannot be drawn into `ax`; with those that can.
     """
     # Importing matplotlib takes most of a second.
-    figure: Figure = importlib.import_module("fem.figures.run").figure_of(run, name)
+    figures = importlib.import_module("fem.figures.run")
+    figure: Figure = figures.figure_of(run, name) if ax is None else figures.draw_curve(run, name, ax)
     return figure

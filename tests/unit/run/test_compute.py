@@ -66,6 +66,8 @@ def test_what_a_run_in_memory_offers():
     with pytest.raises(FieldError, match="frames lie from 0 to 1 s, not at 7 s"):
         run.grid(7.0)
     assert "slip" in run.plot("slip").texts[0].get_text().lower()
+    axes = run.plot("rotation").axes[0]
+    assert run.plot("slip", ax=axes) is axes.figure and axes.get_ylabel() == "slip [mm]"
     assert run.history.units["rotation_rad"] == "rad"
     without = fem.compute(run.case.replace({"output.fields_s": 0.0}), band=False)
     assert len(without.fields) == 0
