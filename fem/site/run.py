@@ -22,6 +22,7 @@ from fem.results.outcome import ENDINGS
 from fem.results.run_result import Band
 from fem.run.ranges import largest_bolt_forces
 from fem.runtime.identity import command_line, versions
+from fem.runtime.progress import clock_time
 from fem.seismic.ground_motion import GroundMotion
 from fem.site.answer import FULFILLED, NOT_FULFILLED, answer_of, no_answer_yet
 from fem.site.copies import copy_files, inputs_of, left_elsewhere, texts_of
@@ -61,6 +62,7 @@ OF_A_MOTION = 75_000  #: numbers, in three files
 QUICK = (
     "Left out by --quick: further motions, other factors on the motions, the deciding runs with their bands."
 )
+OTHER_FACTORS, DECIDING = "the set at other factors", "the deciding runs with their bands"  #: stages
 TIMES_THE_SET = 20  #: runs of all stages over those of the set
 
 
@@ -177,12 +179,31 @@ class Verification:
         def now() -> SiteAnswer:
             return answer_of(self.request, motions, rows.in_order(), stages.beside(again, left_out))
 
+        names = ["the set", "its repetitions"]
+        names += ["further motions"] * stages.has_further(quick=self.quick)
+        scans = not (self.quick or varied)
+        names += [OTHER_FACTORS] * scans + [DECIDING] * (not left_out)
+        computed, began = len(rows.runs), time.perf_counter()
+
+        def tell(stage: int, runs: int) -> None:
+            """Name a stage of some runs, which take as long as those before; of a value of `size` none is named."""
+            done, words = (
+                len(rows.runs) - computed,
+                f"{'up to ' * (names[stage] == OTHER_FACTORS)}{runs} runs",
+            )
+            if done and names[stage] != DECIDING:  # of another model
+                words += f", {clock_time(runs * (time.perf_counter() - began) / done)} at the rate so far"
+            if runs and not varied:
+                runner.reporter.message(f"stage {stage + 1} of {len(names)}: {names[stage]}, {words}")
+
         def batches() -> Iterator[Sequence[RunKey]]:
-            for keys in stages.of_the_answer(runner, quick=self.quick):
+            for stage, keys in enumerate(stages.of_the_answer(runner, quick=self.quick)):
+                tell(stage, len(keys))
                 yield keys
                 if varied and now().answer == NOT_FULFILLED:
                     return
-            if not (self.quick or varied):
+            if scans:
+                tell(names.index(OTHER_FACTORS), stages.most_scanned)
                 yield from stages.of_the_margin()
 
         def note(line: str) -> None:
@@ -209,7 +230,7 @@ class Verification:
                     if key not in rows.still
                 ]
                 if keys:
-                    runner.reporter.message("repeating the deciding runs with the reduced model")
+                    tell(len(names) - 1, len(keys))
                     again = confirmed(cases, runs, keys, runner.jobs)
         return None if runner.stop() else now()
 

@@ -203,12 +203,16 @@ class Stages:
         yield self._left(self.of_set())
         groups = governing_groups(groups_of(self.rows.of(self.of_set())))
         yield self._left(self.repeated(groups))
-        if quick and not self.rests:
+        if not self.has_further(quick=quick):
             return
         further = self.of_further(groups, self.request.motions.further)
         self._make(runner, [key for key in further if key.stem not in self.screening.motions])
         if not runner.stop():
             yield self._left(further)
+
+    def has_further(self, *, quick: bool) -> bool:
+        """Whether further motions are computed: not with `quick`, unless the container rests in the whole set."""
+        return self.rests or not quick
 
     @property
     def rests(self) -> bool:
@@ -236,8 +240,13 @@ class Stages:
             return own, most
         most += pairs * self.request.motions.further * len(self.signs)
         if scan:
-            most += sum(left(self.scanned(factor)) for factor in SCANNED)
+            most += self.most_scanned
         return own, most
+
+    @property
+    def most_scanned(self) -> int:
+        """Runs of the set at other factors that must be computed at most."""
+        return sum(not self.screening.at_rest(key) for factor in SCANNED for key in self.scanned(factor))
 
     def of_the_margin(self) -> Iterator[Sequence[RunKey]]:
         """The set at other factors, up to the first at which a run overturns, and between.
