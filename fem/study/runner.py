@@ -4,9 +4,9 @@ Cases that have the same container share its mesh and modes. A case that cannot 
 status "failed" and the reason; it never has an outcome.
 """
 
+import math
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, NamedTuple
@@ -22,7 +22,7 @@ from fem.results.run_result import Verdict
 from fem.run.checks import WantedChecks
 from fem.run.compute import compute_on
 from fem.run.described import covered_in_words, is_cut, missing_peak
-from fem.run.expected import expected_s, say_expected, with_band_s
+from fem.run.expected import say_expected
 from fem.run.recorder import Recorder
 from fem.run.simulation import run_without_history, simulate
 from fem.run.verdict import verdict_of
@@ -39,6 +39,7 @@ CASES_AT_A_TIME = {"rigid": 16, "reduced": 4, "full": 1}
 MANY_WORKERS, LEAST_CHUNKS = 64, 4
 
 AT_HAND = 8  #: equilibria of a chunk that are kept: its cases may differ by turns in friction and weight
+MEASURED_S = 2.0  #: in which it is found how long some work takes
 TOLD_S = 5.0  #: work that has taken so long ends with a line of what was done
 
 _CONTAINERS = ContainerCache()
@@ -91,11 +92,6 @@ class Runner:
         for item in items:
             by_model.setdefault(model_of(item), []).append(item)
         told = _Told(what, sum(map(len, by_model.values())), self.reporter)
-        cost, seconds = expected_s if work is None else with_band_s, 0.0
-        for group in by_model.values():
-            with suppress(ValueError):  # a case that cannot be computed is told in its row
-                seconds += len(group) * cost(make(group[0]))
-        say_expected(self.reporter, f"{told.total} {what}", seconds / self.jobs, self.jobs)
         told.start()
         for model, group in sorted(by_model.items(), key=lambda pair: list(CASES_AT_A_TIME).index(pair[0])):
             pools = self.workers_of(model, len(group))
@@ -153,6 +149,8 @@ class _Told:
     done: int = 0
     failed: int = 0
     began: float = 0.0
+    first: tuple[int, float] = 0, math.inf  #: how many were done when, after whatever was compiled [s]
+    foretold: bool = False
 
     def start(self) -> None:
         self.reporter.start(0.0)
@@ -162,6 +160,15 @@ class _Told:
         self.done, self.failed = self.done + done, self.failed + failed
         if self.done < self.total:
             self.reporter.tell(self.line)
+            self._foretell(time.perf_counter())
+
+    def _foretell(self, now: float) -> None:
+        """Say once how long it takes, at the rate of the first seconds, where that is long."""
+        before, since = self.first = self.first if self.first[0] else (self.done, now)
+        if not self.foretold and now > since + MEASURED_S:
+            self.foretold = True
+            left = (self.total - self.done) * (now - since) / (self.done - before)
+            say_expected(self.reporter, f"{self.total - self.done} more {self.what}", left)
 
     def finish(self) -> None:
         self.reporter.finish()
