@@ -25,6 +25,7 @@ from fem.results.figures import DURATION, PGA, PGD, PGV, SLIPPED, TURNED, Place,
 from fem.results.kinds import ENSEMBLE, HALL, RESPONSE
 from fem.results.outcome import COUNTED, Outcome
 from fem.run.card import deciding_in_words, times
+from fem.run.sureness import REGIME_UNSURE
 from fem.runtime import units
 from fem.runtime.identity import command_line
 from fem.runtime.user_files import read_text
@@ -62,6 +63,7 @@ SWATCH = Markup('<span class="swatch" style="background:{}"></span>{}')
 PEAK = "peak_acceleration_m_s2"
 #: what is shown of a motion
 MEASURES = {PEAK: PGA, "peak_velocity_m_s": PGV, "peak_displacement_m": PGD, "significant_s": DURATION}
+MANY_RESTS = 3  #: containers at rest that are listed apart
 LOOKS = {"overturned": "bad", "invalid": "bad", "failed": "bad"}
 #: names of the result of a response curve that are options of its command, but for their underscores
 OPTIONS = ("count", "starts", "settle", "observe")
@@ -356,8 +358,9 @@ def hall_report(folder: Path, *, signature: Signature | None = None, brief: bool
         "batch", "list.csv", "--case", "base.toml", *asked, allow_outside=bool(info.allow_outside)
     )
     words = "With the two files of this folder, and the motions:"
+    moving, resting = folded(info.ranked)
     return _html(
-        "hall",
+        "list of containers",
         folder,
         info,
         case,
@@ -369,12 +372,36 @@ def hall_report(folder: Path, *, signature: Signature | None = None, brief: bool
         count=count,
         more=[f"{outcomes[0].upper()}{outcomes[1:]}."] if outcomes else [],
         tag_counts=[(word, [tag["counts"].get(word, "") for tag in info.tags], N) for word in counted],
-        weakest=_weakest(info.ranked, linked=not brief),
-        looks=[LOOKS.get(row["outcome"] or "failed", "") for row in info.ranked],
+        weakest=_weakest(moving, linked=not brief),
+        resting=_weakest(resting, linked=not brief) if resting else (),
+        at_rest=sum(row["count"] for row in resting),
+        looks=[LOOKS.get(row["outcome"] or "failed", "") for row in moving],
         brief=brief,
-        provenance=[("hall", f"{info.hall}, {info.status}, model {info.model}"), ("hash", info.asked)],
+        provenance=[("list", f"{info.hall}, {info.status}, model {info.model}"), ("hash", info.asked)],
         again=None if brief else (words, command, [("base.toml", _text(folder / "base.toml"))]),
     )
+
+
+def folded(ranked: Sequence[A_ROW]) -> tuple[list[A_ROW], list[A_ROW]]:
+    """Rows of the list, those of equal containers as one; apart from them the containers at rest, where they are many.
+
+    Args:
+        ranked: the weakest first.
+    """
+    alike: dict[tuple[str, str], list[A_ROW]] = {}
+    for row in ranked:
+        alike.setdefault((row["command"], row["tag"]), []).append(row)
+    rows = [
+        {**group[0], "name": f"{group[0]['name']} and {len(group) - 1} alike"}
+        | {"line": ", ".join(str(row["line"]) for row in group), "count": sum(row["count"] for row in group)}
+        if len(group) > 1
+        else group[0]
+        for group in alike.values()
+    ]
+    resting = [row for row in rows if row["outcome"] == Outcome.REST]
+    if len(resting) < MANY_RESTS or len(resting) == len(rows):
+        return rows, []
+    return [row for row in rows if row["outcome"] != Outcome.REST], resting
 
 
 def _weakest(rows: Sequence[A_ROW], *, linked: bool) -> list[Column]:
@@ -401,8 +428,8 @@ def _weakest(rows: Sequence[A_ROW], *, linked: bool) -> list[Column]:
         key("tag", "tag"),
         ("outcome", outcomes),
         ("margin", [margin_words(row) for row in rows], N),
-        key("sure", "sure"),
-        key("decided by", "decided_by", text=lambda keys: deciding_in_words(keys.split())),
+        key("sure", "sure", text=lambda word: "only whether it stands" if word == REGIME_UNSURE else word),
+        key("decided by", "decided_by", "words", text=lambda keys: deciding_in_words(keys.split())),
         *(
             (figure_head(shown), [figure(row, name, shown) for row in rows], N)
             for name, shown in figures_of(Place.KEY).items()

@@ -411,6 +411,6 @@ def _answer_of(result: HallResult) -> str:
     words += f"; {result.refused} row{'s were' if result.refused != 1 else ' was'} refused" if refused else ""
     weakest = result.ranked[0]
     words += f"; the weakest is {weakest['name']}"
-    if (margin := weakest["margin"]) is not None:
+    if not overturned and (margin := weakest["margin"]) is not None:
         words += f", which overturns from {margin:.3g} times its motion on"
     return words
