@@ -9,7 +9,7 @@ from study_folders import ensemble_folder, response_folder
 
 from fem.__main__ import main
 from fem.html.units import ABSENT
-from fem.report.study_page import ensemble_report, response_report
+from fem.report.study_page import ensemble_report, folded, response_report
 from fem.results.errors import FolderError
 
 #: headings in the order in which a reader wants them
@@ -124,3 +124,17 @@ def test_an_interrupted_one_shows_what_there_is_without_an_answer(kind, tmp_path
 def test_an_ensemble_that_has_come_to_no_point_tells_no_share(tmp_path):
     page = page_of("ensemble", tmp_path, status="interrupted", points=[], regions={})
     assert "0 points of 100 draws (interrupted).<" in page
+
+
+def test_equal_containers_are_one_row_and_those_that_rest_stand_apart():
+    outcomes = ("overturned", "rest", "rest", "rest", "rest")
+    ranked = [
+        {"name": f"C{k}", "command": f"run {k % 4}", "tag": "", "line": k + 2, "count": 1, "outcome": outcome}
+        for k, outcome in enumerate(outcomes)
+    ]
+    ranked[4]["command"] = "run 3"
+    moving, resting = folded(ranked)
+    assert [row["name"] for row in moving] == ["C0"]
+    assert [row["name"] for row in resting] == ["C1", "C2", "C3 and 1 alike"]
+    assert resting[-1]["line"] == "5, 6" and resting[-1]["count"] == 2
+    assert folded(ranked[:3]) == (ranked[:3], []) and folded(ranked[1:4]) == (ranked[1:4], [])
