@@ -32,18 +32,18 @@ class History(dict[str, Any]):
     """Samples of a run: name of a column -> its samples, shape (n_samples,), so that pandas takes it as a table."""
 
     numbers: tuple[str, ...]  #: names of the columns
-    values: FloatArray  #: (n_samples, n_columns), in the units that the names end with
+    samples: FloatArray  #: (n_samples, n_columns), in the units that the names end with
     modes: tuple[str, ...]  #: state of motion at each sample, length n_samples
 
     def __post_init__(self) -> None:
-        self.update(zip(self.numbers, self.values.T, strict=True))
+        self.update(zip(self.numbers, self.samples.T, strict=True))
         self[columns.MODE] = np.array(self.modes, dtype=str)
 
     @classmethod
     def empty(cls) -> Self:
         """No samples."""
         numbers = numbers_of(columns.ALWAYS.names((0,)))
-        return cls(numbers=numbers, values=np.zeros((0, len(numbers))), modes=())
+        return cls(numbers=numbers, samples=np.zeros((0, len(numbers))), modes=())
 
     @property
     def joints(self) -> int:
@@ -57,8 +57,8 @@ class History(dict[str, Any]):
 
     def with_analytic(self, rotation: FloatArray) -> Self:
         """These samples with the rotation of the rigid block as last column, shape (n_samples,) [rad]."""
-        values = np.column_stack([self.values, rotation])
-        return replace(self, numbers=(*self.numbers, ANALYTIC_COLUMN), values=values)
+        values = np.column_stack([self.samples, rotation])
+        return replace(self, numbers=(*self.numbers, ANALYTIC_COLUMN), samples=values)
 
     @property
     def units(self) -> dict[str, str]:
@@ -193,7 +193,7 @@ def read_history(path: Path) -> History:
             raise ValueError(
                 f"{path}, line {number + 2}: {len(numbers)} numbers and a mode are needed"
             ) from None
-    return History(numbers=numbers, values=values, modes=tuple(modes))
+    return History(numbers=numbers, samples=values, modes=tuple(modes))
 
 
 def numbers_of(names: Sequence[str]) -> tuple[str, ...]:

@@ -89,7 +89,7 @@ class Recorder:
     def history(self) -> History:
         """Everything sampled so far."""
         values = np.concatenate([np.zeros((0, len(self._numbers))), *self._rows])
-        return History(numbers=self._numbers, values=values, modes=tuple(self._modes))
+        return History(numbers=self._numbers, samples=values, modes=tuple(self._modes))
 
     @property
     def largest_von_mises(self) -> float | None:
@@ -116,7 +116,7 @@ class Recorder:
 
     def resume(self, history: History) -> None:
         """Begin with the samples of the run before it was interrupted."""
-        self._rows, self._modes = [history.values], list(history.modes)
+        self._rows, self._modes = [history.samples], list(history.modes)
 
     def change_frame(self, velocity: tuple[float, float]) -> None:
         """From now on the coordinates of the run are those in a frame with this velocity along x and upward [m/s]."""

@@ -137,6 +137,11 @@ class ScreenReporter(Reporter):
         )
 
 
+def watched() -> bool:
+    """Whether somebody reads the error stream while the work is done: on a terminal, or in a notebook."""
+    return sys.stderr.isatty() or Console().is_jupyter
+
+
 def clock_time(seconds: float) -> str:
     """A duration for people: 7 s, 3 min 20 s, 2 h 05 min."""
     whole = round(seconds)

@@ -307,7 +307,7 @@ def confirmed(
     results: list[ConfirmedRun] = []
     try:
         repeated = [cases(replace(key, model=CONFIRMING)) for key in keys]
-        again = compute_many(repeated, jobs, margin=False, inner_forces=False)
+        again = compute_many(repeated, jobs, progress=False, margin=False, inner_forces=False)
     except KeyboardInterrupt:
         return results
     for key, run in zip(keys, again, strict=True):

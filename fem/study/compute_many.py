@@ -2,6 +2,7 @@
 
 import warnings
 from collections.abc import Hashable, Iterable, Sequence
+from contextlib import closing
 from functools import partial
 from typing import Literal, TypedDict, Unpack, overload
 
@@ -10,9 +11,11 @@ from fem.model.geometry import build_container
 from fem.model.motion import build_motions
 from fem.run.checks import WantedChecks
 from fem.run.compute import Run, compute_on, require_case
+from fem.runtime.progress import ScreenReporter, watched
 from fem.runtime.signals import stop_requested
 from fem.runtime.threads import cores
 from fem.study.containers import ContainerCache, container_key
+from fem.study.runner import Told
 from fem.study.workers import IN_THREADS, STDIN, LocalWorkers, hand_out, unguarded_script
 
 #: number of cases from which processes pay off: runs with history and band hold the interpreter longer than rows do
@@ -34,16 +37,24 @@ class Wanted(TypedDict, total=False):
 
 
 @overload
-def compute_many(cases: Iterable[Case], jobs: int | None = None, **wanted: Unpack[Wanted]) -> list[Run]: ...
+def compute_many(
+    cases: Iterable[Case], jobs: int | None = None, *, progress: bool | None = None, **wanted: Unpack[Wanted]
+) -> list[Run]: ...
 @overload
 def compute_many(
-    cases: Iterable[Case], jobs: int | None = None, *, errors: Literal["return"], **wanted: Unpack[Wanted]
+    cases: Iterable[Case],
+    jobs: int | None = None,
+    *,
+    errors: Literal["return"],
+    progress: bool | None = None,
+    **wanted: Unpack[Wanted],
 ) -> list[Run | ValueError]: ...
 def compute_many(
     cases: Iterable[Case],
     jobs: int | None = None,
     *,
     errors: Literal["raise", "return"] = "raise",
+    progress: bool | None = None,
     **wanted: Unpack[Wanted],
 ) -> Sequence[Run | ValueError]:
     """Compute cases in memory, side by side; no file is written.
@@ -57,6 +68,7 @@ def compute_many(
         jobs: cores to use; default: all.
         errors: "raise" that of the first case that cannot be computed, which is looked for before any is computed; or
             "return" it in place of its run.
+        progress: show it by a line; default: on a terminal and in a notebook.
         wanted: band, margin, check_rigid, inner_forces: see `Wanted`.
 
     Returns:
@@ -97,7 +109,9 @@ def compute_many(
         first.setdefault(container_key(case), number)
     order = sorted(range(len(all_cases)), key=lambda number: first[container_key(all_cases[number])])
     work = partial(_compute, WantedChecks(**wanted), len(all_cases))
-    with LocalWorkers(jobs, WORTH_PROCESSES if script is None else IN_THREADS) as workers_of:
+    reporter = ScreenReporter(quiet=not (watched() if progress is None else progress))
+    told = Told("runs", len(all_cases) - len(runs), reporter)
+    with LocalWorkers(jobs, WORTH_PROCESSES if script is None else IN_THREADS) as workers_of, closing(told):
         for model in WORTH_PROCESSES:
             items = [(n, all_cases[n]) for n in order if all_cases[n].solver.model == model and n not in runs]
             chunks = hand_out(
@@ -105,6 +119,7 @@ def compute_many(
             )
             for chunk, results in chunks:
                 runs |= dict(zip((number for number, _ in chunk), results, strict=True))
+                told.more(len(results), sum(isinstance(one, ValueError) for one in results))
                 if errors == "raise":
                     for result in (one for one in results if isinstance(one, ValueError)):
                         raise result

@@ -91,8 +91,7 @@ class Runner:
         by_model: dict[str, list[ItemT]] = {}
         for item in items:
             by_model.setdefault(model_of(item), []).append(item)
-        told = _Told(what, sum(map(len, by_model.values())), self.reporter)
-        told.start()
+        told = Told(what, sum(map(len, by_model.values())), self.reporter)
         for model, group in sorted(by_model.items(), key=lambda pair: list(CASES_AT_A_TIME).index(pair[0])):
             pools = self.workers_of(model, len(group))
             chunks = hand_out(
@@ -106,7 +105,7 @@ class Runner:
             for chunk, rows in chunks:
                 yield chunk[: len(rows)], rows
                 told.more(len(rows), sum(row["status"] == "failed" for row in rows))
-        told.finish()
+        told.close()
 
     def each(self, what: str, items: Sequence[ItemT], work: Callable[[ItemT], FoundT]) -> list[FoundT]:
         """Let the workers do some work for each item; it must be picklable.
@@ -118,8 +117,7 @@ class Runner:
             ValueError: that of the first item whose work raises one.
             KeyboardInterrupt: `stop` ended the work.
         """
-        told = _Told(what, len(items), self.reporter)
-        told.start()
+        told = Told(what, len(items), self.reporter)
         ready: dict[int, list[FoundT | ValueError]] = {}
         pools = self.workers_of("rigid", len(items))
         size = _chunk_size("rigid", len(items), pools)
@@ -127,7 +125,7 @@ class Runner:
         for chunk, outcomes in hand_out(numbered, tried, pools, at_a_time=size, stop=self.stop):
             ready[chunk[0][0]] = outcomes
             told.more(len(chunk))
-        told.finish()
+        told.close()
         results: list[FoundT] = []
         for _, outcomes in sorted(ready.items()):
             for outcome in outcomes:
@@ -140,23 +138,23 @@ class Runner:
 
 
 @dataclass
-class _Told:
-    """The line of progress of some work."""
+class Told:
+    """The line of progress of some work: from its begin, `more` as it is done, `close`."""
 
     what: str
     total: int
     reporter: Reporter
     done: int = 0
     failed: int = 0
-    began: float = 0.0
+    began: float = field(default_factory=time.perf_counter)
     first: tuple[int, float] = 0, math.inf  #: how many were done when, after whatever was compiled [s]
     foretold: bool = False
 
-    def start(self) -> None:
+    def __post_init__(self) -> None:
         self.reporter.start(0.0)
-        self.began = time.perf_counter()
 
     def more(self, done: int, failed: int = 0) -> None:
+        """So many items more are done."""
         self.done, self.failed = self.done + done, self.failed + failed
         if self.done < self.total:
             self.reporter.tell(self.line)
@@ -170,12 +168,14 @@ class _Told:
             left = (self.total - self.done) * (now - since) / (self.done - before)
             say_expected(self.reporter, f"{self.total - self.done} more {self.what}", left)
 
-    def finish(self) -> None:
+    def close(self) -> None:
+        """The work has ended."""
         self.reporter.finish()
         if self.total and self.done == self.total and time.perf_counter() - self.began > TOLD_S:
             self.reporter.message(self.line())  # the last line does not stand at a time left
 
     def line(self) -> str:
+        """How much is done, how fast, and the time left."""
         elapsed, lost = time.perf_counter() - self.began, f", {self.failed} failed" if self.failed else ""
         rate = self.done / elapsed if elapsed > 0.0 else 0.0
         if self.done == self.total:

@@ -35,7 +35,7 @@ def test_columns_are_the_documented_ones_in_their_order_and_come_back_to_the_las
         "joint_1_normal_N,joint_1_shear_N,joint_1_moment_Nm,joint_2_normal_N,joint_2_shear_N,joint_2_moment_Nm"
     )
     history = read_history(path)
-    assert history.values.tobytes() == rows.tobytes()
+    assert history.samples.tobytes() == rows.tobytes()
     assert history.modes == tuple(MODES) and len(history.modes) == 7
     for column, name in {
         4: "rotation_rad",
@@ -128,7 +128,7 @@ def test_the_rigid_block_is_the_last_column_and_is_replaced_not_repeated(tmp_pat
         add_analytic_rotation(path, rotation)
     history = read_history(path)
     assert history.numbers[-1] == "analytic_rotation_rad"
-    assert np.array_equal(history.values, np.column_stack([rows, rotation]), equal_nan=True)
+    assert np.array_equal(history.samples, np.column_stack([rows, rotation]), equal_nan=True)
     assert history.modes == ("rest", "rock")
     with pytest.raises(ValueError, match="3 rotations for 2 samples"):
         add_analytic_rotation(path, np.zeros(3))
@@ -139,7 +139,7 @@ def test_every_double_survives_as_soon_as_it_is_appended(tmp_path_factory, row):
     path = tmp_path_factory.mktemp("h") / "h.csv"
     with HistoryWriter(path, COLUMNS) as writer:
         writer.append(np.array([row]), ["rest"])
-        assert read_history(path).values.tobytes() == np.array([row]).tobytes()
+        assert read_history(path).samples.tobytes() == np.array([row]).tobytes()
 
 
 def test_a_killed_writer_leaves_whole_lines_and_at_most_a_torn_last_one(tmp_path):
@@ -166,7 +166,7 @@ def test_a_killed_writer_leaves_whole_lines_and_at_most_a_torn_last_one(tmp_path
     # every sample is one that was written, in its order: nothing is made up, nothing but the end is missing
     assert len(history.modes) == path.read_bytes().count(b"\n") - 1 > 100
     counted = np.arange(NUMBERS) + float(NUMBERS) * (np.arange(len(history.modes)) % 50)[:, None]
-    assert np.array_equal(history.values, counted)
+    assert np.array_equal(history.samples, counted)
 
 
 def test_wherever_a_file_is_torn_its_whole_lines_are_read_and_nothing_else(tmp_path):
@@ -182,7 +182,7 @@ def test_wherever_a_file_is_torn_its_whole_lines_are_read_and_nothing_else(tmp_p
         history = read_history(path)
         count = data[:end].count(b"\n") - 1
         assert len(history.modes) == count
-        assert history.values.tobytes() == ROWS[:count].tobytes()
+        assert history.samples.tobytes() == ROWS[:count].tobytes()
         assert history.modes == tuple(MODES[:count])
     path.write_bytes(data[: settled + 40])
     with HistoryWriter(path, COLUMNS, position=settled) as writer:  # as after --resume
@@ -217,7 +217,7 @@ class TestInPython:
 
     HISTORY = History(
         numbers=("time_s", "joint_1_moment_Nm", "box_2_rotation_rad"),
-        values=np.array([[0.0, 1.0, 2.0], [0.1, 3.0, 4.0]]),
+        samples=np.array([[0.0, 1.0, 2.0], [0.1, 3.0, 4.0]]),
         modes=("rest", "rock"),
     )
 

@@ -42,7 +42,7 @@ def test_a_run_in_memory_is_that_of_the_command(tmp_path, monkeypatch, name, ove
     assert run.verdict == stored.verdict
     assert (run.status, run.case.resolved()) == (stored.status, stored.case.resolved())
     assert run.history.numbers == stored.history.numbers
-    assert (run.history.values.view(np.int64) == stored.history.values.view(np.int64)).all()
+    assert (run.history.samples.view(np.int64) == stored.history.samples.view(np.int64)).all()
     assert run.history.modes == stored.history.modes
     assert run.fields.times.tolist() == stored.fields.times.tolist()
     for kept, read in zip(run.fields, stored.fields, strict=True):

@@ -28,7 +28,7 @@ def demands(forces: np.ndarray, overturned_at: float = np.inf):
     numbers = (*numbers_of(ALWAYS.names((0,))), *JOINTS.names((1,)))
     values = np.zeros((len(forces), len(numbers)))
     values[:, 0], values[:, -3:] = np.arange(len(forces)), forces
-    history = History(numbers=numbers, values=values, modes=("rock",) * len(forces))
+    history = History(numbers=numbers, samples=values, modes=("rock",) * len(forces))
     return joint_demands(stack(overturned_at), history)
 
 

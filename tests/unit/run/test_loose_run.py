@@ -58,7 +58,7 @@ def test_a_run_says_what_each_box_did(case, run, tmp_path):
     assert stored.typed_result.verdict.boxes == run.verdict.boxes
     history = read_history(tmp_path / "run" / "history.csv")
     assert history.joints == 0
-    assert history.values.tobytes() == run.history.values.tobytes()
+    assert history.samples.tobytes() == run.history.samples.tobytes()
     assert history.numbers[-10:] == BOXES.names((2, 3))
     assert abs(history["box_2_slip_m"]).max() == pytest.approx(verdict["boxes"][1]["max_slip_m"], rel=1e-2)
     assert history["box_3_z_m"] == pytest.approx(2.5, abs=1e-3)
@@ -67,7 +67,7 @@ def test_a_run_says_what_each_box_did(case, run, tmp_path):
 
 def test_the_resolved_case_runs_again_to_the_same_result(run):
     again = fem.compute(read_case(to_toml(run.case)), band=False)
-    assert again.history.values.tobytes() == run.history.values.tobytes()
+    assert again.history.samples.tobytes() == run.history.samples.tobytes()
     assert again.verdict.boxes == run.verdict.boxes
 
 

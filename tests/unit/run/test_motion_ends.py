@@ -103,7 +103,7 @@ def test_a_harmonic_run_without_duration_is_that_of_20_s_to_the_bit():
     given = load_case("seed_box", ["solver.model=rigid", "output.fields_s=0"])
     auto = given.with_values({"solver.duration_s": "auto"})
     one, other = finish(build_model(given)), finish(build_model(auto))
-    assert one.history.values.tobytes() == other.history.values.tobytes()
+    assert one.history.samples.tobytes() == other.history.samples.tobytes()
 
 
 def test_the_resolved_case_of_a_pulse_gives_the_same_run(tmp_path):
@@ -112,7 +112,7 @@ def test_the_resolved_case_of_a_pulse_gives_the_same_run(tmp_path):
     again = load_case(tmp_path / "first" / "resolved.toml")
     assert again.solver.duration_s == "auto" and again.solver.step_s != "auto"
     second = run_case(again, case_text=again.text, folder=tmp_path / "second")
-    assert first.history.values.tobytes() == second.history.values.tobytes()
+    assert first.history.samples.tobytes() == second.history.samples.tobytes()
     assert first.typed_result.verdict.at_rest_s == second.typed_result.verdict.at_rest_s
     assert first.typed_result.case_hash == second.typed_result.case_hash
 
