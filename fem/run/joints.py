@@ -14,7 +14,7 @@ from fem.results.figures import BOX_FIGURES, BoxResult
 from fem.results.outcome import least_slide
 from fem.results.run_result import BoxReach, JointDemand, RunResult, StaticResult, Verdict
 from fem.run.ranges import crushes, impact_note
-from fem.runtime.units import JOINT_MILLIMETRES, SHORT_MILLIMETRES, visible_number
+from fem.runtime.units import FEW, JOINT_MILLIMETRES, SHORT_MILLIMETRES, in_figures
 
 MOST_JOINTS = 8  #: joints shown; of more, those with a largest value
 JOINTS_NOTE = (
@@ -49,7 +49,7 @@ def titled_table(title: str, *columns: str) -> Table:
 
 def joint_tables(every: Sequence[JointDemand], verdict: Verdict) -> Iterator[RenderableType]:
     """Forces, and what bolts carry; one row a joint, from the floor up."""
-    note, kilo = impact_note(verdict), partial(visible_number, factor=1e-3)
+    note, kilo = impact_note(verdict), partial(in_figures, figures=FEW, factor=1e-3)
     forces = titled_table(
         f"Forces in the joints between boxes{note}", "joint at", ">normal kN", ">shear kN", ">moment kNm"
     )

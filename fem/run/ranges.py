@@ -131,5 +131,9 @@ def bolt_forces(result: RunResult) -> str:
         return ""
     verdict = result.verdict or Verdict()
     pairs = zip(largest_bolt_forces(result.joints), ("bolt_tension_N", "bolt_shear_N"), strict=True)
-    words = ", ".join(FIGURES[key].text(value, reach_of(verdict, key)) for value, key in pairs)
+    reaches = ((value, FIGURES[key], reach_of(verdict, key)) for value, key in pairs)
+    words = ", ".join(
+        figure.unit.text(value, reach, figures=FEW if reach is None else None)
+        for value, figure, reach in reaches
+    )
     return f"{words}{impact_note(verdict)}"
