@@ -37,6 +37,8 @@ ROLLING_PIVOT = 0.5  #: .. of a base that rolls: the side away from where it tou
 #: points slip a little at every impact
 SLIDING_HEAT = 0.02
 
+PARTS = 8  #: of the window of the corner force, by which it slides
+
 OBSERVABLES = np.dtype(
     [
         ("max_rotation", "f8"),
@@ -48,12 +50,12 @@ OBSERVABLES = np.dtype(
         ("peak_corner_force", "f8"),  # the instantaneous one
         ("left_force", "f8"),  # at the end of the last step
         ("right_force", "f8"),
-        ("impulse_time", "f8"),  # over which the impulses were integrated: half a window
-        ("left_impulse", "f8"),
-        ("right_impulse", "f8"),
-        ("last_impulse_time", "f8"),  # .. and those of the half before
-        ("last_left_impulse", "f8"),
-        ("last_right_impulse", "f8"),
+        (
+            "impulses",
+            "f8",
+            (PARTS, 3),
+        ),  # time and impulse at the left and the right, part after part of the window
+        ("part", "i8"),  # the one that is being integrated
         ("rocking_time", "f8"),  # with a rotation beyond `ROCKING`
         ("flight_time", "f8"),  # .. and no contact force
         ("max_top_displacement", "f8"),
@@ -152,6 +154,22 @@ def record_start(track: Any, control: Any, camber: FloatArray, state: State) -> 
 
 
 @inlined
+def end_part(track: Any, window: float) -> None:
+    """Compare the mean corner force over the last `window` [s] with the largest one, and begin the next part."""
+    wanted, left, right = window, 0.0, 0.0
+    for k in range(PARTS):
+        part = track.impulses[(track.part - k) % PARTS]
+        share = min(1.0, wanted / part[0]) if part[0] > 0.0 else 0.0
+        left += share * part[1]
+        right += share * part[2]
+        wanted -= share * part[0]
+    if wanted < 1e-9 * window:
+        track.max_corner_force = max(track.max_corner_force, max(left, right) / window)
+    track.part = (track.part + 1) % PARTS
+    track.impulses[track.part, :] = 0.0
+
+
+@inlined
 def update_observables(run: Any, step: float) -> None:
     """Update the observables of a run with the step [s] about to be accepted."""
     track, joint, control = run.track[0], run.joints[0], run.problem.control
@@ -186,19 +204,14 @@ def update_observables(run: Any, step: float) -> None:
             right_open = 0
     track.max_uplift = max(track.max_uplift, uplift)
     track.max_flight = max(track.max_flight, lowest)
-    track.left_impulse += 0.5 * step * (track.left_force + left_force)
-    track.right_impulse += 0.5 * step * (track.right_force + right_force)
+    part = track.impulses[track.part]
+    part[0] += step
+    part[1] += 0.5 * step * (track.left_force + left_force)
+    part[2] += 0.5 * step * (track.right_force + right_force)
     track.left_force, track.right_force = left_force, right_force
     track.peak_corner_force = max(track.peak_corner_force, max(left_force, right_force))
-    track.impulse_time += step
-    if track.impulse_time >= 0.5 * control.force_window:
-        left = track.left_impulse + track.last_left_impulse
-        right = track.right_impulse + track.last_right_impulse
-        mean = max(left, right) / (track.impulse_time + track.last_impulse_time)
-        track.max_corner_force = max(track.max_corner_force, mean)
-        track.last_left_impulse, track.last_right_impulse = track.left_impulse, track.right_impulse
-        track.last_impulse_time = track.impulse_time
-        track.left_impulse, track.right_impulse, track.impulse_time = 0.0, 0.0, 0.0
+    if part[0] >= control.force_window / PARTS:
+        end_part(track, control.force_window)
     if abs(rotation) > ROCKING * control.slenderness_angle:
         track.rocking_time += step
         if left_force + right_force <= 0.0:
