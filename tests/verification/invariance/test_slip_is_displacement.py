@@ -155,3 +155,41 @@ def test_a_box_that_hops_slips_as_far_as_the_slider_in_two_directions():
     plane = fem.slide_in_plane(time, along, 0.0 * along, up, mu_static=0.3)
     assert abs(run.verdict.slip_in_air_m) > 1e-3
     assert run.history["slip_m"][-1] == pytest.approx(plane[-1, 0], rel=0.1)
+
+
+@pytest.mark.parametrize(("mu", "gap"), [(0.3, 0.05), (0.9, 0.02)])
+def test_the_containers_of_a_row_slip_as_far_as_they_move(mu, gap):
+    case = fem.case_from(
+        {
+            "container": {"width_m": 1.0, "height_m": 1.5, "mass_kg": 1000.0},
+            "contact": {"mu_static": mu},
+            "motion": {"kind": "harmonic", "amplitude_m": 0.1, "angular_frequency_rad_s": 8.0},
+            "vertical": {"kind": "harmonic", "amplitude_m": 0.03, "angular_frequency_rad_s": 19.0},
+            "solver": {"model": "rigid", "duration_s": 8.0},
+            "neighbour": [
+                {"side": "right", "gap_m": gap, "width_m": 0.8, "height_m": 1.2, "mass_kg": 700.0}
+                | {"stiffness_N_m": 1e8}
+            ],
+        }
+    )
+    run = fem.compute(case.replace(NO_FRAMES), **ALONE)
+    history = run.history
+    for own, start, half, centre in (("", "centre_", 0.5, 0.75), ("neighbour_1_",) * 2 + (0.4, 0.6)):
+        rotation, slip = history[f"{own}rotation_rad"], history[f"{own}slip_m"]
+        place = moved(history[f"{start}x_m"], history[f"{start}z_m"], rotation, half, centre)
+        upright = np.abs(rotation) < 1e-4
+        assert upright.sum() > 10 and np.abs(slip).max() > 0.03
+        assert np.abs((slip - slip[0]) - (place - place[0]))[upright].max() < allowed(run)
+
+
+def test_every_node_of_a_box_that_is_thrown_up_slips_as_far_as_it_moves():
+    thrown = {
+        "vertical.kind": "harmonic",
+        "vertical.amplitude_m": 0.03,
+        "vertical.angular_frequency_rad_s": 25.0,
+    }
+    strong = {"motion.amplitude_m": 0.08, "motion.angular_frequency_rad_s": 9.0}
+    keys = {"solver.model": "full", "solver.duration_s": 0.5} | thrown | strong
+    run = fem.compute(fem.load_case("seed_box").replace(keys | NO_FRAMES), **ALONE)
+    assert run.verdict.slip_in_air_m > 0.2
+    assert difference(run) <= allowed(run)
