@@ -80,7 +80,10 @@ def report(
             page = getattr(importlib.import_module(module), name)(folder, signature=signature, **brief)
         else:
             opened = importlib.import_module("fem.results.reader").open_run(folder)
-            page = pages.run_report(opened, signature=signature, brief=short, message=reporter.message)
+            models = () if short else importlib.import_module("fem.run.models").of_run(opened)
+            page = pages.run_report(
+                opened, signature=signature, brief=short, models=models, message=reporter.message
+            )
     except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
         if not type(error).__module__ == "builtins":
             raise  # has its words already

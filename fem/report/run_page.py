@@ -5,7 +5,7 @@
 
 import datetime as dt
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from contact.reference.event_driven import EventError
@@ -38,6 +38,7 @@ from fem.run.card import card_of
 from fem.run.described import floor_rows
 from fem.run.drawn_links import drawn_links
 from fem.run.joints import BOXES_NOTE, box_rows, joints_note, largest_joint_slip, unbolted
+from fem.run.models import OfModel, compared_in_words
 from fem.run.ranges import impact_note, largest_ratio, largest_rotation, largest_slip, of_band
 from fem.run.rigid_check import check_against_rigid_block
 from fem.run.static_words import code_note, governing
@@ -87,6 +88,7 @@ def run_report(
     *,
     signature: Signature | None = None,
     brief: bool = False,
+    models: Sequence[OfModel] = (),
     message: Callable[[str], None] = lambda text: None,
 ) -> str:
     """The page, as the text of an HTML file.
@@ -95,6 +97,7 @@ def run_report(
         run: opened; finished or not.
         signature: author, checker, revision; an unfinished run is not signed.
         brief: three printed pages at most: answer, inputs, static rule and run, rotation and slip, limits.
+        models: what several models find of this container (`fem.run.models`).
         message: receives a sentence for the user where something is missing.
 
     Raises:
@@ -121,6 +124,8 @@ def run_report(
         "verdict": verdict,
         "brief": brief,
         "finished": finished,
+        "models": models,
+        "models_compared": compared_in_words(case, models),
         "standing": _standing(verdict) if finished else "open",
         "sentences": (" ".join(card[:2]), " ".join(card[2:])),
         "sure": _sure(verdict),

@@ -73,7 +73,7 @@ def add_checks(
             result = replace(result, rigid_check=check.result)
         except (ValueError, events.EventError) as error:  # a run too short, a block that bounces without end
             result = replace(result, rigid_check=RigidCheckResult(reasons=(str(error),)))
-    if wanted.analytic and verdict.analytic is None and _has_analytic_block(model.case):
+    if wanted.analytic and verdict.analytic is None and has_analytic_block(model.case):
         block = importlib.import_module("fem.run.rigid_check")
         events = importlib.import_module("contact.reference.event_driven")
         end = (result.numerics or Numerics()).simulated_s or 0.0
@@ -118,7 +118,7 @@ def lacks_band(result: RunResult, case: Case, wanted: WantedChecks) -> bool:
     return verdict is not None and wants_band(wanted.band, case, result) and verdict.band is None
 
 
-def _has_analytic_block(case: Case) -> bool:
+def has_analytic_block(case: Case) -> bool:
     """Whether a case is a block on rigid ground whose motion formulas give: harmonic, a pulse, or a release."""
     alone = not (case.links or case.neighbour or case.container.is_loose or case.floor.is_slab)
     moves = case.motion.kind in ("harmonic", "pulse") or case.initial.rotation_rad != 0.0

@@ -65,7 +65,9 @@ class DisplayUnit:
         return f"{low if low == high else f'{low} to {high}'} {self.name}".rstrip()
 
     def _longer(self) -> "DisplayUnit":
-        return replace(self, name=self.long, factor=1e-3 * self.factor, long="")
+        return replace(
+            self, name=self.long, factor=1e-3 * self.factor, long="", least=max(self.least, 1.0 / self.factor)
+        )
 
     def in_figures(self, value: float, figures: int) -> str:
         """A number [SI] with so many significant figures, or the limit that it is below."""

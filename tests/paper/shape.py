@@ -12,15 +12,13 @@ from paper.dimensions import ANGULAR_FREQUENCY, GRAVITY, HALF_WIDTH, HEIGHT, PLA
 from paper.experiments import Experiments
 from paper.figures import curve, draw_curves
 
-import fem
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
 from fem.case.case import load_case
-from fem.model.model import build_model
 from fem.model.recovery import recovery_of
 from fem.results.outcome import Outcome
+from fem.run.models import compared_in_words, side_by_side
 from fem.run.recorder import Recorder
-from fem.run.rigid_check import analytic_block
 from fem.run.simulation import simulate
 from fem.run.verdict import joint_demands
 
@@ -110,35 +108,22 @@ def _largest_at_plateau(body: RigidBlock) -> float:
 )
 def four_models(experiments: Experiments) -> Evidence:
     """The shipped stack at the plateau value by four models, under its motion and up to four times of it."""
-    rigid = load_case("seed_stack_plateau", ["solver.model=rigid", "output.fields_s=0"])
-    model = build_model(rigid)
-    block = analytic_block(model, model.duration)
-    rows: list[list[object]] = [
-        ["analytic rigid block", block.outcome, block.rotation_ratio, block.max_slip_m, "", ""]
+    case = load_case("seed_stack_plateau", ["output.fields_s=0"])
+    found = side_by_side(case)
+    rows = [
+        [one.model, one.outcome, one.rotation_ratio, one.max_slip_m, one.margin, one.flight_share]
+        for one in found
     ]
-    equal_friction = []
-    for name, case in (
-        ("rigid body, rigid ground", rigid),
-        ("shell, rigid ground", load_case("seed_stack_plateau", ["output.fields_s=0"])),
-        ("shell, concrete", load_case("stack_on_concrete", ["output.fields_s=0"])),
-    ):
-        verdict = fem.compute(case, band=False, margin=True).verdict
-        gripping = case.replace({"contact.mu_kinetic": case.contact.mu_static})
-        equal_friction.append(fem.compute(gripping, band=False, margin=False).verdict.rotation_ratio)
-        assert verdict.margin is not None
-        least = verdict.margin.factor or f"not up to {verdict.margin.largest_tried:g}"
-        row = verdict.outcome, verdict.rotation_ratio, verdict.max_slip_m, least, verdict.flight_share
-        rows.append([name, *row])
+    equal = side_by_side(case.replace({"contact.mu_kinetic": case.contact.mu_static}))[1:]
     yield table(
         "The stack of the paper at 4.0 m/s² and 6.928 rad/s, mu 0.4/0.2",
-        "model | outcome | rotation ratio [-] | largest slip [m] | overturns first at [times] | in the air [-]",
+        "model | outcome | rotation ratio [-] | largest slip [m] | overturns first at | in the air [-]",
         rows,
     )
     yield (
-        f"To rock without sliding takes friction of {block.friction_needed:.2g}: more than mu_k = 0.2 and less than "
-        "mu_s = 0.4. The rigid models keep to mu_s and rock; a landing of the shell takes the load off a corner for an "
-        "instant, it breaks loose and slides, and so rocks less. With mu_k = 0.4 the rigid body and both shells reach "
-        f"{', '.join(f'{ratio:.3f}' for ratio in equal_friction)} of the slenderness angle."
+        f"{compared_in_words(case, found)} The rigid models keep to mu_s and rock; a landing of the elastic container "
+        "takes the load off a corner for an instant. With mu_k = 0.4 the rigid body and both elastic containers reach "
+        f"{', '.join(f'{one.rotation_ratio:.3f}' for one in equal)} of the slenderness angle."
     )
 
 
