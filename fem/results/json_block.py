@@ -15,6 +15,8 @@ class JsonBlock:
 
     #: keys that are left out where they are None, in place of null
     written_where_given: ClassVar[frozenset[str]] = frozenset()
+    #: of fields that hold rows, the types of their columns; a row has None where it lacks one
+    columns_of: ClassVar[Mapping[str, Mapping[str, type]]] = {}
 
     @classmethod
     def from_json(cls, block: Mapping[str, Any]) -> Self:
@@ -67,25 +69,46 @@ class _WrongTypeError(ValueError):
 def _readers(kind: type[JsonBlock]) -> dict[str, Callable[[Any], Any]]:
     """For each field, what makes its value from JSON types."""
     hints = get_type_hints(kind)
-    return {field.name: _reader(hints[field.name]) for field in fields(kind)}  # type: ignore[arg-type]
+    readers = {field.name: _reader(hints[field.name], _given(kind)) for field in fields(kind)}  # type: ignore[arg-type]
+    return readers | {name: _listed(_row(columns)) for name, columns in kind.columns_of.items()}
 
 
-def _reader(hint: Any) -> Callable[[Any], Any]:
-    """What makes a value from JSON types, where null is one of any type."""
+def _given(kind: type) -> dict[Any, Any]:
+    """What the variables of generic bases stand for in a class."""
+    given: dict[Any, Any] = {}
+    for base in kind.__mro__:
+        for generic in getattr(base, "__orig_bases__", ()):
+            of = getattr(get_origin(generic), "__parameters__", ())
+            given |= dict(zip(of, get_args(generic), strict=False)) if of else {}
+    return given
+
+
+def _row(columns: Mapping[str, type]) -> Callable[[Any], Any]:
+    """A row with typed columns, and others as they are."""
+    readers = {name: _scalar((kind,)) for name, kind in columns.items()}
+
+    def read(value: Any) -> Any:
+        if not isinstance(value, dict):
+            raise _WrongTypeError("", "table")
+        typed = {name: _within(f".{name}", reader, value.get(name)) for name, reader in readers.items()}
+        return value | typed
+
+    return read
+
+
+def _reader(hint: Any, given: Mapping[Any, Any]) -> Callable[[Any], Any]:
+    """What makes a value from JSON types, where null is one of any type; given: what type variables stand for."""
+    hint = given.get(hint, hint) if isinstance(hint, TypeVar) else hint
     parts = [part for part in get_args(hint) if part is not NoneType]
     if get_origin(hint) in (UnionType, Union):
-        return _reader(parts[0]) if len(parts) == 1 else _scalar(tuple(parts))
-    if isinstance(hint, TypeVar):  # a number, or the ends of a range
-        number = _scalar((float,))
-        ends = _listed(number)
-        return lambda value: ends(value) if isinstance(value, list) else number(value)
+        return _reader(parts[0], given) if len(parts) == 1 else _scalar(tuple(parts))
     kind = get_origin(hint) or hint
     if isinstance(kind, type) and issubclass(kind, JsonBlock):
         return kind.from_json
     if kind is tuple:
-        return _listed(_reader(parts[0]))
+        return _listed(_reader(parts[0], given), None if Ellipsis in parts else len(parts))
     if kind is dict:
-        return _table(_reader(parts[1]))
+        return _table(_reader(parts[1], given))
     return _scalar((kind,)) if kind in NAMED else lambda value: value
 
 
@@ -104,10 +127,14 @@ def _scalar(kinds: tuple[type, ...]) -> Callable[[Any], Any]:
     return read
 
 
-def _listed(read: Callable[[Any], Any]) -> Callable[[Any], Any]:
+def _listed(read: Callable[[Any], Any], count: int | None = None) -> Callable[[Any], Any]:
+    """A list; of `count` items, none of which is null, where that is given."""
+
     def items(values: Any) -> Any:
         if not isinstance(values, list):
             raise _WrongTypeError("", "list")
+        if count is not None and (len(values) != count or None in values):
+            raise _WrongTypeError("", f"list of {count} values")
         return tuple(_within(f"[{k}]", read, value) for k, value in enumerate(values))
 
     return items

@@ -3,6 +3,7 @@ that nobody fills, or a link."""
 
 import errno
 import json
+import math
 import os
 import stat
 from pathlib import Path
@@ -49,9 +50,9 @@ def read_json(path: Path) -> Any:
 
 
 def parsed_json(text: str) -> Any:
-    """What a text holds as JSON; ValueError where it is none, or nested more deeply than any of this program."""
+    """What a text holds as JSON; ValueError where it is none, too deeply nested, or a number is not finite."""
     try:
-        content = json.loads(text)
+        content = json.loads(text, parse_float=_finite, parse_int=_whole, parse_constant=_finite)
     except RecursionError:
         raise ValueError("its lists are nested too deeply") from None
     level = [content]
@@ -65,6 +66,17 @@ def parsed_json(text: str) -> Any:
     if level:
         raise ValueError("its lists are nested too deeply")
     return content
+
+
+def _finite(digits: str) -> float:
+    if not math.isfinite(number := float(digits)):
+        raise ValueError(f"{digits:.20} is no finite number")
+    return number
+
+
+def _whole(digits: str) -> int:
+    _finite(digits)
+    return int(digits)
 
 
 def _unblocked(path: str, flags: int) -> int:

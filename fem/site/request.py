@@ -14,7 +14,7 @@ from fem.case.data_files import as_named_from
 from fem.case.files import SITES, Origin
 from fem.case.tables import quantities as q
 from fem.case.tables.run_tables import DocumentTable, WindTable
-from fem.case.tables.table import CaseTable, case_key, optional_key
+from fem.case.tables.table import CaseTable, OneLine, case_key, optional_key
 from fem.case.toml import toml_document
 from fem.case.validation import CaseError
 from fem.runtime.user_files import leads_out, real_path
@@ -73,7 +73,7 @@ class SiteHeading(CaseTable):
     schema_version: Annotated[int, Strict(), q.SCHEMA] = Field(
         default=1, alias="schema", description="of this file's keys"
     )
-    title: Annotated[str, Field(max_length=500)] = case_key("for people", "")
+    title: Annotated[str, Field(max_length=500), OneLine] = case_key("for people", "")
     container: str = case_key("a case file beside this one, or a shipped case; its motion is not used")
     empty_mass_kg: Annotated[float, q.MASS] | None = optional_key(
         "of one empty box; left out: full only", 400.0

@@ -14,7 +14,7 @@ from fem.case.files import CASES, DEFAULT_CASE, ENSEMBLES, SWEEPS, Origin, is_th
 from fem.case.overrides import keys_in_effect
 from fem.case.tables.links import ROWS
 from fem.case.tables.quantities import SLIP_LIMIT
-from fem.case.tables.table import CaseTable
+from fem.case.tables.table import CaseTable, OneLine
 from fem.case.validation import CaseError, problem_lines, read_table
 from fem.runtime.intervals import least_draws
 from fem.runtime.left import left_words
@@ -209,7 +209,7 @@ class StudyHeading(CaseTable):
     """The keys of a study's file that stand before its first table."""
 
     case: str = Field(default=DEFAULT_CASE, description="a shipped case, or a file beside this file")
-    title: str = Field(default="", max_length=500, description="for people")
+    title: Annotated[str, OneLine] = Field(default="", max_length=500, description="for people")
     limit_slip_m: Annotated[float, SLIP_LIMIT] | None = Field(
         default=None,
         description="slip beyond which a run does not stand in the answer, nor in the counts of draws",

@@ -46,12 +46,18 @@ class Fragility(JsonBlock):
     written_where_given = frozenset({"no_lognormal"})
 
 
+POINT_COLUMNS: Columns = dict.fromkeys(("draws", *COUNTED), int)
+POINT_COLUMNS |= dict.fromkeys(("probability", "low", "high"), float) | {"region": str, SLIPPED: float}
+TYPED = {"points": POINT_COLUMNS}
+
+
 @dataclass(frozen=True, kw_only=True)
 class EnsembleResult(StudyResult):
     """All results of an ensemble."""
 
     asked: str  #: hash of the request
     ensemble: str = ""  #: its name
+    columns_of = TYPED
     title: str = ""
     case: str = ""  #: name of the base case
     model: str = ""
@@ -163,8 +169,6 @@ def misses_by_chance(levels: int, confidence: float) -> int:
 
 
 #: columns of `points.csv` behind those of the axes
-POINT_COLUMNS: Columns = dict.fromkeys(("draws", *COUNTED), int)
-POINT_COLUMNS |= dict.fromkeys(("probability", "low", "high"), float) | {"region": str, SLIPPED: float}
 PointRow = dict[str, Any]  #: of a point, by the keys of the axes and these columns
 FEWEST_FITTED = 4  #: levels from which a curve is fitted
 NO_CURVE = "the counts are a step, fall, or hold nothing that overturned or nothing that stood"

@@ -35,7 +35,13 @@ OF_MOTIONS |= {"largest_slip_m": float, "largest_slip_motion": str}
 COLUMNS = OF_A_RUN | CHECKED | STATIC | OF_MOTIONS | {"rank": int, "side": str}
 FIRST = ("status", "reason", "outcome", *[*CHECKED][:3], TURNED, SLIPPED, "tilt_rad")
 #: behind the columns of the list
+#: of a row of the list
+ROW_COLUMNS = {"row": int, "line": int, "name": str, "count": int, "tag": str, "command": str}
 RESULT_COLUMNS = {name: COLUMNS[name] for name in (*FIRST, *STATIC, *OF_MOTIONS, *CHECKED, *COLUMNS)}
+TYPED = {
+    "table": RESULT_COLUMNS | ROW_COLUMNS,
+    "tags": {"tag": str, "containers": int, "margin": float},
+}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,6 +49,7 @@ class HallResult(StudyResult):
     """All results of a hall."""
 
     written_where_given = StudyResult.written_where_given | {"allow_outside", "one_side"}
+    columns_of = TYPED
     hall: str
     case: str
     asked: str  #: hash of what is computed
@@ -115,6 +122,11 @@ class HallRow:
     container: int | None = None  #: its number among those that differ, once the row is checked
 
 
+def one_line(field: str) -> str:
+    """A name in one line, without the apostrophe before what a spreadsheet would compute."""
+    return " ".join(plain_text(field).split())
+
+
 @dataclass(frozen=True, kw_only=True)
 class HallFile:
     """A list as it was read."""
@@ -178,9 +190,9 @@ class HallFile:
             reason = f"{len(line.fields)} fields, and the header names {len(named)} columns"
         return HallRow(
             line=line.number,
-            name=plain_text(texts.get(NAME, "")) or str(number),
+            name=one_line(texts.get(NAME, "")) or str(number),
             count=int(count),
-            tag=plain_text(texts.get(TAG, "")),
+            tag=one_line(texts.get(TAG, "")),
             given=given,
             values={key: _value(key, texts[key]) for key in self.keys if whole and texts[key]},
             reason=reason,

@@ -18,7 +18,7 @@ from fem.case.tables.run_tables import (
     StaticTable,
     WindTable,
 )
-from fem.case.tables.table import CaseTable, case_key
+from fem.case.tables.table import CaseTable, OneLine, case_key
 from fem.case.tables.uncertainty_table import UncertaintyTable
 
 TABLES: dict[str, type[CaseTable]] = {
@@ -50,7 +50,7 @@ class CaseHeading(CaseTable):
     schema_version: Annotated[int, Strict(), q.SCHEMA] = Field(
         default=1, alias="schema", description="of this file's keys"
     )
-    title: Annotated[str, Field(max_length=500)] = case_key("for people", "")
+    title: Annotated[str, Field(max_length=500), OneLine] = case_key("for people", "")
     gravity_m_s2: Annotated[float, q.GRAVITY] = case_key(
         "g; the paper (Knoedel and Hrabowski) takes 10", 9.81
     )

@@ -7,7 +7,7 @@ from pydantic import BeforeValidator, Field, Strict
 from fem.case.tables import quantities as q
 from fem.case.tables.problem import Rule, one_of
 from fem.case.tables.rules import SOLVER_RULES
-from fem.case.tables.table import CaseTable, case_key, optional_key
+from fem.case.tables.table import CaseTable, OneLine, case_key, optional_key
 
 
 class InitialTable(CaseTable):
@@ -133,7 +133,7 @@ class OutputTable(CaseTable):
     )
 
 
-Text = Annotated[str | None, Field(max_length=200)]
+Text = Annotated[str | None, Field(max_length=200), OneLine]
 #: a document may have the number 2417
 Mark = Annotated[Text, BeforeValidator(lambda mark: str(mark) if type(mark) is int else mark)]
 

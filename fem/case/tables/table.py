@@ -3,10 +3,13 @@
 from functools import cache
 from typing import Any, ClassVar, Self
 
-from pydantic import BaseModel, ConfigDict, Field, ModelWrapValidatorHandler, model_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ModelWrapValidatorHandler, model_validator
 from pydantic_core import PydanticUndefined
 
 from fem.case.tables.problem import BrokenRulesError, Rule, broken
+
+#: a text of one line, whatever ends of lines it was given: a line of its own would speak for the program
+OneLine = AfterValidator(lambda text: " ".join(text.split()) if text else text)
 
 
 class CaseTable(BaseModel):
