@@ -6,6 +6,7 @@ import os
 import signal
 import sys
 import threading
+import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import (
     FIRST_COMPLETED,
@@ -16,10 +17,11 @@ from concurrent.futures import (
     ThreadPoolExecutor,
     wait,
 )
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, field
 from itertools import islice
 from multiprocessing import get_context
+from multiprocessing.queues import SimpleQueue
 from multiprocessing.synchronize import Semaphore
 from types import TracebackType
 from typing import Self, TypeVar
@@ -29,6 +31,7 @@ from typing import Self, TypeVar
 WORTH_PROCESSES = {"rigid": 2000, "reduced": 100, "full": 1}
 #: the same of processes that are forked, with all modules loaded
 WORTH_FORKS = {"rigid": 64, "reduced": 8, "full": 1}
+ENDING_S = 10.0  #: that running work is waited for once a stop is asked for
 IN_THREADS = dict.fromkeys(WORTH_PROCESSES, math.inf)  #: no number: threads alone
 ENDING = (signal.SIGINT, signal.SIGTERM)  #: signals that end a process
 STDIN = "<stdin>"  #: file of a script that Python reads from its standard input
@@ -82,6 +85,7 @@ class LocalWorkers:
         self._held = ExitStack()
         #: released for each process at the end; a dead one blocks no other
         self._over: Semaphore | None = None
+        self._begun: list[SimpleQueue[int]] = []  #: process ids of those that have begun
         self._pools: dict[tuple[bool, int], Executor] = {}  #: by whether it is of processes, and how many
 
     def __call__(self, model: str, count: int) -> Sequence[Pool]:
@@ -105,6 +109,11 @@ class LocalWorkers:
             for _ in range(count if processes else 0):
                 assert self._over is not None
                 self._over.release()
+        if sys.platform != "win32":
+            for begun in self._begun:
+                while not begun.empty():
+                    with suppress(OSError):  # it has ended
+                        os.kill(begun.get(), signal.SIGCONT)  # one that somebody stopped would never end
         self._held.close()
 
     def _pool(self, count: int, *, processes: bool = False) -> Pool:
@@ -117,7 +126,10 @@ class LocalWorkers:
     def _processes(self, count: int) -> Executor:
         context = get_context("fork" if _may_fork() else "spawn")
         self._over = self._over or context.Semaphore(0)
-        return ProcessPoolExecutor(count, context, _end_with_parent, (os.getpid(), self._over))
+        self._begun.append(context.SimpleQueue())
+        return ProcessPoolExecutor(
+            count, context, _end_with_parent, (os.getpid(), self._over, self._begun[-1])
+        )
 
 
 def _may_fork() -> bool:
@@ -145,12 +157,12 @@ def hand_out(
         pools: of workers.
         at_a_time: items of a chunk.
         stop: asked repeatedly; true ends the work.
-        finish: whether running chunks are then completed.
+        finish: whether running chunks are then completed, of workers that answer within `ENDING_S`.
 
     Raises:
         WorkersLostError: a process died.
     """
-    remaining = iter(items)
+    remaining, until = iter(items), math.inf
     waiting: dict[Future[FoundT], tuple[Pool, list[ItemT]]] = {}
     try:
         while waiting or not stop():
@@ -179,9 +191,10 @@ def hand_out(
                 pool.given -= 1
                 yield chunk, results
             if stop():
+                until = min(until, time.monotonic() + ENDING_S)
                 for future in [future for future in waiting if future.cancel()]:
                     del waiting[future]
-                if not finish:
+                if not finish or time.monotonic() > until:
                     break
     finally:
         for future in waiting:
@@ -216,7 +229,7 @@ def unguarded_script() -> str | None:
     return None if guarded else os.path.basename(path)
 
 
-def _end_with_parent(parent: int, over: Semaphore) -> None:
+def _end_with_parent(parent: int, over: Semaphore, begun: SimpleQueue[int]) -> None:
     """End this worker when the work is over, or when the process that started it has ended."""
     for number in ENDING:  # of a whole process group: the parent handles them
         signal.signal(number, signal.SIG_IGN)
@@ -227,3 +240,4 @@ def _end_with_parent(parent: int, over: Semaphore) -> None:
         os._exit(1)
 
     threading.Thread(target=watch, daemon=True).start()
+    begun.put(os.getpid())
