@@ -15,7 +15,7 @@ class JsonBlock:
 
     #: keys that are left out where they are None, in place of null
     written_where_given: ClassVar[frozenset[str]] = frozenset()
-    #: of fields that hold rows, the types of their columns; a row has None where it lacks one
+    #: of fields that hold rows, the types of their columns
     columns_of: ClassVar[Mapping[str, Mapping[str, type]]] = {}
 
     @classmethod
@@ -90,8 +90,8 @@ def _row(columns: Mapping[str, type]) -> Callable[[Any], Any]:
     def read(value: Any) -> Any:
         if not isinstance(value, dict):
             raise _WrongTypeError("", "table")
-        typed = {name: _within(f".{name}", reader, value.get(name)) for name, reader in readers.items()}
-        return value | typed
+        given = ((name, reader) for name, reader in readers.items() if name in value)
+        return value | {name: _within(f".{name}", reader, value[name]) for name, reader in given}
 
     return read
 

@@ -132,7 +132,7 @@ def compared_in_words(given: Case, found: Sequence[OfModel]) -> str:
         fell = [one.model for one in found if one.outcome == Outcome.OVERTURNED]
         words = "All overturn." if len(ends) == 1 else f"It overturns by some only: {', '.join(fell)}."
     elif high - low <= max(ALIKE * high, RATIO.least):
-        words = f"Rotations agree: {RATIO.text(low)} to {RATIO.text(high)} of the slenderness angle."
+        words = f"Rotations agree: {RATIO.range_text((low, high))} of the slenderness angle."
     else:
         words = f"Rotations differ: {RATIO.text(low)} ({least}) to {RATIO.text(high)} ({most})."
     slips = [one.max_slip_m for one in found if one.max_slip_m is not None]
