@@ -21,6 +21,7 @@ from cases import TEXTS, named_case
 from site_answers import answered, brief_page, sited
 from site_example import write_example
 from study_folders import ensemble_folder, response_folder
+from study_words import worded
 from typed_results import told
 
 from fem.__main__ import main
@@ -155,9 +156,8 @@ def test_the_program_says_what_it_said_when_that_was_last_read(name, request, tm
         (tmp_path / f"{case}.toml").write_text(text, encoding="utf-8")
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "80")
-    say = {"refusals": refused, "results": told, "answers": answered, "sites": sited, "pages": paged}.get(
-        name, lambda asked: commanded(asked, capsys)
-    )
+    told_by = {"refusals": refused, "results": told, "answers": answered, "sites": sited, "pages": paged}
+    say = (told_by | {"sentences": worded}).get(name, lambda asked: commanded(asked, capsys))
     pairs = [
         (asked, "" if asked.startswith("#") else steady(say(asked[2:]), tmp_path)) for asked in asked_in(file)
     ]

@@ -7,7 +7,7 @@ import pytest
 
 from contact.stepping.body import CENTRE_Z, ROTATION
 from fem.__main__ import main
-from fem.case.case import CaseError, load_case
+from fem.case.case import load_case
 from fem.model.container import discretise
 from fem.model.model import build_model
 from fem.report.study_page import response_report
@@ -42,41 +42,6 @@ def test_what_is_held_is_what_the_case_states():
     assert request_of("motion.amplitude_m=0.05", hold="acceleration").held_value == pytest.approx(
         0.05 * 6.928**2
     )
-
-
-@pytest.mark.parametrize(
-    ("changes", "values", "message"),
-    [
-        (("motion.amplitude_m=0",), {}, "needs a floor that moves"),
-        (["motion.kind=none"], {}, r'\[motion\] kind must be "harmonic"'),
-        (["motion.cycles=5"], {}, r"\[motion\] cycles must be left out"),
-        (["solver.model=full"], {}, r"reduced"),
-        (
-            ["tie=[{from = 'left', height_m = 0.5, stiffness_N_m = 1e6}]"],
-            {},
-            r"\[stop\] and \[tie\] must be left out",
-        ),
-        ([], {"first_Hz": 2.0}, "--from must be less than --to, got 2 Hz and 1.4 Hz"),
-        (
-            [],
-            {"first_Hz": 0.0},
-            "--from must lie between 0.01 and 100 Hz, got 0 Hz; with eta = 0 the floor does not move",
-        ),
-        ([], {"last_Hz": float("nan")}, "--to must lie between"),
-        (
-            [],
-            {"first_Hz": 1.0, "last_Hz": 1.0 + 1e-7},
-            "below the resolution of 1e-06; take fewer, or a wider range",
-        ),
-        ([], {"starts": -1}, "--starts must lie between 0 and 1000, got -1"),
-        (["solver.model=reduced"], {"shell": True}, "--shell adds the elastic container to a rigid one"),
-        ([], {"count": 1}, "--count must lie between 2 and 2000, got 1"),
-        ([], {"observe": 4}, "--observe must lie between 8"),
-    ],
-)
-def test_a_request_that_cannot_be_met_is_refused(changes, values, message):
-    with pytest.raises(CaseError, match=message):
-        request_of(*changes, **values)
 
 
 def test_the_command_writes_its_tables_and_figures(tmp_path, capsys):

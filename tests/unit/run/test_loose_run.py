@@ -8,10 +8,9 @@ import pytest
 from cases import named_case
 
 import fem
-from fem.case.case import CaseError, read_case, to_toml
+from fem.case.case import read_case, to_toml
 from fem.case.columns import BOXES
 from fem.case.tables.unknown_inputs import ranges_of
-from fem.response.request import ResponseRequest
 from fem.results.history import read_history
 from fem.results.reader import open_run
 from fem.results.run_result import Verdict
@@ -162,8 +161,3 @@ def test_the_friction_of_the_joints_does_not_follow_the_floors_in_a_band(case):
     given = fem.compute(stuck, band=True, margin=False).verdict.band
     floors = [one for one in given.members if set(one.values or {}) == {"contact.mu_kinetic"}]
     assert floors and {one.boxes[1] for one in floors} == {given.members[0].boxes[1]}
-
-
-def test_what_a_loose_stack_cannot_be_asked_is_refused(case):
-    with pytest.raises(CaseError, match='must be "bolted" for a response curve'):
-        ResponseRequest(case=case, first_Hz=0.5, last_Hz=1.0, count=2)

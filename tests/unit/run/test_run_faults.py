@@ -118,7 +118,7 @@ def test_a_history_that_cannot_grow_ends_the_run_with_3(tmp_path, capsys, monkey
     assert code == 3
     assert "history.csv: cannot be written (File too large)" in message and "--resume" in message
     assert (tmp_path / "r" / "history.csv").read_bytes().endswith(b"\n")
-    assert len(read_history(tmp_path / "r" / "history.csv")) > 100
+    assert len(read_history(tmp_path / "r" / "history.csv").modes) > 100
     result = read_result(tmp_path / "r" / "run.json")
     assert result["status"] == "failed" and "File too large" in result["error"]
     require_resumed(tmp_path / "r", whole, "--resume")

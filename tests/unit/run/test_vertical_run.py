@@ -8,12 +8,11 @@ import numpy as np
 import pytest
 
 from fem import compute
-from fem.case.case import CaseError, load_case
+from fem.case.case import load_case
 from fem.figures.run import figures_of
 from fem.model.model import build_model
 from fem.report.animation import animation_of
 from fem.report.run_page import run_report
-from fem.response.request import ResponseRequest
 from fem.results.reader import open_run
 from fem.run.run import RunOptions, run_case
 from fem.run.summary import plain_summary
@@ -127,14 +126,6 @@ def test_a_run_on_two_motions_lasts_as_long_as_the_longer_one():
     assert model.rest_from == 0.7
     assert model.duration == 60.7
     assert math.isinf(build_model(case.with_values({"solver.duration_s": 2.0})).rest_from)
-
-
-def test_a_response_curve_has_no_vertical_motion():
-    case = load_case("seed_stack_plateau", [*RIGID, *VERTICAL])
-    with pytest.raises(
-        CaseError, match=r'\[vertical\] kind must be "none" for a response curve, got "harmonic"'
-    ):
-        ResponseRequest(case=case, first_Hz=0.5, last_Hz=1.0, count=3)
 
 
 def test_a_container_that_leaves_its_floor_hops_and_its_verdict_is_tried():

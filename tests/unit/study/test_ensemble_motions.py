@@ -71,23 +71,6 @@ def test_a_list_is_drawn_evenly(ensemble_of):
     assert [kinds[k : k + 4].count("flat") for k in (0, 4, 8)] == [2, 2, 2]
 
 
-@pytest.mark.parametrize(
-    ("body", "told"),
-    [
-        (
-            '"vertical.scale" = [1.0, -1.0]\n',
-            r"'vertical.scale' varies, and 'c_h.csv' has no vertical motion",
-        ),
-        ('"support.kind" = ["corners", "wheels"]\n', "'support.kind' must be"),
-        ('"contact.mu_static" = [0.3, 0.3]\n', "has the value 0.3 twice"),
-        ('"contact.mu_static" = 0.3\n', "must be a distribution or a list of values"),
-    ],
-)
-def test_what_cannot_be_drawn(ensemble_of, body, told):
-    with pytest.raises(CaseError, match=told):
-        ensemble_of(body)
-
-
 def test_an_ensemble_tells_its_motions(ensemble_of, tmp_path):
     folder = tmp_path / "results"
     result = run_ensemble(ensemble_of(), folder=folder, jobs=1)

@@ -272,31 +272,6 @@ def test_lists_of_every_spreadsheet_are_read(tmp_path, text, encoding):
     assert row.name == "Behälter" and row.values == {"container.width_m": 1.25, "container.mass_kg": 2000.0}
 
 
-@pytest.mark.parametrize(
-    ("text", "words"),
-    [
-        ("1.0,2000\n2.0,3000\n", "so there is no header"),
-        ("", "the list is empty"),
-        ("name,width_m\n", "a header and no rows"),
-        ("name,widht_m\na,1\n", "'widht_m' is no key of a case; did you mean 'width_m'"),
-        ("name,width [mm]\na,1\n", "did you mean 'width_m'"),
-        ("name,Weight (kN)\na,1\n", "did you mean 'weight_N'"),
-        ("name,container.colour\na,1\n", "'container.colour' is no key of a case file"),
-        ("name,damping_ratio\na,1\n", "may be container.damping_ratio or contact.damping_ratio"),
-        ("name,width_m,container.width_m\na,1,1\n", "both set 'container.width_m'"),
-        ("name,width_m,width_m\na,1,1\n", "'width_m' occurs 2 times"),
-        ("name,margin,width_m\na,1,1\n", "'margin' has the name of a result"),
-        ("name,width_m,\na,1,lost\n", "line 2: column 3 has values and no name"),
-        ("name;width_m\na;1,5\nb;1.5\n", "decimal commas (line 2) and decimal points (line 3)"),
-        ("\0\1", "not a text file"),
-    ],
-)
-def test_a_list_that_cannot_be_read_is_refused_in_a_sentence(tmp_path, text, words):
-    with pytest.raises(CaseError) as error:
-        _ = read_hall(listed(tmp_path, text)).rows
-    assert words in str(error.value) and str(error.value).startswith(str(tmp_path / "hall.csv"))
-
-
 def test_a_bad_row_has_its_reason(tmp_path, base, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     text = (

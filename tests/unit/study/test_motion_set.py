@@ -8,7 +8,7 @@ from fem.case.case import CaseError, read_case
 from fem.model.motion import build_motion
 from fem.records.intensity import intensity
 from fem.records.spectrum import response_spectrum
-from fem.study.axes import AxisError, first_motion, read_axis, with_following
+from fem.study.axes import first_motion, read_axis, with_following
 from fem.study.motions import motion_cases, read_motion_set, spectra_of
 
 CASE = """
@@ -48,29 +48,6 @@ def test_names_and_pairs_stand_side_by_side():
     second = {"motion.file": "b_h.at2", "vertical.kind": "table", "vertical.file": "b_v.at2"}
     assert with_following([axis], {"motion.file": "b_h.at2"}) == second
     assert first_motion([axis]) == second  # the base case has a vertical motion if any motion has
-
-
-@pytest.mark.parametrize(
-    ("given", "told"),
-    [
-        ([], "must be a list of files or pairs"),
-        ({"from": 1.0, "to": 2.0, "count": 2}, "must be a list of files or pairs"),
-        ([3], "must hold file names and pairs of file names, got 3"),
-        ([["a", "b", "c"]], "must hold file names and pairs"),
-        ([["a.at2"]], r"has a pair without its vertical motion, \['a.at2'\]; a pair is"),
-        ([["a.at2", " "]], "has a pair without its vertical motion"),
-        ([["", "v.at2"]], "has a vertical motion without a horizontal one"),
-        (
-            ["a.at2", ["b.at2", "c.at2"], "a.at2"],
-            "names 'a.at2' twice; the motions of a set are of different files",
-        ),
-        ([["a.at2", "v.at2"], ["b.at2", "v.at2"]], "names 'v.at2' twice"),
-        ([["a.at2", "b.at2"], "b.at2"], "names 'b.at2' twice"),
-    ],
-)
-def test_what_is_no_set_of_motions(given, told):
-    with pytest.raises(AxisError, match=told):
-        read_axis("motion.file", given)
 
 
 def test_the_motions_are_read_as_the_case_takes_them(base):

@@ -1,0 +1,164 @@
+"""What is said of studies for what a line of a transcript makes: `line(PEAK, "sso", slip=0.064)`, `hall("")`.
+
+An answer in a sentence; or why a list, a file, an axis, an expression or a request is refused.
+"""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from fem.case.case import load_case
+from fem.case.validation import CaseError
+from fem.response.answer import fell_share, lasting_in_words, response_answer
+from fem.response.lasting import ResponseResult, coexistences, drop_outs, frequencies_of
+from fem.response.records import PointRecord, PointRow
+from fem.response.request import ResponseRequest
+from fem.results.outcome import Ending
+from fem.study.answers import Trial, answer_of, ensemble_answer, is_rising, sentence_of
+from fem.study.axes import Axis, AxisError
+from fem.study.derived import ExpressionError
+from fem.study.file import load_ensemble, load_sweep
+from fem.study.fragility import EnsembleResult
+from fem.study.list_file import read_hall
+
+G = 9.80665
+PEAK = Axis(key="motion.peak_acceleration_m_s2", values=(0.2 * G, 0.4 * G, 0.6 * G), unit="m/s2")
+WIDTH = Axis(key="container.width_m", values=(0.8, 1.0, 1.2), unit="m")
+MU = Axis(key="contact.mu_static", values=(0.2, 0.3, 0.4))
+ENSEMBLE = Path(__file__).parent / "files" / "ensemble.toml"
+SWEEP = 'case = "seed_stack_plateau"\n[set]\n"solver.model" = "rigid"\n'
+#: a sweep over three frequencies
+RATE = '[axes]\n"motion.angular_frequency_rad_s" = { from = 2.0, to = 4.0, count = 3 }\n'
+KINDS = {"s": Ending.STANDING, "o": Ending.OVERTURNED, "f": Ending.FAILED}
+REFUSALS = (CaseError, AxisError, ExpressionError)
+
+
+def line(axis, kinds, slip=None, unsure="", limit=None):
+    """A line of trials, a letter and perhaps a slip each; `unsure` has an x where one is."""
+    slips = slip if isinstance(slip, tuple) else (slip,) * len(kinds)
+    values = axis.values if len(axis.values) == len(kinds) else [0.1 * G * (k + 1) for k in range(len(kinds))]
+    trials = [
+        Trial(value, 0, KINDS[kind], slid, None if mark == "" else mark == "x")
+        for value, kind, slid, mark in zip(values, kinds, slips, unsure or [""] * len(kinds), strict=True)
+    ]
+    rising = is_rising(axis, trials)
+    return sentence_of(answer_of(trials, rising=rising, limit_slip=limit), axis, rising=rising)
+
+
+def over(axis, *shares, slips=(), mu=None):
+    """Points of an ensemble, whose intervals reach 0.1 to both sides."""
+    for k, (value, share) in enumerate(zip(axis.values, shares, strict=True)):
+        point = {} if mu is None else {MU.key: mu}
+        middle = 0.5 if share is None else share
+        ends = {"low": max(middle - 0.1, 0.0), "high": min(middle + 0.1, 1.0)}
+        point |= {
+            axis.key: value,
+            "probability": share,
+            "region": "below" if share == 0.0 else "above",
+            **ends,
+        }
+        yield point | ({"max_slip_m": slips[k]} if slips else {})
+
+
+def ensemble_of(*points, **more):
+    """The answer of an ensemble, whose last axis is the fastest."""
+    axes = [
+        {"key": one.key, "values": sorted({point[one.key] for point in points}), "unit": one.unit}
+        for one in (MU, PEAK, WIDTH)
+        if one.key in points[0]
+    ]
+    found = {"status": "completed", "asked": "", "draws": 128, "random": {}, "confidence": 0.95}
+    found |= {"probability": 0.05, "axes": axes, "points": list(points)}
+    return ensemble_answer(EnsembleResult.from_json(found | more))
+
+
+def draws(*points, **more):
+    return ensemble_of(*points, **more).sentence
+
+
+def point(frequency, direction, ratio, **changes):
+    """A point of a response curve: rocking of period 1, or overturned."""
+    fell = ratio is None
+    row = PointRow(
+        number=round(10 * frequency),
+        frequency_Hz=frequency,
+        amplitude_m=0.1,
+        peak_acceleration_m_s2=1.0,
+        began="random" if direction == "start" else "carried",
+        periods=1,
+        direction=direction,
+        rotation_ratio=ratio,
+        median_rotation_ratio=ratio,
+        slip_stroke_m=None if fell else 0.0,
+        motion=None if fell else "rock",
+        long_time=None if fell else "periodic",
+        period_n=1,
+        status="overturned" if fell else "completed",
+    )
+    return replace(row, **changes)
+
+
+STANDS = (point(0.5, "up", 0.1), point(1.0, "up", 0.62), point(1.0, "down", 0.3), point(0.5, "down", 0.1))
+STARTS = tuple(
+    point(frequency, "start", ratio)
+    for frequency, ratio in ((1.0, 0.9), (1.0, 0.62), (1.0, None), (0.5, None))
+)
+CRUSHED = {"motion": "invalid", "long_time": None}
+
+
+def record(row):
+    none = {"sections": np.zeros((1, 4)), "extremes": np.zeros((1, 7)), "portrait": np.zeros((1, 2))}
+    return PointRecord(row=row, **none)
+
+
+def curve(*points, status="completed"):
+    """The sentence, and what lasts at each frequency."""
+    records = [record(row) for row in points]
+    frequencies = tuple(frequencies_of(records))
+    result = ResponseResult(
+        asked="",
+        status=status,
+        points=tuple(row for row in points if row.direction != "start"),
+        frequencies=frequencies,
+        coexisting=tuple(coexistences(frequencies)),
+        drop_outs=tuple(drop_outs(records)),
+        starts_fell_share=fell_share(frequencies),
+    )
+    return "\n".join([str(response_answer(result)), *(words for _, words in lasting_in_words(result))])
+
+
+def written(name, text):
+    path = Path(name)
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def hall(text):
+    return read_hall(written("list.csv", text)).rows
+
+
+def ensemble(*changes):
+    """The ensemble file with texts replaced, one after the other."""
+    text = ENSEMBLE.read_text(encoding="utf-8")
+    for old, new in zip(changes[::2], changes[1::2], strict=True):
+        assert old in text, old
+        text = text.replace(old, new)
+    return load_ensemble(written("e.toml", text))
+
+
+def sweep(body, head=SWEEP):
+    return load_sweep(written("try.toml", head + body))
+
+
+def request(*changes, **values):
+    given = {"first_Hz": 1.0, "last_Hz": 1.4, "count": 5} | values
+    return ResponseRequest(case=load_case("seed_stack_plateau", ["solver.model=rigid", *changes]), **given)
+
+
+def worded(asked):
+    try:
+        found = eval(asked)  # a line of this folder
+        return found if isinstance(found, str) else "nothing is said against it"
+    except REFUSALS as error:
+        return str(error)
