@@ -252,18 +252,3 @@ def test_the_command_writes_page_and_document(tmp_path, capsys):
     assert "comparisons of half-width" in page and "comparisons of centre-or-base" not in page
     assert "src=" not in page  # nothing to load
     assert page.count("<script") == 1 and 'id="save"' in page  # what keeps author and checker in a copy
-
-
-@pytest.mark.parametrize(
-    ("arguments", "said"),
-    [
-        (["study", "seeds"], "did you mean 'seed'"),
-        (["study", "seed", "--only", "half-widht"], "did you mean 'half-width'"),
-        (["study", "seed", "-j", "0"], "at least one core"),
-    ],
-)
-def test_bad_input_is_refused_with_a_way_out(arguments, said, capsys, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    assert main(arguments) == 2
-    assert said in capsys.readouterr().err
-    assert list(tmp_path.iterdir()) == []

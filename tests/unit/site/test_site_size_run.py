@@ -92,9 +92,3 @@ def test_values_share_a_folder_of_motions_where_these_are_the_same(tmp_path, key
         np.testing.assert_array_equal(
             work.stages.screening.motions[key.stem].horizontal, work.stages.ground[0].horizontal
         )
-
-
-def test_bad_input_is_told_before_anything_is_computed(place, capsys):
-    for over, message in (("container.boxs", "did you mean 'boxes'"), ("site.ground", "no single number")):
-        assert main(["size", str(place / "hall.toml"), "--over", over, *out(place)]) == 2
-        assert message in capsys.readouterr().err

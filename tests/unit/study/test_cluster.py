@@ -43,6 +43,7 @@ def test_a_cluster_gives_the_same_table(tmp_path, monkeypatch, capsys, address, 
     capsys.readouterr()
 
 
+@pytest.mark.slow
 def test_a_cluster_gives_the_same_draws(tmp_path, monkeypatch, capsys, address):
     monkeypatch.chdir(tmp_path)
     names = [write_motion(tmp_path, f"m{k}.csv", frequency=1.0 + 0.2 * k) for k in range(40)]
@@ -54,6 +55,7 @@ def test_a_cluster_gives_the_same_draws(tmp_path, monkeypatch, capsys, address):
     capsys.readouterr()
 
 
+@pytest.mark.slow
 def test_a_scheduler_that_does_not_answer_is_reported_within_seconds(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     with socket.socket() as silent:  # listens, and says nothing

@@ -93,39 +93,38 @@ def test_errors_may_be_returned_in_place_of_runs():
     assert found[2].__notes__ == ["case 3 of 3 of compute_many"]
 
 
+def ran(folder, *words, **options):
+    """Of another Python, in a folder: what it prints."""
+    found = subprocess.run(
+        [sys.executable, *words],
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=300,
+        **options,
+    )
+    assert found.stdout == "begun\n['slide', 'rest']\n"
+    return found.stderr
+
+
 @pytest.mark.parametrize(
     ("call", "warned"),
-    [("compute()", True), ('if __name__ == "__main__":\n    compute()', False)],
+    [
+        ("compute()", True),
+        pytest.param('if __name__ == "__main__":\n    compute()', False, marks=pytest.mark.slow),
+    ],
     ids=["unguarded", "guarded"],
 )
 def test_a_script_without_a_guard_is_told_so_and_does_not_start_itself_again(tmp_path, call, warned):
-    script = tmp_path / "study.py"
-    script.write_text(SCRIPT + call + "\n", encoding="utf-8")
-    found = subprocess.run(
-        [sys.executable, str(script)],
-        env=os.environ | {"PYTHONPATH": str(ROOT)},
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        check=True,
-        timeout=300,
-    )
-    assert found.stdout == "begun\n['slide', 'rest']\n"
-    said = 'UserWarning: study.py lacks `if __name__ == "__main__":`'
-    assert found.stderr.count(said) == warned
-    assert "Traceback" not in found.stderr
+    (tmp_path / "study.py").write_text(SCRIPT + call + "\n", encoding="utf-8")
+    told = ran(tmp_path, "study.py")
+    assert told.count('UserWarning: study.py lacks `if __name__ == "__main__":`') == warned
+    assert "Traceback" not in told
 
 
+@pytest.mark.slow
 def test_a_script_from_standard_input_is_computed_by_threads(tmp_path):
-    found = subprocess.run(
-        [sys.executable, "-"],
-        input=SCRIPT + "compute()\n",
-        env=os.environ | {"PYTHONPATH": str(ROOT)},
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        check=True,
-        timeout=300,
-    )
-    assert found.stdout == "begun\n['slide', 'rest']\n"
-    assert "UserWarning: <stdin> is no file that a process can load" in found.stderr
+    told = ran(tmp_path, "-", input=SCRIPT + "compute()\n")
+    assert "UserWarning: <stdin> is no file that a process can load" in told

@@ -31,6 +31,7 @@ peak_acceleration_m_s2 = 5.0
 pulse_s = 1.0
 [solver]
 model = "rigid"
+duration_s = 4.0
 [uncertainty]
 draws = 2
 """

@@ -228,24 +228,3 @@ def test_results_of_another_program_are_not_continued(tmp_path, study, mark, log
         (folder / mark).write_text(json.dumps(found | change))
         with pytest.raises(FolderError, match=rf"{words}.*--force"):
             run(folder, resume=True)
-
-
-@pytest.mark.parametrize(
-    ("command", "words"),
-    [
-        (["sweep", "nowhere.toml"], "no sweep file"),
-        (["sweep", "outcome_map", "-j", "0"], "-j"),
-        (["sweep", "outcome_map", "--shard", "1/2"], "--shard is no longer there; give the address"),
-        (["ensemble", "boundary", "--slurm=job.toml"], "--slurm is no longer there; start workers"),
-        (["batch", "l.csv", "--site", "site.toml"], "batch --site is no longer there; verify each container"),
-        (["ensemble", "fragilty"], "did you mean 'fragility'"),
-        (["ensemble", "fragility", "-j", "0"], "-j"),
-        (["response", "--from", "2", "--to", "1"], "--from must be less than --to"),
-        (["response", "--from", "1", "--to", "2", "--count", "2.5"], "--count: a whole number is needed"),
-    ],
-)
-def test_bad_input_ends_with_2_and_no_folder(tmp_path, monkeypatch, capsys, command, words):
-    monkeypatch.chdir(tmp_path)
-    assert main(command) == 2
-    assert words in capsys.readouterr().err
-    assert list(tmp_path.iterdir()) == []
