@@ -16,8 +16,8 @@ from fem.response.records import PointRecord, PointRow
 from fem.response.request import ResponseRequest
 from fem.results.outcome import Ending
 from fem.study.answers import Trial, answer_of, ensemble_answer, is_rising, sentence_of
-from fem.study.axes import Axis, AxisError
-from fem.study.derived import ExpressionError
+from fem.study.axes import Axis, AxisError, in_words, read_axis  # noqa: F401 - lines of the text use them
+from fem.study.derived import ExpressionError, parse_expression  # noqa: F401
 from fem.study.file import load_ensemble, load_sweep
 from fem.study.fragility import EnsembleResult
 from fem.study.list_file import read_hall

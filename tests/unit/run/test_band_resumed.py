@@ -34,7 +34,7 @@ HELD = (
 )
 FEW = tuple(f"uncertainty.{name}=held" for name in HELD)
 MODELS = {
-    "rigid": ("solver.model=rigid", *FEW),
+    "rigid": ("solver.model=rigid", "uncertainty.draws=0", *FEW),
     "full": (*COARSE, "solver.duration_s=0.06"),
 }
 #: the command line, which waits for ever when its third member begins

@@ -72,8 +72,8 @@ CASES = {
     "aftermath, full": ("free_rocking", (*FALLING, *COARSE, "solver.duration_s=0.1")),
 }
 
-#: compiled for this test alone, or half a minute long
-SLOW = ("loose, full", "aftermath, full")
+#: compiled for this test alone, half a minute long, or of two kinds that are here by themselves
+SLOW = ("loose, full", "aftermath, full", "reduced", "vertical, aftermath")
 
 
 def run(folder: Path, name: str, overrides: tuple[str, ...], **options) -> OpenedRun:
