@@ -83,6 +83,18 @@ def test_of_many_motions_the_first_are_drawn(folders, monkeypatch):
     assert "The curves of the other 5 motions are in their files." in page
 
 
+def test_a_page_is_green_and_signed_where_somebody_stands_for_every_input(folders):
+    for unstated in ((), ("source of friction",)):
+        result, _ = example()
+        page = site_report(
+            folders / "fulfilled",
+            replace(result, inputs=replace(result.inputs, unstated=unstated)),
+            brief=True,
+        )
+        assert ('class="sign"' in page, 'class="answer stood"' in page) == (not unstated, not unstated)
+        assert ("nobody stands for source of friction" in words_of(page)) is bool(unstated)
+
+
 def test_text_of_users_is_escaped(folders):
     assert "<hall 3>" not in page_of(folders, "fulfilled")
     assert "Mercury containers &lt;hall 3&gt;" in page_of(folders, "fulfilled")
