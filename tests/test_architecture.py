@@ -133,13 +133,13 @@ BUDGET = {
     "seismic": ("fem/seismic", 2_315, 62),
     "solid": ("fem/solid", 1_873, 64),
     "model": ("fem/model", 4_031, 125),
-    "run": ("fem/run", 5_919, 200),
-    "pages": ("fem/html fem/figures fem/render fem/report", 5_035, 124),
+    "run": ("fem/run", 5_842, 197),
+    "pages": ("fem/html fem/figures fem/render fem/report", 5_188, 128),
     "study": ("fem/study fem/response", 8_165, 236),
     "site": ("fem/site", 4_854, 136),
     "cli": ("fem/cli fem/__init__.py fem/__main__.py", 2_079, 49),
-    "product": ("mesh contact fem", 57_465, 1_731),
-    "tests": ("tests", 45_681, 2_670),
+    "product": ("mesh contact fem", 57_541, 1_732),
+    "tests": ("tests", 45_054, 2_642),
 }
 
 

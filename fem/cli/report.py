@@ -80,7 +80,7 @@ def report(
             page = getattr(importlib.import_module(module), name)(folder, signature=signature, **brief)
         else:
             opened = importlib.import_module("fem.results.reader").open_run(folder)
-            models = () if short else importlib.import_module("fem.run.models").of_run(opened)
+            models = () if short else importlib.import_module("fem.report.models").of_run(opened)
             page = pages.run_report(
                 opened, signature=signature, brief=short, models=models, message=reporter.message
             )

@@ -25,6 +25,7 @@ from fem.report.animation import (
     player_data,
 )
 from fem.report.comparison import case_rows, compared_rows
+from fem.report.models import OfModel, compared_in_words
 from fem.report.sketch import sketch
 from fem.report.static_sheet import static_sheet
 from fem.results.errors import FolderError
@@ -38,7 +39,6 @@ from fem.run.card import card_of
 from fem.run.described import floor_rows
 from fem.run.drawn_links import drawn_links
 from fem.run.joints import BOXES_NOTE, box_rows, joints_note, largest_joint_slip, unbolted
-from fem.run.models import OfModel, compared_in_words
 from fem.run.ranges import impact_note, largest_ratio, largest_rotation, largest_slip, of_band
 from fem.run.rigid_check import check_against_rigid_block
 from fem.run.static_words import code_note, governing
@@ -97,7 +97,7 @@ def run_report(
         run: opened; finished or not.
         signature: author, checker, revision; an unfinished run is not signed.
         brief: three printed pages at most: answer, inputs, static rule and run, rotation and slip, limits.
-        models: what several models find of this container (`fem.run.models`).
+        models: what several models find of this container (`fem.report.models`).
         message: receives a sentence for the user where something is missing.
 
     Raises:

@@ -81,8 +81,9 @@ def add_checks(
             verdict = replace(verdict, analytic=block.analytic_block(model, end))
             result = replace(result, verdict=verdict)
     if lacks_band(result, model.case, wanted) and not stop():
-        reporter.message("band: repeating the run with its unknown inputs varied")
-        judged = with_band(model, result, stop=stop, kept_in=members, inner_forces=wanted.inner_forces)
+        judged = with_band(
+            model, result, stop=stop, reporter=reporter, kept_in=members, inner_forces=wanted.inner_forces
+        )
         if judged is not None:
             result = replace(result, verdict=judged)
     elif verdict.sure is None and wanted.band is None and rests_far_below_limits(model.case, result):
@@ -207,6 +208,7 @@ def with_band(
     result: RunResult,
     *,
     stop: Callable[[], bool],
+    reporter: Reporter | None = None,
     kept_in: ChangedRunsFile | None = None,
     inner_forces: bool = True,
 ) -> Verdict | None:
@@ -216,6 +218,7 @@ def with_band(
         model: of the run; the mesh and modes of its container serve every member.
         result: of the run, which is itself a member.
         stop: called in pauses; true ends the band.
+        reporter: is told how many there are.
         kept_in: the file of its finished members, to resume from.
         inner_forces: whether the members find stresses and the forces in joints of a stack.
 
@@ -226,6 +229,8 @@ def with_band(
         OSError: the file could not be written; the other members have stopped then.
     """
     plan, numerics = plan_of(model, result), result.numerics or Numerics()
+    if reporter is not None:
+        reporter.message(f"band: {len(plan.changes)} runs with the unknown inputs varied")
     members = run_changes(
         model, plan.changes, numerics=numerics, stop=stop, kept_in=kept_in, inner_forces=inner_forces
     )

@@ -1,15 +1,26 @@
-"""Figures of a run for a notebook, where it is in a folder (`fem.open_run`) or in memory."""
+"""What a notebook opens (`fem.open_run`): a run in a folder, with its figures, or the table of a study."""
 
+import csv
 import importlib
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
+from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from fem.results import reader
+import numpy as np
+
+from fem.results import kinds, reader
+from fem.results.errors import FolderError
+from fem.runtime.user_files import read_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+
+FIRST_ROWS = 10  #: shown in a notebook
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -21,15 +32,75 @@ class PlottedRun(reader.OpenedRun):
         return plotted(self, name, ax)
 
 
-def open_run(folder: str | Path) -> PlottedRun:
-    """Open the folder of a run.
+#: the studies that have a table, and the key of their marking file that holds it, where it is no file
+STUDIES = {
+    kinds.SWEEP: "",
+    kinds.ENSEMBLE: "points",
+    kinds.HALL: "table",
+    kinds.RESPONSE: "",
+    kinds.SITE: "runs",
+}
+
+
+class StudyTable(dict[str, np.ndarray]):
+    """The table of a study: name of a column -> its values, shape (n_rows,); a number that is missing is nan.
+
+    Cells of a sweep, points of an ensemble, rows of a list, steps of a response curve, runs of a site.
+    `pandas.DataFrame(table)` takes it as it is.
+    """
+
+    def __init__(self, result: Mapping[str, Any], rows: Iterable[Mapping[str, Any]]) -> None:
+        rows = list(rows)
+        names = dict.fromkeys(name for row in rows for name in row)
+        super().__init__({name: _column([row.get(name) for row in rows]) for name in names})
+        self.result = result  #: all that the marking file holds
+
+    def __repr__(self) -> str:
+        """One line, with what was found."""
+        rows = len(next(iter(self.values()), ()))
+        return f"<study: {rows} rows of {', '.join(self)}; {self.result.get('answer') or 'no answer yet'}>"
+
+    def _repr_html_(self) -> str:
+        """The answer and the first rows, for a notebook."""
+        head = "".join(f"<th>{escape(name)}</th>" for name in self)
+        rows = zip(*(column[:FIRST_ROWS] for column in self.values()), strict=True)
+        body = "".join(f"<tr>{''.join(f'<td>{escape(str(cell))}</td>' for cell in row)}</tr>" for row in rows)
+        return (
+            f"<p>{escape(str(self.result.get('answer') or 'no answer yet'))}</p><table>{head}{body}</table>"
+        )
+
+
+def _column(cells: list[Any]) -> np.ndarray:
+    """Numbers where all are, else texts."""
+    with suppress(ValueError, TypeError):
+        return np.array([np.nan if cell in (None, "") else float(cell) for cell in cells])
+    return np.array(["" if cell is None else str(cell) for cell in cells])
+
+
+def open_run(folder: str | Path) -> PlottedRun | StudyTable:
+    """Open the folder of a run, or of a study as its table.
 
     Args:
-        folder: that holds `run.json`, or the path of `run.json` itself; `~` is the home folder.
+        folder: that holds `run.json`, or the path of `run.json` itself; `~` is the home folder. Of a sweep, an
+            ensemble, a list, a response curve or a site likewise.
 
     Raises:
-        FolderError: it holds no run, or its `run.json` is damaged.
+        FolderError: it holds no result, or one that is damaged.
     """
+    place = Path(folder).expanduser()
+    for kind, key in STUDIES.items():
+        mark = place if place.name == kind.mark else place / kind.mark
+        if mark.is_file():
+            result = kinds.read_result(mark, kind)
+            try:
+                table = (
+                    csv.DictReader(read_text(mark.parent / kind.results).splitlines())
+                    if not key
+                    else result[key]
+                )
+                return StudyTable(result, table)
+            except (AttributeError, LookupError, OSError, TypeError, ValueError, csv.Error) as error:
+                raise FolderError(f"{mark}: damaged, it has no table ({error})") from None
     run = reader.open_run(folder)
     return PlottedRun(place=run.place, result=run.result)
 

@@ -16,8 +16,8 @@ from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
 from fem.case.case import load_case
 from fem.model.recovery import recovery_of
+from fem.report.models import compared_in_words, side_by_side
 from fem.results.outcome import Outcome
-from fem.run.models import compared_in_words, side_by_side
 from fem.run.recorder import Recorder
 from fem.run.simulation import simulate
 from fem.run.verdict import joint_demands

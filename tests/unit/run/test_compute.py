@@ -4,9 +4,11 @@ import json
 
 import numpy as np
 import pytest
+from study_folders import ensemble_folder
 
 import fem
 from fem.case.case import CaseError
+from fem.results.errors import FolderError
 from fem.results.fields import FieldError
 from fem.results.run_result import Verdict
 from fem.run.run import RunOptions, run_case
@@ -108,3 +110,15 @@ def test_the_last_instant_of_a_run_has_a_frame(every, times):
     assert run.fields.times.tolist() == times
     last, moved = run.frame(1.0), run.history["centre_x_m"][-1] - run.history["centre_x_m"][0]
     assert np.mean(last.displacement[:, 0]) - last.floor_displacement == pytest.approx(moved, abs=0.02)
+
+
+def test_a_folder_of_a_study_opens_as_its_table(tmp_path):
+    table = fem.open_run(ensemble_folder(tmp_path / "counted"))
+    strengths = table["motion.peak_acceleration_m_s2"]
+    assert strengths.dtype == np.float64 and (np.diff(strengths) > 0.0).all()
+    assert (table["overturned"] <= table["draws"]).all() and table["region"].dtype.kind == "U"
+    assert table.result["ensemble"] and f"{len(strengths)} rows" in repr(table)
+    assert table._repr_html_().count("<tr>") == len(strengths)
+    damaged = ensemble_folder(tmp_path / "damaged", points=[1, 2])
+    with pytest.raises(FolderError, match=r"ensemble\.json: damaged"):
+        fem.open_run(damaged)

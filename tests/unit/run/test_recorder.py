@@ -36,7 +36,7 @@ def test_no_sample_and_no_frame_of_a_run_has_a_tail_or_a_minus_zero():
     assert told == [0.0, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4]
     assert values[:, 0].tolist() == [k / 200 for k in range(81)]
     assert not np.signbit(values[values == 0.0]).any()
-    assert np.array_equal(recorder.history().values, values)
+    assert np.array_equal(recorder.history().samples, values)
 
 
 def test_the_largest_stress_of_the_full_model_is_that_of_its_steps_whatever_is_recorded():

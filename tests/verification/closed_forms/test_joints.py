@@ -138,5 +138,5 @@ def test_joint_forces_do_not_depend_on_the_length_of_a_chunk_of_samples(monkeypa
     monkeypatch.setattr(fem.model.model, "HISTORY_CHUNK", 8)
     assert (
         run(solver__model="reduced", solver__duration_s=0.9).history.samples.tobytes()
-        == whole.values.tobytes()
+        == whole.samples.tobytes()
     )
