@@ -153,9 +153,9 @@ def test_what_is_no_run_is_refused(tmp_path):
         fem.open_run(tmp_path / "nowhere")
     with pytest.raises(FolderError, match="is this the folder of a run"):
         fem.open_run(tmp_path)
-    (tmp_path / "sweep.json").write_text('{"sweep_hash": ""}')
+    (tmp_path / "size.json").write_text('{"asked": ""}')
     with pytest.raises(
-        FolderError, match=r"the folder of a sweep \(its results: table.csv\); give that of a run"
+        FolderError, match=r"the folder of a size study \(its results: size.json\); give that of a run"
     ):
         fem.open_run(tmp_path)
 
