@@ -7,7 +7,9 @@ this package and of the sources named for a kernel from elsewhere.
 
 import hashlib
 import os
+import shutil
 import stat
+import sys
 import tempfile
 from collections.abc import Callable
 from functools import cache, partial
@@ -24,6 +26,13 @@ from numba.core.typing.typeof import typeof
 from numba.extending import register_jitable
 
 from contact.compiler import PLAIN, KernelCompiler, PieceCompiler
+
+#: machine code that a wheel may bring (`.ci/package`), compiled for any CPU of its kind, by Python and numba
+SHIPPED = Path(__file__).parent / "machine_code"
+FITTING = f"python{sys.version_info.major}.{sys.version_info.minor}-numba{numba.__version__}"
+if SHIPPED.is_dir():  # numba looks for code of the CPU that it compiles for
+    setattr(config, "CPU_NAME", "generic")  # noqa: B010
+    setattr(config, "CPU_FEATURES", "")  # noqa: B010
 
 
 class CacheFolderError(RuntimeError):
@@ -54,9 +63,24 @@ def cache_folder(sources: tuple[Path, ...] = ()) -> Path:
         if not os.access(folder, os.W_OK):
             raise PermissionError(folder)
         _require_own(folder, folder.parent, root)
+        _take_shipped(folder)
     except OSError:
         folder = Path(tempfile.mkdtemp(prefix="unanchored-kernels-"))
     return folder
+
+
+def _take_shipped(folder: Path) -> None:
+    """Fill an empty cache folder with the machine code of the wheel, where that fits; else kernels are compiled."""
+    shipped = SHIPPED / FITTING / folder.name
+    if not shipped.is_dir() or any(folder.iterdir()):
+        return
+    _require_own(shipped, SHIPPED)
+    half = Path(tempfile.mkdtemp(prefix=f".{folder.name}-", dir=folder.parent))
+    try:
+        shutil.copytree(shipped, half, dirs_exist_ok=True)
+        half.rename(folder)  # at once, for other processes
+    except OSError:  # another process was first
+        shutil.rmtree(half, ignore_errors=True)
 
 
 def _require_own(*folders: Path) -> None:

@@ -13,6 +13,7 @@ import numba
 from numba.core import event
 
 from contact.compiler import PLAIN
+from contact.jit import FITTING, SHIPPED
 
 COMPILING = "numba:compile"
 #: kernels that hold the whole stepping; all others take seconds at most
@@ -55,6 +56,8 @@ class Announcer(event.Listener):
         """A compilation begins."""
         if not self._announced and kernel_name(event) in LONG:
             self._announced = True
+            if SHIPPED.is_dir():
+                self._message(f"the machine code of this package is not for {FITTING}, or not of this kernel")
             self._message(
                 f"compiling the stepping kernels with numba {numba.__version__}'s own passes, once after "
                 "installation: the results are the same, but it takes a minute or more"
