@@ -10,6 +10,7 @@ import pytest
 from numba.core import types
 from numba.core.errors import TypingError
 
+from contact import jit
 from contact.arrays import FloatArray, IntArray
 from contact.jit import CacheFolderError, cache_folder, compiled, inlined
 from contact.layout import exchanging, parts_of, room_of, row_of, shapes_of, zeros_of
@@ -104,6 +105,33 @@ def test_kernels_are_not_loaded_from_where_others_may_put_them(tmp_path, monkeyp
     folder.chmod(0o755)
     folder.parent.chmod(0o755)
     assert cache_folder() == folder
+    cache_folder.cache_clear()
+
+
+def test_an_empty_cache_takes_the_machine_code_of_the_wheel_where_that_fits(tmp_path, monkeypatch):
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "cache"))
+    monkeypatch.setattr(jit, "SHIPPED", tmp_path / "machine_code")
+    cache_folder.cache_clear()
+    folder = cache_folder()
+
+    def found(version: str) -> list[str]:
+        shipped = tmp_path / "machine_code" / version / folder.name
+        shipped.mkdir(parents=True)
+        (shipped / f"{version}.nbc").write_bytes(b"code")
+        cache_folder.cache_clear()
+        assert cache_folder() == folder
+        return [path.name for path in folder.iterdir()]
+
+    assert found("python0.0-numba0.0") == []
+    assert found(jit.FITTING) == [f"{jit.FITTING}.nbc"]
+    (folder / f"{jit.FITTING}.nbc").rename(folder / "compiled.nbc")
+    cache_folder.cache_clear()
+    assert cache_folder() == folder and [path.name for path in folder.iterdir()] == ["compiled.nbc"]
+    (tmp_path / "machine_code").chmod(0o777)
+    (folder / "compiled.nbc").unlink()
+    cache_folder.cache_clear()
+    with pytest.raises(CacheFolderError):
+        cache_folder()
     cache_folder.cache_clear()
 
 
