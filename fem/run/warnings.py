@@ -9,7 +9,7 @@ from collections.abc import Callable
 
 from fem.case.case import Case
 from fem.case.tables.duration import MOST_FREE_MOTION, ends_at_rest, longest_time
-from fem.case.tables.input_keys import WEAKENING
+from fem.case.tables.input_keys import DASHPOT, WEAKENING
 from fem.case.tables.unknown_inputs import in_words
 from fem.results import run_result
 from fem.results.outcome import Outcome
@@ -60,12 +60,7 @@ def friction_decides(result: run_result.RunResult, case: Case) -> str | None:
     static, kinetic = case.contact.mu_static, case.contact.mu_kinetic
     if needed is None or not kinetic < needed < static or _verdict(result).outcome not in ROCKS:
         return None
-    band = _verdict(result).band
-    gradual = {
-        float(member.values[WEAKENING]): member
-        for member in (band.members if band else ())
-        if member.values is not None and [*member.values] == [WEAKENING] and member.rotation_ratio is not None
-    }
+    gradual = _changed_alone(result, WEAKENING)
     words = (
         f"to rock without sliding takes friction of {needed:.2g}: static friction ({static:g}) gives it, kinetic "
         f"friction ({kinetic:g}) does not, so one landing that breaks it loose decides"
@@ -89,17 +84,30 @@ def it_bounces(result: run_result.RunResult, case: Case) -> str | None:
     reach = band.flight_share if band else None
     span = f" ({reach[0]:.0%} to {reach[1]:.0%} over the variations)" if reach else ""
     numerics = _numerics(result)
-    own, contact = (
-        numerics.bounce_container_damping_ratio or 0.0,
-        numerics.bounce_contact_damping_ratio or 0.0,
-    )
+    own, contact = numerics.bounce_container_damping_ratio, numerics.bounce_contact_damping_ratio
     dashpot = ""
-    if contact > own and not case.floor.is_slab:
+    if (contact or 0.0) > (own or 0.0) and not case.floor.is_slab:
         dashpot = "; on a rigid floor the dashpot of the contact, a numerical one, takes most of it"
+        ratios = {case.contact_damping_ratio: _verdict(result).rotation_ratio} | {
+            ratio: member.rotation_ratio for ratio, member in _changed_alone(result, DASHPOT).items()
+        }
+        if len(ratios) > 1:
+            found = ", ".join(f"{turned:.2g} with {ratio:g}" for ratio, turned in sorted(ratios.items()))
+            dashpot += f". Rotation over the slenderness angle by the ratio of that dashpot: {found}"
     return (
         f"it bounces: nothing touches the floor for {share:.0%} of the time in which it rocks{span}. What its fill and "
         f"its walls take of a landing decides that{dashpot}"
     )
+
+
+def _changed_alone(result: run_result.RunResult, key: str) -> dict[float, run_result.ChangedRun]:
+    """The variations of a run that change nothing but a number, by that number."""
+    band = _verdict(result).band
+    return {
+        float(member.values[key]): member
+        for member in (band.members if band else ())
+        if member.values is not None and [*member.values] == [key] and member.rotation_ratio is not None
+    }
 
 
 def slip_follows_the_steps(result: run_result.RunResult, case: Case) -> str | None:
