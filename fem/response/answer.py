@@ -63,6 +63,9 @@ def response_answer(result: ResponseResult) -> str | None:
             )
     if result.coexisting:
         parts.append(f"motions coexist at {_listed([range_of(several) for several in result.coexisting])}")
+    if result.shell_over_rigid:
+        low, high = (f"{share:.2g}" for share in result.shell_over_rigid)
+        parts.append(f"where both last, the shell turns by {low} to {high} of what the rigid body does")
     if failed:
         parts.append(f"no outcome at {failed} of {len(result.points)} points")
     return "frequency: " + "; ".join(filter(None, parts))

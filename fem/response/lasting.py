@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from contact.stepping.modes import ROCKING
 from fem.response.records import PointRecord, PointRow
 from fem.results.figures import TURNED
 from fem.results.json_block import JsonBlock
@@ -26,11 +27,6 @@ class Lasting(JsonBlock):
     rotation_ratio: float
     ways: tuple[str, ...] = ()  #: up, down: the sweeps that it lies on
     starts: int = 0  #: random states that lead to it
-
-    @property
-    def on_curve(self) -> bool:
-        """Whether a sweep met it."""
-        return bool(self.ways)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -83,6 +79,16 @@ def differ(one: PointRecord, other: PointRecord) -> bool:
 def of_first_model(records: Sequence[PointRecord]) -> list[PointRecord]:
     """The points of the model that the case asks for, without those of the shell beside it."""
     return [record for record in records if record.row.model == records[0].row.model]
+
+
+def shell_over_rigid(records: Sequence[PointRecord]) -> tuple[float, ...]:
+    """Least and largest rotation of the shell over that of the case's model, where both rock; empty without any."""
+    own = of_first_model(records)
+    turned = {(one.row.direction, one.row.number): one.row.turned for one in own if one.stands}
+    shell = [record.row for record in records[len(own) :] if record.stands]
+    pairs = [(row.turned, turned.get((row.direction, row.number), 0.0)) for row in shell]
+    shares = [of_shell / rigid for of_shell, rigid in pairs if rigid > ROCKING]
+    return (min(shares), max(shares)) if shares else ()
 
 
 def lasting_at(records: Sequence[PointRecord], number: int) -> list[list[PointRecord]]:
@@ -187,3 +193,5 @@ class ResponseResult(StudyResult):
     #: of the points with an outcome that do not stand: overturned, a corner destroyed
     overturned_share: float | None = None
     starts_fell_share: float | None = None  #: of the random states, all frequencies; None without any
+    #: of the shell's rotations over those of the case's model, least and largest; empty without a shell
+    shell_over_rigid: tuple[float, ...] = ()

@@ -4,7 +4,7 @@ import json
 import math
 from collections.abc import Sequence
 from dataclasses import asdict, astuple, dataclass, fields
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
 
@@ -13,10 +13,9 @@ from fem.case.case import Case
 from fem.response.orbit import EXTREME_COLUMNS, SECTION_COLUMNS, Orbit
 from fem.response.request import SAMPLES_PER_PERIOD
 from fem.response.stability import Decay, LongTime, amplitude_growth, amplitudes_diverge
-from fem.results.figures import FIGURES, TURNED, Shown, declared_in
+from fem.results.figures import TURNED
 from fem.results.json_block import JsonBlock
 from fem.results.outcome import Outcome
-from fem.runtime import units
 from fem.runtime.arrays import FloatArray
 from fem.runtime.user_files import parsed_json
 from fem.study.table import table_text
@@ -46,19 +45,19 @@ class PointRow(JsonBlock):
     settling: float | None = None
     pairs_compared: int | None = None
     periods: int
-    rotation_ratio: Annotated[float | None, FIGURES[TURNED]] = None
+    rotation_ratio: float | None = None
     median_rotation_ratio: float | None = None
     max_rotation_rad: float | None = None
     least_rotation_rad: float | None = None
     most_rotation_rad: float | None = None
-    slip_stroke_m: Annotated[float | None, Shown("slip stroke", units.MILLIMETRES)] = None
+    slip_stroke_m: float | None = None
     slip_walk_m: float | None = None
     slip_excursion_m: float | None = None  #: within the periods observed, from where it was at their start
-    impacts_per_period: Annotated[float | None, Shown("impacts a period", units.COUNT)] = None
+    impacts_per_period: float | None = None
     growth: float | None = None
     bounded: bool | None = None
     undriven: str | None = None
-    undriven_s: Annotated[float | None, Shown("dies out in", units.SECONDS)] = None
+    undriven_s: float | None = None
     stable: bool | None = None
     reason: str | None = None
     model: str = ""
@@ -91,9 +90,6 @@ class PointRow(JsonBlock):
         if self.long_time in (None, "rest"):
             return self.long_time or self.status
         return f"{self.motion}, {self.long_time}"
-
-
-POINT_FIGURES = declared_in(PointRow)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

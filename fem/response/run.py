@@ -24,6 +24,7 @@ from fem.response.lasting import (
     drop_outs,
     frequencies_of,
     of_first_model,
+    shell_over_rigid,
     shown,
 )
 from fem.response.model import driven_model
@@ -104,6 +105,7 @@ def _compute(
         if status != INTERRUPTED
         else None,
         starts_fell_share=fell_share(frequencies),
+        shell_over_rigid=shell_over_rigid(records),
     )
     if status == INTERRUPTED:
         return replace(result, missing=f"{done} of {len(plan)} steps are computed")

@@ -6,7 +6,7 @@ import pytest
 from study_words import CRUSHED, STANDS, point, record
 
 from fem.response.answer import overturned_share
-from fem.response.lasting import coexistences, differ, drop_outs, frequencies_of
+from fem.response.lasting import coexistences, differ, drop_outs, frequencies_of, shell_over_rigid
 
 
 @pytest.mark.parametrize(
@@ -31,3 +31,12 @@ def test_a_destroyed_corner_neither_overturned_nor_coexists():
     assert len(list(coexistences(list(frequencies_of([record(resting), record(rocking)]))))) == 1
     destroyed = replace(rocking, motion="invalid")
     assert list(coexistences(list(frequencies_of([record(resting), record(destroyed)])))) == []
+
+
+def test_the_shell_is_compared_where_both_rock():
+    own = [point(0.5, "up", 0.4), point(0.6, "up", None), point(0.5, "down", 0.2), point(0.6, "down", 0.0)]
+    shell = [
+        replace(one, model="reduced") for one in (own[0], point(0.6, "up", 0.3), point(0.5, "down", 0.19))
+    ]
+    assert shell_over_rigid([record(one) for one in own + shell]) == (pytest.approx(0.95), 1.0)
+    assert shell_over_rigid([record(one) for one in own]) == ()
