@@ -18,6 +18,7 @@ VALUES: dict[str, tuple[float, ...]] = {
     "motion.angular_frequency_rad_s": (OMEGA,),
     "motion.frequency_Hz": (OMEGA / (2.0 * math.pi),),
     "motion.peak_acceleration_m_s2": (2.4, 4.0),
+    "motion.amplitude_m": (2.4 / OMEGA**2, 4.0 / OMEGA**2),
 }
 
 

@@ -239,7 +239,7 @@ def cylinders() -> Findings:
             exact,
             strict=True,
         ):
-            error = 5e-3 if "inertia" in what else 1e-9
+            error = 2e-3 if "inertia" in what else 1e-9
             note = "24 columns of one density each" if "inertia" in what else ""
             source = "closed form"
             case = f"cylinder, {name}"

@@ -230,7 +230,8 @@ def test_a_free_rigid_block_stays_on_its_orbit_in_the_phase_portrait(tmp_path):
     for rotation, rate in arcs:
         energy = rate**2 / (2.0 * parameter**2) + np.cos(angle - np.abs(rotation)) - np.cos(angle)
         energies.append(energy.mean())
-        assert np.ptp(energy) < 3e-3 * energies[0]
+        # 1.4e-3 of it next to an impact, where the springs of both corners bear; 6e-4 beyond 0.01 of the angle
+        assert np.ptp(energy) < 2e-3 * energies[0]
     left = 1.0 - 1.5 * np.sin(angle) ** 2  # of the angular velocity at an impact (Housner)
     assert energies[0] == pytest.approx(np.cos(angle - 0.12) - np.cos(angle), rel=1e-3)
     assert np.divide(energies[1:], energies[:-1]) == pytest.approx(left**2, rel=0.02)
