@@ -57,10 +57,8 @@ def response_answer(result: ResponseResult) -> str | None:
     if standing:
         slid = max(standing, key=lambda point: point.slip_stroke_m or 0.0)
         if (slid.slip_stroke_m or 0.0) >= MILLIMETRES.least:
-            stroke = slip_in_words(slid.slip_stroke_m or 0.0)
-            parts.append(
-                f"slid by up to {stroke} a period, at {slid.frequency_Hz:.4g} Hz going {slid.direction}"
-            )
+            stroke = f"slid by up to {slip_in_words(slid.slip_stroke_m or 0.0)} a period"
+            parts.append(f"{stroke}, at {slid.frequency_Hz:.4g} Hz going {slid.direction}")
     if result.coexisting:
         parts.append(f"motions coexist at {_listed([range_of(several) for several in result.coexisting])}")
     if result.shell_over_rigid:
@@ -85,10 +83,8 @@ def largest_in_words(result: ResponseResult) -> str:
     at, largest = max(motions, key=lambda pair: pair[1].rotation_ratio)
     if all(motion.motion == "rest" for _, motion in motions):
         return "at rest wherever it stands"
-    led = [
-        *(f"going {way}" for way in largest.ways),
-        *[f"{largest.starts} of {at.starts} starts"] * bool(at.starts),
-    ]
+    led = [f"going {way}" for way in largest.ways]
+    led += [f"{largest.starts} of {at.starts} starts"] * bool(at.starts)
     beside = "" if largest.ways else ", which neither sweep meets"
     return (
         f"largest lasting motion {largest.rotation_ratio:.2g} of the slenderness angle, {largest.motion} at "

@@ -179,10 +179,7 @@ def _judge(request: ResponseRequest, case: Case, driven: DrivenModel, orbit: Orb
     control = driven.run.problem.control
     angle, amplitude = control.slenderness_angle, case.amplitude
     scales = [angle, angle * control.frequency_parameter, amplitude * case.angular_frequency, amplitude]
-    return classify(
-        orbit.sections / scales,
-        resting=_motion_of(driven, orbit) == Outcome.REST,
-    )
+    return classify(orbit.sections / scales, resting=_motion_of(driven, orbit) == Outcome.REST)
 
 
 def _motion_of(driven: DrivenModel, orbit: Orbit) -> str:

@@ -139,7 +139,7 @@ def draw_portraits(records: Sequence[PointRecord]) -> Figure:
             colour = LOOKS[record.row.direction]["color"] if repeats else style.GREY
             axes.plot(*np.degrees(record.portrait).T, color=colour, linewidth=0.9 if repeats else 0.6)
             axes.plot(*np.degrees(record.sections[:, :2]).T, color=style.BLACK, **DOTS)
-        row, words = drawn[0].row, fill(" and ".join(record.row.words for record in drawn), width=30)
+        row, words = drawn[0].row, fill(" and ".join(record.row.words for record in drawn), width=24)
         axes.set_title(f"{row.frequency_Hz:.3g} Hz, η = {row.eta or 0.0:.3g}\n{words}", fontsize=7.5)
         axes.margins(0.08)
         if k % COLUMNS == 0:

@@ -148,11 +148,8 @@ def record_of(
     if decay is not None:
         known |= {"undriven": decay[0], "undriven_s": decay[1]}
     if known["direction"] == "start":
-        start = case.initial
-        known |= {
-            "start_rotation_rad": start.rotation_rad,
-            "start_angular_velocity_rad_s": start.angular_velocity_rad_s,
-        }
+        known["start_rotation_rad"] = case.initial.rotation_rad
+        known["start_angular_velocity_rad_s"] = case.initial.angular_velocity_rad_s
     if orbit.status != "failed" and known["motion"] != Outcome.INVALID:
         bounded = judged is not None and not amplitudes_diverge(ratios)
         known["bounded"] = bounded

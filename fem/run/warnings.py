@@ -227,13 +227,8 @@ def rest_proves_nothing(result: run_result.RunResult, case: Case) -> str | None:
 
     Nothing is confirmed where a variation moves the container.
     """
-    own, doubted = _own_motion(result), _verdict(result).sure in (REGIME_UNSURE, UNSURE)
-    if (
-        _verdict(result).outcome != Outcome.REST
-        or doubted
-        or case.neighbour
-        or own == run_result.ActionResult()
-    ):
+    own, verdict = _own_motion(result), _verdict(result)
+    if verdict.outcome != Outcome.REST or verdict.sure in (REGIME_UNSURE, UNSURE) or case.neighbour:
         return None
     uses = (own.utilisation_sliding, own.utilisation_overturning)
     if any(use is None or use > 1.0 for use in uses):
