@@ -50,11 +50,7 @@ OBSERVABLES = np.dtype(
         ("peak_corner_force", "f8"),  # the instantaneous one
         ("left_force", "f8"),  # at the end of the last step
         ("right_force", "f8"),
-        (
-            "impulses",
-            "f8",
-            (PARTS, 3),
-        ),  # time and impulse at the left and the right, part after part of the window
+        ("impulses", "f8", (PARTS, 3)),  # of each part of the window: its time, and at the left and the right
         ("part", "i8"),  # the one that is being integrated
         ("rocking_time", "f8"),  # with a rotation beyond `ROCKING`
         ("flight_time", "f8"),  # .. and no contact force

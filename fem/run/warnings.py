@@ -163,11 +163,8 @@ def contact_penetrates(result: run_result.RunResult, case: Case) -> str | None:
 
 
 def _stiffer(case: Case) -> str:
-    return (
-        "a stiffer floor or a larger floor.corner_patch_m"
-        if case.floor.is_slab
-        else "a larger contact.normal_penalty_Pa_m"
-    )
+    slab = "a stiffer floor or a larger floor.corner_patch_m"
+    return slab if case.floor.is_slab else "a larger contact.normal_penalty_Pa_m"
 
 
 def regularised_friction_creeps(result: run_result.RunResult, case: Case) -> str | None:
