@@ -152,14 +152,14 @@ def record_start(track: Any, control: Any, camber: FloatArray, state: State) -> 
 @inlined
 def end_part(track: Any, window: float) -> None:
     """Compare the mean corner force over the last `window` [s] with the largest one, and begin the next part."""
-    wanted, left, right = window, 0.0, 0.0
-    for k in range(PARTS):
-        part = track.impulses[(track.part - k) % PARTS]
+    wanted, left, right, k = window, 0.0, 0.0, 0
+    while wanted > 1e-9 * window and k < PARTS:  # one turn where a step is longer than the window
+        part, k = track.impulses[(track.part - k) % PARTS], k + 1
         share = min(1.0, wanted / part[0]) if part[0] > 0.0 else 0.0
         left += share * part[1]
         right += share * part[2]
         wanted -= share * part[0]
-    if wanted < 1e-9 * window:
+    if wanted <= 1e-9 * window:
         track.max_corner_force = max(track.max_corner_force, max(left, right) / window)
     track.part = (track.part + 1) % PARTS
     track.impulses[track.part, :] = 0.0
