@@ -211,7 +211,7 @@ def ensemble_report(folder: Path, *, signature: Signature | None = None) -> str:
             ("motion", [motion["file"] for motion in motions]),
             *((name, [motion.get(name, 0) for motion in motions], N) for name in COUNTED),
         ],
-        axes=_axes(info.point_axes, info.derived),
+        axes=_axes(info.axes, info.derived),
         random=[("key", list(random)), ("drawn", list(random.values()))],
         points=_points(info, words),
         provenance=[
@@ -254,7 +254,7 @@ def _points(info: EnsembleResult, words: Mapping[str, str]) -> list[Column]:
     shares = [ABSENT if (p := point["probability"]) is None else f"{share(p)} %" for point in points]
     intervals = [f"{share(point['low'])} to {share(point['high'])} %" for point in points]
     return [
-        *((axis_label(axis), [on_axis(point[axis.key]) for point in points], N) for axis in info.point_axes),
+        *((axis_label(axis), [on_axis(point[axis.key]) for point in points], N) for axis in info.axes),
         *((name, [point.get(name, 0) for point in points], N) for name in ("draws", *COUNTED)),
         ("share", shares, N),
         (f"{100.0 * info.confidence:g} % interval", intervals, N),

@@ -312,7 +312,7 @@ def ensemble_answer(result: EnsembleResult) -> StudyAnswer[HalfPoint] | None:
     Returns:
         None of an unfinished ensemble, and where no axis has several numbers.
     """
-    axes = result.point_axes
+    axes = result.axes
     numeric = sorted((axis for axis in axes if axis.is_numeric), key=lambda axis: -len(axis.values))
     axis = answer_axis(axes) or next(iter(numeric), None)
     if axis is None or result.status != COMPLETED:

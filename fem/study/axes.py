@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Annotated, Any, Literal, Self, TypeVar, get_args
+from typing import Annotated, Any, Literal, TypeVar, get_args
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, Strict, ValidationError
@@ -49,7 +49,7 @@ class Range(BaseModel):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Axis:
+class Axis(JsonBlock):
     """A key and its values, in the order of the file."""
 
     key: str  #: dotted
@@ -57,39 +57,17 @@ class Axis:
     scale: str = "list"  #: linear | log | list
     unit: str = ""  #: of the key
     #: further keys that each value sets, and what to; None: not set
-    following: Mapping[str, tuple[str | None, ...]] = field(default_factory=dict)
+    following: dict[str, tuple[str | None, ...]] = field(default_factory=dict)
+
+    def to_json(self) -> dict[str, Any]:
+        """As JSON types; without a scale and following keys where there are none."""
+        return {key: value for key, value in super().to_json().items() if value or key == "unit"}
 
     @cached_property
     def is_numeric(self) -> bool:
         """Whether its values are rising numbers, so that points have neighbours along it."""
         numbers = [value for value in self.values if not isinstance(value, bool | str)]
         return len(numbers) == len(self.values) > 1 and bool(np.all(np.diff(numbers) > 0.0))
-
-
-@dataclass(frozen=True, kw_only=True)
-class AxisResult(JsonBlock):
-    """An axis, as the result of a study holds it."""
-
-    written_where_given = frozenset({"scale", "following"})
-    key: str
-    values: tuple[Any, ...]
-    scale: str | None = None
-    unit: str = ""
-    following: dict[str, tuple[str | None, ...]] | None = None
-
-    @classmethod
-    def of(cls, axis: Axis) -> Self:
-        """An axis to be written."""
-        following = dict(axis.following) or None
-        return cls(key=axis.key, values=axis.values, scale=axis.scale, unit=axis.unit, following=following)
-
-    @property
-    def axis(self) -> Axis:
-        """To name places on it."""
-        following = {key: tuple(values) for key, values in (self.following or {}).items()}
-        return Axis(
-            key=self.key, values=self.values, scale=self.scale or "list", unit=self.unit, following=following
-        )
 
 
 def shape_of(axes: Sequence[Axis]) -> tuple[int, ...]:

@@ -188,13 +188,31 @@ class Design:
         """The case of a point."""
         return self.make.case(self.item(cell))
 
-    def ends(self) -> list[Case]:
-        """The cases at the ends of each axis, those that can be made."""
+    @property
+    def varied(self) -> set[str]:
+        """Keys that vary by themselves."""
+        return {axis.key for axis in self.axes}
+
+    @property
+    def held(self) -> str:
+        """What is held fixed of the unknown inputs, in words."""
+        return held_inputs(self.cases, self.varied)
+
+    def corners(self, *, listed: bool = False) -> Iterator[Item]:
+        """Runs at the ends of each axis; `listed`: at every value of one that the file lists."""
+        steps = (1 if listed and axis.scale == "list" else len(axis.values) - 1 or 1 for axis in self.axes)
+        ends = [axis.values[::step] for axis, step in zip(self.axes, steps, strict=True)]
+        for corner in product(*ends):
+            point = dict(zip((axis.key for axis in self.axes), corner, strict=True))
+            yield Item(0, 0, with_following(self.axes, point))
+
+    @cached_property
+    def cases(self) -> list[Case]:
+        """The cases of the corners, those that can be made."""
         cases = []
-        for corner in product(*((axis.values[0], axis.values[-1]) for axis in self.axes)):
+        for item in self.corners():
             with suppress(CaseError):
-                point = dict(zip((axis.key for axis in self.axes), corner, strict=True))
-                cases.append(self.make.case(Item(0, 0, with_following(self.axes, point))))
+                cases.append(self.make.case(item))
         return cases
 
     def model_of(self, item: Item) -> str:
@@ -216,7 +234,7 @@ class Design:
 
     @cached_property
     def _varies_container(self) -> bool:
-        moving = {axis.key for axis in self.axes} | {quantity.key for quantity in self.derived}
+        moving = self.varied | {quantity.key for quantity in self.derived}
         return any(key.startswith(OF_THE_CONTAINER) for key in moving)
 
 
@@ -270,10 +288,34 @@ class Ensemble(Design):
         """The set of motions that are drawn; None where there is one motion."""
         return next(iter(sets_among(self.random)), None)
 
+    @property
+    def varied(self) -> set[str]:
+        """Keys of the axes, and of what is random."""
+        return super().varied | {quantity.key for quantity in self.random}
+
+    @property
+    def held(self) -> str:
+        """What is held fixed of the unknown inputs that are not drawn, in words."""
+        return held_inputs(self.cases, {*self.varied, *self.unknown})
+
+    @cached_property
+    def unknown(self) -> tuple[str, ...]:
+        """Keys of the unknown inputs that are drawn over their ranges in [uncertainty] of the case.
+
+        What the file varies itself, by [axes], [random] or [derived], stays as it is there.
+        """
+        ranges = (interval for case in self.cases for interval in ranges_of(case, penalty_of(case)))
+        drawn = {interval.key for interval in ranges if interval.drawn is not None}
+        drawn -= {*self.varied, *(derived.key for derived in self.derived)}
+        return tuple(key for key in INPUTS if key in drawn) if self.unknown_inputs == "drawn" else ()
+
     def draws_at(self, cell: int) -> list[Item]:
-        """The draws of a point; each motion of a set is drawn equally often, and is a replicate."""
+        """The draws of a point; each motion of a set is drawn equally often, and is a replicate.
+
+        The unknown inputs have random numbers of their own, so what is drawn by [random] does not depend on them.
+        """
         spread = [quantity for quantity in self.random if quantity.key != MOTION_FILE]
-        shares = self.shares(cell, len(spread)) if spread else np.empty((self.draws, 0))
+        shares = self._shares(cell, len(spread)) if spread else np.empty((self.draws, 0))
         columns: dict[str, Sequence[Any]] = {
             quantity.key: np.asarray(quantity.values(shares[:, k]), dtype=object).tolist()
             for k, quantity in enumerate(spread)
@@ -283,12 +325,28 @@ class Ensemble(Design):
             sets = {axis.key: axis.values, **axis.following}
             columns |= {key: [value for value in row for _ in range(each)] for key, row in sets.items()}
         point, rows = self.point(cell), zip(*columns.values(), strict=True)
-        return [
+        draws = [
             Item(cell, number, point, dict(zip(columns, row, strict=True))) for number, row in enumerate(rows)
         ]
+        if not self.unknown:
+            return draws
+        shares = self._shares(cell, len(self.unknown), STREAM)
+        return [self._with_unknown(draw, row) for draw, row in zip(draws, shares.tolist(), strict=True)]
 
-    def shares(self, cell: int, dimensions: int, stream: int = 0) -> FloatArray:
-        """Shares of probability of the draws of a point, (draws, dimensions)."""
+    def _with_unknown(self, draw: Item, shares: list[float]) -> Item:
+        """A draw with values at these shares of the ranges that it has; without any where it cannot be made."""
+        try:
+            case = self.make.case(draw)
+            ranges = ranges_of(case, penalty_of(case))
+        except (CaseError, ValueError):
+            return draw
+        share = dict(zip(self.unknown, shares, strict=True))
+        drawn = [interval for interval in ranges if interval.key in share]
+        unknown = drawn_values(drawn, [share[interval.key] for interval in drawn])
+        more = as_changed(case, unknown) if unknown and case.container.is_loose else unknown
+        return draw._replace(unknown=unknown, more=more)
+
+    def _shares(self, cell: int, dimensions: int, stream: int = 0) -> FloatArray:
         return draw_shares(
             self.sampling,
             seed=self.seed,
@@ -299,6 +357,13 @@ class Ensemble(Design):
             stream=stream,
         )
 
+    def corners(self, *, listed: bool = False) -> Iterator[Item]:
+        """Runs at the ends of each axis, in the middle and at the ends of all distributions."""
+        shares = np.array([0.5, 0.0, 1.0])
+        drawn = list(zip(*(quantity.values(shares) for quantity in self.random), strict=True))
+        for item, values in product(super().corners(listed=listed), drawn):
+            yield self.drawn(item.point, values)
+
     def drawn(self, point: Mapping[str, Any], values: Iterable[Any]) -> Item:
         """The run at a point, of values of what is random."""
         drawn: dict[str, Any] = {}
@@ -306,55 +371,3 @@ class Ensemble(Design):
             choice = [quantity.axis] if isinstance(quantity, RandomChoice) else []
             drawn |= with_following(choice, {quantity.key: value})
         return Item(0, 0, point, drawn)
-
-
-class UnknownInputs:
-    """The unknown inputs, drawn over their ranges at every draw of an ensemble.
-
-    What the file varies itself, by [axes], [random] or [derived], stays as it is there; the rest follows [uncertainty]
-    of the case. These draws have random numbers of their own, so those of [random] do not depend on them.
-    """
-
-    def __init__(self, ensemble: Ensemble) -> None:
-        self._ensemble = ensemble
-        cases = list(_cases(ensemble))
-        varied = {axis.key for axis in ensemble.axes} | {quantity.key for quantity in ensemble.random}
-        fixed = varied | {derived.key for derived in ensemble.derived}
-        ranges = (interval for case in cases for interval in ranges_of(case, penalty_of(case)))
-        drawn = {interval.key for interval in ranges if interval.drawn is not None} - fixed
-        #: keys of the inputs that are drawn
-        self.keys = tuple(key for key in INPUTS if key in drawn) if ensemble.unknown_inputs == "drawn" else ()
-        #: what is held fixed of the others, in words
-        self.held = held_inputs(cases, varied | set(self.keys))
-
-    def draws_at(self, cell: int) -> list[Item]:
-        """The draws of a point, with the values of the unknown inputs."""
-        draws = self._ensemble.draws_at(cell)
-        if not self.keys:
-            return draws
-        shares = self._ensemble.shares(cell, len(self.keys), STREAM).tolist()
-        return [self._with_unknown(draw, row) for draw, row in zip(draws, shares, strict=True)]
-
-    def _with_unknown(self, draw: Item, shares: list[float]) -> Item:
-        """A draw with values at these shares of the ranges that it has; without any where it cannot be made."""
-        try:
-            case = self._ensemble.make.case(draw)
-            share = dict(zip(self.keys, shares, strict=True))
-            ranges = ranges_of(case, penalty_of(case))
-        except (CaseError, ValueError):
-            return draw
-        drawn = [interval for interval in ranges if interval.key in share]
-        unknown = drawn_values(drawn, [share[interval.key] for interval in drawn])
-        more = as_changed(case, unknown) if unknown and case.container.is_loose else unknown
-        return draw._replace(unknown=unknown, more=more)
-
-
-def _cases(ensemble: Ensemble) -> Iterator[Case]:
-    """The cases in the middle and at the ends of all distributions, at the ends of the axes, those that can be made."""
-    corners = product(*((axis.values[0], axis.values[-1]) for axis in ensemble.axes))
-    shares = np.array([0.5, 0.0, 1.0])
-    drawn = list(zip(*(quantity.values(shares) for quantity in ensemble.random), strict=True))
-    for corner, values in product(corners, drawn):
-        with suppress(CaseError):
-            point = {axis.key: value for axis, value in zip(ensemble.axes, corner, strict=True)}
-            yield ensemble.make.case(ensemble.drawn(point, values))

@@ -20,8 +20,7 @@ from fem.results.folder import ResultFolder
 from fem.results.kinds import ENSEMBLE
 from fem.results.outcome import COUNTED, COUNTED_AS, Ending, counts_of, ending_of
 from fem.study.answers import ensemble_answer
-from fem.study.axes import AxisResult
-from fem.study.design import Ensemble, Item, UnknownInputs, sets_among
+from fem.study.design import Ensemble, Item, sets_among
 from fem.study.draws import RandomChoice
 from fem.study.driver import (
     COMPLETED,
@@ -51,21 +50,21 @@ SHOWN: Columns = {"outcome": str} | columns_of(Place.KEY) | {key: RUN_COLUMNS[ke
 class DrawRows:
     """The rows of the draws so far."""
 
-    def __init__(self, ensemble: Ensemble, unknown: UnknownInputs) -> None:
-        self._ensemble, self._unknown = ensemble, unknown
+    def __init__(self, ensemble: Ensemble) -> None:
+        self._ensemble = ensemble
         #: keys that are drawn, and those that follow the motion of a draw
         self._drawn = [quantity.key for quantity in ensemble.random]
         self._drawn += [key for axis in sets_among(ensemble.random) for key in axis.following]
         keys = [f"{key}{' factor' if key in ensemble.relative else ''}" for key in self._drawn]
         numbers: Columns = dict.fromkeys(("point", "draw", "replicate"), int)
-        self.columns = numbers | dict.fromkeys((*keys, *unknown.keys), str) | SHOWN
+        self.columns = numbers | dict.fromkeys((*keys, *ensemble.unknown), str) | SHOWN
         self.codes = np.full((ensemble.count, ensemble.draws), Ending.UNKNOWN, dtype=np.int8)
         self.slips = np.full(self.codes.shape, np.nan)
 
     def key(self, draw: Item) -> tuple[Any, ...]:
         """What was drawn."""
         replicate = draw.draw // (self._ensemble.draws // self._ensemble.replicates)
-        unknown = (draw.unknown.get(key) for key in self._unknown.keys)
+        unknown = (draw.unknown.get(key) for key in self._ensemble.unknown)
         return draw.cell, draw.draw, replicate, *map(draw.drawn.get, self._drawn), *unknown
 
     def note(self, line: str) -> None:
@@ -79,7 +78,7 @@ class DrawRows:
     def missing(self) -> list[Item]:
         """The draws that have no row."""
         cells = np.flatnonzero((self.codes == Ending.UNKNOWN).any(axis=1)).tolist()
-        draws = (draw for cell in cells for draw in self._unknown.draws_at(cell))
+        draws = (draw for cell in cells for draw in self._ensemble.draws_at(cell))
         return [draw for draw in draws if self.codes[draw.cell, draw.draw] == Ending.UNKNOWN]
 
 
@@ -98,11 +97,10 @@ def run_ensemble(ensemble: Ensemble, *, folder: Path, **options: Unpack[StudyOpt
     with runner_of(**options) as reader:
         motions = read_motion_set(ensemble.base, sets_among(ensemble.random), reader)
         options["workers_of"] = reader.workers_of
-        unknown = UnknownInputs(ensemble)
         copied = [motion.case for motion in motions if ensemble.replicates <= MOST_COPIED]
-        begun = begun_result(ensemble, unknown, motions)
+        begun = begun_result(ensemble, motions)
         rows = table_bytes(
-            ensemble.count * ensemble.draws, OF_A_DRAW + len(ensemble.random) + len(unknown.keys)
+            ensemble.count * ensemble.draws, OF_A_DRAW + len(ensemble.random) + len(ensemble.unknown)
         )
         files = sum(path.stat().st_size for case in copied for path in case.data_files.values())
         points = table_bytes(ensemble.count, OF_A_POINT)
@@ -113,7 +111,7 @@ def run_ensemble(ensemble: Ensemble, *, folder: Path, **options: Unpack[StudyOpt
             begun=begun,
             cases=[ensemble.base],
             motions=copied,
-            compute=partial(_compute, ensemble, unknown, motions, begun),
+            compute=partial(_compute, ensemble, motions, begun),
             texts={"ensemble.toml": ensemble.text, "base.toml": to_toml(ensemble.base)},
             size=2 * rows + points + table_bytes(len(motions), OF_A_MOTION) + files,
             subject="the ensemble",
@@ -125,20 +123,19 @@ def run_ensemble(ensemble: Ensemble, *, folder: Path, **options: Unpack[StudyOpt
 
 def _compute(
     ensemble: Ensemble,
-    unknown: UnknownInputs,
     motions: Sequence[FloorMotionPair],
     begun: EnsembleResult,
     results: ResultFolder,
     runner: Runner,
 ) -> EnsembleResult:
     """Compute the draws that are missing, count what there is, and write it."""
-    draws = DrawRows(ensemble, unknown)
+    draws = DrawRows(ensemble)
     log = LoggedRuns[Item](
         what="draws",
         path=results.path / DRAWS,
         columns=draws.columns,
         make=ensemble.make.case,
-        model_of=lambda draw: ensemble.base.solver.model,
+        model_of=ensemble.model_of,
         key=draws.key,
         ids=2,
         note=draws.note,
@@ -162,7 +159,7 @@ def _compute(
     if not complete.all():
         return replace(result, missing=f"{len(points)} of {ensemble.count} points have all their draws")
     fragility = fragility_of(ensemble, draws.codes, points)
-    for name, svg in ensemble_figures(ensemble, unknown, points, fragility).items():
+    for name, svg in ensemble_figures(ensemble, points, fragility).items():
         results.write(f"figures/{name}.svg", svg)
     failed = all(point["failed"] == ensemble.draws for point in points)
     result = replace(result, status=FAILED if failed else COMPLETED, fragility=fragility)
@@ -175,9 +172,7 @@ def _compute(
     return replace(result, answer=answer.sentence if answer else None)
 
 
-def begun_result(
-    ensemble: Ensemble, unknown: UnknownInputs, motions: Sequence[FloorMotionPair]
-) -> EnsembleResult:
+def begun_result(ensemble: Ensemble, motions: Sequence[FloorMotionPair]) -> EnsembleResult:
     """The part of `ensemble.json` that is known beforehand."""
     names = ("draws", "seed", "sampling", "replicates", "confidence", "probability", "unknown_inputs")
     counted = {name: getattr(ensemble, name) for name in names} | {"limit_slip_m": ensemble.limit_slip_m}
@@ -200,10 +195,10 @@ def begun_result(
         model=ensemble.base.solver.model,
         duration_s=longest_time(ensemble.base) if not ends_at_rest(ensemble.base) else "auto",
         motion_covered=motions_left_out(ensemble.base, motions),
-        axes=tuple(AxisResult(key=axis.key, values=axis.values, unit=axis.unit) for axis in ensemble.axes),
+        axes=tuple(replace(axis, scale="") for axis in ensemble.axes),
         random={quantity.key: quantity.definition for quantity in ensemble.random},
         derived={derived.key: derived.expression.text for derived in ensemble.derived},
-        drawn_over_uncertainty=tuple(unknown.keys),
-        held=unknown.held,
+        drawn_over_uncertainty=ensemble.unknown,
+        held=ensemble.held,
         **counted,
     )

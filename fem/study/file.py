@@ -1,7 +1,7 @@
 """What the file of a study of many cases has: a heading, tables, the case it starts from, the keys that vary."""
 
 import re
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import islice, product
 from pathlib import Path
@@ -28,11 +28,12 @@ from fem.study.axes import (
     hint,
     read_axis,
     set_axis,
-    with_following,
 )
 from fem.study.derived import FREE, read_derived, value_in
 from fem.study.design import (
+    Design,
     Ensemble,
+    Item,
     MapChoice,
     Sweep,
     Threshold,
@@ -288,7 +289,7 @@ def _read_sweep(data: Mapping[str, Any], origin: Origin) -> Sweep:
         maps=_maps(tables.get("maps", {}), values),
         limit_slip_m=heading.limit_slip_m,
     )
-    _try_cells(sweep)
+    _require_effect(sweep, _tried(sweep, sweep.corners(listed=True), "[axes] make this cell", str))
     return sweep
 
 
@@ -330,24 +331,27 @@ def _maps(content: Mapping[str, Any], known: Mapping[str, tuple[Any, ...]]) -> M
     return choice
 
 
-def _try_cells(sweep: Sweep) -> None:
-    """Make the cases at the corners of the grid, and those of every listed value; refuse an axis without effect."""
-    ends = [axis.values if axis.scale == "list" else (axis.values[0], axis.values[-1]) for axis in sweep.axes]
-    idle = {axis.key for axis in sweep.axes}
-    for corner in islice(product(*ends), TRIED):
-        point = {axis.key: value for axis, value in zip(sweep.axes, corner, strict=True)}
+def _tried(design: Design, items: Iterable[Item], tables: str, words: Callable[[Any], str]) -> Iterator[Case]:
+    """The cases of the first of some runs; CaseError for one that cannot be used, with what makes it."""
+    for item in islice(items, TRIED):
         try:
-            case = sweep.base.with_values(sweep.make.values(with_following(sweep.axes, point)))
+            yield design.make.case(item)
         except CaseError as error:
-            where = ", ".join(f"{key} = {value}" for key, value in point.items())
-            raise CaseError(f"{error}\n[axes] make this cell: {where}") from None
-        idle = {key for key in idle if _is_idle(case, key)}
-    for key in point:
-        if key in idle:
-            raise CaseError(
-                f"[axes] {key!r} has no effect in this case, which has other options; "
-                "choose the option it belongs to under [set], or leave the axis out"
-            )
+            values = (*item.point.items(), *item.drawn.items())
+            where = ", ".join(f"{key} = {words(value)}" for key, value in values if key in design.varied)
+            raise CaseError(f"{error}\n{tables}: {where}") from None
+
+
+def _require_effect(sweep: Sweep, cases: Iterable[Case]) -> None:
+    """Refuse an axis that has no effect in any of the cases."""
+    idle = [axis.key for axis in sweep.axes]
+    for case in cases:
+        idle = [key for key in idle if _is_idle(case, key)]
+    if idle:
+        raise CaseError(
+            f"[axes] {idle[0]!r} has no effect in this case, which has other options; "
+            "choose the option it belongs to under [set], or leave the axis out"
+        )
 
 
 def _is_idle(case: Case, key: str) -> bool:
@@ -395,13 +399,20 @@ def _read_ensemble(data: Mapping[str, Any], origin: Origin) -> Ensemble:
         **own,
     )
     _check_draws(ensemble)
-    _try_cases(ensemble)
+    ends = product(Design.corners(ensemble), product(*(quantity.ends for quantity in random)))
+    items = (ensemble.drawn(item.point, values) for item, values in ends)
+    for _ in _tried(ensemble, items, "[axes] and [random] make this case", _short):
+        pass
     return ensemble
 
 
 def _axis(key: str, value: Any) -> Axis:
     # A free variable takes any number, as the scale of a table of motion does.
     return replace(read_axis("motion.scale" if key.startswith(FREE) else key, value), key=key)
+
+
+def _short(value: Any) -> str:
+    return value if isinstance(value, str) else format(value, "g")
 
 
 def _point_axis(key: str, value: Any) -> Axis:
@@ -462,19 +473,3 @@ def _check_draws(ensemble: Ensemble) -> None:
         raise CaseError(
             f"[axes] make {ensemble.count} points x {draws} draws = {runs} runs; at most {MOST_RUNS}"
         )
-
-
-def _try_cases(ensemble: Ensemble) -> None:
-    """Make the cases at the ends of axes and distributions; raises a CaseError for one that cannot be used."""
-    ends = [(axis.values[0], axis.values[-1]) for axis in ensemble.axes]
-    keys = [*(axis.key for axis in ensemble.axes), *(quantity.key for quantity in ensemble.random)]
-    for corner in islice(product(*ends, *(quantity.ends for quantity in ensemble.random)), TRIED):
-        point = dict(zip(keys, corner[: len(ends)], strict=False))
-        try:
-            ensemble.make.case(ensemble.drawn(point, corner[len(ends) :]))
-        except CaseError as error:
-            where = ", ".join(
-                f"{key} = {value if isinstance(value, str) else format(value, 'g')}"
-                for key, value in zip(keys, corner, strict=True)
-            )
-            raise CaseError(f"{error}\n[axes] and [random] make this case: {where}") from None

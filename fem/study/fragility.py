@@ -15,7 +15,7 @@ from fem.results.json_block import JsonBlock
 from fem.results.outcome import COUNTED, NOT_STANDING, Ending, counts_of
 from fem.runtime.arrays import FloatArray
 from fem.runtime.intervals import estimate
-from fem.study.axes import Axis, AxisResult
+from fem.study.axes import Axis
 from fem.study.design import Ensemble
 from fem.study.driver import StudyResult
 from fem.study.table import Columns
@@ -72,7 +72,7 @@ class EnsembleResult(StudyResult):
     unknown_inputs: str = ""
     #: beyond which a draw does not stand, and counts as one that overturned
     limit_slip_m: float | None = None
-    axes: tuple[AxisResult, ...]
+    axes: tuple[Axis, ...]
     random: dict[str, Any]  #: what is drawn, by key
     derived: dict[str, str] = field(default_factory=dict)
     drawn_over_uncertainty: tuple[str, ...] = ()
@@ -83,11 +83,6 @@ class EnsembleResult(StudyResult):
     regions: dict[str, int] = field(default_factory=dict)
     failed: int = 0
     fragility: Fragility | None = None
-
-    @property
-    def point_axes(self) -> tuple[Axis, ...]:
-        """The axes, to name places on them."""
-        return tuple(axis.axis for axis in self.axes)
 
 
 SCORINGS = 60  #: of Fisher's method

@@ -28,7 +28,7 @@ from fem.results.outcome import ENDINGS, Outcome
 from fem.runtime.own_files import place_in, write_atomically
 from fem.study.answers import Answer, StudyAnswer, falling_in_words
 from fem.study.axes import MOTION_FILE, Axis, axis_label, axis_name
-from fem.study.design import Ensemble, MapChoice, UnknownInputs
+from fem.study.design import Ensemble, MapChoice
 from fem.study.fragility import Fragility, Lognormal, PointRow
 from fem.study.sweep_table import RATIOS, SweepTable, sweep_answer
 
@@ -388,20 +388,18 @@ MOST_NUMBERS = 320  #: cells of a panel up to which each holds its number
 
 
 def ensemble_figures(
-    ensemble: Ensemble, unknown: UnknownInputs, points: Sequence[PointRow], fragility: Fragility | None
+    ensemble: Ensemble, points: Sequence[PointRow], fragility: Fragility | None
 ) -> dict[str, str]:
     """Figures as SVG documents, by name."""
     with style.house_style():
         if len(ensemble.axes) == 1:
-            return {"fragility": style.svg_of(draw_fragility(ensemble, unknown, points, fragility))}
-        return {"boundary": style.svg_of(draw_boundary(ensemble, unknown, points))}
+            return {"fragility": style.svg_of(draw_fragility(ensemble, points, fragility))}
+        return {"boundary": style.svg_of(draw_boundary(ensemble, points))}
 
 
-def draw_fragility(
-    ensemble: Ensemble, unknown: UnknownInputs, points: Sequence[PointRow], fragility: Fragility | None
-) -> Figure:
+def draw_fragility(ensemble: Ensemble, points: Sequence[PointRow], fragility: Fragility | None) -> Figure:
     """Counts with their intervals, and the lognormal curve with its band."""
-    statement = fill(_statement(ensemble, unknown), SMALL_LINE)
+    statement = fill(_statement(ensemble), SMALL_LINE)
     figure, (axes,) = style.panels((3.2,), header=3 + statement.count("\n"))
     axis = ensemble.axes[0]
     style.head(figure, ensemble.title or ensemble.name, statement)
@@ -437,7 +435,7 @@ def draw_fragility(
     return figure
 
 
-def draw_boundary(ensemble: Ensemble, unknown: UnknownInputs, points: Sequence[PointRow]) -> Figure:
+def draw_boundary(ensemble: Ensemble, points: Sequence[PointRow]) -> Figure:
     """Points that overturn with at most the given probability, with more, or undecided."""
     *outer, down, across = ensemble.axes
     outside = outer[0].values if outer else (None,)
@@ -468,19 +466,19 @@ def draw_boundary(ensemble: Ensemble, unknown: UnknownInputs, points: Sequence[P
         x,
         map_axis(down, ensemble.base.name),
         maps,
-        title=f"{ensemble.title or ensemble.name}\n{fill(_statement(ensemble, unknown), LINE)}",
+        title=f"{ensemble.title or ensemble.name}\n{fill(_statement(ensemble), LINE)}",
         colours={words[region]: colour for region, colour in COLOURS.items()},
     )
 
 
-def _statement(ensemble: Ensemble, unknown: UnknownInputs) -> str:
+def _statement(ensemble: Ensemble) -> str:
     names = ", ".join(
         quantity.key.rpartition(".")[2].removesuffix("_rad").replace("_", " ")
         for quantity in ensemble.random
         if quantity.key != MOTION_FILE
     )
-    ranges = f"; {len(unknown.keys)} unknown inputs drawn over their ranges" if unknown.keys else ""
-    held = f"; {unknown.held}" if unknown.held else ""
+    ranges = f"; {len(ensemble.unknown)} unknown inputs drawn over their ranges" if ensemble.unknown else ""
+    held = f"; {ensemble.held}" if ensemble.held else ""
     drawn = f"{ensemble.draws} draws a point ({ensemble.sampling})"
     motions = ensemble.motions
     floor = "not the floor's motion" if motions is None else f"{len(motions.values)} motions equally often"

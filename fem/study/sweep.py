@@ -23,9 +23,7 @@ from fem.results.kinds import SWEEP
 from fem.run.expected import expected_s, expected_words
 from fem.runtime.threads import cores
 from fem.runtime.user_files import read_own
-from fem.study.axes import AxisResult
 from fem.study.design import Item, Sweep
-from fem.study.draws import held_inputs
 from fem.study.driver import (
     COMPLETED,
     FAILED,
@@ -98,7 +96,7 @@ def check_size(sweep: Sweep, jobs: int, force: bool) -> None:
     """
     if sweep.count <= MOST_CELLS or force:
         return
-    corners = [expected_s(case) for case in sweep.ends()] or [expected_s(sweep.base)]
+    corners = [expected_s(case) for case in sweep.cases] or [expected_s(sweep.base)]
     seconds = sweep.count * sum(corners) / len(corners) / jobs
     raise CaseError(
         f"{sweep.name}: [axes] make {' x '.join(map(str, sweep.shape))} = {sweep.count} cells, more than {MOST_CELLS}: "
@@ -129,9 +127,9 @@ def asked_of(sweep: Sweep, motions: Sequence[FloorMotionPair], jobs: int) -> Swe
         model=sweep.base.solver.model,
         duration_s=longest_time(sweep.base) if not ends_at_rest(sweep.base) else "auto",
         motion_covered=motions_left_out(sweep.base, motions),
-        axes=tuple(map(AxisResult.of, sweep.axes)),
+        axes=sweep.axes,
         derived={quantity.key: quantity.expression.text for quantity in sweep.derived},
-        held=held_inputs(sweep.ends(), [axis.key for axis in sweep.axes]),
+        held=sweep.held,
         perturbation=sweep.perturbation.model_dump(),
         uncertainty=sweep.base.uncertainty.model_dump(),
         left_out=left_out(sweep),

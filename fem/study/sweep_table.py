@@ -39,7 +39,6 @@ from fem.study.answers import (
 )
 from fem.study.axes import (
     Axis,
-    AxisResult,
     axis_name,
     place_in_words,
     point_of,
@@ -67,7 +66,7 @@ class SweepResult(StudyResult):
     model: str = ""
     duration_s: float | str = "auto"
     motion_covered: str | None = None  #: the part of the motion that the runs cover, where they end before it
-    axes: tuple[AxisResult, ...]
+    axes: tuple[Axis, ...]
     derived: dict[str, str] = field(default_factory=dict)
     held: str = ""  #: of the unknown inputs, in words
     perturbation: dict[str, Any] = field(default_factory=dict)
@@ -116,8 +115,12 @@ class SweepTable:
     """A sweep read from its folder: what was asked, and the results."""
 
     info: SweepResult
-    axes: tuple[Axis, ...]
     columns: dict[str, NDArray[Any]]  #: (n_cells,) by name; nan and "" where there is no result
+
+    @property
+    def axes(self) -> tuple[Axis, ...]:
+        """Of the sweep."""
+        return self.info.axes
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -151,8 +154,7 @@ def open_sweep(folder: Path | str) -> SweepTable:
     content = read_result(folder / SWEEP.mark, SWEEP)
     try:
         info = SweepResult.from_json(content)
-        axes = tuple(entry.axis for entry in info.axes)
-        names: list[str] = ["cell", *(axis.key for axis in axes), "status", "outcome", TURNED]
+        names: list[str] = ["cell", *(axis.key for axis in info.axes), "status", "outcome", TURNED]
         sources = [path for name in ("table.csv", "rows.csv") if (path := folder / name).is_file()]
         for source in sources[:1]:
             with source.open(encoding="utf-8", newline="") as stream:
@@ -165,7 +167,7 @@ def open_sweep(folder: Path | str) -> SweepTable:
                 f"table.csv has {len(lines)} rows of {info.cells}; recompute it: "
                 f"python -m fem sweep {info.sweep} --out {folder} --force"
             )
-        return SweepTable(info=info, axes=axes, columns=_columns(axes, names, lines))
+        return SweepTable(info=info, columns=_columns(info.axes, names, lines))
     except (KeyError, TypeError, ValueError, IndexError, OSError) as error:
         raise FolderError(f"{folder}: damaged, or not the folder of a sweep ({error})") from None
 

@@ -10,7 +10,7 @@ from motion_files import write_motion, write_pair
 from fem.case.case import CaseError
 from fem.report.study_page import ensemble_report
 from fem.runtime.intervals import binomial_interval, estimate
-from fem.study.design import UnknownInputs, sets_among
+from fem.study.design import sets_among
 from fem.study.ensemble import begun_result, run_ensemble
 from fem.study.file import load_ensemble
 from fem.study.motions import read_motion_set
@@ -101,7 +101,7 @@ def test_the_result_depends_on_what_the_files_hold(ensemble_of, tmp_path):
 
 def ensemble_hash(ensemble):
     motions = read_motion_set(ensemble.base, sets_among(ensemble.random))
-    return begun_result(ensemble, UnknownInputs(ensemble), motions).asked
+    return begun_result(ensemble, motions).asked
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ import pytest
 
 from fem.case.files import ENSEMBLES
 from fem.results.outcome import Ending
-from fem.study.design import Ensemble, UnknownInputs
+from fem.study.design import Ensemble
 from fem.study.draws import draw_shares, read_random
 from fem.study.ensemble import run_ensemble
 from fem.study.file import load_ensemble
@@ -65,8 +65,7 @@ def test_the_same_seed_gives_the_same_files_on_any_number_of_cores(tmp_path):
 
 def test_unknown_inputs_are_drawn_beside_those_of_the_file(tmp_path):
     drawn = load_ensemble(changed(tmp_path))
-    unknown = UnknownInputs(drawn)
-    assert unknown.keys == (
+    assert drawn.unknown == (
         "contact.weakening_m",
         "contact.stribeck_velocity_m_s",
         "container.centroid_m",
@@ -78,27 +77,26 @@ def test_unknown_inputs_are_drawn_beside_those_of_the_file(tmp_path):
         "contact.damping_ratio",
         "contact.restitution_over_housner",
     )
-    assert unknown.held == ""
-    draws = unknown.draws_at(1)
-    assert [draw.drawn for draw in draws] == [draw.drawn for draw in drawn.draws_at(1)]
+    assert drawn.held == ""
+    head = "seed = 4\n"
+    held = load_ensemble(changed(tmp_path, (head, head + 'unknown_inputs = "held"\n')))
+    draws = drawn.draws_at(1)
+    assert [draw.drawn for draw in draws] == [draw.drawn for draw in held.draws_at(1)]
     assert {draw.unknown["motion.ramp_cycles"] for draw in draws} == {0.0, 0.74999999925}
     for draw in draws:
         case = drawn.make.case(draw)
         assert case.motion.ramp_cycles == draw.unknown["motion.ramp_cycles"]
         assert 0.0 <= case.contact.weakening_m <= 5e-3
         assert 1.0 <= case.contact.damping_ratio <= 4.0
-    head = "seed = 4\n"
-    held = load_ensemble(changed(tmp_path, (head, head + 'unknown_inputs = "held"\n')))
-    assert UnknownInputs(held).keys == ()
-    assert UnknownInputs(held).held == "with friction falling at once, no ramp"
-    assert UnknownInputs(held).draws_at(1) == held.draws_at(1)
+    assert held.unknown == ()
+    assert held.held == "with friction falling at once, no ramp"
+    assert not any(draw.unknown for draw in held.draws_at(1))
 
 
 def test_joints_of_a_loose_stack_are_drawn_apart_from_the_floor(tmp_path):
     drawn = load_ensemble(changed(tmp_path, ("[axes]", '"container.joints" = "loose"\n[axes]')))
-    unknown = UnknownInputs(drawn)
-    assert {"joints.mu_static", "joints.mu_kinetic", "joints.weakening_m"} < set(unknown.keys)
-    for draw in unknown.draws_at(1):
+    assert {"joints.mu_static", "joints.mu_kinetic", "joints.weakening_m"} < set(drawn.unknown)
+    for draw in drawn.draws_at(1):
         between = drawn.make.case(draw).joint_friction
         assert between == {key: draw.unknown[f"joints.{key}"] for key in between}
 
