@@ -1,9 +1,10 @@
 """Many runs in memory on all cores: `fem.compute_many(cases)`."""
 
 import warnings
-from collections.abc import Hashable, Iterable, Sequence
+from collections.abc import Callable, Hashable, Iterable, Sequence
 from contextlib import closing
 from functools import partial
+from operator import itemgetter
 from typing import Literal, TypedDict, Unpack, overload
 
 from fem.case.case import Case
@@ -15,8 +16,8 @@ from fem.runtime.progress import ScreenReporter, watched
 from fem.runtime.signals import stop_requested
 from fem.runtime.threads import cores
 from fem.study.containers import ContainerCache, container_key
-from fem.study.runner import Told
-from fem.study.workers import IN_THREADS, STDIN, LocalWorkers, hand_out, unguarded_script
+from fem.study.runner import Row, Runner
+from fem.study.workers import IN_THREADS, STDIN, LocalWorkers, unguarded_script
 
 #: number of cases from which processes pay off: runs with history and band hold the interpreter longer than rows do
 WORTH_PROCESSES = {"rigid": 24, "reduced": 6, "full": 2}
@@ -110,19 +111,16 @@ def compute_many(
     order = sorted(range(len(all_cases)), key=lambda number: first[container_key(all_cases[number])])
     work = partial(_compute, WantedChecks(**wanted), len(all_cases))
     reporter = ScreenReporter(quiet=not (watched() if progress is None else progress))
-    told = Told("runs", len(all_cases) - len(runs), reporter)
-    with LocalWorkers(jobs, WORTH_PROCESSES if script is None else IN_THREADS) as workers_of, closing(told):
-        for model in WORTH_PROCESSES:
-            items = [(n, all_cases[n]) for n in order if all_cases[n].solver.model == model and n not in runs]
-            chunks = hand_out(
-                items, work, workers_of(model, len(items)), at_a_time=1, stop=stop_requested, finish=False
-            )
-            for chunk, results in chunks:
-                runs |= dict(zip((number for number, _ in chunk), results, strict=True))
-                told.more(len(results), sum(isinstance(one, ValueError) for one in results))
-                if errors == "raise":
-                    for result in (one for one in results if isinstance(one, ValueError)):
-                        raise result
+    with LocalWorkers(jobs, WORTH_PROCESSES if script is None else IN_THREADS) as workers_of:
+        runner = Runner(workers_of=workers_of, reporter=reporter, stop=stop_requested)
+        items = [(number, all_cases[number]) for number in order if number not in runs]
+        found = runner.rows("runs", items, itemgetter(1), lambda item: item[1].solver.model, work)
+        with closing(found):
+            for chunk, rows in found:
+                for (number, _), row in zip(chunk, rows, strict=True):
+                    runs[number] = row["run"]
+                    if errors == "raise" and isinstance(row["run"], ValueError):
+                        raise row["run"]
     if stop_requested():
         raise KeyboardInterrupt
     return [runs[number] for number in range(len(all_cases))]
@@ -133,11 +131,14 @@ def _noted(error: ValueError, number: int, count: int) -> ValueError:
     return error
 
 
-def _compute(wanted: WantedChecks, count: int, items: Sequence[Item]) -> list[Run | ValueError]:
-    runs: list[Run | ValueError] = []
-    for number, case in items:
+def _compute(
+    wanted: WantedChecks, count: int, make: Callable[[Item], Case], items: Sequence[Item]
+) -> list[Row]:
+    rows: list[Row] = []
+    for item in items:
         try:
-            runs.append(compute_on(_CONTAINERS.container_of(case), case, wanted))
+            case = make(item)
+            rows.append({"status": "", "run": compute_on(_CONTAINERS.container_of(case), case, wanted)})
         except ValueError as error:
-            runs.append(_noted(error, number, count))
-    return runs
+            rows.append({"status": "failed", "run": _noted(error, item[0], count)})
+    return rows

@@ -8,7 +8,7 @@ import ast
 import math
 import operator
 import re
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass
 from keyword import iskeyword
 from typing import Any
@@ -151,21 +151,13 @@ def _value(tree: Tree, values: Mapping[str, float]) -> float:
 FREE = "free."  #: begins the name of a variable that is no key of a case; derived keys refer to it
 
 
-@dataclass(frozen=True, kw_only=True)
-class Derived:
-    """A key that follows others."""
-
-    key: str  #: dotted
-    expression: Expression
-
-
 def read_derived(
     content: Mapping[str, Any],
     varied: Collection[str],
     check_key: Callable[[str], object],
     check_reference: Callable[[str], object],
-) -> tuple[Derived, ...]:
-    """The table [derived] of a study, in an order in which each key follows those it refers to.
+) -> dict[str, Expression]:
+    """The table [derived] of a study, by dotted keys: each stands behind those that its expression refers to.
 
     `varied` vary already; `check_key` and `check_reference` raise an `AxisError` for a key that cannot follow, or be
     referred to. CaseError with the key and the reason.
@@ -189,19 +181,27 @@ def read_derived(
                 check_reference(name)
             except AxisError as error:
                 raise CaseError(f"[derived] {key!r} refers to {name!r}, which {error}") from None
-    return tuple(Derived(key=key, expression=expressions[key]) for key in _in_order(expressions))
+    ordered: dict[str, Expression] = {}
+    while left := {key: one for key, one in expressions.items() if key not in ordered}:
+        ready = {key: one for key, one in left.items() if not one.keys & left.keys()}
+        if not ready:
+            own = [key for key, one in left.items() if key in one.keys]
+            circle = f"{own[0]} refers to itself" if own else f"{' and '.join(left)} refer to one another"
+            raise CaseError(f"[derived] {circle}; let one follow an axis, or set it under [set]")
+        ordered |= ready
+    return ordered
 
 
-def with_derived(values: Mapping[str, Any], derived: Iterable[Derived], base: Case) -> dict[str, Any]:
+def with_derived(values: Mapping[str, Any], derived: Mapping[str, Expression], base: Case) -> dict[str, Any]:
     """Values by key, those of the derived keys added; CaseError for an expression without a value."""
     complete = dict(values)
-    for quantity in derived:
-        known = {key: number_of(key, complete, base) for key in quantity.expression.keys}
+    for derived_key, expression in derived.items():
+        known = {key: number_of(key, complete, base) for key in expression.keys}
         try:
-            value = quantity.expression.value(known)
+            value = expression.value(known)
         except ExpressionError as error:
-            raise CaseError(f"[derived] {quantity.key} {error}") from None
-        complete[quantity.key] = int(value) if quantity.key in _WHOLE_KEYS and value == int(value) else value
+            raise CaseError(f"[derived] {derived_key} {error}") from None
+        complete[derived_key] = int(value) if derived_key in _WHOLE_KEYS and value == int(value) else value
     return complete
 
 
@@ -233,20 +233,6 @@ def value_in(base: Case, key: str, values: Mapping[str, Any]) -> float | None:
     return _as_number(
         known_keys(TABLES[table])[name].get_default(call_default_factory=True, validated_data=own)
     )
-
-
-def _in_order(derived: Mapping[str, Expression]) -> list[str]:
-    """The derived keys so that each stands behind those it refers to; CaseError for a circle."""
-    done: list[str] = []
-    while len(done) < len(derived):
-        left = {key: expression for key, expression in derived.items() if key not in done}
-        ready = [key for key, expression in left.items() if not expression.keys & left.keys()]
-        if not ready:
-            own = [key for key, expression in left.items() if key in expression.keys]
-            circle = f"{own[0]} refers to itself" if own else f"{' and '.join(left)} refer to one another"
-            raise CaseError(f"[derived] {circle}; let one follow an axis, or set it under [set]")
-        done += ready
-    return done
 
 
 def _as_number(value: Any) -> float | None:

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import product
 from typing import Annotated, Any, Literal, NamedTuple
@@ -23,12 +23,7 @@ from fem.case.validation import CaseError
 from fem.runtime.arrays import FloatArray
 from fem.study.axes import MOTION_FILE, Axis, point_of, shape_of, with_following
 from fem.study.containers import penalty_of
-from fem.study.derived import (
-    FREE,
-    Derived,
-    number_of,
-    with_derived,
-)
+from fem.study.derived import FREE, Expression, number_of, with_derived
 from fem.study.draws import RandomChoice, RandomQuantity, Sampling, draw_shares, held_inputs
 from fem.study.perturbation import Perturbation
 
@@ -58,7 +53,9 @@ class CaseMaker:
         relative: keys that are drawn as a factor on the value that they have anyway.
     """
 
-    def __init__(self, base: Case, derived: tuple[Derived, ...] = (), relative: Collection[str] = ()) -> None:
+    def __init__(
+        self, base: Case, derived: Mapping[str, Expression] = {}, relative: Collection[str] = ()
+    ) -> None:
         self.base = base
         self._derived, self._relative = derived, relative
         self._kinds = base.kinds
@@ -157,7 +154,7 @@ class Design:
     title: str = ""
     base: Case  #: with the keys of [set]
     axes: tuple[Axis, ...] = ()
-    derived: tuple[Derived, ...] = ()  #: in an order in which each follows what it refers to
+    derived: Mapping[str, Expression] = field(default_factory=dict)  #: each behind what it refers to
     relative: frozenset[str] = frozenset()  #: keys that are drawn as factors
     limit_slip_m: float | None = None  #: beyond which a run does not stand
 
@@ -234,8 +231,7 @@ class Design:
 
     @cached_property
     def _varies_container(self) -> bool:
-        moving = self.varied | {quantity.key for quantity in self.derived}
-        return any(key.startswith(OF_THE_CONTAINER) for key in moving)
+        return any(key.startswith(OF_THE_CONTAINER) for key in (*self.varied, *self.derived))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -306,7 +302,7 @@ class Ensemble(Design):
         """
         ranges = (interval for case in self.cases for interval in ranges_of(case, penalty_of(case)))
         drawn = {interval.key for interval in ranges if interval.drawn is not None}
-        drawn -= {*self.varied, *(derived.key for derived in self.derived)}
+        drawn -= {*self.varied, *self.derived}
         return tuple(key for key in INPUTS if key in drawn) if self.unknown_inputs == "drawn" else ()
 
     def draws_at(self, cell: int) -> list[Item]:

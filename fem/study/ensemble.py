@@ -184,7 +184,7 @@ def begun_result(ensemble: Ensemble, motions: Sequence[FloorMotionPair]) -> Ense
         "base": case_hash(ensemble.base),
         "axes": [[axis.key, list(axis.values)] for axis in ensemble.axes],
         "random": random,
-        "derived": [[derived.key, derived.expression.text] for derived in ensemble.derived],
+        "derived": [[key, expression.text] for key, expression in ensemble.derived.items()],
         "motions": [motion.case_hash for motion in motions],
     }
     return EnsembleResult(
@@ -197,7 +197,7 @@ def begun_result(ensemble: Ensemble, motions: Sequence[FloorMotionPair]) -> Ense
         motion_covered=motions_left_out(ensemble.base, motions),
         axes=tuple(replace(axis, scale="") for axis in ensemble.axes),
         random={quantity.key: quantity.definition for quantity in ensemble.random},
-        derived={derived.key: derived.expression.text for derived in ensemble.derived},
+        derived={key: expression.text for key, expression in ensemble.derived.items()},
         drawn_over_uncertainty=ensemble.unknown,
         held=ensemble.held,
         **counted,

@@ -276,7 +276,7 @@ def _read_sweep(data: Mapping[str, Any], origin: Origin) -> Sweep:
             )
 
     derived = read_derived(flat("derived", tables.get("derived", {})), values, check_varied, check_reference)
-    require_once(tables.get("set", {}), [*keys, *(quantity.key for quantity in derived)], base)
+    require_once(tables.get("set", {}), [*keys, *derived], base)
     sweep = Sweep(
         name=origin.name,
         text=origin.text,

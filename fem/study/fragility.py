@@ -22,11 +22,21 @@ from fem.study.table import Columns
 
 
 @dataclass(frozen=True, kw_only=True)
-class FittedLognormal(JsonBlock):
+class Lognormal(JsonBlock):
+    """A fitted fragility curve."""
+
+    median: float  #: strength of motion at which half overturn, unit of the axis
+    deviation: float  #: of its logarithm
+
+    def probability(self, strengths: FloatArray) -> FloatArray:
+        """Of overturning, shape as given."""
+        return np.asarray(ndtr(np.log(strengths / self.median) / self.deviation))
+
+
+@dataclass(frozen=True, kw_only=True)
+class FittedLognormal(Lognormal):
     """The fitted curve, and how well it describes the counts."""
 
-    median: float
-    deviation: float
     levels: int
     levels_missed: int
     missed_by_chance: int
@@ -89,18 +99,6 @@ SCORINGS = 60  #: of Fisher's method
 TIGHT = 1e-9  #: change of the coefficients at convergence
 STEEPEST = 200.0  #: 1/deviation beyond which the counts are a step
 TAIL = 8.0  #: deviations from the median at which the tails are cut
-
-
-@dataclass(frozen=True, kw_only=True)
-class Lognormal:
-    """A fitted fragility curve."""
-
-    median: float  #: strength of motion at which half overturn, unit of the axis
-    deviation: float  #: of its logarithm
-
-    def probability(self, strengths: FloatArray) -> FloatArray:
-        """Of overturning, shape as given."""
-        return np.asarray(ndtr(np.log(strengths / self.median) / self.deviation))
 
 
 def fit_lognormal(strengths: FloatArray, overturned: FloatArray, draws: FloatArray) -> Lognormal | None:
@@ -222,8 +220,7 @@ def fragility_of(ensemble: Ensemble, codes: np.ndarray, points: Sequence[PointRo
     missed = misses(curve, strengths[known], low[known], high[known])
     by_chance = misses_by_chance(int(known.sum()), ensemble.confidence)
     fitted = FittedLognormal(
-        median=curve.median,
-        deviation=curve.deviation,
+        **vars(curve),
         levels=int(known.sum()),
         levels_missed=missed,
         missed_by_chance=by_chance,

@@ -29,7 +29,7 @@ from fem.runtime.own_files import place_in, write_atomically
 from fem.study.answers import Answer, StudyAnswer, falling_in_words
 from fem.study.axes import MOTION_FILE, Axis, axis_label, axis_name
 from fem.study.design import Ensemble, MapChoice
-from fem.study.fragility import Fragility, Lognormal, PointRow
+from fem.study.fragility import Fragility, PointRow
 from fem.study.sweep_table import RATIOS, SweepTable, sweep_answer
 
 OUTCOME_COLOURS = {**style.STATE_COLOURS, "failed": style.VERMILLION, "": style.WHITE}
@@ -405,9 +405,8 @@ def draw_fragility(ensemble: Ensemble, points: Sequence[PointRow], fragility: Fr
     style.head(figure, ensemble.title or ensemble.name, statement)
     if fragility is not None and (fitted := fragility.lognormal) is not None:
         strengths = np.linspace(float(axis.values[0]), float(axis.values[-1]), FINE)
-        curve = Lognormal(median=fitted.median, deviation=fitted.deviation)
         word = "lognormal fitted" if fitted.adequate else "lognormal, which does not fit"
-        axes.plot(strengths, curve.probability(strengths), color=style.BLUE, linestyle="--", label=word)
+        axes.plot(strengths, fitted.probability(strengths), color=style.BLUE, linestyle="--", label=word)
     known = [point for point in points if point["probability"] is not None]
     value = np.array([point["probability"] for point in known], dtype=float)
     low = np.array([point["low"] for point in known])

@@ -6,7 +6,8 @@ status "failed" and the reason; it never has an outcome.
 
 import math
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterable, Sequence
+from contextlib import closing
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, NamedTuple
@@ -77,7 +78,7 @@ class Runner:
         make: Callable[[ItemT], Case],
         model_of: Callable[[ItemT], str],
         work: ChunkWork | None = None,
-    ) -> Iterator[tuple[list[ItemT], list[Row]]]:
+    ) -> Generator[tuple[list[ItemT], list[Row]], None, None]:
         """Run one case for each item; yields items and their rows as they are ready, in any order.
 
         Args:
@@ -91,21 +92,20 @@ class Runner:
         by_model: dict[str, list[ItemT]] = {}
         for item in items:
             by_model.setdefault(model_of(item), []).append(item)
-        told = Told(what, sum(map(len, by_model.values())), self.reporter)
-        for model, group in sorted(by_model.items(), key=lambda pair: list(CASES_AT_A_TIME).index(pair[0])):
-            pools = self.workers_of(model, len(group))
-            chunks = hand_out(
-                group,
-                partial(work or run_chunk, make),
-                pools,
-                at_a_time=1 if work else _chunk_size(model, len(group), pools),
-                stop=self.stop,
-                finish=model != "full" and work is None,  # one of these may take an hour
-            )
-            for chunk, rows in chunks:
-                yield chunk[: len(rows)], rows
-                told.more(len(rows), sum(row["status"] == "failed" for row in rows))
-        told.close()
+        with closing(Told(what, sum(map(len, by_model.values())), self.reporter)) as told:
+            for model, group in sorted(by_model.items(), key=lambda pair: [*CASES_AT_A_TIME].index(pair[0])):
+                pools = self.workers_of(model, len(group))
+                chunks = hand_out(
+                    group,
+                    partial(work or run_chunk, make),
+                    pools,
+                    at_a_time=1 if work else _chunk_size(model, len(group), pools),
+                    stop=self.stop,
+                    finish=model != "full" and work is None,  # one of these may take an hour
+                )
+                for chunk, rows in chunks:
+                    yield chunk[: len(rows)], rows
+                    told.more(len(rows), sum(row["status"] == "failed" for row in rows))
 
     def each(self, what: str, items: Sequence[ItemT], work: Callable[[ItemT], FoundT]) -> list[FoundT]:
         """Let the workers do some work for each item; it must be picklable.

@@ -113,7 +113,7 @@ def asked_of(sweep: Sweep, motions: Sequence[FloorMotionPair], jobs: int) -> Swe
         case_hash(base),
         toml_document(given),
         [(axis.key, axis.values) for axis in sweep.axes],
-        [(quantity.key, repr(quantity.expression.tree)) for quantity in sweep.derived],
+        [(key, repr(expression.tree)) for key, expression in sweep.derived.items()],
         [case_hash(case) for case in motion_cases(sweep.base, sweep.axes)],
     ]
     band_asked = sweep.perturbation, sweep.base.uncertainty, sweep.threshold, sweep.limit_slip_m
@@ -128,7 +128,7 @@ def asked_of(sweep: Sweep, motions: Sequence[FloorMotionPair], jobs: int) -> Swe
         duration_s=longest_time(sweep.base) if not ends_at_rest(sweep.base) else "auto",
         motion_covered=motions_left_out(sweep.base, motions),
         axes=sweep.axes,
-        derived={quantity.key: quantity.expression.text for quantity in sweep.derived},
+        derived={key: expression.text for key, expression in sweep.derived.items()},
         held=sweep.held,
         perturbation=sweep.perturbation.model_dump(),
         uncertainty=sweep.base.uncertainty.model_dump(),
@@ -239,4 +239,4 @@ def _key(sweep: Sweep, item: Item) -> Iterator[Any]:
         values: Mapping[str, Any] = {}
         with suppress(CaseError):  # the row has the reason
             values = sweep.make.values(item.point)
-        yield from (values.get(quantity.key) for quantity in sweep.derived)
+        yield from map(values.get, sweep.derived)

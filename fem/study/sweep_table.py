@@ -328,10 +328,11 @@ class CellRows:
     def __init__(self, sweep: Sweep) -> None:
         self.axes = sweep.axes
         following = (key for axis in sweep.axes for key in axis.following)
-        derived = (quantity.key for quantity in sweep.derived)
         #: of the row of a run; values of axes and what follows from them are read elsewhere
         self.columns: Columns = {"cell": int}
-        self.columns |= dict.fromkeys((*(axis.key for axis in sweep.axes), *following, *derived), str) | FOUND
+        self.columns |= (
+            dict.fromkeys((*(axis.key for axis in sweep.axes), *following, *sweep.derived), str) | FOUND
+        )
         self.runs: dict[int, RunShown] = {}
         self.kind: IntArray = np.full(sweep.count, Ending.UNKNOWN)  #: endings, (n_cells,)
         self.ratio: FloatArray = np.full(sweep.count, np.nan)  #: (n_cells,)

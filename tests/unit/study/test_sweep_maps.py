@@ -39,9 +39,9 @@ def table_of(*axes, copies=False):
     if copies:
         columns["overturned_share"] = np.linspace(0.0, 1.0, count)
     info = SweepResult(
-        sweep_hash="", axes=(), title="A <title> & more", sweep="try", held="with mu_k = mu_s/2"
+        sweep_hash="", axes=axes, title="A <title> & more", sweep="try", held="with mu_k = mu_s/2"
     )
-    return SweepTable(info=info, axes=axes, columns=columns)
+    return SweepTable(info=info, columns=columns)
 
 
 def panels_of(figure):
