@@ -75,8 +75,10 @@ COMMANDS = [name for commands in GROUPS.values() for name in commands]
 #: commands that compute; `run` looks at its case before it asks for memory
 COMPUTING = {*COMMANDS} - {"check", "init", "list", "completion", "schema", "docs", "doctor", "run"}
 #: import strings of commands that are not `fem.cli.NAME:NAME`
-PLACES = {"list": "fem.cli.list_cases:list_cases", "completion": "fem.__main__:completion"} | {
-    command: f"fem.cli.evidence:{command}" for command in ("verify", "validate", "study")
+PLACES = {"list": "fem.cli.list_cases:list_cases", "completion": "fem.__main__:completion"}
+PLACES |= {name: f"fem.cli.evidence:{name}" for name in ("verify", "validate", "study")}
+PLACES |= {
+    name: f"fem.cli.studies:{name}" for name in ("sweep", "batch", "assess", "ensemble", "size", "response")
 }
 
 

@@ -4,7 +4,7 @@ import hashlib
 import json
 import math
 from dataclasses import asdict, dataclass
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -166,3 +166,10 @@ class ResponseRequest:
         """A hash, equal for requests that give the same result."""
         document = self.to_dict() | {"case": case_hash(self.case)}
         return hashlib.sha256(json.dumps(document, sort_keys=True).encode()).hexdigest()
+
+
+def request_of(case: Case, first_Hz: float | None, last_Hz: float | None, **asked: Any) -> ResponseRequest:
+    """A request about the frequency of a case, where an end is not given; raises as `ResponseRequest`."""
+    own = case.angular_frequency / TURN if case.motion.kind == "harmonic" else 1.0
+    first, last = (share * own if end is None else end for share, end in ((FROM, first_Hz), (TO, last_Hz)))
+    return ResponseRequest(case=case, first_Hz=first, last_Hz=last, **asked)

@@ -8,7 +8,7 @@ from site_example import RUN, example
 from small_site import SITE
 
 from fem.case.validation import CaseError
-from fem.cli.assess import page_of as lines_of
+from fem.cli.studies import site_lines as lines_of
 from fem.html.page import Page, html_of
 from fem.site.answer import Beside, answer_of
 from fem.site.page import shown
