@@ -10,7 +10,7 @@ from fem.site.request import SiteHeading
 from fem.study.axes import Range
 from fem.study.design import MapChoice, Threshold
 from fem.study.draws import Distribution
-from fem.study.file import EnsembleHeading, SweepHeading
+from fem.study.file import EnsembleHeading, StudyHeading
 from fem.study.perturbation import Perturbation
 
 Axes = dict[str, list[float | bool | str] | Range]
@@ -18,7 +18,7 @@ CHANGES = "keys changed in the base case"
 DERIVED = "keys that follow others, as expressions in quotes"
 
 
-class SweepFile(SweepHeading):
+class SweepFile(StudyHeading):
     """A sweep: a base case over one to four axes."""
 
     set: dict[str, Any] = Field(default={}, description=CHANGES)

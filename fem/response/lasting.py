@@ -101,11 +101,11 @@ def lasting_at(records: Sequence[PointRecord], number: int) -> list[list[PointRe
                 same[0].append(record)
             else:
                 groups.append([record])
-    return [sorted(group, key=_roughness) for group in groups]
 
+    def roughness(record: PointRecord) -> tuple[bool, float, float]:
+        return record.row.direction == "start", record.row.period_n or math.inf, record.number("scatter")
 
-def _roughness(record: PointRecord) -> tuple[bool, float, float]:
-    return record.row.direction == "start", record.row.period_n or math.inf, record.number("scatter")
+    return [sorted(group, key=roughness) for group in groups]
 
 
 def shown(records: Sequence[PointRecord]) -> list[PointRecord]:

@@ -54,8 +54,14 @@ def cluster(address: str) -> Iterator[WorkersOf]:
             raise SchedulerError(
                 f"{named}: it has no workers; start some with 'dask worker {address}'"
             ) from None
-        _require_the_same_program(client, named)
-
+        mine = program_identity()
+        for worker, theirs in client.run(program_identity).items():
+            other = [name for name, value in mine.items() if theirs.get(name) != value]
+            if other:
+                raise SchedulerError(
+                    f"{named}: the worker {worker} has another {other[0]} "
+                    f"({theirs.get(other[0])}, here {mine[other[0]]}); install the same program there"
+                )
         with client.get_executor(pure=False) as executor:
 
             def workers_of(model: str, count: int) -> Sequence[Pool]:
@@ -73,14 +79,3 @@ async def _identity(address: str) -> object:
     secured = Security().get_connection_args("client") if address.startswith("tls:") else {}
     async with rpc(address, connection_args=secured) as scheduler:
         return await scheduler.identity()
-
-
-def _require_the_same_program(client: Client, named: str) -> None:
-    mine = program_identity()
-    for worker, theirs in client.run(program_identity).items():
-        other = [name for name, value in mine.items() if theirs.get(name) != value]
-        if other:
-            raise SchedulerError(
-                f"{named}: the worker {worker} has another {other[0]} "
-                f"({theirs.get(other[0])}, here {mine[other[0]]}); install the same program there"
-            )

@@ -85,7 +85,12 @@ class CaseMaker:
         if any(key.rpartition(".")[0] in ROWS for key in keys):  # all rows of a table change
             return self.base.with_values(given)
         if keys not in self._templates:
-            self._templates[keys] = self._template(values)
+            data = with_overrides(self.base.given(), values)
+            names = {key.rpartition(".")[0] for key in values} - {""}
+            kept = {key: value for key, value in data.items() if key not in TABLES and key not in ROWS}
+            kept |= {name: rows for name in ROWS if (rows := getattr(self.base, name))}
+            kept |= {name: getattr(self.base, name) for name in TABLES if name not in names}
+            self._templates[keys] = kept, {name: data[name] for name in names}
         fixed, touched = self._templates[keys]
         heading: dict[str, Any] = {}
         content = {name: dict(given) for name, given in touched.items()}
@@ -97,14 +102,6 @@ class CaseMaker:
             return Case.model_validate(fixed | heading | tables).from_origin(self.base.origin_with(given))
         except ValidationError:
             return self.base.with_values(given)
-
-    def _template(self, values: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, dict[str, Any]]]:
-        data = with_overrides(self.base.given(), values)
-        names = {key.rpartition(".")[0] for key in values} - {""}
-        fixed = {key: value for key, value in data.items() if key not in TABLES and key not in ROWS}
-        fixed |= {name: rows for name in ROWS if (rows := getattr(self.base, name))}
-        fixed |= {name: getattr(self.base, name) for name in TABLES if name not in names}
-        return fixed, {name: data[name] for name in names}
 
 
 #: tables and keys on which the container depends, or how it is computed: see `container_cache.container_key`

@@ -140,20 +140,15 @@ def base_case(
     try:
         return base.with_values(values) if values else base
     except CaseError as error:
-        raise CaseError(
-            "\n".join(_in_words_of_study(line, varied) for line in str(error).splitlines())
-        ) from None
-
-
-def _in_words_of_study(line: str, varied: Iterable[str]) -> str:
-    """What is wrong with a key of [set], in words of the file that has it."""
-    line = re.sub(r"\(--set (\S+?)=(.*)\)$", r'([set] "\1" = \2)', line)
-    for key in varied:
-        if re.search(rf"\b{key.rpartition('.')[2]}\b", line):
-            return (
-                f"{line}; {key!r} varies, and a key that must follow it stands in [derived] in place of [set]"
-            )
-    return line
+        lines = []
+        for line in str(error).splitlines():  # in words of the file
+            line = re.sub(r"\(--set (\S+?)=(.*)\)$", r'([set] "\1" = \2)', line)
+            for key in [key for key in varied if re.search(rf"\b{key.rpartition('.')[2]}\b", line)][:1]:
+                line += (
+                    f"; {key!r} varies, and a key that must follow it stands in [derived] in place of [set]"
+                )
+            lines.append(line)
+        raise CaseError("\n".join(lines)) from None
 
 
 def _read_axes(
@@ -217,10 +212,6 @@ class StudyHeading(CaseTable):
     )
 
 
-class SweepHeading(StudyHeading):
-    """Those of a sweep."""
-
-
 class EnsembleHeading(StudyHeading):
     """Those of an ensemble."""
 
@@ -252,7 +243,7 @@ def load_ensemble(name_or_path: str | Path) -> Ensemble:
 
 def _read_sweep(data: Mapping[str, Any], origin: Origin) -> Sweep:
     given, tables = split_tables(data, SWEEP_TABLES)
-    heading = read_as("", SweepHeading, given)
+    heading = read_as("", StudyHeading, given)
     example = '"contact.mu_static" = [0.2, 0.3, 0.4]'
     axes = _read_axes(flat("axes", tables.get("axes", {})), MOST_AXES, example, _axis)
     keys, values = [axis.key for axis in axes], {axis.key: axis.values for axis in axes}
@@ -337,8 +328,8 @@ def _tried(design: Design, items: Iterable[Item], tables: str, words: Callable[[
         try:
             yield design.make.case(item)
         except CaseError as error:
-            values = (*item.point.items(), *item.drawn.items())
-            where = ", ".join(f"{key} = {words(value)}" for key, value in values if key in design.varied)
+            values = [pair for pair in (*item.point.items(), *item.drawn.items()) if pair[0] in design.varied]
+            where = ", ".join(f"{key} = {one if isinstance(one, str) else words(one)}" for key, one in values)
             raise CaseError(f"{error}\n{tables}: {where}") from None
 
 
@@ -401,7 +392,7 @@ def _read_ensemble(data: Mapping[str, Any], origin: Origin) -> Ensemble:
     _check_draws(ensemble)
     ends = product(Design.corners(ensemble), product(*(quantity.ends for quantity in random)))
     items = (ensemble.drawn(item.point, values) for item, values in ends)
-    for _ in _tried(ensemble, items, "[axes] and [random] make this case", _short):
+    for _ in _tried(ensemble, items, "[axes] and [random] make this case", lambda value: f"{value:g}"):
         pass
     return ensemble
 
@@ -409,10 +400,6 @@ def _read_ensemble(data: Mapping[str, Any], origin: Origin) -> Ensemble:
 def _axis(key: str, value: Any) -> Axis:
     # A free variable takes any number, as the scale of a table of motion does.
     return replace(read_axis("motion.scale" if key.startswith(FREE) else key, value), key=key)
-
-
-def _short(value: Any) -> str:
-    return value if isinstance(value, str) else format(value, "g")
 
 
 def _point_axis(key: str, value: Any) -> Axis:

@@ -182,20 +182,6 @@ def with_files_of_the_command_line(base: Case) -> Case:
     return base.from_origin(replace(origin, trusted=trusted, allow_outside=True))
 
 
-def _say_time(file: HallFile, base: Case, motions: int, runner: Runner, *, force: bool) -> None:
-    """Say how long a long list takes, before its rows are read; refuse more than `MOST_RUNS` runs."""
-    rows, each, jobs = file.table.count, 1.0, runner.jobs
-    with suppress(ValueError):
-        each = expected_s(base)
-    seconds = rows * (motions * each / jobs + OF_A_ROW)
-    words = f"{file.name}: {rows} rows" + (f" under {motions} motions" if motions > 1 else "")
-    if rows * motions > MOST_RUNS and not force:
-        raise CaseError(
-            f"{words}, {rows * motions} runs: {expected_words(seconds, jobs)}; take fewer rows, or use --force"
-        )
-    say_expected(runner.reporter, words, seconds, jobs)
-
-
 def _in_words_of_list(reason: str, base: Case) -> str:
     """Why a case cannot be used, on one line, without mention of the command line."""
     lines = (
@@ -242,7 +228,16 @@ def run_hall(
         one_side: of a container with a narrower side across, too, look at its width alone; else the worse governs.
     """
     with runner_of(**options) as runner:
-        _say_time(file, base, max(len(motions), 1), runner, force=options.get("force", False))
+        rows, each, under = file.table.count, 1.0, max(len(motions), 1)
+        with suppress(ValueError):  # of a case that cannot be used the rows say why
+            each = expected_s(base)
+        seconds = rows * (under * each / runner.jobs + OF_A_ROW)
+        words = f"{file.name}: {rows} rows" + (f" under {under} motions" if under > 1 else "")
+        if rows * under > MOST_RUNS and not options.get("force", False):
+            raise CaseError(
+                f"{words}, {rows * under} runs: {expected_words(seconds, runner.jobs)}; take fewer rows, or use --force"
+            )
+        say_expected(runner.reporter, words, seconds, runner.jobs)
         if motions and (named := [key for key in file.keys if key in (MOTION_FILE, VERTICAL_FILE)]):
             raise CaseError(f"{file.name}: column {named[0]!r} and --motion both name the motion; use one")
         pairs = read_motions(base, motions, runner) if motions else ()

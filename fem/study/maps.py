@@ -15,7 +15,7 @@ from typing import Any
 
 import matplotlib
 import numpy as np
-from matplotlib.colors import Colormap, LogNorm, Normalize
+from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
@@ -107,27 +107,14 @@ def sweep_map(table: SweepTable, kind: str, choice: MapChoice) -> Figure:
         return _outcome_map(table, choice, printed=kind == "outcome_print")
     fallen = np.isin(table.outcome, list(ENDINGS))
     if kind == "rotation":
-        return _map(
-            table,
-            choice,
-            np.where(fallen, np.nan, table[TURNED]),
-            title="Largest rotation over slenderness angle, where it stands",
-            colours=matplotlib.colormaps["viridis"],
-            norm=Normalize(0.0, 1.0),
-            bar="rotation ratio [-]",
-        )
+        title, bar = "Largest rotation over slenderness angle, where it stands", "rotation ratio [-]"
+        turned = np.where(fallen, np.nan, table[TURNED])
+        return _map(table, choice, turned, title, "viridis", norm=Normalize(0.0, 1.0), bar=bar)
     title, column = SLIPS[kind]
     slip = 1e3 * np.where(fallen, np.nan, table[column])
-    largest = max(np.nanmax(slip, initial=0.0), 10.0 * LEAST_SLIP_MM)
-    return _map(
-        table,
-        choice,
-        np.maximum(slip, LEAST_SLIP_MM),
-        title=title,
-        colours=matplotlib.colormaps["cividis"],
-        norm=LogNorm(LEAST_SLIP_MM, largest),
-        bar=f"slip [mm] (below {rounded(LEAST_SLIP_MM)}: none)",
-    )
+    norm = LogNorm(LEAST_SLIP_MM, max(np.nanmax(slip, initial=0.0), 10.0 * LEAST_SLIP_MM))
+    bar = f"slip [mm] (below {rounded(LEAST_SLIP_MM)}: none)"
+    return _map(table, choice, np.maximum(slip, LEAST_SLIP_MM), title, "cividis", norm=norm, bar=bar)
 
 
 def safe_boundary(table: SweepTable, answer: StudyAnswer[Answer], choice: MapChoice) -> Figure | None:
@@ -166,31 +153,24 @@ def safe_boundary(table: SweepTable, answer: StudyAnswer[Answer], choice: MapCho
             least, most = float(answer.axis.values[0]), float(answer.axis.values[-1])
             fill = axes.fill_betweenx if answer.axis is across else axes.fill_between
             ends = np.where(np.isnan(fell), most, fell)
-            fill(
-                places,
-                least,
-                sure_to,
-                color=style.SKY,
-                alpha=0.35,
-                linewidth=0,
-                label="stands, and so do its copies",
-            )
-            fill(
-                places,
-                sure_to,
-                ends,
-                color=style.ORANGE,
-                alpha=0.45,
-                linewidth=0,
-                label="band: a copy may overturn",
-            )
+            stands: dict[str, Any] = {
+                "color": style.SKY,
+                "alpha": 0.35,
+                "label": "stands, and so do its copies",
+            }
+            band: dict[str, Any] = {
+                "color": style.ORANGE,
+                "alpha": 0.45,
+                "label": "band: a copy may overturn",
+            }
+            fill(places, least, sure_to, linewidth=0, **stands)
+            fill(places, sure_to, ends, linewidth=0, **band)
             points = (fell, places) if answer.axis is across else (places, fell)
             axes.plot(*points, "o-", color=style.BLACK, markersize=3.5, label="first overturned")
             marked = [marks_of(table.info.case, axis.key) for axis in (across, up)]
             crosses = np.array(list(product(*marked))).reshape(-1, 2).T
-            axes.plot(
-                *crosses, "P", color=style.VERMILLION, markersize=7, label=LABEL, clip_on=False, zorder=3
-            )
+            look: dict[str, Any] = {"color": style.VERMILLION, "markersize": 7, "clip_on": False, "zorder": 3}
+            axes.plot(*crosses, "P", label=LABEL, **look)
             for axis, scale in ((across, axes.set_xscale), (up, axes.set_yscale)):
                 scale("log" if axis.scale == "log" else "linear")
             axes.set_title(name, fontsize=8.5)
@@ -223,16 +203,8 @@ def rotation_curve(table: SweepTable) -> Figure:
             if word and chosen.any():
                 axes.plot(places[chosen], ratio[chosen], "o", color=colour, markersize=4, label=word)
         if unsure is not None and (unsure == 1.0).any():
-            chosen = unsure == 1.0
-            axes.plot(
-                places[chosen],
-                ratio[chosen],
-                "o",
-                color=style.BLACK,
-                fillstyle="none",
-                markersize=8,
-                label="unsure",
-            )
+            chosen, look = unsure == 1.0, dict[str, Any](color=style.BLACK, fillstyle="none", markersize=8)
+            axes.plot(places[chosen], ratio[chosen], "o", label="unsure", **look)
         if axis.scale == "log":
             axes.set_xscale("log")
         for k, value in enumerate(marks_of(table.info.case, axis.key)):
@@ -254,9 +226,7 @@ def _outcome_map(table: SweepTable, choice: MapChoice, *, printed: bool) -> Figu
     outcome, share = np.array([list(OUTCOME_COLOURS).index(word) for word in table.outcome]), shares_of(table)
     outcomes = Look(colours=PRINTED_OUTCOMES, hatches=HATCHES) if printed else Look(colours=OUTCOME_COLOURS)
     shares = Look(colours=PRINTED_SHARES if printed else SHARE_COLOURS)
-    grids, across, up, left_out = _grids(
-        table, choice, most=MOST_PANELS if share is None else MOST_PANELS // 2
-    )
+    grids, spanned, left_out = _grids(table, choice, most=MOST_PANELS if share is None else MOST_PANELS // 2)
     panels = []
     for name, plane in grids:
         overturned = plane(table.outcome == Outcome.OVERTURNED)
@@ -265,12 +235,10 @@ def _outcome_map(table: SweepTable, choice: MapChoice, *, printed: bool) -> Figu
             panels.append(Panel(values=plane(share), title=words, overturned=overturned, look=shares))
         words = "; ".join(filter(None, ("Outcome", name)))
         panels.append(Panel(values=plane(outcome), title=words, overturned=overturned, look=outcomes))
-    title = _titled(table, "Outcome" if share is None else "Does it overturn?", left_out)
     return draw_heat_map(
-        map_axis(across, table.info.case),
-        map_axis(up, table.info.case),
+        *spanned,
         panels,
-        title=title,
+        title=_titled(table, "Outcome" if share is None else "Does it overturn?", left_out),
         colours={},
         columns=3 if share is None else 2,
     )
@@ -286,17 +254,10 @@ def shares_of(table: SweepTable) -> NDArray[Any] | None:
 
 
 def _map(
-    table: SweepTable,
-    choice: MapChoice,
-    values: NDArray[Any],
-    *,
-    title: str,
-    colours: Colormap,
-    norm: Normalize,
-    bar: str,
+    table: SweepTable, choice: MapChoice, values: NDArray[Any], title: str, colours: str, **look: Any
 ) -> Figure:
     """The panels of values (n_cells,)."""
-    grids, across, up, left_out = _grids(table, choice)
+    grids, spanned, left_out = _grids(table, choice)
     unsure = table.columns.get("unsure")
     panels = [
         Panel(
@@ -307,15 +268,12 @@ def _map(
         )
         for name, plane in grids
     ]
-    title = _titled(table, title, left_out)
     return draw_heat_map(
-        map_axis(across, table.info.case),
-        map_axis(up, table.info.case),
+        *spanned,
         panels,
-        title=title,
-        colours=colours,
-        norm=norm,
-        bar=bar,
+        title=_titled(table, title, left_out),
+        colours=matplotlib.colormaps[colours],
+        **look,
     )
 
 
@@ -328,7 +286,7 @@ def _titled(table: SweepTable, title: str, left_out: int) -> str:
 
 def _grids(
     table: SweepTable, choice: MapChoice, most: int = MOST_PANELS
-) -> tuple[list[tuple[str, Callable[[NDArray[Any]], NDArray[Any]]]], Axis, Axis, int]:
+) -> tuple[list[tuple[str, Callable[[NDArray[Any]], NDArray[Any]]]], tuple[MapAxis, MapAxis], int]:
     """For each panel its name and what takes its part of a column; the axes; how many panels are left out."""
     across, up = _plane(table, choice)
     picks, left_out = _picks(table, (across, up), choice.fixed, most)
@@ -338,7 +296,8 @@ def _grids(
         grid = column.reshape(table.shape)[tuple(pick.get(k, slice(None)) for k in range(len(table.axes)))]
         return grid.T if swapped else grid
 
-    return [(name, partial(plane, pick)) for name, pick in picks], across, up, left_out
+    spanned = map_axis(across, table.info.case), map_axis(up, table.info.case)
+    return [(name, partial(plane, pick)) for name, pick in picks], spanned, left_out
 
 
 def map_axis(axis: Axis, base: str) -> MapAxis:
@@ -408,20 +367,13 @@ def draw_fragility(ensemble: Ensemble, points: Sequence[PointRow], fragility: Fr
         word = "lognormal fitted" if fitted.adequate else "lognormal, which does not fit"
         axes.plot(strengths, fitted.probability(strengths), color=style.BLUE, linestyle="--", label=word)
     known = [point for point in points if point["probability"] is not None]
-    value = np.array([point["probability"] for point in known], dtype=float)
-    low = np.array([point["low"] for point in known])
-    high = np.array([point["high"] for point in known])
-    axes.errorbar(
-        [point[axis.key] for point in known],
-        value,
-        yerr=[np.maximum(value - low, 0.0), np.maximum(high - value, 0.0)],
-        color=style.BLACK,
-        marker="o",
-        markersize=3.0,
-        linewidth=0.8,
-        capsize=2.0,
-        label=f"counted, {100.0 * ensemble.confidence:g} % interval",
+    value, low, high = (
+        np.array([point[name] for point in known], dtype=float) for name in ("probability", "low", "high")
     )
+    spread = [np.maximum(value - low, 0.0), np.maximum(high - value, 0.0)]
+    look: dict[str, Any] = {"color": style.BLACK, "marker": "o", "markersize": 3.0, "linewidth": 0.8}
+    label = f"counted, {100.0 * ensemble.confidence:g} % interval"
+    axes.errorbar([point[axis.key] for point in known], value, yerr=spread, capsize=2.0, label=label, **look)
     for k, mark in enumerate(marks_of(ensemble.base.name, axis.key)):
         axes.axvline(mark, color=style.GREY, linestyle=":", label="_" if k else LABEL)
     limit = f"{100.0 * ensemble.probability:g} %"

@@ -158,15 +158,12 @@ class Told:
         self.done, self.failed = self.done + done, self.failed + failed
         if self.done < self.total:
             self.reporter.tell(self.line)
-            self._foretell(time.perf_counter())
-
-    def _foretell(self, now: float) -> None:
-        """Say once how long it takes, at the rate of the first seconds, where that is long."""
-        before, since = self.first = self.first if self.first[0] else (self.done, now)
-        if not self.foretold and now > since + MEASURED_S:
-            self.foretold = True
-            left = (self.total - self.done) * (now - since) / (self.done - before)
-            say_expected(self.reporter, f"{self.total - self.done} more {self.what}", left)
+            now = time.perf_counter()
+            before, since = self.first = self.first if self.first[0] else (self.done, now)
+            if not self.foretold and now > since + MEASURED_S:  # said once, at the rate of the first seconds
+                self.foretold = True
+                left = (self.total - self.done) * (now - since) / (self.done - before)
+                say_expected(self.reporter, f"{self.total - self.done} more {self.what}", left)
 
     def close(self) -> None:
         """The work has ended."""
@@ -223,7 +220,11 @@ def run_chunk(make: Callable[[ItemT], Case], items: Sequence[ItemT]) -> list[Row
         try:
             case = make(item).without_fields()
             if case.solver.model == "full":
-                row = _run_full(case)
+                model = build_model(case, _CONTAINERS.container_of(case))
+                recorder = Recorder(model, recovery_of(model))
+                ending = simulate(model, recorder)
+                verdict = verdict_of(model, recorder.history(), recorder.largest_von_mises)
+                row = _row(ending.status, ending.error, verdict)
             else:
                 before = _model_of(case, before, settled)
                 row = run_model(before)
@@ -265,14 +266,6 @@ def _row(status: str, reason: str | None, verdict: Verdict) -> Row:
     if verdict.boxes is not None:
         row |= {name: tuple(getattr(box, key) for box in verdict.boxes) for name, key in BOXES.items()}
     return row | {"outcome": None} if status == "failed" else row
-
-
-def _run_full(case: Case) -> Row:
-    model = build_model(case, _CONTAINERS.container_of(case))
-    recorder = Recorder(model, recovery_of(model))
-    ending = simulate(model, recorder)
-    verdict = verdict_of(model, recorder.history(), recorder.largest_von_mises)
-    return _row(ending.status, ending.error, verdict)
 
 
 def _row_without_outcome(status: str, reason: str | None) -> Row:

@@ -185,7 +185,12 @@ def _compute(sweep: Sweep, begun: SweepResult, place: ResultFolder, runner: Runn
         note=rows.note,
     )
     place.write_result(begun.to_json())  # with the hash of the band: copies of another are gone
-    _rows_of_table(place, rows)
+    columns = (*rows.columns, *band_columns(sweep.axes))
+    table = place.path / TABLE
+    if table.exists() and not log.path.exists():  # of a finished sweep, whose band is to be another
+        kept = (line_of(fields_of(line)[: len(rows.columns)]) for line in read_lines(table, columns))
+        place.write(ROWS, table_of_lines(rows.columns, kept))
+    place.remove(TABLE)
     log.run(runner, missing())
     copied = None if stop() else copy_cells(runner, sweep, rows, place.path / MEMBERS)
     changes = None if stop() else refine(runner, sweep, rows, place.path / TRIED)
@@ -197,15 +202,14 @@ def _compute(sweep: Sweep, begun: SweepResult, place: ResultFolder, runner: Runn
         return replace(result, status=INTERRUPTED, missing=words, wall_s=time.perf_counter() - began)
     place.check()
     result = replace(result, status=FAILED if set(rows.outcomes) == {"failed"} else COMPLETED)
-    columns = band_columns(sweep.axes)
-    bands: Iterator[tuple[Any, ...]] = iter([(None,) * len(columns)] * sweep.count)
+    bands: Iterator[tuple[Any, ...]] = iter([(None,) * (len(columns) - len(rows.columns))] * sweep.count)
     if copied is not None:
         copies, members = copied
         found, bands = copies.band()
         result = replace(result, **found)
         place.write(MEMBERS, members.table())
     lines = (f"{log.lines[cell,]},{line_of(band)}" for cell, band in enumerate(bands))
-    place.write(TABLE, table_of_lines((*rows.columns, *columns), lines))
+    place.write(TABLE, table_of_lines(columns, lines))
     if changes is not None:
         place.write(CHANGES, table_of_changes(sweep, changes))
         result = replace(result, changes=len(changes))
@@ -218,16 +222,6 @@ def _compute(sweep: Sweep, begun: SweepResult, place: ResultFolder, runner: Runn
         maps=_draw(place, sweep),
         wall_s=time.perf_counter() - began,
     )
-
-
-def _rows_of_table(place: ResultFolder, rows: CellRows) -> None:
-    """Take the table of a finished sweep, whose band is to be another, for its log."""
-    log, table = place.path / ROWS, place.path / TABLE
-    if table.exists() and not log.exists():
-        lines = read_lines(table, (*rows.columns, *band_columns(rows.axes)))
-        kept = (line_of(fields_of(line)[: len(rows.columns)]) for line in lines)
-        place.write(ROWS, table_of_lines(rows.columns, kept))
-    place.remove(TABLE)
 
 
 def _key(sweep: Sweep, item: Item) -> Iterator[Any]:

@@ -326,7 +326,6 @@ class CellRows:
     """The rows of the cells, and what follows from them, cell by cell."""
 
     def __init__(self, sweep: Sweep) -> None:
-        self.axes = sweep.axes
         following = (key for axis in sweep.axes for key in axis.following)
         #: of the row of a run; values of axes and what follows from them are read elsewhere
         self.columns: Columns = {"cell": int}

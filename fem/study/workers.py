@@ -119,17 +119,15 @@ class LocalWorkers:
     def _pool(self, count: int, *, processes: bool = False) -> Pool:
         key = processes, count
         if key not in self._pools:
-            executor: Executor = ThreadPoolExecutor(count) if not processes else self._processes(count)
+            executor: Executor = ThreadPoolExecutor(count)
+            if processes:
+                context = get_context("fork" if _may_fork() else "spawn")
+                self._over = self._over or context.Semaphore(0)
+                self._begun.append(context.SimpleQueue())
+                watched = os.getpid(), self._over, self._begun[-1]
+                executor = ProcessPoolExecutor(count, context, _end_with_parent, watched)
             self._pools[key] = self._held.enter_context(executor)
         return Pool(self._pools[key], count)
-
-    def _processes(self, count: int) -> Executor:
-        context = get_context("fork" if _may_fork() else "spawn")
-        self._over = self._over or context.Semaphore(0)
-        self._begun.append(context.SimpleQueue())
-        return ProcessPoolExecutor(
-            count, context, _end_with_parent, (os.getpid(), self._over, self._begun[-1])
-        )
 
 
 def _may_fork() -> bool:
