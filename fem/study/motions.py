@@ -61,11 +61,6 @@ class FloorMotionPair:
         return {**self.measures[0], "vertical": next(iter(self.measures[1:]), None)}
 
 
-def motion_cases(base: Case, axes: Iterable[Axis]) -> list[Case]:
-    """The base case with each motion of a set; none without a set."""
-    return list(map(CaseMaker(base), _keys_of(axes)))
-
-
 def read_motion_set(
     base: Case, axes: Iterable[Axis], runner: Runner | None = None
 ) -> tuple[FloorMotionPair, ...]:

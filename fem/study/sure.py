@@ -6,8 +6,9 @@ effect is what the sweep shows.
 """
 
 from collections import Counter
-from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
+from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from operator import itemgetter
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -225,87 +226,68 @@ class Copies:
         }
         return added, values()
 
+    def compute(self, runner: Runner, path: Path) -> str:
+        """Compute the copies that the log at `path` does not hold; the rows of all, as a table."""
+        make, model_of = self._sweep.make.case, self._sweep.model_of
+        log = LoggedRuns[Item](
+            what="perturbed copies",
+            path=path,
+            columns=COLUMNS,
+            make=make,
+            model_of=model_of,
+            key=_key,
+            ids=2,
+            note=self.note,
+        )
+        log.run(runner, self._missing())
+        return log.table()
 
-def copy_cells(
-    runner: Runner, sweep: Sweep, cells: CellRows, path: Path
-) -> tuple[Copies, LoggedRuns[Item]] | None:
-    """Compute the copies of a sweep's cells, but for those that the log holds; None where none are wanted."""
-    if not sweep.has_copies:
-        return None
-    copies = Copies(sweep, cells)
-    log = LoggedRuns(
-        what="perturbed copies",
-        path=path,
-        columns=COLUMNS,
-        make=sweep.make.case,
-        model_of=sweep.model_of,
-        key=_key,
-        ids=2,
-        note=copies.note,
-    )
-    log.run(runner, _missing(sweep, cells, copies))
-    return copies, log
+    def _missing(self) -> Iterator[list[Item]]:
+        """Copies that are not there yet: single changes and pairs, then draws where nothing else made a cell unsure."""
+        axes, shape, wanted = self._sweep.axes, self._sweep.shape, self._sweep.perturbation
+        near = near_cells(
+            axes, self._cells.kind.reshape(shape), self._cells.ratio.reshape(shape), wanted.close
+        )
+        begin = near.copy()
+        if wanted.cells == "all":
+            near[:] = begin[:] = True
+        elif wanted.cells == "auto":
+            begin |= coarse_cells(axes)
+        yield from self._closing_in(self._cells.decided.reshape(shape), begin, near, drawn=False)
+        sure = self._cells.decided
+        for cell, tried in self.rows.items():
+            sure[cell] &= not any(one.level == OTHER_END and not one.copy.drawn for one in tried.values())
+        sure = sure.reshape(shape)
+        yield from self._closing_in(sure, begin | around(axes, ~sure), near, drawn=True)
 
+    def _closing_in(
+        self, among: BoolArray, begin: BoolArray, small: BoolArray, *, drawn: bool
+    ) -> Iterator[list[Item]]:
+        """Missing draws, or all other copies: of the cells to begin with, then around those that a change turns."""
+        reached: dict[str, BoolArray] = {}
 
-def _missing(sweep: Sweep, cells: CellRows, copies: Copies) -> Iterator[list[Item]]:
-    """Copies that are not there yet: single changes and pairs, then draws where nothing else made a cell unsure."""
-    axes, shape = sweep.axes, sweep.shape
-    near = near_cells(axes, cells.kind.reshape(shape), cells.ratio.reshape(shape), sweep.perturbation.close)
-    begin = near.copy()
-    if sweep.perturbation.cells == "all":
-        near[:] = begin[:] = True
-    elif sweep.perturbation.cells == "auto":
-        begin |= coarse_cells(axes)
-    yield from _closing_in(sweep, copies, cells.decided.reshape(shape), begin, near, drawn=False)
-    sure = cells.decided
-    for cell, tried in copies.rows.items():
-        sure[cell] &= not any(one.level == OTHER_END and not one.copy.drawn for one in tried.values())
-    sure = sure.reshape(shape)
-    yield from _closing_in(sweep, copies, sure, begin | around(axes, ~sure), near, drawn=True)
+        def reach(copy: Copy) -> BoolArray:
+            """The cells that have this change."""
+            return reached.setdefault(copy.name, among & (small if copy.small else begin))
 
-
-def _closing_in(
-    sweep: Sweep, copies: Copies, among: BoolArray, begin: BoolArray, small: BoolArray, *, drawn: bool
-) -> Iterator[list[Item]]:
-    """Missing copies of the cells to begin with, then of each change around the cells that it turns.
-
-    Args:
-        sweep, copies: what is asked for, and what there is.
-        among: cells that may have them, in the shape of the axes.
-        begin: cells to begin with; small: of these, those that begin with small changes as well.
-        drawn: the draws, or all others.
-    """
-    reached: dict[str, BoolArray] = {}
-
-    def reach(copy: Copy) -> BoolArray:
-        """The cells that have this change."""
-        return reached.setdefault(copy.name, among & (small if copy.small else begin))
-
-    def wanted(cell: int, copy: Copy) -> bool:
-        return copy.drawn == drawn and bool(reach(copy).flat[cell])
-
-    here = among & begin
-    while here.any():
-        yield _items(sweep, copies, here, wanted)
-        here = np.zeros_like(among)
-        for copy, turned in copies.turned.values():
-            if copy.drawn == drawn:
-                more = around(sweep.axes, turned.reshape(sweep.shape), REACH) & among & ~reach(copy)
-                reached[copy.name] = reach(copy) | more
-                here |= more
-
-
-def _items(sweep: Sweep, copies: Copies, cells: BoolArray, wanted: Callable[[int, Copy], bool]) -> list[Item]:
-    """Copies of cells that are not there yet: of one container together, and within it of one change."""
-    items = []
-    for cell in np.flatnonzero(cells).tolist():
-        known, item = copies.rows.get(cell, {}), sweep.item(cell)
-        container = sweep.container_of(item)
-        for number, copy in enumerate(copies.of(cell)):
-            if number not in known and wanted(cell, copy):
-                made = item._replace(draw=number, unknown=copy.change.values, more=copy.values)
-                items.append((container, copy.name, made))
-    return [item for _, _, item in sorted(items, key=lambda entry: (*entry[:2], entry[2].cell))]
+        here = among & begin
+        while here.any():
+            items = []
+            for cell in np.flatnonzero(here).tolist():
+                known, item = self.rows.get(cell, {}), self._sweep.item(cell)
+                for number, copy in enumerate(self.of(cell)):
+                    if number not in known and copy.drawn == drawn and reach(copy).flat[cell]:
+                        made = item._replace(draw=number, unknown=copy.change.values, more=copy.values)
+                        items.append((self._sweep.container_of(item), copy.name, cell, made))
+            # of one container together, and within it of one change
+            yield [item for *_, item in sorted(items, key=itemgetter(0, 1, 2))]
+            here = np.zeros_like(among)
+            for copy, turned in self.turned.values():
+                if copy.drawn == drawn:
+                    shaped = turned.reshape(self._sweep.shape)
+                    more = around(self._sweep.axes, shaped, REACH) & among & ~reach(copy)
+                    reached[copy.name] = reach(copy) | more
+                    here |= more
 
 
 def _key(item: Item) -> tuple[int, int, str]:

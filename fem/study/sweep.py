@@ -35,9 +35,9 @@ from fem.study.driver import (
     run_study,
 )
 from fem.study.maps import draw_maps
-from fem.study.motions import FloorMotionPair, motion_cases, motions_left_out, read_motion_set
+from fem.study.motions import FloorMotionPair, motions_left_out, read_motion_set
 from fem.study.runner import Runner
-from fem.study.sure import copy_cells, left_out, refine, table_of_changes
+from fem.study.sure import Copies, left_out, refine, table_of_changes
 from fem.study.sweep_table import (
     TRIED,
     CellRows,
@@ -114,7 +114,7 @@ def asked_of(sweep: Sweep, motions: Sequence[FloorMotionPair], jobs: int) -> Swe
         toml_document(given),
         [(axis.key, axis.values) for axis in sweep.axes],
         [(key, repr(expression.tree)) for key, expression in sweep.derived.items()],
-        [case_hash(case) for case in motion_cases(sweep.base, sweep.axes)],
+        [motion.case_hash for motion in motions],
     ]
     band_asked = sweep.perturbation, sweep.base.uncertainty, sweep.threshold, sweep.limit_slip_m
     return SweepResult(
@@ -192,7 +192,8 @@ def _compute(sweep: Sweep, begun: SweepResult, place: ResultFolder, runner: Runn
         place.write(ROWS, table_of_lines(rows.columns, kept))
     place.remove(TABLE)
     log.run(runner, missing())
-    copied = None if stop() else copy_cells(runner, sweep, rows, place.path / MEMBERS)
+    copies = Copies(sweep, rows) if sweep.has_copies and not stop() else None
+    members = copies.compute(runner, place.path / MEMBERS) if copies else ""
     changes = None if stop() else refine(runner, sweep, rows, place.path / TRIED)
     result = replace(begun, rows=len(rows.runs), outcomes=dict(sorted(rows.outcomes.items())))
     if stop():
@@ -203,11 +204,10 @@ def _compute(sweep: Sweep, begun: SweepResult, place: ResultFolder, runner: Runn
     place.check()
     result = replace(result, status=FAILED if set(rows.outcomes) == {"failed"} else COMPLETED)
     bands: Iterator[tuple[Any, ...]] = iter([(None,) * (len(columns) - len(rows.columns))] * sweep.count)
-    if copied is not None:
-        copies, members = copied
+    if copies:
         found, bands = copies.band()
         result = replace(result, **found)
-        place.write(MEMBERS, members.table())
+        place.write(MEMBERS, members)
     lines = (f"{log.lines[cell,]},{line_of(band)}" for cell, band in enumerate(bands))
     place.write(TABLE, table_of_lines(columns, lines))
     if changes is not None:

@@ -10,6 +10,7 @@ from motion_files import write_pair
 from fem.case.case import CaseError, load_case
 from fem.report.study_page import sweep_report
 from fem.study.file import load_sweep
+from fem.study.motions import read_motion_set
 from fem.study.sweep import asked_of, run_sweep
 from fem.study.sweep_table import open_sweep
 
@@ -60,7 +61,7 @@ def test_a_motion_alone_has_no_vertical_motion_and_no_sign_of_it(sweep_of):
 
 
 def sweep_hash(sweep):
-    return asked_of(sweep, (), 1).sweep_hash
+    return asked_of(sweep, read_motion_set(sweep.base, sweep.axes), 1).sweep_hash
 
 
 def test_the_hash_follows_the_files(sweep_of, tmp_path):
