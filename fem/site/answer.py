@@ -16,7 +16,6 @@ from fem.site.result import (
     SET,
     ActionAnswer,
     ConfirmedRun,
-    FloorKey,
     FurtherMotions,
     MotionSet,
     RuleRange,
@@ -384,7 +383,7 @@ def where(run: SiteKey) -> str:
     return f"{run.mass}, motion along its {run.elevation}{period_and_friction(run)}"
 
 
-def period_and_friction(run: FloorKey) -> str:
+def period_and_friction(run: SiteKey | TwoDirections) -> str:
     """Behind the container, or the motion."""
     period = "" if run.building_period_s is None else f", building {run.building_period_s:g} s"
     return f"{period}, friction {run.mu_static:.3g}/{run.mu_kinetic:.3g}"

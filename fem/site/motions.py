@@ -84,7 +84,12 @@ def ground_motions(
         _record(request, number, names, allow_outside)
         for number, names in enumerate(table.files or [], start=1)
     ]
-    _require_independent(records)
+    for one, other in combinations(records, 2):  # the motions of a set count as independent of one another
+        if one.event and one.event.casefold() == other.event.casefold():
+            raise CaseError(
+                f"[motions] files: {one.origin} and {other.origin} are records of one event, {one.event}; the motions "
+                "of a set must be independent, so take one of them"
+            )
     if table.source == "floor":
         return records
     # loaded where it is used: its import of scipy.signal takes as long as thirty runs
@@ -233,16 +238,6 @@ def _even(components: Sequence[Component]) -> tuple[float, list[FloatArray]]:
     step = float(steps.min())
     even = times[0] + np.arange(math.floor((times[-1] - times[0]) / step * (1.0 + 1e-12)) + 1) * step
     return step, [np.asarray(np.interp(even, component.times, component.values)) for component in components]
-
-
-def _require_independent(records: Sequence[GroundMotion]) -> None:
-    """Refuse two records of one event: the motions of a set count as independent of one another."""
-    for one, other in combinations(records, 2):
-        if one.event and one.event.casefold() == other.event.casefold():
-            raise CaseError(
-                f"[motions] files: {one.origin} and {other.origin} are records of one event, {one.event}; the motions "
-                "of a set must be independent, so take one of them"
-            )
 
 
 def action_result(action: SiteAction, checked: MotionSetCheck) -> SiteActionResult:

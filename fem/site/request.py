@@ -292,7 +292,7 @@ def _with_records(data: Mapping[str, Any], folder: Path, records: Sequence[str])
 def _request(data: Mapping[str, Any], origin: Origin, container: Case | None = None) -> SiteRequest:
     given, tables = split_tables(data, list(TABLES))
     problems: list[str] = []
-    read: dict[str, Any] = {}
+    read: dict[str, Any] = dict.fromkeys(TABLES)
 
     def take(name: str, model: type[CaseTable], content: Mapping[str, Any]) -> None:
         try:
@@ -314,15 +314,7 @@ def _request(data: Mapping[str, Any], origin: Origin, container: Case | None = N
         data=data,
         heading=heading,
         container=container or base_case(heading.container, {}, origin),
-        site=read["site"],
-        building=read.get("building"),
-        floor_spectrum=read.get("floor_spectrum"),
-        motions=read["motions"],
-        friction=read["friction"],
-        limits=read["limits"],
-        wind=read.get("wind"),
-        sources=read["sources"],
-        document=read.get("document"),
+        **read,
     )
     _check(request)
     return request
@@ -331,22 +323,22 @@ def _request(data: Mapping[str, Any], origin: Origin, container: Case | None = N
 def _check(request: SiteRequest) -> None:
     """Ask for everything that may be refused, so that it is refused before anything is computed."""
     container = request.container.container
-    if container.is_loose or container.box is not None:
-        differs = 'joints = "loose"' if container.is_loose else "[[container.box]]"
-        raise CaseError(
-            f"container: {differs} is not verified at a site, whose rules are those of equal boxes that move as one "
-            "body; take bolted boxes, or run the motions one by one"
-        )
-    if request.container.links:
-        raise CaseError(
-            "container: [[stop]] and [[tie]] are not verified at a site, whose second component, rigid bound and "
-            "simplified methods know a container that nothing holds; leave them out, or run the motions one by one"
-        )
-    if request.container.neighbour:
-        raise CaseError(
-            "container: [[neighbour]] is not verified at a site, whose second component, rigid bound and simplified "
-            "methods know a container that stands alone; leave it out, or run the motions one by one"
-        )
+    differs = 'joints = "loose"' if container.is_loose else "[[container.box]]"
+    know = "second component, rigid bound and simplified methods know a container that"
+    for refused, what, why, way_out in (
+        (
+            container.is_loose or container.box is not None,
+            f"{differs} is",
+            "rules are those of equal boxes that move as one body",
+            "take bolted boxes",
+        ),
+        (request.container.links, "[[stop]] and [[tie]] are", f"{know} nothing holds", "leave them out"),
+        (request.container.neighbour, "[[neighbour]] is", f"{know} stands alone", "leave it out"),
+    ):
+        if refused:
+            raise CaseError(
+                f"container: {what} not verified at a site, whose {why}; {way_out}, or run the motions one by one"
+            )
     _ = request.action, request.variants, request.wind_pressure, request.floor_target
     _check_floor(request)
     if request.heading.empty_centroid_m is not None and request.heading.empty_mass_kg is None:

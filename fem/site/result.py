@@ -136,23 +136,12 @@ class SiteBody(JsonBlock):
 
 
 @dataclass(frozen=True, kw_only=True)
-class FloorKey(JsonBlock):
-    """On what runs stand."""
+class SiteKey(JsonBlock):
+    """What the runs of a group have in common: the container, and on what it stands."""
 
     building_period_s: float | None = None  #: None: on the ground, or on a floor whose motion is given
     mu_static: float
     mu_kinetic: float
-
-    @property
-    def friction(self) -> tuple[float, float]:
-        """Static and kinetic."""
-        return self.mu_static, self.mu_kinetic
-
-
-@dataclass(frozen=True, kw_only=True)
-class SiteKey(FloorKey):
-    """What the runs of a group have in common: the container, and on what it stands."""
-
     mass: str  #: full | empty
     elevation: str = "width"  #: width | depth: the dimension along the motion
 
@@ -283,12 +272,15 @@ class ActionAnswer(JsonBlock):
 
 
 @dataclass(frozen=True, kw_only=True)
-class TwoDirections(FloorKey):
+class TwoDirections(JsonBlock):
     """Slip of a body that does not rock under both horizontal components and the vertical, of the motions of the set.
 
     Of each motion the worse sign of the vertical, of frictions and building periods that with which it slides furthest.
     """
 
+    building_period_s: float | None = None  #: None: on the ground, or on a floor whose motion is given
+    mu_static: float
+    mu_kinetic: float
     slip_mean_m: float
     slip_largest_m: float
     slip_mean_in_plane_m: float  #: as the mean, without the second component

@@ -275,7 +275,7 @@ def further_motions(
         known = RunGroup(runs=tuple(run for run in group.runs if run.motion not in failed))
         fell = len(known.beyond({}))
         first = group.first
-        pair = first.building_period_s, *first.friction
+        pair = first.building_period_s, first.mu_static, first.mu_kinetic
         slid = {
             motion: slips[motion, *pair]
             for motion in {run.motion for run in known.runs}

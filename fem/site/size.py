@@ -126,7 +126,11 @@ def size_axis(
     steps = _steps(request, key)
     last_is_usual = high is None
     if low is None or high is None:
-        begin, end = RANGES.get(key) or _around(key, value, quantity)
+        if key not in RANGES and not (value and value > 0.0):
+            raise CaseError(f"--over {key}: the files give no value to start from; give --from and --to")
+        least, most = quantity.least or 0.0, math.inf if quantity.most is None else quantity.most
+        around = max((value or 0.0) / WIDER, least), min((value or 0.0) * WIDER, most)
+        begin, end = RANGES.get(key, around)
         low, high = begin if low is None else low, end if high is None else high
     if not low < high:
         raise CaseError(f"--from {low:g} --to {high:g}: the range of {key} must rise")
@@ -151,8 +155,12 @@ def size_axis(
     axis = SizeAxis(
         key=key, words=words, unit=quantity.unit, wanted=wanted, values=values, whole=steps is not None
     )
-    while last_is_usual and len(values) > 2 and not _is_built(request, axis, values[-1]):
-        values = values[:-1]
+    while last_is_usual and len(values) > 2:
+        try:
+            _build(request, axis, values[-1])
+            break
+        except CaseError:
+            values = values[:-1]
     for bound in (values[0], values[-1]):
         _build(request, axis, bound)  # refused before anything is computed
     return replace(axis, values=values)
@@ -180,14 +188,6 @@ def _build(request: SiteRequest, axis: SizeAxis, value: float) -> None:
         bodies_of(at(request, axis, value))
     except (CaseError, MeshError) as error:
         raise CaseError(f"--over {axis.key}: at {value:.4g} {axis.unit}".rstrip() + f" {error}") from None
-
-
-def _is_built(request: SiteRequest, axis: SizeAxis, value: float) -> bool:
-    try:
-        _build(request, axis, value)
-    except CaseError:
-        return False
-    return True
 
 
 def followers(request: SiteRequest, key: str) -> tuple[str, ...]:
@@ -234,15 +234,6 @@ def _given(request: SiteRequest, key: str) -> float | None:
         raise CaseError(f"--over {key}: the site file has no [{table}]")
     given = getattr(content, name)
     return None if given is None else float(given)
-
-
-def _around(key: str, value: float | None, quantity: Quantity) -> tuple[float, float]:
-    """From a third to three times the value in the file, within what the key can have."""
-    if not value or value < 0.0:
-        raise CaseError(f"--over {key}: the files give no value to start from; give --from and --to")
-    least = quantity.least if quantity.least is not None else 0.0
-    most = quantity.most if quantity.most is not None else math.inf
-    return max(value / WIDER, least), min(value * WIDER, most)
 
 
 def next_values(axis: SizeAxis, answers: Mapping[float, SiteAnswer]) -> list[float]:
@@ -293,7 +284,11 @@ def size_result(
     axis: SizeAxis, answers: Mapping[float, SiteAnswer], begun: SizeResult | None = None
 ) -> SizeResult:
     """Which values fulfil the rule, from the answers by value."""
-    points = tuple(_point(value, answers[value]) for value in sorted(answers))
+    same = ("answer", "fulfilled", "overturned", "invalid", "runs", *BY_RULE)
+    points = tuple(
+        SizePoint(value=value, fails=_reason(answer), **{name: answer[name] for name in same})
+        for value, answer in sorted(answers.items())
+    )
     intervals, words = fulfilled_intervals(points), sentence(axis, points)
     return replace(
         begun or size_asked(axis),
@@ -352,15 +347,13 @@ def sentence(axis: SizeAxis, points: Sequence[SizePoint]) -> str:
 
 
 def _stretches(intervals: Sequence[tuple[float, float]], axis: SizeAxis) -> str:
-    return " and ".join(_stretch(low, high, axis) for low, high in intervals)
-
-
-def _stretch(low: float, high: float, axis: SizeAxis) -> str:
-    """A stretch in words, with enough figures for its ends to differ."""
-    if low == high:
-        return f"of {_value(low, axis)}"
-    figures = next((n for n in (3, 4, 5) if _inward(low, n, up=True) <= _inward(high, n, up=False)), 6)
-    return f"from {_value(low, axis, figures, up=True)} to {_value(high, axis, figures, up=False)}"
+    """Stretches in words, each with enough figures for its ends to differ."""
+    words = []
+    for low, high in intervals:
+        figures = next((n for n in (3, 4, 5) if _inward(low, n, up=True) <= _inward(high, n, up=False)), 6)
+        ends = _value(low, axis, figures, up=True), _value(high, axis, figures, up=False)
+        words.append(f"of {_value(low, axis)}" if low == high else f"from {ends[0]} to {ends[1]}")
+    return " and ".join(words)
 
 
 def _value(value: float, axis: SizeAxis, figures: int = 3, *, up: bool | None = None) -> str:
@@ -377,19 +370,6 @@ def _inward(value: float, figures: int, *, up: bool) -> float:
     step = 10.0 ** (math.floor(math.log10(abs(value))) - figures + 1)
     steps = value / step
     return (math.ceil(steps - 1e-9) if up else math.floor(steps + 1e-9)) * step
-
-
-def _point(value: float, answer: SiteAnswer) -> SizePoint:
-    return SizePoint(
-        value=value,
-        answer=answer.answer,
-        fulfilled=answer.fulfilled,
-        overturned=answer.overturned,
-        invalid=answer.invalid,
-        runs=answer.runs,
-        **{name: answer[name] for name in BY_RULE},
-        fails=_reason(answer),
-    )
 
 
 def _reason(answer: SiteAnswer) -> str:

@@ -49,7 +49,9 @@ def run_size(
         allow_outside: take records from outside the folder of the site file.
     """
     ground = Stages.of(request, folder, allow_outside=allow_outside).ground
-    begun = size_asked(axis, followers(request, axis.key), _command(request, axis))
+    ends = ("--from", f"{axis.values[0]:g}", "--to", f"{axis.values[-1]:g}", "--count", str(len(axis.values)))
+    command = command_line("size", request.origin.place, "--over", axis.key, *ends)
+    begun = size_asked(axis, followers(request, axis.key), command)
     study = Study(
         kind=SIZE,
         request=hash_of([site_hash(request, ground), repr(axis)]),
@@ -135,9 +137,3 @@ def verification_at(
     work = Verification(stages=replace(stages, folder=folder, screening=screening))
     work.write_floors(ground=True)
     return work
-
-
-def _command(request: SiteRequest, axis: SizeAxis) -> str:
-    first, last = axis.values[0], axis.values[-1]
-    ends = ("--from", f"{first:g}", "--to", f"{last:g}", "--count", str(len(axis.values)))
-    return command_line("size", request.origin.place, "--over", axis.key, *ends)

@@ -127,7 +127,6 @@ class Stages:
         """Every motion with both signs, over weights, elevations, periods and frictions."""
         return [
             RunKey(
-                stage=SET,
                 motion=motion,
                 vertical_sign=sign,
                 mu_static=mu_static,
@@ -136,15 +135,10 @@ class Stages:
                 elevation=elevation,
                 building_period_s=period,
                 model=self.request.heading.model,
-                factor=1.0,
             )
-            for (mass, elevation), period, (mu_static, mu_kinetic), motion, sign in product(
-                self.request.variants,
-                self.floors,
-                self.request.frictions,
-                range(1, len(self.ground) + 1),
-                self.signs,
-            )
+            for (mass, elevation), period in product(self.request.variants, self.floors)
+            for mu_static, mu_kinetic in self.request.frictions
+            for motion, sign in product(range(1, len(self.ground) + 1), self.signs)
         ]
 
     def repeated(self, groups: Iterable[RunGroup]) -> list[RunKey]:
