@@ -93,14 +93,8 @@ Scheduler = Annotated[
 Quiet = Annotated[bool, flag("Print no progress.", "--quiet", "-q")]
 
 
-def connected(scheduler: str | None) -> AbstractContextManager[Any]:
-    """The workers of a cluster, while the context lasts; None without a scheduler.
-
-    dask is loaded only here: it is an optional dependency, and takes a second.
-
-    Raises:
-        CaseError: it is not installed.
-    """
+def _connected(scheduler: str | None) -> AbstractContextManager[Any]:
+    """The workers of a cluster, while the context lasts; None without. The optional dask is loaded here."""
     if scheduler is None:
         return nullcontext()
     try:
@@ -139,7 +133,7 @@ class StudyFlags:
     @contextmanager
     def options(self) -> "Iterator[StudyOptions]":
         """For `run_study`; workers of a cluster are released at the end."""
-        with connected(self.scheduler) as workers_of:
+        with _connected(self.scheduler) as workers_of:
             yield {
                 "jobs": self.jobs,
                 "workers_of": workers_of,

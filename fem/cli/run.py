@@ -66,7 +66,7 @@ def run(
     folder = out if out is not None else Path("outputs") / loaded.name
     if dry_run or verbose:
         plan = plan_of(loaded, folder)
-        text = json.dumps(plan, indent=2) if as_json else page_of_plan(loaded, plan)
+        text = json.dumps(plan, indent=2) if as_json else _page_of_plan(loaded, plan)
         say(text, file=sys.stdout if dry_run else sys.stderr)
     if dry_run:
         return 0
@@ -139,7 +139,7 @@ def plan_of(case: Case, folder: Path) -> dict[str, Any]:
     }
 
 
-def page_of_plan(case: Case, plan: dict[str, Any]) -> str:
+def _page_of_plan(case: Case, plan: dict[str, Any]) -> str:
     """The same for people."""
     there = " (exists)" if Path(plan["folder"]).exists() else ""
     if plan["free_bytes"] is not None:

@@ -36,7 +36,7 @@ def response_answer(result: ResponseResult) -> str | None:
     standing = [point for point in points if not point.fell and not point.says_nothing]
     frequencies = [point.frequency_Hz for point in points]
     every = f"every frequency {'with an outcome' if failed else 'tried'}, {_range(min(frequencies), max(frequencies))}"
-    parts = [largest_in_words(result)]
+    parts = [_largest_in_words(result)]
     if result.starts_fell_share is not None:
         destroys = " or destroy a corner" if any(at.destroyed for at in result.frequencies) else ""
         count = sum(at.starts for at in result.frequencies)
@@ -75,7 +75,7 @@ def stable_in_words(result: ResponseResult) -> str | None:
     return f"{sum(judged)} of {len(judged)} points: {STABLE}" if judged else None
 
 
-def largest_in_words(result: ResponseResult) -> str:
+def _largest_in_words(result: ResponseResult) -> str:
     """The largest lasting motion, where it is, what leads to it and what the curve shows there; empty without one."""
     motions = [(at, motion) for at in result.frequencies for motion in at.motions]
     if not motions:

@@ -89,7 +89,7 @@ def computed(
         return [point[0]], point[1]
     found: list[PointRecord] = []
     states = (
-        random_states(request, task, control) if task.way == "random" else neighbours(records, found, task)
+        _random_states(request, task, control) if task.way == "random" else neighbours(records, found, task)
     )
     at_section = {"initial.velocity_m_s": 0.0, "motion.phase_rad": 0.5 * math.pi, "motion.ramp_cycles": 0.0}
     for rotation, rate in states:
@@ -99,7 +99,7 @@ def computed(
     return found, None
 
 
-def random_states(request: ResponseRequest, task: Task, control: Control) -> list[tuple[float, float]]:
+def _random_states(request: ResponseRequest, task: Task, control: Control) -> list[tuple[float, float]]:
     """Rotations [rad] and angular velocities [rad/s] as the floor turns at +A, the same whenever they are asked for."""
     drawn = np.random.default_rng([SEED, task.number]).uniform(-1.0, 1.0, (request.starts, 2))
     angle = control.slenderness_angle
@@ -150,7 +150,7 @@ def follow_point(
         orbit,
         driven.run.problem.control,
         judged if stands else None,
-        follow_decay(case, container, driven) if stands and task.carries else None,
+        _follow_decay(case, container, driven) if stands and task.carries else None,
         direction=task.way if task.carries else "start",
         number=task.number,
         began=task.way if not task.carries else "case" if before is None else "carried",
@@ -193,13 +193,11 @@ def _motion_of(driven: DrivenModel, orbit: Orbit) -> str:
     return Outcome.of(slides=orbit.extremes[:, 4].max(initial=0.0) > least_slide(control.width), rocks=rocks)
 
 
-def follow_decay(case: Case, container: Container, driven: DrivenModel) -> Decay:
-    """Stop the floor at a turning point, which is no impulse, and follow the container until it rests or overturned.
+def _follow_decay(case: Case, container: Container, driven: DrivenModel) -> Decay:
+    """What becomes of it with the floor stopped at a turning point, which is no impulse, and the time until then [s].
 
-    Whether a motion dies out is condition (b) of stability in Knoedel and Hrabowski, section 2.
-
-    Returns:
-        dies out | overturns | goes on | failed, and the time from the stop until then [s].
+    dies out | overturns | goes on | failed. Whether a motion dies out is condition (b) of stability in Knoedel and
+    Hrabowski, section 2.
     """
     stopped = stop_drive(case, container, driven)
     run, control = stopped.run, stopped.run.problem.control

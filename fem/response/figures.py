@@ -40,7 +40,7 @@ def response_figures(request: ResponseRequest, records: Sequence[PointRecord]) -
         own = of_first_model(records)
         drawn = {"response_curve": draw_curves(request, own, records[len(own) :])} if records else {}
         if any(record.stands for record in own):
-            drawn |= {"portraits": draw_portraits(own)}
+            drawn |= {"portraits": _draw_portraits(own)}
         return {name: style.svg_of(figure) for name, figure in drawn.items()}
 
 
@@ -117,9 +117,9 @@ def draw_curves(
     return figure
 
 
-def draw_portraits(records: Sequence[PointRecord]) -> Figure:
+def _draw_portraits(records: Sequence[PointRecord]) -> Figure:
     """Phase portraits with their sections: all motions that last at a few frequencies."""
-    chosen = choose_frequencies(records)
+    chosen = _choose_frequencies(records)
     rows = -(-len(chosen) // COLUMNS)
     figure = Figure(figsize=(style.WIDTH, 0.6 + 2.3 * rows), layout="constrained")
     figure.suptitle(
@@ -149,7 +149,7 @@ def draw_portraits(records: Sequence[PointRecord]) -> Figure:
     return figure
 
 
-def choose_frequencies(records: Sequence[PointRecord]) -> list[int]:
+def _choose_frequencies(records: Sequence[PointRecord]) -> list[int]:
     """Numbers of the frequencies whose portraits are drawn: of most motions first, else evenly over all that move."""
     groups = {number: lasting_at(records, number) for number in {record.row.number for record in records}}
     moving = sorted(n for n, found in groups.items() if any(group[0].row.turned > 0.01 for group in found))

@@ -63,7 +63,7 @@ def carry_drive(case: Case, container: Container, before: DrivenModel) -> Driven
     The motion is carried, the damage is not: the floor is whole again.
     """
     driven = driven_model(case, container)
-    carry_state(before.run, driven.run)
+    _carry_state(before.run, driven.run)
     _mend_floor(driven.run)
     return driven
 
@@ -72,11 +72,11 @@ def stop_drive(case: Case, container: Container, before: DrivenModel) -> DrivenM
     """The container, moving as `before` left it at a turning point of its floor; the floor stays there."""
     floor = as_floor_motion(UNIFORM, (0.0, case.amplitude, 0.0))
     driven = _on_floor(build_model(case, container), floor, np.empty(0), before.period)
-    carry_state(before.run, driven.run)
+    _carry_state(before.run, driven.run)
     return driven
 
 
-def carry_state(before: RunState, after: RunState) -> None:
+def _carry_state(before: RunState, after: RunState) -> None:
     """Start `after` from the state of `before`, moved along x to where its floor is at t = 0."""
     for target, source in zip(after.old, before.old, strict=True):
         target[:] = source

@@ -51,7 +51,7 @@ NO_FURTHER = "No further motions were asked for: how often such motions overturn
 AGAIN = "deciding runs, repeated with the elastic model over their unknown inputs,"
 
 
-class Reason(NamedTuple):
+class _Reason(NamedTuple):
     """What speaks against "fulfilled"."""
 
     answer: str  #: not fulfilled | not sure
@@ -78,7 +78,7 @@ def answer_of(
     """The answer, from all runs and from what is beside them."""
     limits, slip, wind = request.limits, beside.two_directions, beside.wind
     own = [run for key, run in runs.items() if key.stage == SET]
-    rule = rule_in_words(motions.count, limits)
+    rule = _rule_in_words(motions.count, limits)
     if not motions.valid:
         sentence = (
             f"Not valid: the set of motions fails its checks and is not used ({'; '.join(motions.reasons)})."
@@ -89,14 +89,14 @@ def answer_of(
     ranged, failed = rule_range(groups, runs)
     further = further_motions(limits, runs, beside.slips_of_further)
     against = [
-        *of_the_set(limits, motions.count, groups, ranged, failed),
+        *_of_the_set(limits, motions.count, groups, ranged, failed),
         *(reason for group in further for reason in of_further(group)),
-        *of_the_deciding(limits, tally, beside.confirmed),
-        *(of_two_directions(slip, limits.slip_m) if slip else ()),
-        *([Reason(NOT_SURE, beside.in_plane_only)] if beside.in_plane_only else ()),
+        *_of_the_deciding(limits, tally, beside.confirmed),
+        *(_of_two_directions(slip, limits.slip_m) if slip else ()),
+        *([_Reason(NOT_SURE, beside.in_plane_only)] if beside.in_plane_only else ()),
     ]
     if left_out := beside.left_out or ("" if request.motions.further else NO_FURTHER):
-        against.append(Reason(NOT_SURE, left_out))
+        against.append(_Reason(NOT_SURE, left_out))
     used = tally.utilisation(limits)
     if used is not None and slip is not None:
         used = max(used, slip.slip_largest_m / limits.slip_m)
@@ -108,8 +108,8 @@ def answer_of(
             ActionAnswer(name=WIND, answer=NOT_FULFILLED if wind > 1.0 else FULFILLED, utilisation=wind)
         )
     if wind is not None and wind > 1.0:
-        words = f"Wind uses {above_one(wind)} times the resistance of the lightest container."
-        against.append(Reason(NOT_FULFILLED, words))
+        words = f"Wind uses {_above_one(wind)} times the resistance of the lightest container."
+        against.append(_Reason(NOT_FULFILLED, words))
     answer = None if unknown else gravest(against)
     against.sort(key=lambda reason: reason.answer != NOT_FULFILLED)
     slid_too_far = slip is not None and slip.slip_largest_m > limits.slip_m
@@ -151,7 +151,7 @@ def no_answer_yet(
         own: the runs of the set that are there; missing: what is not, in words.
     """
     return SiteAnswer(
-        rule=rule_in_words(motions.count, limits),
+        rule=_rule_in_words(motions.count, limits),
         sentence=f"No answer yet: {missing}.",
         overturned=sum(run.outcome == Outcome.OVERTURNED for run in own),
         invalid=sum(run.outcome == Outcome.INVALID for run in own),
@@ -159,7 +159,7 @@ def no_answer_yet(
     )
 
 
-def gravest(reasons: Iterable[Reason]) -> str:
+def gravest(reasons: Iterable[_Reason]) -> str:
     """The answer that some reasons leave."""
     answers = {reason.answer for reason in reasons}
     return next((answer for answer in (NOT_FULFILLED, NOT_SURE) if answer in answers), FULFILLED)
@@ -169,7 +169,7 @@ def _sentence(
     limits: LimitsTable,
     answer: str | None,
     tally: RuleFound,
-    against: Sequence[Reason],
+    against: Sequence[_Reason],
     slip: TwoDirections | None,
     *,
     runs: int,
@@ -191,7 +191,7 @@ def _sentence(
     )
 
 
-def rule_in_words(motions: int, limits: LimitsTable) -> str:
+def _rule_in_words(motions: int, limits: LimitsTable) -> str:
     """The rule in words, for a number of motions."""
     share = "the mean" if motions >= MEAN_FROM else "the largest"
     single = (
@@ -205,20 +205,20 @@ def rule_in_words(motions: int, limits: LimitsTable) -> str:
     )
 
 
-def of_the_set(
+def _of_the_set(
     limits: LimitsTable, motions: int, groups: Sequence[RunGroup], ranged: RuleRange | None, failed: int
-) -> Iterator[Reason]:
+) -> Iterator[_Reason]:
     """What the set and its repetitions say against it; `failed`: runs of these that did."""
     tally, runs = RuleFound.of(groups), sum(len(group.runs) for group in groups)
     if tally.invalid:
-        yield Reason(
+        yield _Reason(
             NOT_FULFILLED,
             f"{tally.invalid} of {runs} runs destroyed a corner: beyond that a run is not valid, and does not count as "
             "standing.",
         )
     if tally.overturned:
         most = max(groups, key=lambda group: len(group.beyond({})))
-        yield Reason(
+        yield _Reason(
             NOT_FULFILLED,
             f"{tally.overturned} of {runs} runs overturned: up to {len(most.beyond({}))} of {motions} motions overturn "
             f"it ({where(most.first)}).",
@@ -228,18 +228,18 @@ def of_the_set(
     for key in FIGURE_OF:
         yield from _of_a_limit(key, limits, motions, groups, ranged)
     if ranged and ranged.overturned:
-        yield Reason(
+        yield _Reason(
             NOT_SURE,
             f"In {ranged.overturned} of {ranged.repetitions} repetitions {ALIKE}, a run overturned or destroyed a "
             "corner.",
         )
     if failed:
-        yield Reason(NOT_SURE, f"Runs of the repetitions that failed: {failed}.")
+        yield _Reason(NOT_SURE, f"Runs of the repetitions that failed: {failed}.")
 
 
 def _of_a_limit(
     key: str, limits: LimitsTable, motions: int, groups: Sequence[RunGroup], ranged: RuleRange | None
-) -> Iterator[Reason]:
+) -> Iterator[_Reason]:
     """Whether a limit is kept, by the set and by its repetitions."""
     figure, limit = FIGURE_OF[key], getattr(limits, key)
     value = RuleFound.of(groups).by_rule[figure]
@@ -266,21 +266,21 @@ def _of_a_limit(
         again = f", {between} in all repetitions" if ranged and low < high else ""
         count = len(group.beyond({FOUND_FROM[key]: limit}))
         single = "" if key == "rotation_ratio" else f"; {count} of {motions} motions beyond it"
-        yield Reason(
+        yield _Reason(
             NOT_FULFILLED, f"{words} is {amount}{again}, beyond {bound} ({where(group.first)}{single})."
         )
     else:
-        yield Reason(
+        yield _Reason(
             NOT_SURE,
             f"{words} is {amount}, and {between} in repetitions {ALIKE}: {bound} lies between ({where(group.first)}).",
         )
 
 
-def of_further(group: FurtherMotions) -> Iterator[Reason]:
+def of_further(group: FurtherMotions) -> Iterator[_Reason]:
     """What the further motions for one container and friction say against it."""
     if group.failed:
         words = f"{group.failed} of {group.failed + group.motions} further motions failed ({where(group)})."
-        yield Reason(NOT_SURE, words)
+        yield _Reason(NOT_SURE, words)
     if not group.motions:
         return
     per_cent = f"{100.0 * MOST_OVERTURNING:g} %"
@@ -288,19 +288,19 @@ def of_further(group: FurtherMotions) -> Iterator[Reason]:
     least_beyond, _ = binomial_interval(group.beyond_limits, group.motions, CONFIDENCE)
     if group.overturned + group.invalid and group.interval[1] > MOST_OVERTURNING:
         low, high = (plain_number(100.0 * end, FIGURES) for end in group.interval)
-        yield Reason(
+        yield _Reason(
             NOT_SURE,
             f"{group.overturned} of {group.motions} further motions overturned it{destroyed(group.invalid)} and "
             f"{beyond} ({where(group)}): under {low} to {high} % of such motions it does not stand, which may be more "
             f"than {per_cent}.",
         )
     elif least_beyond > MOST_OVERTURNING:
-        yield Reason(
+        yield _Reason(
             NOT_SURE,
             f"Of {group.motions} further motions {beyond} ({where(group)}): of such motions more than {per_cent} do.",
         )
     elif group.interval[1] > MOST_OVERTURNING:
-        yield Reason(
+        yield _Reason(
             NOT_SURE,
             f"{group.motions} further motions cannot show that at most {per_cent} overturn it: at least "
             f"{least_draws(MOST_OVERTURNING, CONFIDENCE)} can.",
@@ -317,7 +317,9 @@ def ended(again: Sequence[ConfirmedRun]) -> dict[str, int]:
     }
 
 
-def of_the_deciding(limits: LimitsTable, tally: RuleFound, again: Sequence[ConfirmedRun]) -> Iterator[Reason]:
+def _of_the_deciding(
+    limits: LimitsTable, tally: RuleFound, again: Sequence[ConfirmedRun]
+) -> Iterator[_Reason]:
     """What the elastic model and the unknown inputs make of the deciding runs."""
     counts = ended(again)
     beyond = sum(
@@ -325,43 +327,45 @@ def of_the_deciding(limits: LimitsTable, tally: RuleFound, again: Sequence[Confi
         for repeated in again
     )
     if counts["failed"]:
-        yield Reason(NOT_SURE, f"{counts['failed']} of {len(again)} {AGAIN} failed.")
+        yield _Reason(NOT_SURE, f"{counts['failed']} of {len(again)} {AGAIN} failed.")
     if (bolts := max((repeated.bolt_utilisation or 0.0 for repeated in again), default=0.0)) > 1.0:
-        yield Reason(
+        yield _Reason(
             NOT_SURE,
-            f"In a deciding run the bolts carry {above_one(bolts)} times their capacity: the stack does not stay one "
+            f"In a deciding run the bolts carry {_above_one(bolts)} times their capacity: the stack does not stay one "
             "body.",
         )
     if counts["invalid"]:
-        yield Reason(NOT_SURE, f"{counts['invalid']} of {len(again)} {AGAIN} can destroy a corner.")
+        yield _Reason(NOT_SURE, f"{counts['invalid']} of {len(again)} {AGAIN} can destroy a corner.")
     if counts["fell"]:
-        yield Reason(NOT_SURE, f"{counts['fell']} of {len(again)} {AGAIN} can overturn.")
+        yield _Reason(NOT_SURE, f"{counts['fell']} of {len(again)} {AGAIN} can overturn.")
     elif beyond and not tally.fails(limits):
-        yield Reason(
+        yield _Reason(
             NOT_SURE,
             "Deciding runs that go beyond a limit of a single motion, repeated with the elastic model: "
             f"{beyond} of {len(again)}.",
         )
 
 
-def of_two_directions(slip: TwoDirections, limit: float) -> Iterator[Reason]:
+def _of_two_directions(slip: TwoDirections, limit: float) -> Iterator[_Reason]:
     """Whether a body that slides in both directions keeps within the clearance, in the set and its repetitions."""
     low, high = slip.slip_range_m or (slip.slip_largest_m, slip.slip_largest_m)
     if high <= limit:
         return
-    place = f"(motion {slip.motion}{period_and_friction(slip)}; a body that does not rock)."
+    place = f"(motion {slip.motion}{_period_and_friction(slip)}; a body that does not rock)."
     clearance = f"the clearance of {SHORT_MILLIMETRES.text(limit)}"
     words = "Under both horizontal components at once the largest slip is"
     if low > limit:
         figures = places_of("slip_m", limit, (slip.slip_largest_m,))
         slid = SHORT_MILLIMETRES.text(slip.slip_largest_m, figures=max(figures, SHORT_MILLIMETRES.figures))
-        yield Reason(NOT_FULFILLED, f"{words} {slid}, beyond {clearance} {place}")
+        yield _Reason(NOT_FULFILLED, f"{words} {slid}, beyond {clearance} {place}")
     else:
         slips = span_in_words("slip_m", low, high, places_of("slip_m", limit, (low, high)))
-        yield Reason(NOT_SURE, f"{words} {slips} mm in repetitions {ALIKE}: {clearance} lies between {place}")
+        yield _Reason(
+            NOT_SURE, f"{words} {slips} mm in repetitions {ALIKE}: {clearance} lies between {place}"
+        )
 
 
-def above_one(utilisation: float) -> str:
+def _above_one(utilisation: float) -> str:
     """A utilisation above 1 with enough figures to be seen above it."""
     return next(
         (words for figures in (2, 3, 4) if (words := f"{utilisation:.{figures}g}") != "1"), "just over 1"
@@ -380,10 +384,10 @@ def destroyed(count: int) -> str:
 
 def where(run: SiteKey) -> str:
     """The container and friction of runs: "full, motion along its width, friction 0.4/0.2"."""
-    return f"{run.mass}, motion along its {run.elevation}{period_and_friction(run)}"
+    return f"{run.mass}, motion along its {run.elevation}{_period_and_friction(run)}"
 
 
-def period_and_friction(run: SiteKey | TwoDirections) -> str:
+def _period_and_friction(run: SiteKey | TwoDirections) -> str:
     """Behind the container, or the motion."""
     period = "" if run.building_period_s is None else f", building {run.building_period_s:g} s"
     return f"{period}, friction {run.mu_static:.3g}/{run.mu_kinetic:.3g}"

@@ -67,7 +67,7 @@ def site_methods(
             for row, factor in rows_with_factors(methods, action)
         ]
     if inputs.wind_pressure_Pa is not None:
-        lightest = lightest_of(bodies)
+        lightest = _lightest_of(bodies)
         rows += [
             _result(row, lightest, ("no run: wind", ""), None)
             for row in wind_rows(
@@ -77,7 +77,7 @@ def site_methods(
     return tuple(rows)
 
 
-def lightest_of(bodies: Sequence[SiteBody]) -> SiteBody:
+def _lightest_of(bodies: Sequence[SiteBody]) -> SiteBody:
     """The body with the least restoring moment, for which the wind is checked."""
     return min(bodies, key=lambda body: body.mass_kg * body.support_width_m)
 
@@ -90,7 +90,7 @@ def wind_utilisation(bodies: Sequence[SiteBody], inputs: SiteInputs) -> float | 
     """
     if inputs.wind_pressure_Pa is None:
         return None
-    body = loose_body(lightest_of(bodies), inputs)
+    body = loose_body(_lightest_of(bodies), inputs)
     try:
         rows = wind_rows(body, inputs.wind_pressure_Pa, gamma_mu=inputs.gamma_mu)
     except ValueError as error:

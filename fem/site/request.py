@@ -126,7 +126,7 @@ class SiteRequest:
             CaseError: a ground that the spectrum does not have.
         """
         try:
-            return action_of(self.site, self.element_factor)
+            return _action_of(self.site, self.element_factor)
         except ValueError as error:
             raise CaseError(f"[site] {error}") from None
 
@@ -380,12 +380,8 @@ def _rounded(value: float) -> float:
     return float(f"{value:.9g}")
 
 
-def action_of(site: SiteTable, element_factor: float) -> SiteAction:
-    """The action of a site.
-
-    Raises:
-        ValueError: a ground that the spectrum does not have.
-    """
+def _action_of(site: SiteTable, element_factor: float) -> SiteAction:
+    """The action of a site; ValueError for a ground that the spectrum does not have."""
     reference = site.reference_acceleration_m_s2
     if site.spectrum == "EN1998-1":
         shape = eurocode_shape(site.type or 1, site.ground or "")

@@ -289,25 +289,25 @@ def size_result(
         SizePoint(value=value, fails=_reason(answer), **{name: answer[name] for name in same})
         for value, answer in sorted(answers.items())
     )
-    intervals, words = fulfilled_intervals(points), sentence(axis, points)
+    intervals, words = _fulfilled_intervals(points), sentence(axis, points)
     return replace(
         begun or size_asked(axis),
         status=COMPLETED,
         answer=words,
-        value=wanted_value(axis, intervals),
+        value=_wanted_value(axis, intervals),
         intervals=tuple(intervals),
         sentence=words,
         points=points,
     )
 
 
-def fulfilled_intervals(points: Sequence[SizePoint]) -> list[tuple[float, float]]:
+def _fulfilled_intervals(points: Sequence[SizePoint]) -> list[tuple[float, float]]:
     """Stretches of neighbouring values tried that all fulfil the rule, by rising value."""
     said = {point.value: "fulfilled" if point.fulfilled else "" for point in points}
     return [(low, high) for what, low, high in stretches(said) if what]
 
 
-def wanted_value(axis: SizeAxis, intervals: Sequence[tuple[float, float]]) -> float | None:
+def _wanted_value(axis: SizeAxis, intervals: Sequence[tuple[float, float]]) -> float | None:
     """The end of the stretch that reaches the good end of the range; an island elsewhere does not count."""
     if axis.wanted == "least" and intervals and intervals[-1][1] == axis.values[-1]:
         return intervals[-1][0]
@@ -318,7 +318,7 @@ def wanted_value(axis: SizeAxis, intervals: Sequence[tuple[float, float]]) -> fl
 
 def sentence(axis: SizeAxis, points: Sequence[SizePoint]) -> str:
     """The answer in one sentence: the value, what fails beyond it, and the islands."""
-    intervals = fulfilled_intervals(points)
+    intervals = _fulfilled_intervals(points)
     low, high = axis.values[0], axis.values[-1]
     tried = f"from {_value(low, axis)} to {_value(high, axis)}"
     if not intervals:
@@ -326,7 +326,7 @@ def sentence(axis: SizeAxis, points: Sequence[SizePoint]) -> str:
         return f"The rule is not fulfilled at any {axis.words} tried {tried}: {reasons}."
     if intervals == [(low, high)]:
         return f"The rule is fulfilled at every {axis.words} tried {tried}."
-    value = wanted_value(axis, intervals)
+    value = _wanted_value(axis, intervals)
     if value is None:
         return (
             f"The rule is fulfilled for a {axis.words} {_stretches(intervals, axis)}, of those tried {tried}."

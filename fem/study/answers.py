@@ -298,7 +298,7 @@ class HalfPoint:
     few_to: float | None  #: up to here the upper end of the interval is at most the given probability
 
 
-def draws_in_words(result: EnsembleResult) -> str:
+def _draws_in_words(result: EnsembleResult) -> str:
     """What is counted at a point: "128 draws", "7 motions", "70 draws of 7 motions"."""
     draws, motions = result.draws, len(result.random.get(MOTION_FILE, ()))
     if not motions:
@@ -324,7 +324,7 @@ def ensemble_answer(result: EnsembleResult) -> StudyAnswer[HalfPoint] | None:
         lines[tuple(point[other.key] for other in others)].append(point)
     rows = []
     for _, points in sorted(lines.items()):
-        crossing = half_point(axis, points)
+        crossing = _half_point(axis, points)
         words = _half(result, axis, points, crossing, rising=rising)
         if crossing.few_to is not None:
             words += _few(result, axis, crossing.few_to, rising=rising)
@@ -342,7 +342,7 @@ def ensemble_answer(result: EnsembleResult) -> StudyAnswer[HalfPoint] | None:
         sentence = f"{half}, first with {place_in_words(others, point)}"
     elif others:
         fell = falling_in_words(result.limit_slip_m, past=True)
-        sentence = f"fewer than half of {draws_in_words(result)} {fell} at every point"
+        sentence = f"fewer than half of {_draws_in_words(result)} {fell} at every point"
     if others and len(few) == len(rows):
         sentence += _few(result, axis, safest(few), rising=rising)
     return StudyAnswer(
@@ -350,7 +350,7 @@ def ensemble_answer(result: EnsembleResult) -> StudyAnswer[HalfPoint] | None:
     )
 
 
-def half_point(axis: Axis, points: Sequence[Row]) -> HalfPoint:
+def _half_point(axis: Axis, points: Sequence[Row]) -> HalfPoint:
     """Where half of the draws overturn along a line of points, sorted from the side where fewer do."""
     known = [point for point in points if point["probability"] is not None]
     values = [float(point[axis.key]) for point in known]
@@ -401,7 +401,7 @@ def interval_in_words(axis: Axis, crossing: HalfPoint, *, rising: bool) -> str:
 def _half(
     result: EnsembleResult, axis: Axis, points: Sequence[Row], crossing: HalfPoint, *, rising: bool
 ) -> str:
-    half = f"half of {draws_in_words(result)} {falling_in_words(result.limit_slip_m, past=True)}"
+    half = f"half of {_draws_in_words(result)} {falling_in_words(result.limit_slip_m, past=True)}"
     if crossing.at_once:
         end = "least" if rising else "largest"
         return f"{half} or more at the {end} tried, {in_words(axis, [points[0][axis.key]])}"

@@ -154,7 +154,7 @@ def read_axis(key: str, given: Any) -> Axis:
     quantity = quantity_of(field.annotation, field.metadata)
     unit = quantity.unit if quantity else ""
     if key == MOTION_FILE:
-        names, following = read_motion_files(given)
+        names, following = _read_motion_files(given)
         return Axis(key=key, values=names, following=following)
     if isinstance(given, list):
         values, scale = _listed(given), "list"
@@ -173,12 +173,8 @@ def read_axis(key: str, given: Any) -> Axis:
     return Axis(key=key, values=values, scale=scale, unit=unit)
 
 
-def read_motion_files(given: Any) -> tuple[tuple[str, ...], dict[str, tuple[str | None, ...]]]:
-    """Read a set of motions: file names, and pairs of a horizontal and a vertical file; AxisError with what is wrong.
-
-    Returns:
-        The horizontal files, and the keys that go with each; none where no motion has a vertical component.
-    """
+def _read_motion_files(given: Any) -> tuple[tuple[str, ...], dict[str, tuple[str | None, ...]]]:
+    """Names, and pairs of a horizontal and a vertical file; the keys that go with each, none without a pair."""
     if not isinstance(given, list) or not given:
         raise AxisError(
             f'must be a list of files or pairs, such as ["a.at2", ["b_h.at2", "b_v.at2"]], got {given!r}'

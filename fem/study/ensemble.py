@@ -47,7 +47,7 @@ MOST_COPIED = 100  #: motions of a set that is copied into the results
 SHOWN: Columns = {"outcome": str} | columns_of(Place.KEY) | {key: RUN_COLUMNS[key] for key in FELL_FIRST}
 
 
-class DrawRows:
+class _DrawRows:
     """The rows of the draws so far."""
 
     def __init__(self, ensemble: Ensemble) -> None:
@@ -129,7 +129,7 @@ def _compute(
     runner: Runner,
 ) -> EnsembleResult:
     """Compute the draws that are missing, count what there is, and write it."""
-    draws = DrawRows(ensemble)
+    draws = _DrawRows(ensemble)
     log = LoggedRuns[Item](
         what="draws",
         path=results.path / DRAWS,

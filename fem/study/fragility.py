@@ -155,7 +155,7 @@ def misses(curve: Lognormal, strengths: FloatArray, low: FloatArray, high: Float
     return int(np.sum((fitted < low) | (fitted > high)))
 
 
-def misses_by_chance(levels: int, confidence: float) -> int:
+def _misses_by_chance(levels: int, confidence: float) -> int:
     """Levels that miss a true curve, at most, in nineteen of twenty such studies."""
     # not from `scipy.stats`, whose import takes as long as twenty runs of a site
     return int(np.argmax(bdtr(np.arange(levels + 1), levels, 1.0 - confidence) >= 0.95))
@@ -218,7 +218,7 @@ def fragility_of(ensemble: Ensemble, codes: np.ndarray, points: Sequence[PointRo
     if curve is None:
         return replace(fragility, no_lognormal=NO_CURVE)
     missed = misses(curve, strengths[known], low[known], high[known])
-    by_chance = misses_by_chance(int(known.sum()), ensemble.confidence)
+    by_chance = _misses_by_chance(int(known.sum()), ensemble.confidence)
     fitted = FittedLognormal(
         **vars(curve),
         levels=int(known.sum()),

@@ -91,7 +91,7 @@ class Hall(Design):
     @cached_property
     def make(self) -> CaseMaker:
         """Makes the cases of runs."""
-        base = with_files_of_the_command_line(self.base) if self.motions else self.base
+        base = _with_files_of_the_command_line(self.base) if self.motions else self.base
         return CaseMaker(base.without_fields())
 
     @property
@@ -161,21 +161,17 @@ class Hall(Design):
         return replace(self, rows=tuple(rows), containers=containers)
 
 
-def read_motions(base: Case, named: Sequence[str], runner: Runner) -> tuple[FloorMotionPair, ...]:
-    """Motions named on the command line, from anywhere: files "H" or "H,V"; a large set is read by the workers.
-
-    Raises:
-        CaseError: one cannot be used, or is named twice.
-    """
+def _read_motions(base: Case, named: Sequence[str], runner: Runner) -> tuple[FloorMotionPair, ...]:
+    """Motions named on the command line, from anywhere: files "H" or "H,V"; a large set is read by the workers."""
     pairs = [[as_named_from(base.folder, name.strip()) for name in pair.split(",")] for pair in named]
     try:
         axis = read_axis(MOTION_FILE, [pair if len(pair) > 1 else pair[0] for pair in pairs])
     except AxisError as error:
         raise CaseError(f"--motion {error}") from None
-    return read_motion_set(with_files_of_the_command_line(base), [axis], runner)
+    return read_motion_set(_with_files_of_the_command_line(base), [axis], runner)
 
 
-def with_files_of_the_command_line(base: Case) -> Case:
+def _with_files_of_the_command_line(base: Case) -> Case:
     """The base case with motions from anywhere."""
     origin = base.origin_with({})
     trusted = origin.trusted | {MOTION_FILE, VERTICAL_FILE}
@@ -240,7 +236,7 @@ def run_hall(
         say_expected(runner.reporter, words, seconds, runner.jobs)
         if motions and (named := [key for key in file.keys if key in (MOTION_FILE, VERTICAL_FILE)]):
             raise CaseError(f"{file.name}: column {named[0]!r} and --motion both name the motion; use one")
-        pairs = read_motions(base, motions, runner) if motions else ()
+        pairs = _read_motions(base, motions, runner) if motions else ()
         hall = Hall(
             name=file.name, file=file, base=base, motions=pairs, named=motions, one_side=one_side
         ).checked()

@@ -122,7 +122,7 @@ class HallRow:
     container: int | None = None  #: its number among those that differ, once the row is checked
 
 
-def one_line(field: str) -> str:
+def _one_line(field: str) -> str:
     """A name in one line, without the apostrophe before what a spreadsheet would compute."""
     return " ".join(plain_text(field).split())
 
@@ -190,9 +190,9 @@ class HallFile:
             reason = f"{len(line.fields)} fields, and the header names {len(named)} columns"
         return HallRow(
             line=line.number,
-            name=one_line(texts.get(NAME, "")) or str(number),
+            name=_one_line(texts.get(NAME, "")) or str(number),
             count=int(count),
-            tag=one_line(texts.get(TAG, "")),
+            tag=_one_line(texts.get(TAG, "")),
             given=given,
             values={key: _value(key, texts[key]) for key in self.keys if whole and texts[key]},
             reason=reason,

@@ -80,7 +80,7 @@ SLIPS = {
 def draw_maps(table: SweepTable, folder: Path, choice: MapChoice) -> list[str]:
     """Write every map of a sweep into a folder as SVG; returns their names there."""
     if len(table.axes) == 1 or sum(len(axis.values) > 1 for axis in table.axes) < 2:
-        figures = {"rotation": rotation_curve(table)}
+        figures = {"rotation": _rotation_curve(table)}
     else:
         loose = ("joint_slip",) if np.isfinite(table.columns.get(JOINT_SLIP, np.nan)).any() else ()
         kinds = ("outcome", "outcome_print", "rotation", "slip", *loose)
@@ -185,7 +185,7 @@ def safe_boundary(table: SweepTable, answer: StudyAnswer[Answer], choice: MapCho
     return figure
 
 
-def rotation_curve(table: SweepTable) -> Figure:
+def _rotation_curve(table: SweepTable) -> Figure:
     """Largest rotation along the one axis of a sweep, coloured by outcome; overturned cells at 1."""
     axis = max(table.axes, key=lambda axis: len(axis.values))
     numeric = all(not isinstance(value, bool | str) for value in axis.values)
@@ -296,11 +296,11 @@ def _grids(
         grid = column.reshape(table.shape)[tuple(pick.get(k, slice(None)) for k in range(len(table.axes)))]
         return grid.T if swapped else grid
 
-    spanned = map_axis(across, table.info.case), map_axis(up, table.info.case)
+    spanned = _map_axis(across, table.info.case), _map_axis(up, table.info.case)
     return [(name, partial(plane, pick)) for name, pick in picks], spanned, left_out
 
 
-def map_axis(axis: Axis, base: str) -> MapAxis:
+def _map_axis(axis: Axis, base: str) -> MapAxis:
     """An axis as a map draws it, with marks for a base case of this name."""
     scale = axis.scale if axis.is_numeric else "list"
     marks = marks_of(base, axis.key) if axis.is_numeric else ()
@@ -352,11 +352,11 @@ def ensemble_figures(
     """Figures as SVG documents, by name."""
     with style.house_style():
         if len(ensemble.axes) == 1:
-            return {"fragility": style.svg_of(draw_fragility(ensemble, points, fragility))}
-        return {"boundary": style.svg_of(draw_boundary(ensemble, points))}
+            return {"fragility": style.svg_of(_draw_fragility(ensemble, points, fragility))}
+        return {"boundary": style.svg_of(_draw_boundary(ensemble, points))}
 
 
-def draw_fragility(ensemble: Ensemble, points: Sequence[PointRow], fragility: Fragility | None) -> Figure:
+def _draw_fragility(ensemble: Ensemble, points: Sequence[PointRow], fragility: Fragility | None) -> Figure:
     """Counts with their intervals, and the lognormal curve with its band."""
     statement = fill(_statement(ensemble), SMALL_LINE)
     figure, (axes,) = style.panels((3.2,), header=3 + statement.count("\n"))
@@ -386,7 +386,7 @@ def draw_fragility(ensemble: Ensemble, points: Sequence[PointRow], fragility: Fr
     return figure
 
 
-def draw_boundary(ensemble: Ensemble, points: Sequence[PointRow]) -> Figure:
+def _draw_boundary(ensemble: Ensemble, points: Sequence[PointRow]) -> Figure:
     """Points that overturn with at most the given probability, with more, or undecided."""
     *outer, down, across = ensemble.axes
     outside = outer[0].values if outer else (None,)
@@ -410,12 +410,12 @@ def draw_boundary(ensemble: Ensemble, points: Sequence[PointRow]) -> Figure:
         for k, held in enumerate(outside)
     ]
     x = replace(
-        map_axis(across, ensemble.base.name),
+        _map_axis(across, ensemble.base.name),
         label=f"{axis_label(across)}   (numbers: % that {falling_in_words(ensemble.limit_slip_m, past=True)})",
     )
     return draw_heat_map(
         x,
-        map_axis(down, ensemble.base.name),
+        _map_axis(down, ensemble.base.name),
         maps,
         title=f"{ensemble.title or ensemble.name}\n{fill(_statement(ensemble), LINE)}",
         colours={words[region]: colour for region, colour in COLOURS.items()},

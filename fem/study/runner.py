@@ -46,7 +46,7 @@ TOLD_S = 5.0  #: work that has taken so long ends with a line of what was done
 _CONTAINERS = ContainerCache()
 
 
-class Settled(NamedTuple):
+class _Settled(NamedTuple):
     """A container at rest on its floor."""
 
     case: Case
@@ -92,7 +92,7 @@ class Runner:
         by_model: dict[str, list[ItemT]] = {}
         for item in items:
             by_model.setdefault(model_of(item), []).append(item)
-        with closing(Told(what, sum(map(len, by_model.values())), self.reporter)) as told:
+        with closing(_Told(what, sum(map(len, by_model.values())), self.reporter)) as told:
             for model, group in sorted(by_model.items(), key=lambda pair: [*CASES_AT_A_TIME].index(pair[0])):
                 pools = self.workers_of(model, len(group))
                 chunks = hand_out(
@@ -117,7 +117,7 @@ class Runner:
             ValueError: that of the first item whose work raises one.
             KeyboardInterrupt: `stop` ended the work.
         """
-        told = Told(what, len(items), self.reporter)
+        told = _Told(what, len(items), self.reporter)
         ready: dict[int, list[FoundT | ValueError]] = {}
         pools = self.workers_of("rigid", len(items))
         size = _chunk_size("rigid", len(items), pools)
@@ -138,7 +138,7 @@ class Runner:
 
 
 @dataclass
-class Told:
+class _Told:
     """The line of progress of some work: from its begin, `more` as it is done, `close`."""
 
     what: str
@@ -214,7 +214,7 @@ def run_chunk(make: Callable[[ItemT], Case], items: Sequence[ItemT]) -> list[Row
     """Run the cases of some items, one after the other; they share what is the same in them."""
     rows = []
     before: Model | None = None
-    settled: list[Settled] = []
+    settled: list[_Settled] = []
     for item in items:
         began = time.perf_counter()
         try:
@@ -234,7 +234,7 @@ def run_chunk(make: Callable[[ItemT], Case], items: Sequence[ItemT]) -> list[Row
     return rows
 
 
-def _model_of(case: Case, before: Model | None, settled: list[Settled]) -> Model:
+def _model_of(case: Case, before: Model | None, settled: list[_Settled]) -> Model:
     """The model of a case; it takes over the motions of the one before, and an equilibrium that is known.
 
     The last `AT_HAND` equilibria are kept.
@@ -247,7 +247,7 @@ def _model_of(case: Case, before: Model | None, settled: list[Settled]) -> Model
     motions = (before.case, before.motion, before.vertical) if before else None
     model = build_model(case, container, known and known.equilibrium, build_motions(case, motions))
     if known is None or known.equilibrium is not model.equilibrium:
-        settled.insert(0, Settled(case, container, model.equilibrium))
+        settled.insert(0, _Settled(case, container, model.equilibrium))
         del settled[AT_HAND:]
     return model
 

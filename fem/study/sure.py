@@ -87,7 +87,7 @@ class Copy(NamedTuple):
         return self.change.share == SMALL
 
 
-class TriedCopy(NamedTuple):
+class _TriedCopy(NamedTuple):
     """A copy that was computed."""
 
     copy: Copy
@@ -102,7 +102,7 @@ class Copies:
         self._sweep, self._cells = sweep, cells
         self._known: dict[int, tuple[Copy, ...]] = {}
         self._mesh: tuple[Hashable, ContainerMesh] | None = None  #: the last one, and its key
-        self.rows: dict[int, dict[int, TriedCopy]] = {}  #: by cell and number of the copy
+        self.rows: dict[int, dict[int, _TriedCopy]] = {}  #: by cell and number of the copy
         #: by name: a change, and which cells' outcome it turns, (n_cells,)
         self.turned: dict[str, tuple[Copy, BoolArray]] = {}
 
@@ -151,7 +151,7 @@ class Copies:
         cell, run = row["cell"], shown_in(row)
         copy, own = self.of(cell)[row["member"]], self._cells.runs[cell]
         level = OTHER_END if run.outcome is None else difference(own, run, copy.width)
-        self.rows.setdefault(cell, {})[row["member"]] = TriedCopy(copy, run, level)
+        self.rows.setdefault(cell, {})[row["member"]] = _TriedCopy(copy, run, level)
         # Draws are to find what overturns; half of them turn rest to sliding, by the start alone.
         if level == OTHER_END or (run.outcome != own.outcome and not copy.drawn):
             nowhere: BoolArray = np.zeros(self._cells.kind.size, dtype=bool)
