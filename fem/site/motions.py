@@ -27,7 +27,7 @@ from fem.seismic.floor import HIGHEST_HZ, ONE_MODE_TO_S, PERIOD_FACTORS, floor_m
 from fem.seismic.floor_spectrum import FloorSpectrum
 from fem.seismic.ground_motion import GroundMotion
 from fem.seismic.motion_files import write_at2, write_csv
-from fem.seismic.motion_set import MotionSetCheck, periods_of_check
+from fem.seismic.motion_set import SHORTEST_SHOWN_S, MotionSetCheck, periods_of_check
 from fem.site.request import SiteRequest
 from fem.site.result import (
     MOTIONS,
@@ -42,6 +42,7 @@ from fem.site.tables import BuildingTable
 
 #: largest difference of two intervals of a record that is sampled evenly, over the interval
 UNEVEN = 1e-3
+COARSEST_S = 0.5 * SHORTEST_SHOWN_S  #: step that describes the shortest period of the check of a set
 RIGID_PERIOD_S = 0.01  #: of an oscillator that moves with its floor
 MATCHED = Processing(baseline="zero-end")  #: what matching does to a record besides
 BASELINE = "take another record, or set allow_baseline = true"  #: where one is refused
@@ -229,13 +230,13 @@ def _read(request: SiteRequest, name: str, allow_outside: bool) -> tuple[Record,
 
 
 def _even(components: Sequence[Component]) -> tuple[float, list[FloatArray]]:
-    """Step and values of components at even times; linear between samples where they are not even."""
+    """Step and values of components at even times; linear between samples that are uneven or too far apart."""
     times = components[0].times
     steps = np.diff(times)
     step = float(np.median(steps))
-    if np.ptp(steps) <= UNEVEN * step:
+    if np.ptp(steps) <= UNEVEN * step and step <= COARSEST_S:
         return step, [component.values for component in components]
-    step = float(steps.min())
+    step = min(float(steps.min()), COARSEST_S)
     even = times[0] + np.arange(math.floor((times[-1] - times[0]) / step * (1.0 + 1e-12)) + 1) * step
     return step, [np.asarray(np.interp(even, component.times, component.values)) for component in components]
 

@@ -70,6 +70,20 @@ def test_a_third_file_of_a_record_is_its_second_component(tmp_path):
         )
 
 
+def test_records_of_a_coarse_step_are_read_between_their_samples(tmp_path):
+    """At 0.02 s they say nothing of the shortest period that a set is checked at, 0.02 s."""
+    curve = in_whole_g(np.sin(np.arange(600) * 0.3) * 3.0)
+    for number in range(3):
+        write_at2(tmp_path / f"c{number}.at2", 0.02, np.roll(curve, 40 * number), f"EVENT {number}, , , 090")
+    files = '[["c0.at2"], ["c1.at2"], ["c2.at2"]]'
+    (motion, *_) = ground_motions(
+        request(tmp_path, f'[motions]\nsource = "floor"\nvertical = false\nfiles = {files}'), 4.0
+    )
+    assert motion.step == 0.01
+    np.testing.assert_allclose(motion.horizontal[::2], curve, atol=1e-9)
+    np.testing.assert_allclose(motion.horizontal[1::2], 0.5 * (curve[1:] + curve[:-1]), atol=1e-9)
+
+
 def test_matched_records_have_their_second_component_matched_to_its_share(tmp_path):
     names = three_records(tmp_path, "hvt")
     asked = request(tmp_path, f'[motions]\nsource = "matched"\nsecond_component = 0.7\nfiles = {names}')
