@@ -189,35 +189,22 @@ def sentence_of(answer: Answer, axis: Axis, *, rising: bool, where: str = "") ->
         f"slid beyond {limit}" if answer.slid else "destroyed a corner" if answer.invalid else "overturned"
     )
     stood, fell = ends_in_words(answer, axis)
-    if stood and answer.stood_slip is not None and answer.stood_slip >= MILLIMETRES.least:
-        there = f" (slid up to {slip_in_words(answer.stood_slip)})"
-    else:
-        there = ""
-    slip = ""
-    if fell and answer.slip is not None:
-        slip = (
-            f"slip there {slip_in_words(answer.slip)}"
-            if answer.slip >= MILLIMETRES.least
-            else "no slip there"
-        )
-    fell_first = f"first to overturn: {answer.fell}" if answer.fell else ""
-    noted = ", ".join(filter(None, (fell_first, slip, f"with {where}" if fell and where else "")))
-    noted = f" ({noted})" if noted else ""
-    at_once = fell and not stood and not answer.failed
+    slid, least = answer.stood_slip or 0.0, MILLIMETRES.least
+    there = f" (slid up to {slip_in_words(slid)})" if slid >= least else ""
+    noted = [f"first to overturn: {answer.fell}"] * bool(answer.fell)
+    if answer.slip is not None:
+        noted.append("no slip there" if answer.slip < least else f"slip there {slip_in_words(answer.slip)}")
+    noted += [f"with {where}"] * bool(where)
+    fell_so = f"{fell} ({', '.join(noted)})" if noted else fell
+    at_once = not stood and not answer.failed
     if rising:
-        parts = [
-            f"{every} up to {stood}{there}" if stood else "",
-            f"{f'{overturned} at the least tried,' if at_once else f'first {overturned} at'} {fell}{noted}"
-            if fell
-            else "",
-        ]
+        stands = f"{every} up to {stood}{there}"
+        falls = f"{overturned} at the least tried," if at_once else f"first {overturned} at"
     else:
-        parts = [
-            f"{overturned} {'even at the largest tried,' if at_once else 'up to'} {fell}{noted}"
-            if fell
-            else "",
-            f"{every} from {stood} on{there}" if stood else "",
-        ]
+        stands = f"{every} from {stood} on{there}"
+        falls = f"{overturned} even at the largest tried," if at_once else f"{overturned} up to"
+    parts = [stands] * bool(stood) + [f"{falls} {fell_so}"] * bool(fell)
+    parts = parts if rising else parts[::-1]
     none = f"none overturned or slid beyond {limit}" if limit else "none overturned"
     parts.append(none if stood and not fell else "")
     ranges = {
@@ -322,29 +309,25 @@ def ensemble_answer(result: EnsembleResult) -> StudyAnswer[HalfPoint] | None:
     lines: dict[tuple[Any, ...], list[Row]] = defaultdict(list)
     for point in sorted(result.points, key=lambda row: row[axis.key], reverse=not rising):
         lines[tuple(point[other.key] for other in others)].append(point)
-    rows = []
+    rows, halves = [], []
     for _, points in sorted(lines.items()):
         crossing = _half_point(axis, points)
-        words = _half(result, axis, points, crossing, rising=rising)
-        if crossing.few_to is not None:
-            words += _few(result, axis, crossing.few_to, rising=rising)
-        sentence = words + _slips(points, crossing)
+        halves.append(_half(result, axis, points, crossing, rising=rising))
+        few = _few(result, axis, crossing.few_to, rising=rising)
+        sentence = f"{halves[-1]}{few}{_slips(points, crossing)}"
         rows.append(AnswerRow(point=points[0], found=crossing, sentence=sentence))
     safest = min if rising else max
     reached = [(row.found.value, k) for k, row in enumerate(rows) if row.found.value is not None]
-    few = [row.found.few_to for row in rows if row.found.few_to is not None]
+    few_to = [row.found.few_to for row in rows if row.found.few_to is not None]
     sentence = rows[0].sentence
     if others and reached:
-        point, crossing = rows[safest(reached)[1]].point, rows[safest(reached)[1]].found
-        half = _half(
-            result, axis, lines[tuple(point[other.key] for other in others)], crossing, rising=rising
-        )
-        sentence = f"{half}, first with {place_in_words(others, point)}"
+        _, first = safest(reached)
+        sentence = f"{halves[first]}, first with {place_in_words(others, rows[first].point)}"
     elif others:
         fell = falling_in_words(result.limit_slip_m, past=True)
         sentence = f"fewer than half of {_draws_in_words(result)} {fell} at every point"
-    if others and len(few) == len(rows):
-        sentence += _few(result, axis, safest(few), rising=rising)
+    if others and len(few_to) == len(rows):
+        sentence += _few(result, axis, safest(few_to), rising=rising)
     return StudyAnswer(
         axis=axis, rising=rising, sentence=f"{axis_name(axis)}: {sentence}", others=others, rows=tuple(rows)
     )
@@ -424,7 +407,9 @@ def _slips(points: Sequence[Row], crossing: HalfPoint) -> str:
     return f"; those that stood there slid up to {slip_in_words(slip)}" if slip >= MILLIMETRES.least else ""
 
 
-def _few(result: EnsembleResult, axis: Axis, few_to: float, *, rising: bool) -> str:
+def _few(result: EnsembleResult, axis: Axis, few_to: float | None, *, rising: bool) -> str:
+    if few_to is None:
+        return ""
     few = in_words(axis, [few_to])
     reach = f"up to {few}" if rising else f"from {few} on"
     return f"; at most {100.0 * result.probability:g} % {reach}, by the upper end of the interval"
