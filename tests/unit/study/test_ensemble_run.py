@@ -78,8 +78,7 @@ def test_unknown_inputs_are_drawn_beside_those_of_the_file(tmp_path):
         "contact.restitution_over_housner",
     )
     assert drawn.held == ""
-    head = "seed = 4\n"
-    held = load_ensemble(changed(tmp_path, (head, head + 'unknown_inputs = "held"\n')))
+    held = load_ensemble(changed(tmp_path, ("seed = 4\n", 'seed = 4\nunknown_inputs = "held"\n')))
     draws = drawn.draws_at(1)
     assert [draw.drawn for draw in draws] == [draw.drawn for draw in held.draws_at(1)]
     assert {draw.unknown["motion.ramp_cycles"] for draw in draws} == {0.0, 0.74999999925}

@@ -13,26 +13,18 @@ from fem.study.perturbation import Perturbation, around, band_width, near_cells
 X = Axis(key="contact.mu_static", values=(0.1, 0.2, 0.3, 0.4, 0.5), scale="linear")
 Y = Axis(key="motion.peak_acceleration_m_s2", values=(1.0, 2.0, 4.0, 8.0), scale="log", unit="m/s2")
 
+WORDS = Axis(key="solver.model", values=("rigid", "reduced"))
+
 
 def members(case):
     return [change.values for change in Perturbation().changes(case)]
 
 
-WORDS = Axis(key="solver.model", values=("rigid", "reduced"))
-
-
-def test_cells_beside_another_kind_are_near_diagonals_too():
-    kind = np.full((5, 4), Ending.STANDING)
-    kind[0, 0] = Ending.OVERTURNED
-    near = near_cells((X, Y), kind, np.zeros((5, 4)), 0.5)
-    assert sorted(map(tuple, np.argwhere(near))) == [(0, 0), (0, 1), (1, 0), (1, 1)]
-
-
-def test_a_close_call_is_near_by_itself():
-    ratio = np.zeros((5, 4))
-    ratio[3, 2] = 0.6
-    near = near_cells((X, Y), np.full((5, 4), Ending.STANDING), ratio, 0.5)
-    assert np.argwhere(near).tolist() == [[3, 2]]
+def test_cells_beside_another_kind_are_near_diagonals_too_and_a_close_call_is_by_itself():
+    kind, ratio = np.full((5, 4), Ending.STANDING), np.zeros((5, 4))
+    kind[0, 0], ratio[3, 2] = Ending.OVERTURNED, 0.6
+    near = near_cells((X, Y), kind, ratio, 0.5)
+    assert sorted(map(tuple, np.argwhere(near))) == [(0, 0), (0, 1), (1, 0), (1, 1), (3, 2)]
 
 
 def test_words_have_no_neighbours():
@@ -76,17 +68,10 @@ def test_each_member_changes_one_thing():
 def test_a_pulse_has_no_phase_and_a_floor_at_rest_no_amplitude():
     still = members(load_case("free_rocking"))
     assert not any(key.startswith("motion.") for member in still for key in member)
-    pulse = load_case(
-        "seed_stack",
-        [
-            "motion.kind=pulse",
-            "motion.shape=sine",
-            "motion.pulse_s=0.5",
-            "motion.peak_acceleration_m_s2=-4.0",
-        ],
-    )
-    keys = [member for member in members(pulse) if "motion.peak_acceleration_m_s2" in member]
-    assert [member["motion.peak_acceleration_m_s2"] for member in keys] == pytest.approx([-3.92, -4.08])
+    peak = "motion.peak_acceleration_m_s2"
+    pulse = ["motion.kind=pulse", "motion.shape=sine", "motion.pulse_s=0.5", f"{peak}=-4.0"]
+    found = [member[peak] for member in members(load_case("seed_stack", pulse)) if peak in member]
+    assert found == pytest.approx([-3.92, -4.08])
 
 
 def test_friction_does_not_become_negative():

@@ -87,8 +87,7 @@ def test_a_set_of_motions_is_told_as_one_and_motion_by_motion(tmp_path):
         (
             "mu static 0.5",
             "stood in every motion tried up to 0.2 g (slid up to 20 mm); first overturned at 0.4 g "
-            "(slip there 20 mm, with motion b.csv, "
-            "vertical scale -1)",
+            "(slip there 20 mm, with motion b.csv, vertical scale -1)",
         ),
     ]
     rows = list(csv.DictReader(answers_csv(answer).splitlines()))
