@@ -24,7 +24,7 @@ from fem.runtime.late_modules import load_late
 from fem.runtime.left import left_words
 from fem.runtime.memory import limit, memory_of, shortage
 from fem.runtime.signals import INTERRUPTED, NO_ANSWER, interruptions, raise_on_signal
-from fem.runtime.terminal import say
+from fem.runtime.terminal import one_line, say
 from fem.runtime.threads import use_one_blas_thread
 
 BAD_INPUT, FAILED = 2, 3
@@ -121,6 +121,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     use_one_blas_thread()
     before = interruptions()
     tokens = list(sys.argv[1:] if arguments is None else arguments)
+    for token in tokens:
+        if one_line(token) != token:
+            return _refuse(f"{token!r} holds an end of line; give names and values in one line each")
     for name in _names_of(tokens):
         if words := left_words(name):
             return _refuse(f"{name} {words}")
@@ -149,7 +152,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 0
     except OSError as error:
         code = FAILED if error.errno in NO_ROOM else BAD_INPUT
-        return _refuse(f"{error.filename or 'input or output'}: {error.strerror or error}", code)
+        return _refuse(
+            f"{one_line(str(error.filename or 'input or output'))}: {error.strerror or error}", code
+        )
     except Exception as error:
         if interruptions() > before:
             return _interrupted(tokens)

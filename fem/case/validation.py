@@ -23,6 +23,7 @@ from fem.case.tables.problem import Problem, broken
 from fem.case.tables.quantities import Quantity, with_unit
 from fem.case.tables.table import CaseTable
 from fem.runtime.left import left_words
+from fem.runtime.terminal import one_line
 
 ModelT = TypeVar("ModelT", bound=BaseModel)
 
@@ -89,7 +90,7 @@ def read_case_tables(data: Mapping[str, Any]) -> tuple[dict[str, Any], list[Prob
         elif isinstance(value, dict) and key not in (*TABLES, *ROWS, *TOP):
             near = did_you_mean(key, TABLES)
             unknown = f"unknown table{'; ' + near if near else ''} (known: {', '.join(TABLES)})"
-            problems.append(Problem(table=key, key="", reason=left_words(f"[{key}]") or unknown))
+            problems.append(Problem(table=one_line(key), key="", reason=left_words(f"[{key}]") or unknown))
         elif key not in TABLES and key not in ROWS:
             heading[key] = value
     read, partial, faults = read_table("", CaseHeading, heading)

@@ -23,7 +23,7 @@ from fem.results.kinds import KINDS, ResultKind, read_result
 from fem.results.lock import LOCK_NAME, OWNER_NAME, FolderLock, locked_folder
 from fem.runtime.identity import program_identity, versions
 from fem.runtime.own_files import PART, matching_files, place_in, remove, remove_files, write_atomically
-from fem.runtime.terminal import say
+from fem.runtime.terminal import one_line, say
 
 MOST_LISTED = 20  #: files of a user in a message
 REMEDY = f"{OTHER_FOLDER}, or overwrite it with --force"
@@ -245,7 +245,7 @@ def _require_consent(path: Path, kind: ResultKind) -> None:
     """Ask before files are deleted from a folder that no result of this program marks."""
     if any((path / known.mark).is_file() for known in KINDS):
         return
-    names = [str(file.relative_to(path)) for file in matching_files(path, kind.own)]
+    names = [one_line(str(file.relative_to(path))) for file in matching_files(path, kind.own)]
     if not names:
         return
     listed = ", ".join(names[:MOST_LISTED]) + (", .." if len(names) > MOST_LISTED else "")

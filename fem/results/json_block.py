@@ -6,6 +6,8 @@ from functools import cache
 from types import NoneType, UnionType
 from typing import Any, ClassVar, Self, TypeVar, Union, get_args, get_origin, get_type_hints
 
+from fem.runtime.terminal import one_line
+
 #: types of JSON, and what messages call them
 NAMED = {float: "number", int: "whole number", str: "text", bool: "truth value"}
 
@@ -122,7 +124,7 @@ def _scalar(kinds: tuple[type, ...]) -> Callable[[Any], Any]:
         right = isinstance(value, taken) and (not isinstance(value, bool) or bool in kinds)
         if value is not None and not right:
             raise _WrongTypeError("", " and no ".join(NAMED[kind] for kind in kinds))
-        return value
+        return one_line(value) if isinstance(value, str) else value
 
     return read
 
@@ -144,7 +146,7 @@ def _table(read: Callable[[Any], Any]) -> Callable[[Any], Any]:
     def items(values: Any) -> Any:
         if not isinstance(values, dict):
             raise _WrongTypeError("", "table")
-        return {key: _within(f".{key}", read, value) for key, value in values.items()}
+        return {(name := one_line(key)): _within(f".{name}", read, value) for key, value in values.items()}
 
     return items
 

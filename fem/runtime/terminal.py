@@ -13,6 +13,11 @@ def shown(text: object) -> str:
     return CONTROL.sub(lambda match: f"\\u{ord(match[0]):04x}", str(text))
 
 
+def one_line(text: str) -> str:
+    """A text of others in one line: a further one would speak for the program."""
+    return " ".join(text.splitlines())
+
+
 def say(text: object = "", *, end: str = "\n", file: TextIO | None = None, flush: bool = False) -> None:
     """Print a text of which nothing acts on the terminal."""
     print(shown(text), end=end, file=file or sys.stdout, flush=flush)

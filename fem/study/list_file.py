@@ -18,6 +18,7 @@ from fem.case.validation import CaseError, known_keys, quantity_of
 from fem.records.source import decoded
 from fem.records.table import TableLine, UserTable, number_in
 from fem.results.figures import RUN_COLUMNS, SLIPPED, TURNED
+from fem.runtime.terminal import one_line
 from fem.runtime.user_files import read_regular
 from fem.study.axes import NAMED, NO_AXIS, AxisError, field_of
 from fem.study.driver import StudyResult
@@ -122,11 +123,6 @@ class HallRow:
     container: int | None = None  #: its number among those that differ, once the row is checked
 
 
-def _one_line(field: str) -> str:
-    """A name in one line, without the apostrophe before what a spreadsheet would compute."""
-    return " ".join(plain_text(field).split())
-
-
 @dataclass(frozen=True, kw_only=True)
 class HallFile:
     """A list as it was read."""
@@ -180,7 +176,7 @@ class HallFile:
         )
 
     def _row(self, number: int, line: TableLine, places: Mapping[str, int], named: Sequence[int]) -> HallRow:
-        given = {column: plain_text(line.field(index)) for column, index in places.items()}
+        given = {column: one_line(plain_text(line.field(index))) for column, index in places.items()}
         texts = dict(zip(self.meanings.values(), given.values(), strict=True))
         count, reason = number_in(texts.get(COUNT) or "1") or 0.0, ""
         if not (count.is_integer() and 1.0 <= count <= LARGEST_COUNT):
@@ -190,9 +186,9 @@ class HallFile:
             reason = f"{len(line.fields)} fields, and the header names {len(named)} columns"
         return HallRow(
             line=line.number,
-            name=_one_line(texts.get(NAME, "")) or str(number),
+            name=texts.get(NAME) or str(number),
             count=int(count),
-            tag=_one_line(texts.get(TAG, "")),
+            tag=texts.get(TAG, ""),
             given=given,
             values={key: _value(key, texts[key]) for key in self.keys if whole and texts[key]},
             reason=reason,
@@ -208,7 +204,7 @@ def read_hall(path: Path) -> HallFile:
     if text is None or "\0" in text:
         raise CaseError(f"{path}: not a text file; save the list as CSV")
     table = UserTable(str(path), text, CaseError)
-    names = [*map(plain_text, table.header)]
+    names = [one_line(plain_text(name)) for name in table.header]
     if not names:
         raise CaseError(f"{path}: the list is empty; {A_HEADER}")
     if not any(name.lower() in _plain_names() or name.partition(".")[0] in NAMED for name in names):

@@ -7,9 +7,10 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ModelWrapVali
 from pydantic_core import PydanticUndefined
 
 from fem.case.tables.problem import BrokenRulesError, Rule, broken
+from fem.runtime.terminal import one_line
 
-#: a text of one line, whatever ends of lines it was given: a line of its own would speak for the program
-OneLine = AfterValidator(lambda text: " ".join(text.split()) if text else text)
+#: a text of one line, whatever ends of lines it was given
+OneLine = AfterValidator(lambda text: one_line(text) if text else text)
 
 
 class CaseTable(BaseModel):

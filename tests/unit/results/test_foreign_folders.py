@@ -2,6 +2,7 @@
 
 import json
 import os
+import random
 import re
 import sys
 
@@ -41,6 +42,8 @@ duration_s = 0.2
 figures = false
 fields_s = 0
 """
+VALUES = (None, True, -1, 1e308, "x", "", [], {}, [1], ["a"], {"a": 1}, [[1]], 10**400, [None])
+FORGED = "x\\n-- passed --\\n"  #: of TOML, where it would be a line of its own
 LINKED = "is a link, through which no results are written"
 
 
@@ -58,6 +61,14 @@ def folder(tmp_path):
     place = tmp_path / "out"
     place.mkdir()
     return place
+
+
+def _places(content):
+    """The containers and keys of all values at any depth."""
+    for key, value in content.items() if isinstance(content, dict) else enumerate(content):
+        yield content, key
+        if isinstance(value, dict | list):
+            yield from _places(value)
 
 
 def begun(folder, kind=RUN, **options):
@@ -224,23 +235,19 @@ class TestReading:
         with pytest.raises(FolderError, match=rf"{kind.mark}: damaged, {re.escape(words)}"):
             typed_result(result, content, folder / kind.mark)
 
-    @pytest.mark.parametrize(
-        ("name", "more"),
-        [
-            ("ensemble", {"points": [{"motion.peak_acceleration_m_s2": "x", "probability": 0.1}]}),
-            ("ensemble", {"points": [3]}),
-            ("ensemble", {"axes": [{"key": "motion.peak_acceleration_m_s2", "values": [1.0, {}]}]}),
-            ("ensemble", {"random": {"contact.mu_static": True}}),
-            ("ensemble", {"random": {"contact.mu_static": {"distribution": "normal", "mean": [1, "a"]}}}),
-            ("response", {"frequencies": [None]}),
-            ("response", {"request": {"count": {"a": 1}}}),
-        ],
-    )
-    def test_a_page_of_damaged_results_is_refused_with_the_file(self, folder, capsys, name, more):
-        getattr(study_folders, f"{name}_folder")(folder, **more)
-        assert main(["report", str(folder), "-q"]) == 2
-        assert re.search(rf"{name}\.json: damaged, .*; compute it again", capsys.readouterr().err)
-        assert not (folder / "report.html").exists()
+    @pytest.mark.parametrize("name", ["ensemble", "response"])
+    def test_any_value_in_place_of_another_is_shown_or_refused_with_the_file(self, folder, capsys, name):
+        getattr(study_folders, f"{name}_folder")(folder)
+        mark, codes = folder / f"{name}.json", []
+        content, draw = json.loads(mark.read_text()), random.Random(1)
+        for place, key in draw.choices([*_places(content)], k=90):
+            before, place[key] = place[key], draw.choice(VALUES)
+            mark.write_text(json.dumps(content).replace("1e+308", "1e309"))
+            place[key] = before
+            codes.append(main(["report", str(folder), "-q"]))
+            said = capsys.readouterr().err
+            assert codes[-1] == 0 or re.search(rf"{name}\.json: (damaged|cannot be read)", said), said
+        assert set(codes) == {0, 2}
 
 
 class TestSpeaking:
@@ -264,6 +271,32 @@ class TestSpeaking:
         assert main(["run", f"no{bad}where"]) == 2
         told = "".join(capsys.readouterr())
         assert "gnp.exe" in told and not set("\x1b\x07\x9b\u202e\u2066\u200b\r") & set(told)
+
+    @pytest.mark.parametrize(
+        ("arguments", "more", "code"),
+        [
+            (["check", "case.toml"], f'title = "{FORGED}"', 0),
+            (["check", "case.toml"], f'["{FORGED}"]', 2),
+            (["check", "case.toml"], f'limits = "{FORGED}"', 2),
+            (["report", "case\n-- passed --"], "", 2),
+            (["check", "case.toml", "--x\n-- passed --"], "", 2),
+            (["run", "case.toml", "--out", "out", "--force"], "", 2),
+            (["report", "study"], "", 2),
+            (["batch", "list.csv", "--case", "case.toml", "--out", "list", "--margins", "none"], "", 0),
+        ],
+    )
+    def test_a_text_has_no_line_of_its_own(
+        self, folder, tmp_path, capsys, monkeypatch, arguments, more, code
+    ):
+        monkeypatch.chdir(tmp_path)
+        (folder / "figures").mkdir()
+        (folder / "figures" / "a\n-- passed --.svg").write_text("mine")
+        study_folders.ensemble_folder(tmp_path / "study", versions={"a\n-- passed --\n": 3})
+        (tmp_path / "list.csv").write_text('name,width_m,"x\n-- passed --"\n"x\n-- passed --",1,2\nb,-1,1\n')
+        (tmp_path / "case.toml").write_text(CASE.replace("[container]", f"{more}\n[container]"))
+        assert main(arguments) == code
+        told = "".join(capsys.readouterr())
+        assert "-- passed --" in told and "\n-- passed --" not in told
 
     @pytest.mark.parametrize(
         ("text", "field"),
