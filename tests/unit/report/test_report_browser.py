@@ -6,19 +6,25 @@ import shutil
 import subprocess
 import time
 from io import BytesIO
+from pathlib import Path
 
 import pytest
 from browser import CHROMIUM, FAINT, Browser
 from matplotlib.image import imread
+from site_example import write_example
 from study_folders import ensemble_folder, response_folder
 
 from fem.case.case import load_case
 from fem.report.run_page import run_report
-from fem.report.study_page import ensemble_report, response_report, sweep_report
+from fem.report.study_page import ensemble_report, hall_report, response_report, sweep_report
+from fem.results.errors import FolderError
 from fem.results.reader import open_run
 from fem.run.run import RunOptions, run_case
 from fem.runtime.progress import SilentReporter
+from fem.site.page import site_report
 from fem.study.file import load_sweep
+from fem.study.hall import run_hall
+from fem.study.list_file import read_hall
 from fem.study.sweep import run_sweep
 from fem.study.sweep_table import open_sweep
 
@@ -38,8 +44,16 @@ case = "seed_stack_plateau"
 [perturbation]
 cells = "none"
 """
+#: text of others that would act in a page, were it not escaped in its place
+HOSTILE = "x\"><img src=x onerror='window.done=1'>\u2028</script><script>window.done=1</script><!--`${window.done=1}"
+LIST = f"name,tag,width_m,note\n{HOSTILE[3:]},{HOSTILE[3:]},1.5,<b>\n"
+FREE = ("title", "case", "name", "tag")  #: keys of texts that may be anything
 CONTROLS = ("button", "slider", "combobox", "checkbox", "textbox", "application", "link", "image", "region")
 CLOCK = "parseFloat(document.getElementById('now-clock').textContent)"
+
+
+def run_report_of(folder):
+    return run_report(open_run(folder))
 
 
 @pytest.fixture(scope="module")
@@ -53,6 +67,10 @@ def pages(tmp_path_factory):
     asked = load_sweep(str(place / "boxes.toml"))
     run_sweep(asked, place / "boxes", jobs=1, resume=False, force=False, reporter=SilentReporter())
     (place / "sweep.html").write_text(sweep_report(place / "boxes"), encoding="utf-8")
+    (place / "list.csv").write_text(LIST, encoding="utf-8")
+    base = load_case("seed_box", ("solver.model=rigid", "solver.duration_s=1"))
+    run_hall(read_hall(place / "list.csv"), base, place / "listed", checks="none")
+    write_example(place / "site", building=False)
     counted, swept = ensemble_folder(place / "counted"), response_folder(place / "swept")
     (place / "ensemble.html").write_text(ensemble_report(counted), encoding="utf-8")
     (place / "response.html").write_text(response_report(swept), encoding="utf-8")
@@ -136,6 +154,45 @@ class TestEveryReport:
         finally:
             browser.call("Emulation.setScrollbarsHidden", hidden=False)
             browser.window(1280, 900)
+
+
+def _texts(content):
+    """Where a marking file holds texts: the container and the key of each."""
+    for key, value in content.items() if isinstance(content, dict) else enumerate(content):
+        if isinstance(value, str):
+            yield content, key
+        elif isinstance(value, dict | list):
+            yield from _texts(value)
+
+
+@pytest.mark.parametrize(
+    ("name", "report", "count"),  # pages of a run and of a site take a second each
+    [
+        ("stack/run", run_report_of, 5), ("site/assess", site_report, 5), ("boxes/sweep", sweep_report, 40),
+        ("counted/ensemble", ensemble_report, 40), ("swept/response", response_report, 40),
+        ("listed/hall", hall_report, 40),
+    ],
+)  # fmt: skip
+def test_texts_of_others_do_nothing_in_a_page(browser, pages, tmp_path, name, report, count):
+    folder = shutil.copytree(pages / Path(name).parent, tmp_path / "copy")
+    mark = folder / f"{Path(name).name}.json"
+    content, kept = json.loads(mark.read_text(encoding="utf-8")), 0
+    for place, key in sorted(_texts(content), key=lambda text: text[1] not in FREE)[:count]:
+        before, place[key] = place[key], HOSTILE
+        mark.write_text(json.dumps(content), encoding="utf-8")
+        try:
+            report(folder)
+            kept += 1
+        except (FolderError, ValueError, KeyError):  # such as a status, or the name of a motion's file
+            place[key] = before
+    mark.write_text(json.dumps(content), encoding="utf-8")
+    page = folder / "hostile.html"
+    page.write_text(report(folder), encoding="utf-8")
+    assert kept >= 2 and "window.done" in page.read_text(encoding="utf-8")
+    browser.open(page)
+    time.sleep(0.3)
+    assert browser.evaluate("window.done") is None and browser.evaluate("document.images.length") == 0
+    assert (browser.errors, browser.requests) == ([], [page.as_uri()])
 
 
 class TestTheAnimation:

@@ -95,11 +95,6 @@ def test_a_page_is_green_and_signed_where_somebody_stands_for_every_input(folder
         assert ("nobody stands for source of friction" in words_of(page)) is bool(unstated)
 
 
-def test_text_of_users_is_escaped(folders):
-    assert "<hall 3>" not in page_of(folders, "fulfilled")
-    assert "Mercury containers &lt;hall 3&gt;" in page_of(folders, "fulfilled")
-
-
 def test_an_unfinished_verification_is_told(tmp_path):
     (tmp_path / RESULT_FILE).write_text('{"status": "running", "asked": "ab"}', encoding="utf-8")
     with pytest.raises(FolderError, match="continue it with --resume"):
