@@ -18,6 +18,7 @@ from textwrap import fill
 
 import pytest
 from cases import TEXTS, named_case
+from record_words import recorded
 from site_answers import answered, brief_page, sited
 from site_example import write_example
 from study_folders import ensemble_folder, response_folder
@@ -157,7 +158,9 @@ def test_the_program_says_what_it_said_when_that_was_last_read(name, request, tm
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "80")
     told_by = {"refusals": refused, "results": told, "answers": answered, "sites": sited, "pages": paged}
-    say = (told_by | {"sentences": worded}).get(name, lambda asked: commanded(asked, capsys))
+    say = (told_by | {"sentences": worded, "records": recorded}).get(
+        name, lambda asked: commanded(asked, capsys)
+    )
     pairs = [
         (asked, "" if asked.startswith("#") else steady(say(asked[2:]), tmp_path)) for asked in asked_in(file)
     ]

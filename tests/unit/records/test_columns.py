@@ -3,7 +3,6 @@
 import os
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from fem.records.files import read_record
@@ -72,79 +71,6 @@ def test_units_are_those_given_whatever_the_header_leaves_out(tmp_path, unit, fa
     assert found.quantity == ("displacement" if unit == "m" else "acceleration") and not found.unit_stated
 
 
-@pytest.mark.parametrize(
-    ("heading", "unit"),
-    [
-        ("time,acc (g)", "g"), ("time_s,a_g", "g"), ("t [s],a [Gal]", "gal"), ("t,a [cm/sec/sec]", "cm/s2"),
-        ("t,a [CM/SEC^2]", "cm/s2"), ("t,a [cm s-2]", "cm/s2"), ("t,a (mm/s**2)", "mm/s2"), ("s,m/s2", "m/s2"),
-        ("time_s,base_acceleration_m_s2", "m/s2"), ("Acceleration (gal)", "gal"), ("t,x [mm]", "mm"), ("t_s,x_m", "m"),
-    ],
-)  # fmt: skip
-def test_units_of_the_header_need_no_other_word(tmp_path, heading, unit):
-    found = only(table(tmp_path, f"{heading}\n0,1\n1,2\n", unit=None))
-    assert found.unit == unit and found.unit_stated
-
-
-@pytest.mark.parametrize(
-    ("text", "words"),
-    [
-        ("0,1\n0.1,abc\n0.2,3\n", "line 2: not a number"),
-        ("# c\nt,a\n0,1\n0.1,0.2g\n", "line 4: not a number"),
-        ("0,1\n0.1,nan\n", "line 2: not a number"),
-        ("0,1\n0.1,inf\n", "line 2: not a number"),
-        ("0,1\n0.1,1_0\n", "line 2: not a number"),
-        ("0,1\n0.1,1e999\n", "line 2: not a number, or too large"),
-        ("0,1\n1e300,1\n", "line 2: not a number, or too large"),
-        ("0,1\n,2\n", "line 2: not a number"),
-        ("0,1\n0.1\n", "line 2: 2 columns are needed as in line 1, found 1"),
-        ("0,1,5,6\n0.1,2,5,6\n", "line 1: 4 columns; a motion has one"),
-        ("0;1,5\n0.1;2,5\n", "line 2: decimal commas and decimal points"),
-        ("nan,1\n0.1,2\n", "line 1: not a number"),
-        ("0,abc\n1,2\n2,3\n", "line 1: not a number"),
-        ("t,a\n", "no numbers were found"),
-        ("", "the file is empty"),
-        (" \n\n", "the file is empty"),
-        ("0,1\n", "two samples or more are needed, found 1"),
-        ("0,1\n0.2,1\n0.1,1\n", "line 3: times must increase, but time 0.1 s is earlier"),
-        ("0,1\n0.1,1\n0.1,1\n", "line 3: times must increase, but time 0.1 s occurs twice"),
-        ("time,acc [g]\n0,1\n1,2\n", "file states 'g', but unit = 'm/s2' is given"),
-        ("time_s,a_g\n0,1\n1,2\n", "file states 'g', but unit = 'm/s2' is given"),
-        ("time (h), acc (m/s2)\n0,1\n1,2\n", "header gives times in 'h'; they must be in s, ms, us, min"),
-        ("time (s) acc (Gal)\n0 1\n1 2\n", "file states 'gal', but unit = 'm/s2'"),
-        ("t [s], a (m/s2), b (g)\n0,1\n1,2\n", "names more units than the 2 columns"),
-        ("t [s],a [g]\ns,m/s2\n0,1\n1,2\n", "two units for column 2"),
-        ("t,a [in/s2]\n0,1\n1,2\n", "header gives 'in/s2', which is not read"),
-        ("1\n2\n3\n", "one column without times: give the interval as sample_interval_s"),
-        (b"\xff\xfe\x00", "not a text file"),
-        (b"0,1\x00\n1,2\n", "not a text file"),
-    ],
-)
-def test_bad_tables_are_refused_by_line(tmp_path, text, words):
-    with pytest.raises(ValueError, match=words):
-        table(tmp_path, text)
-
-
-@pytest.mark.parametrize("step", ["1e-9", "100"])
-def test_an_interval_that_no_sensor_has_is_refused(tmp_path, step):
-    times = [f"{number * float(step):.12g},{number % 2}" for number in range(20)]
-    with pytest.raises(
-        ValueError, match=r"the samples have an interval of .* s; it must be between 1e-06 and 10 s"
-    ):
-        table(tmp_path, "\n".join(times))
-
-
-def test_a_unit_that_nobody_states_is_not_guessed(tmp_path):
-    with pytest.raises(ValueError, match='does not state the unit of its values; state it as unit = "g"'):
-        table(tmp_path, "t,a\n0,1\n1,2\n", unit=None)
-    with pytest.raises(ValueError, match="unknown unit 'ft'"):
-        table(tmp_path, "0,1\n1,2\n", unit="ft")
-
-
-def test_an_interval_is_for_one_column_only(tmp_path):
-    with pytest.raises(ValueError, match="sample_interval_s is for a file of one column, and 2 were found"):
-        table(tmp_path, "0,1\n1,2\n", sample_interval=0.01)
-
-
 def test_no_message_quotes_what_is_in_the_file(tmp_path):
     for text in ("secret\n0,1\nsecret,2\n", "root:secret:0\n", "1 secret\n", "secret,secret\n1,2,secret\n"):
         with pytest.raises(ValueError, match=r"record\.csv") as found:
@@ -179,8 +105,3 @@ def test_files_of_the_kernel_that_never_end_are_taken_at_the_size_they_state():
 def test_lines_that_no_motion_has_are_refused(tmp_path, content):
     with pytest.raises(ValueError, match="at most 1000000 lines of 1000 characters"):
         table(tmp_path, content, sample_interval=0.01)
-
-
-def test_values_are_arrays_of_numbers(tmp_path):
-    found = only(table(tmp_path, "0,1\n1,2\n"))
-    assert found.values.dtype == np.float64 and found.step == 1.0
