@@ -30,6 +30,14 @@ def pytest_collection_finish(session: pytest.Session) -> None:
         import_module("kernels").compile_kernels()  # late: numba takes a second to import
 
 
+@pytest.fixture(scope="session")
+def gallery(tmp_path_factory: pytest.TempPathFactory):
+    """Computed runs that many tests read, see `rigs/gallery.py`; the workers of a session share them."""
+    place = tmp_path_factory.getbasetemp()
+    place = place.parent if "PYTEST_XDIST_WORKER" in os.environ else place
+    return import_module("gallery").Gallery(place / "gallery")  # late, as above
+
+
 @pytest.fixture
 def undrawn(monkeypatch):
     """Maps take four fifths of the time of so small a sweep, and are tested by themselves."""

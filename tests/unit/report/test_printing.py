@@ -15,17 +15,8 @@ NEEDS_BROWSER = pytest.mark.skipif(
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    place = tmp_path_factory.mktemp("printed") / "run"
-    changes = [
-        "solver.duration_s=0.5",
-        "output.fields_s=0.25",
-        "document.project=Store <3>",
-        "document.number=7-A",
-    ]
-    sets = [word for change in changes for word in ("--set", change)]
-    assert main(["run", "rocking", "--no-band", "-q", "--out", str(place), *sets]) == 0
-    return place
+def folder(gallery, tmp_path_factory):
+    return gallery.copy("rigid", tmp_path_factory.mktemp("printed"))
 
 
 def test_the_document_stands_on_the_page_and_at_the_head_of_every_sheet(folder):

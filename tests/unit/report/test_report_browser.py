@@ -19,7 +19,6 @@ from fem.report.run_page import run_report
 from fem.report.study_page import ensemble_report, hall_report, response_report, sweep_report
 from fem.results.errors import FolderError
 from fem.results.reader import open_run
-from fem.run.run import RunOptions, run_case
 from fem.runtime.progress import SilentReporter
 from fem.site.page import site_report
 from fem.study.file import load_sweep
@@ -30,7 +29,6 @@ from fem.study.sweep_table import open_sweep
 
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium: apt-get install chromium")
 
-COARSE = ("solver.duration_s=2", "solver.element_size_m=0.5", "solver.order=1", "solver.elastic_modes=4")
 SWEEP = """
 case = "seed_stack_plateau"
 [set]
@@ -57,12 +55,10 @@ def run_report_of(folder):
 
 
 @pytest.fixture(scope="module")
-def pages(tmp_path_factory):
+def pages(gallery, tmp_path_factory):
     """A report of a run, a sweep, an ensemble and a response curve."""
     place = tmp_path_factory.mktemp("pages")
-    case = load_case("seed_stack_plateau", COARSE)
-    run_case(case, case_text=case.text, folder=place / "stack", options=RunOptions(margin=False))
-    (place / "run.html").write_text(run_report(open_run(place / "stack")), encoding="utf-8")
+    (place / "run.html").write_text(run_report(gallery.run("default")), encoding="utf-8")
     (place / "boxes.toml").write_text(SWEEP)
     asked = load_sweep(str(place / "boxes.toml"))
     run_sweep(asked, place / "boxes", jobs=1, resume=False, force=False, reporter=SilentReporter())

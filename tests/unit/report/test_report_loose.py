@@ -4,27 +4,16 @@ import re
 
 import pytest
 
-import fem
-from fem.case.case import load_case
 from fem.figures.cache import drawings_of
 from fem.model.model import build_model
 from fem.render.caption import caption
 from fem.report.animation import animation_of
 from fem.report.run_page import run_report
-from fem.run.run import RunOptions, run_case
-
-#: two boxes, of which the upper slides from the first instant on and the lower never
-SLIDING = (
-    *("solver.model=rigid", "solver.duration_s=1", "container.boxes=2", "container.joints=loose"),
-    *("joints.mu_static=0.1", "joints.mu_kinetic=0.1", "floor.kind=rigid"),
-)
 
 
-@pytest.fixture(scope="module")
-def run(tmp_path_factory):
-    case, folder = load_case("seed_stack", SLIDING), tmp_path_factory.mktemp("loose") / "run"
-    run_case(case, case_text=case.text, folder=folder, options=RunOptions(band=False))
-    return fem.open_run(folder)
+@pytest.fixture
+def run(gallery):
+    return gallery.run("loose")
 
 
 def test_each_box_has_a_curve_of_its_rotation_slip_and_opening(run):
