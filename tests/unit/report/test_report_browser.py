@@ -58,6 +58,7 @@ def run_report_of(folder):
 def pages(gallery, tmp_path_factory):
     """A report of a run, a sweep, an ensemble and a response curve."""
     place = tmp_path_factory.mktemp("pages")
+    gallery.copy("default", place)
     (place / "run.html").write_text(run_report(gallery.run("default")), encoding="utf-8")
     (place / "boxes.toml").write_text(SWEEP)
     asked = load_sweep(str(place / "boxes.toml"))
@@ -164,7 +165,7 @@ def _texts(content):
 @pytest.mark.parametrize(
     ("name", "report", "count"),  # pages of a run and of a site take a second each
     [
-        ("stack/run", run_report_of, 5), ("site/assess", site_report, 5), ("boxes/sweep", sweep_report, 40),
+        ("default/run", run_report_of, 5), ("site/assess", site_report, 5), ("boxes/sweep", sweep_report, 40),
         ("counted/ensemble", ensemble_report, 40), ("swept/response", response_report, 40),
         ("listed/hall", hall_report, 40),
     ],
