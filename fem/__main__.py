@@ -22,7 +22,7 @@ from cyclopts import App, CycloptsError, Group, MissingArgumentError, UnusedCliT
 
 from fem.runtime.late_modules import load_late
 from fem.runtime.left import left_words
-from fem.runtime.memory import limit, memory_of, shortage
+from fem.runtime.memory import limit, memory_of, share_the_heap, shortage
 from fem.runtime.signals import INTERRUPTED, NO_ANSWER, interruptions, raise_on_signal
 from fem.runtime.terminal import one_line, say
 from fem.runtime.threads import use_one_blas_thread
@@ -119,6 +119,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         arguments: what stands behind `python -m fem`; None takes it from the process.
     """
     use_one_blas_thread()
+    share_the_heap()
     before = interruptions()
     tokens = list(sys.argv[1:] if arguments is None else arguments)
     for token in tokens:

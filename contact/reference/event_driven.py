@@ -124,7 +124,7 @@ def first_crossing(
     """
     earliest: tuple[float, str] | None = None
     times = np.linspace(start, end, SAMPLES_PER_STEP + 1)
-    states = np.stack([interpolant(float(t)) for t in times])
+    states = np.asarray(interpolant(times)).T
     accelerations = [acceleration(float(t)) for t in times]
     for guard in guards:
 

@@ -16,6 +16,7 @@ rock, and slide-rock rigid-body modes, ibid. 122 (1996).
 import math
 from dataclasses import dataclass
 from enum import Enum
+from typing import NamedTuple
 
 import numpy as np
 
@@ -110,8 +111,7 @@ class PlanarMotion:
         )
 
 
-@dataclass(frozen=True, kw_only=True)
-class PlanarHistory:
+class PlanarHistory(NamedTuple):
     """Samples of a planar motion; every array has the shape of the times asked for."""
 
     rotation: FloatArray  #: [rad]

@@ -14,7 +14,7 @@ from fem.cli.check import numerics_lines, preview_of
 from fem.results.disk import free_disk, in_units
 from fem.results.errors import OutputError
 from fem.results.folder import read_result
-from fem.runtime.memory import memory_of_run, shortage
+from fem.runtime.memory import CHECKS, RIGID, memory_of, shortage
 from fem.runtime.progress import ScreenReporter
 from fem.runtime.terminal import say
 from fem.runtime.user_files import read_text
@@ -71,9 +71,9 @@ def run(
     if dry_run:
         return 0
     alone = (band, margin) == (False, False)
-    needed = memory_of_run(
-        rigid=loaded.solver.model == "rigid", alone=alone, figures=loaded.output.figures or check_rigid
-    )
+    needed = RIGID + CHECKS * (not alone)
+    if loaded.solver.model != "rigid":
+        needed = memory_of(True, 1 if alone else None)
     if short := shortage(needed):
         raise OutputError(short)
     solver = importlib.import_module("fem.run.run")

@@ -8,7 +8,6 @@ not from the clock, so that a resumed or repeated study is the same.
 
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
 from threading import Event, Lock
@@ -31,6 +30,7 @@ from fem.run.recorder import Recorder
 from fem.run.simulation import run_without_history, simulate
 from fem.run.verdict import joint_demands, verdict_of
 from fem.runtime.identity import program_identity
+from fem.runtime.memory import threads_of_rigid_runs, worker_threads
 from fem.runtime.threads import cores
 from fem.runtime.user_files import read_json
 from fem.solid.nodal_body import full_model_memory
@@ -128,9 +128,9 @@ def cost_of(numerics: Numerics) -> float:
 
 def workers_for(model: Model, runs: int) -> int:
     """How many runs of a model are stepped side by side: as many as cores and, of the full model, memory allow."""
-    workers = min(cores(), max(1, runs))
-    if model.case.solver.model != "full":
-        return workers
+    workers, kind = min(cores(), max(1, runs)), model.case.solver.model
+    if kind != "full":
+        return threads_of_rigid_runs(workers) if kind == "rigid" else workers
     return runs_in_memory(workers, full_model_memory(len(model.container.elements.nodes)))
 
 
@@ -204,7 +204,7 @@ def run_changes(
             raise
         return run
 
-    with ThreadPoolExecutor(max_workers=workers_for(model, len(changes))) as pool:
+    with worker_threads(workers_for(model, len(changes))) as pool:
         runs = list(pool.map(run_of, changes))
     if kept_in and unstored:
         kept_in.store(list(kept.values()))

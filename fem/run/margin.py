@@ -9,7 +9,7 @@ draws the factors are staggered. An island narrower than the steps that are left
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from concurrent.futures import Executor, ThreadPoolExecutor
+from concurrent.futures import Executor
 from functools import cache
 from itertools import pairwise
 from typing import NamedTuple
@@ -32,6 +32,7 @@ from fem.run.recorder import Recorder
 from fem.run.simulation import run_without_history, simulate
 from fem.run.sureness import ending, numerical
 from fem.run.verdict import outcome_of
+from fem.runtime.memory import worker_threads
 
 LARGEST, LEAST = 4.0, 0.05  #: factors
 #: share of the uplift acceleration below which nothing rocks, however soft and whatever is not known
@@ -145,7 +146,7 @@ def margin_of(model: Model, result: RunResult, *, drawn: bool, stop: Callable[[]
     own, least = Search(_trial(model, {}, stop), {1.0: itself}), _least(model)
     most, draws = _largest(model.case), []
     try:
-        with ThreadPoolExecutor(max_workers=(workers := workers_for(model, SCANNED))) as pool:
+        with worker_threads(workers := workers_for(model, SCANNED)) as pool:
             _scan(own, least, most, pool, workers)
             runs = LEAST_RUNS if model.case.solver.model == "full" else int(OWN_S / cost)
             _narrow([own], min(MOST_RUNS, max(LEAST_RUNS, runs)), pool, RESOLUTION)

@@ -15,9 +15,15 @@ from contact.interface.penalty import contact_frequency
 from contact.motion.base_motion import BaseMotion
 from contact.motion.kernel import PIECEWISE, SUM, floor_motion
 from contact.reference.floor_acceleration import FloorAcceleration
-from contact.reference.planar_block import PlanarBlock, PlanarImpact, PlanarMode, simulate_planar_block
+from contact.reference.planar_block import (
+    PlanarBlock,
+    PlanarImpact,
+    PlanarMode,
+    PlanarMotion,
+    simulate_planar_block,
+)
 from contact.reference.rigid_block import RigidBlock
-from contact.reference.rocking import RockingImpact, RockingMotion, simulate_rocking
+from contact.reference.rocking import RockingImpact, RockingMotion, RockingOutcome, simulate_rocking
 from contact.stepping.modes import ROCKING, SLIDING
 from fem.model.model import Model
 from fem.results.history import ANALYTIC_COLUMN, History
@@ -29,6 +35,8 @@ STIFF_CONTAINER = 7.0  #: first elastic over contact frequency, from which an im
 SOFT_FLOOR = 1e-3  #: static penetration over width times slenderness angle: the gap that counts as an impact
 BOUNCING_CONTACT = 1.0  #: contact damping ratio below which an impact is not plastic
 OFF_CENTRE = 1e-6  #: of the mass centre, over the width
+#: modes of a block that a block which cannot slide does not have
+SLIPPING = {PlanarMode.SLIDE, PlanarMode.SLIDE_ROCK, PlanarMode.OUTSIDE}
 SAMPLES_OF_SLIP, SAMPLES_OF_FORCES = 200.0, 500.0  #: of the analytic block, a second
 PEAKS = 6  #: turning points that are compared
 #: times [s] -> rotation [rad], angular velocity [rad/s], each of shape (n,)
@@ -124,18 +132,24 @@ def analytic_block(model: Model, end: float) -> AnalyticBlock:
     )
     times = np.linspace(0.0, block.end, max(2, math.ceil(SAMPLES_OF_SLIP * block.end)))
     slip = block.at(times).slip
-    held = simulate_rocking(friction.body, floor, duration=end, rotation=rotation, angular_velocity=rate)
-    needed = None if held.overturned_at is not None else friction_needed(held, floor)
+    swings: RockingMotion | PlanarMotion = block
+    if block.modes & SLIPPING or any(impact.slides for impact in block.impacts):
+        swings = simulate_rocking(
+            friction.body, floor, duration=end, rotation=rotation, angular_velocity=rate
+        )
+    fell = swings.outcome in (RockingOutcome.OVERTURNED, PlanarMode.OVERTURNED)
     return AnalyticBlock(
         outcome=None if block.outcome is PlanarMode.OUTSIDE else block.outcome.value,
         rotation_ratio=block.largest_rotation / angle,
         max_slip_m=float(np.nanmax(np.abs(slip))) if np.isfinite(slip).any() else None,
-        friction_needed=needed,
+        friction_needed=None if fell else friction_needed(friction.body, swings, floor),
     )
 
 
-def friction_needed(held: RockingMotion, floor: FloorAcceleration) -> float | None:
-    """Largest |tangential| over normal force of a block that cannot slide, impacts aside [-].
+def friction_needed(
+    block: RigidBlock, held: RockingMotion | PlanarMotion, floor: FloorAcceleration
+) -> float | None:
+    """Largest |tangential| over normal force of a block that does not slide, impacts aside [-].
 
     About its corner its mass centre is at s = R (-sin l, cos l), l the slenderness angle less |rotation|, on the side
     of the corner; T and N follow from the acceleration of that and of the floor.
@@ -144,11 +158,11 @@ def friction_needed(held: RockingMotion, floor: FloorAcceleration) -> float | No
         None where the block leaves the floor.
     """
     times = np.linspace(0.0, held.end, max(2, math.ceil(SAMPLES_OF_FORCES * held.end)))
-    rotation, rate = held.at(times)
+    rotation, rate = held.at(times)[:2]
     known = np.isfinite(rotation)
     times, rotation, rate = times[known], rotation[known], rate[known]
     shake = np.array([(floor.function(time), floor.vertical(time)) for time in times.tolist()])
-    block, side = held.block, np.sign(rotation)
+    side = np.sign(rotation)
     lean, pull = block.slenderness_angle - np.abs(rotation), shake[:, 1] + block.gravity
     swing = -(block.frequency_parameter**2) / block.gravity
     swing = swing * (pull * np.sin(lean) + side * shake[:, 0] * np.cos(lean))  # of |rotation|

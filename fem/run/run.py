@@ -32,6 +32,7 @@ from fem.run.preview import required_disk, size_in_words
 from fem.run.solve import begun, in_words, resolve, stepped
 from fem.run.summary import plain_summary
 from fem.runtime.compilation import compilation_announced
+from fem.runtime.memory import CHECKS, FIGURES, RIGID, shortage
 from fem.runtime.progress import Reporter, SilentReporter
 from fem.runtime.signals import ending_at_once, interruptible
 from fem.runtime.threads import cores
@@ -216,6 +217,11 @@ def store(result: RunResult, case: Case, place: ResultFolder) -> RunResult:
 def draw(model: Model, folder: Path, reporter: Reporter) -> None:
     """Draw the figures of the run in a folder, where they are wanted; they are no part of the result."""
     if not model.case.output.figures:
+        return
+    if short := shortage(RIGID + CHECKS + FIGURES):
+        reporter.message(
+            f"figures were not drawn: {short}; the results are complete, and `report` draws them"
+        )
         return
     try:  # importing matplotlib takes as long as many a run
         importlib.import_module("fem.figures.cache").write_figures(open_run(folder), model.container)

@@ -1,17 +1,26 @@
 """The memory that the process may have, where a limit is set: by `ulimit -v`, or by a batch scheduler."""
 
+import ctypes
 import sys
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from contextlib import suppress
+from typing import Any
 
 from fem.runtime.threads import cores
 
 if sys.platform != "win32":
     import resource
 
+M_ARENA_MAX = -8  #: of `mallopt` of glibc
 #: address space of a command that computes, and of one that does not [MB]. Libraries take 550 and 130 of it before the
 #: first step; with less, a module fails to load, or OpenBLAS asks again and again for a buffer.
 COMPUTING, READING = 700, 250
 OF_A_CORE = 150  #: of each thread that computes: a report takes 946 on two cores, and asks for ever with 800
-RIGID, FIGURES = 500, 120  #: of one rigid run, and of its figures
+RIGID, CHECKS, FIGURES = (
+    500,
+    50,
+    100,
+)  #: of a rigid run in one thread, of its band and margin, and of its figures
 
 
 def limit() -> int | None:
@@ -27,9 +36,36 @@ def memory_of(computing: bool, jobs: int | None = None) -> int:
     return COMPUTING + OF_A_CORE * (jobs or cores()) if computing else READING
 
 
-def memory_of_run(*, rigid: bool, alone: bool, figures: bool) -> int:
-    """What a run needs [MB] that is rigid or not, alone or with the runs of its band and margin."""
-    return RIGID + FIGURES * figures if rigid and alone else memory_of(True, 1 if alone else None)
+def threads_of_rigid_runs(most: int) -> int:
+    """How many of so many threads have the memory to step rigid runs side by side; at least one."""
+    given = limit()
+    return (
+        most
+        if given is None
+        else max(1, min(most, 1 + ((given >> 20) - RIGID - CHECKS - FIGURES) // OF_A_CORE))
+    )
+
+
+def share_the_heap() -> None:
+    """Let threads take memory from one heap where a limit is set: glibc reserves 64 MB for one of their own each."""
+    if limit() is not None:
+        with suppress(OSError, AttributeError):  # another C library
+            ctypes.CDLL(None).mallopt(M_ARENA_MAX, 1)
+
+
+def worker_threads(count: int) -> Executor:
+    """So many threads; of one the thread that asks, whose stack is there already."""
+    return ThreadPoolExecutor(count) if count > 1 else _Asking()
+
+
+class _Asking(Executor):
+    def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
+        future: Future[Any] = Future()
+        try:
+            future.set_result(fn(*args, **kwargs))
+        except BaseException as error:  # raised where the result is asked for, as by a thread
+            future.set_exception(error)
+        return future
 
 
 def shortage(needed: int) -> str:
