@@ -55,6 +55,7 @@ GROUPS = {
             "Find the least width, tallest stack or strongest action that a site allows.",
             "site --over container.width_m",
         ),
+        "explore": ("Make a page with a slider for each axis of a sweep, and its motions.", "explorer"),
         "response": ("Compute the long-time motion over the frequency of the floor.", "--shell"),
         "picture": (
             "Draw one instant of a run, or a motion and its spectrum (PNG).",
@@ -78,7 +79,8 @@ COMPUTING = {*COMMANDS} - {"check", "init", "list", "completion", "schema", "doc
 PLACES = {"list": "fem.cli.list_cases:list_cases", "completion": "fem.__main__:completion"}
 PLACES |= {name: f"fem.cli.evidence:{name}" for name in ("verify", "validate", "study")}
 PLACES |= {
-    name: f"fem.cli.studies:{name}" for name in ("sweep", "batch", "assess", "ensemble", "size", "response")
+    name: f"fem.cli.studies:{name}"
+    for name in ("sweep", "batch", "assess", "ensemble", "size", "response", "explore")
 }
 
 

@@ -89,6 +89,25 @@ def sweep(sweep: str, /, *, flags: StudyFlags = STUDY) -> int:
     return _ended(SWEEP, plan.name, flags, "study.sweep:run_sweep", plan, lines=_of_sweep)
 
 
+def explore(sweep: str = "explorer", /, *, flags: StudyFlags = STUDY) -> int:
+    """Compute a sweep, or take it as it is computed, and make one HTML file with a slider for each axis of it.
+
+    Parameters
+    ----------
+    sweep:
+        A sweep file or the name of a shipped sweep.
+    """
+    plan = _of("study.file:load_sweep")(sweep)
+
+    def page(info: "SweepResult", folder: Path) -> None:
+        if info.state == "finished":
+            target = folder / "explorer.html"
+            write_atomically(target, _of("report.explorer:explorer")(plan, folder, flags.jobs))
+            say(target)
+
+    return _ended(SWEEP, plan.name, flags, "study.sweep:run_sweep", plan, lines=_of_sweep, then=page)
+
+
 def _of_sweep(info: "SweepResult", folder: Path) -> Iterator[str]:
     yield f"{info.sweep}{f': {info.title}' if info.title else ''}"
     yield f"  {info.rows} of {info.cells} cells, {info.status}"

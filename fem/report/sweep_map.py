@@ -55,10 +55,7 @@ def map_data(table: SweepTable, folder: Path) -> dict[str, Any]:
     Raises:
         FolderError: more cells than one page can carry.
     """
-    names = [name for name, *_ in OUTCOMES]
-    outcomes = np.array(
-        [names.index(str(word)) if str(word) in names else len(names) - 1 for word in table.outcome]
-    )
+    outcomes = outcome_numbers(table)
     outcome: dict[str, Any] = {
         "name": "outcome",
         "label": "outcome",
@@ -107,6 +104,14 @@ def map_data(table: SweepTable, folder: Path) -> dict[str, Any]:
         "marked": LABEL,
         "command": command_line("run", str(folder / "base.toml")),
     }
+
+
+def outcome_numbers(table: SweepTable) -> NDArray[Any]:
+    """The place in `OUTCOMES` of each cell's, (n_cells,)."""
+    names = [name for name, *_ in OUTCOMES]
+    return np.array(
+        [names.index(word) if word in names else len(names) - 1 for word in map(str, table.outcome)]
+    )
 
 
 def _sureness(table: SweepTable) -> list[dict[str, Any]]:
