@@ -1,6 +1,6 @@
 """`init`: a commented case, sweep, ensemble or site file to start from."""
 
-import re
+import tomllib
 from pathlib import Path
 from typing import Annotated
 
@@ -31,7 +31,9 @@ def init(
         text = case_template(load_case())
     else:
         kind = next((each.kind for each in COLLECTIONS if name in each.names), "case")
-        text = _for_another_box(next(each for each in COLLECTIONS if each.kind == kind).text(name))
+        text = next(each for each in COLLECTIONS if each.kind == kind).text(name)
+        if kind == "case":
+            text = _for_another_box(text)
     path = to if to is not None else Path(f"{name or 'case'}.toml")
     try:
         with created(path) as stream:
@@ -49,5 +51,14 @@ def init(
 
 
 def _for_another_box(text: str) -> str:
-    """Without what holds for the first box and its site: [static], its patch, posts and plates that were assumed."""
-    return re.sub(r"\[static\][^\[]*|corner_patch_m = .*\n|(post_m|casting_m) = .*assumed.*\n", "", text)
+    """Without [static] and what the box of the file alone has below it: a freight container keeps its corners."""
+    left = {"static", "floor.corner_patch_m"}
+    if "corner_post_N" not in tomllib.loads(text)["container"]:  # posts and castings by ISO 1496-1
+        left |= {"support", "container.post_m"}
+    table, kept = "", []
+    for line in text.splitlines(keepends=True):
+        if line.startswith("["):
+            table = line[1:].partition("]")[0]
+        if left.isdisjoint((table, f"{table}.{line.partition('=')[0].strip()}")):
+            kept.append(line)
+    return "".join(kept)

@@ -297,9 +297,10 @@ class TestInit:
         assert [line for line in shipped if line in kept] == kept  # all else as it is
         mine, first = load_case(path), load_case(name)
         assert mine.floor.corner_patch_m is None and mine.static is None
-        # a recipe leaves the castings of the paper out
-        if first.floor.is_slab and mine.support.casting_m is not None:
-            assert corner_patch(mine) == corner_patch(first)
+        if first.container.corner_post_N is None:  # posts and castings of one box alone
+            assert mine.container.post_m is mine.support.casting_m is None
+        else:
+            assert mine.support == first.support and corner_patch(mine) == corner_patch(first)
 
     def test_without_a_name_writes_a_file_with_every_key_that_can_be_run(self, tmp_path):
         path = tmp_path / "mine.toml"
