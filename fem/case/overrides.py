@@ -6,7 +6,8 @@ of a case given by amplitude and frequency. Of a record it is the peak to which 
 
 import re
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
+from contextlib import suppress
 from copy import deepcopy
 from typing import Any
 
@@ -57,36 +58,36 @@ def with_overrides(data: Mapping[str, Any], overrides: Mapping[str, Any]) -> dic
     overrides = keys_in_effect(tables | dict(overrides), kinds_of(data))
     for dotted, value in overrides.items():
         table, dot, key = dotted.rpartition(".")
+        if not dot and key in TABLES:
+            raise CaseError(f"--set {dotted}: [{key}] is a table; set one of its keys, --set {key}.KEY=VALUE")
         if not dot:
-            if key in TABLES:
-                raise CaseError(
-                    f"--set {dotted}: [{key}] is a table; set one of its keys, --set {key}.KEY=VALUE"
-                )
             changed[key] = deepcopy(value)  # its rows may be changed below
-            continue
-        if table in ROWS:
-            rows = changed.get(table)
-            if not rows:
+        elif table in ROWS:
+            if not (rows := changed.get(table)):
                 raise CaseError(f"--set {dotted}: the case has no [[{table}]] to change; give it one")
             for row in rows if isinstance(rows, list | tuple) else ():
                 if isinstance(row, dict):  # else refused when the case is read
                     row[key] = value
-            continue
-        if table not in TABLES:
-            near = did_you_mean(table, TABLES)
-            known = ", ".join(TABLES)
+        elif table in TABLES:
+            changed.setdefault(table, {})
+            _table(changed, table)[key] = value
+        else:
+            near, known = did_you_mean(table, TABLES), ", ".join(TABLES)
             raise CaseError(
                 f"--set {dotted}: unknown table [{table}]{'; ' + near if near else ''} (known: {known})"
             )
-        content = changed.setdefault(table, {})
-        if isinstance(content, dict):  # else refused when the case is read
-            content[key] = value
     _replace_alternatives(changed, overrides.keys())
     if "floor.corner_patch_m" not in overrides:
         _keep_patch_under_wall(changed, data)
     if "support.casting_m" not in overrides and not overrides.keys().isdisjoint(SIDES):
         _keep_castings_under_base(changed)
     return changed
+
+
+def _table(data: Mapping[str, Any], name: str) -> dict[str, Any]:
+    """A table of a case's data; an empty one that belongs to nothing where it is none, which is refused later."""
+    content = data.get(name)
+    return content if isinstance(content, dict) else {}
 
 
 def keys_in_effect(values: Mapping[str, Any], kinds: Mapping[str, object]) -> Mapping[str, Any]:
@@ -111,112 +112,71 @@ def kinds_of(data: Mapping[str, Any]) -> dict[str, object]:
     return {name: table.get("kind") for name, table in tables.items() if isinstance(table, Mapping)}
 
 
-def _replace_alternatives(data: dict[str, Any], dotted: Any) -> None:
-    """Remove the alternatives of the keys just set; keys that were set together stay."""
-    container = data.get("container")
-    if isinstance(container, dict):
-        for group in (("weight_N", "mass_kg", "density_kg_m3"), ("boxes", "box")):
-            _drop_others(container, group, _keys_set("container", dotted))
-    _replace_support(data, dotted)
-    _replace_floor(data, dotted)
+def _replace_alternatives(data: dict[str, Any], explicit: Collection[str]) -> None:
+    """Remove what the keys just set replace; keys that were set together stay."""
+
+    def drop(table: str, *keys: str) -> None:
+        for key in keys:
+            if f"{table}.{key}" not in explicit:
+                _table(data, table).pop(key, None)
+
+    def drop_others(table: str, *keys: str) -> None:
+        if any(f"{table}.{key}" in explicit for key in keys):
+            drop(table, *keys)
+
+    drop_others("container", "weight_N", "mass_kg", "density_kg_m3")
+    drop_others("container", "boxes", "box")
+    support, floor = _table(data, "support"), _table(data, "floor")
+    if "container.shape" in explicit and _table(data, "container").get("shape") == "cylinder":
+        drop("container", "post_m", "corner_post_N", "depth_m")  # it has neither edges nor another depth
+        drop("support", "casting_m")
+    # feet and a flat base have no castings with their posts and no patch of a corner; nor has a patch castings
+    no_corners = "support.kind" in explicit and support.get("kind") != "corners"
+    if no_corners or "support.casting_m" in explicit:
+        drop("floor", "corner_patch_m")
+    if no_corners or ("floor.corner_patch_m" in explicit and "casting_m" in support):
+        drop("support", "casting_m")
+        drop("container", "corner_post_N")
+    # another floor takes nothing of the former one; a numerical penalty replaces a slab
+    another = "floor.kind" in explicit
+    if not any(key.startswith("floor.") for key in explicit) and any(
+        f"contact.{key}" in explicit for key in PENALTY_KEYS
+    ):
+        floor["kind"], another = "rigid", True
+    if another and floor.get("kind") == "rigid":
+        drop("floor", *SLAB_KEYS)
+    if another and floor.get("kind") == "slab":
+        drop("contact", *PENALTY_KEYS)
+    if "floor.preset" in explicit:
+        drop("floor", *PRESET_KEYS)
+    strengths = ("amplitude_m", "peak_acceleration_m_s2")
     for table in ("motion", "vertical"):
-        motion, explicit = data.get(table), _keys_set(table, dotted)
-        if not isinstance(motion, dict):
-            continue
-        _drop_others(motion, FREQUENCIES, explicit)
-        _drop_others(motion, ("scale", "scale_to_m_s2"), explicit)
-        strengths = {"amplitude_m", "peak_acceleration_m_s2"}
-        if strengths <= explicit:
-            for key in FREQUENCIES:
-                if key not in explicit:
-                    motion.pop(key, None)
-        elif any(key in motion for key in FREQUENCIES):
-            _drop_others(motion, ("amplitude_m", "peak_acceleration_m_s2"), explicit)
+        drop_others(table, *FREQUENCIES)
+        drop_others(table, "scale", "scale_to_m_s2")
+        if all(f"{table}.{key}" in explicit for key in strengths):
+            drop(table, *FREQUENCIES)
+        elif any(key in _table(data, table) for key in FREQUENCIES):
+            drop_others(table, *strengths)
 
 
-def _replace_support(data: dict[str, Any], dotted: Any) -> None:
-    """Feet and a flat base have no castings with their posts and no patch of a corner; nor has a patch castings."""
-    for key in ("floor", "support", "container"):
-        if not isinstance(data.get(key), dict | None):
-            return
-    floor, support, container = (data.get(key) or {} for key in ("floor", "support", "container"))
-    of_floor, of_support = _keys_set("floor", dotted), _keys_set("support", dotted)
-    of_container = _keys_set("container", dotted)
-    if "shape" in of_container and container["shape"] == "cylinder":  # it has neither edges nor another depth
-        _drop(container, ("post_m", "corner_post_N", "depth_m"), of_container)
-        _drop(support, ("casting_m",), of_support)
-    no_corners = "kind" in of_support and support["kind"] != "corners"
-    if no_corners or "casting_m" in of_support:
-        _drop(floor, ("corner_patch_m",), of_floor)
-    if no_corners or ("corner_patch_m" in of_floor and "casting_m" in support):
-        _drop(support, ("casting_m",), of_support)
-        _drop(container, ("corner_post_N",), of_container)
-
-
-def _replace_floor(data: dict[str, Any], dotted: Any) -> None:
-    """Another floor takes nothing of the former one: kind, preset; a numerical penalty replaces a slab."""
-    floor, contact, explicit = data.get("floor"), data.get("contact"), _keys_set("floor", dotted)
-    if not isinstance(floor, dict):
-        return
-    if not explicit and not _keys_set("contact", dotted).isdisjoint(PENALTY_KEYS):
-        floor["kind"], explicit = "rigid", {"kind"}
-    if "kind" in explicit and floor.get("kind") == "rigid":
-        _drop(floor, SLAB_KEYS, explicit)
-    if "kind" in explicit and floor.get("kind") == "slab" and isinstance(contact, dict):
-        _drop(contact, PENALTY_KEYS, _keys_set("contact", dotted))
-    if "preset" in explicit:
-        _drop(floor, PRESET_KEYS, explicit)
-
-
-def _keep_patch_under_wall(data: dict[str, Any], former: Mapping[str, Any]) -> None:
+def _keep_patch_under_wall(data: Mapping[str, Any], former: Mapping[str, Any]) -> None:
     """A patch that was as long as the wall is thick, or as wide as the container deep, stays so."""
-    floor, box, old = data.get("floor"), data.get("container"), former.get("container")
-    patch = floor.get("corner_patch_m") if isinstance(floor, dict) else None
-    if not (
-        isinstance(floor, dict)
-        and isinstance(box, dict)
-        and isinstance(old, Mapping)
-        and isinstance(patch, list)
-    ):
-        return
-    sides = [(sizes.get("wall_m"), sizes.get("depth_m", sizes.get("width_m"))) for sizes in (old, box)]
-    floor["corner_patch_m"] = [
-        new if side is not None and side == was else side
-        for side, was, new in zip(patch, *sides, strict=False)
-    ]
+    floor, boxes = _table(data, "floor"), [_table(each, "container") for each in (former, data)]
+    if isinstance(patch := floor.get("corner_patch_m"), list):
+        sides = [(box.get("wall_m"), box.get("depth_m", box.get("width_m"))) for box in boxes]
+        floor["corner_patch_m"] = [
+            new if side is not None and side == was else side
+            for side, was, new in zip(patch, *sides, strict=False)
+        ]
 
 
-def _keep_castings_under_base(data: dict[str, Any]) -> None:
+def _keep_castings_under_base(data: Mapping[str, Any]) -> None:
     """Castings that a narrower or less deep base has no room for become as large as half of it."""
-    box, support = data.get("container"), data.get("support")
-    casting = support.get("casting_m") if isinstance(support, dict) else None
-    if not (
-        isinstance(box, dict)
-        and isinstance(support, dict)
-        and isinstance(casting, list)
-        and len(casting) == 3
-    ):
-        return
-    try:
-        width, half = 0.5 * box["width_m"] - casting[2], 0.5 * (box.get("depth_m") or box["width_m"])
-        support["casting_m"] = [min(casting[0], width), min(casting[1], half), casting[2]]
-    except (KeyError, TypeError):
-        return  # refused when the case is read
-
-
-def _keys_set(table: str, dotted: Any) -> set[str]:
-    return {key.partition(".")[2] for key in dotted if key.startswith(f"{table}.")}
-
-
-def _drop_others(table: dict[str, Any], group: tuple[str, ...], explicit: set[str]) -> None:
-    if not explicit.isdisjoint(group):
-        _drop(table, group, explicit)
-
-
-def _drop(table: dict[str, Any], group: tuple[str, ...], kept: set[str]) -> None:
-    for key in group:
-        if key not in kept:
-            table.pop(key, None)
+    box, support = _table(data, "container"), _table(data, "support")
+    with suppress(KeyError, TypeError, ValueError):  # refused when the case is read
+        width, depth, inset = support["casting_m"]
+        half = 0.5 * (box.get("depth_m") or box["width_m"])
+        support["casting_m"] = [min(width, 0.5 * box["width_m"] - inset), min(depth, half), inset]
 
 
 def naming_overrides(lines: list[str], overrides: Mapping[str, Any]) -> list[str]:
