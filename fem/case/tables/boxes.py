@@ -10,7 +10,7 @@ from typing import Any
 
 from contact.stepping.modes import SLIDING
 from fem.case.tables import quantities as q
-from fem.case.tables.problem import Rule, refused
+from fem.case.tables.problem import Rule, left_out, refused
 
 MICROSLIP = SLIDING  #: over the width, up to which a base still sticks
 
@@ -43,15 +43,6 @@ def plan_share(container: Any) -> float:
     return 0.25 * math.pi if container.is_round else 1.0
 
 
-def mass_of_box(container: Any, gravity: float, volume: float) -> float | None:
-    """Mass that [container] gives a box of this outer volume [kg]; None where it gives none."""
-    if container.weight_N is not None:
-        return float(container.weight_N / gravity)
-    if container.mass_kg is not None:
-        return float(container.mass_kg)
-    return None if container.density_kg_m3 is None else float(container.density_kg_m3 * volume)
-
-
 def centroid_at(container: Any, height: float) -> float:
     """Height of the mass centre in a box of another height for which none is given [m].
 
@@ -62,32 +53,30 @@ def centroid_at(container: Any, height: float) -> float:
 
 
 def boxes_of(container: Any, gravity: float) -> tuple[Box, ...]:
-    """All boxes of a table [container], from the floor up; raises AttributeError where a box has no mass."""
-    tables = container.box or (None,) * container.boxes
+    """All boxes of a table [container], from the floor up; raises KeyError where a box has no mass."""
     boxes: list[Box] = []
     axis = bottom = 0.0
-    equal = container.box is None
-    for number, table in enumerate(tables):
-        given = (
-            {} if table is None else {key: value for key, value in vars(table).items() if value is not None}
-        )
-        width = given.get("width_m", container.width_m)
-        height = given.get("height_m", container.height_m)
-        mass = given.get("mass_kg") or mass_of_box(
-            container, gravity, width * height * container.depth_m * plan_share(container)
-        )
+    for number, table in enumerate(container.box or (None,) * container.boxes):
+        own = vars(table) if table is not None else {}
+        given = vars(container) | {key: value for key, value in own.items() if value is not None}
+        width, height, mass = given["width_m"], given["height_m"], given["mass_kg"]
+        if own.get("mass_kg") is None and container.weight_N is not None:
+            mass = container.weight_N / gravity
+        elif mass is None and container.density_kg_m3 is not None:
+            mass = container.density_kg_m3 * (width * height * container.depth_m * plan_share(container))
         if mass is None:
-            raise AttributeError("mass_kg")
-        axis += given.get("offset_m", 0.0)
+            raise KeyError("mass_kg")
+        axis += own.get("offset_m", 0.0)
+        centroid = own.get("centroid_m")
         boxes.append(
             Box(
                 width=width,
                 height=height,
                 mass=mass,
-                centroid=given.get("centroid_m", centroid_at(container, height)),
-                wall=given.get("wall_m", container.wall_m) if container.section == "shell" else None,
+                centroid=centroid_at(container, height) if centroid is None else centroid,
+                wall=given["wall_m"] if container.section == "shell" else None,
                 axis=axis,
-                bottom=number * height if equal else bottom,
+                bottom=number * height if table is None else bottom,
             )
         )
         bottom += height
@@ -146,51 +135,55 @@ def joint_friction(joints: Any, floor: Any) -> dict[str, float]:
     return {"mu_static": static, "mu_kinetic": kinetic, "weakening_m": weakening}
 
 
-def _each(says: Callable[[Any, Box], str]) -> Rule:
-    """A rule for every box of [[container.box]]; `says` gives what is wrong with one, or an empty string."""
+#: of each box of [[container.box]]: what must hold of it, and the reason where it does not; see `_each`
+BOX_FAULTS: tuple[tuple[Callable[[dict[str, Any]], bool], str], ...] = (
+    (
+        lambda box: 0.02 * (1.0 - 1e-9) <= box["ratio"] <= 20.0 * (1.0 + 1e-9),
+        "width_m over height_m must lie between 0.02 and 20, got {width:g} m / {height:g} m = {ratio:g}",
+    ),
+    (
+        lambda box: box["centroid"] < box["height"],
+        "centroid_m must be less than its height_m = {height:g} m, got {centroid:g} m; it is measured from the bottom "
+        "of the box",
+    ),
+    (
+        lambda box: box["section"] != "shell" or box["wall"] is not None,
+        'wall_m is missing: section = "shell" needs the wall thickness, here or in [container], in m',
+    ),
+    (
+        lambda box: box["wall"] is None or 2.0 * box["wall"] < box["smallest"],
+        "wall_m must be less than half its smallest outer dimension, {smallest:g} m, got {wall:g} m",
+    ),
+    (
+        lambda box: q.DENSITY.allows(box["density"]),
+        "{mass:g} kg on {width:g} x {depth_m:g} x {height:g} m is a mean density of {density:.3g} kg/m3, it must be "
+        f"{q.DENSITY.range_in_words} kg/m3; are mass_kg in kg and all dimensions in m?",
+    ),
+    (
+        lambda box: box["bottom"] > 0.0 or box["axis"] == 0.0,
+        "offset_m is measured from the axis of the box below, and the lowest box has none; got {axis:g} m",
+    ),
+)
+
+
+def _each(holds: Callable[[dict[str, Any]], bool], words: str) -> Rule:
+    """A rule for every box of [[container.box]]."""
 
     def reason(case: Any) -> str:
-        if case.container.box is None:
-            return ""
-        boxes = enumerate(case.stack, 1)
-        return "; box ".join(f"{number}: {reason}" for number, box in boxes if (reason := says(case, box)))
+        faults, container = [], case.container
+        for number, box in enumerate(case.stack if container.box is not None else (), 1):
+            about = {
+                **vars(container),
+                **vars(box),
+                "ratio": box.width / box.height,
+                "smallest": min(box.width, box.height, container.depth_m),
+                "density": box.mass / (box.width * box.height * container.depth_m * plan_share(container)),
+            }
+            if not holds(about):
+                faults.append(f"{number}: {words.format_map(about)}")
+        return "; box ".join(faults)
 
     return refused("container.box", reason)
-
-
-def _proportions(case: Any, box: Box) -> str:
-    ratio = box.width / box.height
-    if 0.02 * (1.0 - 1e-9) <= ratio <= 20.0 * (1.0 + 1e-9):
-        return ""
-    return f"width_m over height_m must lie between 0.02 and 20, got {box.width:g} m / {box.height:g} m = {ratio:g}"
-
-
-def _centroid(case: Any, box: Box) -> str:
-    if box.centroid < box.height:
-        return ""
-    return (
-        f"centroid_m must be less than its height_m = {box.height:g} m, got {box.centroid:g} m; "
-        "it is measured from the bottom of the box"
-    )
-
-
-def _wall(case: Any, box: Box) -> str:
-    smallest = min(box.width, box.height, case.container.depth_m)
-    if case.container.section == "shell" and box.wall is None:
-        return 'wall_m is missing: section = "shell" needs the wall thickness, here or in [container], in m'
-    if box.wall is None or 2.0 * box.wall < smallest:
-        return ""
-    return f"wall_m must be less than half its smallest outer dimension, {smallest:g} m, got {box.wall:g} m"
-
-
-def _density(case: Any, box: Box) -> str:
-    density = box.mass / (box.width * box.height * case.container.depth_m * plan_share(case.container))
-    if q.DENSITY.allows(density):
-        return ""
-    return (
-        f"{box.mass:g} kg on {box.width:g} x {case.container.depth_m:g} x {box.height:g} m is a mean density of "
-        f"{density:.3g} kg/m3, it must be {q.DENSITY.range_in_words} kg/m3; are mass_kg in kg and all dimensions in m?"
-    )
 
 
 def _unsupported(case: Any) -> str:
@@ -213,12 +206,6 @@ def _unsupported(case: Any) -> str:
             "the box below wider"
         )
     return ""
-
-
-def _offset(case: Any, box: Box) -> str:
-    if box.bottom > 0.0 or box.axis == 0.0:
-        return ""
-    return f"offset_m is measured from the axis of the box below, and the lowest box has none; got {box.axis:g} m"
 
 
 def _not_a_cylinder(case: Any) -> str:
@@ -258,42 +245,36 @@ def _not_a_cylinder(case: Any) -> str:
 
 BOX_RULES = (
     refused("container.shape", _not_a_cylinder),
-    *map(_each, (_proportions, _centroid, _wall, _density, _offset)),
+    *(_each(*fault) for fault in BOX_FAULTS),
     refused("container.box", _unsupported),
 )
 
 
-def _of_one_body(place: str, applies: Callable[[Any], bool], reason: str) -> Rule:
-    """A key that has no meaning for loose boxes."""
-    return Rule(place, lambda case: not case.container.is_loose or not applies(case), reason)
+def _is_loose(case: Any) -> bool:
+    return bool(case.container.is_loose)
 
 
 JOINT_RULES = (
-    _of_one_body(
+    *left_out(
         "support.kind",
-        lambda case: case.support.kind != "corners",
+        _is_loose,
         'must be "corners" with container.joints = "loose": every box touches with its corners, on faces and on the '
         "floor; leave it out",
     ),
-    _of_one_body(
+    *left_out(
         "support.camber_m",
-        lambda case: case.support.camber_m > 0.0,
+        _is_loose,
         'does not apply to container.joints = "loose": every box touches with its corners; leave it out, or take '
         '"bolted"',
     ),
-    _of_one_body(
-        "initial.rotation_rad",
-        lambda case: case.initial.rotation_rad != 0.0,
+    *left_out(
+        "initial.rotation_rad initial.angular_velocity_rad_s",
+        _is_loose,
         'does not apply to container.joints = "loose": a loose stack starts settled; leave it out, or take "bolted"',
     ),
-    _of_one_body(
-        "initial.angular_velocity_rad_s",
-        lambda case: case.initial.angular_velocity_rad_s != 0.0,
-        'does not apply to container.joints = "loose": a loose stack starts settled; leave it out, or take "bolted"',
-    ),
-    _of_one_body(
+    *left_out(
         "output.stop_when_overturned",
-        lambda case: not case.output.stop_when_overturned,
+        _is_loose,
         'must be true with container.joints = "loose": what a fallen box strikes is not modelled; leave it out',
     ),
     Rule(
@@ -307,17 +288,17 @@ JOINT_RULES = (
         "is friction between boxes, but a stack of one has no joints; remove the table, or give boxes or "
         "[[container.box]]",
     ),
-    _of_one_body(
+    *left_out(
         "joints.bolt_capacity_N",
-        lambda case: case.joints.bolt_capacity_N is not None,
+        _is_loose,
         'does not apply to container.joints = "loose", which have no bolts; leave it out, or take "bolted"',
     ),
     Rule(
         "joints.mu_kinetic",
         lambda case: case.joint_friction["mu_kinetic"] <= case.joint_friction["mu_static"],
         lambda case: (
-            f"must be at most mu_static = {case.joint_friction['mu_static']:g} of the joints, got "
-            f"{case.joint_friction['mu_kinetic']:g}; leave it out where the two are equal"
-        ),
+            "must be at most mu_static = {mu_static:g} of the joints, got {mu_kinetic:g}; leave it out where the two "
+            "are equal"
+        ).format_map(case.joint_friction),
     ),
 )

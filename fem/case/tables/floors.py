@@ -12,7 +12,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field
 
 from fem.case.tables import quantities as q
-from fem.case.tables.problem import Rule, refused
+from fem.case.tables.problem import Rule, left_out, refused
 from fem.case.tables.table import CaseTable, case_key, optional_key
 
 Reach = tuple[float, float]
@@ -228,10 +228,10 @@ def _patch_does_not_fit(case: Any) -> str:
     for value, (name, of, most) in zip(patch, limits, strict=True):
         if value > most * (1.0 + 1e-9):
             guess = q.PATCH.guess(value) if value > 10.0 * most else ""
-            fault = (
+            return (
                 f"= {patch} does not fit under the base: {name} at most {of} = {most:g} m, got {value:g} m"
+                + f"; {guess}" * bool(guess)
             )
-            return f"{fault}; {guess}" if guess else fault
     return ""
 
 
@@ -248,14 +248,14 @@ FLOOR_CASE_RULES = (
         "is missing: a solid block has no wall that would say how much of a corner bears; give [along x, out of plane]",
     ),
     refused("floor.corner_patch_m", _patch_does_not_fit),
-    Rule(
+    *left_out(
         "contact.normal_penalty_Pa_m",
-        lambda case: not case.floor.is_slab or case.contact.normal_penalty_Pa_m == "auto",
+        lambda case: case.floor.is_slab,
         'belongs to floor.kind = "rigid": the stiffness of a slab follows its youngs_modulus_Pa; leave it out',
     ),
-    Rule(
+    *left_out(
         "contact.tangential_ratio",
-        lambda case: not case.floor.is_slab or case.contact.tangential_ratio == 1.0,
+        lambda case: case.floor.is_slab,
         'belongs to floor.kind = "rigid": a slab has its own tangential stiffness; leave it out',
     ),
 )

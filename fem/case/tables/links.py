@@ -5,13 +5,14 @@ down to the floor below it, or level to a wall of that side. Both hold nothing u
 row a stop stands at its end, and a tie holds the container of the case or a neighbour.
 """
 
+from functools import partial
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, Strict
 
 from fem.case.tables import quantities as q
 from fem.case.tables.neighbours import NeighbourTable, StruckTable, beside_of, outermost, top_of
-from fem.case.tables.problem import Rule, either, refused
+from fem.case.tables.problem import Rule, either, left_out, refused
 from fem.case.tables.table import CaseTable, case_key, optional_key
 
 
@@ -102,31 +103,29 @@ def _held(case: Any, name: str) -> list[Any]:
     return [link for link in getattr(case, name) if holder_of(case, link) <= len(case.neighbour)]
 
 
-def _above(name: str) -> Rule:
-    """No link is above the container that it holds."""
-
-    def too_high(case: Any) -> str:
-        for link in _held(case, name):
-            number = holder_of(case, link)
-            top = top_of(case, number)
-            if link.height_m > top * (1.0 + 1e-9):
-                return (
-                    f"must be at most the height of {name_of(number)}, {top:g} m, got {link.height_m:g} m; "
-                    "above it there is nothing to hold"
-                )
-        return ""
-
-    return refused(f"{name}.height_m", too_high)
+def _too_high(case: Any, name: str) -> str:
+    """Why a stop or a tie is above the container that it holds; empty where none is."""
+    for link in _held(case, name):
+        number = holder_of(case, link)
+        top = top_of(case, number)
+        if link.height_m > top * (1.0 + 1e-9):
+            return (
+                f"must be at most the height of {name_of(number)}, {top:g} m, got {link.height_m:g} m; "
+                "above it there is nothing to hold"
+            )
+    return ""
 
 
 def _before_the_wall(case: Any) -> str:
     """Why there is no wall to which a tie could run."""
     for tie in _held(case, "tie"):
         number = holder_of(case, tie)
-        beside = beside_of(case, number, tie.side)
-        if tie.to == "wall" and beside is not None:
-            before = name_of(beside)
-            return f'must be "floor" on the {tie.side} of {name_of(number)}: {before} stands before the wall there'
+        before = beside_of(case, number, tie.side)
+        if tie.to == "wall" and before is not None:
+            return (
+                f'must be "floor" on the {tie.side} of {name_of(number)}: {name_of(before)} stands before the wall '
+                "there"
+            )
     return ""
 
 
@@ -136,12 +135,12 @@ LINK_RULES = (
         lambda case: len(_held(case, "tie")) == len(case.tie),
         lambda case: f"must be the number of a [[neighbour]]; the case has {len(case.neighbour)}",
     ),
-    _above("stop"),
-    _above("tie"),
+    refused("stop.height_m", partial(_too_high, name="stop")),
+    refused("tie.height_m", partial(_too_high, name="tie")),
     refused("tie.to", _before_the_wall),
-    Rule(
+    *left_out(
         "container.mesh_file",
-        lambda case: case.container.mesh_file is None or not case.links,
+        lambda case: bool(case.links),
         "cannot stand beside [[stop]] or [[tie]]: the sides of a mesh are not known",
     ),
 )

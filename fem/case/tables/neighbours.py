@@ -12,7 +12,7 @@ from pydantic import Strict
 
 from fem.case.tables import quantities as q
 from fem.case.tables.boxes import centroid_at
-from fem.case.tables.problem import Rule, either
+from fem.case.tables.problem import Rule, either, left_out
 from fem.case.tables.table import CaseTable, case_key, optional_key
 
 MOST_NEIGHBOURS = 5
@@ -161,9 +161,8 @@ def top_of(case: Any, number: int) -> float:
     return float((neighbour.boxes or own.boxes) * (neighbour.height_m or own.height_m))
 
 
-def _alone(place: str, applies: Any, reason: str) -> Rule:
-    """What cannot stand beside neighbours."""
-    return Rule(place, lambda case: not case.neighbour or not applies(case), reason)
+def _has_neighbours(case: Any) -> bool:
+    return bool(case.neighbour)
 
 
 NEIGHBOUR_RULES = (
@@ -174,35 +173,35 @@ NEIGHBOUR_RULES = (
             f"stands {len(case.neighbour)} times; a row has six containers at most, so five neighbours"
         ),
     ),
-    _alone(
+    Rule(
         "solver.model",
-        lambda case: case.solver.model != "rigid",
+        lambda case: not case.neighbour or case.solver.model == "rigid",
         'must be "rigid" with [[neighbour]]: containers in a row are rigid; an elastic one is computed alone',
     ),
-    _alone(
+    *left_out(
         "container.joints",
-        lambda case: case.container.joints != "bolted",
+        _has_neighbours,
         'must be "bolted" with [[neighbour]]: a side of loose boxes is no straight face',
     ),
-    _alone(
+    *left_out(
         "container.mesh_file",
-        lambda case: case.container.mesh_file is not None,
+        _has_neighbours,
         "cannot stand beside [[neighbour]]: the sides of a mesh are not known",
     ),
-    _alone(
+    Rule(
         "container.box",
-        lambda case: len({(box.width, box.axis) for box in case.stack}) > 1,
+        lambda case: not case.neighbour or len({(box.width, box.axis) for box in case.stack}) == 1,
         "cannot stand beside [[neighbour]] unless all boxes have one width and no offset_m: a side must be straight",
     ),
-    _alone(
+    Rule(
         "support.kind",
-        lambda case: case.support.kind != "corners" or case.support.camber_m > 0.0,
+        lambda case: not case.neighbour or (case.support.kind == "corners" and case.support.camber_m == 0.0),
         'must be "corners" without camber_m with [[neighbour]]: each container of a row touches the floor with its '
         "corners",
     ),
-    _alone(
+    *left_out(
         "output.stop_when_overturned",
-        lambda case: not case.output.stop_when_overturned,
+        _has_neighbours,
         "must be true with [[neighbour]]: what a fallen container strikes is not modelled; leave it out",
     ),
 )

@@ -43,18 +43,34 @@ def refused(place: str, reason: Callable[[Any], str]) -> Rule:
     return Rule(place, lambda subject: not reason(subject), reason)
 
 
+def left_out(places: str, where: Callable[[Any], bool], words: str) -> tuple[Rule, ...]:
+    """Keys of a case, by dotted names, that must have their defaults `where` something holds of the case."""
+
+    def rule(place: str) -> Rule:
+        table, _, key = place.partition(".")
+
+        def holds(case: Any) -> bool:
+            content = getattr(case, table)
+            return getattr(content, key) == type(content).model_fields[key].default or not where(case)
+
+        return Rule(place, holds, words)
+
+    return tuple(map(rule, places.split()))
+
+
 def file_beside(place: str, *, below: bool = True) -> Rule:
     """The file that a key of a table names, if it names one, is in the folder of the case file, or `below` it.
 
     Where it need not be below, whoever reads it says what else is wrong.
     """
     _, _, key = place.rpartition(".")
-    allowed = stays_in_the_folder if below else is_a_file_name
-    return Rule(
-        place,
-        lambda table: allowed(getattr(table, key)),
-        lambda table: outside_the_folder(getattr(table, key)),
-    )
+
+    def reason(table: Any) -> str:
+        path = getattr(table, key)
+        allowed = stays_in_the_folder(path) if below else path is None or is_a_file_name(path)
+        return "" if allowed else outside_the_folder(path)
+
+    return refused(place, reason)
 
 
 def either(place: str, other: str) -> Rule:
@@ -90,16 +106,16 @@ def broken(rules: Iterable[Rule], subject: Any) -> list[Problem]:
                 if isinstance(rule.reason, str)
                 else rule.reason(subject)
             )
-        except AttributeError:  # it reads a key that is refused already
+        except (AttributeError, KeyError):  # it reads a key that is refused already
             continue
         table, _, key = rule.place.partition(".")
         problems.append(Problem(table=table, key=key, reason=reason))
     return problems
 
 
-def is_a_file_name(path: str | None) -> bool:
-    """Whether a name, if there is one, can be that of a file."""
-    return path is None or bool(path.strip() and path.isprintable())
+def is_a_file_name(path: str) -> bool:
+    """Whether a name can be that of a file."""
+    return bool(path.strip() and path.isprintable())
 
 
 def stays_in_the_folder(path: str | None) -> bool:
@@ -108,7 +124,7 @@ def stays_in_the_folder(path: str | None) -> bool:
         return True
     name = PurePosixPath(path)
     leaves = name.is_absolute() or ".." in name.parts or PureWindowsPath(path).drive or "\\" in path
-    return bool(path.strip() and path.isprintable() and not leaves)
+    return is_a_file_name(path) and not leaves
 
 
 def outside_the_folder(path: str) -> str:
