@@ -7,6 +7,7 @@ keys that could be read. Each reason is one line: table, key, what is required, 
 import datetime
 import difflib
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from typing import Any, TypeVar, get_args
 
 from pydantic import BaseModel, ValidationError
@@ -39,16 +40,24 @@ def known_keys(table: type[CaseTable]) -> dict[str, FieldInfo]:
 
 TOP = known_keys(CaseHeading)
 MOST_BOXES = range(1, 51)
-#: what values of the wrong type should have been, by pydantic's name of the fault
-KINDS = {
-    "float_type": "a number",
-    "finite_number": "a finite number",
-    "int_type": "a whole number",
-    "int_from_float": "a whole number",
-    "bool_type": "true or false",
-    "string_type": "text in quotes",
-    "list_type": "a list in brackets",
-    "tuple_type": "a list in brackets",
+#: what pydantic requires of a value, by its name of the fault
+REQUIRED = {
+    "float_type": "must be a number",
+    "finite_number": "must be a finite number",
+    "int_type": "must be a whole number",
+    "int_from_float": "must be a whole number",
+    "bool_type": "must be true or false",
+    "string_type": "must be text in quotes",
+    "list_type": "must be a list in brackets",
+    "tuple_type": "must be a list in brackets",
+    "greater_than": "must be greater than {gt}",
+    "greater_than_equal": "must be at least {ge}",
+    "less_than": "must be less than {lt}",
+    "less_than_equal": "must be at most {le}",
+    "string_too_long": "must have at most {max_length} characters",
+    "too_short": "must have {min_length} items",
+    "too_long": "must have {max_length} items",
+    "literal_error": "must be {expected}",
 }
 
 
@@ -97,21 +106,20 @@ def read_case_tables(data: Mapping[str, Any]) -> tuple[dict[str, Any], list[Prob
     problems += faults
     for name, model in TABLES.items():
         content = data.get(name, {})
-        if name in OPTIONAL and name not in data:
-            continue
-        if not isinstance(content, dict):
+        if not isinstance(content, dict) or (name in OPTIONAL and name not in data):
             continue
         given, part, faults = read_table(name, model, content)
         problems += faults
         partial[name] = _in_part(model, part)
         if not faults:
             read[name] = model.model_validate(given)
-    partial |= dict.fromkeys(ROWS, ())
-    for name in (one for one in ROWS if one in data):
-        rows, faults = _read_rows(name, ROWS[name], data[name], range(MOST_ROWS + 1))
-        problems += faults
-        if not faults:
-            read[name] = rows
+    for name, model in ROWS.items():
+        rows = ()
+        if name in data:
+            rows, faults = _read_rows(name, model, data[name], range(MOST_ROWS + 1))
+            problems += faults
+            if not faults:
+                read[name] = rows
         partial[name] = rows or ()
     return read, problems + broken(CASE_RULES, _in_part(CaseContent, partial))
 
@@ -128,26 +136,25 @@ def _in_part(model: type[ModelT], values: Mapping[str, Any]) -> ModelT:
 def with_friction_range(data: Mapping[str, Any]) -> Mapping[str, Any]:
     """The tables with `contact.mu_static = [low, high]` as its middle, and as its range in [uncertainty]."""
     contact, unknown = data.get("contact"), data.get("uncertainty", {})
-    static = contact.get("mu_static") if isinstance(contact, dict) else None
-    if contact is None or not isinstance(static, list) or "mu_static" in unknown:
+    if not isinstance(contact, dict) or not isinstance(unknown, dict) or "mu_static" in unknown:
         return data
-    if len(static) != 2 or not all(isinstance(end, int | float) for end in static):
+    ends = contact.get("mu_static")
+    if not isinstance(ends, list) or len(ends) != 2 or not all(isinstance(end, int | float) for end in ends):
         return data
-    middle = short(0.5 * (float(static[0]) + float(static[1])))
-    ends = [float(end) for end in static]
+    low, high = map(float, ends)
+    middle = short(0.5 * (low + high))
     return {
         **data,
         "contact": {**contact, "mu_static": middle},
-        "uncertainty": {**unknown, "mu_static": ends},
+        "uncertainty": {**unknown, "mu_static": [low, high]},
     }
 
 
 def problem_lines(problems: Iterable[Problem], heading: str = "") -> list[str]:
     """One line a problem, in the order of the tables; `heading` says whose they are."""
-    order = ["", *TABLES]
-    ranked = sorted(problems, key=lambda problem: order.index(problem.table) if problem.table in order else 0)
+    order = {name: place for place, name in enumerate(TABLES, 1)}
     lines = []
-    for problem in ranked:
+    for problem in sorted(problems, key=lambda problem: order.get(problem.table, 0)):
         table = f"[{problem.table}] " if problem.table else ""
         space = " " if problem.key and not problem.reason.startswith(",") else ""
         lines.append(f"{heading}{table}{problem.key}{space}{problem.reason}")
@@ -166,21 +173,33 @@ def read_table(
     ]
     given = model.as_meant({key: value for key, value in content.items() if key in known})
     if model is TABLES["container"] and "box" in given:
-        given["box"], faults = _read_rows(
+        given["box"], of_boxes = _read_rows(
             "container.box", BoxTable, given["box"], MOST_BOXES, "from the floor up"
         )
-        problems += faults
-    reasons: dict[str, list[ErrorDetails]] = {}
+        problems += of_boxes
+    faults: dict[str, list[ErrorDetails]] = {}
     try:
         model.model_validate(given)
     except ValidationError as error:
         for detail in error.errors(include_url=False):
             if detail["loc"] and detail["type"] != "default_factory_not_called":
-                reasons.setdefault(str(detail["loc"][0]), []).append(detail)
-    for key, details in reasons.items():
-        problems.append(Problem(table=name, key=key, reason=_reason(known[key], details)))
-    partial = _partial(model, given, reasons.keys())
-    return given, partial, problems + broken(model.rules, _in_part(model, partial))
+                faults.setdefault(str(detail["loc"][0]), []).append(detail)
+    problems += [
+        Problem(table=name, key=key, reason=_reason(known[key], details)) for key, details in faults.items()
+    ]
+    values: dict[str, Any] = {}
+    for name_here, field in model.model_fields.items():
+        if (key := field.alias or name_here) in faults:
+            continue
+        with suppress(KeyError):  # the default follows a key that is bad or missing
+            value = (
+                given[key]
+                if key in given
+                else field.get_default(call_default_factory=True, validated_data=values)
+            )
+            if value is not PydanticUndefined:
+                values[name_here] = value
+    return given, values, problems + broken(model.rules, _in_part(model, values))
 
 
 def _read_rows(
@@ -202,26 +221,6 @@ def _read_rows(
             for problem in faults
         ]
     return tuple(rows), problems
-
-
-def _partial(model: type[CaseTable], given: Mapping[str, Any], bad: Iterable[str]) -> dict[str, Any]:
-    """Field values with defaults, without the keys that are bad and the defaults that follow them."""
-    refused = set(bad)
-    values: dict[str, Any] = {}
-    for name, field in model.model_fields.items():
-        key = field.alias or name
-        if key in refused:
-            continue
-        if key in given:
-            values[name] = given[key]
-            continue
-        try:
-            default = field.get_default(call_default_factory=True, validated_data=values)
-        except KeyError:  # the default follows a key that is bad or missing
-            continue
-        if default is not PydanticUndefined:
-            values[name] = default
-    return values
 
 
 def _reason(field: FieldInfo, details: list[ErrorDetails]) -> str:
@@ -247,7 +246,7 @@ def _reason(field: FieldInfo, details: list[ErrorDetails]) -> str:
         listed = " or ".join(f'"{choice}"' for choice in choices)
         return f"must be {listed}, got {_shown(value)}" + (f"; {near}" if near else "")
     hint = ""
-    if isinstance(value, str) and quantity and faults.keys() & KINDS:
+    if isinstance(value, str) and quantity and faults.keys() & REQUIRED:
         try:
             hint = f"; write {float(value)!r}"
         except ValueError:
@@ -265,40 +264,20 @@ def choices_of(annotation: Any) -> list[str]:
 
 def requirement_of(detail: ErrorDetails) -> str:
     """What pydantic requires of a value, in plain words."""
-    limits = detail.get("ctx", {})
-    match detail["type"]:
-        case kind if kind in KINDS:
-            return f"must be {KINDS[kind]}"
-        case "greater_than":
-            return f"must be greater than {limits['gt']}"
-        case "greater_than_equal":
-            return f"must be at least {limits['ge']}"
-        case "less_than":
-            return f"must be less than {limits['lt']}"
-        case "less_than_equal":
-            return f"must be at most {limits['le']}"
-        case "string_too_long":
-            return f"must have at most {limits['max_length']} characters"
-        case "too_short" | "too_long":
-            return f"must have {limits.get('min_length', limits.get('max_length'))} items"
-        case "literal_error":
-            return f"must be {limits['expected']}"
-    return f"cannot be used ({detail['msg'].lower()})"
+    words = REQUIRED.get(detail["type"])
+    return words.format_map(detail.get("ctx", {})) if words else f"cannot be used ({detail['msg'].lower()})"
 
 
 def _shown(value: object) -> str:
     """A value of a TOML file in words."""
     if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, str):
-        return f"the text {with_unit(value, '')}"
-    if isinstance(value, dict):
-        return "a table"
-    if isinstance(value, list | tuple):
-        return "a list"
+        return str(value).lower()
+    if isinstance(value, dict | list | tuple):
+        return "a table" if isinstance(value, dict) else "a list"
+    kind = "the text " * isinstance(value, str)
     if isinstance(value, datetime.date | datetime.time):
         return f"the date or time {value}"
-    return with_unit(value, "")
+    return kind + with_unit(value, "")
 
 
 def _unknown_key(table: str, key: str, known: Mapping[str, FieldInfo]) -> str:
