@@ -74,28 +74,18 @@ def largest_first(changes: Sequence[InputChange]) -> list[InputChange]:
 def all_changes(
     case: Case, penalty: float | None, draws: int | None = None
 ) -> tuple[tuple[InputChange, ...], tuple[InputChange, ...], tuple[InputChange, ...]]:
-    """`changes_of`, the pairs that matter and `draws_of`."""
-    ranges = ranges_of(case, penalty)
-    return _singles(case, ranges), _pairs(case, ranges), _draws(case, ranges, draws)
+    """All that is tried of a case, in three parts.
 
-
-def changes_of(case: Case, penalty: float | None) -> tuple[InputChange, ...]:
-    """One input changed at a time, to each end of its range and between, and the numerics ten times tighter."""
-    return _singles(case, ranges_of(case, penalty))
-
-
-def draws_of(case: Case, penalty: float | None, count: int | None = None) -> tuple[InputChange, ...]:
-    """All inputs drawn at once from their ranges, by a Latin hypercube; the numerics stay as they are.
+    One input changed at a time, to each end of its range and between, and the numerics ten times tighter. The pairs
+    that matter: a smaller fall of friction, half way, that is also a slower one. All inputs drawn at once from their
+    ranges, by a Latin hypercube; there the numerics stay as they are.
 
     Args:
         case, penalty: as for `ranges_of`.
-        count: of draws; None: as the case says.
+        draws: how many; None: as the case says.
     """
-    return _draws(case, ranges_of(case, penalty), count)
-
-
-def _singles(case: Case, ranges: Sequence[InputRange]) -> tuple[InputChange, ...]:
-    changes = [
+    ranges = ranges_of(case, penalty)
+    singles = [
         InputChange(
             kind="one", values={span.key: value}, share=span.share(value) if isinstance(value, float) else 1.0
         )
@@ -105,37 +95,26 @@ def _singles(case: Case, ranges: Sequence[InputRange]) -> tuple[InputChange, ...
     ]
     tolerance = max(TIGHTER * case.solver.energy_tolerance, q.ENERGY_TOLERANCE.least or 0.0)
     if tolerance < case.solver.energy_tolerance:
-        changes.append(InputChange(kind="one", values={TOLERANCE: short(tolerance)}, share=1.0))
-    return tuple(changes)
-
-
-def _pairs(case: Case, ranges: Sequence[InputRange]) -> tuple[InputChange, ...]:
-    """The pairs that matter: a smaller fall of friction that is also a slower one.
-
-    At `mu_kinetic = mu_static` nothing falls, so the pair is tried half way.
-    """
-    by_key = {span.key: span for span in ranges}
-    if MU_KINETIC not in by_key:
-        return ()
-    friction = by_key[MU_KINETIC]
-    assert friction.drawn is not None
-    middle = short(float(friction.drawn(0.5)))
-    slower = [(key, by_key[key].ends[-1]) for key in (WEAKENING, STRIBECK) if key in by_key]
-    if middle >= case.contact.mu_static:
-        return ()
-    return tuple(
-        InputChange(kind="pair", values={MU_KINETIC: middle, key: end}, share=1.0) for key, end in slower
-    )
-
-
-def _draws(case: Case, ranges: Sequence[InputRange], count: int | None) -> tuple[InputChange, ...]:
-    ranges = [span for span in ranges if span.drawn is not None]
-    if not ranges:
-        return ()
-    places = latin_hypercube(case.uncertainty.draws if count is None else count, len(ranges))
-    return tuple(
-        InputChange(kind="draw", values=drawn_values(ranges, row), share=1.0, place=tuple(row))
-        for row in places.tolist()
+        singles.append(InputChange(kind="one", values={TOLERANCE: short(tolerance)}, share=1.0))
+    by_key, pairs = {span.key: span for span in ranges}, []
+    if MU_KINETIC in by_key and (drawn := by_key[MU_KINETIC].drawn) is not None:
+        middle = short(float(drawn(0.5)))
+        if middle < case.contact.mu_static:  # at mu_kinetic = mu_static nothing falls
+            pairs = [
+                InputChange(kind="pair", values={MU_KINETIC: middle, key: by_key[key].ends[-1]}, share=1.0)
+                for key in (WEAKENING, STRIBECK)
+                if key in by_key
+            ]
+    spans = [span for span in ranges if span.drawn is not None]
+    count = case.uncertainty.draws if draws is None else draws
+    places = latin_hypercube(count, len(spans)).tolist() if spans else []
+    return (
+        tuple(singles),
+        tuple(pairs),
+        tuple(
+            InputChange(kind="draw", values=drawn_values(spans, row), share=1.0, place=tuple(row))
+            for row in places
+        ),
     )
 
 

@@ -19,7 +19,7 @@ from fem.case.strength import scaled_motion
 from fem.case.tables.input_keys import TOLERANCE
 from fem.case.tables.input_ranges import Value
 from fem.case.tables.links import ROWS
-from fem.case.uncertainty import as_changed, draws_of
+from fem.case.uncertainty import all_changes, as_changed
 from fem.model.container import Container, changed_container, without_links
 from fem.model.equilibrium import same_equilibrium
 from fem.model.model import Model, build_model
@@ -229,7 +229,7 @@ def _worst_draws(model: Model, verdict: Verdict, count: int) -> list[tuple[Mappi
     """The draws of all unknown inputs that turn most under the motion of the run, and how far, by its band."""
     members = verdict.band.members if verdict.band else ()
     turned = {key_of(member.values): member.turned for member in members}
-    draws = [change.values for change in draws_of(model.case, model.penalty)]
+    draws = [change.values for change in all_changes(model.case, model.penalty)[2]]
     known = sorted(((turned.get(key_of(values), 0.0), -k) for k, values in enumerate(draws)), reverse=True)
     return [(draws[-k], ratio) for ratio, k in known[:count]]
 

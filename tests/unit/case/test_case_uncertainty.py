@@ -12,7 +12,7 @@ from fem.case.tables.all_tables import TABLES
 from fem.case.tables.input_ranges import UnknownNumber
 from fem.case.tables.links import ROWS
 from fem.case.tables.unknown_inputs import INPUTS, UNKNOWN, ranges_of
-from fem.case.uncertainty import all_changes, as_changed, changes_of, draws_of, latin_hypercube, stiff_floor
+from fem.case.uncertainty import all_changes, as_changed, latin_hypercube, stiff_floor
 from fem.model.geometry import build_container
 
 PENALTY = 1e9
@@ -21,7 +21,7 @@ FRICTION = {"contact.mu_kinetic": 0.2}
 
 def changes(name="harmonic", values=None):
     """Labels of the changes of one input."""
-    return [one.label for one in changes_of(named_case(name, values), PENALTY)]
+    return [one.label for one in all_changes(named_case(name, values), PENALTY)[0]]
 
 
 def ends(name="harmonic", values=None):
@@ -128,7 +128,7 @@ def test_ranges_of_a_slab_may_be_stated_and_its_damping_where_it_is_given():
 
 def test_draws_of_a_slab_make_cases_that_can_be_read():
     case = named_case("harmonic", SLAB | {"contact.damping_ratio": 0.1})
-    drawn = [case.with_values(one.values) for one in draws_of(case, None)]
+    drawn = [case.with_values(one.values) for one in all_changes(case, None)[2]]
     strengths = np.log([one.floor.bearing_strength_Pa for one in drawn])
     assert np.mean(strengths) == pytest.approx(np.log(50e6), abs=0.05)
     assert len(drawn) == 32
@@ -166,7 +166,7 @@ def test_the_phase_of_a_vertical_harmonic_may_be_any():
     (one,) = [one for one in ranges_of(case, PENALTY) if one.key == "vertical.phase_rad"]
     tried = sorted((*one.between, *one.ends))
     assert tried == pytest.approx([0.5 - np.pi, 0.5 - np.pi / 2, 0.5 + np.pi / 2])
-    drawn = [case.with_values(one.values).vertical.phase_rad for one in draws_of(case, PENALTY)]
+    drawn = [case.with_values(one.values).vertical.phase_rad for one in all_changes(case, PENALTY)[2]]
     assert max(drawn) - min(drawn) > 0.9 * 2 * np.pi
     assert "vertical.phase_rad" not in ends("pulse", FRICTION | vertical)
 
@@ -229,7 +229,7 @@ def test_a_stated_range_replaces_the_default_and_known_leaves_it_out():
 
 
 def test_changes_between_the_ends_are_smaller_than_those_to_an_end():
-    shares = {one.label: one.share for one in changes_of(named_case("harmonic", FRICTION), None)}
+    shares = {one.label: one.share for one in all_changes(named_case("harmonic", FRICTION), None)[0]}
     assert shares["contact.weakening_m = 0.001"] == pytest.approx(0.2)
     assert shares["contact.weakening_m = 0.003"] == pytest.approx(0.6)
     assert shares["contact.mu_kinetic = 0.3"] == pytest.approx(0.5)
@@ -247,9 +247,9 @@ def test_pairs_join_a_smaller_fall_of_friction_with_a_slower_one():
 
 def test_draws_fill_every_range_and_make_cases_that_can_be_read():
     case = named_case("harmonic", FRICTION)
-    draws = draws_of(case, PENALTY)
+    draws = all_changes(case, PENALTY)[2]
     assert len(draws) == 32
-    assert draws == draws_of(case, PENALTY)
+    assert draws == all_changes(case, PENALTY)[2]
     drawn = [case.with_values(one.values) for one in draws]
     friction = [one.contact.mu_kinetic for one in drawn]
     static = np.array([one.contact.mu_static for one in drawn])
@@ -262,8 +262,8 @@ def test_draws_fill_every_range_and_make_cases_that_can_be_read():
     assert weakenings[16] < 1e-3 and weakenings[0] >= SLIDING * case.container.width_m  # less falls at once
     assert sum(one.motion.ramp_cycles == 2.0 for one in drawn) == 16
     assert {one.support.kind for one in drawn} == {"corners"}
-    assert len(draws_of(case, PENALTY, 5)) == 5
-    assert draws_of(named_case("harmonic", {"uncertainty.draws": 0}), PENALTY) == ()
+    assert len(all_changes(case, PENALTY, 5)[2]) == 5
+    assert all_changes(named_case("harmonic", {"uncertainty.draws": 0}), PENALTY)[2] == ()
 
 
 @pytest.mark.parametrize("count", [1, 2, 32])
@@ -350,7 +350,7 @@ def test_a_changed_case_keeps_the_friction_between_its_boxes(given, changed, exp
 
 def test_draws_of_a_loose_stack_draw_its_joints_and_its_floor_apart():
     case = named_case("harmonic", LOOSE)
-    drawn = [case.with_values(as_changed(case, one.values)) for one in draws_of(case, PENALTY)]
+    drawn = [case.with_values(as_changed(case, one.values)) for one in all_changes(case, PENALTY)[2]]
     static = np.array([one.joint_friction["mu_static"] for one in drawn])
     share = np.array([one.joint_friction["mu_kinetic"] for one in drawn]) / static
     assert 0.2 < static.min() < 0.21 and 0.76 < static.max() < 0.8
@@ -373,7 +373,7 @@ def test_a_ramp_fits_the_motion():
     assert ends("harmonic", ramped)["motion.ramp_cycles"] == (0.0,)
     for values in (short, ramped, {"solver.duration_s": 0.5}):
         case = named_case("harmonic", values)
-        for one in changes_of(case, PENALTY):
+        for one in all_changes(case, PENALTY)[0]:
             case.with_values(one.values)
 
 
@@ -389,7 +389,7 @@ def test_the_impacts_of_a_squat_box_make_cases_that_can_be_read(width, ratio):
     """Housner's restitution falls through zero at a width of 1.41 times the height."""
     values = {"container.boxes": 1, "container.width_m": width, "contact.restitution_over_housner": ratio}
     case = named_case("rocking", values)
-    tried = [one.values for one in (*changes_of(case, None), *draws_of(case, None))]
+    tried = [one.values for one in (*all_changes(case, None)[0], *all_changes(case, None)[2])]
     for one in tried:
         case.with_values(one)
     assert any("contact.restitution_over_housner" in one for one in tried) == (width < 2**0.5)

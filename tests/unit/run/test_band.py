@@ -9,7 +9,7 @@ from interrupted_runs import run_command
 
 from fem.__main__ import main
 from fem.case.case import Case, load_case
-from fem.case.uncertainty import all_changes, as_changed, changes_of, draws_of
+from fem.case.uncertainty import all_changes, as_changed
 from fem.model.model import build_model
 from fem.model.recovery import recovery_of
 from fem.results.kinds import read_result
@@ -214,11 +214,11 @@ def test_a_member_that_fails_is_named_in_a_warning_and_in_the_summary(tmp_path):
 def test_a_base_of_another_camber_touches_as_one(camber):
     flat = ["support.kind=flat", f"support.camber_m={camber}", "floor.corner_patch_m=[0.55, 1.1]"]
     model = build_model(load_case("rocking", [*SHORT, "solver.element_size_m=0.1", *flat]))
-    changes = [one for one in changes_of(model.case, None) if "support.camber_m" in one.values]
+    changes = [one for one in all_changes(model.case, None)[0] if "support.camber_m" in one.values]
     assert [one.values["support.camber_m"] for one in changes] == (
         [0.0005, 0.002] if not camber else [0.002, 0.008]
     )
-    assert not any("support.camber_m" in one.values for one in draws_of(model.case, None)) or camber
+    assert not any("support.camber_m" in one.values for one in all_changes(model.case, None)[2]) or camber
     for change, run in zip(
         changes, run_changes(model, changes, numerics=Numerics(), stop=lambda: False), strict=True
     ):
@@ -228,7 +228,9 @@ def test_a_base_of_another_camber_touches_as_one(camber):
 
 def test_members_without_inner_forces_move_as_those_with_them():
     model = build_model(load_case("rocking", [COARSE, "solver.duration_s=1", "output.fields_s=0"]))
-    changes = [one for one in changes_of(model.case, model.penalty) if "contact.mu_kinetic" in one.values][:1]
+    changes = [
+        one for one in all_changes(model.case, model.penalty)[0] if "contact.mu_kinetic" in one.values
+    ][:1]
     found = [
         run_changes(model, changes, numerics=Numerics(), stop=lambda: False, inner_forces=wanted)[0]
         for wanted in (True, False)
