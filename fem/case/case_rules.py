@@ -6,14 +6,13 @@ from typing import Any
 from fem.case.columns import history_width
 from fem.case.tables import quantities as q
 from fem.case.tables.boxes import BOX_RULES, JOINT_RULES, WEAKENING_RULES, plan_share
-from fem.case.tables.castings import CASTING_RULES
+from fem.case.tables.container_tables import MASSES
 from fem.case.tables.duration import duration_in_words, longest_time
 from fem.case.tables.floors import FLOOR_CASE_RULES
 from fem.case.tables.links import LINK_RULES
 from fem.case.tables.motion_rules import harmonic_angular_frequency
 from fem.case.tables.neighbours import NEIGHBOUR_RULES
 from fem.case.tables.problem import Rule, refused
-from fem.case.tables.rules import MASSES
 
 MOST_SAMPLES = 2e7
 MOST_HISTORY = 3.4e9  # bytes in memory: so many samples of a single box
@@ -134,6 +133,26 @@ def _posts_do_not_fit(case: Any) -> str:
     return ""
 
 
+def _casting_does_not_fit(case: Any) -> str:
+    """Why castings do not fit below the base, empty where they do."""
+    if case.support.casting_m is None:
+        return ""
+    width, depth, inset = case.support.casting_m
+    if case.support.kind != "corners":
+        return f'belongs to support.kind = "corners", got "{case.support.kind}"; leave it out'
+    if width <= 0.0 or depth <= 0.0:
+        return f"must be [width, depth, inset] with a positive width and depth, got {case.support.casting_m}"
+    if case.floor.corner_patch_m is not None:
+        return "and floor.corner_patch_m both say what bears under a corner; keep one of them"
+    half = 0.5 * case.stack[0].width
+    if inset + width > half or 2.0 * depth > case.container.depth_m:
+        return (
+            f"= {case.support.casting_m} does not fit under the base: inset and width at most half of width_m = "
+            f"{half:g} m, two depths at most depth_m = {case.container.depth_m:g} m"
+        )
+    return ""
+
+
 CASE_RULES = (
     *FLOOR_CASE_RULES,
     *BOX_RULES,
@@ -149,7 +168,7 @@ CASE_RULES = (
         "does not apply to support.camber_m > 0: a cambered base rolls, and its feet do not strike at their corners; "
         "leave it out",
     ),
-    *CASTING_RULES,
+    refused("support.casting_m", _casting_does_not_fit),
     refused("container.post_m", _posts_do_not_fit),
     Rule(
         "container.corner_post_N",

@@ -158,21 +158,6 @@ class CaseContent(CaseHeading):
         """Whether the container has the velocity of the floor at t = 0, along x and vertically."""
         return self.motion.kind == "none" or self.motion.start == "moving"
 
-    @property
-    def amplitude(self) -> float:
-        """A of a harmonic floor x = A sin(Omega t + phase) [m]; 0 for every other kind."""
-        return self.motion.amplitude
-
-    @property
-    def angular_frequency(self) -> float:
-        """Omega of a harmonic floor [rad/s]; 0 for every other kind."""
-        return self.motion.angular_frequency
-
-    @property
-    def nominal_peak_acceleration(self) -> float | None:
-        """Of the floor along x: A Omega^2, the peak of a pulse, 0 at rest [m/s2]; None for a table."""
-        return self.motion.nominal_peak
-
     def given(self) -> dict[str, Any]:
         """The keys that were set, by table, as a case file would hold them."""
         keys = self.model_dump(by_alias=True, exclude_unset=True, exclude=set(TABLES))

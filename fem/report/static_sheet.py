@@ -162,7 +162,7 @@ def static_sheet(static: StaticChecks, case: Case) -> list[tuple[str, list[Sheet
     nearer = [INSIDE if "s" in numbers else NEARER] if "b" in numbers else []
     own = numbers | _action(static.own_motion)
     swings = case.motion.kind == "harmonic" and math.isclose(
-        own["a_max"], case.nominal_peak_acceleration or 0.0, rel_tol=1e-6
+        own["a_max"], case.motion.nominal_peak or 0.0, rel_tol=1e-6
     )
     slopes = static.slope != 0.0
     largest = f"largest |acceleration| of the floor{' along itself' * slopes} within the run"
@@ -236,7 +236,7 @@ def _numbers(static: StaticChecks, case: Case) -> Numbers:
     numbers |= {"θ": math.degrees(static.slope), "slope": abs(case.floor.slope_percent)}
     numbers |= {"G_n": weight * math.cos(static.slope)}
     if case.motion.kind == "harmonic":
-        numbers |= {"A": case.amplitude, "Ω": case.angular_frequency}
+        numbers |= {"A": case.motion.amplitude, "Ω": case.motion.angular_frequency}
     nearer, width = static.centroid * math.tan(static.slenderness_angle), case.stack[0].width
     inside, beside = 0.5 * (width - static.width), 0.5 * static.width - nearer
     if inside + beside > OFF_CENTRE * width:

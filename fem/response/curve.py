@@ -177,8 +177,13 @@ def _settled(
 def _judge(request: ResponseRequest, case: Case, driven: DrivenModel, orbit: Orbit) -> LongTime:
     """The long-time motion of a window of periods."""
     control = driven.run.problem.control
-    angle, amplitude = control.slenderness_angle, case.amplitude
-    scales = [angle, angle * control.frequency_parameter, amplitude * case.angular_frequency, amplitude]
+    angle, amplitude = control.slenderness_angle, case.motion.amplitude
+    scales = [
+        angle,
+        angle * control.frequency_parameter,
+        amplitude * case.motion.angular_frequency,
+        amplitude,
+    ]
     return classify(orbit.sections / scales, resting=_motion_of(driven, orbit) == Outcome.REST)
 
 

@@ -40,20 +40,20 @@ def begin_drive(case: Case, container: Container) -> tuple[DrivenModel, float]:
     turning point of the floor at +A after the ramp.
     """
     model = build_model(case, container)
-    omega, phase = case.angular_frequency, case.motion.phase_rad
+    omega, phase = case.motion.angular_frequency, case.motion.phase_rad
     period = 2.0 * math.pi / omega
     turn = ((0.5 * math.pi - phase) % (2.0 * math.pi)) / omega
     until = turn + math.ceil(case.motion.ramp_cycles) * period
     ramp = case.motion.ramp_cycles * period
-    floor = as_floor_motion(HARMONIC, (case.amplitude, omega, phase, ramp, math.inf))
+    floor = as_floor_motion(HARMONIC, (case.motion.amplitude, omega, phase, ramp, math.inf))
     return _on_floor(model, floor, np.array([ramp, until]), period), until
 
 
 def driven_model(case: Case, container: Container) -> DrivenModel:
     """The container on x = A cos(Omega t), without the motion that it has."""
     model = build_model(case, container)
-    omega = case.angular_frequency
-    floor = as_floor_motion(HARMONIC, (case.amplitude, omega, 0.5 * math.pi, 0.0, math.inf))
+    omega = case.motion.angular_frequency
+    floor = as_floor_motion(HARMONIC, (case.motion.amplitude, omega, 0.5 * math.pi, 0.0, math.inf))
     return _on_floor(model, floor, np.empty(0), 2.0 * math.pi / omega)
 
 
@@ -70,7 +70,7 @@ def carry_drive(case: Case, container: Container, before: DrivenModel) -> Driven
 
 def stop_drive(case: Case, container: Container, before: DrivenModel) -> DrivenModel:
     """The container, moving as `before` left it at a turning point of its floor; the floor stays there."""
-    floor = as_floor_motion(UNIFORM, (0.0, case.amplitude, 0.0))
+    floor = as_floor_motion(UNIFORM, (0.0, case.motion.amplitude, 0.0))
     driven = _on_floor(build_model(case, container), floor, np.empty(0), before.period)
     _carry_state(before.run, driven.run)
     return driven

@@ -125,7 +125,7 @@ def record_of(
         decay: with the drive stopped.
         known: further columns.
     """
-    extremes, omega = orbit.extremes, case.angular_frequency
+    extremes, omega = orbit.extremes, case.motion.angular_frequency
     ratios = abs(extremes[:, 0]) / control.slenderness_angle
     if judged is not None:
         known |= {
@@ -157,8 +157,8 @@ def record_of(
             known["stable"] = bounded and decay is not None and decay[0] == "dies out"
     row = PointRow(
         frequency_Hz=omega / (2.0 * math.pi),
-        amplitude_m=case.amplitude,
-        peak_acceleration_m_s2=case.amplitude * omega**2,
+        amplitude_m=case.motion.amplitude,
+        peak_acceleration_m_s2=case.motion.amplitude * omega**2,
         status=orbit.status,
         model=case.solver.model,
         eta=omega / control.frequency_parameter,

@@ -102,7 +102,7 @@ class ResponseRequest:
         ):
             if refused:
                 raise CaseError(words)
-        if not case.amplitude > 0.0:
+        if not case.motion.amplitude > 0.0:
             raise CaseError(
                 "[motion] a response curve needs a floor that moves: give amplitude_m or peak_acceleration_m_s2 above 0"
             )
@@ -120,12 +120,12 @@ class ResponseRequest:
     @property
     def own_frequency(self) -> float:
         """The frequency of the case [Hz]."""
-        return self.case.angular_frequency / TURN
+        return self.case.motion.angular_frequency / TURN
 
     @property
     def held_value(self) -> float:
         """Amplitude of the floor's displacement [m] or acceleration [m/s2], whichever is held."""
-        amplitude, omega = self.case.amplitude, self.case.angular_frequency
+        amplitude, omega = self.case.motion.amplitude, self.case.motion.angular_frequency
         return amplitude if self.held == "displacement" else amplitude * omega**2
 
     @property
@@ -170,6 +170,6 @@ class ResponseRequest:
 
 def request_of(case: Case, first_Hz: float | None, last_Hz: float | None, **asked: Any) -> ResponseRequest:
     """A request about the frequency of a case, where an end is not given; raises as `ResponseRequest`."""
-    own = case.angular_frequency / TURN if case.motion.kind == "harmonic" else 1.0
+    own = case.motion.angular_frequency / TURN if case.motion.kind == "harmonic" else 1.0
     first, last = (share * own if end is None else end for share, end in ((FROM, first_Hz), (TO, last_Hz)))
     return ResponseRequest(case=case, first_Hz=first, last_Hz=last, **asked)

@@ -82,8 +82,8 @@ class Preview:
             "width_m": mesh.width,
             "height_m": mesh.height,
             "peak_floor_acceleration_m_s2": self.peak,
-            "amplitude_m": case.amplitude if harmonic else None,
-            "angular_frequency_rad_s": case.angular_frequency if harmonic else None,
+            "amplitude_m": case.motion.amplitude if harmonic else None,
+            "angular_frequency_rad_s": case.motion.angular_frequency if harmonic else None,
             "period_s": case.motion.period if harmonic else None,
         }
 
@@ -161,7 +161,10 @@ class Preview:
                 "friction regularised in velocity creeps under constant load; elastic-stick does not",
             ),
             (
-                case.solver.model != "rigid" and case.contact.drops_at_once,
+                case.solver.model != "rigid"
+                and case.contact.sticks
+                and case.contact.mu_kinetic < case.contact.mu_static
+                and case.contact.weakening_m == case.contact.stribeck_velocity_m_s == 0.0,
                 "friction drops at once from mu_static to mu_kinetic: an elastic container rings after impacts, and an "
                 "instant of that may decide whether it slides or rocks; contact.stribeck_velocity_m_s = 0.3 or "
                 "contact.weakening_m = 0.005 lets friction fall gradually, and the band shows what depends on it",

@@ -1,13 +1,13 @@
 """The tables [contact] and [joints]: friction and contact of the base with the floor, and between the boxes."""
 
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal, assert_never
+from typing import Annotated, Any, Literal
 
 from pydantic import GetJsonSchemaHandler
 from pydantic_core import CoreSchema
 
 from fem.case.tables import quantities as q
-from fem.case.tables.rules import CONTACT_RULES
+from fem.case.tables.problem import Rule
 from fem.case.tables.table import CaseTable, case_key, optional_key
 
 USUAL_DASHPOT = 2.0  #: damping ratio of a stiff contact that does not bounce
@@ -60,23 +60,18 @@ class ContactTable(CaseTable):
         "c/(2 sqrt(k m)), the whole mass m on the spring k of one corner", USUAL_DASHPOT
     )
 
-    rules = CONTACT_RULES
+    rules = (
+        Rule(
+            "contact.mu_kinetic",
+            lambda contact: contact.mu_kinetic <= contact.mu_static,
+            "must be at most mu_static = {mu_static:g}, got {mu_kinetic:g}; leave it out where the two are equal",
+        ),
+    )
 
     @property
     def sticks(self) -> bool:
         """Whether a point may stick, on an elastic spring; by the regularised law it creeps under any force."""
-        match self.friction:
-            case "elastic-stick":
-                return True
-            case "regularised":
-                return False
-        assert_never(self.friction)
-
-    @property
-    def drops_at_once(self) -> bool:
-        """Whether mu_static falls to mu_kinetic at once when the support breaks loose."""
-        gradual = self.weakening_m > 0.0 or self.stribeck_velocity_m_s > 0.0
-        return self.mu_kinetic < self.mu_static and self.sticks and not gradual
+        return self.friction == "elastic-stick"
 
 
 class JointsTable(CaseTable):

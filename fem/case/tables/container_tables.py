@@ -1,15 +1,15 @@
 """The tables [container] and [support]: the boxes, and where their base may touch the floor.
 
 A key carries its unit. The type, range and unit of one key are checked by its `Quantity`; relations between keys are
-rules (`fem.case.tables.rules`, `fem.case.case_rules`). Keys of an option that is not chosen are checked and not used.
+rules (here and in `fem.case.case_rules`). Keys of an option that is not chosen are checked and not used.
 """
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, Strict, ValidationInfo, field_validator
 
 from fem.case.tables import quantities as q
-from fem.case.tables.rules import CONTAINER_RULES
+from fem.case.tables.problem import Rule, file_beside
 from fem.case.tables.table import CaseTable, case_key, optional_key
 
 #: damping ratio of a mode in which the fill alone moved, by kind of fill. Grains in a container that is not full take
@@ -30,6 +30,75 @@ class BoxTable(CaseTable):
     centroid_m: Annotated[float, q.LENGTH] | None = optional_key("height of the mass centre in the box", 0.5)
     wall_m: Annotated[float, q.WALL] | None = optional_key("wall thickness, shell only", 0.008)
     offset_m: Annotated[float, q.OFFSET] = case_key("along x, from the axis of the box below", 0.0)
+
+
+def _smallest(box: Any) -> float:
+    """Smallest outer dimension of a box [m]."""
+    return float(min(box.width_m, box.height_m, box.depth_m))
+
+
+#: keys of which one gives the mass of a box, and their quantities
+MASSES = {"weight_N": q.WEIGHT, "mass_kg": q.MASS, "density_kg_m3": q.DENSITY}
+
+
+def _masses(box: Any) -> dict[str, float]:
+    """The keys of `MASSES` that are given."""
+    return {key: value for key in MASSES if (value := getattr(box, key)) is not None}
+
+
+def _not_one_mass(box: Any) -> str:
+    given = [f"{key} = {value:g} {MASSES[key].unit}" for key, value in _masses(box).items()]
+    rule = ", mass_kg, density_kg_m3: exactly one of the three must be given, "
+    return rule + (f"got {', '.join(given)}; keep one of them" if given else "none is given")
+
+
+CONTAINER_RULES = (
+    Rule(
+        "container.weight_N",
+        lambda box: (
+            len(_masses(box)) == 1
+            or not (_masses(box) or box.box is None or any(own.mass_kg is None for own in box.box))
+        ),
+        _not_one_mass,
+    ),
+    Rule(
+        "container.wall_m",
+        lambda box: box.section == "solid" or box.wall_m is not None or box.box is not None,
+        'is missing: section = "shell" needs the wall thickness, in m',
+    ),
+    Rule(
+        "container.wall_m",
+        lambda box: box.section == "solid" or box.wall_m is None or 2.0 * box.wall_m < _smallest(box),
+        lambda box: (
+            f"must be less than half the smallest outer dimension, {_smallest(box):g} m, got {box.wall_m:g} m; "
+            + (
+                q.WALL.guess(box.wall_m, lambda meant: 2.0 * meant < _smallest(box))
+                or 'for a full block take section = "solid"'
+            )
+        ),
+    ),
+    # The range that the program has been tried on: neither a needle nor a plate.
+    Rule(
+        "container.width_m",
+        lambda box: 0.02 * (1.0 - 1e-9) <= box.width_m / box.height_m <= 20.0 * (1.0 + 1e-9),
+        lambda box: (
+            f"over height_m must lie between 0.02 and 20, got {box.width_m:g} m / {box.height_m:g} m = "
+            f"{box.width_m / box.height_m:g}; are both in metres?"
+        ),
+    ),
+    Rule(
+        "container.centroid_m",
+        lambda box: box.centroid_m < box.height_m,
+        lambda box: (
+            f"must be less than height_m = {box.height_m:g} m, got {box.centroid_m:g} m; "
+            + (
+                q.LENGTH.guess(box.centroid_m, lambda meant: 0.1 * box.height_m < meant < box.height_m)
+                or "it is measured from the bottom of one box"
+            )
+        ),
+    ),
+    file_beside("container.mesh_file", below=False),
+)
 
 
 def _as_tuple(value: object) -> object:

@@ -6,7 +6,6 @@ from pydantic import BeforeValidator, Field, Strict
 
 from fem.case.tables import quantities as q
 from fem.case.tables.problem import Rule, one_of
-from fem.case.tables.rules import SOLVER_RULES
 from fem.case.tables.table import CaseTable, OneLine, case_key, optional_key
 
 
@@ -110,7 +109,17 @@ class SolverTable(CaseTable):
     )
     order: Annotated[int, Strict(), q.ORDER] = case_key("of the elements: 1 bilinear, 2 quadratic", 2)
 
-    rules = SOLVER_RULES
+    rules = (
+        # 2 beta >= gamma >= 1/2: stable for every step (Hughes, The Finite Element Method, 1987, 9.1.2)
+        Rule(
+            "solver.newmark_beta",
+            lambda solver: solver.scheme != "newmark" or 2.0 * solver.newmark_beta >= solver.newmark_gamma,
+            lambda solver: (
+                f"must be at least newmark_gamma/2 = {solver.newmark_gamma / 2.0:g} to be stable at every step, "
+                f"got {solver.newmark_beta:g}; 1/4 and 1/2 are usual"
+            ),
+        ),
+    )
 
 
 class OutputTable(CaseTable):

@@ -94,22 +94,22 @@ PEAK, HERTZ = 0.05 * 6.928**2, 6.928 / 6.283185307179586
 )
 def test_harmonic_motion_follows_from_any_two(pair):
     case = read_case(LEAST.replace('"none"', f'"harmonic"\n{pair}'))
-    assert case.amplitude == pytest.approx(0.05, rel=1e-12)
-    assert case.angular_frequency == pytest.approx(6.928, rel=1e-12)
-    assert case.nominal_peak_acceleration == pytest.approx(PEAK, rel=1e-12)
+    assert case.motion.amplitude == pytest.approx(0.05, rel=1e-12)
+    assert case.motion.angular_frequency == pytest.approx(6.928, rel=1e-12)
+    assert case.motion.nominal_peak == pytest.approx(PEAK, rel=1e-12)
 
 
 def test_other_kinds_of_motion_have_no_amplitude():
-    assert read_case(LEAST).nominal_peak_acceleration == 0.0
-    assert read_case(PULSE).nominal_peak_acceleration == 3.0
-    assert read_case(TABLE).nominal_peak_acceleration is None
-    assert read_case(PULSE).amplitude == 0.0
+    assert read_case(LEAST).motion.nominal_peak == 0.0
+    assert read_case(PULSE).motion.nominal_peak == 3.0
+    assert read_case(TABLE).motion.nominal_peak is None
+    assert read_case(PULSE).motion.amplitude == 0.0
 
 
 def test_keys_of_an_option_that_is_not_chosen_play_no_part():
     idle = {"motion.amplitude_m": 0.05, "motion.shape": "sine", "support.foot_m": 0.7}
     case = named_case("least", idle)
-    assert case.amplitude == 0.0
+    assert case.motion.amplitude == 0.0
     assert case.foot is None
 
 

@@ -34,7 +34,7 @@ def test_the_peak_of_a_record_is_what_it_is_scaled_to_and_the_pair_keeps_its_rat
     assert peaks(record) == pytest.approx((3.0, 2.0))  # the peak of the harmonic motion is no key of a record
     scaled = make(record, {PEAK: 4.5})
     assert scaled.motion.scale_to_m_s2 == 4.5
-    assert scaled.nominal_peak_acceleration == 4.5
+    assert scaled.motion.nominal_peak == 4.5
     assert peaks(scaled) == pytest.approx((4.5, 3.0))
     assert scaled.overrides[-1] == f"{PEAK}=4.5"  # as it was asked for
     assert peaks(make(record, {PEAK: 4.5, "vertical.scale": -0.5})) == pytest.approx((4.5, 1.5))

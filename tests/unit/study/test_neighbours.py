@@ -51,11 +51,11 @@ def test_each_member_changes_one_thing():
         "seed_stack_plateau", ["floor.kind=rigid", "contact.damping_ratio=1.0", "motion.phase_rad=6.2"]
     )
     found = members(case)
-    peak = case.motion.peak_acceleration_m_s2 or case.amplitude * case.angular_frequency**2
+    peak = case.motion.peak_acceleration_m_s2 or case.motion.amplitude * case.motion.angular_frequency**2
     changed = [case.with_values(member) for member in found]
     peaks = [one.amplitude * one.angular_frequency**2 for one in changed]
     assert sorted(round(p / peak, 9) for p in peaks) == [0.98] + [1.0] * 6 + [1.02]
-    assert all(one.angular_frequency == case.angular_frequency for one in changed)
+    assert all(one.motion.angular_frequency == case.motion.angular_frequency for one in changed)
     friction = {(one.contact.mu_static, one.contact.mu_kinetic) for one in changed}
     mu, kinetic = case.contact.mu_static, case.contact.mu_kinetic
     steps = [(round(a - mu, 9), round(b - kinetic, 9)) for a, b in friction]
