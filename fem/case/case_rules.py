@@ -1,6 +1,7 @@
 """What ties the tables of a case together."""
 
 import math
+from functools import partial
 from typing import Any
 
 from fem.case.columns import history_width
@@ -12,7 +13,7 @@ from fem.case.tables.floors import FLOOR_CASE_RULES
 from fem.case.tables.links import LINK_RULES
 from fem.case.tables.motion_rules import harmonic_angular_frequency
 from fem.case.tables.neighbours import NEIGHBOUR_RULES
-from fem.case.tables.problem import Rule, refused
+from fem.case.tables.problem import Rule, left_out, refused
 
 MOST_SAMPLES = 2e7
 MOST_HISTORY = 3.4e9  # bytes in memory: so many samples of a single box
@@ -20,103 +21,89 @@ MOST_FRAMES = 1e6
 MOST_STEPS = 1e9
 
 
-def _plausible_density(key: str) -> Rule:
-    """The mean density that follows from the weight or the mass of a box is that of some material."""
-
-    def per_kilogram(case: Any) -> float:
-        return float(case.gravity_m_s2) if key == "weight_N" else 1.0
-
-    def density(case: Any, value: float) -> float:
-        box = case.container
-        return float(
-            value / (per_kilogram(case) * (box.width_m * box.height_m * box.depth_m * plan_share(box)))
-        )
-
-    def reason(case: Any) -> str:
-        box, value, mass = case.container, getattr(case.container, key), per_kilogram(case)
-        slips = {"tonnes": 1e3 * mass} | (
-            {"kilonewtons": 1e3, "kilograms": mass} if key == "weight_N" else {}
-        )
-        typical = 1e3 * mass * (box.width_m * box.height_m * box.depth_m * plan_share(box))
-        guess = q.Quantity(unit=MASSES[key].unit, typical=typical, slips=slips).guess(
-            value, lambda meant: q.DENSITY.allows(density(case, meant))
-        )
-        return (
-            f"= {value:g} {MASSES[key].unit} on {box.width_m:g} x {box.depth_m:g} x {box.height_m:g} m is a mean "
-            f"density of {density(case, value):.3g} kg/m3, it must be {q.DENSITY.range_in_words} kg/m3; "
-            + (guess or "are all dimensions in metres?")
-        )
-
-    def holds(case: Any) -> bool:
-        value = getattr(case.container, key)
-        return value is None or case.container.box is not None or q.DENSITY.allows(density(case, value))
-
-    return Rule(f"container.{key}", holds, reason)
-
-
-def _largest(case: Any) -> float:
-    """Largest dimension of the elevation [m]."""
-    if case.container.box is None:
-        return float(max(case.container.width_m, case.container.boxes * case.container.height_m))
-    boxes = case.stack
-    return max(boxes[-1].top, *(box.width for box in boxes))
-
-
-def _tapered(case: Any, motion: Any) -> float:
-    """Time of both tapers of a harmonic motion that ends with the run [s]; 0 for every other motion."""
-    frequency = harmonic_angular_frequency(motion)
-    if frequency is None or motion.cycles is not None:
-        return 0.0
-    return float(2.0 * motion.ramp_cycles * 2.0 * math.pi / frequency)
-
-
-def _within_the_run(table: str) -> tuple[Rule, Rule]:
-    """The tapers of a harmonic motion, and the beginning of a pulse, lie within the run."""
-
-    def motion(case: Any) -> Any:
-        return getattr(case, table)
-
+def _implausible(case: Any, key: str) -> str:
+    """Why the mean density that follows from the weight or the mass of a box is that of no material."""
+    box, value = case.container, getattr(case.container, key)
+    if value is None or box.box is not None:
+        return ""
+    mass = float(case.gravity_m_s2) if key == "weight_N" else 1.0  # of a kilogram, in the unit of the key
+    volume = box.width_m * box.height_m * box.depth_m * plan_share(box)
+    density = value / (mass * volume)
+    if q.DENSITY.allows(density):
+        return ""
+    slips = {"tonnes": 1e3 * mass} | ({"kilonewtons": 1e3, "kilograms": mass} if key == "weight_N" else {})
+    guess = q.Quantity(unit=MASSES[key].unit, typical=1e3 * mass * volume, slips=slips).guess(
+        value, lambda meant: q.DENSITY.allows(meant / (mass * volume))
+    )
     return (
-        Rule(
-            f"{table}.ramp_cycles",
-            lambda case: _tapered(case, motion(case)) <= longest_time(case),
-            lambda case: (
-                f"= {motion(case).ramp_cycles:g} tapers {_tapered(case, motion(case)):g} s in all, more than "
-                f"{duration_in_words(case)}; take fewer or a longer run"
-            ),
-        ),
-        Rule(
-            f"{table}.delay_s",
-            lambda case: motion(case).kind != "pulse" or motion(case).delay_s < longest_time(case),
-            lambda case: (
-                f"must be less than {duration_in_words(case)}, got {motion(case).delay_s:g} s: "
-                "the pulse would begin after the end of the run"
-            ),
-        ),
+        f"= {value:g} {MASSES[key].unit} on {box.width_m:g} x {box.depth_m:g} x {box.height_m:g} m is a mean "
+        f"density of {density:.3g} kg/m3, it must be {q.DENSITY.range_in_words} kg/m3; "
+        + (guess or "are all dimensions in metres?")
     )
 
 
-def _samples(case: Any) -> float:
-    return longest_time(case) / float(case.output.history_s) + 1.0
+def _coarse(case: Any) -> str:
+    """Why an element of a metre or more that is larger than the container is a slip of the unit."""
+    box, size = case.container, case.solver.element_size_m
+    largest = float(max(box.width_m, box.boxes * box.height_m))
+    if box.box is not None:
+        largest = max(case.stack[-1].top, *(own.width for own in case.stack))
+    if size < 1.0 or size <= 2.0 * largest:
+        return ""
+    guess = q.ELEMENT_SIZE.guess(size, lambda meant: meant <= largest) or "0.1 m is usual"
+    return f"must be at most twice the largest dimension ({largest:g} m), got {size:g} m; {guess}"
 
 
-def _bytes_of_a_sample(case: Any) -> float:
-    """Memory of one sample."""
-    return 8.0 * history_width(case)
+def _tapers_beyond_the_run(case: Any, table: str) -> str:
+    """Why the tapers of a harmonic motion that ends with the run are longer than that."""
+    motion = getattr(case, table)
+    frequency = harmonic_angular_frequency(motion)
+    if frequency is None or motion.cycles is not None:
+        return ""
+    tapered = 2.0 * motion.ramp_cycles * 2.0 * math.pi / frequency
+    if tapered <= longest_time(case):
+        return ""
+    return (
+        f"= {motion.ramp_cycles:g} tapers {tapered:g} s in all, more than {duration_in_words(case)}; take fewer or a "
+        "longer run"
+    )
+
+
+def _begins_behind_the_run(case: Any, table: str) -> str:
+    """Why a pulse begins after the end of the run."""
+    motion = getattr(case, table)
+    if motion.kind != "pulse" or motion.delay_s < longest_time(case):
+        return ""
+    return (
+        f"must be less than {duration_in_words(case)}, got {motion.delay_s:g} s: the pulse would begin after the end "
+        "of the run"
+    )
 
 
 def _too_many_samples(case: Any) -> str:
-    samples, size = _samples(case), _bytes_of_a_sample(case)
+    """Why the history takes more than memory has."""
+    samples = longest_time(case) / float(case.output.history_s) + 1.0
+    size = 8.0 * history_width(case)  # bytes of a sample
+    most = min(MOST_SAMPLES, MOST_HISTORY / size)
+    if samples <= most:
+        return ""
     return (
         f"= {case.output.history_s:g} s makes {samples:.3g} samples of {duration_in_words(case)}, "
         f"{size * samples / 1e9:.2g} GB in memory and some {2.4 * size * samples / 1e9:.2g} GB of text; "
-        f"at most {min(MOST_SAMPLES, MOST_HISTORY / size):.1g} are kept: take a longer interval"
+        f"at most {most:.1g} are kept: take a longer interval"
     )
 
 
-def _frames(case: Any) -> float:
+def _too_many_frames(case: Any) -> str:
+    """Why there are more frames than a disk has room for."""
     interval = case.output.fields_s
-    return longest_time(case) / float(interval) + 1.0 if interval not in (0.0, "auto") else 0.0
+    frames = longest_time(case) / float(interval) + 1.0 if interval not in (0.0, "auto") else 0.0
+    if frames <= MOST_FRAMES:
+        return ""
+    return (
+        f"= {interval:g} s makes {frames:.3g} frames of {duration_in_words(case)}, more than {MOST_FRAMES:.0e}; take a "
+        "longer interval, or 0 for none"
+    )
 
 
 def _posts_do_not_fit(case: Any) -> str:
@@ -160,19 +147,18 @@ CASE_RULES = (
     *WEAKENING_RULES,
     *LINK_RULES,
     *NEIGHBOUR_RULES,
-    _plausible_density("weight_N"),
-    _plausible_density("mass_kg"),
-    Rule(
+    *(refused(f"container.{key}", partial(_implausible, key=key)) for key in ("weight_N", "mass_kg")),
+    *left_out(
         "contact.restitution_over_housner",
-        lambda case: case.contact.restitution_over_housner is None or case.support.camber_m == 0.0,
+        lambda case: case.support.camber_m > 0.0,
         "does not apply to support.camber_m > 0: a cambered base rolls, and its feet do not strike at their corners; "
         "leave it out",
     ),
     refused("support.casting_m", _casting_does_not_fit),
     refused("container.post_m", _posts_do_not_fit),
-    Rule(
+    *left_out(
         "container.corner_post_N",
-        lambda case: case.container.corner_post_N is None or case.support.kind == "corners",
+        lambda case: case.support.kind != "corners",
         'belongs to support.kind = "corners", where a post stands above each; leave it out, or take "corners"',
     ),
     Rule(
@@ -186,19 +172,7 @@ CASE_RULES = (
             )
         ),
     ),
-    # An element of a metre or more that is larger than the container is a slip of the unit.
-    Rule(
-        "solver.element_size_m",
-        lambda case: case.solver.element_size_m < 1.0 or case.solver.element_size_m <= 2.0 * _largest(case),
-        lambda case: (
-            f"must be at most twice the largest dimension ({_largest(case):g} m), "
-            f"got {case.solver.element_size_m:g} m; "
-            + (
-                q.ELEMENT_SIZE.guess(case.solver.element_size_m, lambda meant: meant <= _largest(case))
-                or "0.1 m is usual"
-            )
-        ),
-    ),
+    refused("solver.element_size_m", _coarse),
     Rule(
         "solver.step_s",
         lambda case: case.solver.step_s == "auto" or longest_time(case) / case.solver.step_s <= MOST_STEPS,
@@ -207,8 +181,11 @@ CASE_RULES = (
             f'{duration_in_words(case)}, more than {MOST_STEPS:.0e}; take a longer step or "auto"'
         ),
     ),
-    *_within_the_run("motion"),
-    *_within_the_run("vertical"),
+    *(
+        refused(f"{table}.{key}", partial(says, table=table))
+        for table in ("motion", "vertical")
+        for key, says in (("ramp_cycles", _tapers_beyond_the_run), ("delay_s", _begins_behind_the_run))
+    ),
     Rule(
         "vertical.file",
         lambda case: (
@@ -225,17 +202,6 @@ CASE_RULES = (
         "(or an inset of casting_m) belongs to the rigid and the reduced model: the full model bears where its nodes "
         "are; change width_m",
     ),
-    Rule(
-        "output.history_s",
-        lambda case: _samples(case) <= min(MOST_SAMPLES, MOST_HISTORY / _bytes_of_a_sample(case)),
-        _too_many_samples,
-    ),
-    Rule(
-        "output.fields_s",
-        lambda case: _frames(case) <= MOST_FRAMES,
-        lambda case: (
-            f"= {case.output.fields_s:g} s makes {_frames(case):.3g} frames of "
-            f"{duration_in_words(case)}, more than {MOST_FRAMES:.0e}; take a longer interval, or 0 for none"
-        ),
-    ),
+    refused("output.history_s", _too_many_samples),
+    refused("output.fields_s", _too_many_frames),
 )
