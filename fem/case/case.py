@@ -126,17 +126,15 @@ class Case(CaseContent):
         Raises:
             CaseError: a file is missing, or outside the folder of the case file and not named on the command line.
         """
-        trusted = self._origin.trusted
-        if self.vertical.file is None and "motion.file" in trusted:
-            trusted |= {"vertical.file"}
         named = {"container.mesh_file": self.container.mesh_file}
         for table, motion in (("motion", self.motion), ("vertical", self.vertical)):
-            if self.recorded is None:
-                named[f"{table}.file"] = motion.file if motion.kind == "table" else None
+            if self.recorded is None and motion.kind == "table":
+                named[f"{table}.file"] = motion.file
+        files = data_files.find_data_files(self.folder, named, trusted=self._origin.trusted)
         if self.recorded is None and self.vertical.kind == "table" and self.vertical.file is None:
             # another component of the same file
-            named["vertical.file"] = data_files.without_channel(self.folder, self.motion.file)
-        return data_files.find_data_files(self.folder, named, trusted=trusted)
+            files["vertical.file"] = replace(files["motion.file"], channel="")
+        return files
 
     @property
     def data_files(self) -> dict[str, Path]:

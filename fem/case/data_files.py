@@ -37,14 +37,6 @@ def split_channel(folder: Path, name: str) -> tuple[Path, str]:
     return _path(folder, stem), channel
 
 
-def without_channel(folder: Path, name: str | None) -> str | None:
-    """A name without the channel that it chooses."""
-    if name is None:
-        return None
-    channel = split_channel(folder, name)[1]
-    return name.removesuffix(f"#{channel}") if channel else name
-
-
 def _path(folder: Path, name: str) -> Path:
     path = folder / name
     # A path of Windows, where it is no name of a file here.
@@ -69,14 +61,25 @@ def find_data_files(
         if name is None:
             continue
         path, channel = split_channel(folder, name)
-        _require_file(folder, key, name, path, trusted=key in trusted)
+        if key not in trusted and leads_out(folder, path):
+            raise CaseError(
+                f"{place_of(key)}must lie in the folder of the case file, got {name!r}, which leads to "
+                f"{real_path(path)}; copy the file there{WAYS_OUT}"
+            )
+        if not path.is_file():
+            what = ""
+            if path.exists():
+                what = ", which is a folder" if path.is_dir() else ", which is a device or a pipe"
+            elif not Path(name).is_absolute():
+                what = f", looked for in {real_path(folder)}; its path is relative to the case file"
+            raise CaseError(f"{place_of(key)}names no file: {name!r}{what}")
         plain = copied_name(folder, name)
         copy = PurePosixPath(plain[: -len(channel) - 1] if channel else plain)
         for other, file in files.items():
             if file.copy == copy and real_path(file.path) != real_path(path):
                 raise CaseError(
-                    place_of("vertical.file")
-                    + f"has the name of the file of {other}, {copy.name!r}, and another folder; rename one of them"
+                    f"{place_of('vertical.file')}has the name of the file of {other}, {copy.name!r}, and another "
+                    "folder; rename one of them"
                 )
         files[key] = DataFile(path=path, channel=channel, copy=copy)
     return files
@@ -99,28 +102,6 @@ def outside_problems(tables: Mapping[str, Any], *, trusted: frozenset[str]) -> l
         if name is not None and dotted not in trusted and not stays_in_the_folder(name):
             problems.append(Problem(table=table, key=key, reason=outside_the_folder(name) + WAYS_OUT))
     return problems
-
-
-def _require_file(folder: Path, key: str, name: str, path: Path, *, trusted: bool) -> None:
-    if not trusted and leads_out(folder, path):
-        raise CaseError(
-            place_of(key) + f"must lie in the folder of the case file, got {name!r}, which leads to "
-            f"{real_path(path)}; copy the file there{WAYS_OUT}"
-        )
-    if not path.is_file():
-        raise CaseError(
-            place_of(key)
-            + f"names no file: {name!r}"
-            + (
-                ", which is a folder"
-                if path.is_dir()
-                else ", which is a device or a pipe"
-                if path.exists()
-                else ""
-                if Path(name).is_absolute()
-                else f", looked for in {real_path(folder)}; its path is relative to the case file"
-            )
-        )
 
 
 def place_of(dotted: str) -> str:
