@@ -44,6 +44,10 @@ def test_a_change_leaves_the_case_as_it_was_and_replaces_alternatives():
         (lambda: fem.compute("seed_box"), "a case from fem.load_case or fem.case_from is needed, got str"),
         (lambda: fem.compute_many(fem.load_case("seed_box")), "is needed, got tuple"),
         (lambda: fem.case_from({"container": 3}), "case: [container] must be one table, got 3"),
+        (
+            lambda: fem.case_from({"contact": {"mu_static": [0.3, 0.4]}, "uncertainty": 3}),
+            "[uncertainty] must be one table, got 3",
+        ),
         (lambda: fem.load_case("seed_bax"), "did you mean 'seed_box'?"),
         (
             lambda: fem.load_case("seed_box").replace({"contact.mu_static": 40}),

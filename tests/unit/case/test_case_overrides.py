@@ -74,7 +74,7 @@ def test_a_key_that_is_set_later_replaces_what_was_set_before():
 
 def test_amplitude_keeps_a_peak_acceleration_that_stands_in_for_the_frequency():
     first = load_case(BASE, ["motion.amplitude_m=0.04", "motion.peak_acceleration_m_s2=1.0"])
-    assert first.with_values({"motion.amplitude_m": 0.25}).angular_frequency == pytest.approx(2.0)
+    assert first.with_values({"motion.amplitude_m": 0.25}).motion.angular_frequency == pytest.approx(2.0)
 
 
 WALL = "floor.corner_patch_m=[0.008, 1.1]"

@@ -53,7 +53,7 @@ def test_each_member_changes_one_thing():
     found = members(case)
     peak = case.motion.peak_acceleration_m_s2 or case.motion.amplitude * case.motion.angular_frequency**2
     changed = [case.with_values(member) for member in found]
-    peaks = [one.amplitude * one.angular_frequency**2 for one in changed]
+    peaks = [one.motion.amplitude * one.motion.angular_frequency**2 for one in changed]
     assert sorted(round(p / peak, 9) for p in peaks) == [0.98] + [1.0] * 6 + [1.02]
     assert all(one.motion.angular_frequency == case.motion.angular_frequency for one in changed)
     friction = {(one.contact.mu_static, one.contact.mu_kinetic) for one in changed}
