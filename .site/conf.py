@@ -13,8 +13,8 @@ extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
 source_suffix = {".md": "markdown"}
 root_doc = ".site/index"
 #: the READMEs where they stand, and what only the site has
-include_patterns = [".site/*.md", "CHANGELOG.md", "README.md", "fem/README.md", "fem/*/README.md"]
-include_patterns += ["mesh/README.md", "contact/README.md", "tests/README.md", "tests/*/README.md"]
+include_patterns = [".site/*.md", "CHANGELOG.md", "README.md", "fem/README.md", "fem/*/*.md"]
+include_patterns += ["mesh/README.md", "contact/*.md", "tests/README.md", "tests/*/README.md"]
 myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 4
 suppress_warnings = ["misc.highlighting_failure"]  # a block of TOML with dots for what is left out

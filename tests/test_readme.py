@@ -21,7 +21,7 @@ from fem.site.request import load_site
 from fem.study.file import load_sweep
 
 ROOT = Path(__file__).parents[1]
-PAGES = [ROOT / "README.md", *sorted(ROOT.glob("*/README.md")), *sorted(ROOT.glob("fem/**/README.md"))]
+PAGES = [ROOT / "README.md", *sorted({*ROOT.glob("*/*.md"), *ROOT.glob("fem/**/*.md")})]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 LINES = [
     line

@@ -7,18 +7,17 @@ from fem.results.errors import FolderError
 from fem.runtime.terminal import say
 from fem.runtime.user_files import read_text
 
-#: the packages whose folders hold a README for each room
+#: the packages whose folders hold a README for each room, and further pages
 PACKAGES = ("fem", "mesh", "contact")
-NAME = "README.md"
 
 
 def docs(room: str = "", /) -> None:
-    """Print where the documents are, one for each room of the program, or the text of one.
+    """Print where the documents are, for each room of the program, or the text of one.
 
     Parameters
     ----------
     room:
-        Of which to print the text, such as case or contact.
+        Of which to print the text, such as case, keys or contact.
     """
     places = found()
     if not room:
@@ -33,11 +32,11 @@ def docs(room: str = "", /) -> None:
 
 
 def found() -> dict[str, Path]:
-    """The documents, by the names of their rooms."""
+    """The documents, by the names of their rooms; further pages by their own."""
     places = {}
     for package in PACKAGES:
         spec = find_spec(package)
         for folder in (spec and spec.submodule_search_locations) or ():
-            for path in sorted(Path(folder).rglob(NAME)):
-                places[path.parent.name] = path
+            for path in sorted(Path(folder).rglob("*.md")):
+                places[path.parent.name if path.stem == "README" else path.stem] = path
     return places

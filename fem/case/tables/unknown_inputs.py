@@ -4,7 +4,7 @@ Where the case says nothing in its table [uncertainty], a range follows the case
 which way friction falls from it; the mass centre, the width on which the base bears, the slope of the floor; the
 stiffness of a rigid floor within a factor of nine downwards (the point of a corner) and three upwards (a casting),
 stiffness and strength of a slab and damping within a factor of two either way; what of a base touches, where nobody
-said that it has feet or castings; and a harmonic motion begins in one of several ways. `../README.md` has the sources.
+said that it has feet or castings; and a harmonic motion begins in one of several ways. `../keys.md` has the sources.
 
 Friction between loose boxes is not that of the floor: other surfaces meet there. Where [joints] does not give it, a
 case takes the floor's, and the joints have ranges of their own: `mu_static` within a factor of two unless it is given,
