@@ -23,7 +23,7 @@ from fem.run.output import Stopwatch
 from fem.run.recorder import Recorder
 from fem.run.solve import begun, in_words, resolve, stepped
 from fem.runtime.compilation import compilation_announced
-from fem.runtime.progress import SilentReporter
+from fem.runtime.progress import Reporter
 from fem.runtime.signals import stop_requested
 from fem.runtime.terminal import say
 from fem.runtime.threads import use_one_blas_thread
@@ -150,7 +150,7 @@ def compute_on(container: Container | None, case: Case, wanted: WantedChecks) ->
         CaseError, MeshError: as `compute`.
     """
     use_one_blas_thread()
-    watch, silent = Stopwatch(), SilentReporter()
+    watch, silent = Stopwatch(), Reporter()
     mesh, motions = build_container(case), build_motions(case)
     case = resolve(case, mesh, motions)  # what is changed later on is this case, too
     with compilation_announced(lambda text: say(text, file=sys.stderr)):

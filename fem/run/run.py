@@ -33,7 +33,7 @@ from fem.run.solve import begun, in_words, resolve, stepped
 from fem.run.summary import plain_summary
 from fem.runtime.compilation import compilation_announced
 from fem.runtime.memory import CHECKS, FIGURES, RIGID, shortage
-from fem.runtime.progress import Reporter, SilentReporter
+from fem.runtime.progress import Reporter
 from fem.runtime.signals import ending_at_once, interruptible
 from fem.runtime.threads import cores
 from fem.solid.nodal_body import advance_body
@@ -70,7 +70,7 @@ def run_case(
         CaseError, MeshError, FolderError: bad input, or no room for the results; nothing is left behind.
         OutputError: the disk is full, the folder was removed; what was written can be read.
     """
-    options, reporter, watch = options or RunOptions(), reporter or SilentReporter(), Stopwatch()
+    options, reporter, watch = options or RunOptions(), reporter or Reporter(), Stopwatch()
     files, mesh = RunFiles(folder), build_container(case)
     require_free_names(case, RUN, (files.case.name, files.resolved.name))
     motions = build_motions(case)

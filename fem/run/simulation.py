@@ -32,7 +32,7 @@ from fem.results.outcome import MODES
 from fem.results.run_result import Verdict
 from fem.run.recorder import Recorder
 from fem.run.verdict import audit, end_of_drive, softer_contact, verdict_from
-from fem.runtime.progress import Reporter, SilentReporter
+from fem.runtime.progress import Reporter
 from fem.solid.elasticity import least_volume_ratio
 from fem.solid.nodal_body import FullBody, advance_body, leave_body_alone
 from fem.solid.nodal_stack import FullStack
@@ -107,7 +107,7 @@ def simulate(
         slice_s: length of a slice of a modal model [s]; default: `SLICE_REDUCED`. What fills the arrays of samples ends
             it, too.
     """
-    reporter = reporter or SilentReporter()
+    reporter = reporter or Reporter()
     full = model.case.solver.model == "full"
     advance_body(model.body, model.run, 0.0)
     duration, control, run = model.duration, model.run.problem.control, model.run

@@ -20,60 +20,43 @@ COMPILING = "numba:compile"
 LONG = frozenset({"advance", "advance_in_slices"})
 
 
-class CompilationClock(event.Listener):
-    """Counts the time spent compiling; nested compilations are counted once.
+class Compilations(event.Listener):
+    """Counts the time spent compiling, nested compilations once, and announces the first long one where it is to.
 
     numba compiles under a lock, one thread at a time, so that the events do not mix.
     """
 
     def __init__(self) -> None:
-        self._depth, self._began, self._past = 0, 0.0, 0.0
+        self._depth, self._began = 0, 0.0
+        self.past = 0.0  #: time spent in compilations that have ended [s]
+        self.message: Callable[[str], None] | None = None  #: where to announce the first long one
 
     def on_start(self, event: event.Event) -> None:
         """A compilation begins."""
         if self._depth == 0:
             self._began = time.perf_counter()
         self._depth += 1
+        if self.message is None or event.data["dispatcher"].py_func.__name__ not in LONG:
+            return
+        message, self.message = self.message, None
+        if SHIPPED.is_dir():
+            message(f"the machine code of this package is not for {FITTING}, or not of this kernel")
+        message(
+            f"compiling the stepping kernels with numba {numba.__version__}'s own passes, once after "
+            "installation: the results are the same, but it takes a minute or more"
+            if PLAIN
+            else "compiling the stepping kernels, once after installation: a quarter of a minute or more"
+        )
 
     def on_end(self, event: event.Event) -> None:
         """It has ended, or failed."""
         self._depth -= 1
         if self._depth == 0:
-            self._past += time.perf_counter() - self._began
-
-    def reading(self) -> float:
-        """Time spent so far in compilations that have ended [s]."""
-        return self._past
+            self.past += time.perf_counter() - self._began
 
 
-class Announcer(event.Listener):
-    """Announces the first long compilation."""
-
-    def __init__(self, message: Callable[[str], None]) -> None:
-        self._message, self._announced = message, False
-
-    def on_start(self, event: event.Event) -> None:
-        """A compilation begins."""
-        if not self._announced and kernel_name(event) in LONG:
-            self._announced = True
-            if SHIPPED.is_dir():
-                self._message(f"the machine code of this package is not for {FITTING}, or not of this kernel")
-            self._message(
-                f"compiling the stepping kernels with numba {numba.__version__}'s own passes, once after "
-                "installation: the results are the same, but it takes a minute or more"
-                if PLAIN
-                else "compiling the stepping kernels, once after installation: a quarter of a minute or more"
-            )
-
-    def on_end(self, event: event.Event) -> None:
-        """Nothing to announce."""
-
-
-def kernel_name(compilation: event.Event) -> str:
-    """Name of the function that is compiled."""
-    return str(compilation.data["dispatcher"].py_func.__name__)
-
-
+_ALL = Compilations()
+event.register(COMPILING, _ALL)
 _ANNOUNCING = threading.Lock()
 
 
@@ -84,16 +67,13 @@ def compilation_announced(message: Callable[[str], None]) -> Iterator[None]:
         yield
         return
     try:
-        with event.install_listener(COMPILING, Announcer(message)):
-            yield
+        _ALL.message = message
+        yield
     finally:
+        _ALL.message = None
         _ANNOUNCING.release()
-
-
-_CLOCK = CompilationClock()
-event.register(COMPILING, _CLOCK)
 
 
 def compilation_time() -> float:
     """Time in which this process has compiled kernels so far [s], a clock beside `time.process_time`."""
-    return _CLOCK.reading()
+    return _ALL.past

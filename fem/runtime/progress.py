@@ -41,10 +41,6 @@ class Reporter:
         """Work has ended, with or without success; may be called twice."""
 
 
-class SilentReporter(Reporter):
-    """Prints nothing: for sweeps, tests and library use."""
-
-
 class ErrorStream(Console):
     """The error stream; work goes on unseen when its reader has left, as behind `2>&1 | head -n 1`."""
 
@@ -90,7 +86,18 @@ class ScreenReporter(Reporter):
 
     def update(self, time: float, ratio: float, mode: str) -> None:
         """Show the line if the last one is old enough."""
-        self.tell(lambda: self._line_of_run(time, ratio, mode))
+
+        def line() -> str:
+            self._bar.update(self._task, completed=time)
+            task = self._bar.tasks[-1]
+            rate, duration, left = task.speed or 0.0, task.total or 0.0, "time left unknown"
+            if time >= duration:
+                left = "until it falls or comes back"
+            elif rate > 0.0:
+                left = f"{clock_time((duration - time) / rate)} left"
+            return f"t = {time:.3f} of {duration:g} s, {rate:.3g} s per s, {left}, rotation ratio {ratio:.3f}, {mode}"
+
+        self.tell(line)
 
     def tell(self, line: Callable[[], str]) -> None:
         """Show a line if the last one is old enough."""
@@ -119,22 +126,6 @@ class ScreenReporter(Reporter):
     def _new_bar(self) -> Progress:
         column = TextColumn("{task.description}", markup=False)
         return Progress(column, console=self._console, auto_refresh=False, transient=True, get_time=self._now)
-
-    def _line_of_run(self, time: float, ratio: float, mode: str) -> str:
-        """Simulated time [s], rate [s/s], remaining wall time, rotation over the slenderness angle, state of motion."""
-        self._bar.update(self._task, completed=time)
-        task = self._bar.tasks[-1]
-        rate, duration = task.speed or 0.0, task.total or 0.0
-        if time >= duration:
-            remaining = "until it falls or comes back"
-        elif rate > 0.0:
-            remaining = f"{clock_time((duration - time) / rate)} left"
-        else:
-            remaining = "time left unknown"
-        return (
-            f"t = {time:.3f} of {duration:g} s, {rate:.3g} s per s, {remaining}, "
-            f"rotation ratio {ratio:.3f}, {mode}"
-        )
 
 
 def watched() -> bool:

@@ -26,7 +26,7 @@ from fem.results.kinds import ResultKind, read_result, typed_result
 from fem.results.run_files import copy_data_files, require_free_names
 from fem.runtime.compilation import compilation_announced
 from fem.runtime.own_files import appended, write_atomically
-from fem.runtime.progress import Reporter, SilentReporter
+from fem.runtime.progress import Reporter
 from fem.runtime.signals import interruptible
 from fem.runtime.threads import cores
 from fem.study.runner import ChunkWork, ItemT, Row, Runner
@@ -163,7 +163,7 @@ def runner_of(**options: Unpack[StudyOptions]) -> Iterator[Runner]:
         given = options.get("workers_of")
         yield Runner(
             workers_of=given or stack.enter_context(LocalWorkers(jobs)),
-            reporter=options.get("reporter") or SilentReporter(),
+            reporter=options.get("reporter") or Reporter(),
             jobs=jobs,
         )
 

@@ -27,7 +27,7 @@ from fem.run.expected import say_expected
 from fem.run.recorder import Recorder
 from fem.run.simulation import run_without_history, simulate
 from fem.run.verdict import verdict_of
-from fem.runtime.progress import Reporter, SilentReporter, clock_time
+from fem.runtime.progress import Reporter, clock_time
 from fem.runtime.signals import stop_requested
 from fem.study.containers import ContainerCache
 from fem.study.table import Columns
@@ -67,7 +67,7 @@ class Runner:
     """
 
     workers_of: WorkersOf  #: `LocalWorkers` or a cluster
-    reporter: Reporter = field(default_factory=SilentReporter)
+    reporter: Reporter = field(default_factory=Reporter)
     stop: Callable[[], bool] = never  #: asked repeatedly; true ends the work
     jobs: int = 1  #: cores of this machine that it may use
 

@@ -15,7 +15,7 @@ from verification.suite import chosen_checks
 import fem.runtime.own_files
 from fem.__main__ import main
 from fem.results.json_text import to_json
-from fem.runtime.progress import SilentReporter
+from fem.runtime.progress import Reporter
 
 
 def finding(value, *, tolerance=0.01, reference=2.0, relative=False, **optional):
@@ -83,7 +83,7 @@ def small_suite(monkeypatch):
 
 def computed(*, quick=False):
     """What verify.json holds."""
-    document = suite.run_suite(chosen_checks(quick=quick), quick=quick, reporter=SilentReporter())
+    document = suite.run_suite(chosen_checks(quick=quick), quick=quick, reporter=Reporter())
     return json.loads(to_json(document))
 
 

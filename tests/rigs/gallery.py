@@ -14,7 +14,7 @@ from filelock import FileLock
 from fem.case.case import load_case
 from fem.results.reader import OpenedRun, open_run
 from fem.run.run import RunOptions, run_case
-from fem.runtime.progress import SilentReporter
+from fem.runtime.progress import Reporter
 
 #: a title that must stay text wherever it is shown
 HOSTILE = "</title><script>alert(1)</script> & co"
@@ -42,7 +42,7 @@ RUNS: dict[str, tuple[str, tuple[str, ...], dict[str, bool]]] = {
 MADE: dict[str, Callable[[Path], object]] = {}
 
 
-class Strict(SilentReporter):
+class Strict(Reporter):
     """Lets no run end without its figures."""
 
     def message(self, text: str) -> None:

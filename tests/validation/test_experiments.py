@@ -18,7 +18,7 @@ from validation.shake_tests import (
 from validation.suite import document_of, require, run_validation
 from validation.vote import Block
 
-from fem.runtime.progress import SilentReporter
+from fem.runtime.progress import Reporter
 
 DATA = Path(__file__).parents[3] / "shared" / "experiments"
 ROCKS = pytest.mark.skipif(not DATA.is_dir(), reason="the motions of the rocks are not here")
@@ -167,7 +167,7 @@ def test_outcomes_and_a_body_that_cannot_be_used_are_refused(tmp_path, words):
 @pytest.mark.slow
 @pytest.mark.parametrize("data", [None, pytest.param(DATA, marks=ROCKS)], ids=["without rocks", "all"])
 def test_the_experiments_meet_their_criteria(data):
-    document = document_of(run_validation(data, reporter=SilentReporter()))
+    document = document_of(run_validation(data, reporter=Reporter()))
     assert document["passed"], document["sentence"]
 
 

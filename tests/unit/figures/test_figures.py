@@ -24,7 +24,7 @@ from fem.html.units import rounded
 from fem.model.container import discretise
 from fem.results.reader import OpenedRun
 from fem.run.run import RunOptions, run_case
-from fem.runtime.progress import SilentReporter
+from fem.runtime.progress import Reporter
 
 #: of a run that has all but a recorded motion
 ALL = [name for name in (*FIGURES, "modes") if name != "spectrum"]
@@ -32,7 +32,7 @@ ALWAYS = {*ALL} - {"band", "rigid_check", "joints"}
 AT_REST = ("seed_box", "motion.kind=none", "solver.duration_s=0.5")
 
 
-class Collecting(SilentReporter):
+class Collecting(Reporter):
     """Collects the messages."""
 
     def __init__(self):

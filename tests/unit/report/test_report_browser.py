@@ -19,7 +19,7 @@ from fem.report.run_page import run_report
 from fem.report.study_page import ensemble_report, hall_report, response_report, sweep_report
 from fem.results.errors import FolderError
 from fem.results.reader import open_run
-from fem.runtime.progress import SilentReporter
+from fem.runtime.progress import Reporter
 from fem.site.page import site_report
 from fem.study.file import load_sweep
 from fem.study.hall import run_hall
@@ -62,7 +62,7 @@ def pages(gallery, tmp_path_factory):
     (place / "run.html").write_text(run_report(gallery.run("default")), encoding="utf-8")
     (place / "boxes.toml").write_text(SWEEP)
     asked = load_sweep(str(place / "boxes.toml"))
-    run_sweep(asked, place / "boxes", jobs=1, resume=False, force=False, reporter=SilentReporter())
+    run_sweep(asked, place / "boxes", jobs=1, resume=False, force=False, reporter=Reporter())
     (place / "sweep.html").write_text(sweep_report(place / "boxes"), encoding="utf-8")
     (place / "list.csv").write_text(LIST, encoding="utf-8")
     base = load_case("seed_box", ("solver.model=rigid", "solver.duration_s=1"))

@@ -8,7 +8,7 @@ import pytest
 from fem.case.case import load_case
 from fem.response.request import ResponseRequest
 from fem.response.run import run_response
-from fem.runtime.progress import SilentReporter
+from fem.runtime.progress import Reporter
 
 SLIPPING = (
     *("solver.model=rigid", "solver.element_size_m=1"),
@@ -18,7 +18,7 @@ SLIPPING = (
 pytestmark = pytest.mark.usefixtures("undrawn")
 
 
-class Stopping(SilentReporter):
+class Stopping(Reporter):
     """Does something once, at its so-manieth period."""
 
     def __init__(self, periods, act):

@@ -5,7 +5,7 @@ import io
 import pytest
 from rich.console import Console
 
-from fem.runtime.progress import PLAIN_S, REDRAW_S, Reporter, ScreenReporter, SilentReporter, clock_time
+from fem.runtime.progress import PLAIN_S, REDRAW_S, Reporter, ScreenReporter, clock_time
 
 
 class Clock:
@@ -105,7 +105,7 @@ def test_messages_and_lines_are_printed_as_they_are(terminal):
 
 def test_quiet_and_silent_reporters_print_nothing():
     screen, stream, clock = reporter(terminal=True, quiet=True)
-    for each in (screen, SilentReporter()):
+    for each in (screen, Reporter()):
         each.start(20.0)
         clock.time += 100.0
         each.update(1.0, 0.1, "rock")

@@ -9,7 +9,7 @@ import time
 
 import pytest
 
-from fem.runtime.progress import SilentReporter
+from fem.runtime.progress import Reporter
 from fem.runtime.signals import interruptible, stop_requested
 
 
@@ -93,7 +93,7 @@ def test_a_signal_that_is_ignored_stays_ignored():
     assert outcome("a script", script) == (0, "")
 
 
-class Telling(SilentReporter):
+class Telling(Reporter):
     """Keeps what it is told."""
 
     def __init__(self):
@@ -134,9 +134,9 @@ def test_the_first_signal_requests_a_stop_and_a_second_ctrl_c_insists(monkeypatc
 
 def test_work_that_begins_after_a_request_to_stop_hears_it():
     # A list at a site verifies one container after another; each of these is a study of its own.
-    with interruptible(SilentReporter()):
+    with interruptible(Reporter()):
         os.kill(os.getpid(), signal.SIGTERM)
-        with interruptible(SilentReporter()) as stop:
+        with interruptible(Reporter()) as stop:
             assert stop()
 
 
@@ -161,10 +161,10 @@ def test_a_signal_that_was_heard_ends_nothing_later():
     script = """
 import time
 from fem.runtime import signals
-from fem.runtime.progress import SilentReporter
+from fem.runtime.progress import Reporter
 signals.UNHEARD_S = 0.2
 signals.raise_on_signal()
-with signals.interruptible(SilentReporter()):
+with signals.interruptible(Reporter()):
     os.kill(os.getpid(), signal.SIGTERM)
 time.sleep(0.6)
 try:

@@ -11,7 +11,7 @@ import pytest
 import fem
 import fem.study.compute_many as many
 from fem.case.case import CaseError
-from fem.runtime.progress import SilentReporter
+from fem.runtime.progress import Reporter
 from fem.runtime.signals import interruptible
 
 ROOT = Path(__file__).parents[3]
@@ -57,7 +57,7 @@ def test_processes_give_the_same_runs_as_threads(monkeypatch):
 
 
 def test_a_stop_that_was_asked_for_ends_the_runs():
-    with interruptible(SilentReporter()):
+    with interruptible(Reporter()):
         os.kill(os.getpid(), signal.SIGTERM)
         with pytest.raises(KeyboardInterrupt):
             fem.compute_many([BOX, BOX], band=False)

@@ -17,7 +17,7 @@ from fem.case.case import load_case
 from fem.cli.console import print_result
 from fem.results import kinds
 from fem.results.errors import FolderError, OutputError
-from fem.runtime.progress import SilentReporter
+from fem.runtime.progress import Reporter
 from fem.study.file import load_sweep
 from fem.study.hall import run_hall
 from fem.study.list_file import read_hall
@@ -27,7 +27,7 @@ HALL = "name,width_m,boxes\n" + "".join(f"{k},{0.6 + 0.02 * k:.2f},2\n" for k in
 RIGID = ("solver.model=rigid", "contact.mu_static=1", "contact.mu_kinetic=1", "solver.element_size_m=1")
 
 
-class Interrupting(SilentReporter):
+class Interrupting(Reporter):
     """Interrupts at a report of progress: at once, or by Ctrl-C, at the next safe point."""
 
     def __init__(self, reports, *, ctrl_c=False):
@@ -41,7 +41,7 @@ class Interrupting(SilentReporter):
             raise KeyboardInterrupt
 
 
-class Removing(SilentReporter):
+class Removing(Reporter):
     """Removes the folder of the results at every report of progress."""
 
     def __init__(self, folder):
