@@ -1,7 +1,7 @@
 """Friction in the joints of a run: what slides, what breaks loose, what stops.
 
 Static and kinetic friction are states of a joint, not of a point: see "Static and kinetic friction" in
-`contact/equations.md`. Forces and slips are those of the box on top of the joint.
+`contact/README.md`. Forces and slips are those of the box on top of the joint.
 """
 
 import math
