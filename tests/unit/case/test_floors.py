@@ -1,18 +1,27 @@
 """The table [floor]: presets, what a case of a slab holds, and cases without one."""
 
+import re
+from pathlib import Path
+
 import pytest
 from cases import LEAST
 
 from fem.case.case import case_from, case_hash, load_case, read_case, to_toml
-from fem.case.tables.floors import PRESETS
+from fem.case.tables import floors
+
+UNITS = {"GPa": 1e9, "MPa": 1e6}
+KEYS = (Path(floors.__file__).parents[1] / "keys.md").read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize("name", PRESETS)
-def test_the_value_of_a_preset_lies_in_its_range_and_has_a_source(name):
-    preset = PRESETS[name]
-    assert preset.youngs_modulus_range[0] < preset.youngs_modulus < preset.youngs_modulus_range[1]
-    assert preset.bearing_strength_range[0] < preset.bearing_strength < preset.bearing_strength_range[1]
-    assert preset.source
+@pytest.mark.parametrize("name", floors.PRESETS)
+def test_the_value_of_a_preset_lies_in_the_range_that_is_told_and_has_a_source(name):
+    preset = floors.PRESETS[name]
+    (row,) = re.findall(rf'^\| `"{re.escape(name)}"` \| (.*) \|$', KEYS, flags=re.MULTILINE)
+    modulus, poisson, strength = row.split(" | ")
+    for cell, value in ((modulus, preset.youngs_modulus), (strength, preset.bearing_strength)):
+        told, low, high = map(float, re.findall(r"[\d.]+", cell))
+        assert low < told < high and told * UNITS[cell.split()[-1]] == pytest.approx(value)
+    assert float(poisson) == preset.poisson_ratio and preset.source
 
 
 def test_a_resolved_slab_has_the_numbers_of_its_preset_and_no_penalty():
@@ -45,7 +54,7 @@ def test_a_preset_alone_is_a_slab_by_its_full_or_short_name(name, meant):
     tables["floor"] = {"preset": name}
     floor = case_from(tables).floor
     assert (floor.kind, floor.preset) == ("slab", meant)
-    assert floor.youngs_modulus_Pa == PRESETS[meant].youngs_modulus
+    assert floor.youngs_modulus_Pa == floors.PRESETS[meant].youngs_modulus
     assert load_case("seed_stack", [f"floor.preset={name}"]).floor.preset == meant
 
 
