@@ -16,26 +16,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem.case.case import Case
+from fem.case.tables import input_ranges as keys
 from fem.case.tables import quantities as q
-from fem.case.tables.input_keys import (
-    CAMBER,
-    JOINTS_MU_KINETIC,
-    JOINTS_MU_STATIC,
-    MODULUS,
-    MU_KINETIC,
-    MU_STATIC,
-    PENALTY,
-    STRIBECK,
-    SUPPORT,
-    TOLERANCE,
-    WEAKENING,
-)
 from fem.case.tables.input_ranges import InputRange, Value, short
 from fem.case.tables.links import ROWS
 from fem.case.tables.unknown_inputs import QUANTITIES, other_patch, ranges_of
 
 #: static and kinetic friction of the same surfaces
-FRICTIONS = ((MU_STATIC, MU_KINETIC), (JOINTS_MU_STATIC, JOINTS_MU_KINETIC))
+FRICTIONS = ((keys.MU_STATIC, keys.MU_KINETIC), (keys.JOINTS_MU_STATIC, keys.JOINTS_MU_KINETIC))
 TIGHTER = 0.1  #: energy tolerance over that of the case
 #: stiffness over that of the case at which a flat base must still open, or it does so by softness
 STIFF_FLOOR = 30.0
@@ -95,14 +83,16 @@ def all_changes(
     ]
     tolerance = max(TIGHTER * case.solver.energy_tolerance, q.ENERGY_TOLERANCE.least or 0.0)
     if tolerance < case.solver.energy_tolerance:
-        singles.append(InputChange(kind="one", values={TOLERANCE: short(tolerance)}, share=1.0))
+        singles.append(InputChange(kind="one", values={keys.TOLERANCE: short(tolerance)}, share=1.0))
     by_key, pairs = {span.key: span for span in ranges}, []
-    if MU_KINETIC in by_key and (drawn := by_key[MU_KINETIC].drawn) is not None:
+    if keys.MU_KINETIC in by_key and (drawn := by_key[keys.MU_KINETIC].drawn) is not None:
         middle = short(float(drawn(0.5)))
         if middle < case.contact.mu_static:  # at mu_kinetic = mu_static nothing falls
             pairs = [
-                InputChange(kind="pair", values={MU_KINETIC: middle, key: by_key[key].ends[-1]}, share=1.0)
-                for key in (WEAKENING, STRIBECK)
+                InputChange(
+                    kind="pair", values={keys.MU_KINETIC: middle, key: by_key[key].ends[-1]}, share=1.0
+                )
+                for key in (keys.WEAKENING, keys.STRIBECK)
                 if key in by_key
             ]
     spans = [span for span in ranges if span.drawn is not None]
@@ -151,10 +141,10 @@ def as_changed(case: Case, values: Mapping[str, Value]) -> dict[str, Any]:
             share = limit / own[static] if own[static] > 0.0 else 1.0
             follows = short(share * own[kinetic]) if kinetic not in values else float(values[kinetic])
             changed[kinetic] = min(follows, limit)
-    if SUPPORT in values and case.floor.is_slab:
-        changed["floor.corner_patch_m"] = other_patch(case, str(values[SUPPORT]))
-    elif not values.keys().isdisjoint((SUPPORT, CAMBER)) and not case.floor.is_slab:
-        changed.setdefault(PENALTY, "auto")
+    if keys.SUPPORT in values and case.floor.is_slab:
+        changed["floor.corner_patch_m"] = other_patch(case, str(values[keys.SUPPORT]))
+    elif not values.keys().isdisjoint((keys.SUPPORT, keys.CAMBER)) and not case.floor.is_slab:
+        changed.setdefault(keys.PENALTY, "auto")
     return changed
 
 
@@ -177,7 +167,7 @@ def _in_proportion(case: Case, values: Mapping[str, Value]) -> dict[str, Any]:
 def stiff_floor(case: Case, penalty: float) -> InputChange:
     """A floor so stiff that a container on a flat base is a rigid block on a rigid floor; arguments as `ranges_of`."""
     own = case.floor.youngs_modulus_Pa
-    key, value = (PENALTY, penalty) if own is None else (MODULUS, own)
+    key, value = (keys.PENALTY, penalty) if own is None else (keys.MODULUS, own)
     most = QUANTITIES[key].most or math.inf
     return InputChange(kind="floor", values={key: min(most, short(STIFF_FLOOR * value))}, share=1.0)
 

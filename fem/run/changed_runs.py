@@ -13,8 +13,7 @@ from pathlib import Path
 from threading import Event, Lock
 
 from fem.case.case import Case
-from fem.case.tables.input_keys import SUPPORT, TOLERANCE
-from fem.case.tables.input_ranges import Value
+from fem.case.tables.input_ranges import SUPPORT, TOLERANCE, Value
 from fem.case.uncertainty import InputChange, as_changed
 from fem.model.container import Container, adapted_container, discretise
 from fem.model.joints import Joints, joints_of

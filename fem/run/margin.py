@@ -16,8 +16,7 @@ from typing import NamedTuple
 
 from fem.case.case import Case, CaseError
 from fem.case.strength import scaled_motion
-from fem.case.tables.input_keys import TOLERANCE
-from fem.case.tables.input_ranges import Value
+from fem.case.tables.input_ranges import TOLERANCE, Value
 from fem.case.tables.links import ROWS
 from fem.case.uncertainty import all_changes, as_changed
 from fem.model.container import Container, changed_container, without_links

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from fem.case.tables.input_keys import MU_KINETIC, STRIBECK, WEAKENING
+from fem.case.tables.input_ranges import MU_KINETIC, STRIBECK, WEAKENING
 from fem.case.tables.unknown_inputs import in_words
 from fem.results.outcome import ROCKING, SLIDING, Outcome
 from fem.results.run_result import ChangedRun, Plane, RunResult, Sides, StaticResult, Verdict

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from fem.case.tables.input_keys import TOLERANCE
+from fem.case.tables.input_ranges import TOLERANCE
 from fem.case.tables.unknown_inputs import INPUTS
 from fem.case.uncertainty import InputChange
 from fem.results.figures import BOX_FIGURES, FELL_FIRST, Place, RunFigures, keys_of

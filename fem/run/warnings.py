@@ -9,7 +9,7 @@ from collections.abc import Callable
 
 from fem.case.case import Case
 from fem.case.tables.duration import MOST_FREE_MOTION, ends_at_rest, longest_time
-from fem.case.tables.input_keys import DASHPOT, WEAKENING
+from fem.case.tables.input_ranges import DASHPOT, WEAKENING
 from fem.case.tables.unknown_inputs import in_words
 from fem.results import run_result
 from fem.results.outcome import Outcome

@@ -8,7 +8,7 @@ from typing import Any
 
 from fem.case.case import Case, read_case
 from fem.case.data_files import FILE_KEYS
-from fem.case.tables.input_keys import TOLERANCE
+from fem.case.tables.input_ranges import TOLERANCE
 from fem.case.toml import toml_document
 from fem.results.figures import Place, columns_of, types_of
 from fem.results.outcome import Outcome

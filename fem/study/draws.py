@@ -15,7 +15,7 @@ from scipy.special import ndtr, ndtri
 from scipy.stats import qmc
 
 from fem.case.case import Case
-from fem.case.tables.input_keys import MU_KINETIC, RAMP, START, STRIBECK, WEAKENING
+from fem.case.tables.input_ranges import MU_KINETIC, RAMP, START, STRIBECK, WEAKENING
 from fem.runtime.arrays import FloatArray
 from fem.study.axes import VERTICAL_FILE, Axis, AxisError, read_axis, read_inline
 

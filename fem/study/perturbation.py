@@ -13,8 +13,7 @@ from scipy import ndimage
 
 from fem.case.case import Case
 from fem.case.strength import scaled_motion
-from fem.case.tables.input_keys import DASHPOT
-from fem.case.tables.input_ranges import HELD
+from fem.case.tables.input_ranges import DASHPOT, HELD
 from fem.case.tables.quantities import CONTACT_DAMPING, DRAWS, Quantity
 from fem.case.tables.table import CaseTable
 from fem.case.tables.unknown_inputs import WORDS

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fem.case.case import Case
-from fem.case.tables.input_keys import SUPPORT, TOLERANCE
+from fem.case.tables.input_ranges import SUPPORT, TOLERANCE
 from fem.case.uncertainty import InputChange, all_changes, as_changed
 from fem.model.geometry import build_container
 from fem.model.motion import build_motions

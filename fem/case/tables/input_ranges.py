@@ -6,9 +6,19 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any, NamedTuple
 
-from fem.case.tables import input_keys as keys
 from fem.case.tables import quantities as q
 from fem.case.tables.links import ROWS
+
+#: dotted keys of the inputs that are named elsewhere, too
+MU_STATIC, MU_KINETIC = "contact.mu_static", "contact.mu_kinetic"
+WEAKENING, STRIBECK = "contact.weakening_m", "contact.stribeck_velocity_m_s"
+JOINTS_MU_STATIC, JOINTS_MU_KINETIC = "joints.mu_static", "joints.mu_kinetic"
+JOINTS_DASHPOT, DASHPOT = "joints.damping_ratio", "contact.damping_ratio"
+PENALTY, RESTITUTION = "contact.normal_penalty_Pa_m", "contact.restitution_over_housner"
+SUPPORT, CAMBER, ROCKING = "support.kind", "support.camber_m", "support.rocking_damping_ratio"
+CENTROID, MODULUS = "container.centroid_m", "floor.youngs_modulus_Pa"
+PHASE, START, RAMP = "motion.phase_rad", "motion.start", "motion.ramp_cycles"
+SLOPE, TOLERANCE = "floor.slope_percent", "solver.energy_tolerance"
 
 Value = float | str
 Ends = tuple[float, float]
@@ -134,12 +144,12 @@ def own_value(case: Any, key: str, penalty: float | None) -> Any:
     table, _, name = key.partition(".")
     if table in ROWS:  # of the largest of its rows, which stands for all in proportion
         return max((getattr(row, name) for row in getattr(case, table)), default=None)
-    if key == keys.PENALTY:
+    if key == PENALTY:
         return None if case.floor.is_slab else penalty
-    if key == keys.DASHPOT:  # that of a slab matters little where it crushes
+    if key == DASHPOT:  # that of a slab matters little where it crushes
         return case.contact_damping_ratio
-    if key == keys.JOINTS_DASHPOT:
+    if key == JOINTS_DASHPOT:
         return case.joints.dashpot
-    if key == keys.RESTITUTION:
+    if key == RESTITUTION:
         return case.contact.restitution_over_housner or 1.0
     return case.joint_friction[name] if table == "joints" else getattr(getattr(case, table), name)

@@ -17,7 +17,7 @@ from functools import partial
 from typing import Any
 
 from contact.reference.rigid_block import RigidBlock
-from fem.case.tables import input_keys as keys
+from fem.case.tables import input_ranges as keys
 from fem.case.tables import quantities as q
 from fem.case.tables.boxes import least_weakening
 from fem.case.tables.duration import longest_time
@@ -118,9 +118,9 @@ def _is_lopsided(case: Any) -> bool:
 def _other_sign(case: Any, key: str) -> Value | None:
     """The other sign of a record or a pulse by its key, where that makes a difference."""
     motion = case.motion
-    of_a_table = "motion.scale" if motion.scale_to_m_s2 is None else "motion.scale_to_m_s2"
-    used = {"table": of_a_table, "pulse": "motion.peak_acceleration_m_s2"}.get(motion.kind)
-    own = getattr(motion, key.partition(".")[2]) if key == used and _is_lopsided(case) else None
+    of_a_table = "scale" if motion.scale_to_m_s2 is None else "scale_to_m_s2"
+    used = {"table": of_a_table, "pulse": "peak_acceleration_m_s2"}.get(motion.kind)
+    own = getattr(motion, key) if key == used and _is_lopsided(case) else None
     return -own if own else None
 
 
@@ -284,7 +284,7 @@ UNKNOWN: tuple[UnknownNumber | UnknownChoice, ...] = (
     Number(keys.JOINTS_MU_KINETIC, "joints_mu_kinetic", "kinetic friction of the joints", q.FRICTION,
            lambda case, own: _kinetic(own, case.joint_friction["mu_static"]),
            matters=lambda case: case.container.is_loose, power=1.0, between=_shares(0.5)),
-    Number(keys.JOINTS_WEAKENING, "joints_weakening_m", "slip over which friction of the joints falls", q.WEAKENING,
+    Number("joints.weakening_m", "joints_weakening_m", "slip over which friction of the joints falls", q.WEAKENING,
            _reaching(0.0, WEAKENING_M), matters=_joints_may_fall, power=3.0,
            between=lambda low, high: WEAKENINGS_BETWEEN_M, alone=_joints_fall,
            tried_from=least_weakening),
@@ -297,42 +297,44 @@ UNKNOWN: tuple[UnknownNumber | UnknownChoice, ...] = (
     Choice(keys.SUPPORT, "support", "contact of the base", _other_support, drawn=False),
     Number(keys.CENTROID, "centroid_m", "height of the mass centre", q.LENGTH, _heights,
            matters=lambda case: case.container.box is None and case.container.mesh_file is None, power=1.0),
-    Number(keys.ECCENTRICITY, "eccentricity_m", "offset of the mass centre", q.OFFSET, _beside,
+    Number("container.eccentricity_m", "eccentricity_m", "offset of the mass centre", q.OFFSET, _beside,
            matters=_has_columns, power=1.0),
-    Number(keys.EFFECTIVE, "effective_width", "bearing width of the base", q.EFFECTIVE_WIDTH, (EFFECTIVE_WIDTH, 1.0),
-           matters=lambda case: case.solver.model != "full", power=1.0),
+    Number("support.effective_width", "effective_width", "bearing width of the base", q.EFFECTIVE_WIDTH,
+           (EFFECTIVE_WIDTH, 1.0), matters=lambda case: case.solver.model != "full", power=1.0),
     Number(keys.SLOPE, "slope_percent", "slope of the floor", q.SLOPE, power=1.0,
            ends=lambda case, own: (max(q.SLOPE.least or 0.0, own - SLOPE_PERCENT),
                                    min(q.SLOPE.most or 0.0, own + SLOPE_PERCENT))),
-    Number(keys.VERTICAL_PHASE, "vertical_phase_rad", "phase of the vertical motion", q.PHASE,
+    Number("vertical.phase_rad", "vertical_phase_rad", "phase of the vertical motion", q.PHASE,
            lambda case, own: (short(own - math.pi), short(own + math.pi)),
            matters=lambda case: case.motion.kind == case.vertical.kind == "harmonic", power=1.0,
            between=_shares(0.25, 0.75), same=lambda value: short(math.pi - (math.pi - value) % (2.0 * math.pi))),
     Number(keys.PHASE, "phase_rad", "phase of the motion", q.PHASE, lambda case, own: (own, own),
            matters=lambda case: case.motion.kind == "harmonic", power=1.0, between=_shares(0.25, 0.5, 0.75)),
-    *(Choice(key, "sign", "sign of the motion", partial(_other_sign, key=key)) for key in keys.SIGNS),
-    Choice(keys.VERTICAL_SIGN, "vertical_sign", "sign of the vertical motion", unless_stated=False,
+    *(Choice(f"motion.{key}", "sign", "sign of the motion", partial(_other_sign, key=key))
+      for key in ("scale", "scale_to_m_s2", "peak_acceleration_m_s2")),
+    Choice("vertical.scale", "vertical_sign", "sign of the vertical motion", unless_stated=False,
            other=lambda case: -case.vertical.scale if case.vertical.kind in ("table", "pulse") else None),
     Choice(keys.START, "start", "start", _other_start, unless_stated=False),
     Choice(keys.RAMP, "ramp", "ramp of the motion", _other_ramp),
-    Number(keys.STOP_GAP, "stop_gap_m", "gap of the stops", q.GAP, GAPS, power=1.0),
-    Number(keys.STOP_STIFFNESS, "stop_stiffness_N_m", "stiffness of the stops", q.LINK_STIFFNESS, LINK_STIFFNESS),
-    Number(keys.STOP_FRICTION, "stop_mu", "friction on the stops", q.FRICTION, LINK_FRICTION, power=1.0),
-    Number(keys.TIE_SLACK, "tie_slack_m", "slack of the ties", q.GAP, GAPS, power=1.0),
-    Number(keys.TIE_STIFFNESS, "tie_stiffness_N_m", "stiffness of the ties", q.LINK_STIFFNESS, LINK_STIFFNESS),
-    Number(keys.SIDE_GAP, "neighbour_gap_m", "gap to the neighbours", q.GAP, GAPS, power=1.0),
-    Number(keys.SIDE_STIFFNESS, "neighbour_stiffness_N_m", "stiffness of the sides", q.LINK_STIFFNESS, LINK_STIFFNESS),
-    Number(keys.SIDE_FRICTION, "neighbour_mu", "friction between the sides", q.FRICTION, LINK_FRICTION, power=1.0),
+    Number("stop.gap_m", "stop_gap_m", "gap of the stops", q.GAP, GAPS, power=1.0),
+    Number("stop.stiffness_N_m", "stop_stiffness_N_m", "stiffness of the stops", q.LINK_STIFFNESS, LINK_STIFFNESS),
+    Number("stop.mu", "stop_mu", "friction on the stops", q.FRICTION, LINK_FRICTION, power=1.0),
+    Number("tie.slack_m", "tie_slack_m", "slack of the ties", q.GAP, GAPS, power=1.0),
+    Number("tie.stiffness_N_m", "tie_stiffness_N_m", "stiffness of the ties", q.LINK_STIFFNESS, LINK_STIFFNESS),
+    Number("neighbour.gap_m", "neighbour_gap_m", "gap to the neighbours", q.GAP, GAPS, power=1.0),
+    Number("neighbour.stiffness_N_m", "neighbour_stiffness_N_m", "stiffness of the sides", q.LINK_STIFFNESS,
+           LINK_STIFFNESS),
+    Number("neighbour.mu", "neighbour_mu", "friction between the sides", q.FRICTION, LINK_FRICTION, power=1.0),
     Number(keys.PENALTY, "normal_penalty_Pa_m", "stiffness of the contact", q.PENALTY, (SOFTEST, STIFFEST)),
-    Number(keys.STRENGTH, "bearing_strength_Pa", "strength of the floor", q.BEARING_STRENGTH, SLAB),
+    Number("floor.bearing_strength_Pa", "bearing_strength_Pa", "strength of the floor", q.BEARING_STRENGTH, SLAB),
     Number(keys.MODULUS, "floor_youngs_modulus_Pa", "stiffness of the floor", q.FLOOR_STIFFNESS, SLAB),
     Number(keys.DASHPOT, "damping_ratio", "damping of the contact", q.CONTACT_DAMPING, DAMPING),
     Number(keys.RESTITUTION, "restitution_over_housner", "rebound at impacts", q.RESTITUTION, _restitutions,
            matters=_has_impacts, power=1.0),
-    Number(keys.MATERIAL, "material_damping_ratio", "damping of the container", q.MATERIAL_DAMPING, DAMPING,
+    Number("container.damping_ratio", "material_damping_ratio", "damping of the container", q.MATERIAL_DAMPING, DAMPING,
            matters=lambda case: case.solver.model != "rigid"),
-    Number(keys.FILL, "fill_damping_ratio", "damping of the fill", q.MATERIAL_DAMPING, FILL_DAMPINGS,
-           matters=lambda case: case.solver.model != "rigid" and case.container.is_filled_shell),
+    Number("container.fill_damping_ratio", "fill_damping_ratio", "damping of the fill", q.MATERIAL_DAMPING,
+           FILL_DAMPINGS, matters=lambda case: case.solver.model != "rigid" and case.container.is_filled_shell),
 )
 # fmt: on
 INPUTS = (*(unknown.key for unknown in UNKNOWN), keys.TOLERANCE)
