@@ -134,6 +134,13 @@ def html_of(
     )
 
 
+def text_of(template: str, **shown: Any) -> str:
+    """A page for a terminal, by a template of `fem/html/templates`."""
+    environment = _environment().overlay(autoescape=False)
+    environment.filters = {**environment.filters, "form": format, "lines": table_lines}
+    return environment.get_template(template).render(shown).rstrip()
+
+
 @cache
 def template_text(name: str) -> Markup:
     """A style sheet or script of `fem/html/templates`, for a page."""

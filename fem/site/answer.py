@@ -7,7 +7,7 @@ from typing import NamedTuple
 from fem.results.outcome import Outcome
 from fem.runtime.intervals import binomial_interval, least_draws
 from fem.runtime.units import RATIO, SHORT_MILLIMETRES, DisplayUnit, plain_number
-from fem.site.request import SiteRequest
+from fem.site.request import WIDTH, SiteRequest
 from fem.site.result import (
     BY_RULE,
     FIGURE_OF,
@@ -89,8 +89,8 @@ def answer_of(
     ranged, failed = rule_range(groups, runs)
     further = further_motions(limits, runs, beside.slips_of_further)
     against = [
-        *_of_the_set(limits, motions.count, groups, ranged, failed),
-        *(reason for group in further for reason in of_further(group)),
+        *_of_the_set(request, motions.count, groups, ranged, failed),
+        *(reason for group in further for reason in of_further(request, group)),
         *_of_the_deciding(limits, tally, beside.confirmed),
         *(_of_two_directions(slip, limits.slip_m) if slip else ()),
         *([_Reason(NOT_SURE, beside.in_plane_only)] if beside.in_plane_only else ()),
@@ -206,7 +206,7 @@ def _rule_in_words(motions: int, limits: LimitsTable) -> str:
 
 
 def _of_the_set(
-    limits: LimitsTable, motions: int, groups: Sequence[RunGroup], ranged: RuleRange | None, failed: int
+    request: SiteRequest, motions: int, groups: Sequence[RunGroup], ranged: RuleRange | None, failed: int
 ) -> Iterator[_Reason]:
     """What the set and its repetitions say against it; `failed`: runs of these that did."""
     tally, runs = RuleFound.of(groups), sum(len(group.runs) for group in groups)
@@ -221,12 +221,12 @@ def _of_the_set(
         yield _Reason(
             NOT_FULFILLED,
             f"{tally.overturned} of {runs} runs overturned: up to {len(most.beyond({}))} of {motions} motions overturn "
-            f"it ({where(most.first)}).",
+            f"it ({where(request, most.first)}).",
         )
     if tally.overturned + tally.invalid:
         return
     for key in FIGURE_OF:
-        yield from _of_a_limit(key, limits, motions, groups, ranged)
+        yield from _of_a_limit(key, request, motions, groups, ranged)
     if ranged and ranged.overturned:
         yield _Reason(
             NOT_SURE,
@@ -238,10 +238,10 @@ def _of_the_set(
 
 
 def _of_a_limit(
-    key: str, limits: LimitsTable, motions: int, groups: Sequence[RunGroup], ranged: RuleRange | None
+    key: str, request: SiteRequest, motions: int, groups: Sequence[RunGroup], ranged: RuleRange | None
 ) -> Iterator[_Reason]:
     """Whether a limit is kept, by the set and by its repetitions."""
-    figure, limit = FIGURE_OF[key], getattr(limits, key)
+    figure, limit = FIGURE_OF[key], getattr(request.limits, key)
     value = RuleFound.of(groups).by_rule[figure]
     if value is None:
         return
@@ -261,25 +261,25 @@ def _of_a_limit(
         "" if key == "slip_m" else " of the slenderness angle"
     )
     group = max(groups, key=lambda group: group.by_rule[figure] or 0.0)
+    place = where(request, group.first)
     between = span_in_words(key, low, high, places)
     if low > limit:
         again = f", {between} in all repetitions" if ranged and low < high else ""
         count = len(group.beyond({FOUND_FROM[key]: limit}))
         single = "" if key == "rotation_ratio" else f"; {count} of {motions} motions beyond it"
-        yield _Reason(
-            NOT_FULFILLED, f"{words} is {amount}{again}, beyond {bound} ({where(group.first)}{single})."
-        )
+        yield _Reason(NOT_FULFILLED, f"{words} is {amount}{again}, beyond {bound} ({place}{single}).")
     else:
-        yield _Reason(
-            NOT_SURE,
-            f"{words} is {amount}, and {between} in repetitions {ALIKE}: {bound} lies between ({where(group.first)}).",
+        sentence = (
+            f"{words} is {amount}, and {between} in repetitions {ALIKE}: {bound} lies between ({place})."
         )
+        yield _Reason(NOT_SURE, sentence)
 
 
-def of_further(group: FurtherMotions) -> Iterator[_Reason]:
+def of_further(request: SiteRequest, group: FurtherMotions) -> Iterator[_Reason]:
     """What the further motions for one container and friction say against it."""
+    place = where(request, group)
     if group.failed:
-        words = f"{group.failed} of {group.failed + group.motions} further motions failed ({where(group)})."
+        words = f"{group.failed} of {group.failed + group.motions} further motions failed ({place})."
         yield _Reason(NOT_SURE, words)
     if not group.motions:
         return
@@ -291,13 +291,13 @@ def of_further(group: FurtherMotions) -> Iterator[_Reason]:
         yield _Reason(
             NOT_SURE,
             f"{group.overturned} of {group.motions} further motions overturned it{destroyed(group.invalid)} and "
-            f"{beyond} ({where(group)}): under {low} to {high} % of such motions it does not stand, which may be more "
+            f"{beyond} ({place}): under {low} to {high} % of such motions it does not stand, which may be more "
             f"than {per_cent}.",
         )
     elif least_beyond > MOST_OVERTURNING:
         yield _Reason(
             NOT_SURE,
-            f"Of {group.motions} further motions {beyond} ({where(group)}): of such motions more than {per_cent} do.",
+            f"Of {group.motions} further motions {beyond} ({place}): of such motions more than {per_cent} do.",
         )
     elif group.interval[1] > MOST_OVERTURNING:
         yield _Reason(
@@ -382,9 +382,11 @@ def destroyed(count: int) -> str:
     return f", {count} destroyed a corner" if count else ""
 
 
-def where(run: SiteKey) -> str:
-    """The container and friction of runs: "full, motion along its width, friction 0.4/0.2"."""
-    return f"{run.mass}, motion along its {run.elevation}{_period_and_friction(run)}"
+def where(request: SiteRequest, run: SiteKey) -> str:
+    """The container and friction of runs: "full, motion along its width of 1.2 m, friction 0.4/0.2"."""
+    box = request.container.container
+    length = box.width_m if run.elevation == WIDTH else box.depth_m
+    return f"{run.mass}, motion along its {run.elevation} of {length:g} m{_period_and_friction(run)}"
 
 
 def _period_and_friction(run: SiteKey | TwoDirections) -> str:

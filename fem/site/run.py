@@ -22,7 +22,6 @@ from fem.results.outcome import ENDINGS
 from fem.results.run_result import Band
 from fem.run.ranges import largest_bolt_forces
 from fem.runtime.identity import command_line, versions
-from fem.runtime.progress import clock_time
 from fem.seismic.ground_motion import GroundMotion
 from fem.site.answer import FULFILLED, NOT_FULFILLED, answer_of, no_answer_yet
 from fem.site.copies import copy_files, inputs_of, left_elsewhere, texts_of
@@ -54,7 +53,7 @@ from fem.site.runs import COLUMNS, CONFIRMING, RunCases, cells_of
 from fem.site.stages import Stages
 from fem.study.compute_many import compute_many
 from fem.study.driver import COMPLETED, INTERRUPTED, LoggedRuns, Study, StudyOptions, hash_of, run_study
-from fem.study.runner import Runner
+from fem.study.runner import NamedStages, Runner
 from fem.study.table import row_of
 
 RUNS, PAGE = "runs.csv", "report.html"
@@ -183,27 +182,16 @@ class Verification:
         names += ["further motions"] * stages.has_further(quick=self.quick)
         scans = not (self.quick or varied)
         names += [OTHER_FACTORS] * scans + [DECIDING] * (not left_out)
-        computed, began = len(rows.runs), time.perf_counter()
-
-        def tell(stage: int, runs: int) -> None:
-            """Name a stage of some runs, which take as long as those before; of a value of `size` none is named."""
-            done, words = (
-                len(rows.runs) - computed,
-                f"{'up to ' * (names[stage] == OTHER_FACTORS)}{runs} runs",
-            )
-            if done and names[stage] != DECIDING:  # of another model
-                words += f", {clock_time(runs * (time.perf_counter() - began) / done)} at the rate so far"
-            if runs and not varied:
-                runner.reporter.message(f"stage {stage + 1} of {len(names)}: {names[stage]}, {words}")
+        told = NamedStages([] if varied else names, runner.reporter)  # of a value of `size` none is named
 
         def batches() -> Iterator[Sequence[RunKey]]:
-            for stage, keys in enumerate(stages.of_the_answer(runner, quick=self.quick)):
-                tell(stage, len(keys))
+            for name, keys in zip(names, stages.of_the_answer(runner, quick=self.quick), strict=False):
+                told.begin(name, len(keys))
                 yield keys
                 if varied and now().answer == NOT_FULFILLED:
                     return
             if scans:
-                tell(names.index(OTHER_FACTORS), stages.most_scanned)
+                told.begin(OTHER_FACTORS, stages.most_scanned, up_to=True)
                 yield from stages.of_the_margin()
 
         def note(line: str) -> None:
@@ -230,7 +218,7 @@ class Verification:
                     if key not in rows.still
                 ]
                 if keys:
-                    tell(len(names) - 1, len(keys))
+                    told.begin(DECIDING, len(keys), alike=False)  # of another model
                     again = confirmed(cases, runs, keys, runner.jobs)
         return None if runner.stop() else now()
 

@@ -230,6 +230,7 @@ class LoggedRuns(Generic[ItemT]):
     logged: Callable[[Row], Row] = lambda row: row  #: a row as the log holds it
     #: called with every line of the log, old and new; raises a LookupError for one of no item
     note: Callable[[str], None] = lambda line: None
+    told: Callable[[int], None] = lambda count: None  #: called with the size of every batch before its runs
     lines: dict[tuple[Any, ...], str] = field(
         default_factory=dict, init=False
     )  #: of the log, by what tells apart
@@ -268,6 +269,7 @@ class LoggedRuns(Generic[ItemT]):
             for items in batches:
                 if runner.stop():
                     break
+                self.told(len(items))
                 for chunk, rows in runner.rows(self.what, items, self.make, self.model_of, self.work):
                     lines = [self._line(item, row) for item, row in zip(chunk, rows, strict=True)]
                     log.append(lines)

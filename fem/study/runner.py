@@ -138,6 +138,28 @@ class Runner:
 
 
 @dataclass
+class NamedStages:
+    """Names the stages of a study as they begin: their runs, and how long these take at the rate of those before."""
+
+    names: Sequence[str]
+    reporter: Reporter
+    runs: int = 0  #: that were announced
+    last: str = ""  #: stage
+    began: float = field(default_factory=time.perf_counter)  #: [s]
+
+    def begin(self, name: str, runs: int, *, up_to: bool = False, alike: bool = True) -> None:
+        """A stage of some runs, or of more of them, begins; `alike`: they take as long as those before."""
+        if not runs or len(self.names) < 2:
+            return
+        words = f"{'up to ' * up_to}{runs} {'more ' * (name == self.last)}runs"
+        if self.runs and alike:
+            seconds = runs * (time.perf_counter() - self.began) / self.runs
+            words += f", {clock_time(seconds)} at the rate so far"
+        self.reporter.message(f"stage {self.names.index(name) + 1} of {len(self.names)}: {name}, {words}")
+        self.runs, self.last = self.runs + runs, name
+
+
+@dataclass
 class _Told:
     """The line of progress of some work: from its begin, `more` as it is done, `close`."""
 

@@ -6,7 +6,7 @@ effect is what the sweep shows.
 """
 
 from collections import Counter
-from collections.abc import Hashable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from operator import itemgetter
 from pathlib import Path
@@ -45,6 +45,7 @@ from fem.study.sweep_table import SHOWN, TRIED_COLUMNS, CellRows, RunShown, show
 from fem.study.table import Columns, row_of, table_of_rows
 from mesh.container import ContainerMesh
 
+COPIES, BETWEEN = "perturbed copies", "cases between cells"  #: stages of a sweep, behind its cells
 REMEMBERED = 4096  #: cells of which the copies are remembered
 SHARE_OF_DRAWS = 0.25  #: draws of a cell over those of the band of a run
 REACH = 2  #: cells around one with another outcome that try the same change
@@ -226,11 +227,15 @@ class Copies:
         }
         return added, values()
 
-    def compute(self, runner: Runner, path: Path) -> str:
-        """Compute the copies that the log at `path` does not hold; the rows of all, as a table."""
+    def compute(self, runner: Runner, path: Path, told: Callable[[int], None]) -> str:
+        """Compute the copies that the log at `path` does not hold; the rows of all, as a table.
+
+        `told` is that of `LoggedRuns`.
+        """
         make, model_of = self._sweep.make.case, self._sweep.model_of
         log = LoggedRuns[Item](
-            what="perturbed copies",
+            what=COPIES,
+            told=told,
             path=path,
             columns=COLUMNS,
             make=make,
@@ -298,8 +303,12 @@ def _key(item: Item) -> tuple[int, int, str]:
 CHANGES: Columns = {name: types_of(Change)[name] for name in ("low", "high", "value", "below", "above")}
 
 
-def refine(runner: Runner, sweep: Sweep, cells: CellRows, log: Path) -> list[tuple[int, Change]] | None:
+def refine(
+    runner: Runner, sweep: Sweep, cells: CellRows, log: Path, told: Callable[[int], None]
+) -> list[tuple[int, Change]] | None:
     """Locate every change of outcome along the axis asked for; cases that the log holds are not computed again.
+
+    `told` is that of `LoggedRuns`.
 
     Returns:
         The changes, each with the first cell of its line of cells; None where none are wanted.
@@ -332,7 +341,8 @@ def refine(runner: Runner, sweep: Sweep, cells: CellRows, log: Path) -> list[tup
         ]
 
     LoggedRuns[Item](
-        what="cases between cells",
+        what=BETWEEN,
+        told=told,
         path=log,
         columns=TRIED_COLUMNS,
         make=sweep.make.case,

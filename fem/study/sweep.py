@@ -36,8 +36,8 @@ from fem.study.driver import (
 )
 from fem.study.maps import draw_maps
 from fem.study.motions import FloorMotionPair, motions_left_out, read_motion_set
-from fem.study.runner import Runner
-from fem.study.sure import Copies, left_out, refine, table_of_changes
+from fem.study.runner import NamedStages, Runner
+from fem.study.sure import BETWEEN, COPIES, Copies, left_out, refine, table_of_changes
 from fem.study.sweep_table import (
     TRIED,
     CellRows,
@@ -56,6 +56,7 @@ ROWS, TABLE, MEMBERS, CHANGES, ANSWERS = (
     "thresholds.csv",
     "answers.csv",
 )
+CELLS = "cells"  #: the first stage
 MOST_CELLS = 1_000_000  #: unless it is forced
 OF_A_CELL = 250  #: numbers, in the log, the table, the copies and the maps
 
@@ -170,12 +171,15 @@ def _compute(sweep: Sweep, begun: SweepResult, place: ResultFolder, runner: Runn
     if (place.earlier or {}).get("band_hash") != begun.band_hash:
         place.remove(MEMBERS, TRIED, CHANGES, ANSWERS)
     rows = CellRows(sweep)
+    further = [COPIES] * sweep.has_copies + [BETWEEN] * (sweep.threshold is not None)
+    stages = NamedStages([CELLS, *further], runner.reporter)
 
     def missing() -> Iterator[list[Item]]:
         yield sweep.by_container(log.missing(map(sweep.item, range(sweep.count))))
 
     log = LoggedRuns[Item](
-        what="cells",
+        what=CELLS,
+        told=partial(stages.begin, CELLS),
         path=place.path / ROWS,
         columns=rows.columns,
         make=sweep.make.case,
@@ -193,8 +197,10 @@ def _compute(sweep: Sweep, begun: SweepResult, place: ResultFolder, runner: Runn
     place.remove(TABLE)
     log.run(runner, missing())
     copies = Copies(sweep, rows) if sweep.has_copies and not stop() else None
-    members = copies.compute(runner, place.path / MEMBERS) if copies else ""
-    changes = None if stop() else refine(runner, sweep, rows, place.path / TRIED)
+    members = copies.compute(runner, place.path / MEMBERS, partial(stages.begin, COPIES)) if copies else ""
+    changes = (
+        None if stop() else refine(runner, sweep, rows, place.path / TRIED, partial(stages.begin, BETWEEN))
+    )
     result = replace(begun, rows=len(rows.runs), outcomes=dict(sorted(rows.outcomes.items())))
     if stop():
         words = f"{result.rows} of {sweep.count} cells are computed"
