@@ -1,7 +1,7 @@
 """What commands have in common: options that mean the same everywhere, and the exit code of a status."""
 
 import importlib
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
@@ -165,16 +165,14 @@ def print_json(text: str) -> None:
         say(text.rstrip(), flush=True)
 
 
-def print_result(
-    result: "StudyResult", kind: ResultKind, folder: Path, page: Iterable[str], *, as_json: bool
-) -> int:
+def print_result(result: "StudyResult", kind: ResultKind, folder: Path, page: str, *, as_json: bool) -> int:
     """Print the result of a study, its marking file or a page for people; returns its exit code.
 
     Args:
-        page: the lines before the last, which is the answer or what is missing.
+        page: without its last line, which is the answer or what is missing.
     """
     if as_json:
         print_json(read_text(folder / kind.mark))
     else:
-        say("\n".join([*page, *filter(None, [result.no_answer_yet or result.answer])]))
+        say("\n".join(filter(None, (page, result.no_answer_yet or result.answer))))
     return EXIT_CODES[result.status]

@@ -137,7 +137,7 @@ def html_of(
 def text_of(template: str, **shown: Any) -> str:
     """A page for a terminal, by a template of `fem/html/templates`."""
     environment = _environment().overlay(autoescape=False)
-    environment.filters = {**environment.filters, "form": format, "lines": table_lines}
+    environment.filters = {**environment.filters, "form": format}
     return environment.get_template(template).render(shown).rstrip()
 
 

@@ -28,7 +28,6 @@ GAPS = ("stop.gap_m", "tie.slack_m", "neighbour.gap_m")  #: axes of an answer wh
 #: axes along which the larger value is the safer one
 LARGER_IS_SAFER = frozenset({"container.width_m"})
 MOST_RANGES = 4  #: of values that a sentence names
-MOST_ROWS = 40  #: on a screen
 MOST_FIGURES = 17  #: of a number in double precision
 
 FoundT = TypeVar("FoundT")
@@ -240,15 +239,6 @@ def ranges_in_words(ranges: Sequence[Range], axis: Axis, *, bare: bool = False) 
     texts = [in_words(axis, sorted({*span}), bare=bare) for span in ranges[:MOST_RANGES]]
     more = len(ranges) - len(texts)
     return ", ".join(texts) + (f" and {more} more" if more else "")
-
-
-def table_lines(rows: Iterable[tuple[str, str]], file: str = "") -> Iterator[str]:
-    """Lines for a screen, each a place and its answer; after the first forty, the number left and the file of all."""
-    listed = list(rows)
-    widest = max((len(where) for where, _ in listed), default=0)
-    yield from (f"  {where:{widest}}  {sentence}" for where, sentence in listed[:MOST_ROWS])
-    if more := len(listed[MOST_ROWS:]):
-        yield f"  {more} more rows" + (f" in {file}" if file else "")
 
 
 def falling_in_words(limit_slip: float | None, *, past: bool = False) -> str:

@@ -8,8 +8,7 @@ from site_example import RUN, example
 from small_site import SITE
 
 from fem.case.validation import CaseError
-from fem.cli.studies import site_lines as lines_of
-from fem.html.page import Page, html_of
+from fem.html.page import Page, html_of, text_of
 from fem.site.answer import Beside, answer_of
 from fem.site.page import shown
 from fem.site.request import load_site
@@ -98,7 +97,8 @@ def brief_page(asked):
     result = eval(f"changed({asked})")
     page = Page(kind="", title="", name="", hash="", signature=None)
     html = html_of(page, "site.html.j2", **shown(result, Path(), brief=True))
-    return html + "".join(f"<p>{line}</p>" for line in lines_of(result, Path("out")))
+    lines = text_of("assess.txt.j2", result=result, folder=Path("out")).splitlines()
+    return html + "".join(f"<p>{line}</p>" for line in lines)
 
 
 #: a value that fulfils the rule, and one that does not

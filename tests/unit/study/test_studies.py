@@ -153,7 +153,7 @@ def test_an_interrupted_study_says_what_is_missing_in_place_of_an_answer(tmp_pat
     run, folder = study(tmp_path), tmp_path / "out"
     result = run(folder, reporter=Interrupting(1, ctrl_c=True), jobs=1)
     kind = next(one for one in kinds.KINDS if one.mark == mark)
-    assert print_result(result, kind, folder, (), as_json=False) == 4
+    assert print_result(result, kind, folder, "", as_json=False) == 4
     assert re.fullmatch("no answer yet: .*; --resume continues", capsys.readouterr().out.strip())
     found = json.loads((folder / mark).read_text())
     assert (found["status"], found["state"], found["answer"]) == ("interrupted", "interrupted", None)
