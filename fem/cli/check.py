@@ -47,8 +47,9 @@ def check(
         previews = importlib.import_module("fem.site.preview")
         request = files.load_site(case, allow_baseline=allow_baseline)
         outlook = previews.preview_of(request, allow_outside=allow_outside)
-        lines = previews.preview_lines(outlook, request)
-        say(json.dumps(outlook.to_json(), indent=2) if as_json else "\n".join(lines))
+        text_of = importlib.import_module("fem.html.page").text_of
+        page = "" if as_json else text_of("preview.txt.j2", preview=outlook, request=request)
+        say(page or json.dumps(outlook.to_json(), indent=2))
         return
     loaded = load_case(
         case, overrides, motion=motion, allow_outside=allow_outside, allow_baseline=allow_baseline

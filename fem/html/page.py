@@ -23,6 +23,7 @@ from fem.html.drawing import require_drawing
 from fem.html.formula import formula_markup
 from fem.html.units import (
     ABSENT,
+    degrees,
     figure_cell,
     figure_head,
     millimetres,
@@ -41,6 +42,7 @@ TEMPLATES = "templates"
 #: what templates set values with: numbers and units of `fem.html.units`, symbols, and columns of declared figures
 FILTERS = {
     "cell": lambda value, figure: figure_cell(figure, value),
+    "degrees": degrees,
     "drawing": lambda text, label, prefix: svg_element(text, label=label, prefix=prefix),
     "figure_of": FIGURES.__getitem__,
     "formula": formula_markup,

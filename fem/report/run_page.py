@@ -14,6 +14,7 @@ from fem.case.tables.unknown_inputs import WORDS
 from fem.figures.cache import drawings_of
 from fem.html.page import Page, Signature, html_of
 from fem.html.units import number, quantity, short, typeset
+from fem.model.container import modes_of_a_body
 from fem.model.floor_numbers import drawn_level
 from fem.model.model import Model, build_model
 from fem.report.animation import (
@@ -24,7 +25,7 @@ from fem.report.animation import (
     exaggerations,
     player_data,
 )
-from fem.report.comparison import case_rows, compared_rows
+from fem.report.comparison import compared_rows
 from fem.report.models import OfModel, compared_in_words
 from fem.report.sketch import sketch
 from fem.report.static_sheet import static_sheet
@@ -36,7 +37,7 @@ from fem.results.outcome import Outcome
 from fem.results.reader import OpenedRun
 from fem.results.run_result import Energy, Numerics, RigidCheckResult, RunResult, Verdict, to_overturn
 from fem.run.card import card_of
-from fem.run.described import floor_rows
+from fem.run.described import floor_rows, link_rows
 from fem.run.drawn_links import drawn_links
 from fem.run.joints import BOXES_NOTE, box_rows, joints_note, largest_joint_slip, unbolted
 from fem.run.ranges import impact_note, largest_ratio, largest_rotation, largest_slip, of_band
@@ -70,7 +71,6 @@ SAID: dict[str, Any] = {
     "BOXES_NOTE": BOXES_NOTE,
     "DEGREES": math.degrees(1.0),
     "band_note": band_note,
-    "case_rows": case_rows,
     "governing": governing,
     "impact_note": impact_note,
     "joints_note": joints_note,
@@ -78,6 +78,8 @@ SAID: dict[str, Any] = {
     "largest_ratio": largest_ratio,
     "largest_rotation": largest_rotation,
     "largest_slip": largest_slip,
+    "link_rows": link_rows,
+    "modes_of_a_body": modes_of_a_body,
     "of_band": of_band,
     "unbolted": unbolted,
 }

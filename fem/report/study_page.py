@@ -15,8 +15,8 @@ from markupsafe import Markup, escape
 from fem.case.case import Case, load_case
 from fem.html.page import Page, Signature, html_of, svg_element
 from fem.html.units import ABSENT, figure_cell, figure_head, millimetres, number, short, typeset
+from fem.model.container import modes_of_a_body
 from fem.records.units import STANDARD_GRAVITY
-from fem.report.comparison import case_rows
 from fem.report.sweep_map import counts, map_data, shown_quantities
 from fem.response.answer import lasting_in_words, range_of, response_answer, stable_in_words
 from fem.response.lasting import ResponseResult
@@ -25,6 +25,7 @@ from fem.results.figures import DURATION, PGA, PGD, PGV, SLIPPED, TURNED, Place,
 from fem.results.kinds import ENSEMBLE, HALL, RESPONSE
 from fem.results.outcome import COUNTED, Outcome
 from fem.run.card import deciding_in_words, times
+from fem.run.described import link_rows
 from fem.run.sureness import REGIME_UNSURE
 from fem.runtime import units
 from fem.runtime.identity import command_line
@@ -497,7 +498,8 @@ def _html(
         case=case,
         numerics=None,
         joints_below=False,
-        base_rows=case_rows(case),
+        link_rows=link_rows,
+        modes_of_a_body=modes_of_a_body,
         sentence=info.no_answer_yet or sentence,
         measures=_measures(motions),
         figures=figures,

@@ -1,7 +1,6 @@
 """What can be said of a site before any run: action, motions, what they move, and what a verification would take."""
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -118,25 +117,3 @@ def preview_of(request: SiteRequest, *, allow_outside: bool = False) -> SitePrev
         wind_utilisation=stages.wind,
         forecast=forecast(stages, cores()),
     )
-
-
-def preview_lines(preview: SitePreview, request: SiteRequest) -> Iterator[str]:
-    """The lines of a preview, for people."""
-    yield f"{preview.site}: {preview.title}" if preview.title else preview.site
-    yield f"  action     {preview.spectrum}; a_g S = {preview.ag_S_m_s2:.3g} m/s2, a_vg = {preview.avg_m_s2:.3g} m/s2"
-    if preview.floor is not None:
-        yield f"  floor      given by {preview.floor}; taken as it is, without any factor"
-    for body in preview.bodies:
-        yield (
-            f"  {body.mass:<10} {body.mass_kg:.6g} kg, {body.elevation} {body.width_m:g} m along the motion: uplift "
-            f"from {body.uplift_acceleration_m_s2:.3g} m/s2, slip from "
-            f"{min(request.friction.mu_static) * body.gravity_m_s2:.3g} m/s2"
-        )
-    validity = "valid" if preview.set_valid else f"not valid: {'; '.join(preview.reasons)}"
-    yield f"  motions    {preview.motions}, {request.motions.source}: {validity}"
-    yield from (f"  note       {note}" for note in preview.notes)
-    if preview.factor_at_first_movement is not None:
-        yield f"  moves      first at {preview.factor_at_first_movement:.3g} times the set, as a rigid body"
-    if preview.wind_utilisation is not None:
-        yield f"  wind       utilisation {preview.wind_utilisation:.3g}"
-    yield f"  runs       {preview.forecast.words}"

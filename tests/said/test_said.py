@@ -28,7 +28,10 @@ from typed_results import told
 from fem.__main__ import main
 from fem.case.case import CaseError, load_case
 from fem.case.overrides import parse_override
+from fem.html.page import _environment
+from fem.model.container import modes_of_a_body
 from fem.report.study_page import ensemble_report, response_report
+from fem.run.described import link_rows
 from fem.site.page import site_report
 
 HERE = Path(__file__).parent
@@ -81,10 +84,12 @@ def commanded(asked, capsys):
 
 
 def paged(asked):
-    """The page of a known result of a study, with changes as in TOML; `brief`: two sheets, with arguments."""
+    """The page of a known result of a study, with changes as in TOML; `brief`: two sheets, with arguments; `case`."""
     kind, _, changes = asked.partition(" ")
     if kind == "brief":
         return text_of_page(brief_page(changes))
+    if kind == "case":
+        return text_of_page(case_rows(changes))
     folder = Path(tempfile.mkdtemp(dir="."))
     make, report = {
         "ensemble": (ensemble_folder, ensemble_report),
@@ -93,6 +98,14 @@ def paged(asked):
     }[kind]
     make(folder, **tomllib.loads(f"x = {{{changes}}}")["x"])
     return text_of_page(report(folder)).replace(str(folder), "FOLDER")
+
+
+def case_rows(asked):
+    """The rows of a named case with changes as `--set` takes them, as pages have them."""
+    name, *changes = shlex.split(asked)
+    case = named_case(name, dict(map(parse_override, changes)))
+    names = {"link_rows": link_rows, "modes_of_a_body": modes_of_a_body}
+    return str(_environment().get_template("case.html.j2").make_module(names).case_table(case))
 
 
 def text_of_page(page):

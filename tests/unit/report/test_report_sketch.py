@@ -6,7 +6,6 @@ import pytest
 from cases import named_case
 
 from fem.model.floor_numbers import drawn_level
-from fem.report.comparison import case_rows
 from fem.report.sketch import sketch
 
 LOOSE = {"container.joints": "loose", "joints.mu_static": 0.3, "joints.mu_kinetic": 0.25}
@@ -44,15 +43,6 @@ def test_loose_joints_are_marked_with_their_friction():
     texts, name = words_of("seed_stack_plateau", LOOSE)
     assert "loose, μ 0.3 / 0.25" in texts and {"1", "2", "3", "4"} <= set(texts)
     assert "4 loose boxes" in name
-
-
-def test_the_case_lists_boxes_that_differ_one_by_one():
-    rows = dict(case_rows(named_case("uneven")))
-    assert rows["container"] == "3 boxes, bolted, from the floor up:"
-    assert rows["box 2"].endswith(
-        "7.848 kN with fill, mass centre at 0.4 m; its axis 100 mm right of that of box 1"
-    )
-    assert "box 1" not in dict(case_rows(named_case("seed_stack")))
 
 
 HELD = {

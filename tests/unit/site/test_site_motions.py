@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 
 from fem.case.validation import CaseError
+from fem.html.page import text_of
 from fem.seismic.artificial import artificial_motions
 from fem.seismic.floor import floor_motion, storey_modes
 from fem.seismic.motion_files import in_whole_g, write_at2
 from fem.seismic.motion_set import check_set
 from fem.site.motions import floor_motions, ground_motions, motion_target
-from fem.site.preview import preview_lines, preview_of
+from fem.site.preview import preview_of
 from fem.site.request import load_site
 from fem.site.run import site_hash
 
@@ -109,7 +110,11 @@ def test_a_baseline_that_changes_a_matched_record_is_said_with_both_values(tmp_p
     assert "from 3.4 " in note and "0.866 m/s with 'mean'" in note and "m/s (-8.8 %)" in note
     assert not any(motion.notes for motion in others)
     found = preview_of(asked)
-    assert found.notes == (note,) and f"  note       {note}" in preview_lines(found, asked)
+    assert found.notes == (note,) and f"  note       {note}\n" in lines(found, asked)
+
+
+def lines(preview, asked):
+    return text_of("preview.txt.j2", preview=preview, request=asked)
 
 
 def test_a_baseline_that_takes_a_fifth_of_a_matched_record_must_be_allowed(tmp_path):
@@ -196,8 +201,6 @@ def test_what_is_kept_of_a_verification_goes_with_the_points_of_the_floor(tmp_pa
 def test_the_preview_says_that_the_floor_is_given(tmp_path):
     found, own = (preview_of(request(tmp_path, "[motions]\ncount = 3", *more)) for more in ((SPECTRUM,), ()))
     asked = request(tmp_path)
-    assert (
-        "  floor      given by its spectrum, which the motions fit; taken as it is, without any factor"
-        in (preview_lines(found, asked))
-    )
-    assert own.floor is None and not any(line.startswith("  floor") for line in preview_lines(own, asked))
+    taken = "  floor      given by its spectrum, which the motions fit; taken as it is, without any factor\n"
+    assert taken in lines(found, asked)
+    assert own.floor is None and "  floor" not in lines(own, asked)
