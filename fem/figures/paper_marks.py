@@ -12,6 +12,7 @@ OMEGA = 6.928  #: [rad/s]
 LABEL = "the paper's example"
 #: key of an axis -> its values
 VALUES: dict[str, tuple[float, ...]] = {
+    "container.boxes": (1.0, 4.0),
     "contact.mu_static": (0.4,),
     **dict.fromkeys(("free.aspect_ratio", "free.slenderness"), (1.0 / 1.1, 4.0 / 1.1)),  # as shipped
     "motion.angular_frequency_rad_s": (OMEGA,),

@@ -16,7 +16,8 @@ from fem.html.units import typeset
 from fem.report.animation import packed, packed_floats
 from fem.report.sweep_map import OUTCOMES, outcome_numbers
 from fem.results.errors import FolderError
-from fem.run.card import deciding_in_words, how_far, static_line
+from fem.results.outcome import ending_of
+from fem.run.card import DOES, deciding_in_words, how_far, static_line
 from fem.run.compute import Run
 from fem.run.sureness import REGIME_UNSURE, SURE, UNSURE
 from fem.runtime.arrays import FloatArray
@@ -36,10 +37,11 @@ COLUMNS = {
     "z": "centre_z_m",
     "base": "base_displacement_m",
 }
+#: of how many variations and what it does
 SURENESS = {
-    SURE: "Sure: all {} variations of its inputs end in the same way.",
-    REGIME_UNSURE: "Sure whether it overturns, in all {} variations of its inputs; not sure how it moves.",
-    UNSURE: "Not sure: some of {} variations of its inputs end otherwise.",
+    SURE: "Sure: it {does} in all {count} variations of its inputs, and in the same way.",
+    REGIME_UNSURE: "Sure that it {does}, in all {count} variations of its inputs; not sure how it moves.",
+    UNSURE: "Not sure: in some of {count} variations of its inputs it ends otherwise.",
 }
 
 
@@ -132,7 +134,8 @@ def _shown(run: Run, table: SweepTable, cell: int) -> dict[str, Any]:
     result, box = run.typed_result, run.case.container
     sure = SURENESS.get(str(table.columns["sure"][cell])) if "sure" in table.columns else None
     decided = str(table["decided_by"][cell]).split() if sure else []
-    said = sure.format(f"{table['perturbed'][cell]:.0f}") if sure else "How sure: not tried."
+    does = DOES[ending_of(str(table["status"][cell]), str(table["outcome"][cell]))]
+    said = sure.format(does=does, count=int(table["perturbed"][cell])) if sure else "How sure: not tried."
     far, rule = how_far(result), static_line(result)
     return {
         "first": result.verdict.first_line if result.verdict else "",

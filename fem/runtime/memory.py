@@ -16,11 +16,7 @@ M_ARENA_MAX = -8  #: of `mallopt` of glibc
 #: first step; with less, a module fails to load, or OpenBLAS asks again and again for a buffer.
 COMPUTING, READING = 700, 250
 OF_A_CORE = 150  #: of each thread that computes: a report takes 946 on two cores, and asks for ever with 800
-RIGID, CHECKS, FIGURES = (
-    500,
-    50,
-    100,
-)  #: of a rigid run in one thread, of its band and margin, and of its figures
+RIGID, CHECKS, FIGURES = 500, 120, 100  #: of a rigid run in one thread, its band and margin, its figures
 
 
 def limit() -> int | None:
