@@ -7,7 +7,7 @@ from data_inputs import BY_A_FILE, HOSTILE, NAMED, SIZES, SPECIAL, hostile, spec
 from fuzz import KINDS, warm_up
 from fuzz import end_of as answer_to
 from hypothesis import HealthCheck, given, settings
-from inputs import FIELDS, values_of
+from inputs import FIELDS, LISTS, values_of, values_of_type
 from random_cases import random_case
 from soak import EXTREMES, end_of, extreme
 
@@ -74,6 +74,19 @@ def test_every_key_of_the_schema_is_fuzzed():
     assert {f"{table}.{key}" for table, model in TABLES.items() for key in known_keys(model)} <= set(FIELDS)
     for key in FIELDS:
         values_of(key, None).validate()
+
+
+@pytest.mark.parametrize("name", LISTS)
+def test_every_key_of_a_stop_a_tie_and_a_neighbour_is_fuzzed(name):
+    seen = set()
+
+    @settings(max_examples=100, derandomize=True, suppress_health_check=list(HealthCheck))
+    @given(values_of_type(name, LISTS[name], None, None))
+    def draw(rows):
+        seen.update(*rows)
+
+    draw()
+    assert seen == set(known_keys(LISTS[name]))
 
 
 def test_random_valid_cases_end_with_an_outcome_a_failure_or_a_refusal():
