@@ -13,7 +13,17 @@ from typing import Annotated, Any
 from cyclopts import Parameter
 
 from fem.case.validation import CaseError, did_you_mean
-from fem.cli.console import ELSEWHERE_OUT, EXIT_CODES, AsJson, Force, Jobs, Quiet, flag, print_json
+from fem.cli.console import (
+    ELSEWHERE_OUT,
+    EXIT_CODES,
+    AsJson,
+    Force,
+    Jobs,
+    Quiet,
+    flag,
+    print_json,
+    print_to_pdf,
+)
 from fem.results.disk import BYTES_BESIDE
 from fem.results.errors import require_writable, writing_into
 from fem.results.json_text import to_json
@@ -56,6 +66,9 @@ def verify(
     *,
     quick: Annotated[bool, flag("Leave out long checks: half a minute once compiled, else two.")] = False,
     topic: Annotated[tuple[str, ...], flag("Only this topic; may be repeated.", "--topic", "--room")] = (),
+    manual: Annotated[
+        bool, flag("Write manual.html, too: each requirement with its check, and print it.")
+    ] = False,
     out: Out = None,
     as_json: AsJson = False,
     quiet: Quiet = False,
@@ -69,7 +82,7 @@ def verify(
     def compute() -> tuple[dict[str, Any], dict[str, Any]]:
         return suite.run_suite(chosen, quick=quick, reporter=ScreenReporter(quiet=quiet)), {}
 
-    return _written("verify", out, compute, as_json=as_json)
+    return _written("verify", out, compute, as_json=as_json, manual=manual)
 
 
 def validate(
@@ -98,8 +111,13 @@ def _written(
     compute: Callable[[], tuple[dict[str, Any], dict[str, Any]]],
     *,
     as_json: bool,
+    manual: bool = False,
 ) -> int:
-    """Write NAME.json and NAME.html, print the document or its table; the exit code, 3 where a finding fails."""
+    """Write NAME.json and NAME.html, the manual where it is asked for, and print the document or its table.
+
+    Returns:
+        The exit code, 3 where a finding fails.
+    """
     folder = out if out is not None else OUTPUTS / name
     pages = from_clone("evidence.pages")
     require_writable(folder, ELSEWHERE_OUT, BYTES_BESIDE)
@@ -111,7 +129,12 @@ def _written(
     with writing_into(folder, ELSEWHERE_OUT):
         write_atomically(folder / f"{name}.json", text)
         write_atomically(page, pages.page_of(name, document, pictures))
+        if manual:
+            page = folder / "manual.html"
+            write_atomically(page, pages.page_of("manual", document, pictures))
     shown = f"{page} shows the tables and drawings"
+    if manual:
+        shown += f"\n{print_to_pdf(page)}"
     say(text.rstrip() if as_json else "\n".join([*pages.LINES[name](document), shown]))
     return 0 if document["passed"] else FAILED
 

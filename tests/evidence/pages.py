@@ -27,6 +27,7 @@ HEADING = f"{'value':>13} {'reference':>12}  {'kind':<9} {'error':>9} {'toleranc
 #: by command: what stands above the title, and the title
 TITLES = {
     "verify": ("Verification", "Verification"),
+    "manual": ("Verification", "Verification manual"),
     "validate": ("Validation", "Validation"),
     "study": ("Study", "The paper, claim by claim"),
 }

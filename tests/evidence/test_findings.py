@@ -10,6 +10,7 @@ from evidence.findings import Convergence, analytic, at_least, at_most, equal, p
 from evidence.pages import page_of, verification_lines
 from verification import suite
 from verification.checks import check
+from verification.suite import CHECKS as ALL
 from verification.suite import chosen_checks
 
 import fem.runtime.own_files
@@ -105,6 +106,18 @@ def test_the_page_needs_nothing_from_elsewhere(small_suite):
     assert text.count("<link") == text.count('<link rel="icon" href="data:,">') == 1
     assert "default-src 'none'" in text
     assert "<script" not in text
+
+
+def test_the_manual_states_every_requirement_with_its_result(small_suite, tmp_path):
+    assert main(["verify", "--manual", "--out", str(tmp_path), "-q"]) == 3
+    document = json.loads((tmp_path / "verify.json").read_text())
+    text = (tmp_path / "manual.html").read_text(encoding="utf-8")
+    assert "2 of 4 comparisons fail" in text and text.count(">FAIL<") == 4  # two rows, and their checks
+    assert all(f'href="#check-{k}"' in text for k, _ in enumerate(document["checks"], start=1))
+
+
+def test_every_check_states_what_it_requires():
+    assert not [check.title for check in ALL if len(check.requirement.split()) < 3]
 
 
 @pytest.mark.parametrize(("options", "code"), [(["--quick"], 0), ([], 3), (["--room", "cellar"], 0)])

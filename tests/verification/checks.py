@@ -1,5 +1,6 @@
 """A verification check: findings that are computed together under the statement that they prove."""
 
+import inspect
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
@@ -21,6 +22,11 @@ class Check:
     findings: Callable[[], Iterable[Finding]]
     quick: bool = True  #: computed with `--quick` as well
     inputs: str = NOTHING  #: of the references, those that come from the program
+
+    @property
+    def requirement(self) -> str:
+        """What must hold, in words: the first paragraph beside the check."""
+        return " ".join((inspect.getdoc(self.findings) or "").partition("\n\n")[0].split())
 
 
 def check(

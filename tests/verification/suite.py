@@ -101,7 +101,7 @@ def run_suite(checks: Sequence[Check], *, quick: bool, reporter: ScreenReporter)
             | {"convergence": finding.convergence and finding.convergence.document}
             for finding in findings
         ]
-        computed.append(names | {"rows": len(findings), "seconds": taken})
+        computed.append(names | {"requirement": check.requirement, "rows": len(findings), "seconds": taken})
     failed = sum(row["passed"] is False for row in rows)
     return {
         "quick": quick,
