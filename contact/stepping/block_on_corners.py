@@ -15,7 +15,7 @@ from contact.stepping.integrator import FAILED, advance, advance_kernel
 from contact.stepping.ledger import ROWS as LEDGER_ROWS
 from contact.stepping.links import LinkedBody
 from contact.stepping.loose_stack import LooseStack
-from contact.stepping.modal_body import BlockOnCorners, BodyOnCorners, LocalBlock, ModalBody
+from contact.stepping.modal_body import BlockOnCorners, LocalBlock, ModalBody
 from contact.stepping.state import AttemptedStep, RunState
 
 #: sizes in its layouts: coordinates, points, boxes of a loose stack
@@ -56,7 +56,7 @@ def advance_on(body: FloatingBody, run: RunState, until: float) -> int:
     return advance(body, run, until)
 
 
-@implements(advance_on, ModalBody, LooseStack, LinkedBody, inline=True)
+@implements(advance_on, LooseStack, LinkedBody, inline=True)
 def advance_in_memory(body: FloatingBody, run: RunState, until: float) -> int:
     """`advance` on the arrays of the run."""
     return int(advance_kernel(body, run, until))
@@ -74,25 +74,31 @@ def has_two_points(state: State) -> bool:
     return bool(state.point.shape[1] == 2 and state.force.shape[1] == 2 and state.descent.shape[1] == 2)
 
 
-@implements(advance_on, BodyOnCorners)
-def advance_on_corners(body: BodyOnCorners, run: RunState, until: float) -> int:
-    """`advance` of two points: from each comparison with a constant the compiler infers a size, and unrolls loops."""
+@inlined
+def stands_on_corners(body: ModalBody, run: RunState) -> bool:
+    """Whether a body has two points: from each comparison with a constant the compiler infers a size."""
     work = run.work
     if body.point.shape[0] != 2 or run.problem.control.base_points != 2 or run.joints.shape[0] != 1:
-        return FAILED
+        return False
     if run.links.shape[0] != 0:
-        return FAILED
+        return False
     if body.moved.shape[1] != 4 or body.across.shape[1] != 4:
-        return FAILED
+        return False
     if body.elastic_compliance.shape[1] != 4 or body.elastic_compliance.shape[2] != 4:
-        return FAILED
+        return False
     if work.point.shape[0] != 2 or work.slope.shape[0] != 2:
-        return FAILED
+        return False
     if work.force.shape[0] != 2 or work.force.shape[1] != 2:
-        return FAILED
-    if not has_two_points(run.old) or not has_two_points(run.attempt.new):
-        return FAILED
-    return advance(body, run, until)
+        return False
+    return has_two_points(run.old) and has_two_points(run.attempt.new)
+
+
+@implements(advance_on, ModalBody)
+def advance_on_points(body: ModalBody, run: RunState, until: float) -> int:
+    """`advance`, twice in the machine code: where sizes are known, loops are unrolled. numba translates it once."""
+    if stands_on_corners(body, run):
+        return advance(body, run, until)
+    return int(advance_kernel(body, run, until))
 
 
 @inlined

@@ -88,7 +88,7 @@ def make_modal_body(
     m = omega.size
     slots = SLOTS_OF_MODES if m > 0 else STEP_SLOTS
     shape = np.zeros((n, 2, 0)) if shape is None else np.array(shape, dtype=float, order="C")
-    return (BodyOnCorners if n == 2 else ModalBody)(
+    return ModalBody(
         mass=float(mass),
         inertia=float(inertia),
         gravity=float(gravity),
@@ -115,11 +115,6 @@ def make_modal_body(
 
 
 @struct
-class BodyOnCorners(ModalBody):
-    """A body on two contact points: of the same fields, but stepped with a known number of points."""
-
-
-@struct
 class BlockOnCorners(ModalBody):
     """A rigid body on two contact points, stepped in registers: see `contact.stepping.block_on_corners`."""
 
@@ -128,7 +123,7 @@ class LocalBlock(BlockOnCorners):
     """A rigid body on two contact points whose arrays are in registers, see `contact.stepping.block_on_corners`."""
 
 
-MODAL = (ModalBody, BodyOnCorners, BlockOnCorners, LocalBlock)
+MODAL = (ModalBody, BlockOnCorners, LocalBlock)
 
 
 #: fields of a `ModalBody` that are written in a step
