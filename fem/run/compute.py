@@ -112,7 +112,7 @@ def compute(
     """Compute a case in memory; no file is written.
 
     It is the computation of `python -m fem run`, with the same numbers. The first one after installation compiles the
-    time stepping for a quarter of a minute or more. BLAS is kept to one thread from then on in this process, because
+    time stepping for half a minute or more. BLAS is kept to one thread from then on in this process, because
     the bits of a run must not depend on the number of cores.
 
     Args:

@@ -1,4 +1,4 @@
-"""Compilation of kernels in this process: a long one is announced, and the time of all is counted.
+"""Compilation of kernels in this process: long ones are announced, and the time of all is counted.
 
 numba compiles a function when it is first called and no cached machine code fits, and broadcasts when it begins and
 ends. Loading cached code is not compilation. All times are wall-clock times [s].
@@ -18,41 +18,58 @@ from contact.jit import FITTING, SHIPPED
 COMPILING = "numba:compile"
 #: kernels that hold the whole stepping; all others take seconds at most
 LONG = frozenset({"advance", "advance_in_slices"})
+#: what they step, by the class of the body
+BODIES = {
+    "ModalBody": "an elastic container",
+    "BlockOnCorners": "a rigid container",
+    "LooseStack": "loose boxes",
+    "LinkedBody": "a container with links",
+}
+OPTIMISING = 0.7  #: time that LLVM takes for a whole kernel, over that of numba for its functions
 
 
 class Compilations(event.Listener):
-    """Counts the time spent compiling, nested compilations once, and announces the first long one where it is to.
+    """Counts the time spent compiling, nested compilations once, and announces long ones and what is left of them.
 
     numba compiles under a lock, one thread at a time, so that the events do not mix.
     """
 
     def __init__(self) -> None:
-        self._depth, self._began = 0, 0.0
+        self._depth, self._functions, self._began = 0, 0, 0.0
         self.past = 0.0  #: time spent in compilations that have ended [s]
-        self.message: Callable[[str], None] | None = None  #: where to announce the first long one
+        self.message: Callable[[str], None] | None = None  #: where to announce long ones
 
     def on_start(self, event: event.Event) -> None:
         """A compilation begins."""
-        if self._depth == 0:
-            self._began = time.perf_counter()
         self._depth += 1
-        if self.message is None or event.data["dispatcher"].py_func.__name__ not in LONG:
+        if self._depth > 1:
             return
-        message, self.message = self.message, None
+        self._began, self._functions = time.perf_counter(), 0
+        if self.message is None or _name(event) not in LONG:
+            return
         if SHIPPED.is_dir():
-            message(f"the machine code of this package is not for {FITTING}, or not of this kernel")
-        message(
-            f"compiling the stepping kernels with numba {numba.__version__}'s own passes, once after "
-            "installation: the results are the same, but it takes a minute or more"
-            if PLAIN
-            else "compiling the stepping kernels, once after installation: a quarter of a minute or more"
-        )
+            self.message(f"the machine code of this package is not for {FITTING}, or not of this kernel")
+        kind = getattr(event.data["args"][0], "instance_class", None)
+        body = BODIES.get(getattr(kind, "__name__", ""), "the full model")
+        own = f" with numba {numba.__version__}'s own passes: the results are the same" if PLAIN else ""
+        least = "a minute" if PLAIN else "half a minute"
+        self.message(f"compiling the stepping of {body}{own}, once after installation: {least} or more")
 
     def on_end(self, event: event.Event) -> None:
         """It has ended, or failed."""
         self._depth -= 1
+        self._functions += 1
+        took = time.perf_counter() - self._began
         if self._depth == 0:
-            self.past += time.perf_counter() - self._began
+            self.past += took
+        elif self._depth == 1 and self.message is not None and _name(event).startswith("advance"):
+            left = f"{OPTIMISING * took:.0f} s left"
+            self.message(f"compiling the stepping: {self._functions} functions translated, {left}")
+
+
+def _name(compilation: event.Event) -> str:
+    """Name of the function that is compiled."""
+    return str(compilation.data["dispatcher"].py_func.__name__)
 
 
 _ALL = Compilations()
@@ -62,7 +79,7 @@ _ANNOUNCING = threading.Lock()
 
 @contextmanager
 def compilation_announced(message: Callable[[str], None]) -> Iterator[None]:
-    """Announce the first long compilation in the block before it begins; inside another such block, that one does."""
+    """Announce long compilations in the block before they begin; inside another such block, that one does."""
     if not _ANNOUNCING.acquire(blocking=False):
         yield
         return

@@ -24,7 +24,6 @@ STEPPED = {
         "container.boxes=2",
     ),  # compiled for so many boxes
     "full": ("solver.model=full",),
-    "flat": ("support.kind=flat",),
     "linked": ("solver.model=rigid", STOP),
 }
 

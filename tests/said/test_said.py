@@ -40,7 +40,7 @@ BAD_INPUT = 2  #: exit code; then nothing is printed but the reason, and nothing
 FLEETING = (
     (r"(computing time +|computed \| |computed in \| ).*(\n {20,}.*)?", r"\1TIME"),
     (r"(versions|hash|program) \| .*", r"\1 |"),
-    (r"\n?(t = [\d.]+ of [\d.]+ s, .* left, |compiling the stepping kernels, ).*", ""),
+    (r"\n?(t = [\d.]+ of [\d.]+ s, .* left, |compiling the stepping).*", ""),
     (r"unanchored \d[\w.+]*( on [\d-]+)?", "unanchored"),
     (r"\b[0-9a-f]{64}\b", "HASH"),
     (r"room for [\d.]+ .B", "room for SOME"),

@@ -57,11 +57,12 @@ def test_inside_another_announcement_only_that_one_is_made():
     assert (len(outer), inner) == (1, [])
 
 
-def test_the_stepping_is_told_once_before_it_is_compiled_and_small_kernels_are_not():
+def test_each_stepping_is_told_before_it_is_compiled_and_what_is_left_of_it_but_small_kernels_are_not():
     said = []
     with compilation_announced(said.append):
         kernel("hermite")(1.0)
         assert said == []
-        kernel("advance_in_slices", calls=kernel("advance"))(1.0)
-    kernel("advance")(1.0)
-    assert said == ["compiling the stepping kernels, once after installation: a quarter of a minute or more"]
+        kernel("advance_in_slices", calls=kernel("advance_on_points", calls=kernel("advance")))(1.0)
+        kernel("advance")(1.0)
+    told = "compiling the stepping of the full model, once after installation: half a minute or more"
+    assert said == [told, "compiling the stepping: 2 functions translated, 0 s left", told]
