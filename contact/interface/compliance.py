@@ -227,28 +227,6 @@ def substitute_dense(size: int, factors: FloatArray, pivot: IntArray, vector: Fl
 
 
 @compiled(inline=True)
-def factor_four(matrix: FloatArray, pivot: IntArray) -> bool:
-    """`factor_dense` of four rows, without a loop over the columns: all indices are constants."""
-    first = eliminate_column(4, matrix, pivot, 0) and eliminate_column(4, matrix, pivot, 1)
-    return first and eliminate_column(4, matrix, pivot, 2) and eliminate_column(4, matrix, pivot, 3)
-
-
-@compiled(inline=True)
-def substitute_four(factors: FloatArray, pivot: IntArray, vector: FloatArray) -> None:
-    """Solve with the factors of `factor_four`, in place."""
-    exchange_entry(4, pivot, vector, 0)
-    exchange_entry(4, pivot, vector, 1)
-    exchange_entry(4, pivot, vector, 2)
-    substitute_entry(0, 1, factors, vector, 1, 1.0)
-    substitute_entry(0, 2, factors, vector, 2, 1.0)
-    substitute_entry(0, 3, factors, vector, 3, 1.0)
-    substitute_entry(4, 4, factors, vector, 3, factors[3, 3])
-    substitute_entry(3, 4, factors, vector, 2, factors[2, 2])
-    substitute_entry(2, 4, factors, vector, 1, factors[1, 1])
-    substitute_entry(1, 4, factors, vector, 0, factors[0, 0])
-
-
-@compiled(inline=True)
 def move_points(velocity_slope: float, force: FloatArray, work: Workspace) -> None:
     """Points and velocities that follow from contact forces, by the condensed compliance."""
     n = force.shape[0]
@@ -342,7 +320,10 @@ def factor_tangent(step: float, work: Workspace) -> bool:
             for i in range(2):
                 for j in range(2):
                     enter_tangent(work, i, i, j, j)
-            return factor_four(work.matrix, work.pivot)
+            regular = eliminate_column(4, work.matrix, work.pivot, 0)
+            regular = regular and eliminate_column(4, work.matrix, work.pivot, 1)
+            regular = regular and eliminate_column(4, work.matrix, work.pivot, 2)
+            return regular and eliminate_column(4, work.matrix, work.pivot, 3)
         if first:
             enter_tangent(work, 0, 0, 0, 0)
         elif second:
@@ -376,7 +357,17 @@ def newton_change(work: Workspace) -> None:
                 work.change[2 * i + k] = work.law[i, k] - work.force[i, k]
         first, second = has_tangent(work, 0), has_tangent(work, 1)
         if first and second:
-            substitute_four(work.matrix, work.pivot, work.change)
+            factors, change = work.matrix, work.change
+            exchange_entry(4, work.pivot, change, 0)
+            exchange_entry(4, work.pivot, change, 1)
+            exchange_entry(4, work.pivot, change, 2)
+            substitute_entry(0, 1, factors, change, 1, 1.0)
+            substitute_entry(0, 2, factors, change, 2, 1.0)
+            substitute_entry(0, 3, factors, change, 3, 1.0)
+            substitute_entry(4, 4, factors, change, 3, factors[3, 3])
+            substitute_entry(3, 4, factors, change, 2, factors[2, 2])
+            substitute_entry(2, 4, factors, change, 1, factors[1, 1])
+            substitute_entry(1, 4, factors, change, 0, factors[0, 0])
         elif first:
             change_one(work, 0, 1)
         elif second:

@@ -101,14 +101,6 @@ def place_points(faces: Faces, corner: FloatArray, point: FloatArray) -> None:
 
 
 @compiled(inline=True)
-def open_unweighted(faces: Faces, point: FloatArray) -> None:
-    """Open the points of no weight."""
-    for i in range(faces.weight.size):
-        if faces.weight[i] == 0.0:
-            point[i, 1] = faces.length[i]
-
-
-@compiled(inline=True)
 def weigh_points(faces: Faces, corner: FloatArray, point: FloatArray, contact: Contact) -> None:
     """Weights of the points (n, 2) where the corners (4 N, 2) are at the beginning of a step, and their stiffness.
 

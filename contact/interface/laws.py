@@ -21,13 +21,6 @@ REGULARISED = 1  #: code of the friction law regularised in velocity
 FRICTION_LAWS = {"elastic-stick": ELASTIC_STICK, "regularised": REGULARISED}
 
 
-def require_known_friction(code: int) -> None:
-    """Refuse a law of friction that the kernels do not handle, as a ValueError."""
-    if code not in FRICTION_LAWS.values():
-        known = ", ".join(f"{value} ({name})" for name, value in FRICTION_LAWS.items())
-        raise ValueError(f"there is no friction law of code {code}; known: {known}")
-
-
 @compiled(inline=True)
 def normal_force(
     penetration: float, rate: float, stiffness: float, damping: float, cap: float, step: float

@@ -92,9 +92,10 @@ def flow(
     pieces: list[Piece] = []
     for segment in floor.segments(start, end):
         if rate is None or segment.start > start:  # the acceleration may have jumped across a limit
-            fallen = _fallen(guards, state, segment.acceleration(segment.start))
-            if fallen is not None:
-                return Passage(pieces=tuple(pieces), time=segment.start, state=state, event=fallen)
+            here = segment.acceleration(segment.start)
+            for guard in guards:
+                if guard.margin(state, here) < 0.0:
+                    return Passage(pieces=tuple(pieces), time=segment.start, state=state, event=guard.name)
         if rate is None:
             steps = _rest(state, segment, floor)
         else:
@@ -209,10 +210,6 @@ def _rest(
     times = np.linspace(segment.start, segment.end, max(count, 1) + 1)
     for start, end in pairwise(times.tolist()):
         yield start, end, interpolant
-
-
-def _fallen(guards: Sequence[Guard], state: FloatArray, acceleration: Acceleration) -> str | None:
-    return next((guard.name for guard in guards if guard.margin(state, acceleration) < 0.0), None)
 
 
 def _bracket(

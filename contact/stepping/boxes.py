@@ -5,7 +5,7 @@ import math
 from contact.jit import compiled, inlined
 from contact.stepping.body import ANGULAR_VELOCITY, CENTRE_X, CENTRE_Z, ROTATION
 from contact.stepping.joints import points_of
-from contact.stepping.modes import FALLEN, REST, ROCK, ROCKING, SLIDE, SLIDE_ROCK
+from contact.stepping.modes import REST, ROCK, ROCKING, SLIDE, SLIDE_ROCK
 from contact.stepping.observables import NEVER, OPENING
 from contact.stepping.scheme import hermite
 from contact.stepping.state import RunState
@@ -124,14 +124,3 @@ def is_unsettled(run: RunState) -> bool:
         turned = abs(rotation_of(run, j)) > run.joints[j].angle
         unsettled = unsettled or turned or not has_footing(run, j)
     return unsettled
-
-
-@inlined
-def lose_footing(run: RunState) -> None:
-    """Count what is at rest without footing as fallen now."""
-    for j in range(run.joints.shape[0]):
-        if not has_footing(run, j):
-            run.joints[j].fell_at = run.clock[0].time
-            run.track[0].overturned_at = run.clock[0].time
-            run.track[0].mode = FALLEN
-            run.track[0].modes |= 1 << FALLEN

@@ -30,7 +30,7 @@ from contact.stepping.control import (
 )
 from contact.stepping.impact import lose_at_impacts
 from contact.stepping.joints import (
-    begin_friction,
+    friction_of,
     in_a_row,
     settle_friction,
     slide_points,
@@ -88,16 +88,6 @@ def close_step(run: RunState, step: float, iterations: int) -> None:
 
 
 @inlined
-def _is_full(run: RunState) -> bool:
-    """Whether the sample arrays cannot hold another largest step."""
-    ahead, history, frames = run.problem.control.largest_step, run.buffers.history, run.buffers.frames
-    clock = run.clock[0]
-    room = history.mode.size - (clock.samples - clock.samples_drained)
-    room_of_frames = frames.mode.size - (clock.frames - clock.frames_drained)
-    return (room - 1) * history.interval < ahead or (room_of_frames - 1) * frames.interval < ahead
-
-
-@inlined
 def enter_floor_frame(body: Any, run: RunState, floor_velocity: float, lift_velocity: float) -> None:
     """Change to the frame of the floor as its motion ends, with this velocity [m/s]; nothing gets an impulse."""
     shift_velocity(body, run.old, (floor_velocity, lift_velocity, 0.0), (0, run.joints.shape[0]))
@@ -121,15 +111,21 @@ def advance(body: Any, run: RunState, until: float) -> int:
         steps of `clock.unprepared_step` and call again.
     """
     control, clock, track, loose = run.problem.control, run.clock[0], run.track[0], stands_loose(body)
-    links = links_of(body)
-    while clock.time < until and clock.steps + clock.rejected < clock.attempt_limit and not _is_full(run):
+    links, history, frames = links_of(body), run.buffers.history, run.buffers.frames
+    while clock.time < until and clock.steps + clock.rejected < clock.attempt_limit:
+        room = history.mode.size - (clock.samples - clock.samples_drained)
+        room_of_frames = frames.mode.size - (clock.frames - clock.frames_drained)
+        ahead = control.largest_step
+        if (room - 1) * history.interval < ahead or (room_of_frames - 1) * frames.interval < ahead:
+            break
         step = next_step(run)
         if not prepared(body, step):
             clock.unprepared_step = step
             return UNPREPARED
         iterations = 0
         weigh(body, run.problem.contact, run.old)
-        begin_friction(run)
+        for j in range(run.joints.shape[0]):
+            run.joints[j].mu = friction_of(run, j, run.joints[j].slip_since_break)
         for _ in range(WEAKENING_LIMIT):  # friction that weakens with the slip of this step
             iterations = attempt(body, run, step)
             if iterations < 0:
@@ -172,8 +168,8 @@ def advance(body: Any, run: RunState, until: float) -> int:
             for gap in range(run.joints.shape[0] - 1 if in_a_row(run) else 0):
                 follow_gap(run, step, gap, counts)
         follow_contents(body, run, step)
-        clock.samples = sample(run, run.buffers.history, clock.samples, clock.samples_drained, step, loose)
-        clock.frames = sample(run, run.buffers.frames, clock.frames, clock.frames_drained, step, loose)
+        clock.samples = sample(run, history, clock.samples, clock.samples_drained, step, loose)
+        clock.frames = sample(run, frames, clock.frames, clock.frames_drained, step, loose)
         lose_at_impacts(body, run, loose)
         keep_most_strained_step(run, step)
         close_step(run, step, iterations)

@@ -41,13 +41,6 @@ def friction_of(run: RunState, j: int, slid: float) -> float:
 
 
 @compiled(inline=True)
-def begin_friction(run: RunState) -> None:
-    """Coefficients of friction of the joints at the beginning of a step."""
-    for j in range(run.joints.shape[0]):
-        run.joints[j].mu = friction_of(run, j, run.joints[j].slip_since_break)
-
-
-@compiled(inline=True)
 def weaken_friction(run: RunState) -> bool:
     """Coefficients of friction after the slip of the attempted step; whether one of them has changed."""
     changed = False
@@ -62,36 +55,29 @@ def weaken_friction(run: RunState) -> bool:
 
 @compiled(inline=True)
 def settle_friction(run: RunState, step: float, loose: bool | None, links: LinkedBody | None) -> bool:
-    """Decide which joints slide after the attempted step [s]; whether one starts to, stops or turns round in it."""
+    """Decide which joints slide after the attempted step [s]; whether one starts to, stops or turns round in it.
+
+    A joint whose points all slide at the limit of static friction breaks loose as a whole where a rigid body would
+    slide, or the points have slid as far as counts as sliding. Less is the overshoot of an elastic swing, which lasts
+    milliseconds and slides micrometres: too little for friction to fall.
+    """
     switches = False
     for j in range(run.joints.shape[0]):
-        joint = run.joints[j]
+        joint, mu_static = run.joints[j], run.problem.contact.mu_static[points_of(run, j)[0]]
         every = joint.motion == ALL or (joint.motion == AIRBORNE and joint.sliding == 1)
         turned = False
         if run.problem.contact.friction == ELASTIC_STICK and joint.sliding == 1 and joint.motion != AIRBORNE:
             turned = joint.velocity * joint.slip_velocity < 0.0
             every = slides_on(run, j, step, turned, loose, links)
         elif run.problem.contact.friction == ELASTIC_STICK and every and joint.sliding == 0:
-            every = breaks_loose(run, j, loose, links)
+            holding, normal = holding_force(run, j, loose, links)
+            slid = joint.slip_since_break + abs(joint.slip_step)
+            every = abs(holding) > mu_static * normal or slid > SLIDING * joint.width
         overshoots = joint.sliding == 0 and (joint.motion == ALL) != (joint.slip_since_break > 0.0)
         changes = turned or overshoots or (joint.sliding == 1) != every
-        switches = switches or (changes and run.problem.contact.mu_static[points_of(run, j)[0]] > 0.0)
+        switches = switches or (changes and mu_static > 0.0)
         joint.slides = 1 if every else 0
     return switches
-
-
-@compiled(inline=True)
-def breaks_loose(run: RunState, j: int, loose: bool | None, links: LinkedBody | None) -> bool:
-    """Whether a joint whose points all slide at the limit of static friction breaks loose as a whole.
-
-    A rigid body would slide, or the points have slid as far as counts as sliding. Less is the overshoot of an elastic
-    swing, which lasts milliseconds and slides micrometres: too little for friction to fall.
-    """
-    joint = run.joints[j]
-    holding, normal = holding_force(run, j, loose, links)
-    slid = joint.slip_since_break + abs(joint.slip_step)
-    mu_static = run.problem.contact.mu_static[points_of(run, j)[0]]
-    return abs(holding) > mu_static * normal or slid > SLIDING * joint.width
 
 
 @compiled(inline=True)

@@ -14,7 +14,6 @@ from contact.interface.faces import (
     is_of_one_box,
     linearise_points,
     move_corners,
-    open_unweighted,
     place_points,
     share_forces,
     weigh_points,
@@ -111,7 +110,9 @@ def complete(stack: LooseStack, new: State, floor: float, lift: float, lift_velo
     over_corners = with_points(new, point=new.corner, force=stack.corners.force)
     interface.complete(stack.body, over_corners, floor, lift, lift_velocity)
     place_points(stack.faces, new.corner, new.point)
-    open_unweighted(stack.faces, new.point)
+    for i in range(stack.faces.weight.size):
+        if stack.faces.weight[i] == 0.0:
+            new.point[i, 1] = stack.faces.length[i]
     total = 0.0
     for row in range(6):
         new.pose[row] = 0.0

@@ -22,7 +22,7 @@ from contact.jit import compiled, inlined
 from contact.motion.kernel import UNIFORM, as_floor_motion, floor_motion
 from contact.stepping.block_on_corners import FloatingBody, advance_on
 from contact.stepping.body import KINETIC, VELOCITY_X
-from contact.stepping.boxes import is_unsettled, lose_footing
+from contact.stepping.boxes import has_footing, is_unsettled
 from contact.stepping.control import most_attempts
 from contact.stepping.integrator import (
     AFTERMATH_SLICE,
@@ -35,6 +35,7 @@ from contact.stepping.joints import in_a_row
 from contact.stepping.links import LinkedBody
 from contact.stepping.loose_stack import LooseStack
 from contact.stepping.modal_body import with_own_scratch
+from contact.stepping.modes import FALLEN
 from contact.stepping.observables import NEVER, lifting_energy
 from contact.stepping.stack_body import stack_with_own_scratch
 from contact.stepping.state import ROW_SLIP, Buffers, RunState
@@ -183,7 +184,11 @@ def is_over(run: RunState, part: int) -> bool:
     clock.rest_since = min(clock.rest_since, clock.time)
     if clock.time - clock.rest_since < RESTING_TIME / control.slowest_rocking:
         return False
-    lose_footing(run)
+    for j in range(run.joints.shape[0]):  # what is at rest without footing counts as fallen now
+        if not has_footing(run, j):
+            run.joints[j].fell_at = track.overturned_at = clock.time
+            track.mode = FALLEN
+            track.modes |= 1 << FALLEN
     return True
 
 

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from numpy.typing import NDArray
 
 from contact.arrays import FloatArray, IntArray
-from contact.interface.laws import require_known_friction
+from contact.interface.laws import FRICTION_LAWS
 from contact.interface.workspace import Contact, Workspace, make_workspace
 from contact.motion.kernel import UNIFORM, FloorMotion, as_floor_motion, floor_motion
 from contact.stepping.body import CENTRE_X, CENTRE_Z, ROTATION, State, make_state
@@ -371,7 +371,9 @@ def make_run(
     Raises:
         ValueError: an unknown law of friction; an array of the contact without one entry for each point.
     """
-    require_known_friction(contact.friction)
+    if contact.friction not in FRICTION_LAWS.values():
+        known = ", ".join(f"{value} ({name})" for name, value in FRICTION_LAWS.items())
+        raise ValueError(f"there is no friction law of code {contact.friction}; known: {known}")
     n, monitors = old.point.shape[0], old.monitor.shape[0]
     for name, part in contact._asdict().items():
         if isinstance(part, np.ndarray) and part.shape != (n,):  # the kernels do not look

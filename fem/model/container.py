@@ -12,7 +12,7 @@ from contact.interface.support import Support
 from fem.case.case import Case
 from fem.case.tables.neighbours import Places, places_of
 from fem.model.geometry import build_container, node_count
-from fem.model.links import nodes_of_links, nodes_on_sides, side_points
+from fem.model.links import nodes_on_sides, places_of_links, side_points
 from fem.model.support import build_support
 from fem.model.validity import require_memory
 from fem.runtime.arrays import FloatArray, IntArray
@@ -117,7 +117,7 @@ def discretise(case: Case, mesh: ContainerMesh | None = None) -> Container:
     nodes = elements.base_nodes[support.index]
     if not case.output.stop_when_overturned:  # lying on its side it touches with the upper corners, too
         nodes = np.concatenate([nodes, _upper_corners(elements)])
-    nodes = np.concatenate([nodes, nodes_of_links(case, elements.nodes)])
+    nodes = np.concatenate([nodes, nodes_at(places_of_links(case), elements.nodes)])
     rigid = case.solver.model == "rigid"
     response = _no_response(elements) if rigid else static_response(elements, nodes)
     basis, first = _elastic(case, elements, response, modes_of_a_body(case))

@@ -207,9 +207,3 @@ def pivot_share(case: Case, mesh: ContainerMesh) -> float:
         f"is {beside:.3g} m beside the middle: it would fall over at once; make offset_m smaller, or "
         "what bears wider or stronger"
     )
-
-
-def slab_penalty(case: Case, mesh: ContainerMesh) -> float:
-    """Normal stiffness of the slab over the area of the base that the support divides among its points [Pa/m]."""
-    length = mesh.width if case.foot is None else sum(mesh.elevation.foot_widths(case.foot))
-    return 2.0 * slab_of(case, mesh.mass).normal_stiffness / (length * case.container.depth_m)

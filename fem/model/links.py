@@ -16,8 +16,8 @@ from fem.case.case import Case
 from fem.case.tables.links import StopTable, TieTable, holder_of
 from fem.case.tables.neighbours import USUAL_DAMPING, StruckTable, top_of
 from fem.model.link_places import box_at, direction_of, overlapped, side_of
-from fem.runtime.arrays import FloatArray, IntArray
-from fem.solid.sides import nodes_at, shapes_at
+from fem.runtime.arrays import FloatArray
+from fem.solid.sides import shapes_at
 
 OVERLAP = 1e-9  #: overlap at the start that is rounding [m]
 
@@ -43,11 +43,6 @@ def side_points(case: Case) -> tuple[SidePoint, ...]:
         place = min((link.height_m - bottom) / height, 1.0)
         places.append(SidePoint(box=number, right=link.side == "right", place=place))
     return tuple(places)
-
-
-def nodes_of_links(case: Case, nodes: FloatArray) -> IntArray:
-    """The nodes of a structured mesh, of all (n, 2), that are nearest to the points of the links, (k,)."""
-    return nodes_at(places_of_links(case), nodes)
 
 
 def nodes_on_sides(points: Sequence[SidePoint], boxes: Sequence[FloatArray]) -> list[int]:

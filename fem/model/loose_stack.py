@@ -19,7 +19,7 @@ from contact.stepping.stack_body import make_stack, settle_stack
 from fem.case.case import Case
 from fem.case.tables.boxes import shared_face
 from fem.model.bounce import bounce_of
-from fem.model.container import BoxModel, Container
+from fem.model.container import Container
 from fem.model.links import appended, side_points
 from fem.model.support import base_points
 from fem.runtime.arrays import FloatArray, IntArray
@@ -152,11 +152,3 @@ def own_stiffness(contact: Contact) -> Contact:
         normal_stiffness=contact.normal_stiffness.copy(),
         tangential_stiffness=contact.tangential_stiffness.copy(),
     )
-
-
-def struck_mass(box: BoxModel, corner: int) -> float:
-    """Effective mass of a corner of a box in the first instant of an impact [kg]."""
-    node = box.corners[corner]
-    arm = float(box.elements.nodes[node, 0] - box.mesh.centroid[0])
-    elastic = float(np.sum(box.basis.shapes[:, node, 1] ** 2))
-    return 1.0 / (1.0 / box.mesh.mass + arm * arm / box.mesh.inertia + elastic)

@@ -30,13 +30,14 @@ from contact.stepping.state import (
     make_samples,
 )
 from fem.case.case import Case
+from fem.case.tables.duration import ends_at_rest
 from fem.model.container import Container, discretise, modes_of_a_body
 from fem.model.equilibrium import Equilibrium, find_equilibrium
 from fem.model.floor import slab_of
 from fem.model.frames import frame_interval
 from fem.model.links import begin_links
 from fem.model.loose_stack import make_stack_state, own_stiffness, settle
-from fem.model.motion import build_motions, longest_run, peaks_in_run, rest_sought_from
+from fem.model.motion import build_motions, longest_run, motions_end, peaks_in_run
 from fem.model.peaks import ROUNDING, stress_bounds, stressed_nodes
 from fem.model.resting import still_from
 from fem.model.restitution import require_loss
@@ -178,7 +179,7 @@ def build_model(
         depth=float(-first.point[:, 1].min()),
         stored=float(spring_energy(stiffness, first.point, first.stick)) / static.overturning_energy,
     )
-    rest_from = rest_sought_from(case, motion, vertical)
+    rest_from = motions_end(motion, vertical) if ends_at_rest(case) else math.inf
     if case.output.stop_when_still and rest_from < math.inf:
         rest_from = min(rest_from, still_from(case, mesh, static, motion, vertical))
     interval = case.output.history_s

@@ -70,11 +70,6 @@ def longest_run(case: Case, *motions: BaseMotion) -> float:
     return longest
 
 
-def rest_sought_from(case: Case, *motions: BaseMotion) -> float:
-    """Time from which a run ends where the container is at rest or has fallen [s]; infinite with a given duration."""
-    return motions_end(*motions) if ends_at_rest(case) else math.inf
-
-
 def motion_result(case: Case, motion: BaseMotion, vertical: BaseMotion) -> MotionResult:
     """The numbers of both motions, along the floor and normal to it, and doubts about them."""
     duration = longest_run(case, motion, vertical)

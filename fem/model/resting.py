@@ -38,7 +38,11 @@ class BodyAtRest:
     def of(cls, case: Case, mesh: ContainerMesh, static: StaticChecks) -> Self | None:
         """That of one rigid body on corners; None of anything else, and where its floor gives way."""
         alone = case.bodies == 1 and not (case.links or case.neighbour or case.rolls)
-        if case.solver.model != "rigid" or not alone or gives_way(case, mesh, static):
+        if case.solver.model != "rigid" or not alone:
+            return None
+        floor = floor_result(case, mesh, static)
+        sinks = None if floor is None else floor.static_indentation_m
+        if sinks is not None and 2.0 * sinks > SOFT * static.width * static.slenderness_angle:
             return None
         slenderness = math.tan(static.slenderness_angle)
         return cls(gravity=static.gravity, slenderness=slenderness, slope=static.slope)
@@ -64,13 +68,6 @@ class BodyAtRest:
         least = min(self.slenderness, mu_static)
         kept = self.gravity * (least * math.cos(self.slope) - math.sin(self.slope))
         return max(kept, 0.0), np.abs(horizontal) - least * upward
-
-
-def gives_way(case: Case, mesh: ContainerMesh, static: StaticChecks) -> bool:
-    """Whether a container tilts on a slab by more than `SOFT` before a side of it lifts off."""
-    floor = floor_result(case, mesh, static)
-    sinks = None if floor is None else floor.static_indentation_m
-    return sinks is not None and 2.0 * sinks > SOFT * static.width * static.slenderness_angle
 
 
 def still_from(

@@ -13,7 +13,6 @@ from fem.case.case import Case, CaseError
 from fem.model.bounce import bounce_of
 from fem.model.container import Container
 from fem.model.frames import INTERVALS
-from fem.model.loose_stack import struck_mass
 from fem.model.static_checks import StaticChecks
 from fem.runtime.arrays import FloatArray
 
@@ -120,14 +119,15 @@ def _struck_mass(case: Case, container: Container) -> float:
 
     For a rigid container that of the whole, rotating body; for an elastic one little more than the corner's own.
     """
-    mesh, corner = container.mesh, container.nodes[0]
-    if container.boxes and case.solver.model != "full":
-        return min(struck_mass(box, corner) for box in container.boxes for corner in range(box.corners.size))
     if case.solver.model == "full":
-        return float(container.elements.nodal_mass[corner])
-    arm = container.elements.nodes[corner, 0] - mesh.centroid[0]
-    elastic = float(np.sum(container.basis.shapes[:, corner, 1] ** 2))
-    return 1.0 / (1.0 / mesh.mass + arm * arm / mesh.inertia + elastic)
+        return float(container.elements.nodal_mass[container.nodes[0]])
+    masses = []
+    for body in container.boxes or [container]:
+        for corner in container.nodes[:1] if isinstance(body, Container) else body.corners:
+            arm = float(body.elements.nodes[corner, 0] - body.mesh.centroid[0])
+            elastic = float(np.sum(body.basis.shapes[:, corner, 1] ** 2))
+            masses.append(1.0 / (1.0 / body.mesh.mass + arm * arm / body.mesh.inertia + elastic))
+    return min(masses)
 
 
 def control_of(

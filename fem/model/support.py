@@ -19,7 +19,7 @@ import numpy as np
 from contact.interface.penalty import STIFFEST, choose_normal_penalty
 from contact.interface.support import Support, cambered, choose_support
 from fem.case.case import Case, CaseError
-from fem.model.floor import corner_patch, half_space_of, pivot_share, slab_of, slab_penalty
+from fem.model.floor import corner_patch, half_space_of, pivot_share, slab_of
 from fem.model.geometry import base_positions, build_container
 from fem.model.static_checks import distance_beside, slenderness_angle
 from fem.runtime.arrays import FloatArray
@@ -104,7 +104,8 @@ def normal_penalty(case: Case, mesh: ContainerMesh) -> float:
     The rigid floor of a row is one: "auto" is the largest that any of its containers would have alone.
     """
     if case.floor.is_slab:
-        softest = slab_penalty(case, mesh)
+        length = mesh.width if case.foot is None else sum(mesh.elevation.foot_widths(case.foot))
+        softest = 2.0 * slab_of(case, mesh.mass).normal_stiffness / (length * case.container.depth_m)
         return min(softest, _rolling_penalty(case, mesh)) if case.support.camber_m > 0.0 else softest
     if case.neighbour and case.contact.normal_penalty_Pa_m == "auto":
         return max(steel_penalty(alone, build_container(alone)) for alone in case.row)
