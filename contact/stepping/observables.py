@@ -150,22 +150,6 @@ def record_start(track: Any, control: Any, camber: FloatArray, state: State) -> 
 
 
 @inlined
-def end_part(track: Any, window: float) -> None:
-    """Compare the mean corner force over the last `window` [s] with the largest one, and begin the next part."""
-    wanted, left, right, k = window, 0.0, 0.0, 0
-    while wanted > 1e-9 * window and k < PARTS:  # one turn where a step is longer than the window
-        part, k = track.impulses[(track.part - k) % PARTS], k + 1
-        share = min(1.0, wanted / part[0]) if part[0] > 0.0 else 0.0
-        left += share * part[1]
-        right += share * part[2]
-        wanted -= share * part[0]
-    if wanted <= 1e-9 * window:
-        track.max_corner_force = max(track.max_corner_force, max(left, right) / window)
-    track.part = (track.part + 1) % PARTS
-    track.impulses[track.part, :] = 0.0
-
-
-@inlined
 def update_observables(run: Any, step: float) -> None:
     """Update the observables of a run with the step [s] about to be accepted."""
     track, joint, control = run.track[0], run.joints[0], run.problem.control
@@ -206,8 +190,19 @@ def update_observables(run: Any, step: float) -> None:
     part[2] += 0.5 * step * (track.right_force + right_force)
     track.left_force, track.right_force = left_force, right_force
     track.peak_corner_force = max(track.peak_corner_force, max(left_force, right_force))
-    if part[0] >= control.force_window / PARTS:
-        end_part(track, control.force_window)
+    if part[0] >= control.force_window / PARTS:  # the mean over the last window may be the largest one
+        window = control.force_window
+        wanted, left, right, k = window, 0.0, 0.0, 0
+        while wanted > 1e-9 * window and k < PARTS:  # one turn where a step is longer than the window
+            part, k = track.impulses[(track.part - k) % PARTS], k + 1
+            share = min(1.0, wanted / part[0]) if part[0] > 0.0 else 0.0
+            left += share * part[1]
+            right += share * part[2]
+            wanted -= share * part[0]
+        if wanted <= 1e-9 * window:
+            track.max_corner_force = max(track.max_corner_force, max(left, right) / window)
+        track.part = (track.part + 1) % PARTS
+        track.impulses[track.part, :] = 0.0
     if abs(rotation) > ROCKING * control.slenderness_angle:
         track.rocking_time += step
         if left_force + right_force <= 0.0:

@@ -14,7 +14,7 @@ from contact.interface.penalty import relaxation_time
 from contact.interface.workspace import Contact
 from contact.stepping.body import State, make_state
 from contact.stepping.loose_stack import LooseStack
-from contact.stepping.modal_body import ModalBody, make_modal_body
+from contact.stepping.modal_body import make_modal_body
 from contact.stepping.stack_body import make_stack, settle_stack
 from fem.case.case import Case
 from fem.case.tables.boxes import shared_face
@@ -22,7 +22,7 @@ from fem.model.bounce import bounce_of
 from fem.model.container import Container
 from fem.model.links import appended, side_points
 from fem.model.support import base_points
-from fem.runtime.arrays import FloatArray, IntArray
+from fem.runtime.arrays import FloatArray
 from fem.solid.nodal_body import FullBody
 from fem.solid.nodal_stack import FullStack
 
@@ -59,54 +59,42 @@ def with_joints(case: Case, floor: Contact, mass: float, penalty: float) -> Cont
 
 def stack_of(case: Case, container: Container, contact: Contact, tolerance: float) -> LooseStack | FullStack:
     """The boxes of a loose stack as one body; `tolerance`: error of a corner at which a step stops iterating [m]."""
-    numbers = range(len(container.boxes))
     springs = contact.normal_stiffness.copy(), contact.tangential_stiffness.copy()
     damping = bounce_of(case, container, contact).material_damping
+    gravity, downhill = case.gravity_toward_floor, case.gravity_downhill
+    nodal, modal = [], []
+    for number, (box, place) in enumerate(zip(container.boxes, case.stack, strict=True)):
+        # what is monitored: its contents; of the uppermost box its upper corners before them
+        watched = box.monitors if number == len(container.boxes) - 1 else box.monitors[2:]
+        nodes = box.elements.nodes
+        if case.solver.model == "full":
+            placed = replace(box.elements, nodes=container.elements.nodes[container.box_nodes[number]])
+            nodal.append(
+                FullBody(placed, box.corners, watched, gravity=gravity, downhill=downhill, damping=damping)
+            )
+            continue
+        centroid, basis = np.asarray(box.mesh.centroid), box.basis
+        corner = base_points(case, container.mesh, nodes[box.corners], 2 if number == 0 else 0)
+        modal.append(
+            make_modal_body(
+                mass=box.mesh.mass,
+                inertia=box.mesh.inertia,
+                gravity=gravity,
+                downhill=downhill,
+                point=corner - centroid,
+                rest=(place.axis + float(centroid[0]), place.bottom + float(centroid[1])),
+                shape=np.moveaxis(basis.shapes[:, box.corners], 0, -1),
+                frequencies=basis.angular_frequencies,
+                damping_ratios=0.5 * damping * basis.angular_frequencies,
+                monitor=nodes[watched] - centroid,
+                monitor_shape=np.moveaxis(basis.shapes[:, watched], 0, -1),
+                tolerance=tolerance,
+            )
+        )
     if case.solver.model == "full":
-        bodies = [_nodal_body(case, container, number, damping) for number in numbers]
         responses = [box.response for box in container.boxes]
-        return FullStack(bodies, responses, *springs, tolerance, side_points(case))
-    boxes = [_modal_body(case, container, number, damping, tolerance) for number in numbers]
-    return make_stack(boxes, *springs, held=side_points(case))
-
-
-def _nodal_body(case: Case, container: Container, number: int, damping: float) -> FullBody:
-    box = container.boxes[number]
-    return FullBody(
-        replace(box.elements, nodes=container.elements.nodes[container.box_nodes[number]]),
-        box.corners,
-        _watched(container, number),
-        gravity=case.gravity_toward_floor,
-        downhill=case.gravity_downhill,
-        damping=damping,
-    )
-
-
-def _watched(container: Container, number: int) -> IntArray:
-    """Nodes of a box that are monitored: its contents; of the uppermost box its upper corners before them."""
-    monitors = container.boxes[number].monitors
-    return monitors if number == len(container.boxes) - 1 else monitors[2:]
-
-
-def _modal_body(case: Case, container: Container, number: int, damping: float, tolerance: float) -> ModalBody:
-    box, place = container.boxes[number], case.stack[number]
-    centroid = np.asarray(box.mesh.centroid)
-    watched = _watched(container, number)
-    corner = base_points(case, container.mesh, box.elements.nodes[box.corners], 2 if number == 0 else 0)
-    return make_modal_body(
-        mass=box.mesh.mass,
-        inertia=box.mesh.inertia,
-        gravity=case.gravity_toward_floor,
-        downhill=case.gravity_downhill,
-        point=corner - centroid,
-        rest=(place.axis + float(centroid[0]), place.bottom + float(centroid[1])),
-        shape=np.moveaxis(box.basis.shapes[:, box.corners], 0, -1),
-        frequencies=box.basis.angular_frequencies,
-        damping_ratios=0.5 * damping * box.basis.angular_frequencies,
-        monitor=box.elements.nodes[watched] - centroid,
-        monitor_shape=np.moveaxis(box.basis.shapes[:, watched], 0, -1),
-        tolerance=tolerance,
-    )
+        return FullStack(nodal, responses, *springs, tolerance, side_points(case))
+    return make_stack(modal, *springs, held=side_points(case))
 
 
 def make_stack_state(stack: LooseStack | FullStack) -> State:

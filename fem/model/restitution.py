@@ -105,22 +105,19 @@ def read_calibrations() -> dict[str, Calibration]:
     text = resources.files("fem.model").joinpath("data", TABLE).read_text(encoding="utf-8")
     lines = [line for line in text.splitlines() if not line.startswith("#")]
     rows = list(csv.DictReader(lines))
-    kinds = dict.fromkeys(row["support"] for row in rows)
-    return {kind: _calibration([row for row in rows if row["support"] == kind]) for kind in kinds}
-
-
-def _calibration(rows: list[dict[str, str]]) -> Calibration:
     names = ("foot_over_width", "height_over_width", "contact_damping_ratio")
-    points = np.array([[float(row[name]) for name in names] for row in rows])
-    axes = [np.unique(points[:, k]) for k in range(3)]
-    values = [
-        (1.0 - float(row["rigid"])) / (1.0 - float(row["housner"])) if row["rigid"] else np.nan
-        for row in rows
-    ]
-    loss = np.full([axis.size for axis in axes], np.nan)
-    loss[tuple(np.searchsorted(axis, points[:, k]) for k, axis in enumerate(axes))] = values
-    foot, slenderness, damping_ratio = axes
-    return Calibration(foot=foot, slenderness=slenderness, damping_ratio=damping_ratio, loss=loss)
+    found = {}
+    for kind in dict.fromkeys(row["support"] for row in rows):
+        own = [row for row in rows if row["support"] == kind]
+        points = np.array([[float(row[name]) for name in names] for row in own])
+        axes = [np.unique(points[:, k]) for k in range(3)]
+        loss = np.full([axis.size for axis in axes], np.nan)
+        loss[tuple(np.searchsorted(axis, points[:, k]) for k, axis in enumerate(axes))] = [
+            (1.0 - float(row["rigid"])) / (1.0 - float(row["housner"])) if row["rigid"] else np.nan
+            for row in own
+        ]
+        found[kind] = Calibration(foot=axes[0], slenderness=axes[1], damping_ratio=axes[2], loss=loss)
+    return found
 
 
 def _place(axis: FloatArray, value: float) -> tuple[int, float] | None:

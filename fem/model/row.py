@@ -86,23 +86,14 @@ def body_of_row(
         max(round(0.5 * (1.0 - float(np.ptp(body.point[:, 0])) / mesh.width), 12), 0.0)
         for body, mesh in zip(bodies, meshes, strict=True)
     ]
-    corners = [_with_corners(*standing) for standing in zip(bodies, meshes, strict=True)]
-    # of the neighbours no point is watched
-    watched = [
-        corners[0],
-        *(
-            corner._replace(monitor=corner.monitor[:0], monitor_shape=corner.monitor_shape[:0])
-            for corner in corners[1:]
-        ),
-    ]
+    watched = []
+    for body, mesh in zip(bodies, meshes, strict=True):  # with the corners of its elevation as its points
+        corner = [(x, z) for z in (0.0, mesh.height) for x in (-0.5 * mesh.width, 0.5 * mesh.width)]
+        if watched:  # of the neighbours no point is watched
+            body = body._replace(monitor=body.monitor[:0], monitor_shape=body.monitor_shape[:0])
+        watched.append(body._replace(point=np.array(corner) - body.rest, shape=np.zeros((len(corner), 2, 0))))
     springs = contact.normal_stiffness.copy(), contact.tangential_stiffness.copy()
     return make_stack(watched, *springs, (*facing(places), np.array(inset)), held=side_points(case))
-
-
-def _with_corners(body: ModalBody, mesh: ContainerMesh) -> ModalBody:
-    """The rigid body with the corners of its elevation in place of its points over the floor."""
-    corner = [(x, z) for z in (0.0, mesh.height) for x in (-0.5 * mesh.width, 0.5 * mesh.width)]
-    return body._replace(point=np.array(corner) - body.rest, shape=np.zeros((len(corner), 2, 0)))
 
 
 def corners_at_rest(body: LooseStack, stances: Sequence[Stance | None]) -> FloatArray:
