@@ -5,6 +5,7 @@ import math
 from contact.jit import compiled, inlined
 from contact.stepping.body import ANGULAR_VELOCITY, CENTRE_X, CENTRE_Z, ROTATION
 from contact.stepping.joints import points_of
+from contact.stepping.links import follow_touch
 from contact.stepping.modes import REST, ROCK, ROCKING, SLIDE, SLIDE_ROCK
 from contact.stepping.observables import NEVER, OPENING
 from contact.stepping.scheme import hermite
@@ -53,12 +54,11 @@ def follow_boxes(run: RunState, step: float) -> None:
 
 @compiled
 def follow_gap(run: RunState, step: float, g: int, apart: float) -> None:
-    """Update the record of one gap of a row; its force is that of its four points together.
+    """Update the record of one gap of a row, as `follow_touch`; its force is that of its four points together.
 
-    A touch is another hit where the bodies have been further `apart` [m] since the last one. A point of no weight is a
-    corner beside the other body's side: its distance says nothing of the gap.
+    A point of no weight is a corner beside the other body's side: its distance says nothing of the gap.
     """
-    old, new, record = run.old, run.attempt.new, run.links[g]
+    old, new = run.old, run.attempt.new
     first = run.joints[run.joints.shape[0] - 1].end + POINTS_OF_GAP * g
     before, after, force, speed = NEVER, NEVER, 0.0, 0.0
     for i in range(first, first + POINTS_OF_GAP):
@@ -70,15 +70,7 @@ def follow_gap(run: RunState, step: float, g: int, apart: float) -> None:
             speed = max(speed, old.descent[i, 0])
             if run.clock[0].steps == 0:  # the velocity of a touch at t = 0 follows from the step alone
                 speed = max(speed, (old.point[i, 1] - new.point[i, 1]) / step)
-    record.max_force = max(record.max_force, force)
-    record.least_gap = min(record.least_gap, max(after, 0.0))
-    if after > 0.0 and record.away < NEVER:
-        record.away = max(record.away, after)
-    if after < 0.0 and (before >= 0.0 or record.away == NEVER):
-        record.largest_closing_velocity = max(record.largest_closing_velocity, speed)
-        if record.away > apart:
-            record.hits += 1
-        record.away = 0.0
+    follow_touch(run.links[g], force, (before, after), speed, apart)
 
 
 @inlined

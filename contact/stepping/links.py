@@ -246,34 +246,40 @@ def reach_strength(run: RunState, links: LinkedBody | None) -> bool:
 
 
 @inlined
-def follow_links(run: RunState, step: float, links: LinkedBody | None, apart: float) -> None:
-    """Update the records of the links from the step about to be accepted, and break those at their strength.
+def follow_touch(record: Any, force: float, gaps: tuple[float, float], speed: float, apart: float) -> None:
+    """Update the record of a link or a gap from its force [N] and its gaps before and after the step [m].
 
-    `apart`: gap after which another touch is another hit [m].
+    A touch with this closing speed [m/s] is another hit where the gap has been more than `apart` [m] since the last.
     """
+    before, gap = gaps
+    record.max_force = max(record.max_force, force)
+    if record.broken_at == NEVER:
+        record.least_gap = min(record.least_gap, max(gap, 0.0))
+        if gap > 0.0 and record.away < NEVER:
+            record.away = max(record.away, gap)
+    # what begins without a gap may begin a rounding error closed
+    if gap < 0.0 and (before >= 0.0 or record.away == NEVER):
+        record.largest_closing_velocity = max(record.largest_closing_velocity, speed)
+        if record.away > apart:
+            record.hits += 1
+        record.away = 0.0
+
+
+@inlined
+def follow_links(run: RunState, step: float, links: LinkedBody | None, apart: float) -> None:
+    """Update the records of the links from the step about to be accepted, and break those at their strength."""
     if links is not None:
         line, contact = links.line, run.problem.contact
         old, new, change = run.old, run.attempt.new, run.attempt.change
         first, before = new.point.shape[0] - line.shape[0], run.links.shape[0] - line.shape[0]
         for k in range(line.shape[0]):
             i, record = first + k, run.links[before + k]
-            gap = new.point[i, 1]
-            record.max_force = max(record.max_force, new.force[i, 1])
-            if record.broken_at == NEVER:
-                record.least_gap = min(record.least_gap, max(gap, 0.0))
-                if gap > 0.0 and record.away < NEVER:
-                    record.away = max(record.away, gap)
-            # what begins without a gap may begin a rounding error closed
-            if gap < 0.0 and (old.point[i, 1] >= 0.0 or record.away == NEVER):
-                # the velocity of a touch at t = 0 follows from the step alone
-                speed = max(old.descent[i, 0], (old.point[i, 1] - gap) / step)
-                record.largest_closing_velocity = max(record.largest_closing_velocity, speed)
-                if record.away > apart:
-                    record.hits += 1
-                record.away = 0.0
-            if (
-                run.work.law[i, 1] >= contact.cap[i]
-            ):  # what its springs held, and yielded in this step, is damping
+            gaps = old.point[i, 1], new.point[i, 1]
+            # the velocity of a touch at t = 0 follows from the step alone
+            speed = max(old.descent[i, 0], (gaps[0] - gaps[1]) / step)
+            follow_touch(record, new.force[i, 1], gaps, speed, apart)
+            # what its springs held, and yielded in this step, is damping
+            if run.work.law[i, 1] >= contact.cap[i]:
                 yielded = 0.5 * (old.force[i, 1] + new.force[i, 1]) * (new.crushed[i] - old.crushed[i])
                 held = 0.5 * contact.normal_stiffness[i] * new.point[i, 1] ** 2
                 held += 0.5 * contact.tangential_stiffness[i] * new.stick[i] ** 2
