@@ -65,13 +65,13 @@ class PlanarTransition:
 
 @dataclass(frozen=True, kw_only=True)
 class PlanarImpact:
-    """A corner meets the floor."""
+    """A corner meets the floor and becomes the pivot; velocities after it are zero where the block comes to rest."""
 
     time: float  #: [s]
     velocity_before: float  #: angular velocity, positive toward +x [rad/s]
     velocity_after: float  #: [rad/s]
-    slip_velocity_before: float  #: [m/s]
-    slides: bool  #: the friction impulse stood at its limit
+    slip_velocity_before: float = 0.0  #: [m/s]
+    slides: bool = False  #: the friction impulse stood at its limit
 
 
 @dataclass(frozen=True, kw_only=True)

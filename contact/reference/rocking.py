@@ -13,7 +13,6 @@ Housner, BSSA 53 (1963); Yim, Chopra, Penzien, Earthquake Engng Struct. Dyn. 8 (
 
 import math
 from dataclasses import dataclass
-from enum import Enum
 
 import numpy as np
 
@@ -30,23 +29,8 @@ from contact.reference.event_driven import (
     turning_point,
 )
 from contact.reference.floor_acceleration import Acceleration, FloorAcceleration
+from contact.reference.planar_block import PlanarImpact, PlanarMode
 from contact.reference.rigid_block import RigidBlock
-
-
-class RockingOutcome(Enum):
-    """How the motion of a block that cannot slide ended."""
-
-    REST, ROCK, OVERTURNED = "rest", "rock", "overturned"
-    OUTSIDE = "outside the model"  #: the floor left the block
-
-
-@dataclass(frozen=True, kw_only=True)
-class RockingImpact:
-    """A corner meets the floor and becomes the pivot."""
-
-    time: float  #: [s]
-    velocity_before: float  #: angular velocity, positive toward +x [rad/s]
-    velocity_after: float  #: the same sign; zero where the block comes to rest [rad/s]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,8 +47,8 @@ class RockingMotion:
 
     block: RigidBlock
     restitution: float  #: used at every impact [-]
-    outcome: RockingOutcome
-    impacts: tuple[RockingImpact, ...]
+    outcome: PlanarMode
+    impacts: tuple[PlanarImpact, ...]
     peaks: tuple[RockingPeak, ...]
     uplifts: tuple[float, ...]  #: instants at which the block left the rest on its base [s]
     end: float  #: duration asked for, or earlier: overturned, left the floor, stopped at the first impact [s]
@@ -119,7 +103,7 @@ def simulate_rocking(
     inertia = block.inertia_ratio * block.radius**2
     least_velocity = math.sqrt(2.0 * rest_energy * block.overturning_energy / inertia)
     pieces: list[Piece] = []
-    impacts: list[RockingImpact] = []
+    impacts: list[PlanarImpact] = []
     uplifts: list[float] = []
     overturned_at = None
     left = False
@@ -157,7 +141,7 @@ def simulate_rocking(
         after = -used * before
         stays = after < least_velocity and _rest_margin(block, acceleration) >= 0.0
         after = 0.0 if stays else after
-        impacts.append(RockingImpact(time=time, velocity_before=side * before, velocity_after=-side * after))
+        impacts.append(PlanarImpact(time=time, velocity_before=side * before, velocity_after=-side * after))
         if stop_at_impact:
             break
         side = 0 if after == 0.0 else -side  # the rest looks at once whether it holds
@@ -170,11 +154,11 @@ def simulate_rocking(
     largest = max([*ends, *(abs(peak.rotation) for peak in peaks)])
     moved = bool(impacts or uplifts or rotation or angular_velocity)
     if overturned_at is not None:
-        outcome = RockingOutcome.OVERTURNED
+        outcome = PlanarMode.OVERTURNED
     elif left:
-        outcome = RockingOutcome.OUTSIDE
+        outcome = PlanarMode.OUTSIDE
     else:
-        outcome = RockingOutcome.ROCK if moved else RockingOutcome.REST
+        outcome = PlanarMode.ROCK if moved else PlanarMode.REST
     return RockingMotion(
         block=block,
         restitution=used,

@@ -23,7 +23,7 @@ from contact.reference.planar_block import (
     simulate_planar_block,
 )
 from contact.reference.rigid_block import RigidBlock
-from contact.reference.rocking import RockingImpact, RockingMotion, RockingOutcome, simulate_rocking
+from contact.reference.rocking import RockingMotion, simulate_rocking
 from contact.stepping.modes import ROCKING, SLIDING
 from fem.model.model import Model
 from fem.results.history import ANALYTIC_COLUMN, History
@@ -68,7 +68,7 @@ class Reference:
 
     name: str
     at: RotationAt
-    impact: PlanarImpact | RockingImpact | None  #: the first after it had tilted
+    impact: PlanarImpact | None  #: the first after it had tilted
     left_model_at: float | None = None  #: outside its model from here on [s]
 
 
@@ -137,7 +137,7 @@ def analytic_block(model: Model, end: float) -> AnalyticBlock:
         swings = simulate_rocking(
             friction.body, floor, duration=end, rotation=rotation, angular_velocity=rate
         )
-    fell = swings.outcome in (RockingOutcome.OVERTURNED, PlanarMode.OVERTURNED)
+    fell = swings.outcome is PlanarMode.OVERTURNED
     return AnalyticBlock(
         outcome=None if block.outcome is PlanarMode.OUTSIDE else block.outcome.value,
         rotation_ratio=block.largest_rotation / angle,
@@ -197,7 +197,7 @@ def follow_block(model: Model, end: float) -> Reference:
     floor, start = _floor_and_start(model)
     rotation, rate = case.initial.rotation_rad, case.initial.angular_velocity_rad_s
 
-    def had_tilted(at: RotationAt, impact: PlanarImpact | RockingImpact) -> bool:
+    def had_tilted(at: RotationAt, impact: PlanarImpact) -> bool:
         before, _ = at(np.linspace(0.0, impact.time, 512))
         return bool(np.nanmax(np.abs(before)) > ROCKING * model.static.slenderness_angle)
 
@@ -289,7 +289,7 @@ def reasons_against(model: Model, history: History, verdict: Verdict, reference:
     kind, impact = model.case.support.kind, reference.impact
     sinking = static.weight / model.base_stiffness / (mesh.width * static.slenderness_angle)
     stiffness = _first_elastic_frequency(model) / contact_frequency(mesh.mass, model.base_stiffness)
-    block_slides = isinstance(impact, PlanarImpact) and (impact.slides or impact.slip_velocity_before != 0.0)
+    block_slides = impact is not None and (impact.slides or impact.slip_velocity_before != 0.0)
     reasons = []
     if not static.housner_credible:
         reasons.append(

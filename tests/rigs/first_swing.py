@@ -3,8 +3,9 @@
 from collections.abc import Callable
 
 from contact.reference.floor_acceleration import FloorAcceleration
+from contact.reference.planar_block import PlanarMode
 from contact.reference.rigid_block import RigidBlock
-from contact.reference.rocking import RockingOutcome, simulate_rocking
+from contact.reference.rocking import simulate_rocking
 
 
 def first_swing_threshold(
@@ -32,7 +33,7 @@ def first_swing_threshold(
 
     def overturns(peak: float) -> bool:
         motion = simulate_rocking(block, floor_of_peak(peak), duration=duration, stop_at_impact=True)
-        return motion.outcome is RockingOutcome.OVERTURNED
+        return motion.outcome is PlanarMode.OVERTURNED
 
     if overturns(low) or not overturns(high):
         raise ValueError(f"first swing: no change from standing to overturned between {low} and {high} m/s2")

@@ -13,7 +13,7 @@ from verification.overturning import initiation_grid
 from contact.reference.floor_acceleration import Acceleration
 from contact.reference.planar_block import PlanarBlock, PlanarMode, rock, simulate_planar_block
 from contact.reference.rigid_block import RigidBlock
-from contact.reference.rocking import RockingOutcome, simulate_rocking
+from contact.reference.rocking import simulate_rocking
 
 STACK = RigidBlock.homogeneous(width=1.1, height=4.0)
 BOX = RigidBlock.homogeneous(width=1.1, height=1.0)
@@ -82,7 +82,7 @@ def test_rectangular_pulse_of_just_the_critical_duration(block, ratio):
         ).outcome
         for factor in (1.0 - 1e-8, 1.0 + 1e-8)
     ]
-    assert outcomes == [RockingOutcome.ROCK, RockingOutcome.OVERTURNED]
+    assert outcomes == [PlanarMode.ROCK, PlanarMode.OVERTURNED]
 
 
 @pytest.mark.parametrize("block", [STACK, BOX])
@@ -99,7 +99,7 @@ def test_velocity_step_of_just_the_critical_size(block):
         ).outcome
         for factor in (1.0 - 1e-9, 1.0 + 1e-9)
     ]
-    assert outcomes == [RockingOutcome.ROCK, RockingOutcome.OVERTURNED]
+    assert outcomes == [PlanarMode.ROCK, PlanarMode.OVERTURNED]
 
 
 GRAVITY = 9.81

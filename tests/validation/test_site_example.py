@@ -11,7 +11,8 @@ from case_rows import run_cases
 from running_example import SITE, k1
 
 from contact.motion.table import TableMotion
-from contact.reference.rocking import RockingOutcome, simulate_rocking
+from contact.reference.planar_block import PlanarMode
+from contact.reference.rocking import simulate_rocking
 from fem.case.case import case_from
 from fem.run.rigid_check import floor_of
 from fem.seismic.artificial import artificial_motions, artificial_set
@@ -81,7 +82,7 @@ def test_the_analytic_block_rests_and_rocks_under_the_same_motions():
                 driven_until=motion.duration,
             )
             rocked = simulate_rocking(block, floor, duration=motion.duration)
-            assert (rocked.outcome is RockingOutcome.OVERTURNED) == (row["outcome"] == "overturned")
+            assert (rocked.outcome is PlanarMode.OVERTURNED) == (row["outcome"] == "overturned")
             peak = max((abs(one.rotation) for one in rocked.peaks), default=0.0)
             found.append(row["rotation_ratio"])
             other.append(peak / block.slenderness_angle)

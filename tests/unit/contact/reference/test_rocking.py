@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 from floors import half_sine_pulse, rectangular_pulse, sine_floor, still_floor
 
+from contact.reference.planar_block import PlanarMode
 from contact.reference.rigid_block import RigidBlock
-from contact.reference.rocking import RockingOutcome, simulate_rocking
+from contact.reference.rocking import simulate_rocking
 
 STACK = RigidBlock.homogeneous(width=1.1, height=4.0)
 ANGLE = STACK.slenderness_angle
@@ -15,7 +16,7 @@ def test_endless_impacts_end_in_rest_at_the_sum_of_their_times():
     # slender: quarter periods fall like e^n, so that the impacts accumulate at a finite time.
     motion = simulate_rocking(STACK, still_floor(), duration=30.0, rotation=0.5 * ANGLE)
     last = motion.impacts[-1]
-    assert motion.outcome is RockingOutcome.ROCK
+    assert motion.outcome is PlanarMode.ROCK
     assert last.velocity_after == 0.0
     assert motion.end == 30.0
     rotation, velocity = motion.at(np.array([last.time, 30.0]))
@@ -53,7 +54,7 @@ def test_uplift_that_lasts_an_instant_is_not_missed():
     )
     first = math.asin(1.0 / (1.0 + 1e-7)) / frequency
     assert motion.uplifts[0] == pytest.approx(first, abs=1e-9)
-    assert motion.outcome is RockingOutcome.ROCK
+    assert motion.outcome is PlanarMode.ROCK
 
 
 def test_squat_block_lies_down_at_its_first_impact():

@@ -10,7 +10,7 @@ from rigid_slider import RigidSlider, simulate_sliding
 from contact.reference.floor_acceleration import FloorAcceleration
 from contact.reference.planar_block import PlanarBlock, PlanarMode, simulate_planar_block
 from contact.reference.rigid_block import RigidBlock
-from contact.reference.rocking import RockingOutcome, simulate_rocking
+from contact.reference.rocking import simulate_rocking
 
 GRAVITY = 9.81
 TIMES = np.linspace(0.0, 4.0, 201)
@@ -78,5 +78,5 @@ def test_a_floor_that_falls_faster_than_the_block_leaves_it(push, slip_velocity)
     slider = RigidSlider(mu_static=0.4, mu_kinetic=0.4, gravity=GRAVITY)
     assert simulate_sliding(slider, floor, duration=1.0, slip_velocity=slip_velocity).end == motion.end
     rocking = simulate_rocking(block.body, floor, duration=1.0)
-    assert rocking.outcome is RockingOutcome.OUTSIDE
+    assert rocking.outcome is PlanarMode.OUTSIDE
     assert rocking.end == motion.end
