@@ -20,11 +20,6 @@ def build_container(case: Case) -> ContainerMesh:
     Raises:
         CaseError, MeshError: a mesh file that is missing or does not fit; walls, posts or a mass that are impossible.
     """
-    mesh, beside = _centred(case), case.container.eccentricity_m
-    return with_mass_beside(mesh, beside) if beside else mesh
-
-
-def _centred(case: Case) -> ContainerMesh:
     container, size, foot = case.container, case.solver.element_size_m, case.foot
     file = case.data_files["container.mesh_file"] if container.mesh_file is not None else None
     boxes = [_stacked(case, box) for box in case.stack]
@@ -33,13 +28,17 @@ def _centred(case: Case) -> ContainerMesh:
         lowest = boxes[0]
         geometry = replace(lowest.geometry, boxes=container.boxes)
         if file is not None:
-            return read_container_mesh(file, geometry, lowest.fill)
-        return build_container_mesh(geometry, lowest.fill, element_size=size, foot=foot, bears=bears)
-    if file is not None:
-        return read_stack_mesh(file, boxes, loose=container.is_loose)
-    if container.is_loose:
-        return build_loose_mesh(boxes, element_size=size, foot=foot)
-    return build_bolted_mesh(boxes, element_size=size, foot=foot, bears=bears)
+            mesh = read_container_mesh(file, geometry, lowest.fill)
+        else:
+            mesh = build_container_mesh(geometry, lowest.fill, element_size=size, foot=foot, bears=bears)
+    elif file is not None:
+        mesh = read_stack_mesh(file, boxes, loose=container.is_loose)
+    elif container.is_loose:
+        mesh = build_loose_mesh(boxes, element_size=size, foot=foot)
+    else:
+        mesh = build_bolted_mesh(boxes, element_size=size, foot=foot, bears=bears)
+    beside = container.eccentricity_m
+    return with_mass_beside(mesh, beside) if beside else mesh
 
 
 def _stacked(case: Case, box: Box) -> StackedBox:

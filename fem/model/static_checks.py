@@ -118,18 +118,6 @@ class CodeChecks:
     q1: ActionCheck  #: under the code's base shear with behaviour factor 1
     applicability: CheckResult  #: of the method: period against min(4 T_C, 2.0 s) [s]
 
-    def added_to(self, result: StaticResult) -> StaticResult:
-        """The checks of a container with these."""
-        return replace(
-            result,
-            code=self.as_given.to_result(),
-            code_q1=self.q1.to_result(),
-            method_applicable=self.applicability.passed,
-            clause=self.applicability.clause,
-            period_limit_s=self.applicability.capacity,
-            code_values=CodeValues(**self.values.model_dump()),
-        )
-
 
 @dataclass(frozen=True, kw_only=True)
 class StaticChecks:
@@ -218,7 +206,17 @@ class StaticChecks:
             downhill_m_s2=self.downhill or None,
             wind=None if self.wind is None else self.wind.to_result(),
         )
-        return result if self.by_code is None else self.by_code.added_to(result)
+        if self.by_code is None:
+            return result
+        return replace(
+            result,
+            code=self.by_code.as_given.to_result(),
+            code_q1=self.by_code.q1.to_result(),
+            method_applicable=self.by_code.applicability.passed,
+            clause=self.by_code.applicability.clause,
+            period_limit_s=self.by_code.applicability.capacity,
+            code_values=CodeValues(**self.by_code.values.model_dump()),
+        )
 
 
 def static_checks(
@@ -284,26 +282,23 @@ def static_checks(
             least_weight=least_weight,
         )
 
-    def under_code(values: StaticTable, q: float) -> ActionCheck:
-        return under(
-            plateau_base_shear(
-                mass=mass,
-                ground_acceleration=values.ground_acceleration_m_s2,
-                soil_factor=values.soil_factor,
-                behaviour_factor=q,
-                importance_factor=values.importance_factor,
+    by_code = None
+    if code is not None:
+        as_given, q1 = (
+            under(
+                plateau_base_shear(
+                    mass=mass,
+                    ground_acceleration=code.ground_acceleration_m_s2,
+                    soil_factor=code.soil_factor,
+                    behaviour_factor=factor,
+                    importance_factor=code.importance_factor,
+                )
             )
+            for factor in (code.behaviour_factor, 1.0)
         )
-
-    def code_checks(values: StaticTable) -> CodeChecks:
-        limit = min(4.0 * values.corner_period_s, LIMIT_PERIOD)
-        return CodeChecks(
-            values=values,
-            as_given=under_code(values, values.behaviour_factor),
-            q1=under_code(values, 1.0),
-            applicability=CheckResult(demand=period, capacity=limit, unit="s", clause=CLAUSE_APPLICABLE),
-        )
-
+        limit = min(4.0 * code.corner_period_s, LIMIT_PERIOD)
+        applicability = CheckResult(demand=period, capacity=limit, unit="s", clause=CLAUSE_APPLICABLE)
+        by_code = CodeChecks(values=code, as_given=as_given, q1=q1, applicability=applicability)
     return StaticChecks(
         width=width,
         weight=weight,
@@ -333,7 +328,7 @@ def static_checks(
             mass * max(toward * gravity - peak_vertical_acceleration, 0.0),
         ),
         peak_vertical_acceleration=peak_vertical_acceleration,
-        by_code=None if code is None else code_checks(code),
+        by_code=by_code,
         slope=slope,
     )
 
