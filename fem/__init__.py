@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from fem.run.compute import compute
     from fem.run.opened import open_run
     from fem.seismic.two_directions import slide_in_plane
-    from fem.study.compute_many import compute_many
+    from fem.study.runner import compute_many
 
 __all__ = ["case_from", "compute", "compute_many", "load_case", "open_run", "slide_in_plane"]
 
@@ -26,7 +26,7 @@ __all__ = ["case_from", "compute", "compute_many", "load_case", "open_run", "sli
 PLACES = {
     "case_from": "fem.case.case",
     "compute": "fem.run.compute",
-    "compute_many": "fem.study.compute_many",
+    "compute_many": "fem.study.runner",
     "load_case": "fem.case.case",
     "open_run": "fem.run.opened",
     "slide_in_plane": "fem.seismic.two_directions",

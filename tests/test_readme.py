@@ -15,7 +15,7 @@ from fem.__main__ import COMMANDS, main
 from fem.case.case import load_case
 from fem.case.files import CASES, DEFAULT_CASE
 from fem.render.opengl import MEND_PICTURES, probe_rendering
-from fem.response.records import PointRow
+from fem.response.lasting import PointRow
 from fem.run.run import RunOptions, run_case
 from fem.site.request import load_site
 from fem.study.file import load_sweep

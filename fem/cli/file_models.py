@@ -8,10 +8,9 @@ from fem.case.tables.run_tables import DocumentTable, WindTable
 from fem.site import tables
 from fem.site.request import SiteHeading
 from fem.study.axes import Range
-from fem.study.design import MapChoice, Threshold
+from fem.study.design import MapChoice, Perturbation, Threshold
 from fem.study.draws import Distribution
 from fem.study.file import EnsembleHeading, StudyHeading
-from fem.study.perturbation import Perturbation
 
 Axes = dict[str, list[float | bool | str] | Range]
 CHANGES = "keys changed in the base case"

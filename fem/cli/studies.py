@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from fem.response.lasting import ResponseResult
     from fem.site.result import SiteResult
     from fem.study.fragility import EnsembleResult
-    from fem.study.list_file import HallResult
+    from fem.study.hall import HallResult
     from fem.study.sweep_table import SweepResult
 
 SiteFile = Annotated[
@@ -101,9 +101,7 @@ def _swept(sweep: str, flags: StudyFlags, page: str = "") -> int:
     def shown(result: "SweepResult", folder: Path) -> dict[str, Any]:
         answer = target = None
         if result.answer:
-            answer = _of("study.sweep_table:sweep_answer")(
-                _of("study.sweep_table:open_sweep")(folder), folder
-            )
+            answer = _of("study.answers:sweep_answer")(_of("study.sweep_table:open_sweep")(folder), folder)
         if page and result.state == "finished":
             target = folder / "explorer.html"
             write_atomically(target, _of(page)(plan, folder, flags.jobs))
@@ -171,7 +169,7 @@ def batch(
     hall:
         The list, as CSV.
     """
-    listed = _of("study.list_file:read_hall")(hall)
+    listed = _of("study.hall:read_hall")(hall)
     base = load_case(case, overrides, allow_outside=allow_outside)
 
     def shown(result: "HallResult", folder: Path) -> dict[str, Any]:
@@ -236,7 +234,7 @@ def response(
     )
 
     def shown(result: "ResponseResult", folder: Path) -> dict[str, Any]:
-        lasting, stable = (_of(f"response.answer:{name}_in_words")(result) for name in ("lasting", "stable"))
+        lasting, stable = (_of(f"response.lasting:{name}_in_words")(result) for name in ("lasting", "stable"))
         return {"asked": request, "lasting": lasting, "stable": stable}
 
     flags = StudyFlags(out=out, resume=resume, force=force, as_json=as_json, quiet=quiet)

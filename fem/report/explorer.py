@@ -23,8 +23,8 @@ from fem.run.sureness import REGIME_UNSURE, SURE, UNSURE
 from fem.runtime.arrays import FloatArray
 from fem.runtime.identity import command_line
 from fem.study.axes import Axis, axis_name, in_words
-from fem.study.compute_many import compute_many
 from fem.study.design import Sweep
+from fem.study.runner import compute_many
 from fem.study.sweep_table import SweepTable, open_sweep
 
 MOTION_BYTES = 3_600_000  #: of all motions, before base64 makes four thirds of it

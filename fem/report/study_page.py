@@ -18,8 +18,7 @@ from fem.html.units import ABSENT, figure_cell, figure_head, millimetres, number
 from fem.model.container import modes_of_a_body
 from fem.records.units import STANDARD_GRAVITY
 from fem.report.sweep_map import counts, map_data, shown_quantities
-from fem.response.answer import lasting_in_words, range_of, response_answer, stable_in_words
-from fem.response.lasting import ResponseResult
+from fem.response.lasting import ResponseResult, lasting_in_words, range_of, response_answer, stable_in_words
 from fem.results.errors import FolderError
 from fem.results.figures import DURATION, PGA, PGD, PGV, SLIPPED, TURNED, Place, Shown, figures_of
 from fem.results.kinds import ENSEMBLE, HALL, RESPONSE
@@ -40,14 +39,14 @@ from fem.study.answers import (
     fragility_lines,
     interval_in_words,
     ranges_in_words,
+    sweep_answer,
 )
-from fem.study.axes import Axis, axis_label, in_words, unit_in_words
+from fem.study.axes import Axis, axis_label, in_words, unit_of_people
 from fem.study.driver import COMPLETED, StudyResult, read_study
 from fem.study.fragility import EnsembleResult
-from fem.study.list_file import HallResult
-from fem.study.perturbation import input_in_words
-from fem.study.sure import CHANGES, change_columns
-from fem.study.sweep_table import SweepTable, open_sweep, sweep_answer
+from fem.study.hall import HallResult
+from fem.study.sure import CHANGES, change_columns, input_in_words
+from fem.study.sweep_table import SweepTable, open_sweep
 from fem.study.table import read_rows
 
 A_ROW = Mapping[str, Any]
@@ -125,7 +124,7 @@ def sweep_report(folder: Path, *, signature: Signature | None = None) -> str:
 def _answers_of_sweep(answer: StudyAnswer[Answer]) -> list[Column]:
     """Where, up to where it stood, where it first overturned, the slip, what else there is to say."""
     heads = ("stood up to", "first overturned at") if answer.rising else ("stood from", "overturned up to")
-    unit, rows = unit_in_words(answer.axis), answer.rows
+    unit, rows = unit_of_people(answer.axis)[0], answer.rows
     up_to, first, again, failed, unsure = (
         f"{head} [{unit}]" if unit else head for head in (*heads, "stood again", "no outcome", "unsure")
     )

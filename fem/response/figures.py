@@ -14,8 +14,7 @@ from matplotlib.figure import Figure
 
 from fem.figures import style
 from fem.figures.paper_marks import LABEL, marks_of
-from fem.response.lasting import coexistences, frequencies_of, lasting_at, of_first_model, shown
-from fem.response.records import PointRecord
+from fem.response.lasting import PointRecord, coexistences, frequencies_of, lasting_at, of_first_model, shown
 from fem.response.request import ResponseRequest
 from fem.results.figures import TURNED
 from fem.results.outcome import Outcome
@@ -82,13 +81,9 @@ def draw_curves(
         axes.set_ylim(0.0, max(axes.get_ylim()[1], least))  # rounding is not to look like motion
     _draw_ends(rotation, records)
     for k, row in enumerate(one.row for one in shown(records) if one.row.direction == "start"):
-        mark: dict[str, Any] = {
-            "color": style.PURPLE,
-            "marker": f"${row.period_n or '?'}$",
-            "markersize": 5.5,
-        }
-        label = "_" if k else "from random states: its period"
-        rotation.plot(row.frequency_Hz, row.turned, label=label, linestyle="none", **mark)
+        mark: dict[str, Any] = {"color": style.PURPLE, "linestyle": "none", "markersize": 5.5}
+        label, digit = "_" if k else "from random states: its period", f"${row.period_n or '?'}$"
+        rotation.plot(row.frequency_Hz, row.turned, label=label, marker=digit, **mark)
     if request.starts:
         width = 0.5 * (request.last_Hz - request.first_Hz) / request.count
         places = [at.frequency_Hz for at in frequencies]
@@ -119,7 +114,12 @@ def draw_curves(
 
 def _draw_portraits(records: Sequence[PointRecord]) -> Figure:
     """Phase portraits with their sections: all motions that last at a few frequencies."""
-    chosen = _choose_frequencies(records)
+    # of most motions first, else evenly over all that move
+    groups = {number: lasting_at(records, number) for number in {record.row.number for record in records}}
+    moving = sorted(n for n, found in groups.items() if any(group[0].row.turned > 0.01 for group in found))
+    moving = moving or sorted(number for number, found in groups.items() if found)
+    parts = [part for part in np.array_split(moving, PORTRAITS) if part.size]
+    chosen = [int(max(part, key=lambda number: len(groups[int(number)]))) for part in parts]
     rows = -(-len(chosen) // COLUMNS)
     figure = Figure(figsize=(style.WIDTH, 0.6 + 2.3 * rows), layout="constrained")
     figure.suptitle(
@@ -133,7 +133,7 @@ def _draw_portraits(records: Sequence[PointRecord]) -> Figure:
     for axes in subplots[len(chosen) :]:
         axes.set_visible(False)
     for k, (axes, number) in enumerate(zip(subplots, chosen, strict=False)):
-        drawn = [group[0] for group in lasting_at(records, number)]
+        drawn = [group[0] for group in groups[number]]
         for record in sorted(drawn, key=lambda record: -record.row.turned):
             repeats = record.row.long_time in ("periodic", "rest")
             colour = LOOKS[record.row.direction]["color"] if repeats else style.GREY
@@ -149,15 +149,6 @@ def _draw_portraits(records: Sequence[PointRecord]) -> Figure:
     return figure
 
 
-def _choose_frequencies(records: Sequence[PointRecord]) -> list[int]:
-    """Numbers of the frequencies whose portraits are drawn: of most motions first, else evenly over all that move."""
-    groups = {number: lasting_at(records, number) for number in {record.row.number for record in records}}
-    moving = sorted(n for n, found in groups.items() if any(group[0].row.turned > 0.01 for group in found))
-    moving = moving or sorted(number for number, found in groups.items() if found)
-    parts = [part for part in np.array_split(moving, PORTRAITS) if part.size]
-    return [int(max(part, key=lambda number: len(groups[int(number)]))) for part in parts]
-
-
 def _swept(records: Sequence[PointRecord], direction: str) -> list[PointRecord]:
     """The points of a sweep, rising."""
     swept = [record for record in records if record.row.direction == direction]
@@ -166,21 +157,14 @@ def _swept(records: Sequence[PointRecord], direction: str) -> list[PointRecord]:
 
 def _draw_ends(axes: Axes, records: Sequence[PointRecord]) -> None:
     """Where a sweep overturned or destroyed a corner: marks at the upper edge, joined with nothing."""
+    look: dict[str, Any] = {"linestyle": "none", "markersize": 5, "markerfacecolor": "none"}
     for direction, height in (("up", 0.97), ("down", 0.91)):
         rows = [record.row for record in _swept(records, direction)]
+        look |= {"color": LOOKS[direction]["color"], "transform": axes.get_xaxis_transform()}
         for words, marker, ends in (
             ("overturned", "x", [row.frequency_Hz for row in rows if row.fell]),
             ("a corner destroyed", "s", [row.frequency_Hz for row in rows if row.motion == Outcome.INVALID]),
         ):
             if ends:
-                axes.plot(
-                    ends,
-                    np.full(len(ends), height),
-                    linestyle="none",
-                    marker=marker,
-                    markersize=5,
-                    markerfacecolor="none",
-                    color=LOOKS[direction]["color"],
-                    transform=axes.get_xaxis_transform(),
-                    label=f"{direction}: {words}",
-                )
+                label, heights = f"{direction}: {words}", np.full(len(ends), height)
+                axes.plot(ends, heights, marker=marker, label=label, **look)

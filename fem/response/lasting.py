@@ -1,18 +1,222 @@
 """What lasts at each frequency, whatever led to it, and where it overturns: from all points of a response curve."""
 
+import json
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import asdict, astuple, dataclass, field, fields, replace
 from itertools import groupby
 from typing import Any
 
 import numpy as np
 
 from contact.stepping.modes import ROCKING
-from fem.response.records import PointRecord, PointRow
+from contact.stepping.state import Control
+from fem.case.case import Case
+from fem.response.orbit import (
+    EXTREME_COLUMNS,
+    SECTION_COLUMNS,
+    Decay,
+    LongTime,
+    Orbit,
+    amplitude_growth,
+    amplitudes_diverge,
+)
+from fem.response.request import SAMPLES_PER_PERIOD, ResponseRequest
 from fem.results.figures import TURNED
 from fem.results.json_block import JsonBlock
-from fem.study.driver import StudyResult
+from fem.results.outcome import Outcome
+from fem.runtime.arrays import FloatArray
+from fem.runtime.units import MILLIMETRES
+from fem.runtime.user_files import parsed_json
+from fem.study.answers import slip_in_words
+from fem.study.driver import COMPLETED, FAILED, INTERRUPTED, StudyResult
+from fem.study.table import table_text
+
+PORTRAYED = 16  #: last periods whose phase portrait is kept; of a periodic motion, one of its periods
+PORTRAIT_COLUMNS = ("rotation_rad", "angular_velocity_rad_s")
+ARRAYS = {"sections": SECTION_COLUMNS, "extremes": EXTREME_COLUMNS, "portrait": PORTRAIT_COLUMNS}
+
+
+@dataclass(frozen=True, kw_only=True)
+class PointRow(JsonBlock):
+    """A row of `response.csv`; None where a column does not apply."""
+
+    direction: str  #: up | down; start: from a state of its own
+    number: int  #: of the frequency, from 0 for the lowest
+    frequency_Hz: float
+    amplitude_m: float
+    peak_acceleration_m_s2: float
+    #: carried | case; of a start: random | risen, sunk: from a motion at the frequency below, above
+    began: str
+    status: str  #: completed | overturned | failed
+    motion: str | None = None
+    #: rest | periodic | not settled | not periodic; None without a long-time motion
+    long_time: str | None = None
+    period_n: int | None = None
+    scatter: float | None = None
+    settling: float | None = None
+    pairs_compared: int | None = None
+    periods: int
+    rotation_ratio: float | None = None
+    median_rotation_ratio: float | None = None
+    max_rotation_rad: float | None = None
+    least_rotation_rad: float | None = None
+    most_rotation_rad: float | None = None
+    slip_stroke_m: float | None = None
+    slip_walk_m: float | None = None
+    slip_excursion_m: float | None = None  #: within the periods observed, from where it was at their start
+    impacts_per_period: float | None = None
+    growth: float | None = None
+    bounded: bool | None = None
+    undriven: str | None = None
+    undriven_s: float | None = None
+    stable: bool | None = None
+    reason: str | None = None
+    model: str = ""
+    eta: float | None = None  #: angular frequency of the floor over the frequency parameter of the container
+    start_rotation_rad: float | None = None
+    start_angular_velocity_rad_s: float | None = None
+
+    @property
+    def says_nothing(self) -> bool:
+        """Whether it failed, or is not valid: a corner was destroyed."""
+        return self.status == "failed" or self.motion == Outcome.INVALID
+
+    @property
+    def fell(self) -> bool:
+        """Whether it overturned, without a corner destroyed before."""
+        return self.status == "overturned" and not self.says_nothing
+
+    @property
+    def turned(self) -> float:
+        """Largest |rotation| over the slenderness angle; 0 where none is known."""
+        return self.rotation_ratio or 0.0
+
+    @property
+    def words(self) -> str:
+        """The long-time motion: `rest`, `rock of period 1`, `slide-rock, not periodic`, `a corner destroyed`."""
+        if self.motion == Outcome.INVALID:
+            return "a corner destroyed"
+        if self.long_time == "periodic":
+            return f"{self.motion} of period {self.period_n}"
+        if self.long_time in (None, "rest"):
+            return self.long_time or self.status
+        return f"{self.motion}, {self.long_time}"
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PointRecord:
+    """One point: its row and its arrays, by `ARRAYS`."""
+
+    row: PointRow
+    sections: FloatArray  #: (n, 4)
+    extremes: FloatArray  #: (n, 7)
+    portrait: FloatArray  #: (n_samples, 2), of whole periods
+
+    @property
+    def stands(self) -> bool:
+        """It has a long-time motion, and no corner was destroyed in it."""
+        return self.row.long_time is not None and not self.row.says_nothing
+
+    def number(self, column: str) -> float:
+        """A number of the row; nan where it does not apply."""
+        value = getattr(self.row, column)
+        return math.nan if value is None else float(value)
+
+
+def record_of(
+    case: Case, orbit: Orbit, control: Control, judged: LongTime | None, decay: Decay | None, **known: Any
+) -> PointRecord:
+    """What is kept of a point.
+
+    Args:
+        case: with the drive, and the start of its own if it has one.
+        orbit: of the window observed; where it overturned or failed, what there is of it.
+        control: of its model.
+        judged: None where it overturned, failed or destroyed a corner.
+        decay: with the drive stopped.
+        known: further columns.
+    """
+    extremes, omega = orbit.extremes, case.motion.angular_frequency
+    ratios = abs(extremes[:, 0]) / control.slenderness_angle
+    if judged is not None:
+        known |= asdict(judged) | {
+            TURNED: float(ratios.max()),
+            "median_rotation_ratio": float(np.median(ratios)),
+            "max_rotation_rad": float(extremes[:, 0].max()),
+            "least_rotation_rad": float(extremes[:, 1].min()),
+            "most_rotation_rad": float(extremes[:, 2].max()),
+            "slip_stroke_m": float(extremes[:, 4].max()),
+            "slip_walk_m": float(orbit.sections[:, 3].mean()),
+            "slip_excursion_m": float(extremes[:, 6].max()),
+            "impacts_per_period": float(extremes[:, 5].mean()),
+            "growth": amplitude_growth(ratios),
+        }
+    if decay is not None:
+        known |= {"undriven": decay[0], "undriven_s": decay[1]}
+    if known["direction"] == "start":
+        known["start_rotation_rad"] = case.initial.rotation_rad
+        known["start_angular_velocity_rad_s"] = case.initial.angular_velocity_rad_s
+    if orbit.status != "failed" and known["motion"] != Outcome.INVALID:
+        bounded = judged is not None and not amplitudes_diverge(ratios)
+        known["bounded"] = bounded
+        if not bounded or (decay is not None and decay[0] != "failed"):
+            known["stable"] = bounded and decay is not None and decay[0] == "dies out"
+    row = PointRow(
+        frequency_Hz=omega / (2.0 * math.pi),
+        amplitude_m=case.motion.amplitude,
+        peak_acceleration_m_s2=case.motion.amplitude * omega**2,
+        status=orbit.status,
+        model=case.solver.model,
+        eta=omega / control.frequency_parameter,
+        **known,
+    )
+    periods = PORTRAYED if judged is None else {"rest": 1}.get(judged.long_time, judged.period_n or PORTRAYED)
+    portrait = orbit.portrait[-periods * SAMPLES_PER_PERIOD :]
+    return PointRecord(row=row, sections=orbit.sections, extremes=extremes, portrait=portrait)
+
+
+def tables_of(request: ResponseRequest, records: Sequence[PointRecord]) -> dict[str, str]:
+    """The tables by name: a row a point, in the order in which they were computed; a row a period in `sections.csv`."""
+    own = of_first_model(records)
+    starts = [record for record in own if record.row.direction == "start"]
+    points: dict[str, Sequence[PointRecord]] = {"response.csv": _swept(own)}
+    points |= {"starts.csv": starts} if request.starts else {}
+    points |= {"shell.csv": records[len(own) :]} if request.shell else {}
+    names = [field.name for field in fields(PointRow)]
+    tables = {
+        name: table_text(names, (astuple(record.row) for record in rows)) for name, rows in points.items()
+    }
+    columns = ("direction", "frequency_Hz", "period", *SECTION_COLUMNS, *EXTREME_COLUMNS)
+    periods = (
+        (record.row.direction, record.row.frequency_Hz, k, *section, *extreme)
+        for record in shown(own)
+        for k, (section, extreme) in enumerate(zip(record.sections, record.extremes, strict=True), start=1)
+    )
+    return tables | {"sections.csv": table_text(columns, periods)}
+
+
+def packed(records: Sequence[PointRecord]) -> dict[str, np.ndarray]:
+    """Points as a few plain arrays, which `unpacked` reads."""
+    rows = [asdict(record.row) for record in records]
+    counts = np.array([[len(getattr(record, name)) for name in ARRAYS] for record in records], dtype=int)
+    parts = {name: [getattr(record, name) for record in records] for name in ARRAYS}
+    joined = {
+        name: np.concatenate(parts[name]) if records else np.zeros((0, len(columns)))
+        for name, columns in ARRAYS.items()
+    }
+    return {"rows": np.array(json.dumps(rows)), "counts": counts} | joined
+
+
+def unpacked(arrays: dict[str, np.ndarray]) -> list[PointRecord]:
+    """The points that `packed` made these arrays of."""
+    ends = np.cumsum(arrays["counts"], axis=0)[:-1]
+    parts = {name: np.split(arrays[name], ends[:, k]) for k, name in enumerate(ARRAYS)}
+    return [
+        PointRecord(row=PointRow(**row), **{name: parts[name][k] for name in ARRAYS})
+        for k, row in enumerate(parsed_json(str(arrays["rows"])))
+    ]
+
 
 APART = 0.02  #: difference of rotation ratios that counts at least
 APART_STROKE = 0.05  #: of slip strokes, over the floor's amplitude
@@ -110,10 +314,12 @@ def lasting_at(records: Sequence[PointRecord], number: int) -> list[list[PointRe
 
 def shown(records: Sequence[PointRecord]) -> list[PointRecord]:
     """The points of both sweeps, and one of each motion that they do not meet."""
-    swept = [record for record in records if record.row.direction != "start"]
     groups = [group for number in _numbers(records) for group in lasting_at(records, number)]
-    away = [group[0] for group in groups if all(record.row.direction == "start" for record in group)]
-    return swept + away
+    return _swept(records) + [group[0] for group in groups if not _swept(group)]
+
+
+def _swept(records: Sequence[PointRecord]) -> list[PointRecord]:
+    return [record for record in records if record.row.direction != "start"]
 
 
 def _numbers(records: Sequence[PointRecord]) -> list[int]:
@@ -152,30 +358,25 @@ def coexistences(frequencies: Sequence[AtFrequency]) -> Iterator[Coexistence]:
     for several, run in groupby(frequencies, lambda at: len(at.motions) > 1):
         if several:
             found = list(run)
+            turned = [[motion.rotation_ratio for motion in at.motions] for at in found]
             yield Coexistence(
-                from_Hz=found[0].frequency_Hz,
-                to_Hz=found[-1].frequency_Hz,
-                frequencies=len(found),
+                **_range_of(found),
                 motions=tuple(dict.fromkeys(motion.motion for at in found for motion in at.motions)),
-                largest_difference=max(
-                    at.motions[0].rotation_ratio - at.motions[-1].rotation_ratio for at in found
-                ),
+                largest_difference=max(ratios[0] - ratios[-1] for ratios in turned),
             )
 
 
 def drop_outs(records: Sequence[PointRecord]) -> Iterator[DropOut]:
     """Ranges of neighbouring frequencies, along each sweep, at which the container overturned."""
-    swept = [record.row for record in records if record.row.direction != "start"]
+    swept = (record.row for record in _swept(records))
     for (direction, fell), run in groupby(swept, lambda row: (row.direction, row.fell)):
         if fell:
             rows = list(run)
-            yield DropOut(
-                direction=direction,
-                from_Hz=rows[0].frequency_Hz,
-                to_Hz=rows[-1].frequency_Hz,
-                frequencies=len(rows),
-                carried=rows[0].began == "carried",
-            )
+            yield DropOut(direction=direction, **_range_of(rows), carried=rows[0].began == "carried")
+
+
+def _range_of(found: Sequence[AtFrequency | PointRow]) -> dict[str, Any]:
+    return {"from_Hz": found[0].frequency_Hz, "to_Hz": found[-1].frequency_Hz, "frequencies": len(found)}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -195,3 +396,137 @@ class ResponseResult(StudyResult):
     starts_fell_share: float | None = None  #: of the random states, all frequencies; None without any
     #: of the shell's rotations over those of the case's model, least and largest; empty without a shell
     shell_over_rigid: tuple[float, ...] = ()
+
+
+def result_of(
+    begun: ResponseResult, records: Sequence[PointRecord], missing: str | None = None
+) -> ResponseResult:
+    """The result of the points that there are; `missing`: what an interrupted curve lacks, in words."""
+    own = of_first_model(records)
+    points, frequencies = tuple(record.row for record in _swept(own)), tuple(frequencies_of(own))
+    failed = any(record.row.status == "failed" for record in own)
+    starts, fell = sum(at.starts for at in frequencies), sum(at.fell + at.destroyed for at in frequencies)
+    result = replace(
+        begun,
+        status=INTERRUPTED if missing else FAILED if failed else COMPLETED,
+        missing=missing,
+        points=points,
+        frequencies=frequencies,
+        coexisting=tuple(coexistences(frequencies)),
+        drop_outs=tuple(drop_outs(own)),
+        overturned_share=None if missing else overturned_share(points),
+        starts_fell_share=fell / starts if starts else None,
+        shell_over_rigid=shell_over_rigid(records),
+    )
+    return replace(result, answer=response_answer(result))
+
+
+#: what stable means, as Knoedel and Hrabowski define Lyapunov stability
+STABLE = "amplitudes do not diverge, and without drive the motion dies out"
+MOST_RANGES = 3  #: of frequencies that are named
+
+
+def overturned_share(points: Sequence[PointRow]) -> float | None:
+    """Of some points with an outcome, those that overturn or destroy a corner; None where there is none."""
+    known = [point for point in points if point.status != "failed"]
+    return sum(point.fell or point.says_nothing for point in known) / len(known) if known else None
+
+
+def response_answer(result: ResponseResult) -> str | None:
+    """The answer of a response curve; None of an unfinished one and one without an outcome."""
+    points = [point for point in result.points if point.status != "failed"]
+    if result.state != "finished" or not points:
+        return None
+    failed = len(result.points) - len(points)
+    destroyed = [point for point in points if point.motion == Outcome.INVALID]
+    overturned = [point for point in points if point.fell]
+    standing = [point for point in points if not point.fell and not point.says_nothing]
+    frequencies = [point.frequency_Hz for point in points]
+    every = f"every frequency {'with an outcome' if failed else 'tried'}, {_range(min(frequencies), max(frequencies))}"
+    parts = [_largest_in_words(result)]
+    if result.starts_fell_share is not None:
+        destroys = " or destroy a corner" if any(at.destroyed for at in result.frequencies) else ""
+        count = sum(at.starts for at in result.frequencies)
+        parts.append(f"{100.0 * result.starts_fell_share:.0f} % of {count} random starts overturn{destroys}")
+    if len(standing) == len(points):
+        parts.append(f"stood at {every}, up and down")
+    elif len(overturned) == len(points):
+        parts.append(f"overturned at {every}")
+    elif len(destroyed) == len(points):
+        parts.append(f"not valid at {every}: a corner is destroyed")
+    else:
+        fallen = [f"{range_of(fall)} going {fall.direction}" for fall in result.drop_outs]
+        parts += [f"overturned at {_listed(fallen)}"] if fallen else []
+        if destroyed:
+            parts.append(f"not valid at {_counted(destroyed)}: a corner is destroyed")
+        if count := len(standing):
+            parts.append(f"stood at the other {f'{count} points' if count > 1 else 'point'}")
+    if standing:
+        slid = max(standing, key=lambda point: point.slip_stroke_m or 0.0)
+        if (slid.slip_stroke_m or 0.0) >= MILLIMETRES.least:
+            stroke = f"slid by up to {slip_in_words(slid.slip_stroke_m or 0.0)} a period"
+            parts.append(f"{stroke}, at {slid.frequency_Hz:.4g} Hz going {slid.direction}")
+    if result.coexisting:
+        parts.append(f"motions coexist at {_listed([range_of(several) for several in result.coexisting])}")
+    if result.shell_over_rigid:
+        low, high = (f"{share:.2g}" for share in result.shell_over_rigid)
+        parts.append(f"where both last, the shell turns by {low} to {high} of what the rigid body does")
+    if failed:
+        parts.append(f"no outcome at {failed} of {len(result.points)} points")
+    return "frequency: " + "; ".join(filter(None, parts))
+
+
+def stable_in_words(result: ResponseResult) -> str | None:
+    """How many of the points judged are stable, behind what that means; None where none was judged."""
+    judged = [point.stable for point in result.points if point.stable is not None]
+    return f"{sum(judged)} of {len(judged)} points: {STABLE}" if judged else None
+
+
+def _largest_in_words(result: ResponseResult) -> str:
+    """The largest lasting motion, where it is, what leads to it and what the curve shows there; empty without one."""
+    motions = [(at, motion) for at in result.frequencies for motion in at.motions]
+    if not motions:
+        return ""
+    at, largest = max(motions, key=lambda pair: pair[1].rotation_ratio)
+    if all(motion.motion == "rest" for _, motion in motions):
+        return "at rest wherever it stands"
+    led = [f"going {way}" for way in largest.ways]
+    led += [f"{largest.starts} of {at.starts} starts"] * bool(at.starts)
+    beside = "" if largest.ways else ", which neither sweep meets"
+    return (
+        f"largest lasting motion {largest.rotation_ratio:.2g} of the slenderness angle, {largest.motion} at "
+        f"{at.frequency_Hz:.4g} Hz{beside} ({', '.join(led)})"
+    )
+
+
+def lasting_in_words(result: ResponseResult) -> Iterator[tuple[AtFrequency, str]]:
+    """What lasts at each frequency, with the sweeps and the share of the starts that lead to it; what falls."""
+    for at in result.frequencies:
+        words = []
+        for motion in at.motions:
+            led = [*motion.ways, *([f"{motion.starts} of {at.starts} starts"] if motion.starts else [])]
+            words.append(
+                f"{motion.rotation_ratio:.3f} {motion.motion} ({', '.join(led) or 'followed from a neighbour'})"
+            )
+        words += [f"{at.fell} of {at.starts} starts overturn"] if at.fell else []
+        words += [f"{at.destroyed} of {at.starts} destroy a corner"] if at.destroyed else []
+        yield at, "; ".join(words) or "nothing lasts"
+
+
+def range_of(change: Coexistence | DropOut) -> str:
+    """The frequencies of a coexistence or a drop-out, in the order of its sweep."""
+    return _range(change.from_Hz, change.to_Hz)
+
+
+def _counted(points: list[PointRow]) -> str:
+    count = f"{len(points)} point{'s' * (len(points) != 1)}"
+    return f"{count}, the first at {points[0].frequency_Hz:.4g} Hz going {points[0].direction}"
+
+
+def _range(low: float, high: float) -> str:
+    return f"{low:.4g} Hz" if low == high else f"{low:.4g} to {high:.4g} Hz"
+
+
+def _listed(ranges: list[str]) -> str:
+    more = len(ranges) - MOST_RANGES
+    return ", ".join(ranges[:MOST_RANGES]) + (f" and {more} more ranges" if more > 0 else "")

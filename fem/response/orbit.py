@@ -5,19 +5,130 @@ The stepping ends a step at each section, the floor's turning point at +A.
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from contact.motion.kernel import floor_motion
-from contact.stepping.body import ANGULAR_VELOCITY, ROTATION, VELOCITY_X
+from contact.motion.kernel import HARMONIC, UNIFORM, FloorMotion, as_floor_motion, floor_motion
+from contact.stepping.body import ANGULAR_VELOCITY, CENTRE_X, CENTRE_Z, ROTATION, VELOCITY_X
+from contact.stepping.control import step_level, step_of_level
 from contact.stepping.integrator import FAILED, OVERTURNED, REACHED
+from contact.stepping.modal_body import ModalBody
 from contact.stepping.outcome import advance_compiled
-from contact.stepping.state import ROW_ANGULAR_VELOCITY, ROW_ROTATION, ROW_SLIP
-from fem.response.model import DrivenModel, with_sections
+from contact.stepping.state import (
+    ROW_ANGULAR_VELOCITY,
+    ROW_ROTATION,
+    ROW_SLIP,
+    Buffers,
+    RunState,
+    make_samples,
+)
+from fem.case.case import Case
+from fem.model.container import Container
+from fem.model.model import Model, build_model
+from fem.response.request import SAMPLES_PER_PERIOD
 from fem.run.verdict import audit, softer_contact
 from fem.runtime.arrays import FloatArray
+
+#: state of the step control that is carried from one motion to the next
+CARRIED = ("allowance_used", "recent_dissipation", "growth_hold", "lag_step")
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class DrivenModel:
+    """A model on a driven floor, at t = 0."""
+
+    model: Model  #: its `run` is the one below
+    body: ModalBody
+    run: RunState
+    period: float  #: of the drive [s]
+
+
+def begin_drive(case: Case, container: Container) -> tuple[DrivenModel, float]:
+    """The container as the case begins, and the time until the section [s].
+
+    The case's own start: phase, ramp at the beginning, floor at rest or moving, initial state. It lasts to the first
+    turning point of the floor at +A after the ramp.
+    """
+    model = build_model(case, container)
+    omega, phase = case.motion.angular_frequency, case.motion.phase_rad
+    period = 2.0 * math.pi / omega
+    turn = ((0.5 * math.pi - phase) % (2.0 * math.pi)) / omega
+    until = turn + math.ceil(case.motion.ramp_cycles) * period
+    ramp = case.motion.ramp_cycles * period
+    floor = as_floor_motion(HARMONIC, (case.motion.amplitude, omega, phase, ramp, math.inf))
+    return _on_floor(model, floor, np.array([ramp, until]), period), until
+
+
+def driven_model(case: Case, container: Container) -> DrivenModel:
+    """The container on x = A cos(Omega t), without the motion that it has."""
+    model = build_model(case, container)
+    omega = case.motion.angular_frequency
+    floor = as_floor_motion(HARMONIC, (case.motion.amplitude, omega, 0.5 * math.pi, 0.0, math.inf))
+    return _on_floor(model, floor, np.empty(0), 2.0 * math.pi / omega)
+
+
+def carry_drive(case: Case, container: Container, before: DrivenModel) -> DrivenModel:
+    """The container, moving as `before` left it at a turning point of its floor, on x = A cos(Omega t).
+
+    The motion is carried, the damage is not: the floor is whole again.
+    """
+    driven = driven_model(case, container)
+    _carry_state(before.run, driven.run)
+    state, control = driven.run.old, driven.run.problem.control
+    # Raised by its deepest indentation it bears there as before; a corner less deep is off the floor.
+    raised = float(state.crushed[: control.base_points].max())
+    if raised > 0.0:
+        state.point[:, 1] += raised - state.crushed
+        state.crushed[:] = 0.0
+        state.position[1] += raised
+        state.pose[CENTRE_Z] += raised
+        state.corner[:, 1] += raised
+        state.monitor[:, 1] += raised
+        state.energy[2] += control.mass * control.gravity * raised
+        state.force[state.point[:, 1] > 0.0] = 0.0
+    return driven
+
+
+def stop_drive(case: Case, container: Container, before: DrivenModel) -> DrivenModel:
+    """The container, moving as `before` left it at a turning point of its floor; the floor stays there."""
+    floor = as_floor_motion(UNIFORM, (0.0, case.motion.amplitude, 0.0))
+    driven = _on_floor(build_model(case, container), floor, np.empty(0), before.period)
+    _carry_state(before.run, driven.run)
+    return driven
+
+
+def _carry_state(before: RunState, after: RunState) -> None:
+    """Start `after` from the state of `before`, moved along x to where its floor is at t = 0."""
+    for target, source in zip(after.old, before.old, strict=True):
+        target[:] = source
+    floor, _, _ = floor_motion(after.problem.motion, 0.0)
+    shift = floor - before.floor[0, 0]
+    after.old.position[0] += shift
+    after.old.pose[CENTRE_X] += shift
+    for name in CARRIED:
+        after.clock[name] = before.clock[name]
+    step = step_of_level(before.problem.control.largest_step, int(before.clock.level[0]))
+    after.clock.level = step_level(
+        after.problem.control.largest_step, min(step, after.problem.control.largest_step)
+    )
+    after.track[:] = before.track
+    after.joints[:] = before.joints
+
+
+def _on_floor(model: Model, floor: FloorMotion, breaks: np.ndarray, period: float) -> DrivenModel:
+    body, run = model.body, model.run
+    if not isinstance(body, ModalBody):
+        raise TypeError("a response curve is followed with the compiled models")  # the request excludes it
+    points = run.old.point.shape[0]
+    motion = floor_motion(floor, 0.0)
+    run.floor[:] = motion
+    run = run.with_problem(motion=floor, breaks=np.append(breaks[breaks > 0.0], np.inf))
+    history = make_samples(period / SAMPLES_PER_PERIOD, 4 * SAMPLES_PER_PERIOD, points, columns=True)
+    run = run._replace(buffers=Buffers(history=history, frames=make_samples(math.inf, 4, points)))
+    return DrivenModel(model=replace(model, run=run), body=body, run=run, period=period)
+
 
 #: called with the time [s], the rotation [rad] and the mode
 Progress = Callable[[float, float, int], None]
@@ -68,13 +179,18 @@ def follow_periods(
     Returns:
         The model at the end, and its motion; fewer periods where it overturned or failed.
     """
-    driven = with_sections(driven, count)
+    # At t = 0 again: it is at a section, so a whole number of periods is subtracted from its time, and the phase of the
+    # drive is as exact in the last period as in the first. Steps end on each of the sections.
+    times = driven.run.clock
+    times.time, times.samples, times.samples_drained, times.next_break = 0.0, 0, 0, 0
+    breaks = np.append(driven.period * np.arange(1, count + 1), np.inf)
+    driven = replace(driven, run=driven.run.with_problem(breaks=breaks))
     run, track, clock = driven.run, driven.run.track[0], driven.run.clock[0]
     sections, extremes, portraits = [], [], []
     code, slipped, reason = REACHED, float(driven.run.joints[0].slip), None
     before = slipped
     _open_ledger(driven)
-    for k, end in enumerate(driven.period * np.arange(1, count + 1)):
+    for k, end in enumerate(breaks[:-1]):
         impacts = int(track.impacts)
         track.max_rotation, track.max_rocking = 0.0, 0.0
         code, samples = _step_to(driven, end)
@@ -84,20 +200,11 @@ def follow_periods(
         pose, slip = run.old.pose, float(driven.run.joints[0].slip)
         rotation = np.append(samples[:, ROW_ROTATION], pose[ROTATION])
         sliding = np.append(samples[:, ROW_SLIP], slip)
-        sections.append(
-            [pose[ROTATION], pose[ANGULAR_VELOCITY], pose[VELOCITY_X] - floor_velocity, slip - slipped]
-        )
-        extremes.append(
-            [
-                float(track.max_rotation),
-                rotation.min(),
-                rotation.max(),
-                float(track.max_rocking),
-                np.ptp(sliding),
-                int(track.impacts) - impacts,
-                float(np.abs(sliding - before).max()),
-            ]
-        )
+        speed = pose[VELOCITY_X] - floor_velocity
+        sections.append([pose[ROTATION], pose[ANGULAR_VELOCITY], speed, slip - slipped])
+        turned = float(track.max_rotation), rotation.min(), rotation.max(), float(track.max_rocking)
+        slid = np.ptp(sliding), int(track.impacts) - impacts, float(np.abs(sliding - before).max())
+        extremes.append([*turned, *slid])
         slipped = slip
         if k >= count - portrayed:
             portraits.append(samples[:, [ROW_ROTATION, ROW_ANGULAR_VELOCITY]])
@@ -156,3 +263,88 @@ def _step_to(driven: DrivenModel, end: float) -> tuple[int, FloatArray]:
         clock.samples_drained = clock.samples
         if code != REACHED or clock.time >= end or math.isinf(end):
             return code, np.concatenate(drained)
+
+
+LARGEST_PERIOD = 16  #: tried, in periods of the drive; and at most a third of the window
+REPEATS = 3  #: of a period within the window, at least
+#: of a section against the one n periods before; an elastic container that slides and rings scatters by 3e-3
+TOLERANCE = 5e-3
+#: distances over the second half of the window less than this share of those over the first: still settling
+SETTLING = 0.5
+#: growth of the largest amplitude from the first half to the second beyond which amplitudes diverge
+GROWTH = 0.1
+NEGLIGIBLE = 0.01  #: of the slenderness angle: smaller amplitudes do not grow
+
+Decay = tuple[str, float | None]  #: fate of a motion without its drive, and time [s]
+
+
+@dataclass(frozen=True, kw_only=True)
+class LongTime:
+    """Long-time motion, with the figures that decide, by the columns of a point."""
+
+    long_time: str  #: rest | periodic | not periodic | not settled
+    period_n: int | None  #: of a periodic motion, in periods of the drive
+    scatter: float  #: largest distance of sections n apart; of the best n where none was good enough
+    pairs_compared: int  #: sections, behind it
+    settling: float | None  #: distances over the second half by those over the first; None where periodic
+
+
+def classify(
+    sections: FloatArray, *, resting: bool, tolerance: float = TOLERANCE, largest_period: int = LARGEST_PERIOD
+) -> LongTime:
+    """Judge a window of sections.
+
+    Args:
+        sections: (n, k), n at least 4, scaled to order one.
+        resting: nothing moved beyond the limits of a verdict.
+        tolerance: of the largest coordinate.
+        largest_period: tried; at most a third of the window.
+    """
+    count = len(sections)
+    looked_for = min(largest_period, count // REPEATS)
+    scatters = np.array([distances(sections, n).max() for n in range(1, looked_for + 1)])
+    repeating = np.flatnonzero(scatters <= tolerance)
+    n = int(repeating[0]) + 1 if repeating.size else int(np.argmin(scatters)) + 1
+    period = ratio = None
+    if resting:
+        kind = "rest"
+    else:
+        # a spiral toward a motion of period m comes back to itself first after a multiple of m
+        tried = [m for m in range(1, n) if n % m == 0] if repeating.size else range(1, looked_for + 1)
+        ratio = min((approach(sections, m) for m in tried), default=None)
+        if ratio is not None and ratio < SETTLING:
+            kind = "not settled"
+        elif repeating.size:
+            kind, period, ratio = "periodic", n, None
+        else:
+            kind = "not periodic"
+    scatter, compared = float(scatters[n - 1]), count - n
+    return LongTime(long_time=kind, period_n=period, scatter=scatter, pairs_compared=compared, settling=ratio)
+
+
+def distances(sections: FloatArray, n: int) -> FloatArray:
+    """Largest coordinate of the difference of each section to the one n before, shape (count - n,)."""
+    return np.asarray(np.abs(sections[n:] - sections[:-n]).max(axis=1))
+
+
+def approach(sections: FloatArray, n: int) -> float:
+    """Mean distance of sections n apart in the second half of the window over that in the first."""
+    apart = distances(sections, n)
+    half = apart.size // 2
+    return float(apart[-half:].mean() / max(apart[:half].mean(), 1e-300))
+
+
+def amplitude_growth(amplitudes: FloatArray) -> float:
+    """Largest amplitude in the second half of the window over that in the first, less one [-].
+
+    Args:
+        amplitudes: (n,) largest |rotation| of each period, over the slenderness angle.
+    """
+    half = amplitudes.size // 2
+    first, second = float(amplitudes[:half].max()), float(amplitudes[-half:].max())
+    return (second - first) / max(first, NEGLIGIBLE)
+
+
+def amplitudes_diverge(amplitudes: FloatArray) -> bool:
+    """Whether the amplitudes grow by more than those of a bounded motion."""
+    return amplitude_growth(amplitudes) > GROWTH

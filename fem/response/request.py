@@ -1,14 +1,13 @@
 """The request of a response curve: case, frequencies, what of the drive is held, starts, periods waited for."""
 
-import hashlib
-import json
 import math
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
 
 from fem.case.case import Case, CaseError, case_hash
+from fem.study.driver import hash_of
 
 Hold = Literal["displacement", "acceleration"]
 
@@ -44,38 +43,6 @@ class ResponseRequest:
     observe: int = 48  #: periods by which the long-time motion is judged
 
     def __post_init__(self) -> None:
-        self._require_followed_case()
-        for name, value in (("--from", self.first_Hz), ("--to", self.last_Hz)):
-            if not LEAST_HZ <= value <= MOST_HZ:
-                why = "an angular frequency Omega in rad/s is Omega/(2 pi) in Hz"
-                why = why if value else "with eta = 0 the floor does not move"
-                raise CaseError(
-                    f"{name} must lie between {LEAST_HZ:g} and {MOST_HZ:g} Hz, got {value:g} Hz; {why}"
-                )
-        if not self.first_Hz < self.last_Hz:
-            raise CaseError(
-                f"--from must be less than --to, got {self.first_Hz:g} Hz and {self.last_Hz:g} Hz; "
-                "both directions are swept anyway"
-            )
-        for name, number, least, most in (
-            ("--count", self.count, 2, MOST_FREQUENCIES),
-            ("--starts", self.starts, 0, MOST_STARTS),
-            ("--settle", self.settle, 0, MOST_PERIODS),
-            ("--observe", self.observe, LEAST_OBSERVED, MOST_PERIODS),
-        ):
-            if not least <= number <= most:
-                raise CaseError(f"{name} must lie between {least} and {most}, got {number}")
-        step = float(np.min(np.diff(self.frequencies) / self.frequencies[1:]))
-        if step < CLOSEST:
-            raise CaseError(
-                f"--from, --to and --count ask for frequencies {step:.1g} apart, below the resolution of "
-                f"{CLOSEST:g}; take fewer, or a wider range"
-            )
-        for number in (0, self.count - 1):  # refused there, it is refused before anything is computed
-            self.case_at(number)
-
-    def _require_followed_case(self) -> None:
-        """Refuse what a response curve cannot follow."""
         case, motion = self.case, self.case.motion
         needed, other = "for a response curve", "take a sweep over motion.frequency_Hz"
         alone = f"{needed}, which follows one body; {other}"
@@ -106,6 +73,34 @@ class ResponseRequest:
             raise CaseError(
                 "[motion] a response curve needs a floor that moves: give amplitude_m or peak_acceleration_m_s2 above 0"
             )
+        for name, value in (("--from", self.first_Hz), ("--to", self.last_Hz)):
+            if not LEAST_HZ <= value <= MOST_HZ:
+                why = "an angular frequency Omega in rad/s is Omega/(2 pi) in Hz"
+                why = why if value else "with eta = 0 the floor does not move"
+                raise CaseError(
+                    f"{name} must lie between {LEAST_HZ:g} and {MOST_HZ:g} Hz, got {value:g} Hz; {why}"
+                )
+        if not self.first_Hz < self.last_Hz:
+            raise CaseError(
+                f"--from must be less than --to, got {self.first_Hz:g} Hz and {self.last_Hz:g} Hz; "
+                "both directions are swept anyway"
+            )
+        for name, number, least, most in (
+            ("--count", self.count, 2, MOST_FREQUENCIES),
+            ("--starts", self.starts, 0, MOST_STARTS),
+            ("--settle", self.settle, 0, MOST_PERIODS),
+            ("--observe", self.observe, LEAST_OBSERVED, MOST_PERIODS),
+        ):
+            if not least <= number <= most:
+                raise CaseError(f"{name} must lie between {least} and {most}, got {number}")
+        step = float(np.min(np.diff(self.frequencies) / self.frequencies[1:]))
+        if step < CLOSEST:
+            raise CaseError(
+                f"--from, --to and --count ask for frequencies {step:.1g} apart, below the resolution of "
+                f"{CLOSEST:g}; take fewer, or a wider range"
+            )
+        for number in (0, self.count - 1):  # refused there, it is refused before anything is computed
+            self.case_at(number)
 
     @property
     def held(self) -> Hold:
@@ -131,9 +126,10 @@ class ResponseRequest:
     @property
     def held_in_words(self) -> str:
         """What of the drive stays the same, with its value."""
-        if self.held == "displacement":
-            return f"amplitude {1e3 * self.held_value:.4g} mm held"
-        return f"peak acceleration {self.held_value:.4g} m/s² held"
+        amplitude, peak = f"{1e3 * self.held_value:.4g} mm", f"{self.held_value:.4g} m/s²"
+        return (
+            f"amplitude {amplitude} held" if self.held == "displacement" else f"peak acceleration {peak} held"
+        )
 
     def case_at(self, number: int, model: str | None = None) -> Case:
         """The case at one of the frequencies, with another model where one is given."""
@@ -152,20 +148,14 @@ class ResponseRequest:
 
     def to_dict(self) -> dict[str, object]:
         """As the result states it, without the case."""
-        numbers = asdict(self)
-        del numbers["case"], numbers["hold"]
-        more = {
-            "held_value": self.held_value,
-            "frequencies_Hz": self.frequencies.tolist(),
-            "own_Hz": self.own_frequency,
-        }
-        return numbers | {"held": self.held} | more
+        numbers = {key: value for key, value in vars(self).items() if key not in ("case", "hold")}
+        swept = {"frequencies_Hz": self.frequencies.tolist(), "own_Hz": self.own_frequency}
+        return numbers | {"held": self.held, "held_value": self.held_value} | swept
 
     @property
     def hash(self) -> str:
         """A hash, equal for requests that give the same result."""
-        document = self.to_dict() | {"case": case_hash(self.case)}
-        return hashlib.sha256(json.dumps(document, sort_keys=True).encode()).hexdigest()
+        return hash_of(self.to_dict() | {"case": case_hash(self.case)})
 
 
 def request_of(case: Case, first_Hz: float | None, last_Hz: float | None, **asked: Any) -> ResponseRequest:

@@ -51,9 +51,8 @@ from fem.site.result import (
 from fem.site.rule import governing_run
 from fem.site.runs import COLUMNS, CONFIRMING, RunCases, cells_of
 from fem.site.stages import Stages
-from fem.study.compute_many import compute_many
 from fem.study.driver import COMPLETED, INTERRUPTED, LoggedRuns, Study, StudyOptions, hash_of, run_study
-from fem.study.runner import NamedStages, Runner
+from fem.study.runner import NamedStages, Runner, compute_many
 from fem.study.table import row_of
 
 RUNS, PAGE = "runs.csv", "report.html"

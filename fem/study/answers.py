@@ -8,22 +8,32 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby, pairwise, takewhile
+from pathlib import Path
 from typing import Any, Generic, NamedTuple, TypeVar
 
+import numpy as np
+
 from fem.results.figures import SLIPPED
-from fem.results.outcome import NOT_STANDING, Ending
+from fem.results.outcome import NOT_STANDING, Ending, ending_of
 from fem.runtime.units import MILLIMETRES, plain_number
-from fem.study.axes import MOTION_FILE, Axis, axis_name, in_words, place_in_words
+from fem.study.axes import (
+    MOTION_FILE,
+    Axis,
+    axis_name,
+    in_words,
+    lines_along,
+    place_in_words,
+    point_of,
+    set_axis,
+    sign_axes,
+)
 from fem.study.driver import COMPLETED
 from fem.study.fragility import EnsembleResult
+from fem.study.sweep_table import TRIED, TRIED_COLUMNS, SweepTable
+from fem.study.table import Columns, read_rows, table_of_rows
 
 #: axes of the floor's strength, that first along which an answer is given where a study does not say
-STRENGTHS = (
-    "motion.peak_acceleration_m_s2",
-    "motion.scale_to_m_s2",
-    "motion.scale",
-    "motion.amplitude_m",
-)
+STRENGTHS = ("motion.peak_acceleration_m_s2", "motion.scale_to_m_s2", "motion.scale", "motion.amplitude_m")
 GAPS = ("stop.gap_m", "tie.slack_m", "neighbour.gap_m")  #: axes of an answer where none is a strength
 #: axes along which the larger value is the safer one
 LARGER_IS_SAFER = frozenset({"container.width_m"})
@@ -260,6 +270,88 @@ def _ranges(marked: Iterable[tuple[float, bool]]) -> Iterator[Range]:
             yield values[0], values[-1]
 
 
+#: columns of `answers.csv` behind those of the other axes
+ANSWER_COLUMNS: Columns = dict.fromkeys(("stood_to", f"stood_{SLIPPED}", "overturned_from", SLIPPED), float)
+ANSWER_COLUMNS |= dict.fromkeys(("stood_again", "no_outcome", "unsure", "answer"), str)
+
+
+def answers_csv(answer: StudyAnswer[Answer]) -> str:
+    """`answers.csv`: one row for each combination of values of the other axes."""
+
+    def cells(row: AnswerRow[Answer]) -> dict[str, Any]:
+        found = row.found
+        ranges = {"stood_again": found.stood_again, "no_outcome": found.failed, "unsure": found.unsure}
+        words = {key: "; ".join(f"{a!r} to {b!r}" for a, b in spans) for key, spans in ranges.items()}
+        numbers = found.stood_to, found.stood_slip, found.overturned_from, found.slip
+        shown = dict(zip(ANSWER_COLUMNS, numbers, strict=False))
+        return {**row.point, **shown, **words, "answer": row.sentence}
+
+    columns = dict.fromkeys((axis.key for axis in answer.others), str) | ANSWER_COLUMNS
+    return table_of_rows(columns, map(cells, answer.rows))
+
+
+def sweep_answer(table: SweepTable, folder: Path) -> StudyAnswer[Answer] | None:
+    """The answer of a sweep; None where no axis asks for one, or cells are missing.
+
+    The signs of a motion are no rows of their own: a motion stands where it stands with either sign.
+
+    Args:
+        table: of the sweep.
+        folder: where the values are that a threshold tried between the cells.
+    """
+    wanted = (table.info.threshold or {}).get("axis")
+    axis = next((axis for axis in table.axes if axis.key == wanted), None) or answer_axis(table.axes)
+    if axis is None or not np.all(table["status"] != ""):
+        return None
+    lines = _trials_of(table, axis, folder / TRIED)
+    rising = is_rising(axis, [trial for line in lines.values() for trial in line])
+    others = [other for other in table.axes if other is not axis and len(other.values) > 1]
+
+    def rows_of(kept: Sequence[Axis]) -> Iterator[AnswerRow[Answer]]:
+        """A row for each combination of values of some of the other axes."""
+        groups: dict[tuple[Any, ...], list[Trial]] = defaultdict(list)
+        for first, line in lines.items():
+            point = point_of(table.axes, first)
+            groups[tuple(point[other.key] for other in kept)] += line
+        for values, trials in groups.items():
+            answer = answer_of(trials, rising=rising, limit_slip=table.info.limit_slip_m)
+            rest = [other for other in others if other not in kept]
+            where = "" if answer.line is None else place_in_words(rest, point_of(table.axes, answer.line))
+            at = dict(zip((other.key for other in kept), values, strict=True))
+            sentence = sentence_of(answer, axis, rising=rising, where=where)
+            yield AnswerRow(point=at, found=answer, sentence=sentence)
+
+    motions = set_axis(others)
+    kept = [other for other in others if motions is None or other not in sign_axes(others)]
+    outer = [other for other in kept if other is not motions]
+    rows = [*rows_of(outer), *rows_of(kept)] if motions and outer else list(rows_of(kept))
+    (together,) = rows_of(())
+    return StudyAnswer(
+        axis=axis,
+        rising=rising,
+        sentence=f"{axis_name(axis)}: {together.sentence}",
+        others=tuple(kept),
+        rows=tuple(rows),
+    )
+
+
+def _trials_of(table: SweepTable, axis: Axis, tried: Path) -> dict[int, list[Trial]]:
+    """What is known along the axis, by the first cell of each line."""
+    empty = np.full(len(table["status"]), np.nan), np.full(len(table["status"]), "", dtype=object)
+    slips, unsure = (table.columns.get(name, empty[0]) for name in (SLIPPED, "unsure"))
+    fell, lines = table.columns.get("fell_in_row", empty[1]), defaultdict[int, list[Trial]](list)
+    for line in lines_along(table.axes, axis):
+        for cell, value in zip(line, axis.values, strict=True):
+            kind = ending_of(table["status"][cell], table["outcome"][cell])
+            slip = None if np.isnan(slips[cell]) else float(slips[cell])
+            doubt = None if np.isnan(unsure[cell]) else bool(unsure[cell])
+            lines[line[0]].append(Trial(float(value), line[0], kind, slip, doubt, str(fell[cell])))
+    for row in read_rows(tried, TRIED_COLUMNS):
+        kind, fell_first = ending_of(row["status"], row["outcome"]), row["fell_in_row"] or ""
+        lines[row["cell"]].append(Trial(row["value"], row["cell"], kind, row[SLIPPED], fell=fell_first))
+    return lines
+
+
 HALF = 0.5
 Row = Mapping[str, Any]  #: of a point, as `ensemble.json` holds it
 
@@ -277,10 +369,9 @@ class HalfPoint:
 
 def _draws_in_words(result: EnsembleResult) -> str:
     """What is counted at a point: "128 draws", "7 motions", "70 draws of 7 motions"."""
-    draws, motions = result.draws, len(result.random.get(MOTION_FILE, ()))
-    if not motions:
-        return f"{draws} draws"
-    return f"{motions} motions" if motions == draws else f"{draws} draws of {motions} motions"
+    draws, motions = f"{result.draws} draws", len(result.random.get(MOTION_FILE, ()))
+    of_motions = f"{motions} motions" if motions == result.draws else f"{draws} of {motions} motions"
+    return of_motions if motions else draws
 
 
 def ensemble_answer(result: EnsembleResult) -> StudyAnswer[HalfPoint] | None:
@@ -295,7 +386,11 @@ def ensemble_answer(result: EnsembleResult) -> StudyAnswer[HalfPoint] | None:
     if axis is None or result.status != COMPLETED:
         return None
     others = tuple(other for other in axes if other is not axis and len(other.values) > 1)
-    rising = _is_rising(axis, result.points)
+    low, high = (
+        sum(point["probability"] or 0.0 for point in result.points if point[axis.key] == axis.values[end])
+        for end in (0, -1)
+    )
+    rising = axis.key not in LARGER_IS_SAFER and (axis.key in STRENGTHS or high >= low)
     lines: dict[tuple[Any, ...], list[Row]] = defaultdict(list)
     for point in sorted(result.points, key=lambda row: row[axis.key], reverse=not rising):
         lines[tuple(point[other.key] for other in others)].append(point)
@@ -303,9 +398,13 @@ def ensemble_answer(result: EnsembleResult) -> StudyAnswer[HalfPoint] | None:
     for _, points in sorted(lines.items()):
         crossing = _half_point(axis, points)
         halves.append(_half(result, axis, points, crossing, rising=rising))
-        few = _few(result, axis, crossing.few_to, rising=rising)
-        sentence = f"{halves[-1]}{few}{_slips(points, crossing)}"
-        rows.append(AnswerRow(point=points[0], found=crossing, sentence=sentence))
+        # how far the draws slid that stood, at the points at which fewer than half did not
+        before = takewhile(lambda point: (point["probability"] or 0.0) < HALF, points)
+        before_half = points if crossing.value is None else before
+        slip = max((point.get(SLIPPED) or 0.0 for point in before_half), default=0.0)
+        few, slid = _few(result, axis, crossing.few_to, rising=rising), MILLIMETRES.least
+        slips = f"; those that stood there slid up to {slip_in_words(slip)}" if slip >= slid else ""
+        rows.append(AnswerRow(point=points[0], found=crossing, sentence=f"{halves[-1]}{few}{slips}"))
     safest = min if rising else max
     reached = [(row.found.value, k) for k, row in enumerate(rows) if row.found.value is not None]
     few_to = [row.found.few_to for row in rows if row.found.few_to is not None]
@@ -326,39 +425,25 @@ def ensemble_answer(result: EnsembleResult) -> StudyAnswer[HalfPoint] | None:
 def _half_point(axis: Axis, points: Sequence[Row]) -> HalfPoint:
     """Where half of the draws overturn along a line of points, sorted from the side where fewer do."""
     known = [point for point in points if point["probability"] is not None]
-    values = [float(point[axis.key]) for point in known]
-    value, low, high = (
-        _crossing(values, [float(point[name]) for point in known]) for name in ("probability", "high", "low")
-    )
+
+    def crossing(name: str) -> float | None:
+        """Where straight lines through the points first pass one half; the first value where it lies above already."""
+        pairs = [(float(point[axis.key]), float(point[name])) for point in known]
+        for (before, less), (after, more) in pairwise([*pairs[:1], *pairs]):
+            if less >= HALF:
+                return before
+            if more >= HALF:
+                return before + (after - before) * (HALF - less) / (more - less)
+        return None
+
     few = list(takewhile(lambda point: point["region"] == "below", points))
     return HalfPoint(
-        value=value,
-        low=low,
-        high=high,
+        value=crossing("probability"),
+        low=crossing("high"),
+        high=crossing("low"),
         at_once=bool(known) and known[0]["probability"] >= HALF,
         few_to=float(few[-1][axis.key]) if few else None,
     )
-
-
-def _crossing(values: Sequence[float], shares: Sequence[float]) -> float | None:
-    """Where straight lines through the points first pass one half; the first value where it lies above already."""
-    if shares and shares[0] >= HALF:
-        return values[0]
-    for (before, less), (after, more) in pairwise(zip(values, shares, strict=True)):
-        if less < HALF <= more:
-            return before + (after - before) * (HALF - less) / (more - less)
-    return None
-
-
-def _is_rising(axis: Axis, points: Sequence[Row]) -> bool:
-    """Whether more overturn at larger values: by the key, else by the shares at the ends of the axis."""
-    if axis.key in LARGER_IS_SAFER:
-        return False
-    low, high = (
-        [point["probability"] or 0.0 for point in points if point[axis.key] == end]
-        for end in (axis.values[0], axis.values[-1])
-    )
-    return axis.key in STRENGTHS or sum(high) >= sum(low)
 
 
 def interval_in_words(axis: Axis, crossing: HalfPoint, *, rising: bool) -> str:
@@ -380,21 +465,10 @@ def _half(
         return f"{half} or more at the {end} tried, {in_words(axis, [points[0][axis.key]])}"
     if crossing.value is None:
         most = max(points, key=lambda point: point["probability"] or 0.0)
-        share = f"{100.0 * (most['probability'] or 0.0):.2g} %"
-        return (
-            f"fewer than {half} at every value tried, at most {share} at {in_words(axis, [most[axis.key]])}"
-        )
-    interval = interval_in_words(axis, crossing, rising=rising)
-    return (
-        f"{half} at {in_words(axis, [crossing.value])} ({100.0 * result.confidence:g} % interval {interval})"
-    )
-
-
-def _slips(points: Sequence[Row], crossing: HalfPoint) -> str:
-    """How far the draws slid that stood, at the points at which fewer than half did not."""
-    before = takewhile(lambda point: crossing.value is None or (point["probability"] or 0.0) < HALF, points)
-    slip = max((point.get(SLIPPED) or 0.0 for point in before), default=0.0)
-    return f"; those that stood there slid up to {slip_in_words(slip)}" if slip >= MILLIMETRES.least else ""
+        share, there = f"{100.0 * (most['probability'] or 0.0):.2g} %", in_words(axis, [most[axis.key]])
+        return f"fewer than {half} at every value tried, at most {share} at {there}"
+    interval, there = interval_in_words(axis, crossing, rising=rising), in_words(axis, [crossing.value])
+    return f"{half} at {there} ({100.0 * result.confidence:g} % interval {interval})"
 
 
 def _few(result: EnsembleResult, axis: Axis, few_to: float | None, *, rising: bool) -> str:

@@ -1,5 +1,6 @@
 """The axes of a study: each is one key of a case and its values."""
 
+import math
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -79,6 +80,14 @@ def point_of(axes: Sequence[Axis], number: int) -> dict[str, Any]:
     """Values of the axes at a point, by key."""
     places = np.unravel_index(number, shape_of(axes))
     return {axis.key: axis.values[k] for axis, k in zip(axes, places, strict=True)}
+
+
+def lines_along(axes: Sequence[Axis], axis: Axis) -> list[list[int]]:
+    """The numbers of points that differ in their value of one axis alone, line by line."""
+    shape = shape_of(axes)
+    numbers = np.moveaxis(np.arange(math.prod(shape)).reshape(shape), list(axes).index(axis), -1)
+    lines: list[list[int]] = numbers.reshape(-1, len(axis.values)).tolist()
+    return lines
 
 
 def with_following(axes: Iterable[Axis], point: Mapping[str, Any]) -> dict[str, Any]:
@@ -167,7 +176,10 @@ def read_axis(key: str, given: Any) -> Axis:
         )
     kinds = (field.annotation, *get_args(field.annotation))
     if any(kind is int or get_args(kind)[:1] == (int,) for kind in kinds):
-        values = tuple(_whole(value) for value in values)
+        if broken := [value for value in values if isinstance(value, float) and not value.is_integer()]:
+            way_out = "choose from, to and count so that the values are whole, or list them"
+            raise AxisError(f"takes whole numbers, got {broken[0]!r}; {way_out}")
+        values = tuple(int(value) if isinstance(value, float) else value for value in values)
     for value in values:
         _check(field, quantity, unit, value)
     return Axis(key=key, values=values, scale=scale, unit=unit)
@@ -179,7 +191,21 @@ def _read_motion_files(given: Any) -> tuple[tuple[str, ...], dict[str, tuple[str
         raise AxisError(
             f'must be a list of files or pairs, such as ["a.at2", ["b_h.at2", "b_v.at2"]], got {given!r}'
         )
-    pairs = [_pair(entry) for entry in given]
+    pairs: list[tuple[str, str | None]] = []
+    for entry in given:
+        names = [entry] if isinstance(entry, str) and entry.strip() else entry
+        if (
+            not isinstance(names, list)
+            or not 1 <= len(names) <= 2
+            or not all(isinstance(name, str) for name in names)
+        ):
+            raise AxisError(f"must hold file names and pairs of file names, got {entry!r}; {A_PAIR}")
+        horizontal, vertical = (*names, "")[:2]
+        if not horizontal.strip():
+            raise AxisError(f"has a vertical motion without a horizontal one, {entry!r}; {A_PAIR}")
+        if isinstance(entry, list) and not vertical.strip():
+            raise AxisError(f"has a pair without its vertical motion, {entry!r}; {A_PAIR}")
+        pairs.append((horizontal, vertical or None))
     named = [name for horizontal, vertical in pairs for name in {horizontal, vertical} if name is not None]
     if twice := [name for name, count in Counter(named).items() if count > 1]:
         raise AxisError(
@@ -190,21 +216,6 @@ def _read_motion_files(given: Any) -> tuple[tuple[str, ...], dict[str, tuple[str
         following["vertical.kind"] = tuple("table" if vertical else "none" for _, vertical in pairs)
         following[VERTICAL_FILE] = tuple(vertical for _, vertical in pairs)
     return tuple(horizontal for horizontal, _ in pairs), following
-
-
-def _pair(given: Any) -> tuple[str, str | None]:
-    """A horizontal and, if there is one, a vertical file."""
-    if isinstance(given, str) and given.strip():
-        return given, None
-    names = given if isinstance(given, list) else []
-    if not 1 <= len(names) <= 2 or not all(isinstance(name, str) for name in names):
-        raise AxisError(f"must hold file names and pairs of file names, got {given!r}; {A_PAIR}")
-    horizontal, vertical = (*names, "")[:2]
-    if not horizontal.strip():
-        raise AxisError(f"has a vertical motion without a horizontal one, {given!r}; {A_PAIR}")
-    if not vertical.strip():
-        raise AxisError(f"has a pair without its vertical motion, {given!r}; {A_PAIR}")
-    return horizontal, vertical
 
 
 def hint(name: object, known: Iterable[str]) -> str:
@@ -271,16 +282,6 @@ def _spaced(given: Mapping[str, Any], quantity: Quantity | None, unit: str) -> t
     return tuple(float(f"{value:.15g}") for value in spaced), wanted.scale
 
 
-def _whole(value: Any) -> Any:
-    if not isinstance(value, float):
-        return value
-    if not value.is_integer():
-        raise AxisError(
-            f"takes whole numbers, got {value!r}; choose from, to and count so that the values are whole, or list them"
-        )
-    return int(value)
-
-
 def _check(field: FieldInfo, quantity: Quantity | None, unit: str, value: Any) -> None:
     """Refuse a value that the key can never have; rules between keys are checked with the case."""
     if quantity is None:
@@ -329,14 +330,9 @@ def in_words(axis: Axis, values: Sequence[Any], figures: int = 3, *, bare: bool 
     """Values on an axis in their usual unit, unless `bare`: "0.5 to 0.55 g", "steel, wood"."""
     if any(isinstance(value, bool | str) for value in values):
         return ", ".join(str(value) for value in values)
-    unit, factor = _unit_of_people(axis)
+    unit, factor = unit_of_people(axis)
     words = " to ".join(plain_number(factor * value, figures) for value in values)
     return words if bare else f"{words} {unit}".strip()
-
-
-def unit_in_words(axis: Axis) -> str:
-    """The unit that `in_words` takes; empty for none."""
-    return _unit_of_people(axis)[0]
 
 
 def place_in_words(axes: Iterable[Axis], point: Mapping[str, Any]) -> str:
@@ -344,8 +340,8 @@ def place_in_words(axes: Iterable[Axis], point: Mapping[str, Any]) -> str:
     return ", ".join(f"{axis_name(axis)} {in_words(axis, [point[axis.key]], 4)}" for axis in axes)
 
 
-def _unit_of_people(axis: Axis) -> tuple[str, float]:
-    """The usual unit and the factor from the unit of the key; it depends on the largest value."""
+def unit_of_people(axis: Axis) -> tuple[str, float]:
+    """The unit that `in_words` takes, and the factor from that of the key; it depends on the largest value."""
     largest = max((abs(value) for value in axis.values if not isinstance(value, bool | str)), default=0.0)
     if axis.unit == "m/s2" and axis.key.startswith(("motion.", "vertical.")):
         return "g", 1.0 / STANDARD_GRAVITY

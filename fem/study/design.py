@@ -1,31 +1,33 @@
 """What makes the cases of a study: points on axes times draws, and keys that follow others."""
 
 import math
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import product
 from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
-from pydantic import Field, ValidationError
+from pydantic import Field, Strict, ValidationError
 
 from fem.case.case import Case
 from fem.case.overrides import keys_in_effect, with_overrides
+from fem.case.strength import scaled_motion
 from fem.case.tables.all_tables import TABLES
+from fem.case.tables.duration import ends_at_rest, longest_time
+from fem.case.tables.input_ranges import DASHPOT, HELD
 from fem.case.tables.links import ROWS
-from fem.case.tables.quantities import Quantity
+from fem.case.tables.quantities import CONTACT_DAMPING, DRAWS, Quantity
 from fem.case.tables.table import CaseTable
 from fem.case.tables.unknown_inputs import INPUTS, ranges_of
-from fem.case.uncertainty import as_changed, drawn_values
+from fem.case.uncertainty import InputChange, as_changed, drawn_values
 from fem.case.validation import CaseError
-from fem.runtime.arrays import FloatArray
 from fem.study.axes import MOTION_FILE, Axis, point_of, shape_of, with_following
 from fem.study.containers import penalty_of
 from fem.study.derived import FREE, Expression, number_of, with_derived
-from fem.study.draws import RandomChoice, RandomQuantity, Sampling, draw_shares, held_inputs
-from fem.study.perturbation import Perturbation
+from fem.study.draws import RandomQuantity, Sampling, draw_shares, held_inputs
+from fem.study.driver import LoggedRuns, StudyResult
 
 
 class Item(NamedTuple):
@@ -34,9 +36,8 @@ class Item(NamedTuple):
     cell: int  #: of the grid, the last axis the fastest; or its number in a list
     draw: int  #: at this point; of a cell its copy, of a container its motion
     point: Mapping[str, Any]  #: what the axes or the list set
-    drawn: Mapping[
-        str, Any
-    ] = {}  #: what is random, relative quantities as factors; a key that is None is not set
+    #: what is random, relative quantities as factors; a key that is None is not set
+    drawn: Mapping[str, Any] = {}
     unknown: Mapping[str, Any] = {}  #: the unknown inputs, or what a copy changes, as the log has them
     more: Mapping[str, Any] = {}  #: that these set, over all other keys
 
@@ -127,6 +128,68 @@ class MapChoice(CaseTable):
     )
 
 
+SHARE = Quantity(least=0.0, most=0.5, advice="0.02 is two per cent")
+FRICTION_STEP = Quantity(least=0.0, most=1.0, advice="0.02 is usual")
+PHASE_STEP = Quantity(unit="rad", least=0.0, most=math.pi, advice="one turn is 2 pi")
+CLOSE = Quantity(least=0.0, advice="rotation over the slenderness angle")
+SMALL = 0.0  #: of a range
+
+
+class Perturbation(CaseTable):
+    """Which cells are perturbed, and how much."""
+
+    cells: Literal["auto", "near", "all", "none"] = Field(
+        default="auto",
+        description='"auto": a coarse grid of all cells, then around what changes, none for the full model | '
+        '"near" a change of outcome only | "all" | "none"',
+    )
+    amplitude_share: Annotated[float, SHARE] = Field(
+        default=0.02, description="of the floor's amplitude, up and down"
+    )
+    mu: Annotated[float, FRICTION_STEP] = Field(
+        default=0.02,
+        description="added to and taken from both coefficients of friction, of the floor and of loose joints",
+    )
+    phase_rad: Annotated[float, PHASE_STEP] = Field(
+        default=0.3142, description="added to and taken from the phase; a twentieth of a turn"
+    )
+    contact_damping_ratios: list[Annotated[float, CONTACT_DAMPING]] = Field(
+        default=[0.5, 1.0, 2.0], description="tried in place of the cell's own"
+    )
+    draws: Annotated[int, Strict(), DRAWS] | None = Field(
+        default=None,
+        description="copies in which all unknown inputs are drawn at once; default: a quarter of [uncertainty] draws",
+    )
+    close: Annotated[float, CLOSE] = Field(
+        default=0.5, description="rotation ratio above which a standing cell counts as near"
+    )
+
+    def changes(self, case: Case) -> Iterator[InputChange]:
+        """What each copy of a case changes; what is small counts as a small share of a range."""
+        small = partial(InputChange, kind="one", share=SMALL)
+        for factor in (1.0 - self.amplitude_share, 1.0 + self.amplitude_share):
+            scaled = scaled_motion(case, factor)
+            if scaled and factor != 1.0:
+                yield small(values=scaled)
+        frictions = {"contact": {"mu_static": case.contact.mu_static, "mu_kinetic": case.contact.mu_kinetic}}
+        if case.container.is_loose:
+            frictions["joints"] = case.joint_friction
+        for table, own in frictions.items():
+            for step in (-self.mu, self.mu) if self.mu else ():
+                moved = {key: max(0.0, own[key] + step) for key in ("mu_static", "mu_kinetic")}
+                # fifteen digits: 0.4 + 0.02 is 0.42
+                yield small(values={f"{table}.{key}": float(f"{value:.15g}") for key, value in moved.items()})
+        if case.motion.kind == "harmonic" and self.phase_rad > 0.0:
+            for step in (-self.phase_rad, self.phase_rad):
+                phase = math.remainder(case.motion.phase_rad + step, 2.0 * math.pi)
+                yield small(values={"motion.phase_rad": phase})
+        stated = "contact_damping_ratios" in self.model_fields_set
+        varies = stated or case.uncertainty.damping_ratio not in HELD
+        for ratio in self.contact_damping_ratios if varies and not case.floor.is_slab else ():
+            if case.contact.damping_ratio not in (None, ratio):
+                yield InputChange(kind="one", values={DASHPOT: ratio}, share=1.0)
+
+
 RESOLUTION = Quantity(above=0.0, most=1.0, advice="0.01 is one per cent")
 
 
@@ -140,6 +203,21 @@ class Threshold(CaseTable):
     inner: Annotated[int, Quantity(least=1, most=100)] = Field(
         default=3, description="values tried within a bracket at a time"
     )
+
+
+@dataclass(frozen=True, kw_only=True)
+class DesignResult(StudyResult):
+    """What the result of a study on axes says of what was asked."""
+
+    title: str = ""
+    case: str = ""  #: name of the base case
+    model: str = ""
+    duration_s: float | str = "auto"
+    motion_covered: str | None = None  #: the part of the motion that the runs cover, where they end before it
+    axes: tuple[Axis, ...]
+    derived: dict[str, str] = field(default_factory=dict)
+    held: str = ""  #: of the unknown inputs, in words
+    limit_slip_m: float | None = None  #: beyond which a run does not stand, and counts as one that overturned
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -183,22 +261,45 @@ class Design:
         return self.make.case(self.item(cell))
 
     @property
+    def axis_keys(self) -> tuple[str, ...]:
+        """Keys of the axes."""
+        return tuple(axis.key for axis in self.axes)
+
+    @property
     def varied(self) -> set[str]:
         """Keys that vary by themselves."""
-        return {axis.key for axis in self.axes}
+        return {*self.axis_keys}
+
+    @property
+    def runs(self) -> Callable[..., LoggedRuns[Item]]:
+        """Some runs of this study and their log: `LoggedRuns` that need no more than that."""
+        return partial(LoggedRuns[Item], make=self.make.case, model_of=self.model_of)
 
     @property
     def held(self) -> str:
         """What is held fixed of the unknown inputs, in words."""
         return held_inputs(self.cases, self.varied)
 
+    @property
+    def asked(self) -> dict[str, Any]:
+        """What a `DesignResult` says of this study, but for the motion that is covered."""
+        return {
+            "title": self.title,
+            "case": self.base.name,
+            "model": self.base.solver.model,
+            "duration_s": longest_time(self.base) if not ends_at_rest(self.base) else "auto",
+            "axes": self.axes,
+            "derived": {key: expression.text for key, expression in self.derived.items()},
+            "held": self.held,
+            "limit_slip_m": self.limit_slip_m,
+        }
+
     def corners(self, *, listed: bool = False) -> Iterator[Item]:
         """Runs at the ends of each axis; `listed`: at every value of one that the file lists."""
         steps = (1 if listed and axis.scale == "list" else len(axis.values) - 1 or 1 for axis in self.axes)
         ends = [axis.values[::step] for axis, step in zip(self.axes, steps, strict=True)]
         for corner in product(*ends):
-            point = dict(zip((axis.key for axis in self.axes), corner, strict=True))
-            yield Item(0, 0, with_following(self.axes, point))
+            yield Item(0, 0, with_following(self.axes, dict(zip(self.axis_keys, corner, strict=True))))
 
     @cached_property
     def cases(self) -> list[Case]:
@@ -213,22 +314,18 @@ class Design:
         """The model of a run."""
         return str({**item.point, **item.drawn}.get("solver.model", self.base.solver.model))
 
-    def by_container(self, items: Iterable[Item]) -> list[Item]:
-        """Runs in an order in which those of one container are neighbours."""
-        return sorted(items, key=lambda item: (self.container_of(item), item.cell))
+    def by_container(self, cells: Iterable[int]) -> list[Item]:
+        """The runs of some points, in an order in which those of one container are neighbours."""
+        return sorted(map(self.item, cells), key=lambda item: (self.container_of(item), item.cell))
 
     def container_of(self, item: Item) -> str:
         """Equal for runs that have the same container."""
-        if not self._varies_container:
+        if not any(key.startswith(OF_THE_CONTAINER) for key in (*self.varied, *self.derived)):
             return ""
         values = item.point
         with suppress(CaseError):  # a derived key without a value: the row will have the reason
             values = self.make.values(values)
         return repr([value for key, value in values.items() if key.startswith(OF_THE_CONTAINER)])
-
-    @cached_property
-    def _varies_container(self) -> bool:
-        return any(key.startswith(OF_THE_CONTAINER) for key in (*self.varied, *self.derived))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -245,29 +342,22 @@ class Sweep(Design):
         chosen = self.perturbation.cells
         return chosen != "none" and (chosen != "auto" or self.base.solver.model != "full")
 
-    @property
-    def threshold_axis(self) -> Axis:
-        """The axis along which changes of outcome are located; only where that is asked for."""
-        assert self.threshold is not None
-        return next(axis for axis in self.axes if axis.key == self.threshold.axis)
-
 
 #: unknown inputs that the file does not vary: drawn over [uncertainty] of the case, or held
 Unknown = Literal["drawn", "held"]
 STREAM = 1  #: of random numbers of the unknown inputs
 
 
-def sets_among(random: Iterable[RandomQuantity | RandomChoice]) -> list[Axis]:
+def sets_among(random: Iterable[RandomQuantity]) -> list[Axis]:
     """The set of motions among what is random, as a list of one or none."""
-    choices = (quantity for quantity in random if isinstance(quantity, RandomChoice))
-    return [choice.axis for choice in choices if choice.key == MOTION_FILE]
+    return [one.choices for one in random if one.choices is not None and one.key == MOTION_FILE]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Ensemble(Design):
     """What an ensemble file asks for."""
 
-    random: tuple[RandomQuantity | RandomChoice, ...]
+    random: tuple[RandomQuantity, ...]
     draws: int  #: at each point
     seed: int
     sampling: Sampling
@@ -308,10 +398,11 @@ class Ensemble(Design):
         The unknown inputs have random numbers of their own, so what is drawn by [random] does not depend on them.
         """
         spread = [quantity for quantity in self.random if quantity.key != MOTION_FILE]
-        shares = self._shares(cell, len(spread)) if spread else np.empty((self.draws, 0))
+        own = {"seed": self.seed, "cell": cell, "draws": self.draws, "replicates": self.replicates}
+        shares_of = partial(draw_shares, self.sampling, **own)
+        shares = shares_of(dimensions=len(spread)) if spread else np.empty((self.draws, 0))
         columns: dict[str, Sequence[Any]] = {
-            quantity.key: np.asarray(quantity.values(shares[:, k]), dtype=object).tolist()
-            for k, quantity in enumerate(spread)
+            quantity.key: quantity.values(shares[:, k]) for k, quantity in enumerate(spread)
         }
         each = self.draws // self.replicates
         for axis in sets_among(self.random):
@@ -323,7 +414,7 @@ class Ensemble(Design):
         ]
         if not self.unknown:
             return draws
-        shares = self._shares(cell, len(self.unknown), STREAM)
+        shares = shares_of(dimensions=len(self.unknown), stream=STREAM)
         return [self._with_unknown(draw, row) for draw, row in zip(draws, shares.tolist(), strict=True)]
 
     def _with_unknown(self, draw: Item, shares: list[float]) -> Item:
@@ -339,17 +430,6 @@ class Ensemble(Design):
         more = as_changed(case, unknown) if unknown and case.container.is_loose else unknown
         return draw._replace(unknown=unknown, more=more)
 
-    def _shares(self, cell: int, dimensions: int, stream: int = 0) -> FloatArray:
-        return draw_shares(
-            self.sampling,
-            seed=self.seed,
-            cell=cell,
-            dimensions=dimensions,
-            draws=self.draws,
-            replicates=self.replicates,
-            stream=stream,
-        )
-
     def corners(self, *, listed: bool = False) -> Iterator[Item]:
         """Runs at the ends of each axis, in the middle and at the ends of all distributions."""
         shares = np.array([0.5, 0.0, 1.0])
@@ -361,6 +441,6 @@ class Ensemble(Design):
         """The run at a point, of values of what is random."""
         drawn: dict[str, Any] = {}
         for quantity, value in zip(self.random, values, strict=True):
-            choice = [quantity.axis] if isinstance(quantity, RandomChoice) else []
-            drawn |= with_following(choice, {quantity.key: value})
+            choices = [quantity.choices] if quantity.choices else []
+            drawn |= with_following(choices, {quantity.key: value})
         return Item(0, 0, point, drawn)

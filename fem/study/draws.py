@@ -5,7 +5,7 @@ are treated alike. Normal and lognormal distributions are cut off a few deviatio
 """
 
 import math
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -50,12 +50,18 @@ class Distribution(BaseModel):
         return [values[name] for name in NEEDS[self.distribution]]
 
 
+EVEN = Distribution(distribution="uniform")  #: of a list
+
+
 @dataclass(frozen=True, kw_only=True)
 class RandomQuantity:
-    """A key whose value is drawn."""
+    """A key whose value is drawn: from a distribution, or of a list, each with the same probability."""
 
     key: str  #: dotted; `free.NAME` for one that only derived keys refer to
-    spread: Distribution
+    spread: Distribution = EVEN
+    choices: Axis | None = (
+        None  #: the list, such as a set of motions or the signs of one, and what follows each
+    )
 
     @property
     def relative(self) -> bool:
@@ -63,66 +69,45 @@ class RandomQuantity:
         return self.spread.relative
 
     @property
-    def definition(self) -> dict[str, Any]:
-        """As the file gives it."""
-        return self.spread.model_dump(by_alias=True, exclude_none=True)
-
-    @property
-    def ends(self) -> tuple[float, float]:
-        """Least and largest value that can be drawn."""
-        low, high = self.values(np.array([0.0, 1.0]))
-        return float(low), float(high)
-
-    def values(self, shares: FloatArray) -> FloatArray:
-        """Values at given shares of probability, each between 0 and 1."""
-        kind, (first, second) = self.spread.distribution, self.spread.numbers
-        if kind == "uniform":
-            return first + (second - first) * shares
-        if kind == "log-uniform":
-            return np.asarray(first * (second / first) ** shares)
-        outside = ndtr(-self.spread.cut)
-        normal = ndtri(outside + (1.0 - 2.0 * outside) * shares)
-        return np.asarray(first + second * normal if kind == "normal" else first * np.exp(second * normal))
-
-
-@dataclass(frozen=True, kw_only=True)
-class RandomChoice:
-    """A key whose value is one of a list, each with the same probability: a set of motions, the signs of one."""
-
-    axis: Axis  #: the key, its values, and the keys that follow each
-    relative = False
-
-    @property
-    def key(self) -> str:
-        """Dotted."""
-        return self.axis.key
-
-    @property
-    def definition(self) -> list[Any]:
+    def definition(self) -> Any:
         """As the file gives it; pairs of motions as pairs."""
-        verticals = self.axis.following.get(VERTICAL_FILE, (None,) * len(self.axis.values))
-        pairs = zip(self.axis.values, verticals, strict=True)
-        return [[value, vertical] if vertical else value for value, vertical in pairs]
+        if self.choices is None:
+            return self.spread.model_dump(by_alias=True, exclude_none=True)
+        values = self.choices.values
+        verticals = self.choices.following.get(VERTICAL_FILE, (None,) * len(values))
+        return [[one, above] if above else one for one, above in zip(values, verticals, strict=True)]
 
     @property
-    def ends(self) -> tuple[Any, Any]:
-        """First and last value."""
-        return self.axis.values[0], self.axis.values[-1]
+    def ends(self) -> tuple[Any, ...]:
+        """Least and largest value that can be drawn; of a list the first and the last."""
+        return tuple(self.values(np.array([0.0, 1.0])))
 
     def values(self, shares: FloatArray) -> list[Any]:
         """Values at given shares of probability, each between 0 and 1."""
-        count = len(self.axis.values)
-        return [self.axis.values[min(int(share * count), count - 1)] for share in shares.tolist()]
+        if self.choices is not None:
+            values = self.choices.values
+            return [values[min(int(share * len(values)), len(values) - 1)] for share in shares.tolist()]
+        kind, (first, second) = self.spread.distribution, self.spread.numbers
+        drawn: FloatArray
+        if kind == "uniform":
+            drawn = first + (second - first) * shares
+        elif kind == "log-uniform":
+            drawn = np.asarray(first * (second / first) ** shares)
+        else:
+            outside = ndtr(-self.spread.cut)
+            normal = ndtri(outside + (1.0 - 2.0 * outside) * shares)
+            drawn = first + second * normal if kind == "normal" else first * np.exp(second * normal)
+        return drawn.tolist()
 
 
-def read_random(key: str, entry: Any) -> RandomQuantity | RandomChoice:
+def read_random(key: str, entry: Any) -> RandomQuantity:
     """One entry of `[random]`: a distribution, or a list of values that are equally likely.
 
     Raises:
         AxisError: with the reason why it cannot be used.
     """
     if isinstance(entry, list):
-        return RandomChoice(axis=read_axis(key, entry))
+        return RandomQuantity(key=key, choices=read_axis(key, entry))
     example = 'for instance { distribution = "uniform", from = 0.3, to = 0.4 }'
     if not isinstance(entry, dict):
         raise AxisError(f"must be a distribution or a list of values, got {entry!r}; {example}")
@@ -156,23 +141,18 @@ def draw_shares(
     does not depend on what else is computed, in what order and on how many cores. A further stream has random numbers
     of its own, and its points in random order: two scrambled sequences in their own order depend on each other.
     """
-    if sampling == "independent":
-        return _generator(seed, cell, 0, stream).random((draws, dimensions))
-    size = draws // replicates
     blocks = []
-    for replicate in range(replicates):
-        generator = _generator(seed, cell, replicate, stream)
+    for replicate in range(1 if sampling == "independent" else replicates):
+        key = (cell, replicate, stream) if stream else (cell, replicate)
+        generator = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=key))
+        if sampling == "independent":
+            return generator.random((draws, dimensions))
         if sampling == "sobol":
-            block = qmc.Sobol(dimensions, scramble=True, seed=generator).random(size)
+            block = qmc.Sobol(dimensions, scramble=True, seed=generator).random(draws // replicates)
         else:
-            block = qmc.LatinHypercube(dimensions, seed=generator).random(size)
+            block = qmc.LatinHypercube(dimensions, seed=generator).random(draws // replicates)
         blocks.append(generator.permutation(block) if stream else block)
     return np.concatenate(blocks)
-
-
-def _generator(seed: int, cell: int, replicate: int, stream: int) -> np.random.Generator:
-    key = (cell, replicate, stream) if stream else (cell, replicate)
-    return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=key))
 
 
 def held_inputs(cases: Sequence[Case], varied: Collection[str]) -> str:
@@ -182,49 +162,29 @@ def held_inputs(cases: Sequence[Case], varied: Collection[str]) -> str:
         cases: some of the study, such as those at the ends of its axes.
         varied: keys that the study varies by themselves; they are not held.
     """
-    parts = [*_friction(cases, varied), *_beginning(cases, varied)]
-    return f"with {', '.join(parts)}" if parts else ""
-
-
-def _friction(cases: Sequence[Case], varied: Collection[str]) -> Iterator[str]:
-    contacts = [case.contact for case in cases]
-    law = ""
-    if any(contact.mu_kinetic < contact.mu_static for contact in contacts) and not {
-        WEAKENING,
-        STRIBECK,
-    } & set(varied):
-        slips = [contact.weakening_m for contact in contacts]
-        speeds = [contact.stribeck_velocity_m_s for contact in contacts]
-        over = [f"{1e3 * slip:g} mm" for slip in slips[:1] if slip] + [f"{v:g} m/s" for v in speeds[:1] if v]
-        if len({*slips}) == len({*speeds}) == 1:
-            law = f" falling over {' and '.join(over)}" if over else " falling at once"
-    if MU_KINETIC in varied:
-        if law:
-            yield f"friction{law}"
-        return
-    ratios = [contact.mu_kinetic / contact.mu_static for contact in contacts if contact.mu_static > 0.0]
-    same = ratios and all(math.isclose(ratio, ratios[0], rel_tol=1e-9) for ratio in ratios)
-    if same:
-        inverse = 1.0 / ratios[0] if ratios[0] else 0.0
-        times = f"{ratios[0]:.3g} mu_s"
-        if ratios[0] == 1.0:
-            times = "mu_s"
-        elif inverse and math.isclose(inverse, round(inverse), rel_tol=1e-9):
-            times = f"mu_s/{round(inverse)}"
-        yield f"mu_k = {times}{law}"
-    elif len({contact.mu_kinetic for contact in contacts}) == 1:
-        yield f"mu_k = {contacts[0].mu_kinetic:g}{law}"
-    elif law:
-        yield f"friction{law}"
-
-
-def _beginning(cases: Sequence[Case], varied: Collection[str]) -> Iterator[str]:
+    contacts, friction, law = [case.contact for case in cases], "", ""
+    slips, speeds = (
+        {getattr(one, key) for one in contacts} for key in ("weakening_m", "stribeck_velocity_m_s")
+    )
+    falls = any(one.mu_kinetic < one.mu_static for one in contacts) and not {WEAKENING, STRIBECK} & {*varied}
+    if falls and len(slips) == len(speeds) == 1:
+        over = [f"{1e3 * slip:g} mm" for slip in slips if slip] + [f"{v:g} m/s" for v in speeds if v]
+        law = f" falling over {' and '.join(over)}" if over else " falling at once"
+        friction = "friction"
+    ratios = [one.mu_kinetic / one.mu_static for one in contacts if one.mu_static > 0.0]
+    if MU_KINETIC not in varied:
+        if ratios and all(math.isclose(ratio, ratios[0], rel_tol=1e-9) for ratio in ratios):
+            inverse = 1.0 / ratios[0] if ratios[0] else 0.0
+            whole = inverse and math.isclose(inverse, round(inverse), rel_tol=1e-9)
+            times = f"mu_s/{round(inverse)}" if whole else f"{ratios[0]:.3g} mu_s"
+            friction = f"mu_k = {'mu_s' if ratios[0] == 1.0 else times}"
+        elif len({one.mu_kinetic for one in contacts}) == 1:
+            friction = f"mu_k = {contacts[0].mu_kinetic:g}"
+    parts = [f"{friction}{law}"] * bool(friction)
     motions = [case.motion for case in cases if case.motion.kind == "harmonic"]
-    if not motions:
-        return
-    ramps, starts = {motion.ramp_cycles for motion in motions}, {motion.start for motion in motions}
-    if START not in varied and starts == {"rest"}:
-        yield "a start at rest"
+    ramps = {motion.ramp_cycles for motion in motions}
+    if START not in varied and {motion.start for motion in motions} == {"rest"}:
+        parts.append("a start at rest")
     if RAMP not in varied and len(ramps) == 1:
-        cycles = ramps.pop()
-        yield f"a ramp of {cycles:g} cycles" if cycles else "no ramp"
+        parts += [f"a ramp of {cycles:g} cycles" if cycles else "no ramp" for cycles in ramps]
+    return f"with {', '.join(parts)}" if parts else ""

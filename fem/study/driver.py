@@ -173,45 +173,6 @@ def hash_of(request: Any) -> str:
     return hashlib.sha256(json.dumps(request, sort_keys=True, default=repr).encode()).hexdigest()
 
 
-class RowLog:
-    """Appends lines to a table, each as a whole.
-
-    Args:
-        path: of the table; continued behind its last whole line if it has these columns, else begun.
-        columns: of the table.
-        warn: receives a sentence where lines are no rows, as after a fault of the disk; they are removed.
-    """
-
-    def __init__(self, path: Path, columns: Columns, warn: Callable[[str], None]) -> None:
-        self._path = path
-        there = read_lines(path, columns)
-        self.lines = [line for line in there if is_row(columns, line)]  #: already there
-        kept = table_of_lines(columns, self.lines).encode()
-        if damaged := len(there) - len(self.lines):
-            warn(f"{path}: damaged rows, which are computed again: {damaged}")
-            write_atomically(path, kept)
-        self._file = appended(path, len(kept) if self.lines else 0)
-        if not self.lines:
-            self._file.write(kept)
-
-    def append(self, lines: Iterable[str]) -> None:
-        """Write lines in one go.
-
-        Raises:
-            OSError: they cannot be written; FolderLostError: the log was removed.
-        """
-        if os.fstat(self._file.fileno()).st_nlink == 0:
-            raise FolderLostError(self._path.parent)
-        data = "".join(f"{line}\n" for line in lines).encode()
-        while data:
-            data = data[self._file.write(data) :]
-
-    def close(self) -> None:
-        """Have what was written survive a power cut as well."""
-        os.fsync(self._file.fileno())
-        self._file.close()
-
-
 @dataclass(frozen=True, kw_only=True)
 class LoggedRuns(Generic[ItemT]):
     """Runs of one kind whose rows are kept in a log: none is computed twice, whatever interrupts the study."""
@@ -219,9 +180,7 @@ class LoggedRuns(Generic[ItemT]):
     what: str  #: they are, for the line of progress
     path: Path  #: of the log
     columns: Columns  #: of the log
-    key: Callable[
-        [ItemT], Iterable[Any]
-    ]  #: values of the first columns; the others are of the row of an item
+    key: Callable[[ItemT], Iterable[Any]]  #: values of the first columns; the others are of its row
     ids: int = 0  #: of these, how many tell the items apart, whose lines are kept; 0: none are
     known: Container[tuple[Any, ...]] | None = None  #: these, where they are known beforehand; None: any
     make: Callable[[ItemT], Case]  #: the case of an item; picklable
@@ -231,9 +190,8 @@ class LoggedRuns(Generic[ItemT]):
     #: called with every line of the log, old and new; raises a LookupError for one of no item
     note: Callable[[str], None] = lambda line: None
     told: Callable[[int], None] = lambda count: None  #: called with the size of every batch before its runs
-    lines: dict[tuple[Any, ...], str] = field(
-        default_factory=dict, init=False
-    )  #: of the log, by what tells apart
+    #: of the log, by what tells apart
+    lines: dict[tuple[Any, ...], str] = field(default_factory=dict, init=False)
 
     def missing(self, among: Iterable[ItemT]) -> list[ItemT]:
         """Those of some items that have no row yet."""
@@ -257,9 +215,19 @@ class LoggedRuns(Generic[ItemT]):
 
         Raises:
             FolderError: the log holds a row of another study.
+            FolderLostError: it was removed; OSError: it cannot be written.
         """
-        with closing(RowLog(self.path, self.columns, runner.reporter.warning)) as log:
-            for line in log.lines:
+        there = read_lines(self.path, self.columns)
+        whole = [line for line in there if is_row(self.columns, line)]
+        kept = table_of_lines(self.columns, whole).encode()
+        if damaged := len(there) - len(whole):  # as after a fault of the disk
+            runner.reporter.warning(f"{self.path}: damaged rows, which are computed again: {damaged}")
+            write_atomically(self.path, kept)
+        with closing(appended(self.path, len(kept) if whole else 0)) as file, ExitStack() as ended:
+            ended.callback(os.fsync, file.fileno())  # what was written is to survive a power cut as well
+            if not whole:
+                file.write(kept)
+            for line in whole:
                 try:
                     self._note(line)
                 except (AttributeError, LookupError, TypeError, ValueError):
@@ -272,7 +240,11 @@ class LoggedRuns(Generic[ItemT]):
                 self.told(len(items))
                 for chunk, rows in runner.rows(self.what, items, self.make, self.model_of, self.work):
                     lines = [self._line(item, row) for item, row in zip(chunk, rows, strict=True)]
-                    log.append(lines)
+                    if os.fstat(file.fileno()).st_nlink == 0:
+                        raise FolderLostError(self.path.parent)
+                    data = "".join(f"{line}\n" for line in lines).encode()
+                    while data:
+                        data = data[file.write(data) :]
                     for line in lines:
                         self._note(line)
 

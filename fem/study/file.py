@@ -1,8 +1,9 @@
 """What the file of a study of many cases has: a heading, tables, the case it starts from, the keys that vary."""
 
 import re
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from itertools import islice, product
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
@@ -35,16 +36,17 @@ from fem.study.design import (
     Ensemble,
     Item,
     MapChoice,
+    Perturbation,
     Sweep,
     Threshold,
     Unknown,
     sets_among,
 )
-from fem.study.draws import RandomChoice, RandomQuantity, Sampling, read_random
-from fem.study.perturbation import Perturbation
+from fem.study.draws import RandomQuantity, Sampling, read_random
 
 TableT = TypeVar("TableT", bound=CaseTable)
 StudyT = TypeVar("StudyT")
+ReadT = TypeVar("ReadT")
 
 
 def read_study(origin: Origin, read: Callable[[dict[str, Any], Origin], StudyT]) -> StudyT:
@@ -92,14 +94,11 @@ def flat(name: str, content: Mapping[str, Any]) -> dict[str, Any]:
     """Dotted keys, whether they were written in quotes or, as TOML would have it, as tables in tables."""
     keys: dict[str, Any] = {}
     for key, value in content.items():
+        inner = {key: value}
         # A table is a range of one key, but for `vertical.scale = [1, -1]`, which TOML reads as a table, too.
-        is_range = isinstance(value, dict) and (
-            {"from", "to", "count"} & value.keys() or isinstance(value.get("scale"), str)
-        )
-        if isinstance(value, dict) and not is_range:
+        is_table = isinstance(value, dict) and not {"from", "to", "count"} & value.keys()
+        if is_table and not isinstance(value.get("scale"), str):
             inner = {f"{key}.{part}": what for part, what in value.items()}
-        else:
-            inner = {key: value}
         for dotted, what in inner.items():
             if dotted in keys:
                 raise CaseError(f"[{name}] {dotted} is given twice")
@@ -151,21 +150,21 @@ def base_case(
         raise CaseError("\n".join(lines)) from None
 
 
-def _read_axes(
-    content: Mapping[str, Any], most: int, example: str, read: Callable[[str, Any], Axis]
-) -> tuple[Axis, ...]:
-    """The table [axes] of one to `most` keys, each read by `read`; CaseError with a line for each reason."""
+def _each_key(
+    table: str, content: Mapping[str, Any], most: int, example: str, read: Callable[[str, Any], ReadT]
+) -> tuple[ReadT, ...]:
+    """A table of one to `most` keys, each read by `read`; CaseError with a line for each reason."""
     if not 1 <= len(content) <= most:
-        raise CaseError(f"[axes] must hold one to {most} keys, got {len(content)}; for instance {example}")
-    axes, problems = [], []
+        raise CaseError(f"[{table}] must hold one to {most} keys, got {len(content)}; for instance {example}")
+    found, problems = [], []
     for key, value in content.items():
         try:
-            axes.append(read(key, value))
+            found.append(read(key, value))
         except AxisError as error:
-            problems.append(f"[axes] {key!r} {error}")
+            problems.append(f"[{table}] {key!r} {error}")
     if problems:
         raise CaseError("\n".join(problems))
-    return tuple(axes)
+    return tuple(found)
 
 
 def _require_verticals(axes: Iterable[Axis], varied: Iterable[str], base: Case) -> None:
@@ -245,7 +244,7 @@ def _read_sweep(data: Mapping[str, Any], origin: Origin) -> Sweep:
     given, tables = split_tables(data, SWEEP_TABLES)
     heading = read_as("", StudyHeading, given)
     example = '"contact.mu_static" = [0.2, 0.3, 0.4]'
-    axes = _read_axes(flat("axes", tables.get("axes", {})), MOST_AXES, example, _axis)
+    axes = _each_key("axes", flat("axes", tables.get("axes", {})), MOST_AXES, example, _axis)
     keys, values = [axis.key for axis in axes], {axis.key: axis.values for axis in axes}
     base = base_case(heading.case, tables.get("set", {}), origin, first_motion(axes), keys)
     _require_verticals(axes, keys, base)
@@ -257,14 +256,10 @@ def _read_sweep(data: Mapping[str, Any], origin: Origin) -> Sweep:
             raise AxisError("is no axis")
         if any(isinstance(value, str | bool) for value in values.get(name, ())):
             raise AxisError("has values that are no numbers")
-        if (
-            name not in values
-            and value_in(base, name, {key: some[0] for key, some in values.items()}) is None
-        ):
-            raise AxisError(
-                f"has no number in the base case {base.name!r}; set it under [set], or refer to a key that is "
-                "given there"
-            )
+        firsts = {key: some[0] for key, some in values.items()}
+        if name not in values and value_in(base, name, firsts) is None:
+            way_out = "set it under [set], or refer to a key that is given there"
+            raise AxisError(f"has no number in the base case {base.name!r}; {way_out}")
 
     derived = read_derived(flat("derived", tables.get("derived", {})), values, check_varied, check_reference)
     require_once(tables.get("set", {}), [*keys, *derived], base)
@@ -280,7 +275,14 @@ def _read_sweep(data: Mapping[str, Any], origin: Origin) -> Sweep:
         maps=_maps(tables.get("maps", {}), values),
         limit_slip_m=heading.limit_slip_m,
     )
-    _require_effect(sweep, _tried(sweep, sweep.corners(listed=True), "[axes] make this cell", str))
+    idle = list(keys)  # without an effect in any of the cases
+    for case in _tried(sweep, sweep.corners(listed=True), "[axes] make this cell", str):
+        idle = [key for key in idle if _is_idle(case, key)]
+    if idle:
+        raise CaseError(
+            f"[axes] {idle[0]!r} has no effect in this case, which has other options; "
+            "choose the option it belongs to under [set], or leave the axis out"
+        )
     return sweep
 
 
@@ -290,9 +292,8 @@ def _threshold(tables: Mapping[str, Any], axes: tuple[Axis, ...]) -> Threshold |
     threshold = read_as("threshold", Threshold, tables["threshold"])
     named, known = f"[threshold] axis {threshold.axis!r}", {axis.key: axis for axis in axes}
     if threshold.axis not in known:
-        raise CaseError(
-            f"{named} is none of the axes{hint(threshold.axis, known)} (axes: {', '.join(known)})"
-        )
+        near = hint(threshold.axis, known)
+        raise CaseError(f"{named} is none of the axes{near} (axes: {', '.join(known)})")
     if not known[threshold.axis].is_numeric:
         raise CaseError(f"{named} needs two or more numbers that rise")
     if any(isinstance(value, int) for value in known[threshold.axis].values):
@@ -306,9 +307,8 @@ def _maps(content: Mapping[str, Any], known: Mapping[str, tuple[Any, ...]]) -> M
     choice = read_as("maps", MapChoice, {**content, **flattened})
     for key in (choice.x, choice.y, *choice.fixed):
         if key is not None and key not in known:
-            raise CaseError(
-                f"[maps] {key!r} is none of the axes{hint(key, known)} (axes: {', '.join(known)})"
-            )
+            near = hint(key, known)
+            raise CaseError(f"[maps] {key!r} is none of the axes{near} (axes: {', '.join(known)})")
     for key, value in choice.fixed.items():
         if value not in known[key]:
             listed = ", ".join(map(str, known[key]))
@@ -333,18 +333,6 @@ def _tried(design: Design, items: Iterable[Item], tables: str, words: Callable[[
             raise CaseError(f"{error}\n{tables}: {where}") from None
 
 
-def _require_effect(sweep: Sweep, cases: Iterable[Case]) -> None:
-    """Refuse an axis that has no effect in any of the cases."""
-    idle = [axis.key for axis in sweep.axes]
-    for case in cases:
-        idle = [key for key in idle if _is_idle(case, key)]
-    if idle:
-        raise CaseError(
-            f"[axes] {idle[0]!r} has no effect in this case, which has other options; "
-            "choose the option it belongs to under [set], or leave the axis out"
-        )
-
-
 def _is_idle(case: Case, key: str) -> bool:
     (key,) = keys_in_effect({key: None}, case.kinds)
     table, _, name = key.rpartition(".")
@@ -357,15 +345,24 @@ def _read_ensemble(data: Mapping[str, Any], origin: Origin) -> Ensemble:
     given, tables = split_tables(data, ENSEMBLE_TABLES)
     heading, derived = read_as("", EnsembleHeading, given), tables.get("derived", {})
     example = '"motion.peak_acceleration_m_s2" = { from = 2.0, to = 10.0, count = 17 }'
-    axes = _read_axes(tables.get("axes", {}), MOST_POINT_AXES, example, _point_axis)
+    rising = partial(_axis, rising=True)
+    axes = _each_key("axes", tables.get("axes", {}), MOST_POINT_AXES, example, rising)
     keys = [axis.key for axis in axes]
-    random = _random(tables.get("random", {}), keys)
+
+    def drawn_key(key: str, value: Any) -> RandomQuantity:
+        _check_key(key)
+        quantity = read_random(key, value)
+        if key in keys and not quantity.relative:
+            raise AxisError("is an axis as well; give the scatter about its values with relative = true")
+        return quantity
+
+    example = '"motion.phase_rad" = { distribution = "uniform", from = 0.0, to = 6.2832 }'
+    random = _each_key("random", tables.get("random", {}), MOST_RANDOM, example, drawn_key)
     sets = sets_among(random)
     base = base_case(heading.case, tables.get("set", {}), origin, first_motion(sets), keys)
     if base.solver.model == "full":
-        raise CaseError(
-            '[set] "solver.model" must be "rigid" or "reduced": an ensemble of the full model would take weeks'
-        )
+        why = "an ensemble of the full model would take weeks"
+        raise CaseError(f'[set] "solver.model" must be "rigid" or "reduced": {why}')
     varied = [*keys, *(quantity.key for quantity in random)]
     _require_verticals(sets, varied, base)
     drawn = [quantity.key for quantity in random if not quantity.relative]
@@ -392,21 +389,16 @@ def _read_ensemble(data: Mapping[str, Any], origin: Origin) -> Ensemble:
     _check_draws(ensemble)
     ends = product(Design.corners(ensemble), product(*(quantity.ends for quantity in random)))
     items = (ensemble.drawn(item.point, values) for item, values in ends)
-    for _ in _tried(ensemble, items, "[axes] and [random] make this case", lambda value: f"{value:g}"):
-        pass
+    list(_tried(ensemble, items, "[axes] and [random] make this case", lambda value: f"{value:g}"))
     return ensemble
 
 
-def _axis(key: str, value: Any) -> Axis:
+def _axis(key: str, value: Any, *, rising: bool = False) -> Axis:
     # A free variable takes any number, as the scale of a table of motion does.
-    return replace(read_axis("motion.scale" if key.startswith(FREE) else key, value), key=key)
-
-
-def _point_axis(key: str, value: Any) -> Axis:
-    axis = _axis(key, value)
-    if not all(isinstance(number, float | int) and not isinstance(number, bool) for number in axis.values):
+    axis = replace(read_axis("motion.scale" if key.startswith(FREE) else key, value), key=key)
+    if rising and any(isinstance(number, str | bool) for number in axis.values):
         raise AxisError("must hold numbers; make a file for each of its words")
-    if list(axis.values) != sorted(axis.values):
+    if rising and list(axis.values) != sorted(axis.values):
         raise AxisError("must rise; sort its values")
     return axis
 
@@ -414,26 +406,6 @@ def _point_axis(key: str, value: Any) -> Axis:
 def _check_key(key: str) -> None:
     if not key.startswith(FREE):
         check_varied(key)
-
-
-def _random(content: Mapping[str, Any], axes: Collection[str]) -> tuple[RandomQuantity | RandomChoice, ...]:
-    if not 1 <= len(content) <= MOST_RANDOM:
-        example = '"motion.phase_rad" = { distribution = "uniform", from = 0.0, to = 6.2832 }'
-        raise CaseError(
-            f"[random] must hold one to {MOST_RANDOM} keys, got {len(content)}; for instance {example}"
-        )
-    quantities: list[RandomQuantity | RandomChoice] = []
-    for key, value in content.items():
-        try:
-            _check_key(key)
-            quantities.append(read_random(key, value))
-        except AxisError as error:
-            raise CaseError(f"[random] {key!r} {error}") from None
-        if key in axes and not quantities[-1].relative:
-            raise CaseError(
-                f"[random] {key!r} is an axis as well; give the scatter about its values with relative = true"
-            )
-    return tuple(quantities)
 
 
 def _check_draws(ensemble: Ensemble) -> None:

@@ -15,32 +15,24 @@ from fem.results.json_block import JsonBlock
 from fem.results.outcome import COUNTED, NOT_STANDING, Ending, counts_of
 from fem.runtime.arrays import FloatArray
 from fem.runtime.intervals import estimate
-from fem.study.axes import Axis
-from fem.study.design import Ensemble
-from fem.study.driver import StudyResult
+from fem.study.design import DesignResult, Ensemble
 from fem.study.table import Columns
 
 
 @dataclass(frozen=True, kw_only=True)
 class Lognormal(JsonBlock):
-    """A fitted fragility curve."""
+    """A fitted fragility curve, and how well it describes the counts."""
 
     median: float  #: strength of motion at which half overturn, unit of the axis
     deviation: float  #: of its logarithm
+    levels: int = 0
+    levels_missed: int = 0
+    missed_by_chance: int = 0
+    adequate: bool = False
 
     def probability(self, strengths: FloatArray) -> FloatArray:
         """Of overturning, shape as given."""
         return np.asarray(ndtr(np.log(strengths / self.median) / self.deviation))
-
-
-@dataclass(frozen=True, kw_only=True)
-class FittedLognormal(Lognormal):
-    """The fitted curve, and how well it describes the counts."""
-
-    levels: int
-    levels_missed: int
-    missed_by_chance: int
-    adequate: bool
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,7 +42,7 @@ class Fragility(JsonBlock):
     axis: str  #: its key
     #: where a stronger motion overturns less often than a weaker one, beyond what the intervals allow
     falls: tuple[dict[str, float], ...]
-    lognormal: FittedLognormal | None = None
+    lognormal: Lognormal | None = None
     no_lognormal: str | None = None  #: why there is none
 
     written_where_given = frozenset({"no_lognormal"})
@@ -62,17 +54,12 @@ TYPED = {"points": POINT_COLUMNS}
 
 
 @dataclass(frozen=True, kw_only=True)
-class EnsembleResult(StudyResult):
+class EnsembleResult(DesignResult):
     """All results of an ensemble."""
 
     asked: str  #: hash of the request
     ensemble: str = ""  #: its name
     columns_of = TYPED
-    title: str = ""
-    case: str = ""  #: name of the base case
-    model: str = ""
-    duration_s: float | str = "auto"
-    motion_covered: str | None = None  #: the part of the motion that the runs cover, where they end before it
     draws: int = 0  #: at each point
     seed: int = 0
     sampling: str = ""
@@ -80,13 +67,8 @@ class EnsembleResult(StudyResult):
     confidence: float
     probability: float
     unknown_inputs: str = ""
-    #: beyond which a draw does not stand, and counts as one that overturned
-    limit_slip_m: float | None = None
-    axes: tuple[Axis, ...]
     random: dict[str, Any]  #: what is drawn, by key
-    derived: dict[str, str] = field(default_factory=dict)
     drawn_over_uncertainty: tuple[str, ...] = ()
-    held: str = ""
     motions: tuple[dict[str, Any], ...] | None = None  #: measures and counts of each motion of a set
     motion_figures: tuple[str, ...] = ()
     points: tuple[Mapping[str, Any], ...] = ()  #: by the keys of the axes and `statistics.POINT_COLUMNS`
@@ -155,12 +137,6 @@ def misses(curve: Lognormal, strengths: FloatArray, low: FloatArray, high: Float
     return int(np.sum((fitted < low) | (fitted > high)))
 
 
-def _misses_by_chance(levels: int, confidence: float) -> int:
-    """Levels that miss a true curve, at most, in nineteen of twenty such studies."""
-    # not from `scipy.stats`, whose import takes as long as twenty runs of a site
-    return int(np.argmax(bdtr(np.arange(levels + 1), levels, 1.0 - confidence) >= 0.95))
-
-
 #: columns of `points.csv` behind those of the axes
 PointRow = dict[str, Any]  #: of a point, by the keys of the axes and these columns
 FEWEST_FITTED = 4  #: levels from which a curve is fitted
@@ -184,13 +160,9 @@ def count_point(
     elif share.low > ensemble.probability:
         region = "above"
     slid = () if slips is None else slips[(codes == Ending.STANDING) & np.isfinite(slips)]
-    return (
-        ensemble.point(cell)
-        | {"draws": codes.size}
-        | counts_of(codes)
-        | {"probability": share.value, "low": share.low, "high": share.high, "region": region}
-        | {SLIPPED: max(map(float, slid), default=None)}
-    )
+    row = {"probability": share.value, "low": share.low, "high": share.high, "region": region}
+    row |= {SLIPPED: max(map(float, slid), default=None)}
+    return ensemble.point(cell) | {"draws": codes.size} | counts_of(codes) | row
 
 
 def fragility_of(ensemble: Ensemble, codes: np.ndarray, points: Sequence[PointRow]) -> Fragility | None:
@@ -217,13 +189,9 @@ def fragility_of(ensemble: Ensemble, codes: np.ndarray, points: Sequence[PointRo
     curve = fit_lognormal(strengths[known], counts, sizes)
     if curve is None:
         return replace(fragility, no_lognormal=NO_CURVE)
-    missed = misses(curve, strengths[known], low[known], high[known])
-    by_chance = _misses_by_chance(int(known.sum()), ensemble.confidence)
-    fitted = FittedLognormal(
-        **vars(curve),
-        levels=int(known.sum()),
-        levels_missed=missed,
-        missed_by_chance=by_chance,
-        adequate=missed <= by_chance,
-    )
-    return replace(fragility, lognormal=fitted)
+    levels, missed = int(known.sum()), misses(curve, strengths[known], low[known], high[known])
+    # that miss a true curve, at most, in nineteen of twenty such studies; not from `scipy.stats`, whose import takes as
+    # long as twenty runs of a site
+    by_chance = int(np.argmax(bdtr(np.arange(levels + 1), levels, 1.0 - ensemble.confidence) >= 0.95))
+    found = {"levels": levels, "levels_missed": missed, "missed_by_chance": by_chance}
+    return replace(fragility, lognormal=replace(curve, **found, adequate=missed <= by_chance))

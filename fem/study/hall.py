@@ -1,37 +1,45 @@
 """A list of containers: which differ, the run of each under each motion, the weakest repeated, the list with results.
 
-The runs are logged as they are ready, so an interrupted list continues where it was; its files depend neither on that
-nor on the number of cores. A list of which names or tags alone have changed is written again, not computed.
+What is wrong with the list as a whole is an error; what is wrong with a row is its reason. The runs are logged as they
+are ready, so an interrupted list continues where it was; its files depend neither on that nor on the number of cores. A
+list of which names or tags alone have changed is written again, not computed.
 """
 
+import difflib
 import math
 import re
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from functools import cached_property, partial
+from functools import cache, cached_property, partial
 from itertools import groupby
 from operator import itemgetter
 from pathlib import Path
-from typing import Any, Literal, Unpack
+from typing import Any, Literal, Unpack, get_args
 
 from fem.case.case import Case, case_hash
 from fem.case.data_files import as_named_from
+from fem.case.overrides import parse_override
+from fem.case.tables.all_tables import TABLES
 from fem.case.tables.unknown_inputs import excluded_values
 from fem.case.toml import toml_document, toml_value
-from fem.case.validation import CaseError
+from fem.case.validation import CaseError, known_keys, quantity_of
 from fem.model.geometry import build_container
 from fem.model.motion import build_motions, peaks_in_run
 from fem.model.static_checks import static_checks_of
+from fem.records.source import decoded
+from fem.records.table import UserTable, number_in
 from fem.results.disk import table_bytes
-from fem.results.figures import SLIPPED, TURNED
+from fem.results.figures import RUN_COLUMNS, SLIPPED, TURNED
 from fem.results.folder import ResultFolder
 from fem.results.kinds import HALL
 from fem.results.outcome import COUNTED_AS, ending_of
 from fem.run.expected import expected_s, expected_words, say_expected
 from fem.runtime.identity import command_line
-from fem.study.axes import MOTION_FILE, VERTICAL_FILE, AxisError, read_axis
+from fem.runtime.terminal import one_line
+from fem.runtime.user_files import read_regular
+from fem.study.axes import MOTION_FILE, NAMED, NO_AXIS, VERTICAL_FILE, AxisError, field_of, read_axis
 from fem.study.design import CaseMaker, Design, Item
 from fem.study.driver import (
     COMPLETED,
@@ -40,23 +48,245 @@ from fem.study.driver import (
     LoggedRuns,
     Study,
     StudyOptions,
+    StudyResult,
     hash_of,
     run_study,
     runner_of,
 )
-from fem.study.list_file import (
-    LISTED,
-    OF_A_RUN,
-    OF_MOTIONS,
-    REFUSED,
-    RESULT_COLUMNS,
-    STATIC,
-    HallFile,
-    HallResult,
-    HallRow,
-)
 from fem.study.motions import FloorMotionPair, motions_left_out, read_motion_set
 from fem.study.runner import CHECKED, Row, Runner, check_chunk
+from fem.study.table import Columns, line_of, plain_text
+
+REFUSED = "refused"  #: status of a row that cannot be computed
+#: columns of a run, as in its log
+OF_A_RUN = {"status": str} | RUN_COLUMNS | {"reason": str}
+STATIC = dict.fromkeys(("utilisation_sliding", "utilisation_overturning"), float)
+#: of a container under several motions
+OF_MOTIONS: Columns = {"motion": str}
+OF_MOTIONS |= dict.fromkeys(("motions_overturned", "motions_invalid", "motions_failed"), int)
+OF_MOTIONS |= {"largest_slip_m": float, "largest_slip_motion": str}
+COLUMNS = OF_A_RUN | CHECKED | STATIC | OF_MOTIONS | {"rank": int, "side": str}
+FIRST = ("status", "reason", "outcome", *[*CHECKED][:3], TURNED, SLIPPED, "tilt_rad")
+#: of a row of the list
+ROW_COLUMNS = {"row": int, "line": int, "name": str, "count": int, "tag": str, "command": str}
+#: behind the columns of the list
+RESULT_COLUMNS = {name: COLUMNS[name] for name in (*FIRST, *STATIC, *OF_MOTIONS, *CHECKED, *COLUMNS)}
+TYPED = {"table": RESULT_COLUMNS | ROW_COLUMNS, "tags": {"tag": str, "containers": int, "margin": float}}
+
+
+@dataclass(frozen=True, kw_only=True)
+class HallResult(StudyResult):
+    """All results of a hall."""
+
+    written_where_given = StudyResult.written_where_given | {"allow_outside", "one_side"}
+    columns_of = TYPED
+    hall: str
+    case: str
+    asked: str  #: hash of what is computed
+    listed: str = ""  #: hash of the list
+    model: str
+    motions: tuple[str, ...] = ()  #: files, of pairs both, as they were named; empty: the motion of the case
+    motion_covered: str | None = None
+    rows: int  #: of the list
+    containers: int  #: rows times their counts
+    distinct: int  #: containers that were computed
+    refused: int = 0  #: rows
+    runs: int = 0
+    checks: str = "weakest"  #: which runs are repeated: weakest | all | none
+    checked: int = 0  #: containers whose run was repeated
+    one_side: bool | None = None  #: whether only the width was looked at
+    #: of containers, by count
+    outcomes: dict[str, int] = field(default_factory=dict)
+    #: what the containers of each tag did: stood, overturned, invalid, failed, refused
+    tags: tuple[dict[str, Any], ...] = ()
+    kept: tuple[str, ...] = ()  #: columns of the list that set nothing
+    columns: tuple[str, ...] = ()  #: of the list
+    allow_outside: bool | None = None  #: files of the case may lie outside its folder
+    table: tuple[dict[str, Any], ...] = ()  #: rows of `hall.csv`, with `row`, `name`, `count`, `command`
+
+    @property
+    def extent(self) -> str:
+        """How much there is of it, in words."""
+        under = f" under {len(self.motions)} motions" if len(self.motions) > 1 else ""
+        return f"{self.rows} rows, {self.containers} containers, {self.distinct} that differ{under}: {self.runs} runs"
+
+    @property
+    def ranked(self) -> list[dict[str, Any]]:
+        """The rows that were computed, the weakest first."""
+        return sorted((row for row in self.table if row["rank"]), key=lambda row: (row["rank"], row["row"]))
+
+    @property
+    def not_computed(self) -> list[dict[str, Any]]:
+        """The rows that were refused."""
+        return [row for row in self.table if row["status"] == REFUSED]
+
+
+DIGITS = 4  #: of a figure in the list; `hall.json` has all
+LARGEST_FILE = 512 * 2**20  #: [bytes]
+#: tables whose keys a column may name without the table
+PLAIN_TABLES = ("container", "contact", "support", "floor")
+NAME, COUNT, TAG = "name", "count", "tag"
+OWN = (NAME, COUNT, TAG)
+#: a unit at the end of a name, as people write it
+UNIT = re.compile(r"[ _]*[\[(]?\b(mm|cm|m|kg|t|g|kn|n|mpa|gpa|pa|rad|deg|s|hz)\b[\])]?$", re.IGNORECASE)
+LIKE = 0.8  #: likeness from which an unknown name is taken for a slip
+OTHER_NAMES = {"mu": "mu_static", "friction_coefficient": "mu_static"}
+LARGEST_COUNT = 10**9
+#: of a row, what the result says of it
+LISTED = ("line", "name", "count", "tag", "given")
+A_HEADER = "the first line must name the columns, such as name;width_m;height_m;mass_kg;mu_static"
+
+
+@dataclass(frozen=True, kw_only=True)
+class HallRow:
+    """A row of the list."""
+
+    line: int  #: of the file, where it ends
+    name: str
+    count: int
+    tag: str
+    given: Mapping[str, str]  #: its fields by column
+    values: Mapping[str, Any]  #: of the dotted keys that it sets
+    reason: str  #: why it cannot be used; empty: it can
+    across: Mapping[str, Any] = field(default_factory=dict)  #: keys that turn it; none: no narrower side
+    container: int | None = None  #: its number among those that differ, once the row is checked
+
+
+@dataclass(frozen=True, kw_only=True)
+class HallFile:
+    """A list as it was read."""
+
+    path: Path
+    table: UserTable
+    header: Sequence[str]  #: names of all columns; empty for a column without
+    #: of the columns that are read: a dotted key, a name of `OWN`; empty: it is kept
+    meanings: Mapping[str, str]
+
+    @property
+    def name(self) -> str:
+        """File stem."""
+        return self.path.stem
+
+    @property
+    def keys(self) -> list[str]:
+        """The dotted keys that columns name."""
+        return [meaning for meaning in self.meanings.values() if meaning and meaning not in OWN]
+
+    @cached_property
+    def decimal_mark(self) -> str:
+        """Of its numbers, a point or a comma; CaseError for both."""
+        numeric = [column for column, meaning in self.meanings.items() if meaning not in ("", NAME, TAG)]
+        return self.table.require_one_decimal_mark(map(self.header.index, numeric))
+
+    @cached_property
+    def rows(self) -> tuple[HallRow, ...]:
+        """A row for each line; CaseError for none, values below no name, decimal commas and points."""
+        if not self.table.lines:
+            raise CaseError(f"{self.path}: the list has a header and no rows; give one row a container")
+        self.table.require_names()
+        _ = self.decimal_mark
+        places = {column: self.header.index(column) for column in self.meanings}
+        named, keys, rows = [k for k, name in enumerate(self.header) if name], self.keys, []
+        for number, line in enumerate(self.table.lines, start=1):
+            given = {column: one_line(plain_text(line.field(k))) for column, k in places.items()}
+            texts = dict(zip(self.meanings.values(), given.values(), strict=True))
+            count, reason = number_in(texts.get(COUNT) or "1") or 0.0, ""
+            if not (count.is_integer() and 1.0 <= count <= LARGEST_COUNT):
+                count, reason = 1.0, f"count must be a whole number of at least 1, got {texts[COUNT]!r}"
+            whole = len(line.fields) > named[-1] and not any(line.fields[len(self.header) :])
+            if not whole:
+                reason = f"{len(line.fields)} fields, and the header names {len(named)} columns"
+            values = {key: _value(key, texts[key]) for key in keys if whole and texts[key]}
+            name, tag = texts.get(NAME) or str(number), texts.get(TAG, "")
+            own: dict[str, Any] = {"line": line.number, "name": name, "count": int(count), "tag": tag}
+            rows.append(HallRow(**own, given=given, values=values, reason=reason))
+        return tuple(rows)
+
+
+def read_hall(path: Path) -> HallFile:
+    """Read a list; its rows are read on first use. CaseError for what is no list, or a column that cannot be one."""
+    try:
+        text = decoded(read_regular(path, LARGEST_FILE))
+    except ValueError as error:
+        raise CaseError(f"{path} {error}; a list of containers is needed") from None
+    if text is None or "\0" in text:
+        raise CaseError(f"{path}: not a text file; save the list as CSV")
+    table = UserTable(str(path), text, CaseError)
+    names = [one_line(plain_text(name)) for name in table.header]
+    if not names:
+        raise CaseError(f"{path}: the list is empty; {A_HEADER}")
+    if not any(name.lower() in _plain_names() or name.partition(".")[0] in NAMED for name in names):
+        raise CaseError(f"{path}: line 1 names no key of a case, so there is no header; {A_HEADER}")
+    is_result = {"status", "outcome", TURNED} <= {*names}  # an earlier one, given as a list again
+    read = [name for name in names if name and not (is_result and name in RESULT_COLUMNS)]
+    problems, meanings = [], dict[str, str]()
+    for column, count in Counter(read).items():
+        try:
+            if count > 1:
+                raise AxisError(f"occurs {count} times; keep one")
+            if column in RESULT_COLUMNS:
+                raise AxisError("has the name of a result; rename it")
+            meanings[column] = _meaning(column)
+        except AxisError as error:
+            problems.append(f"column {column!r} {error}")
+    for meaning, count in Counter(filter(None, meanings.values())).items():
+        if count > 1:
+            same = [repr(column) for column in read if meanings.get(column) == meaning]
+            problems.append(f"columns {' and '.join(same)} both set {meaning!r}; keep one")
+    if problems:
+        raise CaseError("\n".join(f"{path}: {problem}" for problem in problems))
+    return HallFile(path=path, table=table, header=names, meanings=meanings)
+
+
+def _meaning(column: str) -> str:
+    """What a column means: a dotted key, or a name of `OWN`; empty for one that is kept as it is.
+
+    AxisError for one that looks like a key and is none, or may be several.
+    """
+    table, dot, _ = column.partition(".")
+    if dot and difflib.get_close_matches(table.lower(), NAMED, n=1, cutoff=LIKE):
+        field_of(column)
+        return "" if column in NO_AXIS or table == "document" else column
+    meant = _plain_names().get(column.lower(), [])
+    if len(meant) > 1:
+        raise AxisError(f"may be {' or '.join(meant)}; write one of them")
+
+    def stem(name: str) -> str:
+        return UNIT.sub("", name.lower().replace(" ", "_").replace("-", "_")).strip("_ ")
+
+    # without its unit the same, or very like it
+    names = [key.rpartition(".")[2] for known in _plain_names().values() for key in known]
+    stems, own = {stem(name): name for name in names} | OTHER_NAMES, stem(column)
+    near = difflib.get_close_matches(own, stems, n=1, cutoff=LIKE) if len(own) > 1 and not meant else []
+    if near:
+        raise AxisError(
+            f"is no key of a case; did you mean {stems[near[0]]!r}? To keep it as a note, rename it, for instance to "
+            f"'note {column}'"
+        )
+    return meant[0] if meant else ""
+
+
+@cache
+def _plain_names() -> dict[str, list[str]]:
+    """What a name without a table, in small letters, may mean: dotted keys, or itself."""
+    names = {name: [name] for name in (*OWN, "gravity_m_s2")}
+    for table in PLAIN_TABLES:
+        for key in known_keys(TABLES[table]):
+            if key != "box":  # a table
+                names.setdefault(key.lower(), []).append(f"{table}.{key}")
+    return names
+
+
+def _value(key: str, text: str) -> Any:
+    """A field as a case file would give it: a number, true or false, a list, else text."""
+    field, number = field_of(key), number_in(text)
+    whole = int in (field.annotation, *get_args(field.annotation))
+    if number is not None and (whole or quantity_of(field.annotation, field.metadata)):
+        return int(number) if whole and number.is_integer() else number
+    if text.lower() in ("true", "false"):
+        return text.lower() == "true"
+    return parse_override(f"{key}={text}")[1] if text[0] == "[" else plain_text(text)
+
 
 TABLE, RUNS, CHECKS = "hall.csv", "runs.csv", "checks.csv"
 RUN_COLUMNS = {"container": int, "motion": int} | OF_A_RUN
@@ -94,7 +324,7 @@ class Hall(Design):
         base = _with_files_of_the_command_line(self.base) if self.motions else self.base
         return CaseMaker(base.without_fields())
 
-    @property
+    @cached_property
     def items(self) -> list[Item]:
         """All runs; those of a container follow one another, and those across stand behind the others."""
         return [
@@ -118,21 +348,6 @@ class Hall(Design):
             words += ["--set", f"{key}={value if isinstance(value, str) else toml_value(value)}"]
         return command_line(*words)
 
-    def first_of(self, values: Mapping[str, Any]) -> Case:
-        """A container's case under the first motion, once its mesh and motions can be built.
-
-        Raises:
-            CaseError, MeshError, RecordError: what a run would be refused for.
-        """
-        moved = any(key.startswith(("motion.", "vertical.")) for key in values)
-        first = self.make.case(Item(0, 0, self.keys[0], values))
-        if reasons := excluded_values(first):
-            raise CaseError("\n".join(reasons))
-        build_container(first)
-        for keys in self.keys if moved else self.keys[:1]:
-            build_motions(self.make.case(Item(0, 0, keys, values)))
-        return first
-
     def checked(self) -> "Hall":
         """The list with every row checked before any is computed; equal rows are one container.
 
@@ -145,14 +360,24 @@ class Hall(Design):
         for row in self.file.rows:
             values = repr(sorted(row.values.items()))
             if not row.reason and values not in seen:
-                try:
-                    first = self.first_of(row.values)
+                try:  # whatever a run would be refused for
+                    first = self.make.case(Item(0, 0, self.keys[0], row.values))
+                    if reasons := excluded_values(first):
+                        raise CaseError("\n".join(reasons))
+                    build_container(first)
+                    moved = any(key.startswith(("motion.", "vertical.")) for key in row.values)
+                    for keys in self.keys if moved else self.keys[:1]:
+                        build_motions(self.make.case(Item(0, 0, keys, row.values)))
                     narrower = first.container.depth_m < first.container.width_m and not self.one_side
                     digest = case_hash(first)
                     containers.setdefault(digest, replace(row, across=first.turned if narrower else {}))
                     seen[values] = {"container": numbers.setdefault(digest, len(numbers))}
-                except ValueError as error:
-                    seen[values] = {"reason": _in_words_of_list(str(error), self.base)}
+                except ValueError as error:  # on one line, without mention of the command line
+                    place = f"{self.base.origin_with({}).place}: "
+                    lines = (line.removeprefix(place) for line in str(error).splitlines())
+                    lines = (re.sub(r" \(--set \S+?=.*\)$", "", line) for line in lines)
+                    told = (line for line in lines if line and not line.startswith("with --set "))
+                    seen[values] = {"reason": "; ".join(told)}
             rows.append(row if row.reason else replace(row, **seen[values]))
         if not containers:
             bad = [f"{self.name}, line {row.line} ({row.name}): {row.reason}" for row in rows]
@@ -161,30 +386,11 @@ class Hall(Design):
         return replace(self, rows=tuple(rows), containers=containers)
 
 
-def _read_motions(base: Case, named: Sequence[str], runner: Runner) -> tuple[FloorMotionPair, ...]:
-    """Motions named on the command line, from anywhere: files "H" or "H,V"; a large set is read by the workers."""
-    pairs = [[as_named_from(base.folder, name.strip()) for name in pair.split(",")] for pair in named]
-    try:
-        axis = read_axis(MOTION_FILE, [pair if len(pair) > 1 else pair[0] for pair in pairs])
-    except AxisError as error:
-        raise CaseError(f"--motion {error}") from None
-    return read_motion_set(_with_files_of_the_command_line(base), [axis], runner)
-
-
 def _with_files_of_the_command_line(base: Case) -> Case:
     """The base case with motions from anywhere."""
     origin = base.origin_with({})
     trusted = origin.trusted | {MOTION_FILE, VERTICAL_FILE}
     return base.from_origin(replace(origin, trusted=trusted, allow_outside=True))
-
-
-def _in_words_of_list(reason: str, base: Case) -> str:
-    """Why a case cannot be used, on one line, without mention of the command line."""
-    lines = (
-        re.sub(r" \(--set \S+?=.*\)$", "", line.removeprefix(f"{base.origin_with({}).place}: "))
-        for line in reason.splitlines()
-    )
-    return "; ".join(line for line in lines if line and not line.startswith("with --set "))
 
 
 def _ending_in(row: Row) -> str:
@@ -236,7 +442,14 @@ def run_hall(
         say_expected(runner.reporter, words, seconds, runner.jobs)
         if motions and (named := [key for key in file.keys if key in (MOTION_FILE, VERTICAL_FILE)]):
             raise CaseError(f"{file.name}: column {named[0]!r} and --motion both name the motion; use one")
-        pairs = _read_motions(base, motions, runner) if motions else ()
+        pairs: tuple[FloorMotionPair, ...] = ()
+        if motions:  # from anywhere: files "H" or "H,V"
+            files = [[as_named_from(base.folder, name.strip()) for name in one.split(",")] for one in motions]
+            try:
+                axis = read_axis(MOTION_FILE, [pair if len(pair) > 1 else pair[0] for pair in files])
+            except AxisError as error:
+                raise CaseError(f"--motion {error}") from None
+            pairs = read_motion_set(_with_files_of_the_command_line(base), [axis], runner)
         hall = Hall(
             name=file.name, file=file, base=base, motions=pairs, named=motions, one_side=one_side
         ).checked()
@@ -280,16 +493,9 @@ def run_hall(
 
 def _compute(hall: Hall, begun: HallResult, results: ResultFolder, runner: Runner) -> HallResult:
     """Compute what is missing, and write the list with its results."""
-    items = hall.items
-    logged = partial(LoggedRuns[Item], make=hall.make.case, model_of=hall.model_of)
-    runs = logged(
-        what="runs",
-        path=results.path / RUNS,
-        columns=RUN_COLUMNS,
-        key=lambda item: item[:2],
-        ids=2,
-        known={(item.cell, item.draw) for item in items},
-    )
+    items, known = hall.items, {item[:2] for item in hall.items}
+    named: dict[str, Any] = {"what": "runs", "path": results.path / RUNS, "columns": RUN_COLUMNS}
+    runs = hall.runs(**named, key=lambda item: item[:2], ids=2, known=known)
     runs.run(runner, iter(partial(runs.missing, items), []))
     begun = replace(begun, runs=len(runs.lines))
     if runs.missing(items):
@@ -299,15 +505,9 @@ def _compute(hall: Hall, begun: HallResult, results: ResultFolder, runner: Runne
     weakest = sorted(found, key=lambda pair: weakness(pair[1]))
     able = [item for item, row in weakest if row["outcome"] and hall.model_of(item) != "full"]
     count = {"none": 0, "all": len(able)}.get(begun.checks, max(math.ceil(SHARE * len(found)), LEAST))
-    checks = logged(
-        what="containers repeated with other inputs and stronger motions",
-        path=results.path / CHECKS,
-        columns=CHECK_COLUMNS,
-        key=lambda item: item[:1],
-        ids=1,
-        known={(item.cell,) for item, _ in found},
-        work=check_chunk,
-    )
+    named = {"path": results.path / CHECKS, "columns": CHECK_COLUMNS, "work": check_chunk}
+    named["what"] = "containers repeated with other inputs and stronger motions"
+    checks = hall.runs(**named, key=lambda item: item[:1], ids=1, known={item[:1] for item, _ in found})
     to_check = partial(checks.missing, able[:count])
     checks.run(runner, iter(to_check, []))
     begun = replace(begun, checked=len(checks.lines))
@@ -355,9 +555,15 @@ def _written(
     results: ResultFolder, begun: HallResult, hall: Hall, found: Sequence[tuple[Item, Row]]
 ) -> HallResult:
     """The finished result of a checked list, with the list written; the governing run and the row of each container."""
-    table = tuple(_rows(hall, found))
-    outcomes, tags = Counter[str](), dict[str, dict[str, Any]]()
-    for row in table:
+    table, outcomes, tags = list[Row](), Counter[str](), dict[str, dict[str, Any]]()
+    for number, listed in enumerate(hall.rows, start=1):
+        found_so: Row = {"status": REFUSED, "reason": listed.reason}
+        if listed.container is not None:
+            item, found_so = found[listed.container]
+            found_so = found_so | {"command": hall.command(item, listed.values)}
+        row = {"row": number} | {name: getattr(listed, name) for name in LISTED}
+        row |= {name: found_so.get(name) for name in (*RESULT_COLUMNS, "command")}
+        table.append(row)
         ending = _ending_in(row)
         outcomes[row["outcome"] or ending] += row["count"]
         empty = {"tag": row["tag"], "containers": 0, "counts": Counter[str](), "margin": None}
@@ -370,23 +576,20 @@ def _written(
         status=FAILED if {row["status"] for _, row in found} == {FAILED} else COMPLETED,
         outcomes=dict(sorted(outcomes.items())),
         tags=tuple(tag for _, tag in sorted(tags.items())) if {*tags} != {""} else (),
-        table=table,
+        table=tuple(table),
     )
+    # in the list's own separator and decimal mark; most programs do not read quoted fields as numbers
+    separator, comma = hall.file.table.separator, hall.file.decimal_mark == ","
+    separator = ";" if separator == "," and comma else separator
     fields = ([*row["given"].values(), *(row[name] for name in RESULT_COLUMNS)] for row in table)
-    results.write(TABLE, hall.file.with_results(fields))
+    lines = (
+        line_of(line, separator=separator, comma=comma, digits=DIGITS)
+        for line in ([*hall.file.meanings, *RESULT_COLUMNS], *fields)
+    )
+    stated = f"sep={separator}\n" * (separator not in ",;\t")
+    results.write(TABLE, stated + "".join(f"{line}\n" for line in lines))
     results.remove("report.html")  # the command makes another
     return replace(result, answer=_answer_of(result))
-
-
-def _rows(hall: Hall, found: Sequence[tuple[Item, Row]]) -> Iterator[Row]:
-    """The rows of the list with their results, and the command that computes each by itself."""
-    for number, row in enumerate(hall.rows, start=1):
-        results: Row = {"status": REFUSED, "reason": row.reason}
-        if row.container is not None:
-            item, results = found[row.container]
-            results = results | {"command": hall.command(item, row.values)}
-        own = {"row": number} | {name: getattr(row, name) for name in LISTED}
-        yield own | {name: results.get(name) for name in (*RESULT_COLUMNS, "command")}
 
 
 def _answer_of(result: HallResult) -> str:

@@ -5,6 +5,7 @@ have copies, the first map shows the share of them that overturns, and beside it
 that overturn. The title says what the map holds fixed of the unknown inputs.
 """
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
@@ -26,39 +27,27 @@ from fem.html.units import rounded
 from fem.results.figures import SLIPPED, TURNED
 from fem.results.outcome import ENDINGS, Outcome
 from fem.runtime.own_files import place_in, write_atomically
-from fem.study.answers import Answer, StudyAnswer, falling_in_words
+from fem.study.answers import Answer, StudyAnswer, falling_in_words, sweep_answer
 from fem.study.axes import MOTION_FILE, Axis, axis_label, axis_name
 from fem.study.design import Ensemble, MapChoice
 from fem.study.fragility import Fragility, PointRow
-from fem.study.sweep_table import RATIOS, SweepTable, sweep_answer
+from fem.study.sweep_table import RATIOS, SweepTable
 
 OUTCOME_COLOURS = {**style.STATE_COLOURS, "failed": style.VERMILLION, "": style.WHITE}
-#: shares of a cell and its copies that overturn, up to so much each; their brightness falls, so that the order is seen
-#: without colours, too
-SHARES = {
-    "none overturns": 0.0,
-    "up to a quarter": 0.25,
-    "up to three quarters": 0.75,
-    "more": 1.0 - 1e-9,
-    "all overturn": 1.0,
-}
-SHARE_COLOURS = {
-    "none overturns": "#DDEEF8",
-    "up to a quarter": "#F5D878",
-    "up to three quarters": "#EE9A3A",
-    "more": "#A6401B",
-    "all overturn": style.BLACK,
-    "no outcome": style.WHITE,
-}
-GREYS = (style.WHITE, "#DDDDDD", "#AAAAAA", style.GREY, style.BLACK)
-PRINTED_SHARES = dict(zip(SHARES, GREYS, strict=True)) | {"no outcome": style.WHITE}
-PRINTED_OUTCOMES = dict(
-    zip(
-        style.STATE_COLOURS,
-        (style.WHITE, "#DDDDDD", "#EEEEEE", "#DDDDDD", "#AAAAAA", style.BLACK, "#EEEEEE"),
-        strict=True,
-    )
+#: shares of a cell and its copies that overturn: up to so much each, its colour, its grey; their brightness falls, so
+#: that the order is seen without colours, too
+_SHARES = (
+    ("none overturns", 0.0, "#DDEEF8", style.WHITE),
+    ("up to a quarter", 0.25, "#F5D878", "#DDDDDD"),
+    ("up to three quarters", 0.75, "#EE9A3A", "#AAAAAA"),
+    ("more", 1.0 - 1e-9, "#A6401B", style.GREY),
+    ("all overturn", 1.0, style.BLACK, style.BLACK),
 )
+SHARES = {word: most for word, most, _, _ in _SHARES}
+SHARE_COLOURS = {word: colour for word, _, colour, _ in _SHARES} | {"no outcome": style.WHITE}
+PRINTED_SHARES = {word: grey for word, _, _, grey in _SHARES} | {"no outcome": style.WHITE}
+GREYS = (style.WHITE, "#DDDDDD", "#EEEEEE", "#DDDDDD", "#AAAAAA", style.BLACK, "#EEEEEE")
+PRINTED_OUTCOMES = dict(zip(style.STATE_COLOURS, GREYS, strict=True))
 PRINTED_OUTCOMES |= {"failed": style.WHITE, "": style.WHITE}
 HATCHES = {
     Outcome.SLIDE: "---",
@@ -68,7 +57,9 @@ HATCHES = {
     Outcome.INVALID: "**",
     "failed": "oo",
 }
+Part = Callable[[NDArray[Any]], NDArray[Any]]  #: from a column (n_cells,) to a panel
 MOST_PANELS = 12
+WORDS_OF_SHARES = "Share of a cell's variations that do not stand"
 LEAST_SLIP_MM = 1e-2  #: less is no slip
 JOINT_SLIP = "max_joint_slip_m"
 SLIPS = {
@@ -103,18 +94,46 @@ def sweep_map(table: SweepTable, kind: str, choice: MapChoice) -> Figure:
             boxes); the last three where the container stands.
         choice: of axes that the sweep has, and of values on them.
     """
+    share, unsure = shares_of(table), table.columns.get("unsure")
+    #: words, what joins them to a panel's name, values, look
+    layers: list[tuple[str, str, NDArray[Any], Look | None]]
+    look: dict[str, Any]
     if kind.startswith("outcome"):
-        return _outcome_map(table, choice, printed=kind == "outcome_print")
-    fallen = np.isin(table.outcome, list(ENDINGS))
-    if kind == "rotation":
-        title, bar = "Largest rotation over slenderness angle, where it stands", "rotation ratio [-]"
-        turned = np.where(fallen, np.nan, table[TURNED])
-        return _map(table, choice, turned, title, "viridis", norm=Normalize(0.0, 1.0), bar=bar)
-    title, column = SLIPS[kind]
-    slip = 1e3 * np.where(fallen, np.nan, table[column])
-    norm = LogNorm(LEAST_SLIP_MM, max(np.nanmax(slip, initial=0.0), 10.0 * LEAST_SLIP_MM))
-    bar = f"slip [mm] (below {rounded(LEAST_SLIP_MM)}: none)"
-    return _map(table, choice, np.maximum(slip, LEAST_SLIP_MM), title, "cividis", norm=norm, bar=bar)
+        printed, unsure = kind == "outcome_print", None
+        outcome = np.array([list(OUTCOME_COLOURS).index(word) for word in table.outcome])
+        drawn = Look(colours=PRINTED_OUTCOMES, hatches=HATCHES) if printed else Look(colours=OUTCOME_COLOURS)
+        title, look, layers = "Outcome", {"colours": {}, "columns": 3}, [("Outcome", "; ", outcome, drawn)]
+        if share is not None:  # beside that of the outcomes
+            title, look["columns"] = "Does it overturn?", 2
+            drawn, words = Look(colours=PRINTED_SHARES if printed else SHARE_COLOURS), WORDS_OF_SHARES
+            layers = [(words, "\n", share, drawn), *layers]
+    else:
+        stands = ~np.isin(table.outcome, list(ENDINGS))
+        if kind == "rotation":
+            title, values = "Largest rotation over slenderness angle, where it stands", table[TURNED]
+            look = {"colours": matplotlib.colormaps["viridis"], "norm": Normalize(0.0, 1.0)}
+            look["bar"] = "rotation ratio [-]"
+        else:
+            title, column = SLIPS[kind]
+            slip = 1e3 * np.where(stands, table[column], np.nan)
+            values = np.maximum(slip, LEAST_SLIP_MM)
+            norm = LogNorm(LEAST_SLIP_MM, max(np.nanmax(slip, initial=0.0), 10.0 * LEAST_SLIP_MM))
+            look = {"colours": matplotlib.colormaps["cividis"], "norm": norm}
+            look["bar"] = f"slip [mm] (below {rounded(LEAST_SLIP_MM)}: none)"
+        layers = [("", "", np.where(stands, values, np.nan), None)]
+    grids, spanned, left_out = _grids(table, choice, most=MOST_PANELS // len(layers))
+    panels = [
+        Panel(
+            values=plane(values),
+            title=joint.join(filter(None, (words, name))),
+            overturned=plane(table.outcome == Outcome.OVERTURNED),
+            unsure=None if unsure is None else plane(unsure == 1.0),
+            look=one,
+        )
+        for name, plane in grids
+        for words, joint, values, one in layers
+    ]
+    return draw_heat_map(*spanned, panels, title=_titled(table, title, left_out), **look)
 
 
 def safe_boundary(table: SweepTable, answer: StudyAnswer[Answer], choice: MapChoice) -> Figure | None:
@@ -153,18 +172,9 @@ def safe_boundary(table: SweepTable, answer: StudyAnswer[Answer], choice: MapCho
             least, most = float(answer.axis.values[0]), float(answer.axis.values[-1])
             fill = axes.fill_betweenx if answer.axis is across else axes.fill_between
             ends = np.where(np.isnan(fell), most, fell)
-            stands: dict[str, Any] = {
-                "color": style.SKY,
-                "alpha": 0.35,
-                "label": "stands, and so do its copies",
-            }
-            band: dict[str, Any] = {
-                "color": style.ORANGE,
-                "alpha": 0.45,
-                "label": "band: a copy may overturn",
-            }
-            fill(places, least, sure_to, linewidth=0, **stands)
-            fill(places, sure_to, ends, linewidth=0, **band)
+            sure, band = "stands, and so do its copies", "band: a copy may overturn"
+            fill(places, least, sure_to, color=style.SKY, alpha=0.35, linewidth=0, label=sure)
+            fill(places, sure_to, ends, color=style.ORANGE, alpha=0.45, linewidth=0, label=band)
             points = (fell, places) if answer.axis is across else (places, fell)
             axes.plot(*points, "o-", color=style.BLACK, markersize=3.5, label="first overturned")
             marked = [marks_of(table.info.case, axis.key) for axis in (across, up)]
@@ -221,29 +231,6 @@ def _rotation_curve(table: SweepTable) -> Figure:
     return figure
 
 
-def _outcome_map(table: SweepTable, choice: MapChoice, *, printed: bool) -> Figure:
-    """Panels of the share of copies that overturns, where there are copies, each beside that of the outcomes."""
-    outcome, share = np.array([list(OUTCOME_COLOURS).index(word) for word in table.outcome]), shares_of(table)
-    outcomes = Look(colours=PRINTED_OUTCOMES, hatches=HATCHES) if printed else Look(colours=OUTCOME_COLOURS)
-    shares = Look(colours=PRINTED_SHARES if printed else SHARE_COLOURS)
-    grids, spanned, left_out = _grids(table, choice, most=MOST_PANELS if share is None else MOST_PANELS // 2)
-    panels = []
-    for name, plane in grids:
-        overturned = plane(table.outcome == Outcome.OVERTURNED)
-        if share is not None:
-            words = "\n".join(filter(None, ("Share of a cell's variations that do not stand", name)))
-            panels.append(Panel(values=plane(share), title=words, overturned=overturned, look=shares))
-        words = "; ".join(filter(None, ("Outcome", name)))
-        panels.append(Panel(values=plane(outcome), title=words, overturned=overturned, look=outcomes))
-    return draw_heat_map(
-        *spanned,
-        panels,
-        title=_titled(table, "Outcome" if share is None else "Does it overturn?", left_out),
-        colours={},
-        columns=3 if share is None else 2,
-    )
-
-
 def shares_of(table: SweepTable) -> NDArray[Any] | None:
     """The place in `SHARE_COLOURS` of each cell (n_cells,); None where no cell has copies."""
     share = table.columns.get("overturned_share")
@@ -251,30 +238,6 @@ def shares_of(table: SweepTable) -> NDArray[Any] | None:
         return None
     places = np.searchsorted(list(SHARES.values()), np.nan_to_num(share))
     return np.where(np.isfinite(share), places, len(SHARES))
-
-
-def _map(
-    table: SweepTable, choice: MapChoice, values: NDArray[Any], title: str, colours: str, **look: Any
-) -> Figure:
-    """The panels of values (n_cells,)."""
-    grids, spanned, left_out = _grids(table, choice)
-    unsure = table.columns.get("unsure")
-    panels = [
-        Panel(
-            values=plane(values),
-            title=name,
-            overturned=plane(table.outcome == Outcome.OVERTURNED),
-            unsure=None if unsure is None else plane(unsure == 1.0),
-        )
-        for name, plane in grids
-    ]
-    return draw_heat_map(
-        *spanned,
-        panels,
-        title=_titled(table, title, left_out),
-        colours=matplotlib.colormaps[colours],
-        **look,
-    )
 
 
 def _titled(table: SweepTable, title: str, left_out: int) -> str:
@@ -286,18 +249,31 @@ def _titled(table: SweepTable, title: str, left_out: int) -> str:
 
 def _grids(
     table: SweepTable, choice: MapChoice, most: int = MOST_PANELS
-) -> tuple[list[tuple[str, Callable[[NDArray[Any]], NDArray[Any]]]], tuple[MapAxis, MapAxis], int]:
+) -> tuple[list[tuple[str, Part]], tuple[MapAxis, MapAxis], int]:
     """For each panel its name and what takes its part of a column; the axes; how many panels are left out."""
     across, up = _plane(table, choice)
-    picks, left_out = _picks(table, (across, up), choice.fixed, most)
+    others = [(k, axis) for k, axis in enumerate(table.axes) if axis not in (across, up)]
+    choices = [
+        [(k, axis, value) for value in axis.values if value == choice.fixed.get(axis.key, value)]
+        for k, axis in others
+    ]
     swapped = table.axes.index(across) < table.axes.index(up)
 
     def plane(pick: Mapping[int, int], column: NDArray[Any]) -> NDArray[Any]:
         grid = column.reshape(table.shape)[tuple(pick.get(k, slice(None)) for k in range(len(table.axes)))]
         return grid.T if swapped else grid
 
+    grids: list[tuple[str, Part]] = [
+        (
+            ", ".join(
+                f"{axis_name(axis)} {value_label(value)} {axis.unit}".strip() for _, axis, value in held
+            ),
+            partial(plane, {k: axis.values.index(value) for k, axis, value in held}),
+        )
+        for held in islice(product(*choices), most)
+    ]
     spanned = _map_axis(across, table.info.case), _map_axis(up, table.info.case)
-    return [(name, partial(plane, pick)) for name, pick in picks], spanned, left_out
+    return grids, spanned, math.prod(map(len, choices)) - len(grids)
 
 
 def _map_axis(axis: Axis, base: str) -> MapAxis:
@@ -317,26 +293,6 @@ def _plane(table: SweepTable, choice: MapChoice) -> tuple[Axis, Axis]:
     if keys == (None, None) and table.axes.index(across) > table.axes.index(up):
         return up, across
     return across, up
-
-
-def _picks(
-    table: SweepTable, plane: tuple[Axis, Axis], fixed: Mapping[str, Any], most: int
-) -> tuple[list[tuple[str, dict[int, int]]], int]:
-    """Name and indices of the other axes for each panel, and how many panels are left out."""
-    others = [(k, axis) for k, axis in enumerate(table.axes) if axis not in plane]
-    choices = [
-        [axis.values.index(fixed[axis.key])] if axis.key in fixed else range(len(axis.values))
-        for _, axis in others
-    ]
-    picks = []
-    for indices in islice(product(*choices), most):
-        pairs = list(zip(others, indices, strict=True))
-        name = ", ".join(
-            f"{axis_name(axis)} {value_label(axis.values[index])} {axis.unit}".strip()
-            for (_, axis), index in pairs
-        )
-        picks.append((name, {k: index for (k, _), index in pairs}))
-    return picks, int(np.prod([len(choice) for choice in choices])) - len(picks)
 
 
 #: of the regions; lightness differs as well

@@ -7,7 +7,6 @@ import hashlib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
-from itertools import repeat
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +23,7 @@ from fem.results.figures import types_of
 from fem.results.folder import ResultFolder
 from fem.runtime.arrays import FloatArray
 from fem.runtime.user_files import real_path
-from fem.study.axes import MOTION_FILE, Axis, set_axis
+from fem.study.axes import MOTION_FILE, VERTICAL_FILE, Axis, set_axis, with_following
 from fem.study.design import CaseMaker
 from fem.study.runner import Runner, motion_left_out
 from fem.study.table import Columns, table_of_rows, table_text
@@ -44,9 +43,8 @@ class FloorMotionPair:
 
     case: Case  #: the base case with this motion
     keys: Mapping[str, Any]  #: that set it
-    measures: tuple[
-        Mapping[str, Any], ...
-    ]  #: of the horizontal, and of the vertical component where there is one
+    #: of the horizontal, and of the vertical component where there is one
+    measures: tuple[Mapping[str, Any], ...]
     contents: tuple[str, ...]  #: digests of these, equal for the same motion whatever its scale and sign
     left_out: str | None  #: the part of the motion that a run covers, where it ends before it
     case_hash: str  #: of its case
@@ -75,13 +73,13 @@ def read_motion_set(
         CaseError: a file that cannot be used, components that were not sampled together, two motions of one file, two
             files that hold the same motion.
     """
-    pairs = _each(runner, "motions read", _keys_of(axes), partial(_read, CaseMaker(base)))
+    axis = set_axis(axes)
+    keys = [with_following([axis], {axis.key: name}) for name in axis.values] if axis else []
+    pairs = _each(runner, "motions read", keys, partial(_read, CaseMaker(base)))
     contents, owners = dict[str, str](), dict[Path, str]()
     for pair in pairs:
-        files = [
-            pair.case.data_files[f"{table}.file"] for table in ("motion", "vertical")[: len(pair.measures)]
-        ]
-        for path in set(map(real_path, files)):
+        keys_of_files = (MOTION_FILE, VERTICAL_FILE)[: len(pair.measures)]
+        for path in {real_path(pair.case.data_files[key]) for key in keys_of_files}:
             if path in owners:
                 raise CaseError(
                     f"{MOTION_FILE!r}: {owners[path]!r} and {pair.name!r} are motions of one file, {path.name}; those "
@@ -105,33 +103,30 @@ def motions_left_out(base: Case, motions: Sequence[FloorMotionPair]) -> str | No
     """
     if not motions:
         return motion_left_out(base)
-    cut = [(motion.name, motion.left_out) for motion in motions if motion.left_out is not None]
-    if not cut:
-        return None
-    name, words = cut[0]
-    return f"{words} ({name}{f', and {len(cut) - 1} more motions are cut' if len(cut) > 1 else ''})"
+    cut = [f"{motion.left_out} ({motion.name}" for motion in motions if motion.left_out is not None]
+    more = f", and {len(cut) - 1} more motions are cut" if len(cut) > 1 else ""
+    return f"{cut[0]}{more})" if cut else None
 
 
 def write_motions(
     place: ResultFolder,
     motions: Sequence[FloorMotionPair],
-    outcomes: Sequence[Mapping[str, Any]],
-    columns: Columns,
+    outcomes: Sequence[Mapping[str, int]],
+    counted: Iterable[str],
     runner: Runner | None = None,
 ) -> dict[str, Any]:
     """Write `motions.csv`, `spectra.csv` and the figure of the spectra; returns what the result says of them.
 
     Args:
-        outcomes: of each motion, by these columns.
+        outcomes: of each motion, by these names.
     """
     measures = [{**motion.numbers(), **outcome} for motion, outcome in zip(motions, outcomes, strict=True)]
 
     def upward(numbers: Mapping[str, Any]) -> dict[str, Any]:
         return {f"vertical_{name}": value for name, value in numbers.items()}
 
-    columns = MEASURED | columns
-    if any(measure["vertical"] for measure in measures):
-        columns |= upward(MEASURED)
+    columns: Columns = MEASURED | dict.fromkeys(counted, int)
+    columns |= upward(MEASURED) if any(measure["vertical"] for measure in measures) else {}
     rows = ({**measure, **upward(measure["vertical"] or {})} for measure in measures)
     place.write("motions.csv", table_of_rows(columns, rows))
     periods, spectra = spectra_of(motions, runner)
@@ -157,19 +152,6 @@ def spectra_of(
     }
 
 
-def _keys_of(axes: Iterable[Axis]) -> list[dict[str, Any]]:
-    """The keys that set each motion of a set; none without a set."""
-    axis = set_axis(axes)
-    if axis is None:
-        return []
-    rows = zip(*axis.following.values(), strict=True) if axis.following else repeat((), len(axis.values))
-    return [
-        {MOTION_FILE: name}
-        | {key: value for key, value in zip(axis.following, row, strict=True) if value is not None}
-        for name, row in zip(axis.values, rows, strict=True)
-    ]
-
-
 def _each(
     runner: Runner | None, what: str, items: Sequence[ItemT], work: Callable[[ItemT], FoundT]
 ) -> list[FoundT]:
@@ -178,14 +160,13 @@ def _each(
 
 def _components(case: Case) -> Iterator[tuple[str, TableMotion]]:
     """The horizontal motion of a case, and the vertical one where there is one; with the keys of their files."""
-    motions = {"motion.file": build_motion(case)}
+    motions = {MOTION_FILE: build_motion(case)}
     if case.vertical.kind == "table":
-        motions["vertical.file"] = build_motion(case, "vertical")
+        motions[VERTICAL_FILE] = build_motion(case, "vertical")
     for key, motion in motions.items():
         if not isinstance(motion, TableMotion):
-            raise CaseError(
-                f'{MOTION_FILE!r}: the case has motion.kind other than "table"; take it out of [set]'
-            )
+            other = 'the case has motion.kind other than "table"'
+            raise CaseError(f"{MOTION_FILE!r}: {other}; take it out of [set]")
         yield key, motion
 
 
@@ -194,15 +175,14 @@ def _read(make: CaseMaker, keys: Mapping[str, Any]) -> FloorMotionPair:
     for key, motion in _components(case):
         times, length = motion.times, float(np.ptp(motion.times))
         name = (case.motion if key == MOTION_FILE else case.vertical).file
-        numbers = {
-            "file": name,
-            "duration_s": length,
-            "step_s": length / (times.size - 1),
-            "samples": times.size,
-        }
+        numbers = {"file": name, "duration_s": length}
+        numbers |= {"step_s": length / (times.size - 1), "samples": times.size}
         digest = hashlib.sha256(case.data_files[key].read_bytes()).hexdigest()
         measures.append(numbers | asdict(intensity(times, motion.accelerations)) | {"sha256": digest})
-        contents.append(_content(motion))
+        values, since = motion.accelerations, times - times[0]
+        largest = values[np.argmax(np.abs(values))] or 1.0  # with its sign
+        shape = np.round(np.concatenate([since / (since[-1] or 1.0), values / largest]), 6) + 0.0
+        contents.append(hashlib.sha256(shape.tobytes()).hexdigest())
     return FloorMotionPair(
         case=case,
         keys=keys,
@@ -220,12 +200,3 @@ def _spectra(make: CaseMaker, periods: FloatArray, keys: Mapping[str, Any]) -> l
         ).pseudo_acceleration_m_s2
         for _, motion in _components(make(keys))
     ]
-
-
-def _content(motion: TableMotion) -> str:
-    """A digest that is equal for the same motion, whatever its scale and sign."""
-    values = motion.accelerations
-    largest = values[np.argmax(np.abs(values))] or 1.0
-    times = motion.times - motion.times[0]
-    shape = np.round(np.concatenate([times / (times[-1] or 1.0), values / largest]), 6) + 0.0
-    return hashlib.sha256(shape.tobytes()).hexdigest()

@@ -6,32 +6,47 @@ status "failed" and the reason; it never has an outcome.
 
 import math
 import time
+import warnings
 from collections.abc import Callable, Generator, Iterable, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field
 from functools import partial
-from typing import Any, NamedTuple
+from operator import itemgetter
+from typing import Any, Literal, TypedDict, Unpack, overload
 
 from fem.case.case import Case, CaseError
 from fem.model.container import Container
 from fem.model.equilibrium import Equilibrium, same_equilibrium
+from fem.model.geometry import build_container
 from fem.model.model import Model, build_model
 from fem.model.motion import build_motions, motion_result
 from fem.model.recovery import recovery_of
 from fem.results.figures import BOXES, SCALARS
 from fem.results.run_result import Verdict
 from fem.run.checks import WantedChecks
-from fem.run.compute import compute_on
+from fem.run.compute import Run, compute_on, require_case
 from fem.run.described import covered_in_words, is_cut, missing_peak
 from fem.run.expected import say_expected
 from fem.run.recorder import Recorder
 from fem.run.simulation import run_without_history, simulate
 from fem.run.verdict import verdict_of
-from fem.runtime.progress import Reporter, clock_time
+from fem.runtime.progress import Reporter, ScreenReporter, clock_time, watched
 from fem.runtime.signals import stop_requested
-from fem.study.containers import ContainerCache
+from fem.runtime.threads import cores
+from fem.study.containers import ContainerCache, container_key
 from fem.study.table import Columns
-from fem.study.workers import FoundT, ItemT, Pool, WorkersOf, hand_out, never
+from fem.study.workers import (
+    IN_THREADS,
+    STDIN,
+    FoundT,
+    ItemT,
+    LocalWorkers,
+    Pool,
+    WorkersOf,
+    hand_out,
+    never,
+    unguarded_script,
+)
 
 #: cases handed to a core at a time
 CASES_AT_A_TIME = {"rigid": 16, "reduced": 4, "full": 1}
@@ -44,16 +59,6 @@ MEASURED_S = 2.0  #: in which it is found how long some work takes
 TOLD_S = 5.0  #: work that has taken so long ends with a line of what was done
 
 _CONTAINERS = ContainerCache()
-
-
-class _Settled(NamedTuple):
-    """A container at rest on its floor."""
-
-    case: Case
-    container: Container
-    equilibrium: Equilibrium
-
-
 Row = dict[str, Any]
 #: from what makes the case of an item, and some items, to a row each
 ChunkWork = Callable[[Callable[[Any], Case], Sequence[Any]], list[Row]]
@@ -118,20 +123,19 @@ class Runner:
             KeyboardInterrupt: `stop` ended the work.
         """
         told = _Told(what, len(items), self.reporter)
-        ready: dict[int, list[FoundT | ValueError]] = {}
+        ready: dict[int, FoundT | ValueError] = {}
         pools = self.workers_of("rigid", len(items))
         size = _chunk_size("rigid", len(items), pools)
         numbered, tried = list(enumerate(items)), partial(_work_on, work)
         for chunk, outcomes in hand_out(numbered, tried, pools, at_a_time=size, stop=self.stop):
-            ready[chunk[0][0]] = outcomes
+            ready |= zip((number for number, _ in chunk), outcomes, strict=False)  # up to an error
             told.more(len(chunk))
         told.close()
         results: list[FoundT] = []
-        for _, outcomes in sorted(ready.items()):
-            for outcome in outcomes:
-                if isinstance(outcome, ValueError):
-                    raise outcome
-                results.append(outcome)
+        for _, outcome in sorted(ready.items(), key=itemgetter(0)):
+            if isinstance(outcome, ValueError):
+                raise outcome
+            results.append(outcome)
         if len(results) < len(items):
             raise KeyboardInterrupt
         return results
@@ -236,42 +240,35 @@ def run_chunk(make: Callable[[ItemT], Case], items: Sequence[ItemT]) -> list[Row
     """Run the cases of some items, one after the other; they share what is the same in them."""
     rows = []
     before: Model | None = None
-    settled: list[_Settled] = []
+    settled: list[tuple[Case, Container, Equilibrium]] = []  # the last `AT_HAND`
     for item in items:
         began = time.perf_counter()
         try:
             case = make(item).without_fields()
+            container = _CONTAINERS.container_of(case)
             if case.solver.model == "full":
-                model = build_model(case, _CONTAINERS.container_of(case))
+                model = build_model(case, container)
                 recorder = Recorder(model, recovery_of(model))
                 ending = simulate(model, recorder)
                 verdict = verdict_of(model, recorder.history(), recorder.largest_von_mises)
                 row = _row(ending.status, ending.error, verdict)
-            else:
-                before = _model_of(case, before, settled)
+            else:  # with the motions of the one before, and an equilibrium that is known
+                alike = (
+                    known
+                    for other, own, known in settled
+                    if own is container and same_equilibrium(case, other)
+                )
+                known = next(alike, None)
+                motions = (before.case, before.motion, before.vertical) if before else None
+                before = build_model(case, container, known, build_motions(case, motions))
+                if known is not before.equilibrium:
+                    settled.insert(0, (case, container, before.equilibrium))
+                    del settled[AT_HAND:]
                 row = run_model(before)
         except (ValueError, ArithmeticError, RuntimeError) as error:  # bad input, no equilibrium, singular
-            row = _row_without_outcome("failed", str(error))
+            row = _row("failed", str(error))
         rows.append(row | {"wall_s": time.perf_counter() - began})
     return rows
-
-
-def _model_of(case: Case, before: Model | None, settled: list[_Settled]) -> Model:
-    """The model of a case; it takes over the motions of the one before, and an equilibrium that is known.
-
-    The last `AT_HAND` equilibria are kept.
-    """
-    container = _CONTAINERS.container_of(case)
-    known = next(
-        (place for place in settled if place.container is container and same_equilibrium(case, place.case)),
-        None,
-    )
-    motions = (before.case, before.motion, before.vertical) if before else None
-    model = build_model(case, container, known and known.equilibrium, build_motions(case, motions))
-    if known is None or known.equilibrium is not model.equilibrium:
-        settled.insert(0, _Settled(case, container, model.equilibrium))
-        del settled[AT_HAND:]
-    return model
 
 
 def run_model(model: Model) -> Row:
@@ -282,16 +279,14 @@ def run_model(model: Model) -> Row:
     return _row("failed" if error else ended, error, verdict)
 
 
-def _row(status: str, reason: str | None, verdict: Verdict) -> Row:
-    """The row of a run; a failed one has figures, and no outcome."""
-    row = _row_without_outcome(status, reason) | {name: getattr(verdict, name) for name in SCALARS}
-    if verdict.boxes is not None:
-        row |= {name: tuple(getattr(box, key) for box in verdict.boxes) for name, key in BOXES.items()}
+def _row(status: str, reason: str | None, verdict: Verdict | None = None) -> Row:
+    """The row of a run; a failed one has no outcome, and figures where it came to a verdict."""
+    row = {"status": status, "reason": reason, "wall_s": 0.0} | dict.fromkeys((*SCALARS, *BOXES))
+    if verdict is not None:
+        row |= {name: getattr(verdict, name) for name in SCALARS}
+        if verdict.boxes is not None:
+            row |= {name: tuple(getattr(box, key) for box in verdict.boxes) for name, key in BOXES.items()}
     return row | {"outcome": None} if status == "failed" else row
-
-
-def _row_without_outcome(status: str, reason: str | None) -> Row:
-    return {"status": status, "reason": reason, "wall_s": 0.0} | dict.fromkeys((*SCALARS, *BOXES))
 
 
 #: what a repetition adds to a run; empty where there is none. The margin is a factor; where there is none, the largest
@@ -316,13 +311,127 @@ def check_chunk(make: Callable[[ItemT], Case], items: Sequence[ItemT]) -> list[R
             verdict, margin = run.verdict, run.verdict.margin
             row |= {"status": run.status, "sure": verdict.sure, "decided_by": " ".join(verdict.decided_by)}
             if margin is not None:
-                row |= {
-                    "margin": margin.factor,
-                    "margin_low": margin.low,
-                    "margin_high": margin.high,
-                    "margin_tried_to": margin.largest_tried if margin.factor is None else None,
-                }
+                tried = margin.largest_tried if margin.factor is None else None
+                row |= zip([*CHECKED][2:], (margin.factor, margin.low, margin.high, tried), strict=True)
         except (ValueError, ArithmeticError, RuntimeError):  # the row of the run has the reason
             pass
         rows.append(row)
+    return rows
+
+
+#: number of cases from which processes pay off: runs with history and band hold the interpreter longer than rows do
+WORTH_PROCESSES = {"rigid": 24, "reduced": 6, "full": 2}
+
+
+class Wanted(TypedDict, total=False):
+    """What is found of each run, as for `fem.compute`."""
+
+    band: bool | None
+    margin: bool | None
+    check_rigid: bool
+    #: whether the members of a band find stresses, and forces in the joints of a stack, which takes twice as long
+    inner_forces: bool
+
+
+@overload
+def compute_many(
+    cases: Iterable[Case], jobs: int | None = None, *, progress: bool | None = None, **wanted: Unpack[Wanted]
+) -> list[Run]: ...
+@overload
+def compute_many(
+    cases: Iterable[Case],
+    jobs: int | None = None,
+    *,
+    errors: Literal["return"],
+    progress: bool | None = None,
+    **wanted: Unpack[Wanted],
+) -> list[Run | ValueError]: ...
+def compute_many(
+    cases: Iterable[Case],
+    jobs: int | None = None,
+    *,
+    errors: Literal["raise", "return"] = "raise",
+    progress: bool | None = None,
+    **wanted: Unpack[Wanted],
+) -> Sequence[Run | ValueError]:
+    """Compute cases in memory, side by side; no file is written.
+
+    Several cases are shared by threads, many by processes as well. A process loads the script that started it: in a
+    script, call this behind `if __name__ == "__main__":`. Where that is missing, a warning says so, and the cases are
+    computed by threads alone. Cases that differ in floor or friction only share their container.
+
+    Args:
+        cases: from `fem.load_case`, `fem.case_from` or `case.replace`, of any models.
+        jobs: cores to use; default: all.
+        errors: "raise" that of the first case that cannot be computed, which is looked for before any is computed; or
+            "return" it in place of its run.
+        progress: show it by a line; default: on a terminal and in a notebook.
+        wanted: band, margin, check_rigid, inner_forces: see `Wanted`.
+
+    Returns:
+        The runs in the order of the cases, each the same as `fem.compute` gives, whatever `jobs` is.
+
+    Raises:
+        CaseError, MeshError: one of the cases cannot be computed; a note of the error says which.
+        ValueError: jobs is less than 1.
+        WorkersLostError: a process died, perhaps for want of memory.
+    """
+    all_cases = list(cases)
+    for case in all_cases:
+        require_case(case)
+    jobs = cores() if jobs is None else jobs
+    if jobs < 1:
+        raise ValueError(f"compute_many: jobs must be at least 1, got {jobs}")
+    runs: dict[int, Run | ValueError] = {}
+    for number, case in enumerate(all_cases):
+        try:
+            build_container(case)
+            build_motions(case)
+        except ValueError as error:
+            runs[number] = _noted(error, number, len(all_cases))
+            if errors == "raise":
+                raise
+    script = unguarded_script() if min(jobs, len(all_cases)) > 1 else None
+    if script is not None:
+        no_file = "is no file that a process can load"
+        reason = no_file if script == STDIN else 'lacks `if __name__ == "__main__":`'
+        warnings.warn(
+            f"{script} {reason}, so its cases are computed by threads of this process only; call compute_many behind "
+            "that line, in a script that is a file, to use several processes",
+            stacklevel=2,
+        )
+    keys = [container_key(case) for case in all_cases]  # those of one container follow one another
+    first = {key: number for number, key in reversed([*enumerate(keys)])}
+    order = sorted(range(len(all_cases)), key=lambda number: first[keys[number]])
+    work = partial(_compute, WantedChecks(**wanted), len(all_cases))
+    reporter = ScreenReporter(quiet=not (watched() if progress is None else progress))
+    with LocalWorkers(jobs, WORTH_PROCESSES if script is None else IN_THREADS) as workers_of:
+        runner = Runner(workers_of=workers_of, reporter=reporter, stop=stop_requested)
+        items = [(number, all_cases[number]) for number in order if number not in runs]
+        found = runner.rows("runs", items, itemgetter(1), lambda item: item[1].solver.model, work)
+        with closing(found):
+            for chunk, rows in found:
+                for (number, _), row in zip(chunk, rows, strict=True):
+                    runs[number] = row["run"]
+                    if errors == "raise" and isinstance(row["run"], ValueError):
+                        raise row["run"]
+    if stop_requested():
+        raise KeyboardInterrupt
+    return [runs[number] for number in range(len(all_cases))]
+
+
+def _noted(error: ValueError, number: int, count: int) -> ValueError:
+    error.add_note(f"case {number + 1} of {count} of compute_many")
+    return error
+
+
+def _compute(
+    wanted: WantedChecks, count: int, make: Callable[[Any], Case], items: Sequence[tuple[int, Case]]
+) -> list[Row]:
+    rows: list[Row] = []
+    for number, case in items:
+        try:
+            rows.append({"status": "", "run": compute_on(_CONTAINERS.container_of(case), case, wanted)})
+        except ValueError as error:
+            rows.append({"status": "failed", "run": _noted(error, number, count)})
     return rows

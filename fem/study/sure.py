@@ -1,26 +1,29 @@
 """How sure the cells of a sweep are: a cell is computed with its draws, copies of it in which inputs differ.
 
-Small changes of motion and contact (`perturbation`), and the changes by which a run tries its unknown inputs
+Small changes of motion and contact (`Perturbation`), and the changes by which a run tries its unknown inputs
 (`fem.case.uncertainty`); each has a name that is the same in every cell. An input that is an axis is not varied: its
 effect is what the sweep shows.
 """
 
 from collections import Counter
 from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
 from operator import itemgetter
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+from scipy import ndimage
 
 from fem.case.case import Case
 from fem.case.tables.input_ranges import SUPPORT, TOLERANCE
+from fem.case.tables.unknown_inputs import WORDS
 from fem.case.uncertainty import InputChange, all_changes, as_changed
 from fem.model.geometry import build_container
 from fem.model.motion import build_motions
 from fem.model.support import normal_penalty
-from fem.results.figures import TURNED, types_of
+from fem.results.figures import BOXES, FELL_FIRST, RUN_COLUMNS, TURNED, BoxResult, RunFigures, types_of
 from fem.results.outcome import Ending, ending_of
 from fem.run.bracket import Change, changes_of, least_width, values_to_try
 from fem.run.solve import chosen_values
@@ -34,29 +37,50 @@ from fem.run.sureness import (
     deciding_inputs,
     difference,
 )
-from fem.runtime.arrays import BoolArray
-from fem.study.axes import Axis
+from fem.runtime.arrays import BoolArray, FloatArray, IntArray
+from fem.study.axes import Axis, lines_along, shape_of
 from fem.study.containers import container_key
-from fem.study.design import Item, Sweep
-from fem.study.driver import LoggedRuns
-from fem.study.perturbation import SMALL, around, band_width, coarse_cells, near_cells
+from fem.study.design import SMALL, Item, Sweep
 from fem.study.runner import Runner
-from fem.study.sweep_table import SHOWN, TRIED_COLUMNS, CellRows, RunShown, shown_in
-from fem.study.table import Columns, row_of, table_of_rows
+from fem.study.sweep_table import FIGURES, TRIED_COLUMNS
+from fem.study.table import Columns, row_of
 from mesh.container import ContainerMesh
 
 COPIES, BETWEEN = "perturbed copies", "cases between cells"  #: stages of a sweep, behind its cells
 REMEMBERED = 4096  #: cells of which the copies are remembered
 SHARE_OF_DRAWS = 0.25  #: draws of a cell over those of the band of a run
+DECIDED = (Ending.STANDING, Ending.OVERTURNED)
 REACH = 2  #: cells around one with another outcome that try the same change
+COARSE = 4  #: one in so many values of a numeric axis belongs to the coarse grid
 #: what the copies of a deformable container, which take twenty times as long, leave out
 LEFT_OUT = (
     "values between the ends of a range, pairs, draws of all inputs at once, a tighter energy tolerance"
 )
+#: columns of what a row shows
+SHOWN = {"status": str} | {key: RUN_COLUMNS[key] for key in ("outcome", *FIGURES, *FELL_FIRST, *BOXES)}
 FIRST = ("status", "outcome", TURNED)
 COLUMNS = (
     {"cell": int, "member": int, "change": str} | {key: SHOWN[key] for key in FIRST} | {"reason": str} | SHOWN
 )
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunShown(RunFigures):
+    """What a cell, or a copy of it, shows."""
+
+    kind: Ending
+
+
+def shown_in(row: Mapping[str, Any]) -> RunShown:
+    """What a row shows, by the names of `SHOWN`."""
+    kind = ending_of(row["status"], row["outcome"])
+    boxes = zip(*(row[name] or () for name in BOXES), strict=True)
+    return RunShown(
+        kind=kind,
+        outcome=None if kind is Ending.FAILED else row["outcome"],
+        boxes=tuple(BoxResult(**dict(zip(BOXES.values(), box, strict=True))) for box in boxes),
+        **{key: row[key] for key in (*FELL_FIRST, *FIGURES)},
+    )
 
 
 def left_out(sweep: Sweep) -> str:
@@ -66,6 +90,12 @@ def left_out(sweep: Sweep) -> str:
     cells = "cells away from a change of outcome" if sweep.perturbation.cells == "near" else ""
     rigid = sweep.base.solver.model == "rigid"
     return ", ".join(filter(None, (cells, "contact of the base", "" if rigid else LEFT_OUT)))
+
+
+def input_in_words(key: str) -> str:
+    """What a copy changes, by its key, for people: an unknown input, or the motion."""
+    moved = "phase of the motion" if key.endswith("phase_rad") else "strength of the motion"
+    return WORDS.get(key) or moved
 
 
 class Copy(NamedTuple):
@@ -99,30 +129,27 @@ class _TriedCopy(NamedTuple):
 class Copies:
     """The copies of the cells of a sweep, and those computed so far."""
 
-    def __init__(self, sweep: Sweep, cells: CellRows) -> None:
-        self._sweep, self._cells = sweep, cells
-        self._known: dict[int, tuple[Copy, ...]] = {}
+    def __init__(self, sweep: Sweep, runs: Mapping[int, RunShown]) -> None:
+        self._sweep, self._runs = sweep, runs  #: those of all cells
         self._mesh: tuple[Hashable, ContainerMesh] | None = None  #: the last one, and its key
+        #: the copies of a cell: each change once, the draws last
+        self.of = lru_cache(REMEMBERED)(lambda cell: tuple(self._made(sweep.case(cell))))
         self.rows: dict[int, dict[int, _TriedCopy]] = {}  #: by cell and number of the copy
         #: by name: a change, and which cells' outcome it turns, (n_cells,)
         self.turned: dict[str, tuple[Copy, BoolArray]] = {}
 
-    def of(self, cell: int) -> tuple[Copy, ...]:
-        """The copies of a cell: each change once, the draws last; those asked for last are remembered."""
-        if cell not in self._known:
-            if len(self._known) >= REMEMBERED:
-                self._known.clear()
-            self._known[cell] = tuple(self._made(self._sweep.case(cell)))
-        return self._known[cell]
+    @cached_property
+    def _kind(self) -> IntArray:
+        """Endings, (n_cells,); what failed or is not valid neither stands nor overturns."""
+        return np.array([self._runs[cell].kind for cell in range(self._sweep.count)])
 
     def _made(self, case: Case) -> Iterator[Copy]:
         if self._mesh is None or self._mesh[0] != container_key(case):
             self._mesh = container_key(case), build_container(case)
         mesh = self._mesh[1]
         chosen = chosen_values(case, mesh, build_motions(case))
-        penalty = None if case.floor.is_slab else normal_penalty(case, mesh)
         seen, count = list[object](), Counter[str]()
-        for change in (*self._sweep.perturbation.changes(case), *self._over_ranges(case, penalty)):
+        for change in (*self._sweep.perturbation.changes(case), *self._over_ranges(case, mesh)):
             if change.values and change.values not in seen:
                 seen.append(change.values)
                 keys = "draw" if change.kind == "draw" else " ".join(change.values)
@@ -130,11 +157,12 @@ class Copies:
                 yield Copy(f"{keys} {count[keys]}", change, values, case.stack[0].width)
                 count[keys] += 1
 
-    def _over_ranges(self, case: Case, penalty: float | None) -> Iterator[InputChange]:
+    def _over_ranges(self, case: Case, mesh: ContainerMesh) -> Iterator[InputChange]:
         """The changes of a run's band, without the inputs that are axes."""
-        draws, axes = self._sweep.perturbation.draws, {axis.key for axis in self._sweep.axes}
+        draws, axes = self._sweep.perturbation.draws, self._sweep.axis_keys
         if draws is None:
             draws = round(SHARE_OF_DRAWS * case.uncertainty.draws)
+        penalty = None if case.floor.is_slab else normal_penalty(case, mesh)
         changes, pairs, drawn = all_changes(case, penalty, draws)
         if case.solver.model == "rigid":
             changes = (*changes, *pairs, *drawn)
@@ -146,24 +174,24 @@ class Copies:
                 places = zip(change.values, change.place, strict=False)
                 yield replace(change, values=kept, place=tuple(x for key, x in places if key in kept))
 
-    def note(self, line: str) -> None:
+    def _note(self, line: str) -> None:
         """Add a line of the log."""
         row = row_of(COLUMNS, line)
         cell, run = row["cell"], shown_in(row)
-        copy, own = self.of(cell)[row["member"]], self._cells.runs[cell]
+        copy, own = self.of(cell)[row["member"]], self._runs[cell]
         level = OTHER_END if run.outcome is None else difference(own, run, copy.width)
         self.rows.setdefault(cell, {})[row["member"]] = _TriedCopy(copy, run, level)
         # Draws are to find what overturns; half of them turn rest to sliding, by the start alone.
         if level == OTHER_END or (run.outcome != own.outcome and not copy.drawn):
-            nowhere: BoolArray = np.zeros(self._cells.kind.size, dtype=bool)
+            nowhere: BoolArray = np.zeros(self._sweep.count, dtype=bool)
             self.turned.setdefault(copy.name, (copy, nowhere))[1][cell] = True
 
-    def sureness(self, cell: int) -> tuple[str, tuple[str, ...]]:
+    def _sureness(self, cell: int) -> tuple[str, tuple[str, ...]]:
         """How sure a cell is, and the inputs that decide: the smallest change that turns its outcome first.
 
         Both coefficients of friction moved a little at once count as the first of them.
         """
-        if not self._cells.decided[cell]:
+        if self._kind[cell] not in DECIDED:
             return UNSURE, ()
         rows = [row for _, row in sorted(self.rows.get(cell, {}).items())]
         most = max((row.level for row in rows), default=SAME)
@@ -175,14 +203,14 @@ class Copies:
         word = {SAME: SURE, OTHER_REGIME: REGIME_UNSURE, OTHER_END: UNSURE}[most]
         return word, tuple(deciding_inputs(levels, alone))
 
-    def overturned_share(self, cell: int) -> float | None:
+    def _overturned_share(self, cell: int) -> float | None:
         """Share of a cell and all its copies that do not stand; None of a cell that failed.
 
         A copy that was not tried, because it turned no cell around this one, counts as the cell, and so does one that
         failed; draws count where some were tried.
         """
-        own, tried = self._cells.kind[cell], self.rows.get(cell, {}).values()
-        if own in (Ending.UNKNOWN, Ending.FAILED):
+        own, tried = self._kind[cell], self.rows.get(cell, {}).values()
+        if own == Ending.FAILED:
             return None
         kinds = np.array([trial.run.kind for trial in tried], dtype=int)
         turned = ((kinds == Ending.STANDING) != (own == Ending.STANDING)) & (kinds != Ending.FAILED)
@@ -193,7 +221,7 @@ class Copies:
     def band(self) -> tuple[dict[str, Any], Iterator[tuple[Any, ...]]]:
         """What the copies say: a part of `sweep.json`, and for each cell the values of `band_columns`."""
         sweep, cells = self._sweep, range(self._sweep.count)
-        found = [self.sureness(cell) for cell in cells]
+        found = [self._sureness(cell) for cell in cells]
         unsure = np.array([word == UNSURE for word, _ in found])
         everywhere = sweep.perturbation.cells != "near"  # else nothing is known of a cell that was left out
         words = [
@@ -209,10 +237,10 @@ class Copies:
             for cell, word, (_, by) in zip(cells, words, found, strict=True):
                 copies = self.rows.get(cell, {}).values()
                 ratios = [ratio for copy in copies if (ratio := copy.run[TURNED]) is not None]
-                own, ends = float(self._cells.ratio[cell]), (None, None)
-                if ratios and np.isfinite(own):
+                own, ends = self._runs[cell][TURNED], (None, None)
+                if ratios and own is not None and np.isfinite(own):
                     ends = min(own, *ratios), max(own, *ratios)
-                share = self.overturned_share(cell) if word else None
+                share = self._overturned_share(cell) if word else None
                 reach = (width[cell] for width in widths)
                 yield len(copies), unsure[cell], word, " ".join(by), *ends, share, *reach
 
@@ -232,17 +260,13 @@ class Copies:
 
         `told` is that of `LoggedRuns`.
         """
-        make, model_of = self._sweep.make.case, self._sweep.model_of
-        log = LoggedRuns[Item](
-            what=COPIES,
-            told=told,
-            path=path,
-            columns=COLUMNS,
-            make=make,
-            model_of=model_of,
-            key=_key,
-            ids=2,
-            note=self.note,
+
+        def key(item: Item) -> tuple[int, int, str]:
+            changed = (f"{key}={value!r}" for key, value in item.unknown.items())
+            return item.cell, item.draw, " ".join(changed)
+
+        log = self._sweep.runs(
+            what=COPIES, told=told, path=path, columns=COLUMNS, key=key, ids=2, note=self._note
         )
         log.run(runner, self._missing())
         return log.table()
@@ -250,16 +274,15 @@ class Copies:
     def _missing(self) -> Iterator[list[Item]]:
         """Copies that are not there yet: single changes and pairs, then draws where nothing else made a cell unsure."""
         axes, shape, wanted = self._sweep.axes, self._sweep.shape, self._sweep.perturbation
-        near = near_cells(
-            axes, self._cells.kind.reshape(shape), self._cells.ratio.reshape(shape), wanted.close
-        )
+        ratio = np.array([self._runs[cell][TURNED] for cell in range(self._sweep.count)], dtype=float)
+        near = near_cells(axes, self._kind.reshape(shape), ratio.reshape(shape), wanted.close)
         begin = near.copy()
         if wanted.cells == "all":
             near[:] = begin[:] = True
         elif wanted.cells == "auto":
             begin |= coarse_cells(axes)
-        yield from self._closing_in(self._cells.decided.reshape(shape), begin, near, drawn=False)
-        sure = self._cells.decided
+        sure = np.isin(self._kind, DECIDED)
+        yield from self._closing_in(sure.reshape(shape), begin, near, drawn=False)
         for cell, tried in self.rows.items():
             sure[cell] &= not any(one.level == OTHER_END and not one.copy.drawn for one in tried.values())
         sure = sure.reshape(shape)
@@ -295,8 +318,60 @@ class Copies:
                     here |= more
 
 
-def _key(item: Item) -> tuple[int, int, str]:
-    return item.cell, item.draw, " ".join(f"{key}={value!r}" for key, value in item.unknown.items())
+def _size(axes: Sequence[Axis], reach: int = 1) -> tuple[int, ...]:
+    """Size of the neighbourhood along each axis."""
+    return tuple(2 * reach + 1 if axis.is_numeric else 1 for axis in axes)
+
+
+def near_cells(axes: Sequence[Axis], kind: IntArray, ratio: FloatArray, close: float) -> BoolArray:
+    """Cells next to one of another kind, or standing and close to overturning.
+
+    Args:
+        axes: of the sweep.
+        kind: endings, in the shape of the axes.
+        ratio: largest rotation over the slenderness angle, in the shape of the axes; nan where there is none.
+        close: rotation ratio that counts as close.
+    """
+    size = _size(axes)
+    highest = ndimage.maximum_filter(kind, size=size, mode="nearest")
+    lowest = ndimage.minimum_filter(kind, size=size, mode="nearest")
+    with np.errstate(invalid="ignore"):
+        return (highest != lowest) | ((kind == Ending.STANDING) & (ratio >= close))
+
+
+def around(axes: Sequence[Axis], cells: BoolArray, reach: int = 1) -> BoolArray:
+    """The cells and those up to `reach` away from them, diagonally as well."""
+    grown: BoolArray = ndimage.maximum_filter(cells, size=_size(axes, reach), mode="constant", cval=False)
+    return grown
+
+
+def coarse_cells(axes: Sequence[Axis]) -> BoolArray:
+    """Every fourth cell along each numeric axis, from the second on, in the shape of the axes."""
+    chosen = np.zeros(shape_of(axes), dtype=bool)
+    places = (
+        slice((min(len(axis.values), COARSE) - 1) // 2, None, COARSE) if axis.is_numeric else slice(None)
+        for axis in axes
+    )
+    chosen[tuple(places)] = True
+    return chosen
+
+
+def band_width(axes: Sequence[Axis], unsure: BoolArray, dimension: int) -> FloatArray:
+    """Length along one axis of the stretch of unsure cells around a cell, in the unit of the axis; 0 for a sure cell.
+
+    A cell extends half way to its neighbours (by ratio on a log scale), the outermost cells to their own value.
+    """
+    axis = axes[dimension]
+    values = np.array(axis.values, dtype=float)
+    middles = np.sqrt(values[:-1] * values[1:]) if axis.scale == "log" else 0.5 * (values[:-1] + values[1:])
+    edges = np.concatenate([values[:1], middles, values[-1:]])
+    touching = np.zeros((3,) * unsure.ndim, dtype=bool)  # cells that belong together: along this axis
+    touching[tuple(slice(None) if k == dimension else 1 for k in range(unsure.ndim))] = True
+    widths = np.zeros(unsure.shape)
+    for stretch in ndimage.find_objects(ndimage.label(unsure, touching)[0]):
+        inside = stretch[dimension]
+        widths[stretch] = edges[inside.stop] - edges[inside.start]
+    return widths
 
 
 #: columns of `thresholds.csv` behind those of the other axes
@@ -304,27 +379,25 @@ CHANGES: Columns = {name: types_of(Change)[name] for name in ("low", "high", "va
 
 
 def refine(
-    runner: Runner, sweep: Sweep, cells: CellRows, log: Path, told: Callable[[int], None]
-) -> list[tuple[int, Change]] | None:
+    runner: Runner, sweep: Sweep, runs: Mapping[int, RunShown], log: Path, told: Callable[[int], None]
+) -> list[dict[str, Any]] | None:
     """Locate every change of outcome along the axis asked for; cases that the log holds are not computed again.
 
     `told` is that of `LoggedRuns`.
 
     Returns:
-        The changes, each with the first cell of its line of cells; None where none are wanted.
+        The rows of `thresholds.csv`, by `change_columns`; None where none are wanted.
     """
     wanted = sweep.threshold
     if wanted is None:
         return None
-    axis, along = sweep.threshold_axis, wanted.axis
+    along = wanted.axis
+    axis = next(axis for axis in sweep.axes if axis.key == along)
     least = least_width(axis.values, wanted.resolution)
-    numbers = np.moveaxis(np.arange(sweep.count).reshape(sweep.shape), sweep.axes.index(axis), -1)
     #: outcomes by value along the axis, by the first cell of each line of cells
     lines = {
-        line[0]: {
-            float(value): Ending(cells.kind[cell]).word for value, cell in zip(axis.values, line, strict=True)
-        }
-        for line in numbers.reshape(-1, len(axis.values)).tolist()
+        line[0]: {float(value): runs[cell].kind.word for value, cell in zip(axis.values, line, strict=True)}
+        for line in lines_along(sweep.axes, axis)
     }
 
     def note(line: str) -> None:
@@ -334,30 +407,23 @@ def refine(
     def between_cells() -> list[Item]:
         return [
             item._replace(point={**item.point, along: value})
-            for item in sweep.by_container(map(sweep.item, lines))
+            for item in sweep.by_container(lines)
             for value in values_to_try(
                 lines[item.cell], resolution=wanted.resolution, inner=wanted.inner, least=least
             )
         ]
 
-    LoggedRuns[Item](
-        what=BETWEEN,
-        told=told,
-        path=log,
-        columns=TRIED_COLUMNS,
-        make=sweep.make.case,
-        model_of=sweep.model_of,
-        key=lambda item: (item.cell, item.point[along]),
-        ids=2,
-        note=note,
-    ).run(runner, iter(between_cells, []))
-    return [(first, change) for first in sorted(lines) for change in changes_of(lines[first])]
+    def key(item: Item) -> tuple[int, float]:
+        return item.cell, item.point[along]
 
-
-def table_of_changes(sweep: Sweep, changes: Sequence[tuple[int, Change]]) -> str:
-    """`thresholds.csv`: one row for each change of outcome."""
-    rows = (sweep.point(first) | {key: getattr(change, key) for key in CHANGES} for first, change in changes)
-    return table_of_rows(change_columns(sweep.axes, sweep.threshold_axis.key), rows)
+    named = {"what": BETWEEN, "told": told, "path": log, "columns": TRIED_COLUMNS}
+    tried = sweep.runs(**named, key=key, ids=2, note=note)
+    tried.run(runner, iter(between_cells, []))
+    return [
+        sweep.point(first) | {key: getattr(change, key) for key in CHANGES}
+        for first in sorted(lines)
+        for change in changes_of(lines[first])
+    ]
 
 
 def change_columns(axes: Sequence[Axis], along: str) -> Columns:

@@ -5,6 +5,7 @@ Every step is logged before the next begins, so an interrupted sweep continues w
 """
 
 import time
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
@@ -13,7 +14,6 @@ from pathlib import Path
 from typing import Any, Unpack
 
 from fem.case.case import case_hash
-from fem.case.tables.duration import ends_at_rest, longest_time
 from fem.case.tables.uncertainty_table import UncertaintyTable
 from fem.case.toml import toml_document
 from fem.case.validation import CaseError
@@ -23,39 +23,18 @@ from fem.results.kinds import SWEEP
 from fem.run.expected import expected_s, expected_words
 from fem.runtime.threads import cores
 from fem.runtime.user_files import read_own
+from fem.study.answers import answers_csv, sweep_answer
 from fem.study.design import Item, Sweep
-from fem.study.driver import (
-    COMPLETED,
-    FAILED,
-    INTERRUPTED,
-    LoggedRuns,
-    Study,
-    StudyOptions,
-    hash_of,
-    run_study,
-)
+from fem.study.driver import COMPLETED, FAILED, INTERRUPTED, Study, StudyOptions, hash_of, run_study
 from fem.study.maps import draw_maps
 from fem.study.motions import FloorMotionPair, motions_left_out, read_motion_set
 from fem.study.runner import NamedStages, Runner
-from fem.study.sure import BETWEEN, COPIES, Copies, left_out, refine, table_of_changes
-from fem.study.sweep_table import (
-    TRIED,
-    CellRows,
-    SweepResult,
-    answers_csv,
-    band_columns,
-    open_sweep,
-    sweep_answer,
-)
-from fem.study.table import fields_of, line_of, read_lines, table_of_lines
+from fem.study.sure import BETWEEN, COPIES, Copies, RunShown, change_columns, left_out, refine, shown_in
+from fem.study.sweep_table import FOUND, TRIED, SweepResult, band_columns, open_sweep
+from fem.study.table import Columns, fields_of, line_of, read_lines, row_of, table_of_lines, table_of_rows
 
-ROWS, TABLE, MEMBERS, CHANGES, ANSWERS = (
-    "rows.csv",
-    "table.csv",
-    "members.csv",
-    "thresholds.csv",
-    "answers.csv",
-)
+ROWS, TABLE, MEMBERS = "rows.csv", "table.csv", "members.csv"
+THRESHOLDS, ANSWERS = "thresholds.csv", "answers.csv"
 CELLS = "cells"  #: the first stage
 MOST_CELLS = 1_000_000  #: unless it is forced
 OF_A_CELL = 250  #: numbers, in the log, the table, the copies and the maps
@@ -67,6 +46,13 @@ def run_sweep(sweep: Sweep, folder: Path, **options: Unpack[StudyOptions]) -> Sw
     The rows of a finished sweep are kept where it is to be perturbed or refined in another way; maps over other axes
     are drawn again. `force` also lifts the limit on the number of cells.
     """
+
+    def progress(folder: Path) -> str:
+        """How many rows an unfinished sweep has; one without any is no loss."""
+        log = folder / ROWS
+        rows = read_own(log).count(b"\n") - 1 if log.is_file() else 0
+        return f"{rows} of {sweep.count} rows" if rows > 0 else ""
+
     jobs = options.get("jobs") or cores()
     check_size(sweep, jobs, options.get("force", False))
     motions = read_motion_set(sweep.base, sweep.axes)
@@ -83,7 +69,7 @@ def run_sweep(sweep: Sweep, folder: Path, **options: Unpack[StudyOptions]) -> Sw
         size=table_bytes(sweep.count, OF_A_CELL),
         subject=f"the sweep ({sweep.count} cells)",
         way_out="take fewer values",
-        progress=partial(_progress, sweep),
+        progress=progress,
         again=partial(_again, sweep, begun),
     )
     return run_study(study, folder, **options)
@@ -119,34 +105,20 @@ def asked_of(sweep: Sweep, motions: Sequence[FloorMotionPair], jobs: int) -> Swe
     ]
     band_asked = sweep.perturbation, sweep.base.uncertainty, sweep.threshold, sweep.limit_slip_m
     return SweepResult(
+        **sweep.asked,
         sweep=sweep.name,
-        title=sweep.title,
-        case=sweep.base.name,
         sweep_hash=hash_of(rows_asked),
         band_hash=hash_of(repr(band_asked)),
         base_hash=case_hash(sweep.base),
-        model=sweep.base.solver.model,
-        duration_s=longest_time(sweep.base) if not ends_at_rest(sweep.base) else "auto",
         motion_covered=motions_left_out(sweep.base, motions),
-        axes=sweep.axes,
-        derived={key: expression.text for key, expression in sweep.derived.items()},
-        held=sweep.held,
         perturbation=sweep.perturbation.model_dump(),
         uncertainty=sweep.base.uncertainty.model_dump(),
         left_out=left_out(sweep),
-        limit_slip_m=sweep.limit_slip_m,
         threshold=sweep.threshold.model_dump() if sweep.threshold else None,
         jobs=jobs,
         cells=sweep.count,
         map_axes=sweep.maps.model_dump(),
     )
-
-
-def _progress(sweep: Sweep, folder: Path) -> str:
-    """How many rows an unfinished sweep has; one without any is no loss."""
-    log = folder / ROWS
-    rows = read_own(log).count(b"\n") - 1 if log.is_file() else 0
-    return f"{rows} of {sweep.count} rows" if rows > 0 else ""
 
 
 def _again(
@@ -169,55 +141,59 @@ def _compute(sweep: Sweep, begun: SweepResult, place: ResultFolder, runner: Runn
     """Compute what is missing, and write tables and maps."""
     began, stop = time.perf_counter(), runner.stop
     if (place.earlier or {}).get("band_hash") != begun.band_hash:
-        place.remove(MEMBERS, TRIED, CHANGES, ANSWERS)
-    rows = CellRows(sweep)
-    further = [COPIES] * sweep.has_copies + [BETWEEN] * (sweep.threshold is not None)
-    stages = NamedStages([CELLS, *further], runner.reporter)
+        place.remove(MEMBERS, TRIED, THRESHOLDS, ANSWERS)
+    runs, cells = dict[int, RunShown](), range(sweep.count)
+    keys = *sweep.axis_keys, *(key for axis in sweep.axes for key in axis.following)
+
+    def key(item: Item) -> Iterator[Any]:
+        """What a row begins with: the values of axes, of what follows them, of derived keys."""
+        values: Mapping[str, Any] = {}
+        with suppress(CaseError):  # the row has the reason
+            values = sweep.make.values(item.point) if sweep.derived else {}
+        yield from (item.cell, *map(item.point.get, keys), *map(values.get, sweep.derived))
+
+    def note(line: str) -> None:
+        row = row_of(columns, line)
+        runs[cells[row["cell"]]] = shown_in(row)
 
     def missing() -> Iterator[list[Item]]:
-        yield sweep.by_container(log.missing(map(sweep.item, range(sweep.count))))
+        yield log.missing(sweep.by_container(cells))
 
-    log = LoggedRuns[Item](
-        what=CELLS,
-        told=partial(stages.begin, CELLS),
-        path=place.path / ROWS,
-        columns=rows.columns,
-        make=sweep.make.case,
-        model_of=sweep.model_of,
-        key=partial(_key, sweep),
-        ids=1,
-        note=rows.note,
-    )
+    columns: Columns = {"cell": int} | dict.fromkeys((*keys, *sweep.derived), str) | FOUND
+    further = [COPIES] * sweep.has_copies + [BETWEEN] * (sweep.threshold is not None)
+    stages = NamedStages([CELLS, *further], runner.reporter)
+    named = {"what": CELLS, "told": partial(stages.begin, CELLS), "path": place.path / ROWS}
+    log = sweep.runs(**named, columns=columns, key=key, ids=1, note=note)
     place.write_result(begun.to_json())  # with the hash of the band: copies of another are gone
-    columns = (*rows.columns, *band_columns(sweep.axes))
+    with_band = (*columns, *band_columns(sweep.axes))
     table = place.path / TABLE
     if table.exists() and not log.path.exists():  # of a finished sweep, whose band is to be another
-        kept = (line_of(fields_of(line)[: len(rows.columns)]) for line in read_lines(table, columns))
-        place.write(ROWS, table_of_lines(rows.columns, kept))
+        kept = (line_of(fields_of(line)[: len(columns)]) for line in read_lines(table, with_band))
+        place.write(ROWS, table_of_lines(columns, kept))
     place.remove(TABLE)
     log.run(runner, missing())
-    copies = Copies(sweep, rows) if sweep.has_copies and not stop() else None
+    copies = Copies(sweep, runs) if sweep.has_copies and not stop() else None
     members = copies.compute(runner, place.path / MEMBERS, partial(stages.begin, COPIES)) if copies else ""
-    changes = (
-        None if stop() else refine(runner, sweep, rows, place.path / TRIED, partial(stages.begin, BETWEEN))
-    )
-    result = replace(begun, rows=len(rows.runs), outcomes=dict(sorted(rows.outcomes.items())))
+    told, tried = partial(stages.begin, BETWEEN), place.path / TRIED
+    changes = None if stop() else refine(runner, sweep, runs, tried, told)
+    outcomes = Counter(run.outcome or FAILED for run in runs.values())
+    result = replace(begun, rows=len(runs), outcomes=dict(sorted(outcomes.items())))
     if stop():
         words = f"{result.rows} of {sweep.count} cells are computed"
         if result.rows == sweep.count:
             words = "all cells are computed, their copies or the changes between them are not"
         return replace(result, status=INTERRUPTED, missing=words, wall_s=time.perf_counter() - began)
     place.check()
-    result = replace(result, status=FAILED if set(rows.outcomes) == {"failed"} else COMPLETED)
-    bands: Iterator[tuple[Any, ...]] = iter([(None,) * (len(columns) - len(rows.columns))] * sweep.count)
+    result = replace(result, status=FAILED if {*outcomes} == {FAILED} else COMPLETED)
+    bands: Iterator[tuple[Any, ...]] = iter([(None,) * (len(with_band) - len(columns))] * sweep.count)
     if copies:
         found, bands = copies.band()
         result = replace(result, **found)
         place.write(MEMBERS, members)
     lines = (f"{log.lines[cell,]},{line_of(band)}" for cell, band in enumerate(bands))
-    place.write(TABLE, table_of_lines(columns, lines))
-    if changes is not None:
-        place.write(CHANGES, table_of_changes(sweep, changes))
+    place.write(TABLE, table_of_lines(with_band, lines))
+    if changes is not None and sweep.threshold is not None:
+        place.write(THRESHOLDS, table_of_rows(change_columns(sweep.axes, sweep.threshold.axis), changes))
         result = replace(result, changes=len(changes))
     answer = sweep_answer(open_sweep(place.path), place.path)
     if answer:
@@ -228,15 +204,3 @@ def _compute(sweep: Sweep, begun: SweepResult, place: ResultFolder, runner: Runn
         maps=_draw(place, sweep),
         wall_s=time.perf_counter() - began,
     )
-
-
-def _key(sweep: Sweep, item: Item) -> Iterator[Any]:
-    """What the row of a cell begins with: the values of axes, of what follows them, of derived keys."""
-    yield item.cell
-    yield from (item.point[axis.key] for axis in sweep.axes)
-    yield from (item.point.get(key) for axis in sweep.axes for key in axis.following)
-    if sweep.derived:
-        values: Mapping[str, Any] = {}
-        with suppress(CaseError):  # the row has the reason
-            values = sweep.make.values(item.point)
-        yield from map(values.get, sweep.derived)

@@ -23,7 +23,6 @@ from itertools import islice
 from multiprocessing import get_context
 from multiprocessing.queues import SimpleQueue
 from multiprocessing.synchronize import Semaphore
-from types import TracebackType
 from typing import Self, TypeVar
 
 #: number of cases from which processes pay off for the compiled models: to start from nothing they take as long as a
@@ -102,9 +101,7 @@ class LocalWorkers:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *ended: object) -> None:
         for processes, count in self._pools:
             for _ in range(count if processes else 0):
                 assert self._over is not None

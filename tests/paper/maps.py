@@ -4,9 +4,9 @@ The container is rigid, or a shell on a coarser grid. Counts are of the cells of
 often such motions occur.
 
 Cells next to one that ends otherwise, or that stand beyond half of the slenderness angle, are perturbed as in a sweep
-(`fem.study.perturbation`): amplitude 2 % less and more, both friction coefficients 0.02 less and more, the phase a
-twentieth of a turn earlier and later, a contact damping ratio of 0.5. A cell is sure if all its copies stand, or all
-overturn, as it does.
+(`Perturbation`): amplitude 2 % less and more, both friction coefficients 0.02 less and more, the phase a twentieth of a
+turn earlier and later, a contact damping ratio of 0.5. A cell is sure if all its copies stand, or all overturn, as it
+does.
 """
 
 import itertools
@@ -30,8 +30,9 @@ from fem.figures.heat_map import MapAxis
 from fem.results.outcome import Ending, ending_of
 from fem.runtime.arrays import BoolArray
 from fem.study.axes import Axis
-from fem.study.perturbation import Perturbation, near_cells
+from fem.study.design import Perturbation
 from fem.study.runner import Row
+from fem.study.sure import near_cells
 
 FREQUENCIES = tuple(float(f"{w:.4g}") for w in np.linspace(1.5, 12.0, 20))  #: [rad/s]
 PEAKS = tuple(float(f"{a:.4g}") for a in np.geomspace(1.8, 12.0, 20))  #: [m/s2]

@@ -10,9 +10,7 @@ import numpy as np
 
 from fem.case.case import load_case
 from fem.case.validation import CaseError
-from fem.response.answer import fell_share, lasting_in_words, response_answer
-from fem.response.lasting import ResponseResult, coexistences, drop_outs, frequencies_of
-from fem.response.records import PointRecord, PointRow
+from fem.response.lasting import PointRecord, PointRow, ResponseResult, lasting_in_words, result_of
 from fem.response.request import ResponseRequest
 from fem.results.outcome import Ending
 from fem.study.answers import Trial, answer_of, ensemble_answer, is_rising, sentence_of
@@ -20,7 +18,7 @@ from fem.study.axes import Axis, AxisError, in_words, read_axis  # noqa: F401 - 
 from fem.study.derived import ExpressionError, parse_expression  # noqa: F401
 from fem.study.file import load_ensemble, load_sweep
 from fem.study.fragility import EnsembleResult
-from fem.study.list_file import read_hall
+from fem.study.hall import read_hall
 
 G = 9.80665
 PEAK = Axis(key="motion.peak_acceleration_m_s2", values=(0.2 * G, 0.4 * G, 0.6 * G), unit="m/s2")
@@ -112,20 +110,10 @@ def record(row):
     return PointRecord(row=row, **none)
 
 
-def curve(*points, status="completed"):
+def curve(*points, missing=None):
     """The sentence, and what lasts at each frequency."""
-    records = [record(row) for row in points]
-    frequencies = tuple(frequencies_of(records))
-    result = ResponseResult(
-        asked="",
-        status=status,
-        points=tuple(row for row in points if row.direction != "start"),
-        frequencies=frequencies,
-        coexisting=tuple(coexistences(frequencies)),
-        drop_outs=tuple(drop_outs(records)),
-        starts_fell_share=fell_share(frequencies),
-    )
-    return "\n".join([str(response_answer(result)), *(words for _, words in lasting_in_words(result))])
+    result = result_of(ResponseResult(asked=""), [record(row) for row in points], missing)
+    return "\n".join([str(result.answer), *(words for _, words in lasting_in_words(result))])
 
 
 def written(name, text):

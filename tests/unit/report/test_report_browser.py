@@ -22,8 +22,7 @@ from fem.results.reader import open_run
 from fem.runtime.progress import Reporter
 from fem.site.page import site_report
 from fem.study.file import load_sweep
-from fem.study.hall import run_hall
-from fem.study.list_file import read_hall
+from fem.study.hall import read_hall, run_hall
 from fem.study.sweep import run_sweep
 from fem.study.sweep_table import open_sweep
 

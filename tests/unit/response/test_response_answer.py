@@ -5,8 +5,14 @@ from dataclasses import replace
 import pytest
 from study_words import CRUSHED, STANDS, point, record
 
-from fem.response.answer import overturned_share
-from fem.response.lasting import coexistences, differ, drop_outs, frequencies_of, shell_over_rigid
+from fem.response.lasting import (
+    coexistences,
+    differ,
+    drop_outs,
+    frequencies_of,
+    overturned_share,
+    shell_over_rigid,
+)
 
 
 @pytest.mark.parametrize(

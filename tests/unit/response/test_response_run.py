@@ -11,10 +11,9 @@ from fem.case.case import load_case
 from fem.model.container import discretise
 from fem.model.model import build_model
 from fem.report.study_page import response_report
-from fem.response.curve import computed, plan_of
-from fem.response.model import carry_drive
+from fem.response.orbit import carry_drive
 from fem.response.request import ResponseRequest
-from fem.response.run import run_response
+from fem.response.run import computed, plan_of, run_response
 from fem.results.errors import FolderError
 
 CHANGES = ("solver.model=rigid", "contact.mu_static=1", "contact.mu_kinetic=1", "solver.element_size_m=1")

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fem.response.stability import amplitudes_diverge, classify
+from fem.response.orbit import amplitudes_diverge, classify
 
 
 def logistic(rate: float, count: int = 48, settled: int = 3000) -> np.ndarray:
@@ -20,13 +20,13 @@ def logistic(rate: float, count: int = 48, settled: int = 3000) -> np.ndarray:
 def test_the_periods_of_the_logistic_map_are_found(rate, period):
     # Period doubling at r = 3, 3.449, 3.544; the window of period 3 begins at 1 + sqrt(8) = 3.828.
     found = classify(logistic(rate), resting=False)
-    assert (found.kind, found.period) == ("periodic", period)
-    assert found.compared == 48 - period
+    assert (found.long_time, found.period_n) == ("periodic", period)
+    assert found.pairs_compared == 48 - period
 
 
 def test_its_chaos_has_no_period():
     found = classify(logistic(4.0), resting=False)
-    assert (found.kind, found.period) == ("not periodic", None)
+    assert (found.long_time, found.period_n) == ("not periodic", None)
     assert found.scatter > 0.1
     assert found.settling is not None and 0.5 < found.settling < 2.0
 
@@ -34,20 +34,20 @@ def test_its_chaos_has_no_period():
 def test_an_irrational_rotation_has_no_period():
     angle = 2.0 * np.pi * 0.5 * (np.sqrt(5.0) - 1.0) * np.arange(48)
     found = classify(np.column_stack([np.cos(angle), np.sin(angle)]), resting=False)
-    assert found.kind == "not periodic"
+    assert found.long_time == "not periodic"
 
 
 def test_a_spiral_towards_a_fixed_point_is_not_settled():
     spiral = 0.95 ** np.arange(48)[:, None] * np.column_stack([np.cos(np.arange(48)), np.sin(np.arange(48))])
     found = classify(spiral, resting=False)
-    assert found.kind == "not settled"
-    assert classify(0.95**200 * spiral, resting=False).kind == "periodic"
+    assert found.long_time == "not settled"
+    assert classify(0.95**200 * spiral, resting=False).long_time == "periodic"
 
 
 def test_a_period_longer_than_a_third_of_the_window_is_not_claimed():
     sections = np.tile(np.arange(8.0), 3)[:20, None]
     found = classify(sections, resting=False)
-    assert found.kind == "not periodic"
+    assert found.long_time == "not periodic"
 
 
 def test_growing_amplitudes_diverge_and_bounded_ones_do_not():

@@ -21,7 +21,7 @@ from fem.results.run_result import RunResult
 from fem.runtime import own_files
 from fem.runtime.terminal import shown
 from fem.runtime.user_files import parsed_json
-from fem.study.driver import RowLog, StudyResult
+from fem.study.driver import LoggedRuns, StudyResult
 from fem.study.table import fields_of, line_of
 
 CASE = """schema = 1
@@ -115,10 +115,10 @@ class TestWriting:
 
     @pytest.mark.parametrize("how", ["symlink_to", "hardlink_to"])
     def test_a_log_is_no_link(self, folder, victim, how):
-        log = folder / "rows.csv"
+        log, unused = folder / "rows.csv", dict.fromkeys(("what", "key", "make", "model_of"))
         getattr(log, how)(victim)
         for write in (
-            lambda: RowLog(log, {"a": float}, print),
+            lambda: LoggedRuns(path=log, columns={}, **unused).run(None, []),
             lambda: HistoryWriter(log, ["time_s", "mode"], position=2),
         ):
             with pytest.raises(OSError, match=r"is (a link|another file's name, or no file), through which"):

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import fem
-import fem.study.compute_many as many
+import fem.study.runner as many
 from fem.case.case import CaseError
 from fem.runtime.progress import Reporter
 from fem.runtime.signals import interruptible

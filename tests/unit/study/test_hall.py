@@ -13,8 +13,7 @@ from fem.case.case import load_case
 from fem.case.validation import CaseError
 from fem.results.figures import SCALARS
 from fem.run.compute import compute
-from fem.study.hall import run_hall, weakness
-from fem.study.list_file import read_hall
+from fem.study.hall import read_hall, run_hall, weakness
 from fem.study.table import table_text
 
 BASE = """
@@ -45,7 +44,8 @@ D,1,,2.4,,0.2,y
 
 
 @pytest.fixture
-def base(tmp_path):
+def base(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
     path = tmp_path / "base.toml"
     path.write_text(BASE, encoding="utf-8")
     return path
@@ -57,12 +57,17 @@ def listed(tmp_path, text, name="hall.csv", encoding="utf-8"):
     return path
 
 
+def _hall_of(tmp_path, text, **options):
+    """The result of a list, whose margins are not asked for by default."""
+    options = {"checks": "none"} | options
+    return run_hall(read_hall(listed(tmp_path, text)), load_case("base.toml"), tmp_path / "out", **options)
+
+
 def rows_of(path):
     return list(csv.DictReader(io.StringIO(path.read_text(encoding="utf-8"))))
 
 
-def test_a_row_is_the_run_by_itself_bit_for_bit(tmp_path, base, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
+def test_a_row_is_the_run_by_itself_bit_for_bit(tmp_path, base, capsys):
     assert main(["batch", str(listed(tmp_path, LIST)), "--case", "base.toml", "--out", "out", "-q"]) == 0
     said = capsys.readouterr().out
     assert "1 row was refused" in said and "refused    1 of 5 rows" in said
@@ -104,33 +109,30 @@ def test_a_row_is_the_run_by_itself_bit_for_bit(tmp_path, base, monkeypatch, cap
 def test_columns_of_links_and_neighbours_are_keys(tmp_path, base):
     links = '[[neighbour]]\nside = "right"\ngap_m = 0.05\nstiffness_N_m = 1e8\n'
     base.write_text(base.read_text() + links)
-    (tmp_path / "list.csv").write_text("name,neighbour.gap_m,stop.gap_m\nnear,0.01,\nfar,5.0,\nwrong,,0.1\n")
-    case = load_case(base)
-    result = run_hall(read_hall(tmp_path / "list.csv"), case, tmp_path / "out", checks="none")
-    near, far, wrong = result.table
+    text = "name,neighbour.gap_m,stop.gap_m\nnear,0.01,\nfar,5.0,\nwrong,,0.1\n"
+    near, far, wrong = _hall_of(tmp_path, text).table
     for row, gap in ((near, 0.01), (far, 5.0)):
-        alone = compute(case.replace({"neighbour.gap_m": gap}), band=False, margin=False).verdict
+        changed = load_case(base).replace({"neighbour.gap_m": gap})
+        alone = compute(changed, band=False, margin=False).verdict
         assert (row["rotation_ratio"], row["link_hits"]) == (alone.rotation_ratio, alone.link_hits)
     assert near["link_hits"] > 0 == far["link_hits"]
     assert wrong["status"] == "refused" and "stop" in wrong["reason"]
 
 
 def test_motions_that_destroy_a_corner_are_counted_by_themselves_and_are_worse_than_those_without_an_outcome(
-    tmp_path, base, monkeypatch
+    tmp_path, base
 ):
-    monkeypatch.chdir(tmp_path)
     motions = tuple(f"{number}.csv" for number in range(6))
     for number, name in enumerate(motions):
         samples = [f"{0.1 * k},{0.5 * (k % 2)}" for k in range(5 + number)]
         listed(tmp_path, "\n".join(["time_s,acceleration_m_s2", *samples]), name)
-    out, options = tmp_path / "out", {"motions": motions, "checks": "none"}
-    run_hall(read_hall(listed(tmp_path, "name,width_m\na,3\n")), load_case("base.toml"), out, **options)
-    rows = rows_of(out / "runs.csv")
+    runs = tmp_path / "out" / "runs.csv"
+    _hall_of(tmp_path, "name,width_m\na,3\n", motions=motions)
+    rows = rows_of(runs)
     for row, outcome in zip(rows, ["rock", "", "invalid", "", "invalid", ""], strict=True):
         row |= {"status": "completed" if outcome else "failed", "outcome": outcome}
-    (out / "runs.csv").write_text(table_text(rows[0], (row.values() for row in rows)), encoding="utf-8")
-    renamed = read_hall(listed(tmp_path, "name,width_m\nb,3\n"))
-    (row,) = run_hall(renamed, load_case("base.toml"), out, **options).table
+    runs.write_text(table_text(rows[0], (row.values() for row in rows)), encoding="utf-8")
+    (row,) = _hall_of(tmp_path, "name,width_m\nb,3\n", motions=motions).table
     assert (row["name"], row["outcome"], row["motion"]) == ("b", "invalid", "2.csv")
     counts = (row["motions_overturned"], row["motions_invalid"], row["motions_failed"])
     assert counts == (0, 2, 3)
@@ -153,22 +155,16 @@ def test_of_what_stands_the_larger_rotation_is_weaker_and_what_does_not_rock_fol
 
 def test_equal_rows_are_computed_once_and_labels_cost_nothing(tmp_path, base):
     """A list of which names alone changed is written again from the runs that are there."""
-    case = load_case(base)
     text = "name,width_m,boxes\na,1,1\nb,1.00,\nc,,\nd,1.5,1\n"
-    result = run_hall(read_hall(listed(tmp_path, text)), case, tmp_path / "out", checks="none")
+    result = _hall_of(tmp_path, text)
     assert (result.distinct, result.runs, result.checked) == (2, 2, 0)
-    runs = (tmp_path / "out" / "runs.csv").stat().st_mtime_ns
-    again = run_hall(
-        read_hall(listed(tmp_path, text.replace("a,", "renamed,"))), case, tmp_path / "out", checks="none"
-    )
+    again = _hall_of(tmp_path, text.replace("a,", "renamed,"))
     assert [row["name"] for row in again.table] == ["renamed", "b", "c", "d"]
-    lines = (tmp_path / "out" / "runs.csv").read_text(encoding="utf-8").splitlines()
-    assert len(lines) == 3 and runs
+    assert len((tmp_path / "out" / "runs.csv").read_text(encoding="utf-8").splitlines()) == 3
     assert rows_of(tmp_path / "out" / "hall.csv")[0]["name"] == "renamed"
 
 
-def test_under_several_motions_the_worst_governs_and_the_largest_slip_is_told(tmp_path, base, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def test_under_several_motions_the_worst_governs_and_the_largest_slip_is_told(tmp_path, base):
     for name, half, peak in (("weak", 3, 2.0), ("strong", 8, 9.0), ("middle", 5, 2.5)):
         samples = [
             f"{0.1 * k},{peak if 1 <= k <= half else -peak if half < k <= 2 * half else 0.0}"
@@ -177,14 +173,11 @@ def test_under_several_motions_the_worst_governs_and_the_largest_slip_is_told(tm
         listed(tmp_path, "\n".join(["time_s,acceleration_m_s2", *samples]), f"{name}.csv")
     text = "name,width_m,mu_static\nwide,3,0.3\nslim,0.8,0.9\n"
     motions = ("weak.csv", "strong.csv", "middle.csv")
-    result = run_hall(
-        read_hall(listed(tmp_path, text)), load_case("base.toml"), tmp_path / "out", motions=motions
-    )
+    result = _hall_of(tmp_path, text, motions=motions, checks="weakest")
     assert (result.runs, result.motions) == (6, motions)
     wide, slim = result.table
-    assert (slim["outcome"], slim["motions_overturned"]) == ("overturned", 1) and slim[
-        "motion"
-    ] == "strong.csv"
+    found = slim["outcome"], slim["motions_overturned"], slim["motion"]
+    assert found == ("overturned", 1, "strong.csv")
     assert wide["largest_slip_motion"] == "strong.csv" and wide["largest_slip_m"] >= wide["max_slip_m"] > 0.1
     assert (slim["rank"], wide["rank"]) == (1, 2)
     words = shlex.split(slim["command"])
@@ -192,14 +185,10 @@ def test_under_several_motions_the_worst_governs_and_the_largest_slip_is_told(tm
     alone = compute(load_case("base.toml", words[8::2], motion="strong.csv")).verdict
     assert slim["rotation_ratio"] == alone.rotation_ratio and slim["margin"] == alone.margin.factor
     for pairs in (("strong.csv,weak.csv", "middle.csv"), ("strong.csv", "weak.csv,middle.csv")):
-        files = {"motions": pairs, "checks": "none", "force": True}
-        result = run_hall(
-            read_hall(tmp_path / "hall.csv"), load_case("base.toml"), tmp_path / "pairs", **files
-        )
+        result = _hall_of(tmp_path, text, motions=pairs, force=True)
         words = shlex.split(result.table[0]["command"])
-        assert (
-            words[6] == "strong.csv" and words[8] == f"vertical.kind={'table' if ',' in pairs[0] else 'none'}"
-        )
+        kind = "table" if "," in pairs[0] else "none"
+        assert words[6] == "strong.csv" and words[8] == f"vertical.kind={kind}"
         alone = compute(load_case("base.toml", words[8::2], motion=words[6]), band=False).verdict
         assert result.table[0]["max_slip_m"] == alone.max_slip_m
 
@@ -209,8 +198,7 @@ def test_results_stand_in_the_separator_and_the_decimal_mark_of_the_list(tmp_pat
     rows = [("name", "width_m", "note"), ("=A;1", "0,9", "-0,5"), ("B", "0,6", "+1 x")]
     text = io.StringIO()
     csv.writer(text, delimiter=mark, lineterminator="\n").writerows(rows)
-    path = listed(tmp_path, first + text.getvalue())
-    found = run_hall(read_hall(path), load_case(base), tmp_path / "out", checks="none").table
+    found = _hall_of(tmp_path, first + text.getvalue()).table
     written = (tmp_path / "out" / "hall.csv").read_text(encoding="utf-8")
     assert written.startswith(first)
     kept = [*csv.DictReader(io.StringIO(written.removeprefix(first)), delimiter=mark)]
@@ -227,8 +215,7 @@ def test_results_stand_in_the_separator_and_the_decimal_mark_of_the_list(tmp_pat
 SIDES = "name,width_m,depth_m\nacross,2.4,1.0\nalong,1.0,2.4\nsquare,1.0,1.0\n"
 
 
-def test_the_narrower_side_governs_and_a_square_one_costs_nothing(tmp_path, base, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def test_the_narrower_side_governs_and_a_square_one_costs_nothing(tmp_path, base):
     command = ["batch", str(listed(tmp_path, SIDES)), "--case", "base.toml", "--margins", "none", "-q"]
     assert main(command) == 0 and main([*command, "--out", "one", "--one-side"]) == 0
     both, one = (
@@ -247,8 +234,7 @@ def test_the_narrower_side_governs_and_a_square_one_costs_nothing(tmp_path, base
     assert "--margins none --one-side" in page
 
 
-def test_keys_set_on_the_command_line_are_those_of_every_row(tmp_path, base, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def test_keys_set_on_the_command_line_are_those_of_every_row(tmp_path, base):
     command = ["batch", str(listed(tmp_path, SIDES)), "--case", "base.toml", "--margins", "none", "-q"]
     assert main([*command, "--set", "motion.peak_acceleration_m_s2=0.5"]) == 0
     found = json.loads((tmp_path / "outputs/hall/hall.json").read_text(encoding="utf-8"))
@@ -273,8 +259,7 @@ def test_lists_of_every_spreadsheet_are_read(tmp_path, text, encoding):
     assert row.name == "Behälter" and row.values == {"container.width_m": 1.25, "container.mass_kg": 2000.0}
 
 
-def test_a_bad_row_has_its_reason(tmp_path, base, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
+def test_a_bad_row_has_its_reason(tmp_path, base, capsys):
     text = (
         "name,count,width_m,x_m,lat,wall_m,mass_kg\nfine,1,1,0,0,,\ncount,1.5,1,0,0,,\nplace,1,1,here,0,,\n"
         "short,1,1\nunit,1,1 m,0,0,,\nheavy,1,1,0,0,0.2,100\n"
@@ -306,8 +291,7 @@ def test_too_many_rows_are_told_the_time_before_any_is_read(tmp_path, base):
 RECORD = "0 0\n0.1 1.5\n0.2 -2.5\n0.3 1\n0.4 0\n"
 
 
-def test_files_outside_the_folder_need_the_flag_in_all_commands(tmp_path, base, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
+def test_files_outside_the_folder_need_the_flag_in_all_commands(tmp_path, base, capsys):
     (tmp_path / "record.txt").write_text(RECORD, encoding="utf-8")
     (tmp_path / "below").mkdir()
     motion = '[motion]\nkind = "table"\nfile = "../record.txt"\nunit = "m/s2"\n['
@@ -336,18 +320,16 @@ def test_a_record_with_the_name_of_a_result_is_refused_before_anything_is_writte
 
 
 def test_a_result_may_be_the_list_of_the_next_hall(tmp_path, base):
-    case = load_case(base)
-    run_hall(read_hall(listed(tmp_path, LIST)), case, tmp_path / "out", checks="none")
+    _hall_of(tmp_path, LIST)
     again = read_hall(tmp_path / "out" / "hall.csv")
     assert tuple(again.meanings) == tuple(LIST.splitlines()[0].split(","))
     assert [row.name for row in again.rows] == ["A", "=B", "bad", "C", "D"]
-    run_hall(again, case, tmp_path / "next", checks="none")
+    run_hall(again, load_case(base), tmp_path / "next", checks="none")
     first, second = ((tmp_path / name / "hall.csv").read_bytes() for name in ("out", "next"))
     assert first == second
 
 
-def test_the_page_of_a_finished_list_is_left_alone_and_a_missing_one_is_made(tmp_path, base, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def test_the_page_of_a_finished_list_is_left_alone_and_a_missing_one_is_made(tmp_path, base):
     command = ["batch", str(listed(tmp_path, LIST)), "--case", "base.toml", "--margins", "none", "-q"]
     page = tmp_path / "outputs" / "hall" / "report.html"
     assert main(command) == 0 and page.is_file()

@@ -1,17 +1,28 @@
 """Tables and logs: what is written reads back, a spreadsheet computes nothing of it, a removed log ends the study."""
 
-from contextlib import closing
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from fem.results.errors import FolderLostError
 from fem.results.figures import RUN_COLUMNS, types_of
 from fem.site.result import RunKey
-from fem.study.driver import RowLog
+from fem.study.driver import LoggedRuns
 from fem.study.table import fields_of, line_of, row_of
 
 ROOT = Path(__file__).parents[3]
+
+
+def _logged(path, columns, rows, told=pytest.fail):
+    """Rows of items that are their first column, in a log."""
+    reporter = SimpleNamespace(warning=told)
+    runner = SimpleNamespace(reporter=reporter, stop=lambda: False, rows=lambda *_: rows)
+    runs = LoggedRuns(
+        what="", path=path, columns=columns, key=lambda item: [item], ids=1, make=None, model_of=None
+    )
+    runs.run(runner, [[None]])
+    return runs
 
 
 @pytest.mark.parametrize("name", ["=1+1.csv", "@SUM(A1).csv", "-2+3.csv", "+1.csv", "-2+3", "=1"])
@@ -31,20 +42,22 @@ def test_numbers_and_other_texts_stay_as_they_are(value):
 
 def test_rows_are_not_added_to_a_log_that_was_removed(tmp_path):
     """The study ends with the first row after that, not when all are computed."""
-    with closing(RowLog(tmp_path / "rows.csv", {"a": int}, pytest.fail)) as log:
-        log.append(["1"])
+
+    def rows():
+        yield [1], [{}]
         (tmp_path / "rows.csv").unlink()
-        with pytest.raises(FolderLostError, match="removed during the run"):
-            log.append(["2"])
+        yield [2], [{}]
+
+    with pytest.raises(FolderLostError, match="removed during the run"):
+        _logged(tmp_path / "rows.csv", {"a": int}, rows())
 
 
 @pytest.mark.parametrize("line", ["2", "2,0.5,7", "2,fast", "x,0.5", "", "\0,1"])
 def test_a_damaged_row_is_left_out_and_told(tmp_path, line):
     path, told = tmp_path / "rows.csv", []
     path.write_text(f"a,b\n1,0.5\n{line}\n3,1.5\n4,")
-    with closing(RowLog(path, {"a": int, "b": float}, told.append)) as log:
-        assert log.lines == ["1,0.5", "3,1.5"]
-        log.append(["2,0.25"])
+    runs = _logged(path, {"a": int, "b": float}, [([2], [{"b": 0.25}])], told.append)
+    assert runs.lines == {(1,): "1,0.5", (3,): "3,1.5", (2,): "2,0.25"}
     assert path.read_text() == "a,b\n1,0.5\n3,1.5\n2,0.25\n"
     assert told == [f"{path}: damaged rows, which are computed again: 1"]
 

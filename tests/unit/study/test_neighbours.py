@@ -8,7 +8,8 @@ import pytest
 from fem.case.case import load_case
 from fem.results.outcome import Ending
 from fem.study.axes import Axis
-from fem.study.perturbation import Perturbation, around, band_width, near_cells
+from fem.study.design import Perturbation
+from fem.study.sure import around, band_width, near_cells
 
 X = Axis(key="contact.mu_static", values=(0.1, 0.2, 0.3, 0.4, 0.5), scale="linear")
 Y = Axis(key="motion.peak_acceleration_m_s2", values=(1.0, 2.0, 4.0, 8.0), scale="log", unit="m/s2")

@@ -19,8 +19,7 @@ from fem.results import kinds
 from fem.results.errors import FolderError, OutputError
 from fem.runtime.progress import Reporter
 from fem.study.file import load_sweep
-from fem.study.hall import run_hall
-from fem.study.list_file import read_hall
+from fem.study.hall import read_hall, run_hall
 from fem.study.sweep import run_sweep
 
 HALL = "name,width_m,boxes\n" + "".join(f"{k},{0.6 + 0.02 * k:.2f},2\n" for k in range(40))

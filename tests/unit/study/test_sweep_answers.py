@@ -6,7 +6,8 @@ from itertools import product
 
 import pytest
 
-from fem.study.sweep_table import BAND, FOUND, answers_csv, open_sweep, sweep_answer
+from fem.study.answers import answers_csv, sweep_answer
+from fem.study.sweep_table import BAND, FOUND, open_sweep
 
 PEAK, MU = "motion.peak_acceleration_m_s2", "contact.mu_static"
 G = 9.80665

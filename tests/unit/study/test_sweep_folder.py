@@ -65,7 +65,7 @@ def test_the_folder_opens_as_arrays(small, computed):
     table = open_sweep(computed)
     info = table.info
     assert table.shape == small.shape
-    grid = table.grid("motion.peak_acceleration_m_s2")
+    grid = table["motion.peak_acceleration_m_s2"].reshape(table.shape)
     assert np.array_equal(grid[2], small.axes[1].values)
     assert np.array_equal(table["contact.mu_kinetic"], np.full(20, 0.2))
     fallen = table.outcome == "overturned"

@@ -8,10 +8,11 @@ import pytest
 from matplotlib.colors import to_rgb, to_rgba
 
 from fem.figures.style import svg_of
+from fem.study.answers import sweep_answer
 from fem.study.axes import Axis, axis_label
 from fem.study.design import MapChoice
 from fem.study.maps import PRINTED_SHARES, SHARE_COLOURS, draw_maps, safe_boundary, sweep_map
-from fem.study.sweep_table import SweepResult, SweepTable, sweep_answer
+from fem.study.sweep_table import SweepResult, SweepTable
 
 FREQUENCY = Axis(
     key="motion.angular_frequency_rad_s", values=(1.0, 2.0, 4.0, 8.0, 16.0), scale="log", unit="rad/s"

@@ -13,11 +13,10 @@ from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
 from fem.model.container import discretise
 from fem.model.model import build_model
-from fem.response.curve import Task, computed, follow_point, plan_of
 from fem.response.lasting import coexistences, drop_outs, frequencies_of
-from fem.response.model import begin_drive, carry_drive
-from fem.response.orbit import follow_periods, step_until
+from fem.response.orbit import begin_drive, carry_drive, follow_periods, step_until
 from fem.response.request import ResponseRequest
+from fem.response.run import Task, computed, follow_point, plan_of
 
 GRAVITY = 9.81
 #: Housner's restitution is 0.9 at sin^2 al = 1/15: the orbit of Spanos and Koh that benchmarks quote
@@ -45,7 +44,7 @@ def request_of(*, first, last, count, settle=30, observe=12, **changes):
 
 def followed(request):
     """The point of the lowest frequency, from its start."""
-    task = Task(way="up", number=0, model=request.case.solver.model, begins=True)
+    task = Task(way="up", number=0, model=request.case.solver.model)
     point, _ = follow_point(request, request.case_at(0), discretise(request.case), task)
     return point
 
