@@ -17,6 +17,7 @@ from pathlib import Path
 from textwrap import fill
 
 import pytest
+from case_words import cased
 from cases import TEXTS, named_case
 from record_words import recorded
 from site_answers import answered, brief_page, sited
@@ -36,6 +37,7 @@ from fem.site.page import site_report
 
 HERE = Path(__file__).parent
 BAD_INPUT = 2  #: exit code; then nothing is printed but the reason, and nothing is written
+WHOLE = ("written", "changed", "boxes", "motion")  #: kinds of texts of which no two are alike
 #: what differs between two runs of the same bits: times, dates, versions, hashes, free room
 FLEETING = (
     (r"(computing time +|computed \| |computed in \| ).*(\n {20,}.*)?", r"\1TIME"),
@@ -141,8 +143,8 @@ def transcript(pairs, *, differing):
             parts.append(asked)
             continue
         shown = lines = wrapped(said).splitlines()
-        kind = asked.split()[1] if differing == "pages" else differing
-        first = firsts.setdefault(kind, lines) if kind else lines
+        kind = asked.split()[1] if differing in ("pages", "cases") else differing
+        first = firsts.setdefault(kind, lines) if kind not in ("", *WHOLE) else lines
         if first is not lines:
             found = difflib.unified_diff(*([*map(narrow, one)] for one in (first, lines)), n=0, lineterm="")
             shown = dict.fromkeys(line for line in found if line[:2] not in ("--", "++", "@@"))
@@ -171,13 +173,13 @@ def test_the_program_says_what_it_said_when_that_was_last_read(name, request, tm
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "80")
     told_by = {"refusals": refused, "results": told, "answers": answered, "sites": sited, "pages": paged}
-    say = (told_by | {"sentences": worded, "records": recorded}).get(
+    say = (told_by | {"sentences": worded, "records": recorded, "cases": cased}).get(
         name, lambda asked: commanded(asked, capsys)
     )
     pairs = [
         (asked, "" if asked.startswith("#") else steady(say(asked[2:]), tmp_path)) for asked in asked_in(file)
     ]
-    text = transcript(pairs, differing=name if name in ("results", "pages") else "")
+    text = transcript(pairs, differing=name if name in ("results", "pages", "cases") else "")
     if request.config.getoption("--say"):
         file.write_text(text, encoding="utf-8")
     before = file.read_text(encoding="utf-8")

@@ -2,11 +2,9 @@
 
 import pytest
 
-from fem.case.case import CaseError, case_hash, load_case, read_case, to_toml
-from fem.case.columns import history_columns
+from fem.case.case import CaseError, case_hash, load_case
 from fem.case.tables.neighbours import places_of
 from fem.case.tables.unknown_inputs import ranges_of
-from fem.case.template import case_template
 from fem.cli.check import preview_of
 from fem.model.container import discretise
 from fem.model.model import build_model
@@ -15,17 +13,6 @@ from mesh.errors import MeshError
 
 BESIDE = {"side": "right", "gap_m": 0.05, "stiffness_N_m": 1e8}
 RIGID = load_case("rocking", ["solver.model=rigid"])
-
-
-def test_neighbours_are_read_written_and_are_part_of_the_hash():
-    case = RIGID.with_values({"neighbour": [{**BESIDE, "boxes": 2}, {**BESIDE, "side": "left", "mu": 0.2}]})
-    for text in (to_toml(case), case_template(case)):
-        again = read_case(text)
-        assert again.neighbour == case.neighbour
-        assert case_hash(again) == case_hash(case)
-    assert case_hash(case) != case_hash(RIGID)
-    assert case_hash(case.with_values({"neighbour": []})) == case_hash(RIGID)
-    assert sum(name.startswith("neighbour_2_") for name in history_columns(case)) == 6
 
 
 def test_a_neighbour_is_the_container_but_for_what_is_given():
@@ -59,16 +46,6 @@ def test_neighbours_stand_outward_in_the_order_given():
     places = places_of(RIGID.with_values({"neighbour": rows}), [1.0, 2.0, 3.0, 4.0])
     assert places.x == pytest.approx((0.0, 1.55, -2.1, 4.75))
     assert places.pairs == ((0, 1), (2, 0), (1, 3))
-
-
-def test_a_key_of_a_neighbour_is_that_of_all_and_unknown_in_a_band():
-    case = RIGID.with_values({"neighbour": [BESIDE, {**BESIDE, "side": "left"}], "neighbour.gap_m": 0.2})
-    assert [one.gap_m for one in case.neighbour] == [0.2, 0.2]
-    ranges = {one.key: one.ends for one in ranges_of(case, 1e9)}
-    assert ranges["neighbour.gap_m"] == pytest.approx((0.16, 0.24))
-    assert ranges["neighbour.stiffness_N_m"] == pytest.approx((5e7, 2e8))
-    assert "support.kind" not in ranges  # no base but on corners in a row
-    assert ranges["contact.restitution_over_housner"] == pytest.approx((0.95, 1.06))
 
 
 def test_no_container_of_a_row_gains_at_an_impact_but_by_its_own_case():

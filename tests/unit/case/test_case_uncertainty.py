@@ -7,7 +7,6 @@ import pytest
 from cases import named_case
 
 from contact.stepping.modes import SLIDING
-from fem.case.case import CaseError, load_case, read_case, to_toml
 from fem.case.tables.all_tables import TABLES
 from fem.case.tables.input_ranges import UnknownNumber
 from fem.case.tables.links import ROWS
@@ -28,25 +27,6 @@ def ends(name="harmonic", values=None):
     return {one.key: one.ends for one in ranges_of(named_case(name, values), PENALTY)}
 
 
-def test_defaults_follow_the_case():
-    assert ends("harmonic", FRICTION) == {
-        "contact.mu_kinetic": (0.4,),
-        "contact.mu_static": (pytest.approx(0.36), pytest.approx(0.44)),
-        "contact.weakening_m": (0.005,),
-        "contact.stribeck_velocity_m_s": (0.3,),
-        "support.kind": ("flat",),
-        "container.centroid_m": (pytest.approx(0.49), pytest.approx(0.51)),
-        "container.eccentricity_m": (pytest.approx(-0.011), pytest.approx(0.011)),
-        "support.effective_width": (0.97,),
-        "floor.slope_percent": (-0.5, 0.5),
-        "motion.ramp_cycles": (2.0,),
-        "contact.normal_penalty_Pa_m": (pytest.approx(PENALTY / 9.0), 3.0 * PENALTY),
-        "contact.damping_ratio": (1.0, 4.0),
-        "contact.restitution_over_housner": (0.95, 1.06),
-        "container.damping_ratio": (0.01, 0.04),
-    }
-
-
 def test_the_mass_centre_of_a_solid_box_stays_where_it_can_lie():
     for share, expected in ((0.5, (0.49, 0.51)), (0.66, (0.6468, 2.0 / 3.0)), (0.335, (1.0 / 3.0, 0.3417))):
         values = {"container.section": "solid", "container.centroid_m": share, "container.height_m": 1.0}
@@ -63,67 +43,7 @@ def test_an_impact_never_gives_more_than_there_was():
     assert "contact.restitution_over_housner" not in flat
 
 
-@pytest.mark.parametrize(
-    ("name", "values", "missing"),
-    [
-        ("harmonic", {}, set()),
-        (
-            "harmonic",
-            {"uncertainty.mu_kinetic": "held"},
-            {"contact.mu_kinetic", "contact.weakening_m", "contact.stribeck_velocity_m_s"},
-        ),
-        ("pulse", FRICTION, {"motion.ramp_cycles"}),
-        ("harmonic", FRICTION | {"solver.model": "rigid"}, {"container.damping_ratio"}),
-        ("harmonic", FRICTION | {"contact.damping_ratio": 0.0}, {"contact.damping_ratio"}),
-        ("harmonic", FRICTION | {"container.joints": "loose", "container.boxes": 2}, {"support.kind"}),
-        (
-            "harmonic",
-            FRICTION | {"support.kind": "feet"},
-            {"support.kind", "contact.restitution_over_housner"},
-        ),
-        (
-            "harmonic",
-            FRICTION | {"contact.friction": "regularised"},
-            {"contact.weakening_m", "contact.stribeck_velocity_m_s"},
-        ),
-    ],
-    ids=[
-        "one friction",
-        "one friction that is known",
-        "a pulse",
-        "rigid",
-        "no dashpot",
-        "loose",
-        "feet",
-        "regularised",
-    ],
-)
-def test_what_makes_no_difference_is_not_varied(name, values, missing):
-    given = ends("harmonic", FRICTION)
-    assert set(given) - set(ends(name, values)) == missing
-
-
 SLAB = FRICTION | {"floor.preset": "concrete C25/30", "floor.corner_patch_m": [0.1, 0.2]}
-
-
-def test_a_slab_is_tried_at_half_and_twice_its_strength_and_stiffness_in_place_of_the_contact():
-    slab, rigid = ends("harmonic", SLAB), ends("harmonic", FRICTION)
-    assert slab["floor.bearing_strength_Pa"] == (25e6, 100e6)
-    assert slab["floor.youngs_modulus_Pa"] == (15.5e9, 62e9)
-    castings = {"support.kind"}  # of 0.2 m under a base 1.1 m deep
-    assert set(rigid) - set(slab) == castings | {"contact.normal_penalty_Pa_m", "contact.damping_ratio"}
-    assert len(slab) == len(rigid) - 1
-
-
-def test_ranges_of_a_slab_may_be_stated_and_its_damping_where_it_is_given():
-    stated = SLAB | {
-        "uncertainty.bearing_strength_Pa": [30e6, 50e6],
-        "uncertainty.floor_youngs_modulus_Pa": "known",
-    }
-    found = ends("harmonic", stated | {"contact.damping_ratio": 0.1})
-    assert found["floor.bearing_strength_Pa"] == (30e6,)
-    assert "floor.youngs_modulus_Pa" not in found
-    assert found["contact.damping_ratio"] == (0.05, 0.2)
 
 
 def test_draws_of_a_slab_make_cases_that_can_be_read():
@@ -145,17 +65,6 @@ def test_the_numerics_are_always_tried():
         assert changes(name)[-1] == "solver.energy_tolerance = 0.1"
 
 
-GEOMETRY = ["mu_static", "support", "centroid_m", "eccentricity_m", "effective_width", "slope_percent"]
-
-
-def test_the_floor_jumps_only_where_it_is_asked_for():
-    asked = {"uncertainty.start": True}
-    assert "motion.start" not in ends("harmonic", FRICTION)
-    assert ends("harmonic", FRICTION | asked)["motion.start"] == ("rest",)
-    at_rest = {"motion.phase_rad": np.pi / 2}  # its velocity does not jump
-    assert "motion.start" not in ends("harmonic", FRICTION | asked | at_rest)
-
-
 def test_the_phase_of_a_vertical_harmonic_may_be_any():
     vertical = {
         "vertical.kind": "harmonic",
@@ -169,63 +78,6 @@ def test_the_phase_of_a_vertical_harmonic_may_be_any():
     drawn = [case.with_values(one.values).vertical.phase_rad for one in all_changes(case, PENALTY)[2]]
     assert max(drawn) - min(drawn) > 0.9 * 2 * np.pi
     assert "vertical.phase_rad" not in ends("pulse", FRICTION | vertical)
-
-
-def test_a_range_of_static_friction_stands_for_its_middle():
-    case = named_case("harmonic", {"contact.mu_static": [0.3, 0.4]})
-    assert case.contact.mu_static == 0.35 and case.contact.mu_kinetic == 0.35
-    (one,) = [one for one in ranges_of(case, PENALTY) if one.key == "contact.mu_static"]
-    assert one.ends == (0.3, 0.4)
-    assert read_case(to_toml(case)).uncertainty.mu_static == [0.3, 0.4]
-
-
-@pytest.mark.parametrize(
-    ("given", "changed", "expected"),
-    [
-        (FRICTION, {"contact.mu_static": 0.36}, (0.36, 0.18)),
-        ({}, {"contact.mu_static": 0.36}, (0.36, 0.36)),
-        (FRICTION, {"contact.mu_kinetic": 0.3}, (0.4, 0.3)),
-        (FRICTION, {"contact.mu_static": 0.36, "contact.mu_kinetic": 0.4}, (0.36, 0.36)),
-    ],
-)
-def test_kinetic_friction_keeps_its_share_of_the_static_and_is_never_larger(given, changed, expected):
-    case = named_case("harmonic", given)
-    contact = case.with_values(as_changed(case, changed)).contact
-    assert (contact.mu_static, contact.mu_kinetic) == pytest.approx(expected)
-
-
-def test_a_base_that_touches_otherwise_has_another_patch_on_a_slab():
-    walls = {"floor.preset": "concrete C25/30", "floor.corner_patch_m": [0.008, 1.1]}
-    case = named_case("harmonic", FRICTION | walls)
-    assert ends("harmonic", FRICTION | walls)["support.kind"] == ("flat",)
-    flat = case.with_values(as_changed(case, {"support.kind": "flat"}))
-    assert (flat.support.kind, flat.floor.corner_patch_m) == ("flat", [0.55, 1.1])
-
-
-def test_a_stated_range_that_excludes_the_value_is_refused(tmp_path):
-    path = tmp_path / "case.toml"
-    path.write_text(to_toml(named_case("harmonic", FRICTION)), encoding="utf-8")
-    with pytest.raises(CaseError, match=r"mu_kinetic = \[0.25, 0.3\] excludes the value of the case"):
-        load_case(path, ["uncertainty.mu_kinetic=[0.25,0.3]"])
-
-
-def test_a_stated_range_replaces_the_default_and_known_leaves_it_out():
-    stated = FRICTION | {
-        "uncertainty.mu_kinetic": [0.1, 0.3],
-        "uncertainty.weakening_m": "known",
-        "uncertainty.stribeck_velocity_m_s": "known",
-        "uncertainty.normal_penalty_Pa_m": [1e8, PENALTY],
-        "uncertainty.damping_ratio": "known",
-        "uncertainty.material_damping_ratio": [0.02, 0.02],
-        "uncertainty.ramp": False,
-        "uncertainty.restitution_over_housner": "held",
-        **dict.fromkeys([f"uncertainty.{name}" for name in GEOMETRY], "held"),
-    }
-    assert ends("harmonic", stated) == {
-        "contact.mu_kinetic": (0.1, 0.3),
-        "contact.normal_penalty_Pa_m": (1e8,),
-    }
-    assert all_changes(named_case("harmonic", stated), None)[1] == ()
 
 
 def test_changes_between_the_ends_are_smaller_than_those_to_an_end():
@@ -292,60 +144,6 @@ def test_every_key_of_the_table_is_an_unknown_input_and_every_input_a_key_of_the
 
 
 LOOSE = FRICTION | {"container.boxes": 3, "container.joints": "loose"}
-JOINTS = ("joints.mu_static", "joints.mu_kinetic", "joints.weakening_m")
-
-
-def of_joints(values=None):
-    return {key: some for key, some in ends("harmonic", LOOSE | (values or {})).items() if key in JOINTS}
-
-
-def test_friction_between_loose_boxes_is_unknown_apart_from_that_of_the_floor():
-    assert of_joints() == dict(zip(JOINTS, ((0.2, 0.8), (0.4,), (0.005,)), strict=True))
-    assert of_joints({"joints.mu_static": 0.3}) == {
-        "joints.mu_kinetic": (0.15, 0.3),
-        "joints.weakening_m": (0.005,),
-    }
-    assert of_joints({"joints.mu_static": 0.2})["joints.mu_kinetic"] == (0.1,)
-    known = dict.fromkeys(("uncertainty.joints_mu_static", "uncertainty.joints_mu_kinetic"), "known")
-    assert of_joints(known) == {"joints.weakening_m": (0.005,)}
-    stated = {"uncertainty.joints_mu_static": [0.3, 0.5], "uncertainty.joints_weakening_m": [0.0, 1e-3]}
-    assert of_joints(stated)["joints.mu_static"] == (0.3, 0.5)
-    assert of_joints(stated)["joints.weakening_m"] == (1e-3,)
-    # where the floor's friction does not fall, that of the joints may, and with the slip velocity, too
-    kept = {"contact.mu_kinetic": 0.4, "joints.mu_kinetic": 0.2, "uncertainty.mu_kinetic": "held"}
-    assert "contact.stribeck_velocity_m_s" in ends("harmonic", LOOSE | kept)
-    assert "contact.weakening_m" not in ends("harmonic", LOOSE | kept)
-
-
-@pytest.mark.parametrize(
-    ("given", "tried"),
-    [({}, (0.1,)), ({"joints.damping_ratio": 0.5}, (0.1, 2.0)), ({"joints.damping_ratio": 4.0}, (0.1,))],
-)
-def test_the_dashpot_of_loose_joints_is_unknown_whatever_the_floor_is(given, tried):
-    for floor in (
-        {},
-        {"contact.damping_ratio": 0.3},
-        {"floor.preset": "asphalt", "floor.corner_patch_m": [0.1, 0.2]},
-    ):
-        assert ends("harmonic", LOOSE | given | floor)["joints.damping_ratio"] == tried
-    assert "joints.damping_ratio" not in ends("harmonic", {})
-
-
-@pytest.mark.parametrize(
-    ("given", "changed", "expected"),
-    [
-        ({}, {"contact.mu_kinetic": 0.4, "contact.weakening_m": 1e-3}, (0.4, 0.2, 0.0)),
-        ({}, {"contact.mu_static": 0.42, "contact.mu_kinetic": 0.22}, (0.4, 0.2, 0.0)),
-        ({}, {"joints.mu_static": 0.8}, (0.8, 0.4, 0.0)),
-        ({}, {"joints.mu_static": 0.8, "joints.mu_kinetic": 0.3}, (0.8, 0.3, 0.0)),
-        ({}, {"joints.mu_kinetic": 0.4}, (0.4, 0.4, 0.0)),
-        ({"joints.mu_static": 0.15}, {"contact.mu_kinetic": 0.1}, (0.15, 0.15, 0.0)),
-    ],
-)
-def test_a_changed_case_keeps_the_friction_between_its_boxes(given, changed, expected):
-    case = named_case("harmonic", LOOSE | given)
-    found = case.with_values(as_changed(case, changed)).joint_friction
-    assert tuple(found.values()) == pytest.approx(expected)
 
 
 def test_draws_of_a_loose_stack_draw_its_joints_and_its_floor_apart():
@@ -358,12 +156,6 @@ def test_draws_of_a_loose_stack_draw_its_joints_and_its_floor_apart():
     floor = [one.contact.mu_kinetic for one in drawn]
     assert abs(np.corrcoef(floor, share)[0, 1]) < 0.2
     assert len({one.joint_friction["weakening_m"] / one.contact.weakening_m for one in drawn}) > 16
-
-
-def test_one_body_has_no_friction_between_boxes():
-    bolted = named_case("harmonic", LOOSE | {"container.joints": "bolted"})
-    assert as_changed(bolted, {"contact.mu_kinetic": 0.3}) == {"contact.mu_kinetic": 0.3}
-    assert not set(JOINTS) & {one.key for one in ranges_of(bolted, PENALTY)}
 
 
 def test_a_ramp_fits_the_motion():
@@ -393,26 +185,3 @@ def test_the_impacts_of_a_squat_box_make_cases_that_can_be_read(width, ratio):
     for one in tried:
         case.with_values(one)
     assert any("contact.restitution_over_housner" in one for one in tried) == (width < 2**0.5)
-
-
-@pytest.mark.parametrize(
-    ("keys", "tried"),
-    [("motion.pulse_s=1", False), ("container.eccentricity_m=0.05", True), ("floor.slope_percent=1", True)],
-)
-def test_a_pulse_is_tried_from_the_other_side_where_left_and_right_differ(keys, tried):
-    pulse = (
-        "motion.kind=pulse",
-        "motion.shape=sine",
-        "motion.peak_acceleration_m_s2=3.8",
-        "motion.pulse_s=1.0",
-    )
-    for held, expected in (([], {(-3.8,)} if tried else set()), (["uncertainty.sign=false"], set())):
-        ranges = ranges_of(load_case("rocking", [*pulse, keys, *held]), 1e9)
-        assert {one.ends for one in ranges if one.key.startswith("motion.")} == expected
-
-
-def test_the_phase_of_a_harmonic_motion_is_tried_where_its_range_is_stated():
-    stated = ranges_of(load_case("rocking", ["uncertainty.phase_rad=[0.0, 1.5]"]), 1e9)
-    (phase,) = (one for one in stated if one.key == "motion.phase_rad")
-    assert (phase.ends, phase.between) == ((1.5,), (0.375, 0.75, 1.125))
-    assert "motion.phase_rad" not in {one.key for one in ranges_of(load_case("rocking"), 1e9)}
