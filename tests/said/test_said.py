@@ -74,6 +74,9 @@ def commanded(asked, capsys):
     printed = capsys.readouterr()
     if code == BAD_INPUT:
         assert (printed.out, sorted(Path().rglob("*"))) == ("", before)
+        if asked.startswith("check ") and not re.search("python -m fem|a site file", printed.err):
+            assert main(["run", *shlex.split(asked)[1:]]) == BAD_INPUT  # what a run refuses, in the same words
+            assert capsys.readouterr().err == printed.err
     said = printed.out + printed.err + (f"[{code}]" if code else "")
     pages = [
         Path(line) for line in printed.out.splitlines() if line.endswith(".html") and Path(line).is_file()
