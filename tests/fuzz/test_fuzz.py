@@ -21,21 +21,22 @@ def compiled():
     warm_up()
 
 
-@pytest.mark.parametrize(
-    ("kind", "count"),
-    [
-        ("text", 40),
-        ("mesh", 35),
-        ("table", 35),
-        ("record", 25),
-        ("hostile", 8),
-        ("case", 25),
-        ("option", 20),
-        ("folder", 5),
-    ],
-)
-def test_any_input_is_refused_with_words_or_computed(kind, count):
-    @settings(max_examples=count, derandomize=True, suppress_health_check=list(HealthCheck))
+COUNTS = {
+    "text": 20,
+    "mesh": 20,
+    "table": 20,
+    "record": 15,
+    "hostile": 5,
+    "case": 15,
+    "option": 8,
+    "folder": 3,
+}
+
+
+@pytest.mark.parametrize("share", [1, pytest.param(3, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(("kind", "count"), COUNTS.items())
+def test_any_input_is_refused_with_words_or_computed(kind, count, share):
+    @settings(max_examples=share * count, derandomize=True, suppress_health_check=list(HealthCheck))
     @given(KINDS[kind][0])
     def feed(given_input):
         end = answer_to(given_input)

@@ -76,6 +76,7 @@ def fault(new: str, old: str = "FACTOR = 2.0") -> Mutation:
     return Mutation(name=new, file="contact/law.py", old=old, new=new, tests=("test_law.py",))
 
 
+@pytest.mark.slow
 def test_no_fault_is_judged_by_what_was_computed_before_it(project):
     faults = [fault("FACTOR = 3.0"), fault("FACTOR = 1.0"), fault("FACTOR = 2.00")]
     assert soundness(project, faults) == ""

@@ -40,7 +40,7 @@ def test_the_strength_of_posts_follows_from_their_section_unless_it_is_given():
 
 def test_the_stress_beyond_the_castings_does_not_depend_on_the_mesh():
     stresses, peaks = [], []
-    for size in (0.1, 0.05, 0.03):
+    for size in (0.1, 0.05):
         case = fem.load_case("rocking", [f"solver.element_size_m={size}"])
         container = discretise(case)
         pushed = container.elements.nodal_von_mises(1e6 * container.response.displacement[-1])

@@ -47,7 +47,7 @@ def files_of(folder):
 @pytest.fixture(scope="module")
 def asked():
     case = load_case("seed_stack_plateau", SLIPPING)
-    return ResponseRequest(case=case, first_Hz=0.8, last_Hz=2.0, count=5, settle=4, observe=8, starts=2)
+    return ResponseRequest(case=case, first_Hz=0.8, last_Hz=2.0, count=3, settle=4, observe=8, starts=2)
 
 
 @pytest.fixture(scope="module")
@@ -72,5 +72,5 @@ def test_a_slipping_curve_stopped_again_and_again_continues_to_the_same_bytes(tm
         except KeyboardInterrupt:
             assert act is killed
         stopped += 1
-    assert stopped >= 3
+    assert stopped >= 2
     assert files_of(folder) == files_of(whole)

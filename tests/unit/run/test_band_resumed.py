@@ -68,7 +68,7 @@ def one_by_one(monkeypatch):
     monkeypatch.setattr(changed_runs, "SHORT_S", 0.0)  # each member is stepped in pauses and noted
 
 
-@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("model", ["rigid", pytest.param("full", marks=pytest.mark.slow)])
 def test_a_band_cut_off_after_every_member_is_the_band_left_alone(tmp_path, monkeypatch, one_by_one, model):
     assert main(command(tmp_path / "whole", *MODELS[model])) == 0
     stepping, begun, cuts = changed_runs.simulate, [], 0
@@ -118,7 +118,7 @@ def test_a_band_killed_within_a_member_continues_with_the_finished_ones(tmp_path
 def test_members_that_cannot_be_trusted_are_reported_and_computed_again(
     tmp_path, monkeypatch, one_by_one, capsys
 ):
-    rigid = ("solver.model=rigid", *FEW)
+    rigid = MODELS["rigid"]
     assert main(command(tmp_path / "whole", *rigid)) == 0
     with monkeypatch.context() as patch:
         patch.setattr(changed_runs, "simulate", partial(one_slice, changed_runs.simulate))

@@ -9,7 +9,12 @@ import pytest
 
 @pytest.mark.parametrize(
     ("megabytes", "options", "code"),
-    [(512, ("--no-band", "--no-margin"), 0), (512, (), 3), (620, (), 0), (720, (), 0)],
+    [
+        (512, ("--no-band", "--no-margin"), 0),
+        (512, (), 3),
+        pytest.param(620, (), 0, marks=pytest.mark.slow),
+        (720, (), 0),
+    ],
 )
 def test_a_rigid_run_needs_no_more_than_512_mb_and_its_band_and_figures_more(
     tmp_path, megabytes, options, code

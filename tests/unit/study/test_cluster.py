@@ -34,6 +34,7 @@ def address():
         yield local.scheduler_address
 
 
+@pytest.mark.slow
 def test_a_cluster_gives_the_same_table(tmp_path, monkeypatch, capsys, address, undrawn):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "small.toml").write_text(SMALL, encoding="utf-8")

@@ -48,6 +48,7 @@ def test_each_run_is_the_run_alone_in_the_order_of_the_cases():
         assert (run.history.samples == alone.history.samples).all()
 
 
+@pytest.mark.slow
 def test_processes_give_the_same_runs_as_threads(monkeypatch):
     cases = [BOX.replace({"contact.mu_static": mu}) for mu in FRICTIONS]
     threads = fem.compute_many(cases, 1, band=False)

@@ -151,8 +151,8 @@ class TestMotionsOnASlope:
         for vertical in self.MOTIONS:
             along, normal = along_and_normal(horizontal, vertical, slope)
             x, z = horizontal.evaluate(self.TIMES), vertical.evaluate(self.TIMES)
-            assert along.evaluate(self.TIMES) == pytest.approx(x * turn[0] - z * turn[1], rel=1e-9, abs=1e-9)
-            assert normal.evaluate(self.TIMES) == pytest.approx(x * turn[1] + z * turn[0], rel=1e-9, abs=1e-9)
+            for found, wanted in ((along, x * turn[0] - z * turn[1]), (normal, x * turn[1] + z * turn[0])):
+                np.testing.assert_allclose(found.evaluate(self.TIMES), wanted, rtol=0.0, atol=1e-9)
 
     def test_their_peak_is_that_of_the_sum(self):
         sums = [along_and_normal(a, b, 0.3)[0] for a, b in zip(self.MOTIONS, self.MOTIONS[1:], strict=False)]
