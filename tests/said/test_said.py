@@ -22,7 +22,7 @@ from cases import TEXTS, named_case
 from record_words import recorded
 from site_answers import answered, brief_page, sited
 from site_example import write_example
-from study_folders import ensemble_folder, response_folder
+from study_folders import ensemble_folder, response_folder, sweep_folder
 from study_words import worded
 from typed_results import told
 
@@ -31,7 +31,7 @@ from fem.case.case import CaseError, load_case
 from fem.case.overrides import parse_override
 from fem.html.page import _environment
 from fem.model.container import modes_of_a_body
-from fem.report.study_page import ensemble_report, response_report
+from fem.report.study_page import ensemble_report, response_report, sweep_report
 from fem.run.described import link_rows
 from fem.site.page import site_report
 
@@ -75,7 +75,9 @@ def commanded(asked, capsys):
     if code == BAD_INPUT:
         assert (printed.out, sorted(Path().rglob("*"))) == ("", before)
         if asked.startswith("check ") and not re.search("python -m fem|a site file", printed.err):
-            assert main(["run", *shlex.split(asked)[1:]]) == BAD_INPUT  # what a run refuses, in the same words
+            assert (
+                main(["run", *shlex.split(asked)[1:]]) == BAD_INPUT
+            )  # what a run refuses, in the same words
             assert capsys.readouterr().err == printed.err
     said = printed.out + printed.err + (f"[{code}]" if code else "")
     pages = [
@@ -97,6 +99,7 @@ def paged(asked):
         return text_of_page(case_rows(changes))
     folder = Path(tempfile.mkdtemp(dir="."))
     make, report = {
+        "sweep": (sweep_folder, sweep_report),
         "ensemble": (ensemble_folder, ensemble_report),
         "response": (response_folder, response_report),
         "site": (write_example, site_report),
