@@ -2,10 +2,12 @@
 
 A line has a named case and changes as `--set` takes them: ` & ` between changes made at once, ` then ` between those
 made one after the other. `written`: the resolved case; `changed`: what differs from the case named; `ranges`: its
-unknown inputs with their ends, and in brackets what is tried between; `boxes`, `row`: what stands there.
+unknown inputs with their ends, and in brackets what is tried between; `boxes`: what stands there; `drawn`: its sketch;
+`sheet`: its static calculation.
 """
 
 import difflib
+import re
 from functools import reduce
 
 from cases import named_case
@@ -15,6 +17,12 @@ from fem.case.overrides import parse_override
 from fem.case.tables.unknown_inputs import ranges_of
 from fem.case.template import case_template
 from fem.case.uncertainty import as_changed
+from fem.model.floor_numbers import drawn_level
+from fem.model.geometry import build_container
+from fem.model.motion import build_motions, peaks_in_run
+from fem.model.static_checks import static_checks_of
+from fem.report.sketch import sketch
+from fem.report.static_sheet import static_sheet
 
 PENALTY = 1e9  #: of a contact whose stiffness is chosen [Pa/m]
 
@@ -70,7 +78,32 @@ def boxes(_: Case, case: Case) -> str:
     return "\n".join([*lines, f"between them {case.joint_friction}"])
 
 
+def drawn(_: Case, case: Case) -> str:
+    """The texts of the sketch of a case, and its name; the rows beside it are in `pages.txt`."""
+    svg = str(sketch(case, centroid=1.3, peak_acceleration=2.4))
+    name = re.search(r'aria-label="([^"]*)"', svg)
+    texts = re.findall(r">([^<>]+)</text>", svg)
+    rows = [f"{label}: {text}" for label, text in case_rows(case)]
+    return "\n".join(
+        [name[1] if name else "", " | ".join(texts), drawn_level(case.floor.slope_percent), *rows]
+    )
+
+
+def sheet(_: Case, case: Case) -> str:
+    """Each line of the static calculation."""
+    static = static_checks_of(case, build_container(case), *peaks_in_run(case, *build_motions(case)))
+    lines = []
+    for title, group in static_sheet(static, case):
+        lines += [
+            title,
+            *(f"  {one.name}: {one.numbers} = {one.result} {one.verdict or ''}" for one in group),
+        ]
+    return "\n".join(lines)
+
+
 SAID = {
+    "drawn": drawn,
+    "sheet": sheet,
     "written": lambda own, case: to_toml(case),
     "changed": difference,
     "ranges": ranges,

@@ -6,8 +6,6 @@ import re
 import pytest
 from cases import named_case
 
-from fem.case.case import load_case, read_case
-from fem.case.toml import toml_document
 from fem.model.geometry import build_container
 from fem.model.motion import build_motions, peaks_in_run
 from fem.model.static_checks import static_checks_of
@@ -63,18 +61,3 @@ def test_the_stack_under_its_plateau_value_is_the_papers():
     assert own["utilisation, overturning"].value == pytest.approx(80.0 / 53.955, rel=1e-6)
     assert own["utilisation, overturning"].verdict == "overturns"
     assert "EN 1998-1:2004, 4.4.2.4" in own["utilisation, overturning"].source
-
-
-def test_a_case_without_static_has_no_lines_of_the_code():
-    tables = load_case("seed_box").given()
-    del tables["static"]
-    case = read_case(toml_document(tables))
-    groups = static_sheet(static_checks_of(case, build_container(case), 4.0), case)
-    assert len(groups) == 3 and not any("code" in title for title, _ in groups)
-
-
-def test_without_friction_there_is_no_utilisation_in_sliding():
-    groups = dict(sheet_of("seed_box", {"contact.mu_static": 0.0, "contact.mu_kinetic": 0.0}))
-    names = [line.name for line in groups["Static rule under the peak floor acceleration of this run"]]
-    assert "utilisation, overturning" in names
-    assert "utilisation, sliding" not in names
