@@ -151,8 +151,13 @@ def module_of(path: Path) -> str:
     return name_of(path).removesuffix(".py").replace("/", ".").removesuffix(".__init__")
 
 
-TREES = {path: ast.parse(path.read_text()) for path in SOURCES}
 MODULES = {module_of(path): path for path in SOURCES}
+
+
+@cache
+def trees() -> dict[Path, ast.Module]:
+    """The sources as they parse: two seconds, for the worker that asks."""
+    return {path: ast.parse(path.read_text()) for path in SOURCES}
 
 
 def package_of(module: str) -> str:
@@ -166,7 +171,7 @@ def package_of(module: str) -> str:
 def imported(path: Path) -> frozenset[str]:
     """Full names of what a file imports, at any depth of it, by statement or by string."""
     found = set()
-    for node in ast.walk(TREES[path]):
+    for node in ast.walk(trees()[path]):
         if isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
@@ -229,7 +234,7 @@ def test_no_folder_imports_itself_by_way_of_others():
 
 @cache
 def tree_of(path: Path) -> ast.Module:
-    return TREES[path] if path in TREES else ast.parse(path.read_text(encoding="utf-8"))
+    return trees()[path] if path in trees() else ast.parse(path.read_text(encoding="utf-8"))
 
 
 def folders_of_tests(path: Path) -> set[str]:
@@ -297,7 +302,7 @@ def test_fem_holds_packages_only():
 def test_a_public_class_has_a_name_of_its_own():
     classes = [
         (node.name, name_of(path))
-        for path, tree in TREES.items()
+        for path, tree in trees().items()
         for node in tree.body
         if isinstance(node, ast.ClassDef) and not node.name.startswith("_")
     ]
@@ -320,7 +325,7 @@ def test_imports_stand_at_the_top_of_the_module():
     """The command line loads its commands by import string; nobody imports inside a function."""
     wrong = [
         f"{name_of(path)}:{inside.lineno}: import inside {type(node).__name__}"
-        for path, tree in TREES.items()
+        for path, tree in trees().items()
         for node in ast.walk(tree)
         if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda | ast.ClassDef)
         for inside in ast.walk(node)
@@ -332,7 +337,7 @@ def test_imports_stand_at_the_top_of_the_module():
 def test_only_the_command_line_and_the_opening_import_by_string():
     calls = {
         name_of(path)
-        for path, tree in TREES.items()
+        for path, tree in trees().items()
         for node in ast.walk(tree)
         if isinstance(node, ast.Call)
         and ast.unparse(node.func).split(".")[-1] in ("import_module", "__import__")
@@ -358,7 +363,7 @@ def test_one_module_writes_and_removes_files():
     """`fem.runtime.own_files` follows no link in a folder; kernels lie in a folder of their own, see `contact.jit`."""
     wrong = [
         f"{name_of(path)}:{node.lineno}: {ast.unparse(node)[:60]}"
-        for path, tree in TREES.items()
+        for path, tree in trees().items()
         if name_of(path) not in WRITERS
         for node in ast.walk(tree)
         if isinstance(node, ast.Call)
@@ -371,7 +376,7 @@ def test_only_what_nothing_acts_in_reaches_the_terminal():
     """Everything is printed by `fem.runtime.terminal.say`."""
     wrong = [
         f"{name_of(path)}:{node.lineno}"
-        for path, tree in TREES.items()
+        for path, tree in trees().items()
         if name_of(path) != "fem/runtime/terminal.py"
         for node in ast.walk(tree)
         if isinstance(node, ast.Call)
@@ -381,7 +386,7 @@ def test_only_what_nothing_acts_in_reaches_the_terminal():
 
 
 def test_every_module_says_what_it_is():
-    assert not [name_of(path) for path, tree in TREES.items() if not ast.get_docstring(tree)]
+    assert not [name_of(path) for path, tree in trees().items() if not ast.get_docstring(tree)]
 
 
 def test_no_room_is_a_lumber_room():
