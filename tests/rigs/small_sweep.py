@@ -8,6 +8,7 @@ case = "seed_stack_plateau"
 "solver.model" = "rigid"
 "floor.kind" = "rigid"
 "solver.duration_s" = 2.0
+"uncertainty.draws" = 8
 [axes]
 "motion.angular_frequency_rad_s" = { from = 2.0, to = 6.0, count = 4 }
 "motion.peak_acceleration_m_s2" = { from = 2.0, to = 14.0, count = 5 }

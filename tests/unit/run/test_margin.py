@@ -71,7 +71,7 @@ def with_draws():
         runs = []
         for count in (1, 2):
             patch.setattr(changed_runs, "cores", lambda count=count: count)
-            runs.append(computed(band=None))
+            runs.append(computed("uncertainty.draws=8", "solver.duration_s=6", band=None))
         return runs
 
 
