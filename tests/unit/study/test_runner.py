@@ -93,6 +93,7 @@ def test_what_ends_the_group_does_not_meet_a_worker_that_is_starting():
     assert held_back([]).isdisjoint({signal.SIGINT, signal.SIGTERM})
 
 
+@pytest.mark.slow
 def test_many_cases_are_shared_by_this_process_and_others():
     with LocalWorkers(2) as workers_of:
         pools = workers_of("rigid", WORTH_PROCESSES["rigid"])
@@ -135,6 +136,7 @@ def test_a_case_that_cannot_be_computed_has_a_reason_and_no_outcome(cases):
     assert "gone.csv" in bad["reason"]
 
 
+@pytest.mark.slow
 def test_full_cases_run_in_other_processes():
     case = load_case("seed_box", ["solver.model=full", "solver.duration_s=0.02", "output.fields_s=0"])
     (row,) = run_cases([case], jobs=1)
