@@ -4,18 +4,22 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
+from running_example import ACTION, k1
 from site_example import RUN, example
 from small_site import SITE
 
 from fem.case.validation import CaseError
 from fem.html.page import Page, html_of, text_of
+from fem.seismic.static_rules import peak_rows
 from fem.site.answer import Beside, answer_of
+from fem.site.methods import found_by_runs
 from fem.site.page import shown
 from fem.site.request import load_site
 from fem.site.result import FURTHER, REPEATED, ConfirmedRun, FloorResult, SiteAnswer, TwoDirections
 from fem.site.runs import key_of
 from fem.site.size import SizeAxis, SizeResult, next_values, size_axis, size_result, spaced
 from fem.site.stages import REPETITIONS
+from fem.site.tables import LimitsTable
 
 EXAMPLE = example()[0]
 
@@ -166,9 +170,41 @@ def axis(key, *changes, **ends):
     return size_axis(site(*changes) if changes else load_site("site"), key, **ends)
 
 
+def requested(request):
+    """What is asked for: variants, frictions, motions, wind, action, and for what nobody stands."""
+    variants = [
+        f"{' '.join(name)}: {case.container.width_m:g} m wide, {case.mass:.6g} kg, {case.container.boxes} boxes"
+        for name, case in request.variants.items()
+    ]
+    motions, action = request.motions, request.action
+    return "\n".join(
+        [
+            *variants,
+            f"friction: {', '.join(f'{static:g} / {kinetic:g}' for static, kinetic in request.frictions)}",
+            f"motions: {motions.source}, {motions.files}, {'with' if motions.vertical else 'no'} vertical ones",
+            f"wind: {request.wind_pressure}",
+            f"action: {action.surface_acceleration:.6g}, upward {action.vertical_acceleration:.6g} m/s2",
+            f"nobody stands for: {', '.join(request.unstated)}",
+        ]
+    )
+
+
+STOOD = replace(RUN, mu_static=0.2, mu_kinetic=0.1, rotation_ratio=0.2, max_slip_m=0.004)
+FELLED = replace(STOOD, motion=2, outcome="overturned", rotation_ratio=3.0)
+OVERTURNING, SLIDING = peak_rows(k1(mu_static=0.2), ACTION, horizontal=1.0, vertical=0.0)
+STRONGER = peak_rows(k1(mu_static=0.2), ACTION.scaled(1.5), horizontal=1.0, vertical=0.0)[0]
+
+
+def beside(row, *runs):
+    """What the rule counts beside a method; its limits are 0.5, 0.8 of the angle and 0.1 m."""
+    words, compared = found_by_runs(row, runs, width=1.1, limits=LimitsTable(slip_m=0.1))
+    return f"{words}: {compared or 'not compared'}"
+
+
 def sited(asked):
-    """The sentence of `size`, or why a site file or a key of it is refused."""
+    """What is found of a site, the sentence of `size`, or why a site file or a key of it is refused."""
     try:
-        return getattr(eval(asked), "sentence", "nothing is said against it")
+        found = eval(asked)
+        return found if isinstance(found, str) else getattr(found, "sentence", "nothing is said against it")
     except CaseError as error:
         return str(error)

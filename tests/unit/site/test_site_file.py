@@ -45,27 +45,6 @@ def test_the_shipped_site_can_be_read():
     assert asked.wind_pressure == (500.0, "given")
 
 
-def test_frictions_are_the_corners_of_the_ranges_and_their_middle(tmp_path):
-    assert request(tmp_path).frictions == [(0.3, 0.15), (0.3, 0.3), (0.4, 0.2), (0.4, 0.4), (0.35, 0.2625)]
-    one = request(tmp_path, ("[0.3, 0.4]", "[0.3]\nmu_kinetic_over_static = [1.0]"))
-    assert one.frictions == [(0.3, 0.3)]
-
-
-def test_both_elevations_are_run_where_width_and_depth_differ(tmp_path):
-    (tmp_path / "box.toml").write_text(
-        "[container]\nwidth_m = 1.1\ndepth_m = 2.2\nheight_m = 2.0\nmass_kg = 3000.0\n[contact]\nmu_static = 0.4\n"
-        '[motion]\nkind = "none"\n'
-    )
-    asked = request(tmp_path, ('"seed_stack"', '"box.toml"\nempty_mass_kg = 500.0'))
-    found = [(*name, case.container.width_m) for name, case in asked.variants.items()]
-    assert found == [
-        ("full", "width", 1.1),
-        ("empty", "width", 1.1),
-        ("full", "depth", 2.2),
-        ("empty", "depth", 2.2),
-    ]
-
-
 def test_german_zones_and_other_annexes(tmp_path):
     german = (
         'spectrum = "DIN-NA-2011"\nground = "C-R"\nzone = 3\nvertical_ratio = 0.5\nimportance_factor = 1.6'
@@ -80,15 +59,6 @@ def test_german_zones_and_other_annexes(tmp_path):
     assert (asked.action.surface_acceleration, asked.action.vertical_acceleration) == pytest.approx(
         (1.92, 1.12)
     )
-
-
-def test_a_value_of_the_site_or_of_the_container_is_changed(tmp_path):
-    asked = request(tmp_path)
-    assert asked.with_value("site.reference_acceleration_m_s2", 3.2).action.reference_acceleration == 3.2
-    assert asked.with_value("container.boxes", 2).variants["full", "width"].container.boxes == 2
-    stiff = asked.with_value("container.width_m", 1.5).with_value("contact.mu_static", 0.25)
-    assert (stiff.container.container.width_m, stiff.frictions[0][0]) == (1.5, 0.25)
-    assert len(stiff.frictions) == 3
 
 
 def test_the_present_german_hazard_is_given_by_the_plateau_on_rock():
@@ -154,22 +124,6 @@ def test_contents_set_the_importance_factor_of_the_element(tmp_path, contents, g
     action = request(tmp_path, *changes).action
     assert action.element_importance_factor == factor
     assert action.ground_acceleration == pytest.approx(1.6 * factor)
-
-
-@pytest.mark.parametrize(
-    ("sources", "unstated"),
-    [
-        ("", ["contents", "site", "container", "friction", "limits", "wind"]),
-        ('contents = "toxic"\nsite = "report 7"\ncontainer = " Placeholder: 1 t"\nfriction = "example"\nlimits = "x"'
-         '\nwind = "annex"', ["container", "friction"]),
-        ('contents = "ordinary"\nsite = "a"\ncontainer = "b"\nfriction = "c"\nlimits = "d"\nwind = "e"', []),
-    ],
-)  # fmt: skip
-def test_nothing_is_signed_while_a_source_is_missing_or_a_placeholder(tmp_path, sources, unstated):
-    contents, _, words = sources.partition("\n")
-    heading = ('"seed_stack"', f'"seed_stack"\n{contents}')
-    asked = request(tmp_path, heading, ("[limits]", f"[wind]\ngerman_zone = 2\n[sources]\n{words}\n[limits]"))
-    assert [name.removeprefix("source of ").partition(" ")[0] for name in asked.unstated] == unstated
 
 
 def test_records_of_the_command_line_take_the_place_of_those_of_the_file(tmp_path, monkeypatch):

@@ -5,21 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from running_example import ACTION, SITE, SLIP, k1
-from site_example import INPUTS, PERIODS, RUN, site_body, site_motion
+from site_example import INPUTS, PERIODS, site_body, site_motion
 
-from fem.seismic.method import MethodQuantity
 from fem.seismic.methods import methods_of
 from fem.seismic.static_rules import peak_rows
-from fem.site.methods import floor_action, found_by_runs, loose_body, site_methods
+from fem.site.methods import floor_action, loose_body, site_methods
 from fem.site.result import FloorResult
-from fem.site.tables import LimitsTable
 
-BY_RULE = LimitsTable(slip_m=0.1)  # 0.5, 0.8 of the angle
-STOOD = replace(RUN, mu_static=0.2, mu_kinetic=0.1, rotation_ratio=0.2, max_slip_m=0.004)
-FELL = replace(STOOD, motion=2, outcome="overturned", rotation_ratio=3.0)
-BEYOND = replace(STOOD, rotation_ratio=0.6)  # the limit is 0.5
 OVERTURNING, SLIDING = peak_rows(k1(mu_static=0.2), ACTION, horizontal=1.0, vertical=0.0)
-STRONGER = peak_rows(k1(mu_static=0.2), ACTION.scaled(1.5), horizontal=1.0, vertical=0.0)[0]
 
 
 def rows_of(bodies, inputs, floor=None):
@@ -28,60 +21,6 @@ def rows_of(bodies, inputs, floor=None):
     return site_methods(
         bodies=bodies, inputs=inputs, site=SITE, motions=[motion], periods_s=periods, floor=floor, runs=[]
     )
-
-
-@pytest.mark.parametrize(
-    ("row", "runs", "words", "compared"),
-    [
-        (OVERTURNING, [STOOD], "none of 1 overturned; by the rule 0.2 of the angle", "agrees"),
-        (OVERTURNING, [STOOD, FELL], "1 of 2 overturned", "not conservative"),
-        (
-            OVERTURNING,
-            [STOOD, replace(FELL, outcome="invalid")],
-            "none of 2 overturned, 1 destroyed a corner",
-            "not conservative",
-        ),
-        (OVERTURNING, [BEYOND], "none of 1 overturned; by the rule 0.6 of the angle", "not conservative"),
-        (STRONGER, [STOOD], "none of 1 overturned; by the rule 0.2 of the angle", "conservative"),
-        (OVERTURNING, [replace(STOOD, rotation_ratio=0.001)], "none of 1 overturned; none rocks", "agrees"),
-        (STRONGER, [FELL], "1 of 1 overturned", "agrees"),
-        (SLIDING, [STOOD], "largest 4 mm, mean 4 mm", "agrees"),
-        (SLIDING, [replace(STOOD, max_slip_m=1e-6)], "none slides", "conservative"),
-        (
-            SLIDING,
-            [STOOD, replace(STOOD, motion=2, max_slip_m=0.002)],
-            "largest 4 mm, mean 3 mm",
-            "agrees",
-        ),
-        (
-            SLIDING,
-            [STOOD, replace(STOOD, mu_static=0.4, max_slip_m=0.5)],
-            "largest 4 mm, mean 4 mm",
-            "agrees",
-        ),
-        (SLIDING, [replace(STOOD, outcome=None)], "no runs", ""),
-        (OVERTURNING, [replace(FELL, stage="scan", factor=2.0)], "no runs", ""),
-        (replace(OVERTURNING, median=True), [FELL], "1 of 1 overturned", ""),
-        (replace(OVERTURNING, beyond="on a floor"), [FELL], "1 of 1 overturned", ""),
-    ],
-)
-def test_what_the_rule_counts_beside_a_method(row, runs, words, compared):
-    assert found_by_runs(row, runs, width=1.1, limits=BY_RULE) == (words, compared)
-
-
-def test_a_method_is_compared_with_the_mean_that_the_rule_counts_and_not_with_one_motion():
-    seven = [replace(STOOD, motion=number, rotation_ratio=0.3) for number in range(1, 7)]
-    seven.append(replace(STOOD, motion=7, rotation_ratio=0.7))  # beyond the limit by itself
-    words, compared = found_by_runs(OVERTURNING, seven, width=1.1, limits=BY_RULE)
-    assert words == "none of 7 overturned; by the rule 0.36 of the angle, at most 0.7"
-    assert compared == "agrees"
-
-
-def test_a_slip_is_compared_with_the_largest_as_the_rule_does():
-    row = replace(SLIDING, quantity=MethodQuantity.SLIP, demand=0.106)
-    for slip, compared in ((0.01, "conservative"), (0.11, "agrees"), (0.2, "not conservative")):
-        runs = [replace(STOOD, max_slip_m=slip)]
-        assert found_by_runs(row, runs, width=1.1, limits=BY_RULE)[1] == compared
 
 
 def test_rules_made_of_ground_motions_do_not_hold_on_a_floor_and_medians_are_marked():
