@@ -14,7 +14,6 @@ from fem.seismic.static_rules import both_directions_rows, element_rows, floor_f
 from fem.seismic.wind import german_pressure, terrain_pressure, wind_force, wind_rows
 
 K1 = k1()
-LEVEL = replace(ACTION, vertical_peak=0.0)  # no vertical component
 
 
 def rows_of(methods, action: FloorAction) -> list[MethodRow]:

@@ -8,11 +8,8 @@ from running_example import ACTION, SITE, SLIP, k1
 from site_example import INPUTS, PERIODS, site_body, site_motion
 
 from fem.seismic.methods import methods_of
-from fem.seismic.static_rules import peak_rows
 from fem.site.methods import floor_action, loose_body, site_methods
 from fem.site.result import FloorResult
-
-OVERTURNING, SLIDING = peak_rows(k1(mu_static=0.2), ACTION, horizontal=1.0, vertical=0.0)
 
 
 def rows_of(bodies, inputs, floor=None):

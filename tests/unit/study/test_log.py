@@ -1,6 +1,5 @@
 """Tables and logs: what is written reads back, a spreadsheet computes nothing of it, a removed log ends the study."""
 
-from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -10,8 +9,6 @@ from fem.results.figures import RUN_COLUMNS, types_of
 from fem.site.result import RunKey
 from fem.study.driver import LoggedRuns
 from fem.study.table import fields_of, line_of, row_of
-
-ROOT = Path(__file__).parents[3]
 
 
 def _logged(path, columns, rows, told=pytest.fail):
