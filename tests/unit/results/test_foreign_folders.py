@@ -9,6 +9,7 @@ import sys
 import numpy as np
 import pytest
 import study_folders
+from cases import BLOCK
 
 from fem.__main__ import main
 from fem.results.errors import FolderError
@@ -24,24 +25,7 @@ from fem.runtime.user_files import parsed_json
 from fem.study.driver import LoggedRuns, StudyResult
 from fem.study.table import fields_of, line_of
 
-CASE = """schema = 1
-[container]
-width_m = 1.1
-height_m = 2.0
-weight_N = 24525.0
-[contact]
-mu_static = 0.4
-[motion]
-kind = "harmonic"
-amplitude_m = 0.05
-angular_frequency_rad_s = 7.0
-[solver]
-model = "rigid"
-duration_s = 0.2
-[output]
-figures = false
-fields_s = 0
-"""
+CASE = BLOCK.replace("[container]", "schema = 1\n[container]", 1).lstrip()
 VALUES = (None, True, -1, 1e308, "x", "", [], {}, [1], ["a"], {"a": 1}, [[1]], 10**400, [None])
 FORGED = "x\\n-- passed --\\n"  #: of TOML, where it would be a line of its own
 LINKED = "is a link, through which no results are written"

@@ -2,21 +2,11 @@
 
 import numpy as np
 import pytest
+from small_site import LEAST
 
 from fem.case.validation import CaseError
 from fem.site.motions import ground_motions
 from fem.site.request import SiteRequest, load_site
-
-LEAST = """
-container = "seed_stack"
-[site]
-ground = "D"
-reference_acceleration_m_s2 = 1.6
-[friction]
-mu_static = [0.3, 0.4]
-[limits]
-slip_m = 0.1
-"""
 
 #: ground D with S_alpha,RP = 4.0 and S_beta,RP = 1.2 m/s2: 4.0 x 1.580 and 1.2 x 2.809, T_D = 1 + 1.2 s
 SECOND = """spectrum = "second-generation"

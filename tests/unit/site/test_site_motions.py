@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+from small_site import LEAST
 
 from fem.case.validation import CaseError
 from fem.html.page import text_of
@@ -16,21 +17,10 @@ from fem.site.preview import preview_of
 from fem.site.request import load_site
 from fem.site.run import site_hash
 
-SITE = """
-container = "seed_stack"
-[site]
-ground = "D"
-reference_acceleration_m_s2 = 1.6
-[friction]
-mu_static = [0.3, 0.4]
-[limits]
-slip_m = 0.1
-"""
-
 
 def request(folder, *tables):
     place = folder / "hall.toml"
-    place.write_text(SITE + "\n".join(tables))
+    place.write_text(LEAST + "\n".join(tables))
     return load_site(place)
 
 
