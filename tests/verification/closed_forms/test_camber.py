@@ -120,7 +120,7 @@ def test_cambered_feet_roll_from_their_inner_to_their_outer_ends():
     np.testing.assert_allclose(moments(model, rotations), exact, atol=2e-5)
 
 
-@pytest.mark.parametrize("model", ["rigid", "reduced", "full"])
+@pytest.mark.parametrize("model", ["rigid", "reduced", pytest.param("full", marks=pytest.mark.slow)])
 def test_small_rocking_has_period_and_damping_as_given(model):
     camber, ratio, start = 0.008, 0.05, 0.003
     case = cambered(

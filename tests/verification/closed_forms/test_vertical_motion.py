@@ -61,7 +61,7 @@ def test_a_shaken_block_converges_to_the_exact_oscillation_in_second_order():
     assert np.polyfit(np.log(steps), np.log(errors), 1)[0] == pytest.approx(2.0, abs=0.05)
 
 
-@pytest.mark.parametrize("acceleration", [3.0, -4.0])
+@pytest.mark.parametrize("acceleration", [pytest.param(3.0, marks=pytest.mark.slow), -4.0])
 def test_a_constant_acceleration_is_another_gravity_for_the_full_model(acceleration):
     common = PENALTY | {"container.mass_kg": 2500.0, "solver.model": "full", "solver.duration_s": 4.5}
     lifted = run(stack().with_values(common | PULL | {"vertical.peak_acceleration_m_s2": acceleration}))

@@ -110,7 +110,7 @@ def pulsed(sign: float, overrides: tuple[str, ...]) -> tuple[Model, Recorder]:
         (("solver.duration_s=2",), 1e-11, 1e-4),
         (("support.kind=flat", "solver.duration_s=0.8"), 1e-10, 1e-8),
         # Its posts ring: what two runs differ by, 1e-9 at 0.8 s, is 4e-2 of the angular velocity at 1.2 s.
-        ((*COARSE, "solver.duration_s=0.8"), 1e-8, 1e-6),
+        pytest.param((*COARSE, "solver.duration_s=0.8"), 1e-8, 1e-6, marks=pytest.mark.slow),
     ],
     ids=["rigid", "rigid, vertical motion", "reduced", "reduced, flat base", "full"],
 )

@@ -81,7 +81,9 @@ def test_the_default_motion_hangs_on_the_fall_of_friction(tmp_path, section):
     assert not any("contact." in line for line in verdict.card)
 
 
-@pytest.mark.parametrize(("model", "share"), [("rigid", 0.98), ("reduced", 0.92)])
+@pytest.mark.parametrize(
+    ("model", "share"), [("rigid", 0.98), pytest.param("reduced", 0.92, marks=pytest.mark.slow)]
+)
 def test_a_flat_base_that_rocks_below_uplift_is_not_sure(tmp_path, model, share):
     # Exact rigid block: rests below its uplift. A soft bed opens from the edge and is pulled into rocking.
     values = {"solver.model": model, "motion.peak_acceleration_m_s2": share * UPLIFT, "uncertainty.draws": 0}
