@@ -259,29 +259,6 @@ def test_lists_of_every_spreadsheet_are_read(tmp_path, text, encoding):
     assert row.name == "Behälter" and row.values == {"container.width_m": 1.25, "container.mass_kg": 2000.0}
 
 
-def test_a_bad_row_has_its_reason(tmp_path, base, capsys):
-    text = (
-        "name,count,width_m,x_m,lat,wall_m,mass_kg\nfine,1,1,0,0,,\ncount,1.5,1,0,0,,\nplace,1,1,here,0,,\n"
-        "short,1,1\nunit,1,1 m,0,0,,\nheavy,1,1,0,0,0.2,100\n"
-    )
-    path = listed(tmp_path, text)
-    assert main(["batch", str(path), "--case", "base.toml", "--margins", "none", "-q"]) == 0
-    reasons = {one["name"]: one["reason"] for one in rows_of(tmp_path / "outputs" / "hall" / "hall.csv")}
-    for name, words in {
-        "fine": "",
-        "count": "count must be a whole number",
-        "place": "",  # a column that sets nothing is kept as it is
-        "short": "3 fields, and the header names 7 columns",
-        "unit": "width_m must be a number",
-        "heavy": "the walls of one box weigh",
-    }.items():
-        assert words in reasons[name] and bool(reasons[name]) == bool(words)
-    capsys.readouterr()
-    none = listed(tmp_path, "name,width_m\na,-1\n", "none.csv")
-    assert main(["batch", str(none), "--case", "base.toml", "--out", "none", "-q"]) == 2
-    assert "no row can be computed" in capsys.readouterr().err
-
-
 def test_too_many_rows_are_told_the_time_before_any_is_read(tmp_path, base):
     file = read_hall(listed(tmp_path, "width_m,\n" + "1.0,without a name\n" * 250_000))
     with pytest.raises(CaseError, match=r"250000 rows, 250000 runs: roughly \d+ .* or use --force"):
