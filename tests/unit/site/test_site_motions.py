@@ -1,6 +1,7 @@
 """The motions of a site: second horizontal components, and floors of buildings with storeys."""
 
 import json
+from functools import cache
 
 import numpy as np
 import pytest
@@ -24,11 +25,17 @@ def request(folder, *tables):
     return load_site(place)
 
 
+@cache
+def made(action):
+    """Three motions with both horizontal components, which most tests write as records."""
+    return artificial_motions(action, count=3, seed=5, second=1.0)
+
+
 def three_records(folder, letters, every=1):
     """Files of three motions at 0.005 s, or of every so many samples, a name for each letter."""
     action = request(folder).action
     names = []
-    for number, motion in enumerate(artificial_motions(action, count=3, seed=5, second=1.0)):
+    for number, motion in enumerate(made(action)):
         names.append([])
         for letter in letters:
             names[-1].append(f"r{number}_{letter}.at2")
@@ -54,8 +61,8 @@ def test_artificial_motions_have_a_second_component_of_the_share_asked_for(tmp_p
 
 def test_a_third_file_of_a_record_is_its_second_component(tmp_path):
     asked = request(tmp_path, f'[motions]\nsource = "records"\nfiles = {three_records(tmp_path, "hvt")}')
-    made = artificial_motions(asked.action, count=3, seed=5, second=1.0)
-    for recorded, motion in zip(ground_motions(asked, 4.0), made, strict=True):
+    own = made(asked.action)
+    for recorded, motion in zip(ground_motions(asked, 4.0), own, strict=True):
         factor = recorded.factor  # one for all components
         np.testing.assert_allclose(recorded.second, 0.5 * factor * motion.second, rtol=1e-9, atol=1e-9)
         np.testing.assert_allclose(
@@ -166,7 +173,7 @@ def test_records_of_a_floor_are_taken_as_they_are_and_further_motions_fit_their_
     names = three_records(tmp_path, "hv")
     asked = request(tmp_path, f'[motions]\nsource = "floor"\nfiles = {names}\nsecond_component = 0.0')
     ground = ground_motions(asked, 4.0)
-    (first, *_) = artificial_motions(asked.action, count=3, seed=5, second=1.0)
+    (first, *_) = made(asked.action)
     np.testing.assert_allclose(ground[0].horizontal, 0.5 * first.horizontal, rtol=1e-12)
     assert all(motion.factor == 1.0 for motion in ground)
     target = motion_target(asked, ground, 4.0)
