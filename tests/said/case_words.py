@@ -83,10 +83,7 @@ def drawn(_: Case, case: Case) -> str:
     svg = str(sketch(case, centroid=1.3, peak_acceleration=2.4))
     name = re.search(r'aria-label="([^"]*)"', svg)
     texts = re.findall(r">([^<>]+)</text>", svg)
-    rows = [f"{label}: {text}" for label, text in case_rows(case)]
-    return "\n".join(
-        [name[1] if name else "", " | ".join(texts), drawn_level(case.floor.slope_percent), *rows]
-    )
+    return "\n".join([name[1] if name else "", " | ".join(texts), drawn_level(case.floor.slope_percent)])
 
 
 def sheet(_: Case, case: Case) -> str:
