@@ -7,7 +7,7 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from fem.case.case import CaseError, load_case
-from fem.case.files import COLLECTIONS, COMMANDS
+from fem.case.files import CASES, COLLECTIONS, COMMANDS
 from fem.case.template import case_template
 from fem.runtime.own_files import created
 from fem.runtime.terminal import say
@@ -26,14 +26,10 @@ def init(
     name:
         A shipped case, sweep, ensemble or site (see `python -m fem list`); default: a case file with every key.
     """
-    kind, text = "case", ""
-    if name is None:
-        text = case_template(load_case())
-    else:
-        kind = next((each.kind for each in COLLECTIONS if name in each.names), "case")
-        text = next(each for each in COLLECTIONS if each.kind == kind).text(name)
-        if kind == "case":
-            text = _for_another_box(text)
+    of = next((each for each in COLLECTIONS if name in each.names), CASES)
+    text = case_template(load_case()) if name is None else of.text(name)
+    if name is not None and of is CASES:
+        text = _for_another_box(text)
     path = to if to is not None else Path(f"{name or 'case'}.toml")
     try:
         with created(path) as stream:
@@ -45,9 +41,9 @@ def init(
             f"{path}: cannot be written ({error.strerror or error}); choose another place with --to"
         ) from None
     say(f"{path} written; next:")
-    if kind == "case":
+    if of is CASES:
         say(f"  python -m fem check {path}    static checks and settings, nothing is computed")
-    say(f"  python -m fem {COMMANDS[kind]} {path}")
+    say(f"  python -m fem {COMMANDS[of.kind]} {path}")
 
 
 def _for_another_box(text: str) -> str:

@@ -411,7 +411,7 @@ def _peak_to_peak(model: Model, last: float | None, time: np.ndarray, slip: np.n
     """Largest less smallest slip over the last full cycle of a harmonic drive [m]."""
     if model.case.motion.kind != "harmonic" or last is None:
         return None
-    period = 2.0 * math.pi / model.case.motion.angular_frequency
+    period = model.case.motion.period
     end = min(last, end_of_drive(model))
     if end < period * (1.0 - 1e-9):
         return None

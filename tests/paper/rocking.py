@@ -340,7 +340,7 @@ def _factor(run: Finished) -> float:
         return math.nan
     time, floor = run.history["time_s"], run.history["base_displacement_m"]
     centre = floor + run.history["centre_x_m"]
-    period = 2.0 * math.pi / run.model.case.motion.angular_frequency
+    period = run.model.case.motion.period
     end = float(time[-1])
     cycles = [(time <= end - n * period) & (time >= end - (n + 1) * period) for n in range(3)]
     return max(float(np.ptp(centre[cycle]) / np.ptp(floor[cycle])) for cycle in cycles)
