@@ -63,7 +63,9 @@ def write_archive(path: Path, about: Mapping[str, Any], arrays: Mapping[str, NDA
     with zipfile.ZipFile(stream, "w", zipfile.ZIP_STORED) as archive:
         archive.writestr(ABOUT, json.dumps({"format": FORMAT, **about}))
         for name, array in arrays.items():
-            archive.writestr(f"{name}.npy", _to_bytes(array))
+            plain = io.BytesIO()
+            np.lib.format.write_array(plain, np.asarray(array), allow_pickle=False)
+            archive.writestr(f"{name}.npy", plain.getvalue())
         archive.comment = bytes(DIGEST_LENGTH)  # the last bytes of the file
     content = stream.getvalue()[:-DIGEST_LENGTH]
     write_atomically(path, content + _digest(content))
@@ -93,10 +95,17 @@ def read_checkpoint(path: Path, *, case_hash: str, program: Mapping[str, str]) -
     checkpoint = read_archive(path)
     theirs = checkpoint.about.get("program")
     if checkpoint.about.get("format") != FORMAT or theirs != dict(program):
+        difference = "unknown"
+        if isinstance(theirs, dict):
+            difference = ", ".join(
+                f"{name} {theirs.get(name)!s:.16}, here {program.get(name)!s:.16}"
+                for name in {**program, **theirs}
+                if theirs.get(name) != program.get(name)
+            )
         raise CheckpointError(
             path,
             "written by another version of the program or of a library it computes with "
-            f"({_difference(theirs, program)}), which would not give the same bits",
+            f"({difference}), which would not give the same bits",
             f"continue with that version, or {REMEDY}",
         )
     if checkpoint.about.get("case_hash") != case_hash:
@@ -114,27 +123,13 @@ def _read(content: bytes) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
         page = parsed_json(archive.read(ABOUT).decode())
         if not isinstance(page, dict):
             raise ValueError(f"{ABOUT} is not a table")
-        names = [name for name in archive.namelist() if name != ABOUT]
-        return page, {name.removesuffix(".npy"): _to_array(archive.read(name)) for name in names}
+        streams = {name: io.BytesIO(archive.read(name)) for name in archive.namelist() if name != ABOUT}
+    with ONE_READER:
+        return page, {
+            name.removesuffix(".npy"): np.asarray(np.lib.format.read_array(stream, allow_pickle=False))
+            for name, stream in streams.items()
+        }
 
 
 def _digest(content: bytes) -> bytes:
     return hashlib.sha256(content).hexdigest().encode()
-
-
-def _to_bytes(array: NDArray[Any]) -> bytes:
-    stream = io.BytesIO()
-    np.lib.format.write_array(stream, np.asarray(array), allow_pickle=False)
-    return stream.getvalue()
-
-
-def _to_array(content: bytes) -> NDArray[Any]:
-    with ONE_READER:
-        return np.asarray(np.lib.format.read_array(io.BytesIO(content), allow_pickle=False))
-
-
-def _difference(theirs: Any, program: Mapping[str, str]) -> str:
-    if not isinstance(theirs, dict):
-        return "unknown"
-    names = [name for name in {**program, **theirs} if theirs.get(name) != program.get(name)]
-    return ", ".join(f"{name} {theirs.get(name)!s:.16}, here {program.get(name)!s:.16}" for name in names)

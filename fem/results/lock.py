@@ -79,7 +79,12 @@ def locked_folder(folder: Path) -> Iterator[FolderLock]:
             _acquire(folder, file)
             lock = FolderLock(folder)
         except Timeout:
-            raise FolderLockedError(_refusal(folder)) from None
+            owner, named = _owner_of(folder), "another process writes there"
+            if owner:
+                who = f"process {owner.get('pid')} on {owner.get('host')} since {owner.get('since')}"
+                own = (owner.get("pid"), owner.get("host")) == (os.getpid(), socket.gethostname())
+                named = f"another run writes there, {who}{' (this very process)' * own}"
+            raise FolderLockedError(f"{folder}: {named}; wait for it, end it, or {OTHER_FOLDER}") from None
         except (FileExistsError, NotADirectoryError):
             raise FolderError(f"{obstacle(folder)}; {OTHER_FOLDER}") from None
         except FileNotFoundError as error:
@@ -122,13 +127,3 @@ def _owner_of(folder: Path) -> dict[str, Any]:
     except (OSError, ValueError):
         return {}
     return owner if isinstance(owner, dict) else {}
-
-
-def _refusal(folder: Path) -> str:
-    owner, wait = _owner_of(folder), f"wait for it, end it, or {OTHER_FOLDER}"
-    if not owner:
-        return f"{folder}: another process writes there; {wait}"
-    named = f"process {owner.get('pid')} on {owner.get('host')} since {owner.get('since')}"
-    if (owner.get("pid"), owner.get("host")) == (os.getpid(), socket.gethostname()):
-        named += " (this very process)"
-    return f"{folder}: another run writes there, {named}; {wait}"

@@ -27,21 +27,18 @@ def use_one_blas_thread() -> None:
     directly, on Linux.
     """
     os.environ |= dict.fromkeys(VARIABLES, "1")
-    for path in _loaded_openblas():
+    lines: list[str] = []
+    with contextlib.suppress(OSError):
+        lines = MAPS.read_text(encoding="utf-8", errors="replace").splitlines()
+    named = {line.split(maxsplit=5)[5] for line in lines if "openblas" in line and "/" in line}
+    for path in named:
+        if not Path(path).name.startswith("lib"):
+            continue
         with contextlib.suppress(OSError):
             library = ctypes.CDLL(path)
             for setter in SETTERS:
                 if hasattr(library, setter):
                     getattr(library, setter)(1)
-
-
-def _loaded_openblas() -> set[str]:
-    try:
-        lines = MAPS.read_text(encoding="utf-8", errors="replace").splitlines()
-    except OSError:
-        return set()
-    named = {line.split(maxsplit=5)[5] for line in lines if "openblas" in line and "/" in line}
-    return {path for path in named if Path(path).name.startswith("lib")}
 
 
 def cores() -> int:

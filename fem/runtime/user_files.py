@@ -10,6 +10,8 @@ from pathlib import Path
 from typing import Any
 
 LARGEST_RESULT = 2**31  #: file of a result [bytes]
+#: flags of what is opened for reading
+UNBLOCKED = sum(getattr(os, name, 0) for name in ("O_NONBLOCK", "O_CLOEXEC", "O_BINARY"))
 MOST_NESTED = 40  #: lists and tables in each other, in JSON
 
 
@@ -35,7 +37,7 @@ def read_own(path: Path, most: int = LARGEST_RESULT) -> bytes:
         OSError: there is none, it is no regular file, larger than `most` bytes, or cannot be read.
     """
     _require_regular(path.stat(), most, path)  # before it is opened, for opening may block
-    with open(path, "rb", opener=_unblocked) as stream:
+    with os.fdopen(os.open(path, os.O_RDONLY | UNBLOCKED), "rb") as stream:
         return stream.read(_require_regular(os.fstat(stream.fileno()), most, path))
 
 
@@ -77,10 +79,6 @@ def _finite(digits: str) -> float:
 def _whole(digits: str) -> int:
     _finite(digits)
     return int(digits)
-
-
-def _unblocked(path: str, flags: int) -> int:
-    return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
 
 
 def _require_regular(status: os.stat_result, most: int, path: Path) -> int:
