@@ -19,12 +19,11 @@ from fem.case.case_rules import CASE_RULES
 from fem.case.content import CaseContent
 from fem.case.files import CASES, DEFAULT_CASE, Origin, parse_case
 from fem.case.overrides import kinds_of, naming_overrides, parse_override, with_overrides
-from fem.case.resolved import resolved_tables
 from fem.case.tables.links import LINK_RULES, ROWS
 from fem.case.tables.neighbours import CORNER_PATCH, beside, case_of
 from fem.case.tables.problem import broken
 from fem.case.tables.unknown_inputs import excluded_values
-from fem.case.toml import toml_document
+from fem.case.toml import resolved_tables, toml_document
 from fem.case.validation import CaseError, problem_lines, read_case_tables
 from fem.records.columns import given_record, written
 from fem.records.record import Direction, Record

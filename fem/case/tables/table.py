@@ -37,10 +37,6 @@ class CaseTable(BaseModel):
         """What a notebook offers: the keys and what is made of them, without the names of pydantic."""
         return sorted(set(super().__dir__()) - (set(dir(BaseModel)) - set(dir(object))))
 
-    def idle_keys(self) -> frozenset[str]:
-        """Keys that are not used because another option is chosen."""
-        return frozenset(filter(self.is_idle, _options(type(self))))
-
     def is_idle(self, name: str) -> bool:
         """Whether a key is not used because another option is chosen."""
         chosen = _options(type(self)).get(name)
