@@ -34,7 +34,6 @@ class Spectrum:
     periods_s: FloatArray
     damping_ratio: float
     displacement_m: FloatArray  #: relative to the floor
-    pseudo_velocity_m_s: FloatArray  #: w times the displacement
     pseudo_acceleration_m_s2: FloatArray  #: w^2 times the displacement
     acceleration_m_s2: FloatArray  #: absolute
 
@@ -93,7 +92,6 @@ def response_spectrum(
         periods_s=periods,
         damping_ratio=damping_ratio,
         displacement_m=displacement,
-        pseudo_velocity_m_s=rates * displacement,
         pseudo_acceleration_m_s2=rates**2 * displacement,
         acceleration_m_s2=absolute,
     )
