@@ -5,6 +5,7 @@ x = A sin(Omega t + phase); any two of amplitude, peak acceleration A Omega^2 an
 
 import math
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 from fem.case.tables import quantities as q
@@ -50,24 +51,16 @@ def _peak(motion: Any) -> float:
     return float(motion.amplitude_m * frequency**2)
 
 
-def _scaled_peak(motion: Any) -> float:
-    """Peak acceleration of a harmonic motion or a pulse by its keys and its scale [m/s2]; 0 of every other motion."""
-    if motion.kind not in ("harmonic", "pulse"):
-        return 0.0
-    peak = motion.peak_acceleration_m_s2
-    return abs(motion.scale) * (_peak(motion) if peak is None else abs(float(peak)))
-
-
 def _given(motion: Any) -> tuple[list[str], list[str]]:
     """Which of amplitude and peak are given, and which of the two frequencies."""
     sizes, frequencies = (
-        [key for key in keys if getattr(motion, key) is not None]
-        for keys in (
-            ("amplitude_m", "peak_acceleration_m_s2"),
-            ("angular_frequency_rad_s", "frequency_Hz"),
-        )
+        ("amplitude_m", "peak_acceleration_m_s2"),
+        ("angular_frequency_rad_s", "frequency_Hz"),
     )
-    return sizes, frequencies
+    return (
+        [key for key in sizes if getattr(motion, key) is not None],
+        [key for key in frequencies if getattr(motion, key) is not None],
+    )
 
 
 def _not_two_of_three(motion: Any) -> str:
@@ -101,20 +94,12 @@ def _amplitude_follows(motion: Any) -> bool:
     return given or amplitude is None or amplitude < 0.0 or q.AMPLITUDE.allows(amplitude)
 
 
-def _complete(kind: str, *keys: str) -> Rule:
-    """What a motion of this kind needs."""
-
-    def missing(motion: Any) -> list[str]:
-        return [key for key in keys if getattr(motion, key) is None]
-
-    return Rule(
-        "motion.",
-        lambda motion: motion.kind != kind or not missing(motion),
-        lambda motion: (
-            f"{' and '.join(missing(motion))} {'is' if len(missing(motion)) == 1 else 'are'} missing: "
-            f'kind = "{kind}" needs {", ".join(keys)}'
-        ),
-    )
+def _incomplete(motion: Any, kind: str, keys: tuple[str, ...]) -> str:
+    """What a motion of a kind needs and does not have; empty where it has all."""
+    missing = [key for key in keys if getattr(motion, key) is None] if motion.kind == kind else []
+    are = "is" if len(missing) == 1 else "are"
+    needs = f'{" and ".join(missing)} {are} missing: kind = "{kind}" needs {", ".join(keys)}'
+    return needs if missing else ""
 
 
 #: quantity of a table -> its units
@@ -161,7 +146,9 @@ SHARED_RULES = (
         f"must be 0 or at least {LEAST_RAMP:g}, got {{ramp_cycles:g}}: so short a taper is an impact; "
         "without one the floor moves from the beginning on (see start)",
     ),
-    _complete("pulse", "shape", "peak_acceleration_m_s2", "pulse_s"),
+    refused(
+        "motion.", partial(_incomplete, kind="pulse", keys=("shape", "peak_acceleration_m_s2", "pulse_s"))
+    ),
     Rule(
         "motion.unit",
         lambda motion: motion.kind != "table" or motion.unit in (None, *UNITS[motion.quantity]),
@@ -200,7 +187,7 @@ SHARED_RULES = (
     ),
 )
 
-MOTION_RULES = (*SHARED_RULES, _complete("table", "file"))
+MOTION_RULES = (*SHARED_RULES, refused("motion.", partial(_incomplete, kind="table", keys=("file",))))
 
 #: the same rules for the keys of the same names, and what concerns a scale of every kind
 VERTICAL_RULES = (
@@ -212,10 +199,10 @@ VERTICAL_RULES = (
     ),
     Rule(
         "vertical.scale",
-        lambda vertical: _scaled_peak(vertical) <= MOST_PEAK,
+        lambda vertical: vertical.kind not in ("harmonic", "pulse") or vertical.nominal_peak <= MOST_PEAK,
         lambda vertical: (
-            f"= {vertical.scale:g} makes a peak acceleration of {_scaled_peak(vertical):.4g} m/s2; "
-            f"it must be at most {MOST_PEAK:g} m/s2"
+            f"= {vertical.scale:g} makes a peak acceleration of {vertical.nominal_peak:.4g} m/s2; it must be at most "
+            f"{MOST_PEAK:g} m/s2"
         ),
     ),
 )
