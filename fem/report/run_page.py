@@ -9,11 +9,10 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from contact.reference.event_driven import EventError
-from fem.case.case import Case
 from fem.case.tables.unknown_inputs import WORDS
 from fem.figures.cache import drawings_of
 from fem.html.page import Page, Signature, html_of
-from fem.html.units import number, quantity, short, typeset
+from fem.html.units import typeset
 from fem.model.container import modes_of_a_body
 from fem.model.floor_numbers import drawn_level
 from fem.model.model import Model, build_model
@@ -25,7 +24,6 @@ from fem.report.animation import (
     exaggerations,
     player_data,
 )
-from fem.report.comparison import compared_rows
 from fem.report.models import OfModel, compared_in_words
 from fem.report.sketch import sketch
 from fem.report.static_sheet import static_sheet
@@ -35,17 +33,21 @@ from fem.results.history import History
 from fem.results.kinds import RUN
 from fem.results.outcome import Outcome
 from fem.results.reader import OpenedRun
-from fem.results.run_result import Energy, Numerics, RigidCheckResult, RunResult, Verdict, to_overturn
+from fem.results.run_result import RigidCheckResult, RunResult, Verdict, to_overturn
 from fem.run.card import card_of
 from fem.run.described import floor_rows, link_rows
 from fem.run.drawn_links import drawn_links
 from fem.run.joints import BOXES_NOTE, box_rows, joints_note, largest_joint_slip, unbolted
 from fem.run.ranges import impact_note, largest_ratio, largest_rotation, largest_slip, of_band
 from fem.run.rigid_check import check_against_rigid_block
-from fem.run.static_words import code_note, governing
+from fem.run.static_words import code_note, governing, rule_says
 from fem.run.summary import (
     band_note,
+    own_motion_name,
     result_rows,
+    run_lifted,
+    run_slid,
+    run_tilted,
     to_compare,
 )
 from fem.run.sureness import SURE, numerical
@@ -55,21 +57,11 @@ from fem.solid.modes import FEW, elastic_mode_table
 #: figures beside the animation, in the order of reading; the others have their own sections
 MOTION = ("rotation", "slip", "base_motion", "spectrum", "uplift", "forces", "phase_portrait", "energy")
 SHORT_MOTION = ("rotation", "slip")
-#: terms of the energy balance: fields of the result, and words
-ENERGIES = {
-    "reference_J": "to overturn",
-    "base_work_J": "work of the floor",
-    "friction_J": "friction",
-    "contact_damping_J": "contact damping",
-    "material_damping_J": "material damping",
-    "crushing_J": "crushing of the floor",
-    "impact_J": "restitution asked of the impacts",
-    "numerical_J": "error at the end, > 0 lost",
-}
 #: what the template names besides the run
 SAID: dict[str, Any] = {
     "BOXES_NOTE": BOXES_NOTE,
     "DEGREES": math.degrees(1.0),
+    "INFINITE": math.inf,
     "band_note": band_note,
     "governing": governing,
     "impact_note": impact_note,
@@ -81,6 +73,11 @@ SAID: dict[str, Any] = {
     "link_rows": link_rows,
     "modes_of_a_body": modes_of_a_body,
     "of_band": of_band,
+    "own_motion_name": own_motion_name,
+    "rule_says": rule_says,
+    "run_lifted": run_lifted,
+    "run_slid": run_slid,
+    "run_tilted": run_tilted,
     "unbolted": unbolted,
 }
 
@@ -140,7 +137,8 @@ def run_report(
         "floor": floor,
         "found": [(name, typeset(text)) for name, text in result_rows(result) if name not in dict(floor)],
         "code": code_note(static.to_result()),
-        "compared": compared_rows(static, to_compare(result)),
+        "static": static,
+        "to_compare": to_compare(result),
         "boxes": box_rows(result),
         "sheet": static_sheet(static, case),
         "drawn": drawings_of(run, model.container),
@@ -153,8 +151,7 @@ def run_report(
         "level": drawn_level(case.floor.slope_percent),
         "modes": [] if brief else elastic_mode_table(model.container.lowest_modes(FEW)),
         "check": None if brief else _check(model, history, result, finished=finished),
-        "stepping": _stepping(case, result.numerics or Numerics()),
-        "energies": _energies(case, result.energy or Energy()),
+        "to_overturn": to_overturn(bool(case.neighbour)),
         "computed": f"{dt.datetime.fromtimestamp(run.place.result.stat().st_mtime):%Y-%m-%d %H:%M}",
         "resolved": read_text(run.place.resolved),
     }
@@ -197,44 +194,6 @@ def _check(model: Model, history: History, result: RunResult, *, finished: bool)
         return check_against_rigid_block(model, history, result.verdict).result
     except (ValueError, EventError) as error:
         return RigidCheckResult(reasons=(str(error),))
-
-
-def _energies(case: Case, energy: Energy) -> list[tuple[str, str]]:
-    """The energy balance at the end: name and value."""
-    absent = {"crushing_J": not case.floor.is_slab, "impact_J": not case.states_restitution}
-    reference = to_overturn(bool(case.neighbour))
-    rows = [
-        (reference if key == "reference_J" else words, quantity(getattr(energy, key), "J"))
-        for key, words in ENERGIES.items()
-        if not absent.get(key, False)
-    ]
-    return [*rows, ("largest error", f"{number(energy.closure_error, figures=3)} of the energy {reference}")]
-
-
-def _stepping(case: Case, numerics: Numerics) -> list[tuple[str, str]]:
-    """How the run was stepped: name and value."""
-    solver, least = case.solver, numerics.smallest_step_s
-    tiny = least is not None and 0.0 < least < 1e-7
-    smallest = quantity(least, "ns", 1e9, 3) if tiny else quantity(least, "µs", 1e6, 3)
-    scheme = f"spectral radius {short(solver.spectral_radius)}"
-    if solver.scheme == "newmark":
-        scheme = f"β {short(solver.newmark_beta)}, γ {short(solver.newmark_gamma)}"
-    penalty, penetrations = (
-        numerics.normal_penalty_Pa_m,
-        (numerics.static_penetration_m, numerics.max_penetration_m),
-    )
-    return [
-        ("unknowns, contact nodes", f"{numerics.unknowns}, {numerics.contact_nodes}"),
-        ("scheme", f"{solver.scheme}, {scheme}"),
-        ("steps, rejected", f"{numerics.steps}, {numerics.rejected}"),
-        ("step, smallest to largest", f"{smallest} to {quantity(numerics.largest_step_s, 'ms', 1000, 3)}"),
-        ("element size, order", f"{quantity(solver.element_size_m, 'mm', 1000, 3)}, {solver.order}"),
-        *([("contact penalty", quantity(penalty, "GPa/m", 1e-9))] if penalty is not None else []),
-        (
-            "penetration, static and largest",
-            ", ".join(quantity(penetration, "µm", 1e6, 3) for penetration in penetrations),
-        ),
-    ]
 
 
 def _history(run: OpenedRun, message: Callable[[str], None]) -> History:
