@@ -127,11 +127,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for token in tokens:
         if one_line(token) != token:
             return _refuse(f"{token!r} holds an end of line; give names and values in one line each")
-    for name in _names_of(tokens):
+    options = [token.partition("=")[0] for token in tokens[1:] if token.startswith("--")]
+    for name in [*tokens[:1], *options, *(f"{tokens[0]} {option}" for option in options)]:
         if words := left_words(name):
             return _refuse(f"{name} {words}")
     if tokens and tokens[0] not in COMMANDS and tokens[0] not in FLAGS:
-        return _refuse(_unknown_command(tokens[0]))
+        near = difflib.get_close_matches(tokens[0], COMMANDS, n=1)
+        way_out = f"; did you mean {near[0]!r}?" if near else ""
+        return _refuse(f"no command {tokens[0]!r}{way_out} (known: {', '.join(COMMANDS)})")
     if tokens and (short := shortage(memory_of(tokens[0] in COMPUTING, _jobs_of(tokens)))):
         return _refuse(short, FAILED)
     try:
@@ -165,18 +168,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
             raise  # not the user's fault: show where
         return _refuse(str(error), getattr(error, "exit_code", BAD_INPUT))
     return result if isinstance(result, int) else 0
-
-
-def _names_of(tokens: Sequence[str]) -> list[str]:
-    """The command, and its options by themselves and behind its name, as `LEFT` has them."""
-    options = [token.partition("=")[0] for token in tokens[1:] if token.startswith("--")]
-    return [*tokens[:1], *options, *(f"{tokens[0]} {option}" for option in options)]
-
-
-def _unknown_command(name: str) -> str:
-    near = difflib.get_close_matches(name, COMMANDS, n=1)
-    way_out = f"; did you mean {near[0]!r}?" if near else ""
-    return f"no command {name!r}{way_out} (known: {', '.join(COMMANDS)})"
 
 
 def _in_words(error: CycloptsError) -> str:

@@ -93,20 +93,6 @@ Scheduler = Annotated[
 Quiet = Annotated[bool, flag("Print no progress.", "--quiet", "-q")]
 
 
-def _connected(scheduler: str | None) -> AbstractContextManager[Any]:
-    """The workers of a cluster, while the context lasts; None without. The optional dask is loaded here."""
-    if scheduler is None:
-        return nullcontext()
-    try:
-        return importlib.import_module("fem.study.cluster").cluster(scheduler)
-    except ModuleNotFoundError as error:
-        if (error.name or "").partition(".")[0] not in ("dask", "distributed"):
-            raise
-        raise CaseError(
-            "--scheduler needs the extra 'cluster': python -m pip install \"unanchored[cluster]\""
-        ) from None
-
-
 @Parameter(name="*")
 @dataclass(frozen=True, kw_only=True)
 class StudyFlags:
@@ -133,7 +119,16 @@ class StudyFlags:
     @contextmanager
     def options(self) -> "Iterator[StudyOptions]":
         """For `run_study`; workers of a cluster are released at the end."""
-        with _connected(self.scheduler) as workers_of:
+        cluster: AbstractContextManager[Any] = nullcontext()
+        if self.scheduler is not None:
+            try:  # the optional dask is loaded here
+                cluster = importlib.import_module("fem.study.cluster").cluster(self.scheduler)
+            except ModuleNotFoundError as error:
+                if (error.name or "").partition(".")[0] not in ("dask", "distributed"):
+                    raise
+                words = "--scheduler needs the extra 'cluster': python -m pip install \"unanchored[cluster]\""
+                raise CaseError(words) from None
+        with cluster as workers_of:
             yield {
                 "jobs": self.jobs,
                 "workers_of": workers_of,

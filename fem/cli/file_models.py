@@ -2,11 +2,9 @@
 
 from typing import Any
 
-from pydantic import Field
+from pydantic import Field, create_model
 
-from fem.case.tables.run_tables import DocumentTable, WindTable
-from fem.site import tables
-from fem.site.request import SiteHeading
+from fem.site.request import DEFAULTED, REQUIRED, TABLES, SiteHeading
 from fem.study.axes import Range
 from fem.study.design import MapChoice, Perturbation, Threshold
 from fem.study.draws import Distribution
@@ -39,17 +37,20 @@ class EnsembleFile(EnsembleHeading):
     derived: dict[str, str] = Field(default={}, description=DERIVED)
 
 
-class SiteFile(SiteHeading):
-    """A site: action, motions, container, friction and limits."""
-
-    site: tables.SiteTable
-    building: tables.BuildingTable | None = None
-    motions: tables.MotionsTable = tables.MotionsTable()
-    friction: tables.FrictionTable
-    limits: tables.LimitsTable
-    wind: WindTable | None = None
-    sources: tables.SourcesTable = tables.SourcesTable()
-    document: DocumentTable | None = None
-
+#: a required table; one that has its defaults where it is left out; one that may be missing
+SITE_TABLES: dict[str, Any] = {
+    name: (table, ...)
+    if name in REQUIRED
+    else (table, table())
+    if name in DEFAULTED
+    else (table | None, None)
+    for name, table in TABLES.items()
+}
+SiteFile = create_model(
+    "SiteFile",
+    __base__=SiteHeading,
+    __doc__="A site: action, motions, container, friction and limits.",
+    **SITE_TABLES,
+)
 
 FILE_MODELS = {"sweep": SweepFile, "ensemble": EnsembleFile, "site": SiteFile}

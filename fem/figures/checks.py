@@ -11,7 +11,7 @@ from fem.figures import style
 from fem.results.figures import TURNED
 from fem.results.outcome import ENDINGS
 from fem.results.reader import RunData
-from fem.results.run_result import ChangedRun, RigidCheckResult, RunAndBlock, Verdict
+from fem.results.run_result import ChangedRun, RunAndBlock, Verdict
 from fem.runtime.units import RATIO
 
 FALLEN_ROW = 1.18  #: rotation ratio at which overturned members are drawn
@@ -28,7 +28,10 @@ def rigid_check_figure(run: RunData) -> Figure | None:
     rotation, block = np.degrees(table["rotation_rad"]), np.degrees(table["analytic_rotation_rad"])
     reasons = "; ".join(check.reasons)
     fair = "A fair comparison" if check.meaningful else f"No fair comparison: {reasons}"
-    lines = textwrap.wrap(f"{fair}.{_ratios(check)}", LINE_LENGTH)
+    ratio = check.velocity_ratio or RunAndBlock()
+    if ratio.run is not None and ratio.block is not None:
+        fair += f". Velocity ratio at the first impact: {ratio.run:.4f}, block {ratio.block:.4f}"
+    lines = textwrap.wrap(f"{fair}.", LINE_LENGTH)
     figure, (above, below) = style.time_panels((2.4, 1.35), header=3 + len(lines))
     style.curve_panel(
         above,
@@ -68,7 +71,9 @@ def band_figure(run: RunData) -> Figure | None:
         return None
     groups: dict[str, list[ChangedRun]] = {}
     for member in band.members:
-        groups.setdefault(_group_of(member), []).append(member)
+        key = next(iter(member.values or {}), "")
+        what = f"{member.kind}s" if member.kind in ("pair", "draw") else WORDS.get(key, key) or "as given"
+        groups.setdefault(what, []).append(member)
     figure, (above, below) = style.panels((2.2, 1.5), header=3, below=LABELS)
     for position, members in enumerate(groups.values()):
         spread = np.linspace(-0.3, 0.3, len(members)) if len(members) > 1 else np.zeros(1)
@@ -105,21 +110,6 @@ def band_figure(run: RunData) -> Figure | None:
     statement = f"rotation ratio {ratios}; the large mark is the run itself"
     style.head(figure, f"Variations of the inputs, {sure}: {' or '.join(band.outcomes)}", statement)
     return figure
-
-
-def _group_of(member: ChangedRun) -> str:
-    """What a member changes, in words."""
-    if member.kind in ("pair", "draw"):
-        return f"{member.kind}s"
-    keys = list(member.values or {})
-    return WORDS.get(keys[0], keys[0]) if keys else "as given"
-
-
-def _ratios(check: RigidCheckResult) -> str:
-    ratio = check.velocity_ratio or RunAndBlock()
-    if ratio.run is None or ratio.block is None:
-        return ""
-    return f" Velocity ratio at the first impact: {ratio.run:.4f}, block {ratio.block:.4f}."
 
 
 def _height(member: ChangedRun) -> float:

@@ -150,7 +150,12 @@ def draw_heat_map(
         figure.suptitle(title, x=0.01, ha="left", fontsize=10.0)
         if bar:
             figure.colorbar(scale, ax=subplots[: len(panels)], label=bar, pad=0.02, aspect=30)
-        handles = _legend([panel for panel in panels if panel.look is None], shared)
+        plain = [panel for panel in panels if panel.look is None]
+        handles = _classes(plain, shared) if shared else []
+        if not shared and any(panel.overturned is not None for panel in plain):
+            handles.append(Patch(facecolor=BLACK, label="overturned"))
+        if any(panel.unsure is not None and panel.unsure.any() for panel in plain):
+            handles.append(Patch(facecolor=WHITE, edgecolor=BLACK, hatch=HATCH, label="unsure", linewidth=0))
         handles += subplots[0].get_legend_handles_labels()[0]
         if handles:  # names of curves are long
             columns = 4 if len(handles) > 7 or any(panel.curves for panel in panels) else 7
@@ -171,16 +176,6 @@ def _classes(panels: Sequence[Panel], look: Look) -> list[Any]:
         for k, (word, colour) in enumerate(look.colours.items())
         if k in seen and word
     ]
-
-
-def _legend(panels: Sequence[Panel], look: Look | None) -> list[Any]:
-    """A patch for every class and sign that occurs."""
-    handles = _classes(panels, look) if look else []
-    if not look and any(panel.overturned is not None for panel in panels):
-        handles.append(Patch(facecolor=BLACK, label="overturned"))
-    if any(panel.unsure is not None and panel.unsure.any() for panel in panels):
-        handles.append(Patch(facecolor=WHITE, edgecolor=BLACK, hatch=HATCH, label="unsure", linewidth=0))
-    return handles
 
 
 def _fill_cells(axes: Axes, colours: FloatArray) -> None:

@@ -30,7 +30,11 @@ def draw_spectra(
     if vertical:
         groups.append(("vertical", list(vertical)))
     with style.house_style():
-        lines = max(_legend_lines(len(names)) for _, names in groups)
+        named = (  # each motion, or three fractiles of many, and their mean
+            (count if count <= MOST_NAMED else 3 * (count > MOST_DRAWN)) + (count > 1)
+            for count in (len(names) for _, names in groups)
+        )
+        lines = -(-max(named) // NAMES_A_LINE)
         gaps = [0.35 + style.LINE * lines] * (len(groups) - 1)
         figure, axes = style.panels([2.6] * len(groups), gaps=gaps, header=2 + lines)
         style.head(figure, "Response spectra of the motions", "pseudo-acceleration, 5 % damping")
@@ -66,10 +70,3 @@ def _draw_fractiles(panel: Axes, periods: FloatArray, spectra: FloatArray) -> No
     )
     panel.fill_between(periods, low, high, color=style.BLUE, alpha=0.35, linewidth=0.0, label="16 to 84 %")
     panel.plot(periods, middle, color=style.BLUE, linewidth=1.2, label="median")
-
-
-def _legend_lines(motions: int) -> int:
-    """Lines of the legend: each motion, where it names them, or their fractiles, and their mean."""
-    fractiles = 3 if motions > MOST_DRAWN else 0
-    names = (motions if motions <= MOST_NAMED else fractiles) + (motions > 1)
-    return -(-names // NAMES_A_LINE)

@@ -208,8 +208,14 @@ def _draw_states(axes: Axes, time: FloatArray, modes: Sequence[str], states: Seq
     for row, state in enumerate(states):
         inside = np.concatenate([[False], names == state, [False]])
         first, last = np.flatnonzero(~inside[:-1] & inside[1:]), np.flatnonzero(inside[:-1] & ~inside[1:])
-        spans = _joined(time[first], ends[last - 1], float(time[-1] - time[0]) / STRETCHES)
-        axes.broken_barh(spans, (row - 0.4, 0.8), color=STATE_COLOURS[state], linewidth=0)
+        gap, spans = float(time[-1] - time[0]) / STRETCHES, list[list[float]]()
+        for start, end in zip(time[first].tolist(), ends[last - 1].tolist(), strict=True):
+            if spans and start - spans[-1][1] < gap:
+                spans[-1][1] = end  # closer than can be seen
+            else:
+                spans.append([start, end])
+        drawn = [(start, max(end - start, gap)) for start, end in spans]
+        axes.broken_barh(drawn, (row - 0.4, 0.8), color=STATE_COLOURS[state], linewidth=0)
     axes.set_yticks(range(len(states)), states, fontsize=8)
     axes.set_ylim(len(states) - 0.45, -0.55)
     axes.tick_params(axis="y", length=0)
@@ -308,14 +314,3 @@ def cursor_axes(figure: Figure) -> dict[str, Any] | None:
         "vertical": "rate",
         "factors": [math.degrees(1.0)] * 2,  # from SI units to those of the axes
     }
-
-
-def _joined(starts: FloatArray, ends: FloatArray, gap: float) -> list[tuple[float, float]]:
-    """Spans as (start, length); spans closer than `gap` are joined."""
-    spans: list[list[float]] = []
-    for start, end in zip(starts.tolist(), ends.tolist(), strict=True):
-        if spans and start - spans[-1][1] < gap:
-            spans[-1][1] = end
-        else:
-            spans.append([start, end])
-    return [(start, max(end - start, gap)) for start, end in spans]

@@ -65,7 +65,14 @@ class Scene:
         self._on_floor += [(mesh, mesh.points.copy(), 0.0) for mesh in rising]
         colours = self._add_meshes(*moving, *rising)
         self._captions = Captions(self.plotter, self.view, colours, self._stress_limit)
-        self._set_camera()
+        left, right, low, high = self.view.edges
+        centre, camera = (0.5 * (left + right), 0.5 * (low + high)), self.plotter.camera
+        camera.parallel_projection = True  # from the front, at the scale of the view
+        camera.focal_point = (*centre, 0.0)
+        camera.position = (*centre, 10.0)
+        camera.up = (0.0, 1.0, 0.0)
+        camera.parallel_scale = 0.5 * (high - low)
+        camera.clipping_range = (1.0, 20.0)
 
     def show(self, frame: Frame) -> None:
         """Set the scene to a frame."""
@@ -126,18 +133,6 @@ class Scene:
         plotter.add_mesh(self._outline, color=EDGE, line_width=3, lighting=False, render_lines_as_tubes=True)
         plotter.add_mesh(self._arrows, color=ARROW, lighting=False)
         return colours
-
-    def _set_camera(self) -> None:
-        """Look at the elevation from the front, at the scale of the view."""
-        left, right, low, high = self.view.edges
-        centre = (0.5 * (left + right), 0.5 * (low + high))
-        camera = self.plotter.camera
-        camera.parallel_projection = True
-        camera.focal_point = (*centre, 0.0)
-        camera.position = (*centre, 10.0)
-        camera.up = (0.0, 1.0, 0.0)
-        camera.parallel_scale = 0.5 * (high - low)
-        camera.clipping_range = (1.0, 20.0)
 
 
 def write_picture(run: OpenedRun, *, time: float | None = None, path: Path | None = None) -> Path:

@@ -12,7 +12,7 @@ from fem.model.model import build_model
 from fem.results.kinds import RUN
 from fem.results.outcome import Outcome
 from fem.results.reader import OpenedRun
-from fem.results.run_result import AnalyticBlock, Verdict
+from fem.results.run_result import Verdict
 from fem.run.checks import has_analytic_block
 from fem.run.compute import compute
 from fem.run.rigid_check import analytic_block
@@ -84,7 +84,10 @@ def side_by_side(given: Case, own: Verdict | None = None) -> Sequence[OfModel]:
         "elastic container, rigid ground": RIGID_GROUND | {"solver.model": "reduced"},
         f"elastic container, {ground}": slab | {"solver.model": "reduced"},
     }
-    block, asked = (own and own.analytic) or _of_analytic_block(rigid), case_hash(given)
+    block, asked = own and own.analytic, case_hash(given)
+    if block is None:
+        model = build_model(rigid)
+        block = analytic_block(model, model.duration)
     found = [
         OfModel(
             model="analytic rigid block",
@@ -99,27 +102,19 @@ def side_by_side(given: Case, own: Verdict | None = None) -> Sequence[OfModel]:
             case = given.replace(changes)
             known = own if case_hash(case) == asked else None
             verdict = known or compute(case.without_fields(), band=False, margin=True).verdict
-            found.append(_of_verdict(name, verdict, own=known is not None))
+            found.append(
+                OfModel(
+                    model=name,
+                    own=known is not None,
+                    outcome=verdict.outcome,
+                    rotation_ratio=verdict.rotation_ratio,
+                    max_slip_m=verdict.max_slip_m,
+                    flight_share=verdict.flight_share,
+                    overturns_at=verdict.margin and verdict.margin.factor,
+                    tried_to=verdict.margin and verdict.margin.largest_tried,
+                )
+            )
     return found
-
-
-def _of_analytic_block(rigid: Case) -> AnalyticBlock:
-    model = build_model(rigid)
-    return analytic_block(model, model.duration)
-
-
-def _of_verdict(name: str, verdict: Verdict, *, own: bool) -> OfModel:
-    margin = verdict.margin
-    return OfModel(
-        model=name,
-        own=own,
-        outcome=verdict.outcome,
-        rotation_ratio=verdict.rotation_ratio,
-        max_slip_m=verdict.max_slip_m,
-        flight_share=verdict.flight_share,
-        overturns_at=None if margin is None else margin.factor,
-        tried_to=None if margin is None else margin.largest_tried,
-    )
 
 
 def compared_in_words(given: Case, found: Sequence[OfModel]) -> str:

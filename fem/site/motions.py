@@ -358,8 +358,16 @@ def floor_result(
             vertical_peak_m_s2=float(np.mean([np.abs(a).max() for a in upward])) if upward else None,
             vertical_mean_m_s2=_numbers(checked.vertical.mean) if checked.vertical else (),
         )
-    if request.building is None or None in floors:
+    if (building := request.building) is None or None in floors:
         return None
+    shape = "equal storeys that shear" if building.kind == "shear" else "one stiffness in bending"
+    modes = f"{building.storeys} storeys, {shape}, all modes up to {HIGHEST_HZ:g} Hz"
+    if building.storeys is None:
+        beyond = ", which this one exceeds" * (building.building_period_s > ONE_MODE_TO_S)
+        modes = (
+            f"one mode, linear over the height, good for low, stiff buildings up to {ONE_MODE_TO_S:g} s{beyond}; no "
+            "model of the structure as 4.3.5.1 (2)P asks for it"
+        )
     varied = {period: motions for period, motions in floors.items() if period is not None}
     peaks = {
         period: float(np.mean([motion.peak for motion in motions])) for period, motions in varied.items()
@@ -371,26 +379,14 @@ def floor_result(
         for motion in motions
     ]
     return FloorResult(
-        z_over_h=request.building.z_over_h,
-        building=_modes_in_words(request.building),
+        z_over_h=building.z_over_h,
+        building=modes,
         building_periods_s=tuple(varied),
-        damping_ratio=request.building.damping_ratio,
+        damping_ratio=building.damping_ratio,
         peak_m_s2=peaks[worst],
         peak_velocity_m_s=float(np.mean([motion.intensities["h"].peak_velocity_m_s for motion in motions])),
         mean_m_s2=_numbers(np.mean(spectra, axis=0)),
     )
-
-
-def _modes_in_words(building: BuildingTable) -> str:
-    """The model of a building."""
-    if building.storeys is None:
-        beyond = building.building_period_s > ONE_MODE_TO_S
-        return (
-            f"one mode, linear over the height, good for low, stiff buildings up to {ONE_MODE_TO_S:g} s"
-            f"{', which this one exceeds' if beyond else ''}; no model of the structure as 4.3.5.1 (2)P asks for it"
-        )
-    shape = "equal storeys that shear" if building.kind == "shear" else "one stiffness in bending"
-    return f"{building.storeys} storeys, {shape}, all modes up to {HIGHEST_HZ:g} Hz"
 
 
 def _numbers(values: FloatArray) -> tuple[float, ...]:

@@ -57,6 +57,7 @@ TABLES: dict[str, type[CaseTable]] = {
     "document": DocumentTable,
 }
 FULL, EMPTY = "full", "empty"
+DEFAULTED = ("motions", "sources")  #: tables that may be left out, and then have their defaults
 WIDTH, DEPTH = "width", "depth"  #: elevations: the dimension along the motion; a case file shows the first
 
 
@@ -189,9 +190,11 @@ class SiteRequest:
     @property
     def frictions(self) -> list[tuple[float, float]]:
         """Pairs of static and kinetic friction: the corners of the ranges, and the middle."""
-        static, share = _ends(self.friction.mu_static), _ends(self.friction.mu_kinetic_over_static)
+        given = self.friction.mu_static, self.friction.mu_kinetic_over_static
+        static, share = ((values[0], values[-1]) for values in given)
         pairs = [*product(static, share), (0.5 * sum(static), 0.5 * sum(share))]
-        return list(dict.fromkeys((mu, _rounded(mu * part)) for mu, part in pairs))
+        # without the last bits of a product: 0.12 for 0.3 times 0.4
+        return list(dict.fromkeys((mu, float(f"{mu * part:.9g}")) for mu, part in pairs))
 
     @cached_property
     def variants(self) -> dict[tuple[str, str], Case]:
@@ -304,7 +307,7 @@ def _request(data: Mapping[str, Any], origin: Origin, container: Case | None = N
     for name, model in TABLES.items():
         if name in REQUIRED and name not in tables:
             problems.append(f"[{name}] is missing: {REQUIRED[name]}")
-        elif name in tables or name in ("motions", "sources"):
+        elif name in tables or name in DEFAULTED:
             take(name, model, tables.get(name, {}))
     if problems:
         raise CaseError("\n".join(problems))
@@ -369,15 +372,6 @@ def _check_floor(request: SiteRequest) -> None:
             '[floor_spectrum] and [motions] source = "floor" both say how the floor moves; leave the spectrum out, or '
             'fit the records to it with source = "records" or "matched"'
         )
-
-
-def _ends(values: list[float]) -> tuple[float, float]:
-    return values[0], values[-1]
-
-
-def _rounded(value: float) -> float:
-    """Without the last bits of a product: 0.12 for 0.3 times 0.4."""
-    return float(f"{value:.9g}")
 
 
 def _action_of(site: SiteTable, element_factor: float) -> SiteAction:

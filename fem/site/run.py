@@ -224,8 +224,14 @@ class Verification:
     def _result(self, motions: MotionSet, answer: SiteAnswer | None) -> SiteResult:
         """Everything that was found; without an answer what there is, and what is missing."""
         request, inputs, rows = self.request, inputs_of(self.request), self.stages.rows
-        own = rows.of(self.stages.of_set())
-        missing = None if answer else self._missing()
+        own = rows.of(wanted)
+        wanted, missing = self.stages.of_set(), None
+        if answer is None:
+            missing = (
+                "repetitions, further motions, other factors on the motions or the deciding runs are missing"
+            )
+            if left := len(rows.missing(wanted)):
+                missing = f"{len(wanted) - left} of {len(wanted)} runs of the set are computed"
         action = action_result(request.action, self.stages.checked)
         floor = floor_result(request, self.stages.floors, self.stages.checked)
         document = request.document.model_dump(exclude_none=True) if request.document else None
@@ -260,13 +266,6 @@ class Verification:
             ),
             document=None if document is None else Signature(**document),
         )
-
-    def _missing(self) -> str:
-        """What an interrupted verification has not come to, in words."""
-        rows, wanted = self.stages.rows, self.stages.of_set()
-        if left := len(rows.missing(wanted)):
-            return f"{len(wanted) - left} of {len(wanted)} runs of the set are computed"
-        return "repetitions, further motions, other factors on the motions or the deciding runs are missing"
 
 
 def deciding(runs: Mapping[RunKey, SiteRun], governing: SiteRun | None) -> list[RunKey]:

@@ -123,7 +123,9 @@ def size_axis(
             end of which the containers cannot be built.
     """
     quantity, value = _quantity(key), _given(request, key)
-    steps = _steps(request, key)
+    steps = 1 if key == BOXES else None  # values from 0 to 1, where there are no others between
+    if key == FLOOR and request.building is not None:
+        steps = request.building.storeys
     last_is_usual = high is None
     if low is None or high is None:
         if key not in RANGES and not (value and value > 0.0):
@@ -195,13 +197,6 @@ def followers(request: SiteRequest, key: str) -> tuple[str, ...]:
     box = request.container.container
     square = key in SIDES and box.width_m == box.depth_m
     return tuple(side for side in SIDES if square and side != key)
-
-
-def _steps(request: SiteRequest, key: str) -> int | None:
-    """Values of a key from 0 to 1, where it has no others between: whole numbers, floors; None: it has all."""
-    if key == FLOOR and request.building is not None:
-        return request.building.storeys
-    return 1 if key == BOXES else None
 
 
 def _quantity(key: str) -> Quantity:

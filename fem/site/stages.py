@@ -266,25 +266,21 @@ class Stages:
 
     def beside(self, confirmed: Sequence[ConfirmedRun] = (), left_out: str = "") -> Beside:
         """What the answer rests on beside the runs: the deciding runs repeated, stages that were left out, in words."""
+        in_plane_only = ON_A_SLOPE if self.request.container.floor.slope_percent else ""
+        if not in_plane_only and self._lacks_second:
+            in_plane_only = NO_SECOND
+        if not self.request.motions.second_component:
+            in_plane_only = ""
         return Beside(
             confirmed=confirmed,
             wind=self.wind,
             left_out=left_out,
             two_directions=self._two_directions(),
             slips_of_further=self._slips_of_further(),
-            in_plane_only=self._in_plane_only,
+            in_plane_only=in_plane_only,
             still=sum(key.stage == SET for key in self.rows.still),
             moves_at=self.first_movement,
         )
-
-    @property
-    def _in_plane_only(self) -> str:
-        """Why the slip in two directions, which was asked for, is not known, in words; empty: it is."""
-        if not self.request.motions.second_component:
-            return ""
-        if self.request.container.floor.slope_percent:
-            return ON_A_SLOPE
-        return NO_SECOND if self._lacks_second else ""
 
     @property
     def _lacks_second(self) -> bool:
