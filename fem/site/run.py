@@ -224,8 +224,8 @@ class Verification:
     def _result(self, motions: MotionSet, answer: SiteAnswer | None) -> SiteResult:
         """Everything that was found; without an answer what there is, and what is missing."""
         request, inputs, rows = self.request, inputs_of(self.request), self.stages.rows
-        own = rows.of(wanted)
         wanted, missing = self.stages.of_set(), None
+        own = rows.of(wanted)
         if answer is None:
             missing = (
                 "repetitions, further motions, other factors on the motions or the deciding runs are missing"
