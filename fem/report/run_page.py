@@ -6,13 +6,11 @@
 import datetime as dt
 import math
 from collections.abc import Callable, Sequence
-from typing import Any
 
 from contact.reference.event_driven import EventError
 from fem.case.tables.unknown_inputs import WORDS
 from fem.figures.cache import drawings_of
 from fem.html.page import Page, Signature, html_of
-from fem.html.units import typeset
 from fem.model.container import modes_of_a_body
 from fem.model.floor_numbers import drawn_level
 from fem.model.model import Model, build_model
@@ -34,22 +32,10 @@ from fem.results.kinds import RUN
 from fem.results.outcome import Outcome
 from fem.results.reader import OpenedRun
 from fem.results.run_result import RigidCheckResult, RunResult, Verdict, to_overturn
+from fem.run import described, joints, ranges, static_words, summary
 from fem.run.card import card_of
-from fem.run.described import floor_rows, link_rows
 from fem.run.drawn_links import drawn_links
-from fem.run.joints import BOXES_NOTE, box_rows, joints_note, largest_joint_slip, unbolted
-from fem.run.ranges import impact_note, largest_ratio, largest_rotation, largest_slip, of_band
 from fem.run.rigid_check import check_against_rigid_block
-from fem.run.static_words import code_note, governing, rule_says
-from fem.run.summary import (
-    band_note,
-    own_motion_name,
-    result_rows,
-    run_lifted,
-    run_slid,
-    run_tilted,
-    to_compare,
-)
 from fem.run.sureness import SURE, numerical
 from fem.runtime.user_files import read_text
 from fem.solid.modes import FEW, elastic_mode_table
@@ -57,28 +43,10 @@ from fem.solid.modes import FEW, elastic_mode_table
 #: figures beside the animation, in the order of reading; the others have their own sections
 MOTION = ("rotation", "slip", "base_motion", "spectrum", "uplift", "forces", "phase_portrait", "energy")
 SHORT_MOTION = ("rotation", "slip")
-#: what the template names besides the run
-SAID: dict[str, Any] = {
-    "BOXES_NOTE": BOXES_NOTE,
-    "DEGREES": math.degrees(1.0),
-    "INFINITE": math.inf,
-    "band_note": band_note,
-    "governing": governing,
-    "impact_note": impact_note,
-    "joints_note": joints_note,
-    "largest_joint_slip": largest_joint_slip,
-    "largest_ratio": largest_ratio,
-    "largest_rotation": largest_rotation,
-    "largest_slip": largest_slip,
-    "link_rows": link_rows,
-    "modes_of_a_body": modes_of_a_body,
-    "of_band": of_band,
-    "own_motion_name": own_motion_name,
-    "rule_says": rule_says,
-    "run_lifted": run_lifted,
-    "run_slid": run_slid,
-    "run_tilted": run_tilted,
-    "unbolted": unbolted,
+#: modules whose words the template takes
+SAID = {
+    module.__name__.rpartition(".")[2]: module
+    for module in (described, joints, ranges, static_words, summary)
 }
 
 
@@ -113,7 +81,6 @@ def run_report(
     played = {} if len(history.modes) < 2 or brief else player_data(animation, history, model=model)
     finished, height, static = run.status in RUN.finished, model.container.mesh.height, model.static
     card = card_of(result)
-    floor = [(name, typeset(value)) for name, value in floor_rows(result.floor)]
     peak = static.own_motion.sliding.demand * case.gravity_m_s2 / static.weight - static.downhill
     moves = case.motion.kind != "none" or case.has_vertical
     view = {
@@ -134,12 +101,8 @@ def run_report(
             peak_acceleration=peak,
             peak_vertical=static.peak_vertical_acceleration,
         ),
-        "floor": floor,
-        "found": [(name, typeset(text)) for name, text in result_rows(result) if name not in dict(floor)],
-        "code": code_note(static.to_result()),
         "static": static,
-        "to_compare": to_compare(result),
-        "boxes": box_rows(result),
+        "to_compare": summary.to_compare(result),
         "sheet": static_sheet(static, case),
         "drawn": drawings_of(run, model.container),
         "curves": [name for name in (SHORT_MOTION if brief else MOTION) if name != "base_motion" or moves],
@@ -164,7 +127,7 @@ def run_report(
         scripts=["player.js"] if played else [],
         data={"run": played} if played else {},
     )
-    return html_of(page, "run.html.j2", view=view, **SAID)
+    return html_of(page, "run.html.j2", view=view, modes_of_a_body=modes_of_a_body, **SAID)
 
 
 def _standing(verdict: Verdict) -> str:

@@ -23,8 +23,8 @@ from fem.results.errors import FolderError
 from fem.results.figures import DURATION, PGA, PGD, PGV, SLIPPED, TURNED, Place, Shown, figures_of
 from fem.results.kinds import ENSEMBLE, HALL, RESPONSE
 from fem.results.outcome import COUNTED, Outcome
+from fem.run import described
 from fem.run.card import deciding_in_words, times
-from fem.run.described import link_rows
 from fem.run.sureness import REGIME_UNSURE
 from fem.runtime import units
 from fem.runtime.identity import command_line
@@ -497,7 +497,7 @@ def _html(
         case=case,
         numerics=None,
         joints_below=False,
-        link_rows=link_rows,
+        described=described,
         modes_of_a_body=modes_of_a_body,
         sentence=info.no_answer_yet or sentence,
         measures=_measures(motions),

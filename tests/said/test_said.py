@@ -32,7 +32,7 @@ from fem.case.overrides import parse_override
 from fem.html.page import _environment
 from fem.model.container import modes_of_a_body
 from fem.report.study_page import ensemble_report, response_report, sweep_report
-from fem.run.described import link_rows
+from fem.run import described
 from fem.site.page import site_report
 
 HERE = Path(__file__).parent
@@ -112,7 +112,7 @@ def case_rows(asked):
     """The rows of a named case with changes as `--set` takes them, as pages have them."""
     name, *changes = shlex.split(asked)
     case = named_case(name, dict(map(parse_override, changes)))
-    names = {"link_rows": link_rows, "modes_of_a_body": modes_of_a_body}
+    names = {"described": described, "modes_of_a_body": modes_of_a_body}
     return str(_environment().get_template("case.html.j2").make_module(names).case_table(case))
 
 
