@@ -60,14 +60,9 @@ def picture(
         if time is not None:
             raise CaseError("--time is for a run, and this is a motion file")
         record = read_record(path, unit=unit, sample_interval=sample_interval)
-        component = record.component("horizontal", quantity=quantity, channel=channel) if channel else None
-        components = (
-            [candidate for candidate in record.components if candidate.quantity == quantity][:3]
-            if component is None
-            else [component]
-        )
-        if not components:
-            record.component("horizontal", quantity=quantity)  # raises, with what it holds
+        components = [candidate for candidate in record.components if candidate.quantity == quantity][:3]
+        if channel or not components:  # raises where it holds none, with what it holds
+            components = [record.component("horizontal", quantity=quantity, channel=channel)]
         processing = Processing(baseline=baseline)
         made = [processed(component, processing) for component in components]
         noted = [

@@ -37,6 +37,16 @@ def rounded(value: float, figures: int = 3) -> str:
     return typeset(plain_number(value, figures))
 
 
+def one_two_five(value: float, *, up: bool) -> float:
+    """1, 2 or 5 times a power of ten, not below a value or, not `up`, not above it; 0 of 0."""
+    if not value > 0.0:
+        return 0.0
+    steps = [step * 10.0 ** math.floor(math.log10(value)) for step in (1.0, 2.0, 5.0, 10.0)]
+    if up:
+        return next(step for step in steps if step >= value * (1.0 - 1e-9))
+    return max(step for step in steps[:3] if step <= value * (1.0 + 1e-9))
+
+
 def quantity(value: float | None, unit: str, factor: float = 1.0, figures: int = 4) -> str:
     """A number with its unit, held together by a space that does not break."""
     text = number(value, factor, figures)

@@ -12,7 +12,7 @@ import numpy as np
 import pyvista
 
 from fem.case.columns import NEIGHBOURS
-from fem.html.units import rounded
+from fem.html.units import one_two_five, rounded
 from fem.model.floor_numbers import drawn_level
 from fem.render.scene import BAR, BOTTOM, SIDE, View
 from fem.results.errors import FolderError
@@ -128,8 +128,7 @@ class Captions:
         """A ruler of 1, 2 or 5 times a power of ten in the lower left corner; it does not move with the floor."""
         left, _, low, _ = view.edges
         pixel = 1.0 / view.pixels_per_metre
-        length = 10.0 ** math.floor(math.log10(RULER * pixel))
-        length *= max(step for step in (1.0, 2.0, 5.0) if step * length <= RULER * pixel)
+        length = one_two_five(RULER * pixel, up=False)
         start, foot, tick = left + SIDE * pixel, low + 16 * pixel, 5 * pixel
         ends = (start, start + length)
         lines = [*((x, foot) for x in ends), *((x, foot + z) for x in ends for z in (-tick, tick))]

@@ -6,7 +6,6 @@ Arrows below the base show the contact pressure.
 """
 
 import io
-import math
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +14,7 @@ import numpy as np
 import pyvista
 from PIL import Image
 
+from fem.html.units import one_two_five
 from fem.render.caption import Captions, caption, rotations_at, symbols
 from fem.render.scene import (
     arrow_points,
@@ -52,7 +52,7 @@ class Scene:
         self.view = summary.view
         self._pressed, self._usual_pressure = summary.pressed, summary.usual_pressure
         # Of a usual frame: at the stress of an impact all other frames would be pale.
-        self._stress_limit = _round_up(summary.usual_stress)
+        self._stress_limit = one_two_five(summary.usual_stress, up=True)
         pyvista.vtk_verbosity("error")  # VTK warns of a missing display, and renders without one
         self.plotter = pyvista.Plotter(off_screen=True, window_size=list(self.view.size))
         self.plotter.set_background("white")  # type: ignore[arg-type]
@@ -176,11 +176,3 @@ def time_of_largest_rotation(run: OpenedRun) -> float:
     """Time of the frame with the largest rotation, of any box of a loose stack [s]."""
     rotations = np.abs(rotations_at(run, run.fields.times)).max(axis=0)
     return float(run.fields.times[np.argmax(rotations)])
-
-
-def _round_up(value: float) -> float:
-    """The next of 1, 2, 5 times a power of ten; 0 of 0."""
-    if not value > 0.0:
-        return 0.0
-    step = 10.0 ** math.floor(math.log10(value))
-    return step * next(factor for factor in (1.0, 2.0, 5.0, 10.0) if factor * step >= value * (1.0 - 1e-9))

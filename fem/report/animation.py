@@ -19,6 +19,7 @@ from matplotlib.colors import to_hex
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
+from fem.html.units import one_two_five
 from fem.model.model import Model
 from fem.results.fields import Fields, Frame
 from fem.results.history import History
@@ -109,7 +110,7 @@ class Animation:
         """The end of the colour scale [Pa]; 0 where there is no stress."""
         if self.largest_stress == 0.0:
             return 0.0
-        return _round_up(float(np.percentile(self.stresses, STRESS_SHARE)))
+        return one_two_five(float(np.percentile(self.stresses, STRESS_SHARE)), up=True)
 
 
 def animation_of(model: Model, fields: Fields | None, links: tuple[DrawnLink, ...] = ()) -> Animation:
@@ -302,7 +303,7 @@ def exaggeration(animation: Animation, height: float) -> float:
     typical = float(np.percentile(largest, TYPICAL))
     reach = max(float(np.abs(frame.centre).max()) for frame in animation.frames) + height
     most = SHOWN_ROUNDING * height / (SINGLE_PRECISION * reach)
-    return max(1.0, round_down(min(SHOWN_ELASTIC * height / typical if typical else most, most)))
+    return max(1.0, one_two_five(min(SHOWN_ELASTIC * height / typical if typical else most, most), up=False))
 
 
 def exaggerations(animation: Animation, height: float) -> list[float]:
@@ -310,7 +311,12 @@ def exaggerations(animation: Animation, height: float) -> list[float]:
     fit = exaggeration(animation, height)
     if fit == 0.0:
         return []
-    return sorted({1.0, *(round_down(fit * factor) for factor in (0.1, 0.3, 1.0, 3.0) if fit * factor > 1.0)})
+    return sorted(
+        {
+            1.0,
+            *(one_two_five(fit * factor, up=False) for factor in (0.1, 0.3, 1.0, 3.0) if fit * factor > 1.0),
+        }
+    )
 
 
 def colour_scale(name: str, count: int) -> list[str]:
@@ -353,15 +359,3 @@ def _frame(
         von_mises=None if frame.von_mises is None else np.asarray(frame.von_mises, dtype=float)[drawn],
         normal_force=np.asarray(frame.contact_pressure, dtype=float)[contact] * area,
     )
-
-
-def _round_up(value: float) -> float:
-    """1, 2, 5 times a power of ten, not below the value."""
-    power = 10.0 ** math.floor(math.log10(value))
-    return next(step * power for step in (1.0, 2.0, 5.0, 10.0) if step * power >= value * (1.0 - 1e-9))
-
-
-def round_down(value: float) -> float:
-    """1, 2, 5 times a power of ten, not above the value."""
-    power = 10.0 ** math.floor(math.log10(value))
-    return next(step * power for step in (5.0, 2.0, 1.0) if step * power <= value * (1.0 + 1e-9))

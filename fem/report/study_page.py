@@ -5,7 +5,6 @@
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -20,12 +19,11 @@ from fem.records.units import STANDARD_GRAVITY
 from fem.report.sweep_map import counts, map_data, shown_quantities
 from fem.response.lasting import ResponseResult, lasting_in_words, range_of, response_answer, stable_in_words
 from fem.results.errors import FolderError
-from fem.results.figures import DURATION, PGA, PGD, PGV, SLIPPED, TURNED, Place, Shown, figures_of
+from fem.results.figures import DURATION, PGA, PGD, PGV, TURNED, Place, Shown, figures_of
 from fem.results.kinds import ENSEMBLE, HALL, RESPONSE
 from fem.results.outcome import COUNTED, Outcome
 from fem.run import described
 from fem.run.card import deciding_in_words, times
-from fem.run.sureness import REGIME_UNSURE
 from fem.runtime import units
 from fem.runtime.identity import command_line
 from fem.runtime.user_files import read_text
@@ -213,7 +211,9 @@ def ensemble_report(folder: Path, *, signature: Signature | None = None) -> str:
         ],
         axes=_axes(info.axes, info.derived),
         random=[("key", list(random)), ("drawn", list(random.values()))],
-        points=_points(info, words),
+        counted=("draws", *COUNTED),
+        stood=STOOD,
+        regions=words,
         provenance=[
             ("ensemble", f"{name}, {info.status}, model {info.model}"),
             ("draws", f"{info.draws} at each point, {info.sampling}, seed {info.seed}"),
@@ -241,25 +241,6 @@ def _answers_of_ensemble(answer: StudyAnswer[HalfPoint], info: EnsembleResult) -
         (f"half of the draws {fell} at", halves),
         (f"{100.0 * info.confidence:g} % interval", intervals),
         (few, [in_axis(one.few_to) for one in found]),
-    ]
-
-
-def _points(info: EnsembleResult, words: Mapping[str, str]) -> list[Column]:
-    """A row a point: the counts, the share that overturned, its interval, the region."""
-    points, share = info.points, partial(number, factor=100.0, figures=3)
-
-    def on_axis(value: Any) -> str:
-        return str(value) if isinstance(value, bool | str) else short(value)
-
-    shares = [ABSENT if (p := point["probability"]) is None else f"{share(p)} %" for point in points]
-    intervals = [f"{share(point['low'])} to {share(point['high'])} %" for point in points]
-    return [
-        *((axis_label(axis), [on_axis(point[axis.key]) for point in points], N) for axis in info.axes),
-        *((name, [point.get(name, 0) for point in points], N) for name in ("draws", *COUNTED)),
-        ("share", shares, N),
-        (f"{100.0 * info.confidence:g} % interval", intervals, N),
-        ("region", [words[point["region"]] for point in points]),
-        (figure_head(STOOD), [figure_cell(STOOD, point.get(SLIPPED)) for point in points], N),
     ]
 
 
@@ -372,8 +353,9 @@ def hall_report(folder: Path, *, signature: Signature | None = None, brief: bool
         count=count,
         more=[f"{outcomes[0].upper()}{outcomes[1:]}."] if outcomes else [],
         tag_counts=[(word, [tag["counts"].get(word, "") for tag in info.tags], N) for word in counted],
-        weakest=_weakest(moving, linked=not brief),
-        resting=_weakest(resting, linked=not brief) if resting else (),
+        key_figures=figures_of(Place.KEY),
+        moving=moving,
+        resting=resting,
         at_rest=sum(row["count"] for row in resting),
         looks=[LOOKS.get(row["outcome"] or "failed", "") for row in moving],
         brief=brief,
@@ -402,44 +384,6 @@ def folded(ranked: Sequence[A_ROW]) -> tuple[list[A_ROW], list[A_ROW]]:
     if len(resting) < MANY_RESTS or len(resting) == len(rows):
         return rows, []
     return [row for row in rows if row["outcome"] != Outcome.REST], resting
-
-
-def _weakest(rows: Sequence[A_ROW], *, linked: bool) -> list[Column]:
-    """A row a container, the weakest first; its name leads to its command."""
-
-    def figure(row: A_ROW, name: str, shown: Shown) -> str:
-        fallen = name == TURNED and row["outcome"] == Outcome.OVERTURNED  # how far it fell says nothing
-        return figure_cell(shown, None if fallen else row[name])
-
-    def key(
-        head: str, name: str, look: str = "", text: Callable[[Any], str] = str, empty: Any = None
-    ) -> Column:
-        cells = ["" if row[name] in (None, empty) else text(row[name]) for row in rows]
-        return head, cells, look, True
-
-    outcomes = [row["outcome"] or (f"none: {row['reason']}" if row["reason"] else ABSENT) for row in rows]
-    return [
-        (
-            "container",
-            [LINK.format(f"row-{row['row']}", row["name"]) if linked else row["name"] for row in rows],
-        ),
-        key("line", "line", N),
-        key("count", "count", N, empty=1),
-        key("tag", "tag"),
-        ("outcome", outcomes),
-        ("margin", [margin_words(row) for row in rows], N),
-        key("sure", "sure", text=lambda word: "only whether it stands" if word == REGIME_UNSURE else word),
-        key("decided by", "decided_by", "words", text=lambda keys: deciding_in_words(keys.split())),
-        *(
-            (figure_head(shown), [figure(row, name, shown) for row in rows], N)
-            for name, shown in figures_of(Place.KEY).items()
-        ),
-        key("side", "side", empty="width"),
-        key("use against overturning, static", "utilisation_overturning", N, partial(number, figures=3)),
-        key("motion", "motion"),
-        key("runs overturned", "motions_overturned", N),
-        key("runs not valid", "motions_invalid", N, empty=0),
-    ]
 
 
 def margin_words(row: A_ROW) -> str:
@@ -585,6 +529,16 @@ def _measures(motions: Sequence[A_ROW]) -> list[Column]:
     ]
 
 
+def _fell(row: A_ROW, name: str) -> bool:
+    """Whether a figure is how far a container fell, which says nothing."""
+    return name == TURNED and row["outcome"] == Outcome.OVERTURNED
+
+
+def share(value: float) -> str:
+    """A probability in per cent."""
+    return number(value, 100.0, 3)
+
+
 def _shown(columns: Sequence[Column]) -> list[dict[str, Any]]:
     """The columns of a table that show something, their cells as they are set."""
     shown = []
@@ -601,7 +555,20 @@ def _shown(columns: Sequence[Column]) -> list[dict[str, Any]]:
 FILTERS: dict[str, Callable[..., Any]] = {
     "shown": _shown,
     "code": CODE.format,
+    "at": lambda row, key, empty=None: "" if row[key] in (None, empty) else row[key],
+    "axis_label": axis_label,
+    "cell_label": lambda value: str(value) if isinstance(value, bool | str) else short(value),
+    "deciding": lambda keys: keys and deciding_in_words(keys.split()),
+    "figure": lambda row, name, shown: figure_cell(shown, None if _fell(row, name) else row[name]),
+    "figure_head": figure_head,
     "input_in_words": input_in_words,
+    "interval": lambda point: f"{share(point['low'])} to {share(point['high'])} %",
+    "linked": lambda row: LINK.format(f"row-{row['row']}", row["name"]),
+    "margin": margin_words,
+    "of_use": lambda value: value if value == "" else number(value, figures=3),
+    "of_point": lambda point, key, default: point.get(key, default),
     "or_absent": lambda text: text or ABSENT,
+    "outcome": lambda row: row["outcome"] or (f"none: {row['reason']}" if row["reason"] else ABSENT),
+    "share": lambda value: ABSENT if value is None else f"{share(value)} %",
     "target": lambda row: TARGET.format(row["row"], row["name"]),
 }

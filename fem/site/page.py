@@ -17,8 +17,8 @@ from fem.results.kinds import SITE
 from fem.results.outcome import Outcome
 from fem.runtime.arrays import FloatArray
 from fem.runtime.user_files import read_text
+from fem.site import figures
 from fem.site.answer import both_ways, ended, span_in_words, unit_of
-from fem.site.figures import draw_floor, draw_methods, draw_motion, draw_scan, draw_spectra
 from fem.site.result import BY_RULE, RESULT_FILE, RuleRange, SiteAnswer, SiteMethod, SiteMotion, SiteResult
 from fem.site.rule import both_directions, groups_of
 from fem.site.tables import MotionsTable
@@ -95,10 +95,7 @@ def shown(result: SiteResult, folder: Path, *, brief: bool = False) -> dict[str,
         "both_ways": both_ways,
         "copies": [(name, _text(folder / name)) for name in COPIES if (folder / name).is_file()],
         "default_seed": MotionsTable().seed,
-        "draw_floor": draw_floor,
-        "draw_methods": draw_methods,
-        "draw_scan": draw_scan,
-        "draw_spectra": draw_spectra,
+        "figures": figures,
         "motion_figure": partial(motion_figure, folder, result),
     }
 
@@ -159,7 +156,7 @@ def motion_figure(folder: Path, result: SiteResult, motion: SiteMotion) -> str:
         raise FolderError(f"{folder / RESULT_FILE}: motion {motion.number} has no curve; compute it again")
     times, horizontal = curves["h.csv"]
     vertical = curves["v.csv"][1] if "v.csv" in curves else None
-    return draw_motion(motion, result.action, times, horizontal, vertical)
+    return figures.draw_motion(motion, result.action, times, horizontal, vertical)
 
 
 def _curve(path: Path) -> tuple[FloatArray, FloatArray]:
