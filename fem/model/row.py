@@ -86,7 +86,7 @@ def body_of_row(
         max(round(0.5 * (1.0 - float(np.ptp(body.point[:, 0])) / mesh.width), 12), 0.0)
         for body, mesh in zip(bodies, meshes, strict=True)
     ]
-    watched = []
+    watched: list[ModalBody] = []
     for body, mesh in zip(bodies, meshes, strict=True):  # with the corners of its elevation as its points
         corner = [(x, z) for z in (0.0, mesh.height) for x in (-0.5 * mesh.width, 0.5 * mesh.width)]
         if watched:  # of the neighbours no point is watched
