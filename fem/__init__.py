@@ -3,7 +3,9 @@
 In a script or a notebook, `fem.load_case(name)` and `fem.case_from(mapping)` give a case, `case.replace({key: value})`
 changes it, `fem.compute(case)` and `fem.compute_many(cases)` run it in memory, and `fem.open_run(folder)` opens the
 results of `python -m fem run`. Without a case, `fem.slide_in_plane(..)` gives the path of a sliding body under two
-horizontal components. What is wrong with the input is a `ValueError` in words (`fem.case.case.CaseError`).
+horizontal components. `fem.compute_sweep`, `compute_ensemble`, `compute_list`, `compute_response` and `assess_site`
+write the folder of a study and give its table. What is wrong with the input is a `ValueError` in words
+(`fem.case.case.CaseError`).
 """
 
 import importlib
@@ -15,15 +17,19 @@ from fem.runtime.signals import exit_on_signal
 
 if TYPE_CHECKING:
     from fem.case.case import case_from, load_case
+    from fem.cli.python import assess_site, compute_ensemble, compute_list, compute_response, compute_sweep
     from fem.run.compute import compute
     from fem.run.opened import open_run
     from fem.seismic.two_directions import slide_in_plane
     from fem.study.runner import compute_many
 
-__all__ = ["case_from", "compute", "compute_many", "load_case", "open_run", "slide_in_plane"]
+__all__ = [
+    "assess_site", "case_from", "compute", "compute_ensemble", "compute_list", "compute_many", "compute_response",
+    "compute_sweep", "load_case", "open_run", "slide_in_plane",
+]  # fmt: skip
 
 #: name -> where it is
-PLACES = {
+PLACES = dict.fromkeys(__all__, "fem.cli.python") | {
     "case_from": "fem.case.case",
     "compute": "fem.run.compute",
     "compute_many": "fem.study.runner",

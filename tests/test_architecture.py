@@ -64,7 +64,7 @@ NARROW = {
     },
     "fem.records": {"contact.arrays", "contact.jit", "contact.motion", "fem.runtime"},
     # what the package offers by name
-    "fem": {"fem.runtime", "fem.seismic", "fem.case", "fem.results", "fem.run", "fem.study"},
+    "fem": {"fem.runtime", "fem.seismic", "fem.case", "fem.results", "fem.run", "fem.study", "fem.cli"},
     "fem.__main__": {"fem.runtime", "fem.cli"},
 }
 MOST_FILES = 25  #: in one folder

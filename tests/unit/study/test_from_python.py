@@ -1,0 +1,67 @@
+"""Studies from Python write the folders of their commands and give their tables."""
+
+import numpy as np
+import pytest
+from small_site import SITE
+
+import fem
+
+RIGID = '[set]\n"solver.model" = "rigid"\n"solver.duration_s" = 0.2\n'
+SWEEP = (
+    f'case = "seed_box"\n{RIGID}[axes]\n"contact.mu_static" = [0.3, 0.4]\n[perturbation]\ncells = "none"\n'
+)
+ENSEMBLE = (
+    f'case = "seed_box"\ndraws = 4\n{RIGID}[random]\n"contact.mu_static" = {{ from = 0.3, to = 0.5 }}\n'
+)
+ENSEMBLE = ENSEMBLE.replace("{ from", '{ distribution = "uniform", from')
+
+
+def box(*overrides):
+    return fem.load_case("seed_box", ("solver.model=rigid", "solver.duration_s=0.2", *overrides))
+
+
+STUDIES = {
+    "sweep": (lambda place, **given: fem.compute_sweep(place / "sweep.toml", place / "out", **given), 2),
+    "ensemble": (
+        lambda place, **given: fem.compute_ensemble(place / "ensemble.toml", place / "out", **given),
+        4,
+    ),
+    "list": (lambda place, **given: fem.compute_list(place / "list.csv", box(), place / "out", **given), 2),
+    "response": (
+        lambda place, **given: fem.compute_response(box(), place / "out", count=2, starts=0, **given),
+        4,
+    ),
+}
+
+
+@pytest.mark.parametrize("name", STUDIES)
+def test_a_study_gives_its_table_and_is_not_computed_again(tmp_path, name, capsys):
+    for file, text in {
+        "sweep.toml": SWEEP,
+        "ensemble.toml": ENSEMBLE,
+        "list.csv": "width_m\n1.0\n1.2\n",
+    }.items():
+        (tmp_path / file).write_text(text)
+    compute, rows = STUDIES[name]
+    table = compute(tmp_path, jobs=1)
+    assert all(isinstance(column, np.ndarray) and len(column) == rows for column in table.values())
+    assert table.result["status"] == "completed"
+    marks = {path: path.stat().st_mtime_ns for path in (tmp_path / "out").glob("*.json")}
+    again = compute(tmp_path, progress=True)
+    assert list(again) == list(table) and marks == {path: path.stat().st_mtime_ns for path in marks}
+    said = capsys.readouterr()
+    assert said.out == "" and "holds this" in said.err
+
+
+def test_a_site_gives_its_runs_and_its_answer(tmp_path):
+    (tmp_path / "site.toml").write_text(SITE)
+    table = fem.assess_site(tmp_path / "site.toml", tmp_path / "out", quick=True, jobs=1)
+    assert table.result["answer"] and len(table["outcome"]) >= 6
+
+
+def test_bad_input_is_a_value_error_in_words(tmp_path):
+    with pytest.raises(ValueError, match="no sweep"):
+        fem.compute_sweep("nothing", tmp_path / "out")
+    with pytest.raises(ValueError, match="harmonic"):
+        fem.compute_response(box("motion.kind=none"), tmp_path / "out")
+    assert not (tmp_path / "out").exists()
