@@ -4,9 +4,10 @@ A file of the user may hold anything: its size is checked before it is read, wha
 the line and a way out, and a file of another kind with the command that computes it.
 """
 
+import os
 import re
 import tomllib
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from importlib import resources
 from importlib.resources.abc import Traversable
@@ -103,8 +104,8 @@ class Collection:
             CaseError: if there is neither, or if the file cannot be read.
         """
         name = str(name_or_path)
-        is_folder = is_there(Path.is_dir, name)
-        if is_there(Path.exists, name) and not is_folder:
+        is_folder = os.path.isdir(name)
+        if os.path.exists(name) and not is_folder:
             path = Path(name)
             return Origin(
                 kind=self.kind, name=path.stem, place=str(path), folder=path.parent, text=_read_text(path)
@@ -134,7 +135,7 @@ class Collection:
             CaseError: there is neither, it is outside, or it cannot be read; beginning with the kind.
         """
         path = origin.folder / name
-        is_file = is_there(Path.is_file, path)
+        is_file = os.path.isfile(path)
         if not anywhere and not stays_in_the_folder(name):
             raise CaseError(f"{self.kind} {outside_the_folder(name)}")
         if not anywhere and is_file and leads_out(origin.folder, path):
@@ -214,11 +215,3 @@ def _read_text(path: Path) -> str:
     except UnicodeDecodeError as error:
         line = content[: error.start].count(b"\n") + 1
         raise CaseError(f"{path}: not text in UTF-8 (line {line}); save the file as UTF-8") from error
-
-
-def is_there(kind: Callable[[Path], bool], path: str | Path) -> bool:
-    """Whether there is such a file or folder; false for names that none can have."""
-    try:
-        return kind(Path(path))
-    except (ValueError, OSError):  # a null character, a name too long, a folder that may not be entered
-        return False

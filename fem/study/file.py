@@ -1,5 +1,6 @@
 """What the file of a study of many cases has: a heading, tables, the case it starts from, the keys that vary."""
 
+import os
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -11,7 +12,7 @@ from typing import Annotated, Any, TypeVar
 from pydantic import Field, Strict
 
 from fem.case.case import Case, load_case
-from fem.case.files import CASES, DEFAULT_CASE, ENSEMBLES, SWEEPS, Origin, is_there, parse_case
+from fem.case.files import CASES, DEFAULT_CASE, ENSEMBLES, SWEEPS, Origin, parse_case
 from fem.case.overrides import keys_in_effect
 from fem.case.tables.links import ROWS
 from fem.case.tables.quantities import SLIP_LIMIT
@@ -129,7 +130,7 @@ def base_case(
     """
     CASES.beside(name, origin)
     path = origin.folder / name
-    is_file = is_there(Path.is_file, path)
+    is_file = os.path.isfile(path)
     base = load_case(path if is_file else name)
     values = flat("set", changes)
     if motion:

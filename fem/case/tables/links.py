@@ -78,14 +78,11 @@ MOST_ROWS = 20
 
 def held_above(case: Any) -> bool:
     """Whether something may push the container above its lowest box: its joint forces do not follow from its motion."""
-    links = case.links
-    if case.neighbour:
-        return True
-    if not links:
-        return False
-    first = case.container.height_m if case.container.box is None else case.container.box[0].height_m
-    lowest = case.container.height_m if first is None else first
-    return any(link.height_m > lowest * (1.0 + 1e-9) for link in links)
+    box = case.container
+    return bool(case.neighbour) or any(
+        link.height_m > ((box.box or (box,))[0].height_m or box.height_m) * (1.0 + 1e-9)
+        for link in case.links
+    )
 
 
 def holder_of(case: Any, link: Any) -> int:

@@ -46,16 +46,14 @@ class Quantity:
             return (
                 f"{self.least:g}" if self.least == self.most else f"between {self.least:g} and {self.most:g}"
             )
-        words = []
-        if self.least is not None:
-            words.append(f"at least {self.least:g}")
-        if self.above is not None:
-            words.append("positive" if self.above == 0.0 else f"more than {self.above:g}")
-        if self.most is not None:
-            words.append(f"at most {self.most:g}")
-        if self.below is not None:
-            words.append(f"less than {self.below:g}")
-        return " and ".join(words)
+        bounds = {
+            "at least": self.least,
+            "positive" if self.above == 0.0 else "more than": self.above,
+            "at most": self.most,
+            "less than": self.below,
+        }
+        words = (f"{word} {bound:g}" for word, bound in bounds.items() if bound is not None)
+        return " and ".join(words).replace("positive 0", "positive")
 
     def guess(self, value: float, accept: Callable[[float], bool] | None = None) -> str:
         """The unit that the value was probably meant in, as a question, or an empty string.
