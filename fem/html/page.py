@@ -16,7 +16,7 @@ from functools import cache, partial
 from importlib import metadata, resources
 from typing import Any
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
+from jinja2 import Environment, PackageLoader, StrictUndefined, UndefinedError
 from markupsafe import Markup, escape
 
 from fem.html.drawing import require_drawing
@@ -48,7 +48,6 @@ FILTERS = {
     "formula": formula_markup,
     "head": lambda figure: f"#{figure_head(figure)}",
     "mm": millimetres,
-    "millimetres": millimetres,
     "number": number,
     "quantity": quantity,
     "ratio": ratio,
@@ -115,6 +114,9 @@ def html_of(
         template: of `fem/html/templates`.
         filters: that it has beside `FILTERS`.
         shown: results and functions that it names.
+
+    Raises:
+        KeyError: a result lacks what the template names.
     """
     environment = _environment().overlay()
     environment.filters = {**environment.filters, **(filters or {})}
@@ -122,18 +124,21 @@ def html_of(
     scripts = [template_text(name) for name in (*page.scripts, *signed)]
     hashes = (base64.b64encode(hashlib.sha256(text.encode()).digest()).decode() for text in scripts)
     version = metadata.version("unanchored")
-    return environment.get_template(template).render(
-        shown,
-        page=page,
-        signature=page.signature,
-        style=template_text("page.css"),
-        scripts=scripts,
-        script_policy=" ".join(f"'sha256-{digest}'" for digest in hashes) or "'none'",
-        data={name: _json_in_page(value) for name, value in page.data.items()},
-        foot=f"unanchored {version}   {page.hash[:12]}".rstrip(),
-        version=version,
-        today=dt.date.today().isoformat(),
-    )
+    try:
+        return environment.get_template(template).render(
+            shown,
+            page=page,
+            signature=page.signature,
+            style=template_text("page.css"),
+            scripts=scripts,
+            script_policy=" ".join(f"'sha256-{digest}'" for digest in hashes) or "'none'",
+            data={name: _json_in_page(value) for name, value in page.data.items()},
+            foot=f"unanchored {version}   {page.hash[:12]}".rstrip(),
+            version=version,
+            today=dt.date.today().isoformat(),
+        )
+    except UndefinedError as error:
+        raise KeyError(str(error)) from None  # of a damaged result, like any key that is missing
 
 
 def text_of(template: str, **shown: Any) -> str:

@@ -84,7 +84,7 @@ def side_by_side(given: Case, own: Verdict | None = None) -> Sequence[OfModel]:
         "elastic container, rigid ground": RIGID_GROUND | {"solver.model": "reduced"},
         f"elastic container, {ground}": slab | {"solver.model": "reduced"},
     }
-    block, asked = own and own.analytic, case_hash(given)
+    block, asked = own.analytic if own else None, case_hash(given)
     if block is None:
         model = build_model(rigid)
         block = analytic_block(model, model.duration)
@@ -102,6 +102,7 @@ def side_by_side(given: Case, own: Verdict | None = None) -> Sequence[OfModel]:
             case = given.replace(changes)
             known = own if case_hash(case) == asked else None
             verdict = known or compute(case.without_fields(), band=False, margin=True).verdict
+            margin = verdict.margin
             found.append(
                 OfModel(
                     model=name,
@@ -110,8 +111,8 @@ def side_by_side(given: Case, own: Verdict | None = None) -> Sequence[OfModel]:
                     rotation_ratio=verdict.rotation_ratio,
                     max_slip_m=verdict.max_slip_m,
                     flight_share=verdict.flight_share,
-                    overturns_at=verdict.margin and verdict.margin.factor,
-                    tried_to=verdict.margin and verdict.margin.largest_tried,
+                    overturns_at=None if margin is None else margin.factor,
+                    tried_to=None if margin is None else margin.largest_tried,
                 )
             )
     return found

@@ -6,6 +6,7 @@
 import datetime as dt
 import math
 from collections.abc import Callable, Sequence
+from typing import Any
 
 from contact.reference.event_driven import EventError
 from fem.case.tables.unknown_inputs import WORDS
@@ -44,7 +45,7 @@ from fem.solid.modes import FEW, elastic_mode_table
 MOTION = ("rotation", "slip", "base_motion", "spectrum", "uplift", "forces", "phase_portrait", "energy")
 SHORT_MOTION = ("rotation", "slip")
 #: modules whose words the template takes
-SAID = {
+SAID: dict[str, Any] = {
     module.__name__.rpartition(".")[2]: module
     for module in (described, joints, ranges, static_words, summary)
 }

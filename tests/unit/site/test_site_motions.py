@@ -106,12 +106,7 @@ def test_a_baseline_that_changes_a_matched_record_is_said_with_both_values(tmp_p
     (note,) = first.notes  # a sine pulse reaches A T/pi = 0.866 m/s
     assert "from 3.4 " in note and "0.866 m/s with 'mean'" in note and "m/s (-8.8 %)" in note
     assert not any(motion.notes for motion in others)
-    found = preview_of(asked)
-    assert found.notes == (note,) and f"  note       {note}\n" in lines(found, asked)
-
-
-def lines(preview, asked):
-    return text_of("preview.txt.j2", preview=preview, request=asked)
+    assert preview_of(asked).notes == (note,)
 
 
 def test_a_baseline_that_takes_a_fifth_of_a_matched_record_must_be_allowed(tmp_path):
@@ -196,8 +191,7 @@ def test_what_is_kept_of_a_verification_goes_with_the_points_of_the_floor(tmp_pa
 
 
 def test_the_preview_says_that_the_floor_is_given(tmp_path):
-    found, own = (preview_of(request(tmp_path, "[motions]\ncount = 3", *more)) for more in ((SPECTRUM,), ()))
-    asked = request(tmp_path)
-    taken = "  floor      given by its spectrum, which the motions fit; taken as it is, without any factor\n"
-    assert taken in lines(found, asked)
-    assert own.floor is None and "  floor" not in lines(own, asked)
+    for more in ((SPECTRUM,), ()):
+        asked = request(tmp_path, "[motions]\ncount = 3", *more)
+        page = text_of("preview.txt.j2", preview=preview_of(asked), request=asked)
+        assert ("  floor      given by its spectrum, which the motions fit; " in page) == bool(more)

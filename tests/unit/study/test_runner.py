@@ -15,8 +15,10 @@ from fem.results.figures import SCALARS
 from fem.run.recorder import Recorder
 from fem.run.simulation import simulate
 from fem.run.verdict import verdict_of
+from fem.runtime.progress import Reporter
 from fem.study.containers import ContainerCache, container_key
 from fem.study.design import CaseMaker
+from fem.study.runner import NamedStages
 from fem.study.workers import WORTH_PROCESSES, LocalWorkers, WorkersLostError, hand_out
 
 SHORT = ["solver.duration_s=2", "output.fields_s=0"]
@@ -181,3 +183,14 @@ def test_cases_that_differ_in_material_damping_share_their_container():
     assert len({container_key(case) for case in cases}) == 1
     turned = [row["rotation_ratio"] for row in run_cases(cases, jobs=1)]
     assert len(set(turned)) == len(ratios)
+
+
+def test_a_stage_is_named_with_its_runs_and_their_time_at_the_rate_before():
+    told, reporter = list[str](), Reporter()
+    reporter.message = told.append
+    stages = NamedStages(("cells", "copies"), reporter)
+    for name, runs in (("cells", 60), ("copies", 120), ("copies", 3)):
+        stages.begin(name, runs)
+        stages.began -= 31.0
+    assert told[0] == "stage 1 of 2: cells, 60 runs" and "copies, 3 more runs, 1 s" in told[2]
+    assert told[1].startswith("stage 2 of 2: copies, 120 runs, 1 min 02 s")
