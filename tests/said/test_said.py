@@ -36,6 +36,7 @@ from fem.run import described
 from fem.site.page import site_report
 
 HERE = Path(__file__).parent
+BODY = {"modes_of_a_body": modes_of_a_body}  #: for the rows of a case
 BAD_INPUT = 2  #: exit code; then nothing is printed but the reason, and nothing is written
 WHOLE = ("written", "changed", "boxes", "motion")  #: kinds of texts of which no two are alike
 #: what differs between two runs of the same bits: times, dates, versions, hashes, free room
@@ -96,7 +97,9 @@ def paged(asked):
     if kind == "brief":
         return text_of_page(brief_page(changes))
     if kind == "case":
-        return text_of_page(case_rows(changes))
+        name, *overrides = shlex.split(changes)
+        module = _environment().get_template("case.html.j2").make_module({"described": described, **BODY})
+        return text_of_page(str(module.case_table(named_case(name, dict(map(parse_override, overrides))))))
     folder = Path(tempfile.mkdtemp(dir="."))
     make, report = {
         "sweep": (sweep_folder, sweep_report),
@@ -106,14 +109,6 @@ def paged(asked):
     }[kind]
     make(folder, **tomllib.loads(f"x = {{{changes}}}")["x"])
     return text_of_page(report(folder)).replace(str(folder), "FOLDER")
-
-
-def case_rows(asked):
-    """The rows of a named case with changes as `--set` takes them, as pages have them."""
-    name, *changes = shlex.split(asked)
-    case = named_case(name, dict(map(parse_override, changes)))
-    names = {"described": described, "modes_of_a_body": modes_of_a_body}
-    return str(_environment().get_template("case.html.j2").make_module(names).case_table(case))
 
 
 def text_of_page(page):

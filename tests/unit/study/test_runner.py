@@ -3,6 +3,7 @@
 import os
 import signal
 import sys
+from types import SimpleNamespace
 
 import pytest
 from case_rows import run_cases
@@ -15,7 +16,6 @@ from fem.results.figures import SCALARS
 from fem.run.recorder import Recorder
 from fem.run.simulation import simulate
 from fem.run.verdict import verdict_of
-from fem.runtime.progress import Reporter
 from fem.study.containers import ContainerCache, container_key
 from fem.study.design import CaseMaker
 from fem.study.runner import NamedStages
@@ -186,9 +186,8 @@ def test_cases_that_differ_in_material_damping_share_their_container():
 
 
 def test_a_stage_is_named_with_its_runs_and_their_time_at_the_rate_before():
-    told, reporter = list[str](), Reporter()
-    reporter.message = told.append
-    stages = NamedStages(("cells", "copies"), reporter)
+    told = list[str]()
+    stages = NamedStages(("cells", "copies"), SimpleNamespace(message=told.append))
     for name, runs in (("cells", 60), ("copies", 120), ("copies", 3)):
         stages.begin(name, runs)
         stages.began -= 31.0
