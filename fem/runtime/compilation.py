@@ -19,12 +19,7 @@ COMPILING = "numba:compile"
 #: kernels that hold the whole stepping; all others take seconds at most
 LONG = frozenset({"advance", "advance_in_slices"})
 #: what they step, by the class of the body
-BODIES = {
-    "ModalBody": "an elastic container",
-    "BlockOnCorners": "a rigid container",
-    "LooseStack": "loose boxes",
-    "LinkedBody": "a container with links",
-}
+BODIES = {"ModalBody": "an elastic container", "BlockOnCorners": "a rigid one", "LooseStack": "loose boxes"}
 OPTIMISING = 0.7  #: time that LLVM takes for a whole kernel, over that of numba for its functions
 
 
@@ -45,31 +40,25 @@ class Compilations(event.Listener):
         if self._depth > 1:
             return
         self._began, self._functions = time.perf_counter(), 0
-        if self.message is None or _name(event) not in LONG:
+        if self.message is None or event.data["dispatcher"].py_func.__name__ not in LONG:
             return
         if SHIPPED.is_dir():
             self.message(f"the machine code of this package is not for {FITTING}, or not of this kernel")
         kind = getattr(event.data["args"][0], "instance_class", None)
-        body = BODIES.get(getattr(kind, "__name__", ""), "the full model")
-        own = f" with numba {numba.__version__}'s own passes: the results are the same" if PLAIN else ""
-        least = "a minute" if PLAIN else "half a minute"
-        self.message(f"compiling the stepping of {body}{own}, once after installation: {least} or more")
+        body = BODIES.get(getattr(kind, "__name__", ""), "this model")
+        own = f"a minute or more with numba {numba.__version__}'s own passes, for the same results"
+        time_left = own if PLAIN else "half a minute or more"
+        self.message(f"compiling the stepping of {body}, once after installation: {time_left}")
 
     def on_end(self, event: event.Event) -> None:
         """It has ended, or failed."""
-        self._depth -= 1
-        self._functions += 1
+        self._depth, self._functions = self._depth - 1, self._functions + 1
         took = time.perf_counter() - self._began
         if self._depth == 0:
             self.past += took
-        elif self._depth == 1 and self.message is not None and _name(event).startswith("advance"):
-            left = f"{OPTIMISING * took:.0f} s left"
-            self.message(f"compiling the stepping: {self._functions} functions translated, {left}")
-
-
-def _name(compilation: event.Event) -> str:
-    """Name of the function that is compiled."""
-    return str(compilation.data["dispatcher"].py_func.__name__)
+        elif self._depth == 1 and self.message and "advance" in event.data["dispatcher"].py_func.__name__:
+            left = OPTIMISING * took
+            self.message(f"compiling the stepping: {self._functions} functions translated, {left:.0f} s left")
 
 
 _ALL = Compilations()
