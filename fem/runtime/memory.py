@@ -35,11 +35,9 @@ def memory_of(computing: bool, jobs: int | None = None) -> int:
 def threads_of_rigid_runs(most: int) -> int:
     """How many of so many threads have the memory to step rigid runs side by side; at least one."""
     given = limit()
-    return (
-        most
-        if given is None
-        else max(1, min(most, 1 + ((given >> 20) - RIGID - CHECKS - FIGURES) // OF_A_CORE))
-    )
+    if given is None:
+        return most
+    return max(1, min(most, 1 + ((given >> 20) - RIGID - CHECKS - FIGURES) // OF_A_CORE))
 
 
 def share_the_heap() -> None:

@@ -30,10 +30,8 @@ def use_one_blas_thread() -> None:
     lines: list[str] = []
     with contextlib.suppress(OSError):
         lines = MAPS.read_text(encoding="utf-8", errors="replace").splitlines()
-    named = {line.split(maxsplit=5)[5] for line in lines if "openblas" in line and "/" in line}
-    for path in named:
-        if not Path(path).name.startswith("lib"):
-            continue
+    loaded = {line.split(maxsplit=5)[5] for line in lines if "openblas" in line and "/" in line}
+    for path in (path for path in loaded if Path(path).name.startswith("lib")):
         with contextlib.suppress(OSError):
             library = ctypes.CDLL(path)
             for setter in SETTERS:
