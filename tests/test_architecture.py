@@ -126,20 +126,20 @@ EVIDENCE = (("rigs",), ("evidence",), ("verification",), ("validation", "paper")
 BUDGET = {
     "mesh": ("mesh", 1_751, 45),
     "contact": ("contact", 9_040, 317),
-    "runtime": ("fem/runtime", 1_109, 62),
+    "runtime": ("fem/runtime", 1_094, 62),
     "records": ("fem/records", 2_645, 72),
-    "case": ("fem/case", 5_449, 131),
+    "case": ("fem/case", 5_437, 130),
     "results": ("fem/results", 2_916, 96),
     "seismic": ("fem/seismic", 2_315, 62),
     "solid": ("fem/solid", 1_873, 64),
     "model": ("fem/model", 3_976, 120),
     "run": ("fem/run", 5_864, 197),
-    "pages": ("fem/html fem/figures fem/render fem/report", 5_006, 128),
-    "study": ("fem/study fem/response", 7_362, 205),
+    "pages": ("fem/html fem/figures fem/render fem/report", 5_013, 128),
+    "study": ("fem/study fem/response", 7_363, 205),
     "site": ("fem/site", 4_746, 123),
-    "cli": ("fem/cli fem/__init__.py fem/__main__.py", 1_913, 41),
-    "product": ("mesh contact fem", 55_965, 1_663),
-    "tests": ("tests", 43_451, 2_548),
+    "cli": ("fem/cli fem/__init__.py fem/__main__.py", 2_044, 47),
+    "product": ("mesh contact fem", 56_077, 1_668),
+    "tests": ("tests", 43_516, 2_551),
 }
 
 
