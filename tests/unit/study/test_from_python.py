@@ -11,7 +11,7 @@ SWEEP = (
     f'case = "seed_box"\n{RIGID}[axes]\n"contact.mu_static" = [0.3, 0.4]\n[perturbation]\ncells = "none"\n'
 )
 ENSEMBLE = (
-    f'case = "seed_box"\ndraws = 4\n{RIGID}[random]\n"contact.mu_static" = {{ from = 0.3, to = 0.5 }}\n'
+    f'case = "seed_box"\ndraws = 8\n{RIGID}[random]\n"contact.mu_static" = {{ from = 0.3, to = 0.5 }}\n'
 )
 ENSEMBLE = ENSEMBLE.replace("{ from", '{ distribution = "uniform", from')
 
@@ -24,7 +24,7 @@ STUDIES = {
     "sweep": (lambda place, **given: fem.compute_sweep(place / "sweep.toml", place / "out", **given), 2),
     "ensemble": (
         lambda place, **given: fem.compute_ensemble(place / "ensemble.toml", place / "out", **given),
-        4,
+        8,
     ),
     "list": (lambda place, **given: fem.compute_list(place / "list.csv", box(), place / "out", **given), 2),
     "response": (
