@@ -54,7 +54,10 @@ def compute_sweep(
 def compute_ensemble(
     ensemble: str | Path, folder: str | Path | None = None, **options: Unpack[Options]
 ) -> StudyTable:
-    """Sample the uncertain parameters of an ensemble; a row a draw. Arguments and errors as `compute_sweep`."""
+    """Sample the uncertain parameters of an ensemble; a row a point of its axes.
+
+    Arguments and errors as `compute_sweep`.
+    """
     plan = load_ensemble(ensemble)
     return _table(run_ensemble, plan, folder=folder or OUTPUTS / plan.name, options=options)
 
