@@ -137,9 +137,9 @@ BUDGET = {
     "pages": ("fem/html fem/figures fem/render fem/report", 5_013, 128),
     "study": ("fem/study fem/response", 7_363, 205),
     "site": ("fem/site", 4_746, 123),
-    "cli": ("fem/cli fem/__init__.py fem/__main__.py", 2_047, 47),
-    "product": ("mesh contact fem", 56_080, 1_668),
-    "tests": ("tests", 43_520, 2_551),
+    "cli": ("fem/cli fem/__init__.py fem/__main__.py", 2_061, 47),
+    "product": ("mesh contact fem", 56_094, 1_668),
+    "tests": ("tests", 43_533, 2_551),
 }
 
 

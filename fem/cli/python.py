@@ -18,7 +18,7 @@ from fem.site.request import load_site
 from fem.site.run import run_site
 from fem.study.ensemble import run_ensemble
 from fem.study.file import load_ensemble, load_sweep
-from fem.study.hall import read_hall, run_hall
+from fem.study.hall import Checks, read_hall, run_hall
 from fem.study.sweep import run_sweep
 
 OUTPUTS = Path("outputs")
@@ -63,14 +63,28 @@ def compute_ensemble(
 
 
 def compute_list(
-    path: str | Path, case: Case, folder: str | Path | None = None, **options: Unpack[Options]
+    path: str | Path,
+    case: Case,
+    folder: str | Path | None = None,
+    *,
+    margins: Checks = "weakest",
+    **options: Unpack[Options],
 ) -> StudyTable:
     """Compute a list of containers, a CSV file whose rows change a case; a row a container.
 
-    Arguments and errors as `compute_sweep`.
+    Args:
+        path: of the list.
+        case: that its rows change.
+        folder: of the results; default: outputs/NAME.
+        margins: whose run is repeated for sure and margin: that of the weakest tenth (at least 30), all, or none.
+        options: see `Options`.
+
+    Raises: as `compute_sweep`.
     """
     path = Path(path)
-    return _table(run_hall, read_hall(path), case, folder=folder or OUTPUTS / path.stem, options=options)
+    return _table(
+        run_hall, read_hall(path), case, folder=folder or OUTPUTS / path.stem, options=options, checks=margins
+    )
 
 
 def compute_response(

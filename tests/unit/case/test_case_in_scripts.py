@@ -68,9 +68,14 @@ def test_what_cannot_be_is_refused_in_the_words_of_the_command(make, words):
 
 def test_the_package_gives_away_its_interface_and_nothing_else():
     assert [name for name in dir(fem) if not name.startswith("_")] == [
+        "assess_site",
         "case_from",
         "compute",
+        "compute_ensemble",
+        "compute_list",
         "compute_many",
+        "compute_response",
+        "compute_sweep",
         "load_case",
         "open_run",
         "slide_in_plane",

@@ -30,7 +30,12 @@ STUDIES = {
         lambda place, **given: fem.compute_ensemble(place / "ensemble.toml", place / "out", **given),
         2,
     ),
-    "list": (lambda place, **given: fem.compute_list(place / "list.csv", box(), place / "out", **given), 2),
+    "list": (
+        lambda place, **given: fem.compute_list(
+            place / "list.csv", box(), place / "out", margins="none", **given
+        ),
+        2,
+    ),
     "response": (
         lambda place, **given: fem.compute_response(box(), place / "out", count=2, starts=0, **given),
         4,
