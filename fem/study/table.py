@@ -7,6 +7,7 @@ where commas do not.
 
 import csv
 import io
+import math
 import re
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
@@ -19,12 +20,20 @@ from fem.runtime.user_files import read_text
 #: by the names in the header, what the fields hold: text, one number, true or false; a tuple: several numbers
 Columns = dict[str, type]
 
+
+def _finite(field: str) -> float:
+    number = float(field)
+    if not math.isfinite(number):  # no row of ours has one
+        raise ValueError(f"{field} is no finite number")
+    return number
+
+
 READERS: dict[type, Callable[[str], Any]] = {
     str: str,
     int: int,
-    float: float,
+    float: _finite,
     bool: lambda field: field == "true",
-    tuple: lambda field: tuple(map(float, field.split())),
+    tuple: lambda field: tuple(map(_finite, field.split())),
 }
 
 

@@ -1,5 +1,6 @@
 """Tables and logs: what is written reads back, a spreadsheet computes nothing of it, a removed log ends the study."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
@@ -7,6 +8,7 @@ import pytest
 from fem.results.errors import FolderLostError
 from fem.results.figures import RUN_COLUMNS, types_of
 from fem.site.result import RunKey
+from fem.site.runs import RunRows
 from fem.study.driver import LoggedRuns
 from fem.study.table import fields_of, line_of, row_of
 
@@ -49,7 +51,7 @@ def test_rows_are_not_added_to_a_log_that_was_removed(tmp_path):
         _logged(tmp_path / "rows.csv", {"a": int}, rows())
 
 
-@pytest.mark.parametrize("line", ["2", "2,0.5,7", "2,fast", "x,0.5", "", "\0,1"])
+@pytest.mark.parametrize("line", ["2", "2,0.5,7", "2,fast", "x,0.5", "", "\0,1", "2,nan", "2,-inf"])
 def test_a_damaged_row_is_left_out_and_told(tmp_path, line):
     path, told = tmp_path / "rows.csv", []
     path.write_text(f"a,b\n1,0.5\n{line}\n3,1.5\n4,")
@@ -70,3 +72,20 @@ def test_a_row_reads_back_with_the_types_of_its_columns():
 def test_the_columns_of_a_class_have_the_types_of_its_fields():
     columns = types_of(RunKey)
     assert [columns[name] for name in ("stage", "motion", "building_period_s")] == [str, int, float]
+
+
+def test_a_row_of_a_stage_that_a_site_does_not_have_is_none_of_its_runs():
+    key = RunKey(
+        motion=1,
+        vertical_sign=0,
+        model="rigid",
+        mu_static=0.4,
+        mu_kinetic=0.2,
+        mass="full",
+        elevation="width",
+    )
+    rows = RunRows()
+    rows.rest(key)
+    with pytest.raises(ValueError, match="not in tuple"):
+        rows.rest(replace(key, stage="later"))
+    assert list(rows.runs) == [key]
