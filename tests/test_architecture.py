@@ -126,19 +126,19 @@ EVIDENCE = (("rigs",), ("evidence",), ("verification",), ("validation", "paper")
 BUDGET = {
     "mesh": ("mesh", 1_751, 45),
     "contact": ("contact", 9_040, 317),
-    "runtime": ("fem/runtime", 1_094, 62),
+    "runtime": ("fem/runtime", 1_077, 61),
     "records": ("fem/records", 2_645, 72),
     "case": ("fem/case", 5_437, 130),
     "results": ("fem/results", 2_916, 96),
     "seismic": ("fem/seismic", 2_315, 62),
     "solid": ("fem/solid", 1_873, 64),
     "model": ("fem/model", 3_976, 120),
-    "run": ("fem/run", 5_864, 197),
+    "run": ("fem/run", 5_880, 198),
     "pages": ("fem/html fem/figures fem/render fem/report", 5_013, 128),
     "study": ("fem/study fem/response", 7_372, 205),
     "site": ("fem/site", 4_747, 123),
     "cli": ("fem/cli fem/__init__.py fem/__main__.py", 2_061, 47),
-    "product": ("mesh contact fem", 56_104, 1_668),
+    "product": ("mesh contact fem", 56_103, 1_668),
     "tests": ("tests", 43_552, 2_552),
 }
 

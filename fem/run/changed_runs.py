@@ -8,9 +8,11 @@ not from the clock, so that a resumed or repeated study is the same.
 
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
 from threading import Event, Lock
+from typing import Any
 
 from fem.case.case import Case
 from fem.case.tables.input_ranges import SUPPORT, TOLERANCE, Value
@@ -29,7 +31,7 @@ from fem.run.recorder import Recorder
 from fem.run.simulation import run_without_history, simulate
 from fem.run.verdict import joint_demands, verdict_of
 from fem.runtime.identity import program_identity
-from fem.runtime.memory import threads_of_rigid_runs, worker_threads
+from fem.runtime.memory import threads_of_rigid_runs
 from fem.runtime.threads import cores
 from fem.runtime.user_files import read_json
 from fem.solid.nodal_body import full_model_memory
@@ -131,6 +133,21 @@ def workers_for(model: Model, runs: int) -> int:
     if kind != "full":
         return threads_of_rigid_runs(workers) if kind == "rigid" else workers
     return runs_in_memory(workers, full_model_memory(len(model.container.elements.nodes)))
+
+
+def worker_threads(count: int) -> Executor:
+    """So many threads; of one the thread that asks, whose stack is there already."""
+    return ThreadPoolExecutor(count) if count > 1 else _Asking()
+
+
+class _Asking(Executor):
+    def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
+        future: Future[Any] = Future()
+        try:
+            future.set_result(fn(*args, **kwargs))
+        except BaseException as error:  # raised where the result is asked for, as by a thread
+            future.set_exception(error)
+        return future
 
 
 def tolerance_of_draws(case: Case) -> float:

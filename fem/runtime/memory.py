@@ -2,9 +2,7 @@
 
 import ctypes
 import sys
-from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from contextlib import suppress
-from typing import Any
 
 from fem.runtime.threads import cores
 
@@ -45,21 +43,6 @@ def share_the_heap() -> None:
     if limit() is not None:
         with suppress(OSError, AttributeError):  # another C library
             ctypes.CDLL(None).mallopt(M_ARENA_MAX, 1)
-
-
-def worker_threads(count: int) -> Executor:
-    """So many threads; of one the thread that asks, whose stack is there already."""
-    return ThreadPoolExecutor(count) if count > 1 else _Asking()
-
-
-class _Asking(Executor):
-    def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
-        future: Future[Any] = Future()
-        try:
-            future.set_result(fn(*args, **kwargs))
-        except BaseException as error:  # raised where the result is asked for, as by a thread
-            future.set_exception(error)
-        return future
 
 
 def shortage(needed: int) -> str:

@@ -280,7 +280,7 @@ def run_model(model: Model) -> Row:
 
 
 def _row(status: str, reason: str | None, verdict: Verdict | None = None) -> Row:
-    """The row of a run; a failed one has no outcome, and figures where it came to a verdict."""
+    """The row of a run. A failed run has no outcome; it has figures if it reached a verdict."""
     row = {"status": status, "reason": reason, "wall_s": 0.0} | dict.fromkeys((*SCALARS, *BOXES))
     if verdict is not None:
         row |= {name: getattr(verdict, name) for name in SCALARS}

@@ -24,7 +24,7 @@ from fem.runtime.arrays import FloatArray
 LEAST_SIX = 1e-3  #: smaller values are errors, and shown with three figures
 WIDE = 76  #: characters of a name in a terminal
 HEADING = f"{'value':>13} {'reference':>12}  {'kind':<9} {'error':>9} {'tolerance':>9}  order"
-#: by command: what stands above the title, and the title
+#: by page: what stands above the title, and the title
 TITLES = {
     "verify": ("Verification", "Verification"),
     "manual": ("Verification", "Verification manual"),
