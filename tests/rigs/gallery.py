@@ -9,12 +9,16 @@ import shutil
 from collections.abc import Callable
 from pathlib import Path
 
+import pytest
 from filelock import FileLock
+from small_sweep import SMALL
 
 from fem.case.case import load_case
 from fem.results.reader import OpenedRun, open_run
 from fem.run.run import RunOptions, run_case
 from fem.runtime.progress import Reporter
+from fem.study.file import load_sweep
+from fem.study.sweep import run_sweep
 
 #: a title that must stay text wherever it is shown
 HOSTILE = "</title><script>alert(1)</script> & co"
@@ -39,7 +43,17 @@ RUNS: dict[str, tuple[str, tuple[str, ...], dict[str, bool]]] = {
         {"band": False},
     ),
 }
-MADE: dict[str, Callable[[Path], object]] = {}
+
+
+def small_sweep(folder: Path) -> None:
+    """The sweep of `small_sweep`, without maps."""
+    (folder.parent / "small.toml").write_text(SMALL, encoding="utf-8")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("fem.study.sweep.draw_maps", lambda *_: [])
+        run_sweep(load_sweep(folder.parent / "small.toml"), folder, jobs=1)
+
+
+MADE: dict[str, Callable[[Path], object]] = {"sweep": small_sweep}
 
 
 class Strict(Reporter):

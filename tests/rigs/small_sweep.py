@@ -1,4 +1,4 @@
-"""A sweep of twenty cells that several tests compute, and its table for comparison."""
+"""A sweep of ten cells that several tests compute, and its table for comparison."""
 
 from fem.study.table import fields_of
 
@@ -10,7 +10,7 @@ case = "seed_stack_plateau"
 "solver.duration_s" = 2.0
 "uncertainty.draws" = 8
 [axes]
-"motion.angular_frequency_rad_s" = { from = 2.0, to = 6.0, count = 4 }
+"motion.angular_frequency_rad_s" = { from = 2.0, to = 6.0, count = 2 }
 "motion.peak_acceleration_m_s2" = { from = 2.0, to = 14.0, count = 5 }
 [derived]
 "contact.mu_kinetic" = "0.5 * contact.mu_static"

@@ -3,7 +3,6 @@
 import pytest
 from study_words import KINDS, MU, PEAK, WIDTH, G, ensemble_of, over
 
-from fem.results.outcome import Ending
 from fem.study.answers import Answer, Trial, answer_axis, answer_of, is_rising
 from fem.study.axes import Axis
 
@@ -16,25 +15,6 @@ def line(values, kinds, *, number=0, slip=None):
 @pytest.mark.parametrize(("kinds", "rising"), [("oos", False), ("sso", True), ("ooo", True), ("sos", True)])
 def test_the_safe_side_of_another_key_is_what_its_ends_show(kinds, rising):
     assert is_rising(MU, line(MU.values, kinds)) is rising
-
-
-def test_a_failed_run_never_stands():
-    found = answer_of(line([1.0, 2.0, 3.0], "sfs"), rising=True)
-    assert found.stood_to == 1.0
-    assert found.overturned_from is None
-    assert found.failed == ((2.0, 2.0),)
-
-
-def test_with_a_limit_what_slides_beyond_it_does_not_stand():
-    trials = [
-        Trial(value=G * peak, line=0, kind=Ending.STANDING, slip=slip)
-        for peak, slip in ((0.2, 0.02), (0.3, 0.09), (0.4, 0.16), (0.5, 2.9))
-    ]
-    limited = answer_of(trials, rising=True, limit_slip=0.1)
-    assert (limited.stood_to, limited.overturned_from, limited.slid) == (0.3 * G, 0.4 * G, True)
-    fell = Trial(value=0.4 * G, line=1, kind=Ending.OVERTURNED, slip=0.01)
-    mixed = answer_of([*trials, fell], rising=True, limit_slip=0.1)
-    assert (mixed.slid, mixed.line) == (False, 1)
 
 
 def test_several_lines_stand_where_all_of_them_do():

@@ -60,23 +60,3 @@ def test_a_resolution_finer_than_numbers_ends_between_two_neighbours():
 
     (change,) = refine_changes(SCAN, judge(SCAN), judge, resolution=1e-300)
     assert change.high == np.nextafter(change.low, np.inf)
-
-
-def test_a_failed_value_is_a_third_kind():
-    def judge(values):
-        return ["failed" if 2.0 < v < 2.5 else "standing" for v in values]
-
-    changes = refine_changes([1.0, 2.25, 3.0], judge([1.0, 2.25, 3.0]), judge, resolution=0.01)
-    assert [c.value for c in changes] == pytest.approx([2.0, 2.5], abs=0.03)
-    assert {c.below for c in changes} == {"standing", "failed"}
-
-
-def test_the_number_of_values_tried_grows_with_the_logarithm():
-    tried = []
-
-    def judge(values):
-        tried.extend(values)
-        return ["overturned" if v > np.pi else "standing" for v in values]
-
-    refine_changes(SCAN, judge(SCAN), judge, resolution=1e-6)
-    assert len(tried) < 60

@@ -4,24 +4,9 @@ import socket
 import time
 
 import pytest
-from motion_files import write_motion
 from small_sweep import SMALL, rows_without_wall
 
 from fem.__main__ import main
-
-OF_MOTIONS = """
-case = "seed_stack_plateau"
-draws = 40
-probability = 0.5
-[set]
-"solver.model" = "rigid"
-"solver.duration_s" = 1.2
-[axes]
-"motion.scale" = [1.0]
-[random]
-"motion.file" = {names}
-"contact.mu_static" = {{ distribution = "uniform", from = 0.3, to = 0.6 }}
-"""
 
 distributed = pytest.importorskip("distributed", reason="the extra 'cluster' is not installed")
 cluster = pytest.importorskip("fem.study.cluster").cluster
@@ -41,18 +26,6 @@ def test_a_cluster_gives_the_same_table(tmp_path, monkeypatch, capsys, address, 
     assert main(["sweep", "small.toml", "-q", "--scheduler", address]) == 0
     assert main(["sweep", "small.toml", "-q", "--out", "here"]) == 0
     assert rows_without_wall(tmp_path / "outputs" / "small") == rows_without_wall(tmp_path / "here")
-    capsys.readouterr()
-
-
-@pytest.mark.slow
-def test_a_cluster_gives_the_same_draws(tmp_path, monkeypatch, capsys, address):
-    monkeypatch.chdir(tmp_path)
-    names = [write_motion(tmp_path, f"m{k}.csv", frequency=1.0 + 0.2 * k) for k in range(40)]
-    (tmp_path / "set.toml").write_text(OF_MOTIONS.format(names=names), encoding="utf-8")
-    assert main(["ensemble", "set.toml", "-q", "--scheduler", address]) == 0
-    assert main(["ensemble", "set.toml", "-q", "--out", "here"]) == 0
-    for name in ("draws.csv", "motions.csv", "spectra.csv", "ensemble.json"):
-        assert (tmp_path / "outputs" / "set" / name).read_bytes() == (tmp_path / "here" / name).read_bytes()
     capsys.readouterr()
 
 

@@ -1,7 +1,6 @@
 """Many runs in memory: each is the run alone, whoever computed it, and no script starts itself again."""
 
 import os
-import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -11,8 +10,6 @@ import pytest
 import fem
 import fem.study.runner as many
 from fem.case.case import CaseError
-from fem.runtime.progress import Reporter
-from fem.runtime.signals import interruptible
 
 ROOT = Path(__file__).parents[3]
 BOX = fem.load_case("seed_box", ["solver.model=rigid", "solver.duration_s=0.5", "output.fields_s=0"])
@@ -48,22 +45,6 @@ def test_each_run_is_the_run_alone_in_the_order_of_the_cases():
         assert (run.history.samples == alone.history.samples).all()
 
 
-@pytest.mark.slow
-def test_processes_give_the_same_runs_as_threads(monkeypatch):
-    cases = [BOX.replace({"contact.mu_static": mu}) for mu in FRICTIONS]
-    threads = fem.compute_many(cases, 1, band=False)
-    monkeypatch.setattr(many, "WORTH_PROCESSES", dict.fromkeys(many.WORTH_PROCESSES, 1))
-    processes = fem.compute_many(iter(cases), 2, band=False)
-    assert [figures(run) for run in processes] == [figures(run) for run in threads]
-
-
-def test_a_stop_that_was_asked_for_ends_the_runs():
-    with interruptible(Reporter()):
-        os.kill(os.getpid(), signal.SIGTERM)
-        with pytest.raises(KeyboardInterrupt):
-            fem.compute_many([BOX, BOX], band=False)
-
-
 def test_a_case_that_cannot_be_computed_is_named():
     with pytest.raises(CaseError) as refused:
         fem.compute_many([BOX, BOX.replace({"solver.step_s": 0.5})], band=False)
@@ -94,38 +75,15 @@ def test_errors_may_be_returned_in_place_of_runs():
     assert found[2].__notes__ == ["case 3 of 3 of compute_many"]
 
 
-def ran(folder, *words, **options):
-    """Of another Python, in a folder: what it prints."""
-    found = subprocess.run(
-        [sys.executable, *words],
-        env=os.environ | {"PYTHONPATH": str(ROOT)},
-        cwd=folder,
-        capture_output=True,
-        text=True,
-        check=True,
-        timeout=300,
-        **options,
-    )
-    assert found.stdout == "begun\n['slide', 'rest']\n"
-    return found.stderr
-
-
+@pytest.mark.slow
 @pytest.mark.parametrize(
-    ("call", "warned"),
-    [
-        ("compute()", True),
-        pytest.param('if __name__ == "__main__":\n    compute()', False, marks=pytest.mark.slow),
-    ],
-    ids=["unguarded", "guarded"],
+    ("call", "warned"), [("compute()", True), ('if __name__ == "__main__":\n    compute()', False)]
 )
 def test_a_script_without_a_guard_is_told_so_and_does_not_start_itself_again(tmp_path, call, warned):
     (tmp_path / "study.py").write_text(SCRIPT + call + "\n", encoding="utf-8")
-    told = ran(tmp_path, "study.py")
-    assert told.count('UserWarning: study.py lacks `if __name__ == "__main__":`') == warned
-    assert "Traceback" not in told
-
-
-@pytest.mark.slow
-def test_a_script_from_standard_input_is_computed_by_threads(tmp_path):
-    told = ran(tmp_path, "-", input=SCRIPT + "compute()\n")
-    assert "UserWarning: <stdin> is no file that a process can load" in told
+    command, environment = [sys.executable, "study.py"], os.environ | {"PYTHONPATH": str(ROOT)}
+    found = subprocess.run(
+        command, env=environment, cwd=tmp_path, capture_output=True, text=True, check=True, timeout=300
+    )
+    assert found.stdout == "begun\n['slide', 'rest']\n" and "Traceback" not in found.stderr
+    assert found.stderr.count('UserWarning: study.py lacks `if __name__ == "__main__":`') == warned

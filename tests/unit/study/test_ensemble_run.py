@@ -92,14 +92,6 @@ def test_unknown_inputs_are_drawn_beside_those_of_the_file(tmp_path):
     assert not any(draw.unknown for draw in held.draws_at(1))
 
 
-def test_joints_of_a_loose_stack_are_drawn_apart_from_the_floor(tmp_path):
-    drawn = load_ensemble(changed(tmp_path, ("[axes]", '"container.joints" = "loose"\n[axes]')))
-    assert {"joints.mu_static", "joints.mu_kinetic", "joints.weakening_m"} < set(drawn.unknown)
-    for draw in drawn.draws_at(1):
-        between = drawn.make.case(draw).joint_friction
-        assert between == {key: draw.unknown[f"joints.{key}"] for key in between}
-
-
 @pytest.mark.parametrize("sampling", ["latin-hypercube", "sobol"])
 def test_unknown_inputs_do_not_follow_the_others(sampling):
     """Over many replicates, the first column of the one stream and of the other are independent."""
@@ -155,6 +147,14 @@ def test_a_point_with_failed_draws_is_judged_with_them_against_it(tmp_path):
     assert count_point(ensemble, 0, np.array([Ending.STANDING] * 8))["region"] == "below"
 
 
+@pytest.mark.parametrize("name", ENSEMBLES.names)
+def test_shipped_ensembles_can_be_read(name):
+    ensemble = load_ensemble(name)
+    assert isinstance(ensemble, Ensemble)
+    case = ensemble.make.case(ensemble.draws_at(0)[0])
+    assert case.contact.mu_kinetic < case.contact.mu_static
+
+
 def test_a_draw_that_slides_beyond_the_limit_does_not_stand(tmp_path):
     free = run_ensemble(load_ensemble(changed(tmp_path)), folder=tmp_path / "free", jobs=1)
     limit = 0.5 * max(point["max_slip_m"] or 0.0 for point in free["points"])
@@ -165,14 +165,6 @@ def test_a_draw_that_slides_beyond_the_limit_does_not_stand(tmp_path):
     fallen = [(one["overturned"], other["overturned"]) for one, other in pairs]
     assert all(less <= more for less, more in fallen) and any(less < more for less, more in fallen)
     assert all((point["max_slip_m"] or 0.0) <= limit for point in found["points"])
-
-
-@pytest.mark.parametrize("name", ENSEMBLES.names)
-def test_shipped_ensembles_can_be_read(name):
-    ensemble = load_ensemble(name)
-    assert isinstance(ensemble, Ensemble)
-    case = ensemble.make.case(ensemble.draws_at(0)[0])
-    assert case.contact.mu_kinetic < case.contact.mu_static
 
 
 def test_two_axes_make_a_boundary(tmp_path):

@@ -26,6 +26,7 @@ def test_they_hold_the_truth_at_least_as_often_as_they_say(probability):
     assert binom.pmf(counts, draws, probability)[held].sum() >= 0.95
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sampling", ["latin-hypercube", "sobol"])
 @pytest.mark.parametrize("probability", [0.02, 0.1, 0.5])
 def test_intervals_from_replicates_hold_the_truth_about_as_often_as_they_say(sampling, probability):

@@ -63,29 +63,6 @@ def test_the_motions_are_read_as_the_case_takes_them(base):
     assert numbers["significant_s"] == intensity(motion.times, motion.values).significant_s
 
 
-def test_one_factor_scales_both_components_of_a_recording(base):
-    axis = read_axis("motion.file", [["a_h.csv", "a_v.csv"]])  # peaks of 3 and 2 m/s2
-    for values, peaks in (
-        ({"motion.scale_to_m_s2": 6.0, "vertical.scale": -1.0}, (6.0, -4.0)),
-        ({"motion.scale_to_m_s2": 6.0, "vertical.scale_to_m_s2": 1.0}, (6.0, 1.0)),
-        ({"motion.scale": 2.0}, (6.0, 2.0)),
-    ):
-        (pair,) = read_motion_set(base.with_values(values), [axis])
-        (own,) = read_motion_set(base, [axis])
-        ratios = [
-            build_motion(pair.case, table).values[k] / build_motion(own.case, table).values[k]
-            for table in ("motion", "vertical")
-            for k in [np.abs(build_motion(own.case, table).values).argmax()]
-        ]
-        assert (3.0 * ratios[0], 2.0 * ratios[1]) == pytest.approx(peaks)
-
-
-def test_a_motion_alone_has_no_vertical_one(base):
-    axis = read_axis("motion.file", ["a_h.csv", ["b_h.csv", "b_v.csv"]])
-    assert [len(one.measures) == 1 for one in read_motion_set(base, [axis])] == [True, False]
-    assert read_motion_set(base, [read_axis("contact.mu_static", [0.3])]) == ()
-
-
 def test_spectra_are_those_of_each_motion(base):
     axis = read_axis("motion.file", [["a_h.csv", "a_v.csv"], "b_h.csv"])
     motions = read_motion_set(base, [axis])

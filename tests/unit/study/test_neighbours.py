@@ -73,9 +73,3 @@ def test_a_pulse_has_no_phase_and_a_floor_at_rest_no_amplitude():
     pulse = ["motion.kind=pulse", "motion.shape=sine", "motion.pulse_s=0.5", f"{peak}=-4.0"]
     found = [member[peak] for member in members(load_case("seed_stack", pulse)) if peak in member]
     assert found == pytest.approx([-3.92, -4.08])
-
-
-def test_friction_does_not_become_negative():
-    case = load_case("seed_stack_plateau", ["contact.mu_static=0.01", "contact.mu_kinetic=0.0"])
-    for member in members(case):
-        case.with_values(member)

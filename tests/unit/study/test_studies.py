@@ -77,21 +77,11 @@ STUDIES = pytest.mark.parametrize(
 
 
 @pytest.fixture(scope="module")
-def kept():
-    """Folders of studies that were computed in one go, which tests compare with and copy."""
-    return {}
-
-
-@pytest.fixture
-def whole(kept, tmp_path_factory):
-    def folder_of(study):
-        if study not in kept:
-            place = tmp_path_factory.mktemp("kept")
-            study(place)(place / "whole")
-            kept[study] = place / "whole"
-        return kept[study]
-
-    return folder_of
+def whole(gallery, tmp_path_factory):
+    """Folders of the studies that were computed in one go, which tests compare with and copy."""
+    place = tmp_path_factory.mktemp("kept")
+    hall(place)(place / "whole")
+    return {sweep: gallery("sweep"), hall: place / "whole"}
 
 
 def files_of(folder):
@@ -119,7 +109,7 @@ def test_an_interrupted_study_continues_to_the_same_files(tmp_path, whole, study
                 with pytest.raises(FolderError, match=r"unfinished, with .* --resume continues it"):
                     run(folder)
     run(folder, resume=True)
-    assert files_of(folder) == files_of(whole(study))
+    assert files_of(folder) == files_of(whole[study])
 
 
 @pytest.mark.parametrize("study", [hall])
@@ -134,7 +124,7 @@ def test_a_damaged_row_is_computed_again_and_one_of_no_run_is_refused(tmp_path, 
         run(folder, resume=True)
     path.write_text("\n".join([header, first, second[: len(second) // 2], *others, ""]))
     run(folder, resume=True)
-    assert files_of(folder) == files_of(whole(study))
+    assert files_of(folder) == files_of(whole[study])
 
 
 @STUDIES
@@ -166,23 +156,6 @@ def test_an_interrupted_study_says_what_is_missing_in_place_of_an_answer(tmp_pat
     assert found["state"] == "finished" and found["answer"]
 
 
-@STUDIES
-def test_the_report_of_a_killed_study_gives_no_answer(tmp_path, capsys, study, mark, log):
-    """A map is drawn from the rows that there are; of the others nothing but the way on can be said."""
-    run, folder = study(tmp_path), tmp_path / "out"
-    with pytest.raises(KeyboardInterrupt):
-        run(folder, reporter=Interrupting(1))
-    code, said = main(["report", str(folder)]), capsys.readouterr()
-    if study is sweep:
-        page = (folder / "report.html").read_text()
-        assert code == 0 and 'class="sentence">No answer yet: ' in page
-        assert 'id="signature"' not in page and "signature</div>" not in page
-        return
-    ending = "is not finished; continue it with --resume"
-    assert code == 2 and len(said.err.splitlines()) == 1 and ending in said.err
-    assert not said.out and not (folder / "report.html").exists()
-
-
 @pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="process groups of POSIX")
 def test_sigterm_to_all_processes_of_an_assessment_ends_it_in_a_sentence(tmp_path):
@@ -205,7 +178,7 @@ def test_sigterm_to_all_processes_of_an_assessment_ends_it_in_a_sentence(tmp_pat
 @STUDIES
 def test_a_finished_study_is_left_alone_and_another_is_refused(tmp_path, whole, study, mark, log):
     run, folder = study(tmp_path), tmp_path / "out"
-    shutil.copytree(whole(study), folder)
+    shutil.copytree(whole[study], folder)
     before = {path: path.stat().st_mtime_ns for path in folder.rglob("*")}
     run(folder)
     with pytest.raises(FolderError, match=r"holds the results of another .*--out DIR.*--force"):

@@ -4,7 +4,7 @@ import pytest
 
 from fem.case.files import CASES, ENSEMBLES, SWEEPS
 from fem.case.validation import CaseError
-from fem.study.file import flat, load_ensemble, load_sweep
+from fem.study.file import load_ensemble, load_sweep
 
 SWEEP = '[axes]\n"contact.mu_static" = [0.3, 0.4]\n'
 ENSEMBLE = (
@@ -47,15 +47,6 @@ def test_names_that_no_file_can_have_are_no_files(tmp_path, monkeypatch, collect
             read(name)
 
 
-def test_dotted_keys_may_be_tables():
-    assert flat("set", {"contact": {"mu_static": 0.3}, "solver.model": "rigid"}) == {
-        "contact.mu_static": 0.3,
-        "solver.model": "rigid",
-    }
-    with pytest.raises(CaseError, match="given twice"):
-        flat("set", {"contact": {"mu_static": 0.3}, "contact.mu_static": 0.4})
-
-
 @READERS
 def test_a_key_that_is_set_and_varies_is_refused(tmp_path, read, text):
     path = written(tmp_path, text, "seed_box")
@@ -68,15 +59,3 @@ def test_a_key_that_is_set_and_varies_is_refused(tmp_path, read, text):
     path.write_text(changed, encoding="utf-8")
     with pytest.raises(CaseError, match=r"\[set\] 'contact\.mu_static' varies as well"):
         read(path)
-
-
-def test_a_key_that_is_set_against_an_axis_is_refused_in_words_of_the_file(tmp_path):
-    (tmp_path / "a.toml").write_text(
-        'case = "seed_stack"\n[set]\n"contact.mu_kinetic" = 0.6\n[axes]\n"contact.mu_static" = [0.6, 0.7]\n',
-        encoding="utf-8",
-    )
-    with pytest.raises(CaseError) as found:
-        load_sweep(tmp_path / "a.toml")
-    said = str(found.value)
-    assert '([set] "contact.mu_kinetic" = 0.6)' in said and "--set" not in said
-    assert "'contact.mu_static' varies, and a key that must follow it stands in [derived]" in said

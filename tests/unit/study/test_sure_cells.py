@@ -54,26 +54,6 @@ def test_every_copy_of_a_cell_is_another_case(sweep_of):
     assert all(values.count(one) == 1 for one in values)
 
 
-def test_the_copies_of_the_shipped_case_try_all_unknown_inputs(sweep_of):
-    assert keys_of(sweep_of(SMALL)) == {
-        "motion.peak_acceleration_m_s2",
-        "contact.mu_static",
-        "contact.mu_kinetic",
-        "contact.weakening_m",
-        "contact.stribeck_velocity_m_s",
-        "contact.normal_penalty_Pa_m",
-        "contact.damping_ratio",
-        "contact.restitution_over_housner",
-        "motion.phase_rad",
-        "motion.ramp_cycles",
-        "container.centroid_m",
-        "container.eccentricity_m",
-        "support.effective_width",
-        "floor.slope_percent",
-        "solver.energy_tolerance",
-    }
-
-
 def test_a_copy_of_a_cell_is_the_member_of_the_band_of_its_run(sweep_of):
     # Kinetic friction follows the static one, and step and penalty are those chosen for the cell.
     given = '"contact.mu_kinetic" = 0.4\n"contact.mu_static" = 0.4\n[axes]'
@@ -107,20 +87,6 @@ def test_copies_of_a_loose_cell_change_floor_and_joints_apart(sweep_of):
     assert keys_of(sweep) >= {*(f"joints.{key}" for key in own), "joints.damping_ratio"}
 
 
-@pytest.mark.slow
-def test_cells_of_a_loose_stack_show_every_box(sweep_of, tmp_path):
-    text = LOOSE.replace("count = 5", "count = 2").replace("count = 4", "count = 2")
-    sweep = sweep_of(text + '[perturbation]\ncells = "all"\ndraws = 2\n')
-    run_sweep(sweep, tmp_path / "out")
-    table = open_sweep(tmp_path / "out")
-    with (tmp_path / "out" / "members.csv").open() as stream:
-        members = list(csv.DictReader(stream))
-    assert len(str(table["box_slips_m"][0]).split()) == 4
-    assert max(map(float, str(table["box_slips_m"][0]).split()[1:])) == table["max_joint_slip_m"][0]
-    for name in ("box_rotations_rad", "box_slips_m", "box_openings_m"):
-        assert {len(row[name].split()) for row in members if row["outcome"]} == {4}
-
-
 @pytest.mark.parametrize(
     ("table", "gone"),
     [
@@ -132,19 +98,6 @@ def test_cells_of_a_loose_stack_show_every_box(sweep_of, tmp_path):
 def test_a_known_input_is_left_out(sweep_of, table, gone):
     text = SMALL.replace("[axes]", f"{table}\n[axes]")
     assert keys_of(sweep_of(SMALL)) - keys_of(sweep_of(text)) == gone
-
-
-def test_ratios_that_the_sweep_file_names_are_tried_even_if_damping_is_known(sweep_of):
-    text = SMALL.replace("[axes]", '"uncertainty.damping_ratio" = "known"\n[axes]')
-    text += "[perturbation]\ncontact_damping_ratios = [0.5]\n"
-    ratios = [copy.change.values.get("contact.damping_ratio") for copy in copies_of(sweep_of(text))]
-    assert [one for one in ratios if one is not None] == [0.5]
-
-
-def test_an_axis_is_not_varied_over_its_range(sweep_of):
-    text = SMALL.replace("[derived]\n", "").replace('"contact.mu_kinetic" = "0.5 * contact.mu_static"\n', "")
-    sweep = sweep_of(text + '"contact.weakening_m" = [0.0, 1e-3]\n')
-    assert "contact.weakening_m" not in keys_of(sweep)
 
 
 def test_a_deformable_container_leaves_out_what_takes_long(sweep_of):
@@ -188,14 +141,6 @@ def test_a_cell_is_as_sure_as_its_copies_are_and_what_decides_it_turns_it(sweep_
     assert np.array_equal(table["sure"] == "unsure", table["unsure"] == 1.0)
     assert sum(info["sure"].values()) == sweep.count
     assert info["sure"]["unsure"] == info["unsure"] > 0
-
-
-def test_cells_that_are_not_tried_are_not_called_sure(sweep_of, tmp_path):
-    """Below 2.4 m/s2 nothing overturns, so no cell is near a change of outcome."""
-    text = SMALL.replace("to = 14.0", "to = 2.4") + '[perturbation]\ncells = "near"\n'
-    info = run_sweep(sweep_of(text), tmp_path / "out")
-    assert (info["perturbed"], info["unsure"]) == (0, 0)
-    assert set(open_sweep(tmp_path / "out")["sure"]) == {""}
 
 
 @pytest.mark.parametrize(

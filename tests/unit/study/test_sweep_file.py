@@ -63,14 +63,6 @@ def test_derived_keys_follow_axes_defaults_and_one_another(sweep_of):
     assert values["initial.velocity_m_s"] == pytest.approx(1.6 + 0.2)
 
 
-def test_a_free_variable_is_an_axis_that_only_derived_keys_know(sweep_of):
-    sweep = sweep_of(
-        '[axes]\n"free.aspect_ratio" = [3.0, 4.0]\n[derived]\n"container.height_m" = "0.275 * free.aspect_ratio"\n'
-    )
-    assert sweep.make.values(sweep.point(1)) == {"container.height_m": pytest.approx(1.1)}
-    assert sweep.case(1).container.height_m == pytest.approx(1.1)
-
-
 @pytest.mark.parametrize("name", SWEEPS.names)
 def test_shipped_sweeps_can_be_read(name):
     sweep = load_sweep(name)

@@ -2,7 +2,6 @@
 
 import os
 import random
-import shutil
 import subprocess
 import sys
 import time
@@ -31,20 +30,10 @@ def small(tmp_path_factory):
     return load_sweep(path)
 
 
-@pytest.fixture(scope="module")
-def computed(small, tmp_path_factory):
-    """The folder of the sweep."""
-    folder = tmp_path_factory.mktemp("sweep")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("fem.study.sweep.draw_maps", lambda *arguments: [])
-        run_sweep(small, folder, jobs=1)
-    return folder
-
-
 @pytest.fixture
-def folder(computed, tmp_path):
-    """A copy of it."""
-    return shutil.copytree(computed, tmp_path / "out")
+def computed(gallery):
+    """The folder of the sweep."""
+    return gallery("sweep")
 
 
 def test_the_table_does_not_depend_on_the_jobs(small, computed, tmp_path):
@@ -56,7 +45,7 @@ def test_the_table_does_not_depend_on_the_jobs(small, computed, tmp_path):
     assert one["answer"].startswith("peak acceleration: stood in every motion tried up to ")
     answers = [(folder / "answers.csv").read_bytes() for folder in (computed, tmp_path / "two")]
     assert answers[0] == answers[1]
-    assert answers[0].count(b"\n") == 1 + 4  # a row for each frequency
+    assert answers[0].count(b"\n") == 1 + 2  # a row for each frequency
     assert {"overturned", "rest"} <= set(one["outcomes"])
     assert not (computed / "rows.csv").exists()
 
@@ -66,15 +55,16 @@ def test_the_folder_opens_as_arrays(small, computed):
     info = table.info
     assert table.shape == small.shape
     grid = table["motion.peak_acceleration_m_s2"].reshape(table.shape)
-    assert np.array_equal(grid[2], small.axes[1].values)
-    assert np.array_equal(table["contact.mu_kinetic"], np.full(20, 0.2))
+    assert np.array_equal(grid[1], small.axes[1].values)
+    assert np.array_equal(table["contact.mu_kinetic"], np.full(10, 0.2))
     fallen = table.outcome == "overturned"
     assert fallen.sum() == info["outcomes"]["overturned"]
     assert np.all(np.isfinite(table["overturned_at_s"]) == fallen)
     assert table["unsure"].sum() == info["unsure"]
 
 
-def test_another_band_keeps_the_rows(folder, tmp_path):
+def test_another_band_keeps_the_rows(gallery, tmp_path):
+    folder = gallery.copy("sweep", tmp_path)
     rows, walls = rows_without_wall(folder), open_sweep(folder)["wall_s"]
     path = tmp_path / "small.toml"
     path.write_text(SMALL + '[perturbation]\ncells = "none"\n', encoding="utf-8")
@@ -111,7 +101,7 @@ def kill_in_the_middle(arguments, folder, pause):
 @pytest.mark.slow
 def test_a_sweep_killed_twenty_times_gives_the_same_table(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    text = SMALL.replace("count = 5", "count = 40")
+    text = SMALL.replace("count = 5", "count = 80")
     (tmp_path / "small.toml").write_text(text, encoding="utf-8")
     choice = random.Random(0)
     for k in range(20):
@@ -138,7 +128,7 @@ def test_a_sweep_killed_twenty_times_gives_the_same_table(tmp_path, monkeypatch,
 def test_a_failed_cell_has_a_reason_and_never_stands(tmp_path, derived, words):
     # At 4 rad/s the expression is too large for a friction, or has no value; the ends of the range are fine.
     path = tmp_path / "bad.toml"
-    few = SMALL.replace("count = 5", "count = 2").replace("count = 4", "count = 3")
+    few = SMALL.replace("count = 2", "count = 3").replace("count = 5", "count = 2")
     path.write_text(few.replace(*derived), encoding="utf-8")
     run_sweep(load_sweep(path), tmp_path / "out")
     table = open_sweep(tmp_path / "out")
@@ -153,7 +143,7 @@ def test_a_million_cells_need_force_and_name_time_and_disk(tmp_path):
 "solver.model" = ["rigid", "full"]
 """
     text = "\n".join(line for line in SMALL.splitlines() if not line.startswith('"solver.'))
-    text = text.replace("count = 4", "count = 30").replace("count = 5", "count = 20")
+    text = text.replace("count = 2", "count = 30").replace("count = 5", "count = 20")
     path = tmp_path / "huge.toml"
     path.write_text(text.replace("[derived]", axes + "[derived]"))
     with pytest.raises(CaseError, match="1320000 cells") as refused:
@@ -161,23 +151,3 @@ def test_a_million_cells_need_force_and_name_time_and_disk(tmp_path):
     # half of the cells are of the full model: 660000 x (1 + 4 x 3) s, of which one figure is known
     assert all(words in str(refused.value) for words in ("roughly 2500 h", "GB", "--force"))
     check_size(load_sweep(path), 1, True)
-
-
-def test_a_kill_while_the_band_is_changed_leaves_no_copies_of_the_other(folder, tmp_path, monkeypatch):
-    path = tmp_path / "small.toml"
-    path.write_text(SMALL + "[perturbation]\namplitude_share = 0.1\n", encoding="utf-8")
-    other = load_sweep(path)
-
-    def killed(*arguments, **options):
-        raise KeyboardInterrupt
-
-    with monkeypatch.context() as patch:
-        patch.setattr("fem.results.folder.ResultFolder.begin", killed)
-        with pytest.raises(KeyboardInterrupt):
-            run_sweep(other, folder)
-    run_sweep(other, folder, resume=True)
-    run_sweep(other, tmp_path / "alone")
-    for name in ("table.csv", "members.csv"):
-        mine, alone = ((one / name).read_text().splitlines() for one in (folder, tmp_path / "alone"))
-        assert [line.split(",")[1:3] for line in mine] == [line.split(",")[1:3] for line in alone]
-    assert rows_without_wall(folder) == rows_without_wall(tmp_path / "alone")

@@ -8,39 +8,6 @@ import pytest
 from fem.study.file import load_sweep
 from fem.study.sweep import run_sweep
 
-SWEEP = """
-case = "seed_stack_plateau"
-[set]
-"solver.model" = "rigid"
-"solver.duration_s" = 6.0
-"contact.mu_static" = 0.25
-"contact.mu_kinetic" = 0.2
-"motion.peak_acceleration_m_s2" = 5.0
-"stop" = [
-    { side = "left", height_m = 0.1, gap_m = 0.0, stiffness_N_m = 1e8, restitution = 0.5 },
-    { side = "right", height_m = 0.1, gap_m = 0.0, stiffness_N_m = 1e8, restitution = 0.5 },
-]
-[axes]
-"motion.frequency_Hz" = [0.6, 1.5]
-"stop.gap_m" = [0.1, 10.0]
-[perturbation]
-cells = "none"
-"""
-
-
-def test_a_sweep_over_the_gap_finds_what_the_kerb_causes(tmp_path):
-    (tmp_path / "kerb.toml").write_text(SWEEP, encoding="utf-8")
-    run_sweep(load_sweep(tmp_path / "kerb.toml"), folder=tmp_path / "out")
-    with (tmp_path / "out" / "table.csv").open(newline="") as stream:
-        rows = list(csv.DictReader(stream))
-    outcomes = {(row["motion.frequency_Hz"], row["stop.gap_m"]): row["outcome"] for row in rows}
-    assert outcomes["0.6", "0.1"] == "overturned"
-    assert outcomes["0.6", "10.0"] == outcomes["1.5", "10.0"] == "slide"
-    answer = json.loads((tmp_path / "out" / "sweep.json").read_text())["answer"]
-    assert "overturned up to 0.1 m" in answer
-    assert "stood in every case tried from 10 m on" in answer
-
-
 ROW = """
 case = "seed_stack_plateau"
 [set]

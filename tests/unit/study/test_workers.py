@@ -33,9 +33,8 @@ HERE = ("before the start", True)
     ("count", "beside", "workers"),
     [
         ("64", [], [("before the start", False, 1), (*HERE, 1)]),
-        ("8", [], [(*HERE, 2)]),
         ("64", ["beside"], [(*HERE, 2)]),
-        ("2000", ["beside"], [("nothing", False, 1), (*HERE, 1)]),
+        pytest.param("2000", ["beside"], [("nothing", False, 1), (*HERE, 1)], marks=pytest.mark.slow),
     ],
 )
 def test_a_process_without_other_threads_is_forked_for_few_cases(tmp_path, count, beside, workers):
