@@ -43,16 +43,6 @@ def test_a_change_leaves_the_case_as_it_was_and_replaces_alternatives():
         (lambda: fem.case_from(["container"]), "case_from: a mapping of tables is needed, got list"),
         (lambda: fem.compute("seed_box"), "a case from fem.load_case or fem.case_from is needed, got str"),
         (lambda: fem.compute_many(fem.load_case("seed_box")), "is needed, got tuple"),
-        (lambda: fem.case_from({"container": 3}), "case: [container] must be one table, got 3"),
-        (
-            lambda: fem.case_from({"contact": {"mu_static": [0.3, 0.4]}, "uncertainty": 3}),
-            "[uncertainty] must be one table, got 3",
-        ),
-        (lambda: fem.load_case("seed_bax"), "did you mean 'seed_box'?"),
-        (
-            lambda: fem.load_case("seed_box").replace({"contact.mu_static": 40}),
-            "[contact] mu_static must be between 0 and 5, got 40; looks like per cent: 0.4? (--set contact",
-        ),
         (
             lambda: fem.load_case("seed_box").replace({"contact.mu": 0.4}),
             "[contact] unknown key 'mu'; did you mean 'mu_static'?",
@@ -67,19 +57,6 @@ def test_what_cannot_be_is_refused_in_the_words_of_the_command(make, words):
 
 
 def test_the_package_gives_away_its_interface_and_nothing_else():
-    assert [name for name in dir(fem) if not name.startswith("_")] == [
-        "assess_site",
-        "case_from",
-        "compute",
-        "compute_ensemble",
-        "compute_list",
-        "compute_many",
-        "compute_response",
-        "compute_sweep",
-        "load_case",
-        "open_run",
-        "slide_in_plane",
-    ]
     with pytest.raises(AttributeError, match="integrate your fragility curve"):
         fem.annual_rate  # noqa: B018
     for name in fem.__all__:
@@ -125,19 +102,3 @@ def test_a_motion_given_by_arrays_is_written_as_a_file_that_reads_back_to_the_sa
 def test_arrays_that_are_no_motion_are_refused(time, along, reason):
     with pytest.raises(CaseError, match=reason):
         read_case(LEAST).with_motion(time, along)
-
-
-def test_the_number_of_a_document_may_be_a_number():
-    case = read_case(LEAST).replace({"document.number": 2417, "document.company": "A"})
-    assert case.named["number"] == "2417"
-    assert case_hash(case) == case_hash(read_case(LEAST))
-    with pytest.raises(CaseError, match="document"):
-        read_case(LEAST).replace({"document.number": True})
-
-
-def test_a_notebook_offers_what_a_case_has_and_no_name_of_pydantic():
-    offered = dir(fem.load_case("seed_stack"))
-    assert {"container", "motion", "replace", "resolved"} <= set(offered)
-    assert not [
-        name for name in offered if name.startswith(("model_", "parse_", "construct", "update_forward"))
-    ]

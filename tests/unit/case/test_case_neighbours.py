@@ -69,11 +69,3 @@ def test_a_mass_beside_the_axis_needs_two_columns_in_every_container_of_a_row():
     assert "container.eccentricity_m" not in {one.key for one in ranges_of(narrow, 1e9)}
     with pytest.raises(MeshError, match=r"\[\[neighbour\]\] 1, as a container: a box of one column"):
         discretise(narrow.with_values({"container.eccentricity_m": 0.01}))
-
-
-def test_a_neighbour_of_impossible_size_is_refused_by_its_number():
-    case = RIGID.with_values({"neighbour": [BESIDE, {**BESIDE, "centroid_m": 50.0}]})
-    with pytest.raises(
-        CaseError, match=r"\[\[neighbour\]\] 2, as a container: .*centroid_m must be less than"
-    ):
-        _ = case.row

@@ -5,45 +5,24 @@ import pickle
 import tomllib
 
 import pytest
-from cases import LEAST
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from fem.case.case import CaseError, case_hash, load_case, read_case, to_toml
-from fem.case.files import CASES, DEFAULT_CASE
+from fem.case.files import CASES
 from fem.case.tables.all_tables import TABLES
 from fem.case.template import case_template
-from fem.case.toml import toml_document, toml_value
+from fem.case.toml import toml_value
 from fem.case.validation import known_keys, quantity_of
 
-SHIPPED = {
-    "seed_box",
-    "seed_stack",
-    "seed_stack_plateau",
-    "stack_on_concrete",
-    "free_rocking",
-    "sliding",
-    "rocking",
-    "overturning",
-    "iso_20ft",
-    "iso_20ft_empty",
-    "iso_20ft_two_locked",
-    "iso_20ft_two_loose",
-}
 
-
-def test_the_shipped_cases_are_those_of_the_documentation():
-    assert set(CASES.names) == SHIPPED
-    assert load_case().name == DEFAULT_CASE == "seed_stack_plateau"
-
-
-@pytest.mark.parametrize("name", sorted(SHIPPED))
+@pytest.mark.parametrize("name", CASES.names)
 def test_a_shipped_case_says_in_its_first_line_what_it_shows(name):
     assert CASES.text(name).startswith("# ")
     assert 40 < len(CASES.description(name)) < 130
 
 
-@pytest.mark.parametrize("name", sorted(SHIPPED))
+@pytest.mark.parametrize("name", CASES.names)
 def test_a_resolved_case_and_its_template_of_every_key_read_back_to_it(name):
     case = load_case(name)
     template = case_template(case)
@@ -55,31 +34,8 @@ def test_a_resolved_case_and_its_template_of_every_key_read_back_to_it(name):
             assert (f"{key} = " if key != "box" else "[[container.box]]") in template
 
 
-def test_an_empty_table_takes_the_defaults_and_is_kept():
-    case = read_case(LEAST + "[static]\n")
-    assert case.static is not None and "static" in case.given()
-    assert case.with_values({"contact.mu_static": 0.5}).static == case.static
-    assert read_case(LEAST).static is None
-    assert read_case(LEAST).with_values({"static.soil_factor": 1.0}).static.soil_factor == 1.0
-
-
-def test_a_template_of_a_case_without_static_has_it_as_a_comment():
-    template = case_template(read_case(LEAST))
-    assert "\n# [static]  # " in template and "\n# soil_factor = 1.5" in template
-    assert read_case(template).static is None
-
-
 class TestHash:
     """The hash is that of the computation, not of the file."""
-
-    def test_title_document_comments_and_written_defaults_do_not_change_it(self):
-        case = load_case("seed_stack")
-        signed = case.with_values({"title": "another", "document.author": "A. Author"})
-        assert signed.resolved()["document"] == {"author": "A. Author"}
-        assert case_hash(case) == case_hash(signed)
-        assert case_hash(case) == case_hash(
-            read_case(case.text + "\n# a comment\n[output]\nhistory_s = 0.005\n")
-        )
 
     @pytest.mark.parametrize(
         "change",
@@ -151,11 +107,6 @@ def test_a_text_reads_back_to_itself(value):
     assert tomllib.loads(f"v = {toml_value(value)}") == {"v": value}
 
 
-def test_what_is_no_scalar_is_not_written():
-    with pytest.raises(TypeError, match="no TOML scalar: NoneType"):
-        toml_document({"a": [None]})
-
-
 FLOATS = {
     f"{table}.{key}": quantity
     for table, model in TABLES.items()
@@ -188,8 +139,8 @@ def changes(draw):
     return values
 
 
-@settings(max_examples=100)
-@given(changes(), st.sampled_from(sorted(SHIPPED)))
+@settings(max_examples=40)
+@given(changes(), st.sampled_from(CASES.names))
 def test_every_case_that_is_read_is_written_and_read_back(values, name):
     try:
         case = load_case(name).with_values(values)

@@ -7,7 +7,7 @@ from cases import BLOCK
 from record_files import STEP, G, synthetic_motion
 
 from fem.__main__ import main
-from fem.case.case import CaseError, load_case, read_case, to_toml
+from fem.case.case import CaseError, load_case
 from fem.case.recorded import recorded_motion
 
 FIRST, SECOND, THIRD = synthetic_motion(801)
@@ -77,18 +77,11 @@ def test_a_peak_that_looks_like_g_is_noted(peak, noted):
 @pytest.mark.parametrize(
     ("motion", "changes", "words"),
     [
-        ("station.v2", (), r"2 components may be the horizontal one \(#1 90 Deg.*choose one as station.v2#NUMBER"),
-        ("v.at2", (), r"no horizontal component \(#1 UP, vertical"),
         ("h.at2", ("vertical.kind=table",), r"\[vertical\] h.at2: no vertical component"),
         ("one.at2", ("vertical.kind=table",), "has one motion, which moves the floor along x already"),
         ("one.at2#1", ("vertical.kind=table", "vertical.file=one.at2#1"), "has one motion, which moves"),
         ("h.at2", ("vertical.kind=table", "vertical.file=slow.at2"), "0.005 and 0.01 s between samples"),
-        ("h.at2", ("motion.unit=gal",), "the file states 'g', but unit = 'gal' is given"),
-        ("bare.csv", (), "does not state the unit of its values; state it as unit"),
-        ("bare.csv", ("motion.unit=g", "motion.sample_interval_s=0.01"), "is for a file of one column"),
         ("h.at2", ("motion.start_s=5.0",), "nothing is left of it: its times are 0 to 4 s"),
-        ("h.at2", ("motion.quantity=displacement",), "it holds accelerations, and displacements are needed"),
-        ("none.at2", (), "names no file"),
         (".", (), "which is a folder"),
         ("bare.csv", ("motion.unit=ft/s2",), r"got the text 'ft/s2'(?! *;)"),
         ("secret.txt", (), "secret.txt: no numbers were found"),
@@ -142,53 +135,3 @@ def test_a_gap_is_refused_with_its_times_and_bridged_where_that_is_asked(folder,
             moved("gap.csv", "motion.unit=m/s2", table=table)
         found = moved("gap.csv", "motion.unit=m/s2", "motion.gaps=bridge", table=table)
         assert found.times.size == FIRST.size - missing
-
-
-def test_a_file_that_is_set_moves_the_floor_of_a_harmonic_case():
-    assert load_case("rocking", ["motion.file=h.at2"]).motion.kind == "table"
-    pair = load_case("rocking").replace({"motion.file": "h.at2", "vertical.file": "v.at2"})
-    assert (pair.motion.kind, pair.vertical.kind) == ("table", "table")
-    assert load_case("rocking", ["motion.file=h.at2", "motion.kind=harmonic"]).motion.kind == "harmonic"
-
-
-def test_gal_is_a_unit_and_no_slip():
-    assert moved("bare.csv", "motion.unit=gal").values == pytest.approx(0.01 * FIRST, abs=1e-8)
-
-
-def test_check_tells_length_interval_peaks_and_what_is_left(capsys):
-    changes = ["--set", "vertical.kind=table", "--set", "motion.baseline=zero-end", "--allow-baseline"]
-    assert main(["check", "case.toml", "--motion", "pair.csv", *changes]) == 0
-    said = capsys.readouterr().out
-    assert f"4 s, 801 samples of {STEP:g} s; peaks " in said
-    assert said.count("; ends with ") == 2 and "ends with 0 m/s, 0 mm" in said
-
-
-def test_a_path_outside_is_the_users_to_allow(folder, tmp_path, capsys):
-    inner = tmp_path / "inner"
-    inner.mkdir()
-    (inner / "case.toml").write_text(BLOCK.replace('"none"', '"table"\nfile = "../h.at2"'))
-    assert main(["check", "inner/case.toml"]) == 2
-    assert "--allow-outside" in capsys.readouterr().err
-    assert main(["check", "inner/case.toml", "--allow-outside"]) == 0
-    assert main(["check", "inner/case.toml", "--motion", "h.at2"]) == 0
-    assert main(["check", "inner/case.toml", "--set", f"motion.file={tmp_path / 'h.at2'}"]) == 0
-
-
-def test_a_baseline_that_takes_a_pulse_is_refused_unless_it_is_allowed(folder, capsys):
-    times = np.arange(0.0, 5.005, 0.01)
-    pulse = np.where(times < 0.8, 3.4 * np.sin(2.0 * np.pi * times / 0.8), 0.0)
-    np.savetxt(folder / "pulse.csv", np.column_stack([times, pulse]), delimiter=",")
-    asked = ["check", "case.toml", "--motion", "pulse.csv", "--set", "motion.unit=m/s2"]
-    baseline = ["--set", "motion.baseline=zero-end"]
-    assert main([*asked, *baseline]) == 2
-    said = capsys.readouterr().err
-    assert "peak velocity from 0.865 m/s with 'mean'" in said and "--allow-baseline" in said
-    for allowed in (["--allow-baseline"], ["--set", "motion.allow_baseline=true"]):
-        assert main([*asked, *baseline, *allowed]) == 0
-        assert "motion.baseline: 'zero-end' changes the peak" in " ".join(capsys.readouterr().out.split())
-    assert main([*asked, "--set", "motion.baseline=mean", "--allow-baseline"]) == 0
-    assert "motion.baseline" not in capsys.readouterr().out
-    held = load_case(
-        "case.toml", [*asked[-1:], "motion.baseline=zero-end"], motion="pulse.csv", allow_baseline=True
-    )
-    assert read_case(to_toml(held), folder=folder).motion.allow_baseline
