@@ -1,13 +1,10 @@
 """The file of a checkpoint: what comes back is what went in, and everything else is refused by name."""
 
-import gc
 import hashlib
 import json
 import os
 import struct
-import sys
 import zipfile
-from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -111,36 +108,3 @@ def test_an_array_that_is_not_what_it_seems_is_refused(tmp_path, header, content
     forged(tmp_path / "c.npz", header | {"fortran_order": False}, content, compression)
     with pytest.raises(CheckpointError, match=words):
         read(tmp_path / "c.npz")
-
-
-class Garbage:
-    """Its collection runs Python code, so that threads change places where they otherwise would not."""
-
-    def __init__(self):
-        self.itself = self
-
-    def __del__(self):
-        for _ in range(30):
-            pass
-
-
-def test_two_threads_that_read_at_once_find_nothing_damaged(path):
-    # Members of a band read their checkpoints side by side; CPython 3.11.7 found one of them damaged now and then
-    # ("AST constructor recursion depth mismatch", CPython issue 106905).
-    def read_often(depth):
-        if depth:
-            return read_often(depth - 1)
-        for _ in range(300):
-            Garbage()
-            read(path)
-        return None
-
-    before = gc.get_threshold(), sys.getswitchinterval()
-    gc.set_threshold(50)
-    sys.setswitchinterval(1e-6)
-    try:
-        with ThreadPoolExecutor(2) as pool:
-            list(pool.map(read_often, (1, 30)))  # raises what either of them found
-    finally:
-        gc.set_threshold(*before[0])
-        sys.setswitchinterval(before[1])

@@ -86,9 +86,7 @@ def test_results_that_are_replaced_make_room(tmp_path, monkeypatch):
 COMMANDS = {
     "run": f"run rocking --no-band {' '.join(f'--set {one}' for one in COMMON)}",
     "sweep": "sweep small.toml -j 1",
-    "study": "study seed --only half-width --only numbers-one-box",
 }
-WITHOUT_A_RESULT_FOLDER = {"modes": "modes seed_box --count 1", "verify": "verify --room statics -q"}
 
 
 @pytest.fixture(params=COMMANDS)
@@ -96,9 +94,7 @@ def command(request, tmp_path, monkeypatch) -> list[str]:
     """Something that writes a folder of results."""
     monkeypatch.chdir(tmp_path)
     Path("small.toml").write_text(SMALL + '[perturbation]\ncells = "none"\n')
-    if request.param in COMMANDS:
-        return [*COMMANDS[request.param].split(), "-q"]
-    return WITHOUT_A_RESULT_FOLDER[request.param].split()
+    return [*COMMANDS[request.param].split(), "-q"]
 
 
 def test_results_that_do_not_fit_are_refused_before_anything_is_written(
@@ -131,28 +127,13 @@ def test_a_full_disk_ends_with_3_and_what_was_written_is_continued(command, smal
         (small / "filler").unlink()
         if command[0] == "run":  # the whole run does not fit
             return
-        assert main(command if command[0] == "study" else [*command, "--resume"]) == 0
+        assert main([*command, "--resume"]) == 0
     assert not list((small / "f").rglob(".part-*"))
 
 
-@pytest.mark.parametrize("command", [*COMMANDS, *WITHOUT_A_RESULT_FOLDER], indirect=True)
 def test_a_read_only_folder_ends_with_3(command, small, capsys):
     remount_read_only(small)
     with unforeseen():
         assert main([*command, "--out", str(small / "f")]) == 3
     message = capsys.readouterr().err
     assert "cannot be written (Read-only file system)" in message and "--out DIR" in message
-
-
-def test_a_report_that_cannot_be_written_ends_with_3_and_names_another_place(
-    small, capsys, monkeypatch, tmp_path
-):
-    assert run(tmp_path / "r", "--set", "output.fields_s=0") == 0
-    shutil.copytree(tmp_path / "r", small / "r")
-    remount_read_only(small)
-    monkeypatch.setattr(fem.report.run_page, "run_report", lambda *_, **__: "<html></html>")  # takes long
-    capsys.readouterr()
-    assert main(["report", str(small / "r")]) == 3
-    message = capsys.readouterr().err
-    assert "cannot be written (Read-only file system)" in message and "--to FILE" in message
-    assert main(["report", str(small / "r"), "--to", str(tmp_path / "page.html")]) == 0

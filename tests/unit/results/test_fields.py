@@ -1,9 +1,5 @@
 """Field output: what is written comes back, in meshio and in pyvista, at every moment of a run."""
 
-import ast
-import os
-import shutil
-import subprocess
 from xml.etree import ElementTree
 
 import meshio
@@ -88,8 +84,8 @@ def test_meshio_reads_frames_whose_arrays_have_any_length(tmp_path):
     # meshio looks for arrays by offsets that it replaces one after the other, and may take one for another
     out = writer(tmp_path)
     written = []
-    for quiet in range(300):
-        moved = RNG.normal(size=(15, 2)) * (RNG.random((15, 1)) > quiet / 300)
+    for quiet in range(100):
+        moved = RNG.normal(size=(15, 2)) * (RNG.random((15, 1)) > quiet / 100)
         written.append(fields() | {"displacement": moved, "velocity": moved[::-1]})
         out.write(at(0.01 * quiet, **written[-1]))
     out.close()
@@ -159,39 +155,3 @@ def test_a_series_that_names_files_elsewhere_or_is_damaged_is_refused(tmp_path):
     (tmp_path / "run.pvd").write_text(text[:-20])
     with pytest.raises(ValueError, match="damaged"):
         open_fields(tmp_path)
-
-
-PARAVIEW = """
-from paraview.simple import PVDReader, WarpByVector, servermanager
-reader = PVDReader(FileName={series!r})
-reader.UpdatePipelineInformation()
-print(list(reader.TimestepValues))
-warped = WarpByVector(Input=reader)
-warped.Vectors = ["POINTS", "displacement_m"]
-warped.UpdatePipeline(0.05)
-data = servermanager.Fetch(warped)
-print([data.GetPoint(i) for i in range(data.GetNumberOfPoints())])
-print([data.GetPointData().GetArray("von_mises_Pa").GetValue(i) for i in range(data.GetNumberOfPoints())])
-"""
-
-
-@pytest.mark.slow
-@pytest.mark.skipif(shutil.which("pvpython") is None, reason="needs pvpython (Debian: python3-paraview)")
-def test_paraview_opens_the_series_and_warps_it(tmp_path):
-    out = writer(tmp_path)
-    written = [fields(), fields()]
-    out.write(at(0.0, **written[0]))
-    out.write(at(0.05, **written[1]))
-    environment = {key: value for key, value in os.environ.items() if not key.startswith("PYTHON")}
-    result = subprocess.run(
-        ["pvpython", "-c", PARAVIEW.format(series=str(tmp_path / "run.pvd"))],
-        env=environment,
-        capture_output=True,
-        text=True,
-        check=True,
-        timeout=300,
-    )
-    times, points, stresses = (ast.literal_eval(line) for line in result.stdout.splitlines()[-3:])
-    assert times == [0.0, 0.05]
-    assert np.array(points)[:, :2] == pytest.approx(POINTS + written[1]["displacement"], abs=1e-5)
-    assert stresses == pytest.approx(written[1]["von_mises"], rel=1e-5)

@@ -6,8 +6,6 @@ import signal
 import socket
 import subprocess
 import sys
-import threading
-import time
 
 import pytest
 
@@ -69,29 +67,3 @@ def test_a_live_owner_is_named_with_the_way_out_and_a_killed_one_is_no_obstacle(
     assert (tmp_path / "r" / LOCK_NAME).is_file()
     with locked_folder(tmp_path / "r"):
         assert json.loads((tmp_path / "r" / OWNER_NAME).read_text())["pid"] == os.getpid()
-
-
-def test_of_many_threads_that_want_a_folder_one_has_it(tmp_path):
-    inside, most, got = 0, 0, 0
-    guard, over = threading.Lock(), time.monotonic() + 1.0
-
-    def want():
-        nonlocal inside, most, got
-        while time.monotonic() < over:
-            try:
-                with locked_folder(tmp_path / "r"):
-                    with guard:
-                        inside, got = inside + 1, got + 1
-                        most = max(most, inside)
-                    time.sleep(0.0005)
-                    with guard:
-                        inside -= 1
-            except FolderLockedError:
-                continue
-
-    threads = [threading.Thread(target=want) for _ in range(6)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert most == 1 and got > 1

@@ -18,6 +18,7 @@ from fem.results.folder import open_result_folder, read_result
 from fem.results.history import HistoryWriter
 from fem.results.json_text import to_json
 from fem.results.kinds import KINDS, RUN, SWEEP, typed_result
+from fem.results.reader import open_run
 from fem.results.run_result import RunResult
 from fem.runtime import own_files
 from fem.runtime.terminal import shown
@@ -73,11 +74,6 @@ class TestWriting:
         begun(folder, kind, force=True)
         assert not (folder / kind.mark).is_symlink()
         assert len(set(names)) == len(names) > 1 and all(own_files.PART.search(name) for name in names)
-
-    def test_hidden_files_count_where_a_folder_is_called_empty(self, folder):
-        (folder / ".bashrc").write_text("")
-        with pytest.raises(FolderError, match="is not empty and holds no run"):
-            begun(folder)
 
     def test_a_file_is_made_with_the_mode_of_the_umask_and_replaces_a_link(self, folder, victim):
         (folder / "a").symlink_to(victim)
@@ -139,11 +135,6 @@ class TestWriting:
         with pytest.raises(OSError, match=LINKED):
             own_files.place_in(folder, "data/motions/a.csv")
         assert not os.listdir(elsewhere)
-
-    def test_the_folder_itself_may_be_a_link(self, folder, tmp_path):
-        (tmp_path / "link").symlink_to(folder)
-        begun(tmp_path / "link")
-        assert (folder / "run.json").is_file()
 
 
 class TestForce:
@@ -232,6 +223,19 @@ class TestReading:
             said = capsys.readouterr().err
             assert codes[-1] == 0 or re.search(rf"{name}\.json: (damaged|cannot be read)", said), said
         assert set(codes) == {0, 2}
+
+    def test_any_value_of_a_run_is_read_or_refused_with_the_file(self, gallery, tmp_path):
+        folder = gallery.copy("rests", tmp_path)
+        content, draw, refused = json.loads((folder / "run.json").read_text()), random.Random(1), 0
+        for place, key in draw.choices([*_places(content)], k=200):
+            before, place[key] = place[key], draw.choice(VALUES)
+            (folder / "run.json").write_text(json.dumps(content).replace("1e+308", "1e309"))
+            place[key] = before
+            try:
+                assert open_run(folder).typed_result.to_json()
+            except FolderError as error:
+                refused += str(folder / "run.json") in str(error)
+        assert 20 < refused < 190
 
 
 class TestSpeaking:

@@ -1,11 +1,6 @@
 """The history file: bits kept, valid at every moment, and honest about what it cannot read."""
 
 import math
-import os
-import signal
-import subprocess
-import sys
-import textwrap
 from types import SimpleNamespace
 
 import numpy as np
@@ -14,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from contact.stepping.state import row_names
-from fem.case.columns import ALWAYS, GROUPS, JOINTS, MODE, VERTICAL, history_columns
+from fem.case.columns import ALWAYS, GROUPS, JOINTS, MODE, history_columns
 from fem.results.history import History, HistoryWriter, add_analytic_rotation, read_history
 
 COLUMNS = ALWAYS.names((0,))
@@ -60,15 +55,17 @@ def case_of(*, boxes=1, joints="bolted", vertical=False, crushing=False, restitu
     )
 
 
-@pytest.mark.parametrize("boxes", [1, 2, 3])
-@pytest.mark.parametrize("joints", ["bolted", "loose"])
 @pytest.mark.parametrize(
-    "along", [None, "floor", "horizontal"]
-)  # of a slope; horizontally it moves normal to itself
-@pytest.mark.parametrize("vertical", [False, True])
-@pytest.mark.parametrize("crushing", [False, True])
-@pytest.mark.parametrize("restitution", [None, 0.95])
-@pytest.mark.parametrize("analytic", [False, True])
+    ("boxes", "joints", "along", "vertical", "crushing", "restitution", "analytic"),
+    [
+        (1, "bolted", None, False, False, None, False),
+        (1, "bolted", "horizontal", False, True, None, True),  # along a slope it moves normal to itself
+        (2, "bolted", "floor", False, False, 0.95, False),
+        (3, "bolted", "floor", True, True, 0.95, True),
+        (2, "loose", "horizontal", False, False, 0.95, True),
+        (3, "loose", None, True, True, None, False),
+    ],
+)
 def test_crushing_impacts_vertical_motion_joints_boxes_and_rigid_block_follow_in_this_order(
     tmp_path, boxes, joints, vertical, along, crushing, restitution, analytic
 ):
@@ -110,15 +107,6 @@ def test_a_column_has_its_unit_in_its_name_and_no_name_is_declared_twice():
         assert column.name == MODE or column.name.endswith("_" + column.unit.replace("/", "_"))
 
 
-def test_a_history_of_an_older_version_is_read_by_its_header(tmp_path):
-    names = [name for name in (*COLUMNS, *VERTICAL.names((0,))) if name not in ("friction_J", "uplift_m")]
-    text = ",".join(names) + "\n" + ",".join("rest" if name == MODE else "2.5" for name in names) + "\n"
-    (tmp_path / "h.csv").write_text(text)
-    history = read_history(tmp_path / "h.csv")
-    assert history["base_vertical_velocity_m_s"].tolist() == [2.5] and history.modes == ("rest",)
-    assert "friction_J" not in history
-
-
 def test_the_rigid_block_is_the_last_column_and_is_replaced_not_repeated(tmp_path):
     path, rotation = tmp_path / "history.csv", np.array([0.1, math.nan])
     rows = np.arange(2.0 * (NUMBERS + 3)).reshape(2, -1)
@@ -142,40 +130,13 @@ def test_every_double_survives_as_soon_as_it_is_appended(tmp_path_factory, row):
         assert read_history(path).samples.tobytes() == np.array([row]).tobytes()
 
 
-def test_a_killed_writer_leaves_whole_lines_and_at_most_a_torn_last_one(tmp_path):
-    script = textwrap.dedent("""
-        import sys
-        from pathlib import Path
-        import numpy as np
-        from fem.case.columns import ALWAYS
-        from fem.results.history import HistoryWriter
-        writer = HistoryWriter(Path(sys.argv[1]), ALWAYS.names((0,)))
-        print("ready", flush=True)
-        while True:
-            writer.append(np.arange(50.0 * 20).reshape(50, -1), ["rock"] * 50)
-    """)
-    path = tmp_path / "h.csv"
-    process = subprocess.Popen([sys.executable, "-c", script, str(path)], stdout=subprocess.PIPE)
-    assert process.stdout.readline() == b"ready\n"
-    while path.stat().st_size < 200_000:
-        assert process.poll() is None
-    os.kill(process.pid, signal.SIGKILL)
-    process.wait()
-    process.stdout.close()
-    history = read_history(path)
-    # every sample is one that was written, in its order: nothing is made up, nothing but the end is missing
-    assert len(history.modes) == path.read_bytes().count(b"\n") - 1 > 100
-    counted = np.arange(NUMBERS) + float(NUMBERS) * (np.arange(len(history.modes)) % 50)[:, None]
-    assert np.array_equal(history.samples, counted)
-
-
 def test_wherever_a_file_is_torn_its_whole_lines_are_read_and_nothing_else(tmp_path):
     # A kill during a write leaves any first part of it: every one is tried.
     path = tmp_path / "h.csv"
     with HistoryWriter(path, COLUMNS) as writer:
         writer.append(ROWS[:2], MODES[:2])
         settled = writer.position
-        writer.append(ROWS[2:5], MODES[2:5])
+        writer.append(ROWS[2:4], MODES[2:4])
     data = path.read_bytes()
     for end in range(settled, len(data) + 1):
         path.write_bytes(data[:end])
@@ -186,7 +147,7 @@ def test_wherever_a_file_is_torn_its_whole_lines_are_read_and_nothing_else(tmp_p
         assert history.modes == tuple(MODES[:count])
     path.write_bytes(data[: settled + 40])
     with HistoryWriter(path, COLUMNS, position=settled) as writer:  # as after --resume
-        writer.append(ROWS[2:5], MODES[2:5])
+        writer.append(ROWS[2:4], MODES[2:4])
     assert path.read_bytes() == data
 
 
@@ -229,8 +190,3 @@ class TestInPython:
             "rock",
         ]
         assert self.HISTORY.units == {"time_s": "s", "joint_1_moment_Nm": "Nm", "box_2_rotation_rad": "rad"}
-
-    def test_without_pandas_the_way_out_is_named(self, monkeypatch):
-        monkeypatch.setitem(sys.modules, "pandas", None)
-        with pytest.raises(ImportError, match="python -m pip install pandas; or take"):
-            self.HISTORY.to_dataframe()

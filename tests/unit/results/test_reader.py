@@ -65,13 +65,6 @@ def test_result_case_and_history_are_those_of_the_files(folder):
     assert repr(run.history).startswith("<history: 201 samples of time_s, base_displacement_m")
 
 
-def test_the_rigid_check_comes_by_column(folder):
-    check = fem.open_run(folder).rigid_check
-    assert set(check) >= {"time_s", "rotation_rad", "analytic_rotation_rad"}
-    assert check["rotation_rad"] == pytest.approx(fem.open_run(folder).history["rotation_rad"], abs=0.0)
-    assert np.abs(check["analytic_rotation_rad"] - check["rotation_rad"])[:100].max() < 1e-5
-
-
 @pytest.mark.parametrize("name", ["rotation", "slip", "energy", "rigid_check"])
 def test_a_figure_is_that_of_the_page(folder, name):
     run = fem.open_run(folder)
@@ -80,14 +73,6 @@ def test_a_figure_is_that_of_the_page(folder, name):
     with style.house_style():
         expected = FIGURES[name](run)
     assert [one.get_text() for one in drawn.texts] == [one.get_text() for one in expected.texts]
-
-
-def test_a_figure_that_there_is_not_is_refused_with_those_that_there_are(folder):
-    for name in ("spectrum", "rotations"):
-        with pytest.raises(
-            ValueError, match=f"no figure '{name}' of this run; there are base_motion, rotation, "
-        ):
-            fem.open_run(folder).plot(name)
 
 
 def test_frames_hold_the_rigid_motion_of_the_history(folder):
@@ -148,18 +133,7 @@ def test_a_damaged_frame_is_named(damaged, text):
         run.fields.frame(1)
 
 
-def test_what_is_no_run_is_refused(tmp_path):
-    with pytest.raises(FolderError, match="no such folder"):
-        fem.open_run(tmp_path / "nowhere")
-    with pytest.raises(FolderError, match="is this the folder of a run"):
-        fem.open_run(tmp_path)
-    (tmp_path / "size.json").write_text('{"asked": ""}')
-    with pytest.raises(
-        FolderError, match=r"the folder of a size study \(its results: size.json\); give that of a run"
-    ):
-        fem.open_run(tmp_path)
-
-
+@pytest.mark.slow
 def test_opening_loads_neither_the_solver_nor_pyvista(folder):
     script = (
         f"import sys, fem; assert not {{'numpy', 'fem.results.reader'}} & set(sys.modules); "

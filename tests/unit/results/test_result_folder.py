@@ -8,16 +8,14 @@ import numpy as np
 import pytest
 from interrupted_runs import files_of
 
-from fem.results.errors import FolderError, OutputError, writing_into
+from fem.results.errors import FolderError, writing_into
 from fem.results.folder import open_result_folder, program_of_results, read_result
 from fem.results.json_text import to_json
-from fem.results.kinds import ENSEMBLE, PAPER, RESPONSE, RUN, SWEEP
+from fem.results.kinds import RUN, SWEEP
 from fem.runtime.own_files import write_atomically
 
 TEXTS = {"case.toml": "title = 'é'\n", "resolved.toml": "schema = 1\n"}
-pytestmark = pytest.mark.parametrize(
-    "kind", [RUN, SWEEP, ENSEMBLE, RESPONSE, PAPER], ids=lambda kind: kind.mark
-)
+pytestmark = pytest.mark.parametrize("kind", [RUN, SWEEP], ids=lambda kind: kind.mark)
 
 
 def mark(kind, status="running", request="ours", **more):
@@ -170,21 +168,6 @@ def test_a_file_or_a_broken_link_on_the_way_is_named(tmp_path, kind):
         with pytest.raises(FolderError, match=reason), writing_into(place, "wait"):
             place.mkdir(parents=True)
     assert sorted(entry.name for entry in tmp_path.iterdir()) == ["file", "link"]
-
-
-def test_a_full_disk_is_an_error_with_the_way_on_and_at_the_start_leaves_nothing(tmp_path, kind, monkeypatch):
-    def full(*_):
-        raise OSError(28, "No space left on device")
-
-    place = tmp_path / "outputs" / "r"
-    failed = pytest.raises(OutputError, match=r"No space left.*can be read.*then compute")
-    with failed, open_result_folder(place, kind, "ours", way_on="then compute"):
-        full()
-    refused = pytest.raises(FolderError, match="No space left")
-    with refused, open_result_folder(place, kind, "ours") as folder:
-        monkeypatch.setattr(os, "fsync", full)
-        folder.begin(mark(kind), TEXTS)
-    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_result_is_strict_json_and_replaced_whole(tmp_path, kind, monkeypatch):
