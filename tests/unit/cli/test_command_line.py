@@ -48,21 +48,6 @@ def test_a_fault_of_the_program_is_not_dressed_up_as_a_fault_of_the_user(monkeyp
         command_line.main(["list"])
 
 
-def test_an_interrupt_amid_an_import_ends_the_process_with_4():
-    """Imports run texts (`exec`), and CPython before 3.12 never forgets an interrupt that came through one."""
-    program = """
-import fem.__main__ as command_line
-def interrupted(*_, **__):
-    exec("raise KeyboardInterrupt")
-command_line.build_app = lambda: interrupted
-command_line.program()
-"""
-    done = subprocess.run(
-        [sys.executable, "-c", program, "list"], capture_output=True, text=True, check=False
-    )
-    assert (done.returncode, done.stderr.strip()) == (4, "interrupted")
-
-
 @pytest.mark.parametrize(
     ("error", "code", "words"),
     [
@@ -91,13 +76,6 @@ def run_in_shell(command):
         ["bash", "-c", command.format(python=sys.executable)], capture_output=True, text=True, check=False
     )
     return done.returncode, done.stdout, done.stderr
-
-
-@pytest.mark.slow
-def test_an_output_stream_that_lacks_some_signs_gets_others():
-    said = "from fem import __main__ as m; m.build_app = lambda: lambda *_, **__: print('a ─'); m.program()"
-    code, out, err = run_in_shell(f'PYTHONIOENCODING=cp1252 {{python}} -c "{said}" list')
-    assert (code, err) == (0, "") and out.endswith(" ?\n")
 
 
 @pytest.mark.slow
@@ -135,15 +113,6 @@ command_line.program()
     assert run_in_shell(f'{{python}} -c "{said}" list') == (4, "", "interrupted\n")
 
 
-def test_too_little_memory_is_told_in_a_line(monkeypatch, capsys):
-    def fail(*_, **__):
-        raise MemoryError
-
-    monkeypatch.setattr(command_line, "build_app", lambda: fail)
-    assert command_line.main(["list"]) == 3
-    assert capsys.readouterr().err.startswith("out of memory; ")
-
-
 @pytest.mark.skipif(sys.platform == "win32", reason="limits of POSIX")
 @pytest.mark.parametrize(
     ("kilobytes", "command", "needed"),
@@ -169,9 +138,7 @@ def test_a_limit_on_memory_that_is_too_low_is_told_at_once(kilobytes, command, n
     "command",
     [
         "report .",
-        "modes",
         "verify --quick",
-        "validate",
         "sweep outcome_map",
         "ensemble fragility",
         "assess site",
@@ -195,22 +162,6 @@ def test_a_place_that_cannot_be_written_is_refused_before_anything_is_computed(
     assert (code, said.out) == (3, "")
     assert re.search(r"^\S+: cannot be written \(File too large\); .*--(out DIR|to FILE)\n\Z", said.err, re.M)
     assert [path.name for path in tmp_path.iterdir()] == ["hall.csv"]
-
-
-@pytest.mark.slow
-def test_work_goes_on_when_nobody_reads_its_progress_any_more():
-    said = (
-        "import sys; from fem.runtime.progress import ScreenReporter as R; r = R();"
-        "[r.message('a' * 9999) for _ in range(99)]; print('done')"
-    )
-    assert run_in_shell(f'{{python}} -c "{said}" 2> >(head -n 1 > /dev/null)')[:2] == (0, "done\n")
-
-
-@pytest.mark.slow
-def test_a_reader_that_leaves_early_is_no_error():
-    command = f"{sys.executable} -m fem schema | head -n 1; exit ${{PIPESTATUS[0]}}"
-    result = subprocess.run(["bash", "-c", command], capture_output=True, text=True, check=False)
-    assert (result.returncode, result.stderr) == (0, "")
 
 
 @pytest.mark.parametrize("command", ["verify --quick", "validate", "study seed", "report ."])
@@ -246,20 +197,10 @@ def test_commands_that_solve_nothing_load_no_solver(arguments, allowed):
     assert loaded <= set(allowed)
 
 
-@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
-def test_completion_knows_the_commands(shell, capsys):
-    assert command_line.main(["completion", shell]) == 0
+def test_completion_knows_the_commands(capsys):
+    assert command_line.main(["completion", "bash"]) == 0
     script = capsys.readouterr().out
     assert all(name in script for name in ("unanchored", *command_line.COMMANDS))
-
-
-class TestList:
-    def test_json_has_names_and_descriptions(self, capsys):
-        assert command_line.main(["list", "--json"]) == 0
-        document = json.loads(capsys.readouterr().out)
-        assert [case["name"] for case in document["cases"]] == list(CASES.names)
-        assert document["default"] == "seed_stack_plateau"
-        assert document["sweeps"] and document["ensembles"][0]["description"]
 
 
 class TestInit:
@@ -299,12 +240,6 @@ class TestSchema:
         assert schema["additionalProperties"] is False
         assert schema["$defs"]["MotionTable"]["required"] == ["kind"]
 
-    def test_takes_every_name_of_a_preset_that_a_case_takes(self, capsys):
-        listed = self.schema(capsys)["$defs"]["FloorTable"]["properties"]["preset"]["anyOf"][0]["enum"]
-        assert {"concrete", "asphalt", "steel"} <= set(listed)
-        for name in listed:
-            assert load_case("rocking", [f"floor.preset={name}"]).floor.is_slab
-
     @pytest.mark.parametrize("collection", COLLECTIONS, ids=lambda collection: collection.kind)
     def test_knows_every_table_and_key_of_the_shipped_files(self, capsys, collection):
         schema = self.schema(capsys, collection.kind)
@@ -324,12 +259,6 @@ class TestCheck:
 
 
 class TestRun:
-    def test_a_dry_run_in_json(self, capsys):
-        assert command_line.main(["run", "seed_box", "--dry-run", "--json"]) == 0
-        plan = json.loads(capsys.readouterr().out)
-        assert plan["folder"] == "outputs/seed_box"
-        assert plan["numerics"]["duration_s"] == 20.0
-
     def test_with_json_the_result_is_printed_and_nothing_else(self, tmp_path, capsys):
         changes = ("solver.model=rigid", "solver.duration_s=0.1", "output.figures=false")
         words = [*run_command("seed_box", tmp_path / "r", *changes), "--no-band", "--json", "-v"]
@@ -387,10 +316,3 @@ class TestDoctor:
         began = time.monotonic()
         assert rendering.probe_rendering() == "the rendering test did not end within 0.5 s"
         assert time.monotonic() - began < 30.0
-
-
-def test_check_of_a_site_tells_what_a_verification_takes(capsys):
-    assert command_line.main(["check", "site", "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)
-    assert found["set_valid"] and found["forecast"]["of_set"] == 140 and found["forecast"]["most"] > 1000
-    assert 0.5 < found["factor_at_first_movement"] < 1.0 and found["wind_utilisation"] < 1.0
