@@ -16,14 +16,12 @@ from fem.render import opengl as rendering
 from fem.render.caption import caption, symbols
 from fem.render.movie import write_movie
 from fem.render.picture import Scene, time_of_largest_rotation, write_picture
-from fem.render.scene import BOTTOM, View, summarise_frames
+from fem.render.scene import summarise_frames
 from fem.results.errors import FolderError
-from fem.results.fields import FieldError, FieldWriter
+from fem.results.fields import FieldError
 from fem.run.run import RunOptions, run_case
 
 SMALL = ("output.figures=false", "solver.element_size_m=0.5", "solver.elastic_modes=4")
-QUADS9 = np.array([[0, 2, 8, 6, 1, 5, 7, 3, 4]])
-GRID = np.array([[x, z] for z in (0.0, 0.5, 1.0) for x in (0.0, 0.5, 1.0)])
 
 
 @pytest.fixture(scope="session")
@@ -78,11 +76,6 @@ class TestView:
             assert left < places[:, 0].min() and places[:, 0].max() < right
             assert low < places[:, 1].min() and places[:, 1].max() < high
 
-    def test_the_picture_of_a_wide_motion_stays_within_bounds(self):
-        view = View(left=-40.0, right=60.0, top=4.0, depth=0.6, floor=(-40.0, 50.0))
-        assert view.size[0] <= 1500 and view.size[1] <= 1000
-        assert all(side % 2 == 0 for side in view.size)
-
 
 class TestScene:
     def test_the_container_is_where_the_fields_say(self, run, scene):
@@ -106,28 +99,6 @@ class TestScene:
         foot = (0, first.height - 25, 200, first.height)
         assert np.array_equal(np.asarray(first.crop(foot)), np.asarray(second.crop(foot)))
 
-    def test_the_floor_rises_and_sinks(self, run, scene):
-        frame = run.fields.frame(0)
-        view, free = scene.view, frame.points[:, 0].min() - 0.2
-        raised = scene.image(dataclasses.replace(frame, floor_lift=0.1 * view.depth))
-        above = pixel(view, free, 0.05 * view.depth)
-        assert colour_of(scene.image(frame), above).min() > 250.0
-        assert colour_of(raised, above).max() < 245.0
-        below = dataclasses.replace(frame, displacement=frame.displacement - (0.0, 0.4), floor_lift=-0.4)
-        sunk = summarise_frames([frame, below]).view
-        assert sunk.lowest == -0.4
-        assert sunk.edges[2] * sunk.pixels_per_metre == pytest.approx(
-            -(sunk.depth + 0.4) * sunk.pixels_per_metre - BOTTOM
-        )
-
-    def test_stress_darkens_the_container(self, run, scene):
-        frame = run.fields.frame(0)
-        shades = []
-        for stress in (0.0, 1e9):
-            loaded = dataclasses.replace(frame, von_mises=np.full(len(frame.points), stress))
-            shades.append(colour_of(scene.image(loaded), pixel(scene.view, 0.2, 2.3)).sum())
-        assert shades[0] > shades[1] + 200.0
-
     def test_an_arrow_stands_below_a_node_that_is_pressed(self, run, scene):
         frame = run.fields.frame(0)
         pressed = frame.points[np.argmax(frame.contact_pressure)]
@@ -139,30 +110,10 @@ class TestScene:
         assert np.ptp(grey) < 30.0
         assert "up to" in symbols(frame) and "no contact at this instant" in symbols(free)
 
-    def test_the_same_frame_gives_the_same_picture(self, run, scene):
-        first, other = run.fields.frame(3), run.fields.frame(9)
-        before = np.asarray(scene.image(first))
-        assert not np.array_equal(before, np.asarray(scene.image(other)))
-        assert np.array_equal(before, np.asarray(scene.image(first)))
-
 
 def test_the_grid_of_an_elastic_container_is_coloured_by_its_stress(run):
     assert run.grid(0.5).point_data["von_mises_Pa"] == pytest.approx(run.frame(0.5).von_mises)
     assert run.frame(0.5).von_mises.max() > 1.37e7  # its weight on two of its four posts, 98.1 kN on 7168 mm2
-
-
-@pytest.mark.parametrize("stress", [None, np.zeros(4)])  # old rigid runs stored zeros
-def test_without_stress_the_body_has_one_colour(run, stress):
-    frames = [dataclasses.replace(frame, von_mises=stress) for frame in run.fields]
-    assert summarise_frames(frames).usual_stress == 0.0
-
-
-def test_a_rigid_run_has_a_plain_body(tmp_path, renders):
-    plain = run_into(
-        tmp_path / "r", "seed_box", "solver.model=rigid", "solver.duration_s=0.2", "output.fields_s=0.1"
-    )
-    with Image.open(write_picture(plain)) as image:
-        assert {colour_of(image, (x, image.height // 2))[2] > 200.0 for x in (300, 320, 340)} == {True}
 
 
 def test_the_default_instant_is_that_of_the_largest_rotation(run, renders):
@@ -204,28 +155,6 @@ def test_a_gif_is_in_real_time(run, renders, tmp_path, options, shown, duration)
     assert [entry.name for entry in tmp_path.iterdir()] == ["film.gif"]
 
 
-@pytest.mark.parametrize(
-    ("options", "words"),
-    [
-        (["--from", "50"], "no frame from 50 to inf s; they lie from 0 to"),
-        (["--fps", "0"], "--fps must lie within 0.1 and 60"),
-    ],
-)
-def test_a_film_of_no_part_or_size_is_refused(run, monkeypatch, capsys, options, words):
-    monkeypatch.setattr(rendering, "RENDER", "pass")
-    assert command_line.main(["movie", str(run.folder), *options]) == 2
-    assert words in capsys.readouterr().err
-
-
-def test_an_mp4_holds_every_frame(run, renders, tmp_path):
-    encoder = pytest.importorskip("imageio_ffmpeg", reason="MP4 needs imageio-ffmpeg")
-    path = tmp_path / "film.mp4"
-    write_movie(run, path, begin=0.0, until=9.0, rate=25.0)
-    count, seconds = encoder.count_frames_and_secs(str(path))
-    assert count == 11
-    assert seconds == pytest.approx(1.1, abs=0.15)
-
-
 def test_without_the_encoder_an_mp4_is_refused_with_the_way_out(run, tmp_path, monkeypatch):
     monkeypatch.setattr(fem.render.movie, "find_spec", lambda name: None)
     with pytest.raises(FolderError, match=r"pip install 'imageio\[ffmpeg\]'"):
@@ -255,26 +184,6 @@ class TestCommands:
             message = self.refused(capsys, name, run.folder)
             assert "signal 11" in message
             assert "apt-get install -y libegl1 libgl1-mesa-dri" in message
-
-    def test_a_folder_without_frames(self, capsys, tmp_path):
-        assert "is this the folder of a run" in self.refused(capsys, "movie", tmp_path)
-        folder = tmp_path / "r"
-        folder.mkdir()
-        (folder / "run.json").write_text('{"status": "running", "case_hash": "0"}')
-        assert "no fields were written" in self.refused(capsys, "movie", folder)
-        FieldWriter(folder / "fields", points=GRID, cells=QUADS9, region=np.array([0]), box=np.array([1]))
-        assert "no frame has been written yet" in self.refused(capsys, "picture", folder)
-
-    @pytest.mark.parametrize("time", ["99", "nan"])
-    def test_a_time_outside_the_frames(self, run, monkeypatch, capsys, time):
-        monkeypatch.setattr(rendering, "RENDER", "pass")
-        message = self.refused(capsys, "picture", run.folder, f"--time={time}")
-        assert "--time must lie within the frames, 0 to 1 s" in message
-
-    def test_a_file_that_is_no_picture_or_film(self, run, monkeypatch, capsys):
-        monkeypatch.setattr(rendering, "RENDER", "pass")
-        assert "--to must end with .png" in self.refused(capsys, "picture", run.folder, "--to", "a.jpg")
-        assert "--to must end with .gif or .mp4" in self.refused(capsys, "movie", run.folder, "--to", "a")
 
     def test_the_file_is_named(self, run, renders, monkeypatch, capsys, tmp_path):
         target = ["--to", str(tmp_path / "a.png")]
