@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from fem.records.files import read_record
-from fem.records.source import LARGEST_FILE, MOST_SAMPLES
+from fem.records.source import LARGEST_FILE
 
 G = 9.80665
 
@@ -99,9 +99,3 @@ def test_missing_files_folders_and_oversized_files_are_refused_before_reading(tm
 def test_files_of_the_kernel_that_never_end_are_taken_at_the_size_they_state():
     with pytest.raises(ValueError, match="the file is empty"):
         read_record(Path("/proc/self/status"))
-
-
-@pytest.mark.parametrize("content", ["1 " * 501, "0,1\n" + "1," * 600 + "\n", "1\n" * (MOST_SAMPLES + 1)])
-def test_lines_that_no_motion_has_are_refused(tmp_path, content):
-    with pytest.raises(ValueError, match="at most 1000000 lines of 1000 characters"):
-        table(tmp_path, content, sample_interval=0.01)
