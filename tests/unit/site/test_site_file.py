@@ -5,7 +5,6 @@ import pytest
 from small_site import LEAST
 
 from fem.case.validation import CaseError
-from fem.site.motions import ground_motions
 from fem.site.request import SiteRequest, load_site
 
 #: ground D with S_alpha,RP = 4.0 and S_beta,RP = 1.2 m/s2: 4.0 x 1.580 and 1.2 x 2.809, T_D = 1 + 1.2 s
@@ -26,36 +25,10 @@ def request(tmp_path, *changes: tuple[str, str]) -> SiteRequest:
     return load_site(place)
 
 
-def test_the_shipped_site_can_be_read():
-    asked = load_site("site")
-    assert (asked.name, asked.heading.container, asked.motions.count) == ("site", "stack_on_concrete", 7)
-    assert asked.action.surface_acceleration == pytest.approx(1.35 * 2.3)
-    assert list(asked.variants) == [("full", "width"), ("empty", "width")]
-    assert asked.variants["empty", "width"].mass == pytest.approx(2400.0)
-    assert asked.wind_pressure == (500.0, "given")
-
-
-def test_german_zones_and_other_annexes(tmp_path):
-    german = (
-        'spectrum = "DIN-NA-2011"\nground = "C-R"\nzone = 3\nvertical_ratio = 0.5\nimportance_factor = 1.6'
-    )
-    asked = request(tmp_path, ('ground = "D"\nreference_acceleration_m_s2 = 1.6', german))
-    assert asked.action.surface_acceleration == pytest.approx(1.92)
-    custom = (
-        'spectrum = "custom"\nsoil_factor = 1.2\ncorner_periods_s = [0.1, 0.3, 2.0]\nvertical_ratio = 0.7\n'
-        "vertical_corner_periods_s = [0.05, 0.2, 1.2]"
-    )
-    asked = request(tmp_path, ('ground = "D"', custom))
-    assert (asked.action.surface_acceleration, asked.action.vertical_acceleration) == pytest.approx(
-        (1.92, 1.12)
-    )
-
-
 def test_the_present_german_hazard_is_given_by_the_plateau_on_rock():
     asked = load_site("cologne")
     assert asked.action.horizontal(np.array([0.1]))[0] == pytest.approx(1.7144, rel=1e-4)  # S_aP,R
     assert (asked.building.storeys, asked.building.kind) == (4, "shear")
-    assert {motion.peak for motion in ground_motions(asked, 4.0)} != {0.0}
 
 
 def test_topography_multiplies_the_action(tmp_path):

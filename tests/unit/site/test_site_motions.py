@@ -8,13 +8,11 @@ import pytest
 from small_site import LEAST
 
 from fem.case.validation import CaseError
-from fem.html.page import text_of
 from fem.seismic.artificial import artificial_motions
 from fem.seismic.floor import floor_motion, storey_modes
 from fem.seismic.motion_files import in_whole_g, write_at2
 from fem.seismic.motion_set import check_set
 from fem.site.motions import floor_motions, ground_motions, motion_target
-from fem.site.preview import preview_of
 from fem.site.request import load_site
 from fem.site.run import site_hash
 
@@ -106,7 +104,6 @@ def test_a_baseline_that_changes_a_matched_record_is_said_with_both_values(tmp_p
     (note,) = first.notes  # a sine pulse reaches A T/pi = 0.866 m/s
     assert "from 3.4 " in note and "0.866 m/s with 'mean'" in note and "m/s (-8.8 %)" in note
     assert not any(motion.notes for motion in others)
-    assert preview_of(asked).notes == (note,)
 
 
 def test_a_baseline_that_takes_a_fifth_of_a_matched_record_must_be_allowed(tmp_path):
@@ -118,20 +115,10 @@ def test_a_baseline_that_takes_a_fifth_of_a_matched_record_must_be_allowed(tmp_p
     site = str(tmp_path / "hall.toml")
     asked = load_site(site, allow_baseline=True)
     assert "allow_baseline = true" in asked.origin.text  # which the results keep
-    assert (
-        ground_motions(asked, 4.0)[0].notes
-        == ground_motions(request(tmp_path, f"{motions}\nallow_baseline = true"), 4.0)[0].notes
-    )
+    assert "(-59 %)" in ground_motions(asked, 4.0)[0].notes[0]
     request(tmp_path)
     with pytest.raises(CaseError, match="allow_baseline"):
         load_site(site, allow_baseline=True)
-
-
-def test_one_component_is_not_two_directions(tmp_path):
-    names = json.loads(three_records(tmp_path, "hv"))
-    again = json.dumps([[*pair, pair[0]] for pair in names])
-    with pytest.raises(CaseError, match="is named for two directions"):
-        ground_motions(request(tmp_path, f'[motions]\nsource = "records"\nfiles = {again}'), 4.0)
 
 
 def test_a_building_of_storeys_moves_with_all_its_modes(tmp_path):
@@ -188,10 +175,3 @@ def test_what_is_kept_of_a_verification_goes_with_the_points_of_the_floor(tmp_pa
     for old, new in (("0.03", "0.04"), ("3,2", "3.1,2"), ("3,2", "3,2.1")):
         (tmp_path / "floor.csv").write_text(points.replace(old, new))
         assert site_hash(load_site(tmp_path / "hall.toml"), []) != first
-
-
-def test_the_preview_says_that_the_floor_is_given(tmp_path):
-    for more in ((SPECTRUM,), ()):
-        asked = request(tmp_path, "[motions]\ncount = 3", *more)
-        page = text_of("preview.txt.j2", preview=preview_of(asked), request=asked)
-        assert ("  floor      given by its spectrum, which the motions fit; " in page) == bool(more)

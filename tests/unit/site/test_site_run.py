@@ -3,18 +3,14 @@
 import json
 import re
 
-import numpy as np
 import pytest
 
 from fem.__main__ import main
-from fem.case.validation import CaseError
 from fem.records.files import read_record
 from fem.seismic.artificial import artificial_motions
 from fem.seismic.motion_files import write_at2, write_csv
 from fem.site.motions import ground_motions
-from fem.site.preview import Forecast
 from fem.site.request import load_site
-from fem.site.result import SiteResult
 from fem.site.run import run_site
 from fem.site.runs import NOT_COMPUTED, RunCases, key_of
 from fem.site.stages import SCANNED, Stages
@@ -150,18 +146,6 @@ def test_on_a_floor_that_gives_way_every_run_is_computed(tmp_path, preset, spare
     assert [stages.screening.at_rest(key) for key in weak] == [spared] * len(weak)
 
 
-def test_the_result_survives_its_file_with_the_keys_that_scripts_rely_on(computed):
-    found = json.loads((computed[1] / "out" / "assess.json").read_text())
-    for table, keys in {
-        "action": "ag_m_s2 soil_factor ag_S_m_s2 avg_m_s2 corner_periods_s displacement_m",
-        "set": "count valid reasons mean_pga_m_s2 least_ratio least_ratio_period_s largest_correlation",
-        "result": "answer fulfilled rule overturned runs rotation_ratio rotation_ratio_largest slip_m slip_mean_m "
-        "reasons margin_factor factor_at_first_overturning rule_range actions further",
-    }.items():
-        assert set(keys.split()) <= set(found[table])
-    assert SiteResult.from_json(found) == computed[0]
-
-
 def test_the_motions_are_written_and_read_back_to_the_same_bits(computed):
     result, folder = computed
     assert {motion.files for motion in result.set.motions}
@@ -215,17 +199,6 @@ def test_records_are_scaled_to_the_site(tmp_path, brief):
     assert min(result.set.mean_pga_m_s2 / 2.4, result.set.least_ratio / 0.9) == pytest.approx(1.0, abs=1e-6)
 
 
-def test_a_set_with_one_motion_twice_is_not_used(tmp_path, capsys):
-    place = site_file(tmp_path, further=0, motions=records(tmp_path, twice=True))
-    assert main(["assess", str(place), "--out", str(tmp_path / "out"), "-q"]) == 0
-    found = json.loads((tmp_path / "out" / "assess.json").read_text())
-    assert found["set"]["valid"] is False and found["runs"] == []
-    assert found["result"]["fulfilled"] is None
-    assert "Not valid" in capsys.readouterr().out
-    page = (tmp_path / "out" / "report.html").read_text()
-    assert "Not valid" in page and "one motion" in page
-
-
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
@@ -241,24 +214,6 @@ def test_records_that_cannot_be_used_are_refused(tmp_path, capsys, old, new, mes
     place = site_file(tmp_path, motions=motions.replace(old, new))
     assert main(["assess", str(place), "--out", str(tmp_path / "out"), "-q"]) == 2
     assert message in capsys.readouterr().err
-
-
-def test_the_time_that_it_takes_at_most_is_rounded_up():
-    for seconds, told in {0.0: "1 s", 0.2: "1 s", 14.8: "20 s", 20.0: "20 s", 61.0: "1 min 10 s"}.items():
-        runs = Forecast(
-            of_set=140, of_set_still=0, most=2460, seconds=seconds, deciding_seconds=31.0, cores=2
-        )
-        assert f"up to roughly {told} on 2 cores" in runs.words and runs.words.endswith("roughly 40 s")
-
-
-def test_wind_on_a_tall_stack_and_components_of_other_lengths_are_refused(tmp_path, capsys):
-    wind, motions = "[wind]\npeak_velocity_pressure_Pa = 500.0", records(tmp_path)
-    write_csv(tmp_path / "r0_v.at2", 0.005, np.zeros(100))
-    for asked, message in (({"more": wind}, "up to 15 m"), ({"motions": motions}, "do not belong together")):
-        place = site_file(tmp_path, **asked)
-        (tmp_path / "k1.toml").write_text(CONTAINER.replace("height_m = 4.0", "height_m = 16.0"))
-        assert main(["assess", str(place), "--out", str(tmp_path / "out"), "-q"]) == 2
-        assert message in capsys.readouterr().err
 
 
 def test_quick_is_never_fulfilled_of_a_container_that_moves(tmp_path, capsys, brief):
@@ -308,11 +263,3 @@ def test_a_folder_of_results_is_repeated_by_itself(tmp_path, monkeypatch, brief,
     assert [one.pga_m_s2 for one in again.set.motions] == [one.pga_m_s2 for one in first.set.motions]
     left = [note for note in first.set.notes if "not copied" in note]
     assert len(left) == (0 if copied else 3) and all("SHA-256" in note for note in left)
-
-
-def test_a_file_of_points_named_like_a_result_is_refused(tmp_path):
-    (tmp_path / "runs.csv").write_text("period_s,acceleration_m_s2\n0.03,0.1\n4,0.02\n")
-    asked = load_site(site_file(tmp_path, more='[floor_spectrum]\nfile = "runs.csv"'))
-    with pytest.raises(CaseError, match=r"\[floor_spectrum\] file is named 'runs.csv', like a result"):
-        run_site(asked, tmp_path / "out", jobs=1)
-    assert not (tmp_path / "out").exists()
