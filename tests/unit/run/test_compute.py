@@ -8,7 +8,6 @@ from interrupted_runs import without_times
 from study_folders import ensemble_folder
 
 import fem
-from fem.case.case import CaseError
 from fem.results.errors import FolderError
 from fem.results.fields import FieldError
 from fem.results.run_result import Verdict
@@ -68,20 +67,6 @@ def test_what_a_run_in_memory_offers():
     assert len(without.fields) == 0
     with pytest.raises(ValueError, match=r"there are no frames; compute the case with output\.fields_s > 0"):
         without.frame(0.0)
-
-
-def test_the_band_is_computed_where_the_command_computes_it():
-    case = fem.load_case("rocking", ["solver.model=rigid", "solver.duration_s=1", "output.fields_s=0"])
-    assert fem.compute(case, margin=False).verdict.band is not None
-    assert fem.compute(case, band=False).verdict.sure is None
-    far_below = fem.compute(case.replace({"motion.amplitude_m": 0.001}), margin=False)
-    assert (far_below.verdict.sure, far_below.verdict.band) == ("sure", None)
-
-
-def test_a_case_that_cannot_be_computed_is_refused_in_the_words_of_the_command():
-    coarse = fem.load_case("seed_box").replace({"solver.step_s": 0.5})
-    with pytest.raises(CaseError, match=r"\[solver\] step_s"):
-        fem.compute(coarse)
 
 
 def test_what_is_chosen_for_auto_is_no_change_of_the_user():

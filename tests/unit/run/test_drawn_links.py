@@ -78,27 +78,6 @@ def test_paraview_reads_all_bodies_with_their_links(run):
         )  # the outer face of a wall
 
 
-def test_paraview_shows_ties_from_where_their_points_are_to_where_they_are_held(run):
-    reader, broken = pyvista.get_reader(run.place.fields / "run.pvd"), run.typed_result.ties[0].broken_at_s
-    for point, time in enumerate(reader.time_values):
-        reader.set_active_time_point(point)
-        (grid,) = reader.read()
-        moved = grid.warp_by_vector("displacement_m")
-        bodies = grid.extract_cells(grid.cell_data["box"] > 0)
-        floor, ties = 0.1 * np.sin(3.0 * time), np.flatnonzero(grid.cell_data["region"] == TIE)
-        for tie, place, anchor in zip(
-            ties, ((-0.55, 2.0), (-0.55, 3.5)), ((-0.55, 0.0), (-1.15, 3.5)), strict=True
-        ):
-            ends = moved.get_cell(tie).points[:4, :2].reshape(2, 2, 2).mean(axis=1)
-            assert ends[0] == pytest.approx((anchor[0] + floor, anchor[1]), abs=1e-5)
-            node = bodies.find_closest_point((*place, 0.0))
-            if anchor[1] or time < broken:
-                held = bodies.points[node] + bodies.point_data["displacement_m"][node]
-                assert ends[1] == pytest.approx(held[:2], abs=1e-5)
-            else:
-                assert ends[1] == pytest.approx(ends[0], abs=1e-6)
-
-
 def test_a_tie_runs_from_its_point_to_the_floor_until_it_breaks(run):
     tie = run.typed_result.ties[0]
     times = run.fields.times
@@ -126,9 +105,3 @@ def test_the_animation_shows_them(run):
     assert data["links"][2]["until"] == run.typed_result.ties[0].broken_at_s
     held = shown.points[data["links"][2]["node"]] + shown.centroid[0]
     assert held == pytest.approx((-0.55, 2.0), abs=1e-9)
-
-
-def test_without_links_the_mesh_of_the_fields_is_that_of_the_container():
-    bare = CASE.with_values({"stop": [], "tie": [], "neighbour": []})
-    frame = fem.compute(bare, band=False, margin=False).fields.frame(0)
-    assert not frame.of_links.size and frame.box.min() == 1

@@ -10,7 +10,6 @@ from cases import named_case
 import fem
 from fem.case.case import read_case, to_toml
 from fem.case.columns import BOXES
-from fem.case.tables.unknown_inputs import ranges_of
 from fem.results.history import read_history
 from fem.results.reader import open_run
 from fem.results.run_result import Verdict
@@ -68,11 +67,6 @@ def test_the_resolved_case_runs_again_to_the_same_result(run):
     again = fem.compute(read_case(to_toml(run.case)), band=False)
     assert again.history.samples.tobytes() == run.history.samples.tobytes()
     assert again.verdict.boxes == run.verdict.boxes
-
-
-def test_a_batch_finds_what_a_run_finds(case, run):
-    (found,) = fem.compute_many([case], jobs=1, band=False)
-    assert found.verdict.boxes == run.verdict.boxes
 
 
 def test_a_box_that_slides_off_its_footing_has_fallen(case):
@@ -133,14 +127,6 @@ def test_friction_regularised_in_velocity_slides_boxes_on_one_another_as_the_ela
     assert 0.0 < found[2].max_slip_m < stuck[2].max_slip_m + 2.0 * case.contact.regularisation_velocity_m_s
 
 
-def test_friction_between_loose_boxes_is_an_unknown_input(case):
-    kinetic = case.replace({"joints.mu_kinetic": 0.1})
-    (one,) = [one for one in ranges_of(kinetic, 1e9) if one.key == "joints.mu_kinetic"]
-    assert (one.own, one.between, one.ends) == (0.1, (0.15,), (0.2,))
-    bolted = {one.key for one in ranges_of(kinetic.replace({"container.joints": "bolted"}), 1e9)}
-    assert "joints.mu_kinetic" not in bolted
-
-
 def test_a_band_tries_the_friction_between_the_boxes(case):
     kinetic = case.replace({"joints.mu_kinetic": 0.1, "solver.duration_s": 1.0, "uncertainty.draws": 2})
     run = fem.compute(kinetic, band=True, margin=False)
@@ -153,11 +139,3 @@ def test_a_band_tries_the_friction_between_the_boxes(case):
     assert band.members[0].boxes == run.verdict.boxes
     again = Verdict.from_json(json.loads(json.dumps(run.verdict.to_json())))
     assert again.band.boxes == band.boxes and again.band.members == band.members
-
-
-def test_the_friction_of_the_joints_does_not_follow_the_floors_in_a_band(case):
-    floor = {"contact.mu_kinetic": 0.2, "contact.mu_static": 2.0, "uncertainty.draws": 0}
-    stuck = case.replace({**floor, "solver.duration_s": 1.0, "joints.mu_kinetic": 0.1})
-    given = fem.compute(stuck, band=True, margin=False).verdict.band
-    floors = [one for one in given.members if set(one.values or {}) == {"contact.mu_kinetic"}]
-    assert floors and {one.boxes[1] for one in floors} == {given.members[0].boxes[1]}

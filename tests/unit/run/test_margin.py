@@ -71,7 +71,7 @@ def with_draws():
         runs = []
         for count in (1, 2):
             patch.setattr(changed_runs, "cores", lambda count=count: count)
-            runs.append(computed("uncertainty.draws=8", "solver.duration_s=6", band=None))
+            runs.append(computed("uncertainty.draws=4", "solver.duration_s=6", band=None))
         return runs
 
 
@@ -149,9 +149,10 @@ def test_a_container_with_stops_has_the_margin_without_them_beside_its_own():
 
 
 def test_where_there_is_no_margin():
-    assert computed(name="free_rocking").verdict.margin is None  # a floor at rest
-    assert computed(margin=None).verdict.margin is None  # the band is refused
-    assert computed(margin=False, band=None).verdict.margin is None
+    short = "solver.duration_s=2"
+    assert computed(short, name="free_rocking").verdict.margin is None  # a floor at rest
+    assert computed(short, margin=None).verdict.margin is None  # the band is refused
+    assert computed(short, margin=False).verdict.margin is None
 
 
 def test_a_request_to_stop_ends_the_search():
@@ -179,7 +180,7 @@ def test_a_corner_that_a_stronger_motion_destroys_governs():
 
 
 def test_what_overturns_in_the_band_bounds_the_margin():
-    case = fem.load_case("seed_stack_plateau", [*RIGID, "solver.duration_s=4", "uncertainty.draws=2"])
+    case = fem.load_case("seed_stack_plateau", [*RIGID, "solver.duration_s=3", "uncertainty.draws=2"])
     run = fem.compute(case, band=False)
     model, result = search.build_model(run.case), run.typed_result
 

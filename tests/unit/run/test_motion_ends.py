@@ -99,13 +99,6 @@ def test_the_floor_that_is_left_at_speed_gives_the_contents_no_jerk(compute):
     assert float(model.run.clock.time[0]) > 1.9 and float(model.run.track.max_acceleration[0]) < 30.0
 
 
-def test_a_harmonic_run_without_duration_is_that_of_20_s_to_the_bit():
-    given = load_case("seed_box", ["solver.model=rigid", "output.fields_s=0"])
-    auto = given.with_values({"solver.duration_s": "auto"})
-    one, other = finish(build_model(given)), finish(build_model(auto))
-    assert one.history.samples.tobytes() == other.history.samples.tobytes()
-
-
 def test_the_resolved_case_of_a_pulse_gives_the_same_run(tmp_path):
     case = named_case("seed_box", PULSE | {"motion.peak_acceleration_m_s2": 6.0, "contact.mu_kinetic": 0.2})
     alone = RunOptions(band=False, margin=False)
@@ -130,14 +123,6 @@ def test_a_record_cut_short_says_so_in_its_first_line(tmp_path, monkeypatch):
     assert motion["covered"] == pytest.approx(0.5)
     assert motion["peak_acceleration_m_s2"] == pytest.approx(1.75 * 9.80665)
     assert open_run(tmp_path / "cut").typed_result.motion.peak_in_run_m_s2 == 0.0
-
-
-def test_a_sweep_over_a_record_cut_short_says_so(tmp_path, capsys, monkeypatch):
-    record_case(tmp_path, more="duration_s = 2.0")
-    (tmp_path / "sweep.toml").write_text('case = "case.toml"\n[axes]\n"contact.mu_static" = [0.3, 0.5]\n')
-    monkeypatch.chdir(tmp_path)
-    assert main(["sweep", "sweep.toml", "-j", "1", "-q"]) == 0
-    assert "  under the first 2 of 4 s; the record's peak of 1.75 g is not in it\n" in capsys.readouterr().out
 
 
 def test_a_record_of_negative_times_is_covered_from_zero_on(tmp_path):

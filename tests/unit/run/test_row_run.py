@@ -8,7 +8,6 @@ import fem
 from fem.model.geometry import build_container
 from fem.model.model import build_model
 from fem.model.motion import build_motions
-from fem.run.checks import wants_band
 from fem.run.solve import resolve
 from fem.run.static_words import governing
 from fem.run.summary import run_tilted
@@ -50,14 +49,6 @@ def test_the_margin_begins_below_what_the_most_slender_of_the_row_bears(fallen):
     assert margin.least_tried < 0.4 / 3.0 * 9.81 / 2.5  # its static limit over the peak
     assert margin.factor is not None and 0.5 < margin.factor < 1.0
     assert margin.factor_without_links is None and margin.without_links_tried_to == 4.0
-
-
-def test_a_container_at_rest_beside_another_is_repeated(fallen):
-    weak = fem.case_from(SQUAT).with_values({"motion.peak_acceleration_m_s2": 0.5})
-    rest = fem.compute(weak, band=False, margin=False)
-    assert rest.verdict.outcome == "rest" and wants_band(None, weak, rest.typed_result)
-    alone = weak.with_values({"neighbour": []})
-    assert not wants_band(None, alone, rest.typed_result)
 
 
 def test_the_rigid_floor_of_a_row_is_one_whichever_of_its_containers_is_the_first():

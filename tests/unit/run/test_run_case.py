@@ -60,14 +60,6 @@ class TestEnd:
         assert len(history_of(folder).modes) == 401
         assert set(result["versions"]) >= {"python", "numpy", "numba", "unanchored"}
 
-    def test_an_overturned_container_is_a_result_with_exit_code_0(self, tmp_path):
-        folder = tmp_path / "r"
-        assert command(folder, "overturning") == 0
-        result = read_result(folder / "run.json")
-        assert result["status"] == result["verdict"]["outcome"] == "overturned"
-        assert result["verdict"]["rotation_ratio"] * ANGLE >= 0.5 * math.pi - 1e-9
-        assert history_of(folder)["time_s"][-1] <= result["verdict"]["overturned_at_s"]
-
     def test_a_step_that_cannot_be_solved_ends_with_3_and_says_when_and_what_to_try(
         self, tmp_path, monkeypatch, capsys
     ):
@@ -113,12 +105,6 @@ class TestEnd:
         run(tmp_path, "free_rocking", "solver.duration_s=1.2", *every, band=False)
         assert len(history_of(tmp_path).modes) == 13
         assert (tmp_path / "fields" / "frame_00012.vtu").is_file()
-
-    def test_a_history_coarser_than_the_drive_has_no_peak_to_peak_and_the_run_is_kept(self, tmp_path):
-        coarse = ("motion.cycles=2", "solver.duration_s=3.0", "output.history_s=2.5")
-        found = run(tmp_path, "seed_box", *coarse, band=False)
-        assert found.status == "completed"
-        assert found.result["verdict"]["slip_peak_to_peak_m"] is None
 
     def test_bad_input_leaves_no_folder_and_exits_with_2(self, tmp_path, capsys):
         folder = tmp_path / "r"
@@ -194,13 +180,6 @@ class TestAgain:
 
 
 class TestChecks:
-    def test_what_moves_has_its_band_unless_asked_otherwise(self, tmp_path):
-        for name, outcome in (("rocking", "slide-rock"), ("sliding", "slide")):
-            found = run(tmp_path / name, name, "solver.duration_s=2", "uncertainty.draws=4").result["verdict"]
-            assert found["outcome"] == outcome and outcome in found["band"]["outcomes"]
-        without = run(tmp_path / "without", "rocking", "solver.duration_s=1", band=False)
-        assert without.result["verdict"]["band"] is None
-
     def test_what_a_finished_run_lacks_is_added_without_computing_it_again(self, tmp_path):
         folder = tmp_path / "r"
         first = run(folder, "rocking", "solver.duration_s=2", band=False)

@@ -20,9 +20,7 @@ fem.run.simulation.SLICE_REDUCED = fem.run.simulation.SLICE_FULL = 0.01
 from fem.__main__ import main
 sys.exit(main(sys.argv[1:]))
 """
-RIGID = ("solver.model=rigid", "solver.duration_s=0.4")
-REDUCED = ("solver.duration_s=0.6", "output.fields_s=0.005")
-FLAT = (*REDUCED, *FLAT_SHELL)
+FLAT = ("solver.duration_s=0.6", "output.fields_s=0.005", *FLAT_SHELL)
 FULL = (*COARSE, "solver.duration_s=0.3", "output.fields_s=0.005")
 COMMON = ("output.figures=false", "output.fields_s=0.01")
 
@@ -53,13 +51,15 @@ def end_when(process: subprocess.Popen, folder: Path, frames: int, delay: float,
     return process.returncode
 
 
-def torture(tmp_path: Path, overrides: tuple[str, ...], cuts: int, seed: int, step: int) -> None:
+@pytest.mark.slow
+@pytest.mark.parametrize(("overrides", "seed"), [(FLAT, 2), (FULL, 3)], ids=["reduced, flat base", "full"])
+def test_a_run_killed_ten_times_comes_to_the_same_bits(tmp_path, overrides, seed):
     whole, cut = tmp_path / "whole", tmp_path / "cut"
     process = start(whole, *overrides)
     assert process.wait(timeout=300) == 0, process.stderr.read()
     chance, reached, frames = random.Random(seed), 0, frames_in(whole)
-    for _ in range(cuts):
-        reached = min(reached + chance.randrange(1, step), frames - 1)
+    for _ in range(10):
+        reached = min(reached + chance.randrange(1, 20), frames - 1)
         number = chance.choice([signal.SIGKILL, signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
         process = start(cut, *overrides)
         code = end_when(process, cut, reached, chance.uniform(0.0, 0.03), number)
@@ -72,17 +72,3 @@ def torture(tmp_path: Path, overrides: tuple[str, ...], cuts: int, seed: int, st
     assert process.wait(timeout=300) == 0, process.stderr.read()
     require_same(cut, whole)
     assert not (cut / "checkpoint.npz").exists()
-
-
-@pytest.mark.slow
-def test_a_rigid_run_killed_twice_comes_to_the_same_bits(tmp_path):
-    torture(tmp_path, RIGID, cuts=2, seed=1, step=20)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    "overrides", [RIGID, REDUCED, FLAT, FULL], ids=["rigid", "reduced", "reduced, flat base", "full"]
-)
-@pytest.mark.parametrize("seed", [2, 3])
-def test_a_run_killed_ten_times_comes_to_the_same_bits(tmp_path, overrides, seed):
-    torture(tmp_path, overrides, cuts=10, seed=seed, step=20)
