@@ -14,7 +14,6 @@ from fem.report.study_page import response_report
 from fem.response.orbit import carry_drive
 from fem.response.request import ResponseRequest
 from fem.response.run import computed, plan_of, run_response
-from fem.results.errors import FolderError
 
 CHANGES = ("solver.model=rigid", "contact.mu_static=1", "contact.mu_kinetic=1", "solver.element_size_m=1")
 
@@ -23,16 +22,6 @@ def request_of(*changes, **values):
     case = load_case("seed_stack_plateau", [*CHANGES, *changes])
     chosen = {"first_Hz": 0.6, "last_Hz": 1.4, "count": 3, "settle": 6, "observe": 8} | values
     return ResponseRequest(case=case, **chosen)
-
-
-def test_a_damaged_state_is_refused(tmp_path):
-    folder = tmp_path / "r"
-    run_response(request_of(count=2), folder=folder)
-    mark = json.loads((folder / "response.json").read_text()) | {"status": "running"}
-    (folder / "response.json").write_text(json.dumps(mark))
-    (folder / "state.npz").write_bytes(b"half of it")
-    with pytest.raises(FolderError, match=r"state\.npz: damaged.*--force"):
-        run_response(request_of(count=2), folder=folder, resume=True)
 
 
 def test_what_is_held_is_what_the_case_states():
