@@ -81,16 +81,6 @@ def test_terminal_line_is_rewritten_in_place_and_gone_at_the_end():
     assert text.rindex("\x1b[?25h") > text.rindex("\x1b[?25l")  # the cursor is shown again
 
 
-def test_terminal_is_not_redrawn_at_every_sample():
-    screen, stream, clock = reporter(terminal=True)
-    screen.start(20.0)
-    for i in range(1000):
-        clock.time += REDRAW_S / 100.0
-        screen.update(0.01 * i, 0.1, "rock")
-    screen.finish()
-    assert 8 <= stream.getvalue().count("t = ") <= 22
-
-
 @pytest.mark.parametrize("terminal", [False, True])
 def test_messages_and_lines_are_printed_as_they_are(terminal):
     screen, stream, clock = reporter(terminal=terminal)
@@ -112,9 +102,3 @@ def test_quiet_and_silent_reporters_print_nothing():
         each.message("hello")
         each.finish()
     assert stream.getvalue() == ""
-
-
-def test_default_goes_to_the_error_stream(capsys):
-    ScreenReporter().message("hello")
-    captured = capsys.readouterr()
-    assert captured.out == "" and "hello" in captured.err

@@ -1,6 +1,5 @@
 """Ctrl-C and SIGTERM in the first moments of the process."""
 
-import json
 import os
 import signal
 import subprocess
@@ -21,13 +20,13 @@ def outcome(argument: str, script: str) -> tuple[int, str]:
     return done.returncode, done.stderr
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", [pytest.param(signal.SIGINT, marks=pytest.mark.slow), signal.SIGTERM])
 def test_while_the_command_line_is_imported_a_signal_ends_the_process_in_a_line(number):
     # "-m" is what Python itself writes there while it looks for the module to run.
     assert outcome("-m", f"os.kill(os.getpid(), {int(number)})") == (4, "interrupted\n")
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", [signal.SIGINT, pytest.param(signal.SIGTERM, marks=pytest.mark.slow)])
 def test_in_a_command_that_keeps_nothing_a_signal_is_told_in_a_line(number):
     script = f"""
 from fem import __main__ as command_line
@@ -35,22 +34,6 @@ command_line.build_app = lambda: lambda *_, **__: os.kill(os.getpid(), {int(numb
 command_line.program()
 """
     assert outcome("-m", script) == (4, "interrupted\n")
-
-
-@pytest.mark.parametrize("moment", ["imported", "before it can say how far it came"])
-def test_an_interrupted_command_that_is_asked_for_json_gives_it(moment):
-    there = "sys.argv += ['run', '--json']\n"
-    kill = "os.kill(os.getpid(), signal.SIGINT)"
-    script = f"""
-from fem import __main__ as command_line
-command_line.build_app = lambda: lambda *_, **__: {kill}
-command_line.program()
-"""
-    program = f"import os, signal, sys\nsignal.signal(signal.SIGINT, signal.default_int_handler)\n{there}"
-    program += "sys.argv[0] = '-m'\nimport fem\n" + (kill if moment == "imported" else script)
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
-    assert (done.returncode, done.stderr) == (4, "interrupted\n")
-    assert json.loads(done.stdout) == {"state": "interrupted", "answer": None}
 
 
 def test_a_signal_within_a_callback_from_c_is_not_lost():
@@ -67,17 +50,6 @@ command_line.build_app = lambda: compute
 command_line.program()
 """
     assert outcome("-m", script) == (4, "interrupted\n")
-
-
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_what_is_printed_of_finished_work_is_printed_whole(number):
-    script = f"""
-from fem.runtime.signals import ending_at_once, unheard
-with ending_at_once(), unheard():
-    os.kill(os.getpid(), {int(number)})
-print("whole", file=sys.stderr)
-"""
-    assert outcome("-c", script) == (0, "whole\n")
 
 
 def test_a_library_leaves_signals_alone():
@@ -132,15 +104,7 @@ def test_the_first_signal_requests_a_stop_and_a_second_ctrl_c_insists(monkeypatc
     assert signal.getsignal(signal.SIGINT) is before
 
 
-def test_work_that_begins_after_a_request_to_stop_hears_it():
-    # A list at a site verifies one container after another; each of these is a study of its own.
-    with interruptible(Reporter()):
-        os.kill(os.getpid(), signal.SIGTERM)
-        with interruptible(Reporter()) as stop:
-            assert stop()
-
-
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", [pytest.param(signal.SIGINT, marks=pytest.mark.slow), signal.SIGTERM])
 def test_a_process_that_c_code_holds_ends_all_the_same(number):
     # As the compiler of the kernels does for many seconds, this does not let Python see the signal.
     script = f"""
@@ -157,6 +121,7 @@ command_line.program()
     assert time.monotonic() - begin < 12.0  # the work takes 20 s or more
 
 
+@pytest.mark.slow
 def test_a_signal_that_was_heard_ends_nothing_later():
     script = """
 import time
