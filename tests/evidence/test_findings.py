@@ -1,9 +1,7 @@
 """A finding with any kind of error fails, the suite goes on after a failure, and `verify` says so."""
 
-import errno
 import json
 import math
-import os
 
 import pytest
 from evidence.findings import Convergence, analytic, at_least, at_most, equal, prediction
@@ -13,7 +11,6 @@ from verification.checks import check
 from verification.suite import CHECKS as ALL
 from verification.suite import chosen_checks
 
-import fem.runtime.own_files
 from fem.__main__ import main
 from fem.results.json_text import to_json
 from fem.runtime.progress import Reporter
@@ -128,22 +125,3 @@ def test_the_command_ends_with_3_if_a_finding_fails(small_suite, tmp_path, capsy
     assert document["passed"] is (code == 0)
     assert all(row["room"] == row["topic"] for row in document["rows"] + document["checks"])
     assert (tmp_path / "verify.html").stat().st_size > 1000
-
-
-def test_a_topic_or_place_that_cannot_be_is_named_and_no_partial_table_is_left(
-    small_suite, tmp_path, capsys, monkeypatch
-):
-    assert main(["verify", "--room", "celar", "--out", str(tmp_path / "v")]) == 2
-    assert "did you mean 'cellar'" in capsys.readouterr().err
-    (tmp_path / "file").write_text("")
-    assert main(["verify", "--out", str(tmp_path / "file"), "-q"]) == 2
-    assert "file is a file, not a folder; choose another place" in capsys.readouterr().err
-
-    def no_room(*_):
-        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-
-    monkeypatch.setattr(fem.runtime.own_files.os, "fsync", no_room)
-    assert main(["verify", "--out", str(tmp_path / "v"), "-q"]) == 3
-    message = capsys.readouterr().err
-    assert "verify.json: cannot be written (No space left on device)" in message and "--out DIR" in message
-    assert list((tmp_path / "v").iterdir()) == []
