@@ -246,9 +246,9 @@ def any_rows(draw: Draw) -> str:
 
 
 #: as `inputs.KINDS`
-KINDS: dict[str, tuple[st.SearchStrategy[Input], float]] = {
-    "mesh": (meshes(), 0.15),
-    "table": (motion_tables(), 0.15),
-    "record": (records(), 0.05),
-    "hostile": (hostile_records(), 0.02),
+KINDS: dict[str, st.SearchStrategy[Input]] = {
+    "mesh": meshes(),
+    "table": motion_tables(),
+    "record": records(),
+    "hostile": hostile_records(),
 }

@@ -311,5 +311,5 @@ def texts(draw: Draw) -> Input:
     return Input(arguments=("check", "case.toml"), files={"case.toml": content})
 
 
-#: by name: inputs, and the share of them in the whole
-KINDS: dict[str, tuple[st.SearchStrategy[Input], float]] = {"case": (runs(), 0.4), "text": (texts(), 0.25)}
+#: inputs by name
+KINDS: dict[str, st.SearchStrategy[Input]] = {"case": runs(), "text": texts()}

@@ -1,16 +1,17 @@
-"""A small set of the fuzz and of the soak, the same every time, for the suite; the large ones are scripts."""
+"""Inputs of every kind, the same ones every time; `FUZZ=100` tries a hundred times as many."""
 
+import os
 from dataclasses import replace
 
 import pytest
 from data_inputs import BY_A_FILE, HOSTILE, NAMED, SIZES, SPECIAL, hostile, special
-from fuzz import KINDS, warm_up
-from fuzz import end_of as answer_to
+from fuzz import KINDS, end_of, warm_up
 from hypothesis import HealthCheck, given, settings
 from inputs import FIELDS, LISTS, values_of, values_of_type
 from random_cases import random_case
-from soak import EXTREMES, end_of, extreme
 
+import fem
+from fem.case.case import load_case
 from fem.case.tables.all_tables import TABLES
 from fem.case.validation import known_keys
 from fem.results.outcome import Outcome
@@ -21,6 +22,7 @@ def compiled():
     warm_up()
 
 
+MANY = int(os.environ.get("FUZZ", "1"))
 COUNTS = {
     "text": 20,
     "mesh": 20,
@@ -33,13 +35,13 @@ COUNTS = {
 }
 
 
-@pytest.mark.parametrize("share", [1, pytest.param(3, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("share", [MANY, pytest.param(3 * MANY, marks=pytest.mark.slow)])
 @pytest.mark.parametrize(("kind", "count"), COUNTS.items())
 def test_any_input_is_refused_with_words_or_computed(kind, count, share):
     @settings(max_examples=share * count, derandomize=True, suppress_health_check=list(HealthCheck))
-    @given(KINDS[kind][0])
+    @given(KINDS[kind])
     def feed(given_input):
-        end = answer_to(given_input)
+        end = end_of(given_input)
         assert not end.broken, end.words
         codes.add(end.code)
 
@@ -51,14 +53,14 @@ def test_any_input_is_refused_with_words_or_computed(kind, count, share):
 
 @pytest.mark.parametrize("name", HOSTILE)
 def test_a_large_file_is_refused_as_soon_as_a_small_one(name):
-    end = answer_to(hostile(name, SIZES[-2]))
+    end = end_of(hostile(name, SIZES[-2]))
     assert end.code == 2 and not end.broken, (end.cpu_s, end.words)
 
 
 @pytest.mark.parametrize("name", NAMED)
 def test_what_is_no_regular_file_is_refused_where_a_file_is_read(name):
     for kind in SPECIAL:
-        end = answer_to(special(name, kind))
+        end = end_of(special(name, kind))
         assert end.code == 2 and not end.broken, (kind, end.cpu_s, end.words)
         assert name in end.words, kind
 
@@ -67,7 +69,7 @@ def test_what_is_no_regular_file_is_refused_where_a_file_is_read(name):
 def test_a_file_names_none_in_another_folder_by_a_link(name, tmp_path):
     (tmp_path / "secret").write_text("a word that no message may quote", encoding="utf-8")
     to_elsewhere = {name: lambda path: path.symlink_to(tmp_path / "secret")}
-    end = answer_to(replace(special(name, "pipe"), made=to_elsewhere))
+    end = end_of(replace(special(name, "pipe"), made=to_elsewhere))
     assert end.code == 2 and name in end.words and "quote" not in end.words, end.words
 
 
@@ -90,16 +92,42 @@ def test_every_key_of_a_stop_a_tie_and_a_neighbour_is_fuzzed(name):
     assert seen == set(known_keys(LISTS[name]))
 
 
+def outcome_of(case):
+    """What a case comes to, or why it comes to nothing."""
+    try:
+        run = fem.compute(case, band=False, margin=False)
+    except ValueError as error:
+        return f"refused: {error}"
+    return run.verdict.outcome or f"failed: {run.result['error']}"
+
+
 def test_random_valid_cases_end_with_an_outcome_a_failure_or_a_refusal():
-    ends = [end_of(lambda number=number: random_case(number, "rigid", 5.0)) for number in range(1, 17)]
-    assert not [end for end in ends if end.startswith("BROKEN")]
-    assert sum(not end.startswith(("failed", "refused")) for end in ends) > 8
+    ends = [outcome_of(random_case(number, "rigid", 5.0)) for number in range(1, 17)]
+    assert all(end in tuple(Outcome) or end.startswith(("refused: ", "failed: ")) for end in ends)
+    assert sum(end in tuple(Outcome) for end in ends) > 8
 
 
-@pytest.mark.parametrize("overrides", EXTREMES, ids=" ".join)
-def test_an_extreme_is_computed_or_refused_with_a_reason(overrides):
-    if "solver.duration_s=10000.0" in overrides:
-        pytest.skip("a minute: by hand")
-    end = end_of(lambda: extreme(overrides, "rigid"))
-    assert end.startswith((*Outcome, "refused: "))
+BLOCK = ("container.section=solid", "container.density_kg_m3=2000.0")
+AXES = {  # key -> its extremes, and what is set beside them
+    "container.youngs_modulus_Pa": ((1e6, 1e13), ()),
+    "container.width_m": ((0.02, 0.05, 5.0, 20.0), BLOCK),
+    "container.boxes": ((1, 10, 50), ()),
+    "contact.mu_static": ((0.0,), ("contact.mu_kinetic=0.0",)),
+    "contact.mu_kinetic": ((0.4,), ("contact.mu_static=5.0",)),
+    "motion.amplitude_m": ((0.0, 1e-6, 10.0), ()),
+    "motion.frequency_Hz": ((0.01, 100.0), ("motion.amplitude_m=0.001",)),
+    "solver.duration_s": ((1e-3, 100.0), ()),
+    "container.wall_m": ((1e-6, 0.1, 0.49), ("container.wall_density_kg_m3=50.0",)),
+    "support.kind": (("feet", "flat"), ()),
+}
+SHORT = ("solver.model=rigid", "solver.duration_s=2", "output.fields_s=0", "solver.element_size_m=0.5")
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "beside"),
+    [(key, value, beside) for key, (values, beside) in AXES.items() for value in values],
+)
+def test_an_extreme_is_computed_or_refused_with_a_reason(key, value, beside):
+    end = outcome_of(load_case("seed_stack_plateau", (*SHORT, f"{key}={value}", *beside)))
+    assert end in tuple(Outcome) or end.startswith("refused: ")
     assert end.startswith("refused: ") == ("[floor] " in end)  # nothing but a slab that gives way
