@@ -39,23 +39,6 @@ def test_a_motion_is_drawn_with_its_spectrum(folder, capsys):
     assert main(["picture", "one.txt", "--unit", "gal", "--sample-interval", "0.01", "--to", "two.svg"]) == 0
 
 
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (["one.txt"], "give the interval as sample_interval_s"),
-        (["one.txt", "--sample-interval", "0.01"], "does not state the unit"),
-        (["h.at2", "--time", "1"], "--time is for a run"),
-        (["h.at2", "--to", "h.pdf"], "a motion is drawn as .png or .svg"),
-        (["h.at2", "--quantity", "displacement"], "it holds accelerations"),
-        (["secret.txt"], "no numbers were found"),
-        (["station.v2#7"], "no channel '7'"),
-    ],
-)
-def test_what_cannot_be_drawn_is_refused(arguments, words, capsys):
-    assert main(["picture", *arguments]) == 2
-    assert words in capsys.readouterr().err
-
-
 def test_a_run_on_a_record_from_elsewhere_holds_its_copy_and_its_spectrum(folder):
     inner = folder / "inner"
     inner.mkdir()

@@ -51,9 +51,3 @@ def test_without_a_browser_the_way_by_hand_is_printed(folder, monkeypatch, capsy
         assert main(["report", str(folder), "-q", "--short", "--pdf", *place]) == 0
         assert capsys.readouterr().out.splitlines()[-1] == printing.BY_HAND
     assert (folder / "calc.html").is_file()
-
-
-def test_the_short_page_does_not_replace_the_long_one(folder, capsys):
-    (folder / "report.html").write_text("the whole one", encoding="utf-8")
-    assert main(["report", str(folder), "-q", "--short"]) == 0
-    assert (folder / "report.html").read_text(encoding="utf-8") == "the whole one"

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from meshes import PlainMesh
 
-from fem.report.animation import animation_of, bodies_of, hull
+from fem.report.animation import animation_of, bodies_of
 from fem.results.fields import Fields, FrameFields, FrameKeeper
 from fem.solid.assembly import assemble
 
@@ -105,12 +105,3 @@ def test_the_corners_of_a_box_are_those_of_its_lower_and_its_upper_side():
     shown = animation_of(model_of(elements, loose=True), frames_of(elements))
     corners = shown.points[shown.corners[1]] + shown.centroid[1]  # the centroid is rounded
     assert corners == pytest.approx(np.array([[-0.3, 1.0], [0.5, 1.0], [-0.3, 1.5], [0.5, 1.5]]), abs=1e-15)
-
-
-def test_the_hull_of_two_boxes_has_their_outer_corners():
-    points = np.array(
-        [[x, z] for left, right, low, high in BOXES for x in (left, right) for z in (low, high)]
-    )
-    assert sorted(hull(points).tolist()) == sorted(
-        [[-0.6, 0.0], [0.6, 0.0], [-0.6, 1.0], [0.6, 1.0], [-0.3, 1.5], [0.5, 1.5]]
-    )

@@ -1,16 +1,12 @@
 """Reports in a browser: nothing is loaded, the animation plays, keys and slider work, everybody can read them."""
 
-import base64
 import json
 import shutil
-import subprocess
 import time
-from io import BytesIO
 from pathlib import Path
 
 import pytest
 from browser import CHROMIUM, FAINT, Browser
-from matplotlib.image import imread
 from site_example import write_example
 from study_folders import ensemble_folder, response_folder
 
@@ -95,61 +91,25 @@ def sweep_page(browser, pages):
 
 
 @pytest.mark.parametrize("name", ["run.html", "sweep.html", "ensemble.html", "response.html"])
-class TestEveryReport:
-    def test_loads_without_errors_and_without_any_request(self, browser, pages, name):
+def test_every_report_loads_nothing_and_can_be_read_by_everybody_on_a_desk_and_a_telephone(
+    browser, pages, name
+):
+    browser.open(pages / name)
+    time.sleep(0.3)
+    assert (browser.errors, browser.requests) == ([], [(pages / name).as_uri()])
+    nodes = browser.call("Accessibility.getFullAXTree")["nodes"]
+    controls = [node for node in nodes if not node["ignored"] and node["role"]["value"] in CONTROLS]
+    assert len(controls) > 8
+    assert [node["role"]["value"] for node in controls if not node.get("name", {}).get("value")] == []
+    assert browser.evaluate(FAINT) == []
+    browser.window(390, 844)
+    try:
         browser.open(pages / name)
-        time.sleep(0.3)
-        assert browser.errors == []
-        assert browser.requests == [(pages / name).as_uri()]
-
-    def test_every_control_has_a_name(self, browser, pages, name):
-        browser.open(pages / name)
-        nodes = browser.call("Accessibility.getFullAXTree")["nodes"]
-        controls = [node for node in nodes if not node["ignored"] and node["role"]["value"] in CONTROLS]
-        assert len(controls) > 8
-        assert [node["role"]["value"] for node in controls if not node.get("name", {}).get("value")] == []
-
-    def test_every_text_stands_out_from_what_is_behind_it(self, browser, pages, name):
-        browser.open(pages / name)
-        assert browser.evaluate(FAINT) == []
-
-    def test_no_drawing_leaves_half_of_a_wide_page_white(self, browser, pages, name):
-        browser.open(pages / name)
-        shares = (
-            "[...document.querySelectorAll('section > .scroll > .curve')].map((one) => "
-            "one.getBoundingClientRect().width / one.closest('section').getBoundingClientRect().width)"
-        )
-        assert min(browser.evaluate(shares), default=1.0) > 0.7
-
-    def test_a_telephone_needs_no_scrolling_sideways(self, browser, pages, name):
-        browser.window(390, 844)
-        try:
-            browser.open(pages / name)
-            assert browser.evaluate("document.documentElement.scrollWidth") <= 390
-            outside = (
-                "[...document.querySelectorAll('table')].filter((one) => !one.closest('.scroll')).length"
-            )
-            assert browser.evaluate(outside) == 0
-        finally:
-            browser.window(1280, 900)
-
-    def test_what_goes_on_beyond_the_edge_has_a_shadow_there(self, browser, pages, name):
-        browser.window(390, 844)
-        browser.call("Emulation.setScrollbarsHidden", hidden=True)  # a picture has none, and is wider
-        try:
-            browser.open(pages / name)
-            cut = (
-                "[...document.querySelectorAll('.scroll')]"
-                ".filter((one) => one.checkVisibility() && one.scrollWidth > one.clientWidth + 1)"
-                ".map((one) => { const { right, top, height } = one.getBoundingClientRect(); "
-                "return { x: right - 2, y: top, width: 1, height, scale: 1 }; })"
-            )
-            for clip in browser.evaluate(cut):
-                shot = browser.call("Page.captureScreenshot", clip=clip, captureBeyondViewport=True)
-                assert imread(BytesIO(base64.b64decode(shot["data"])))[2:-2, :, :3].min(axis=2).max() < 0.95
-        finally:
-            browser.call("Emulation.setScrollbarsHidden", hidden=False)
-            browser.window(1280, 900)
+        assert browser.evaluate("document.documentElement.scrollWidth") <= 390
+        tables = "[...document.querySelectorAll('table')]"
+        assert browser.evaluate(f"{tables}.filter((one) => !one.closest('.scroll')).length") == 0
+    finally:
+        browser.window(1280, 900)
 
 
 def _texts(content):
@@ -165,11 +125,14 @@ def _texts(content):
 @pytest.mark.parametrize(
     ("name", "report", "count"),  # pages of a run and of a site take a second each
     [
-        ("default/run", run_report_of, 2), ("site/assess", site_report, 2), ("boxes/sweep", sweep_report, 10),
-        ("counted/ensemble", ensemble_report, 10), ("swept/response", response_report, 10),
-        ("listed/hall", hall_report, 10),
+        pytest.param("default/run", run_report_of, 2, marks=pytest.mark.slow),
+        pytest.param("site/assess", site_report, 2, marks=pytest.mark.slow),
+        ("boxes/sweep", sweep_report, 5),
+        ("counted/ensemble", ensemble_report, 5),
+        ("swept/response", response_report, 5),
+        ("listed/hall", hall_report, 5),
     ],
-)  # fmt: skip
+)
 def test_texts_of_others_do_nothing_in_a_page(browser, pages, tmp_path, name, report, count, share):
     folder = shutil.copytree(pages / Path(name).parent, tmp_path / "copy")
     mark = folder / f"{Path(name).name}.json"
@@ -230,33 +193,12 @@ class TestTheAnimation:
         run_page.press("k", 75)
         assert run_page.evaluate("document.getElementById('play').textContent") == "Play"
 
-    def test_marks_move_over_the_drawing_and_not_beside_it(self, run_page):
-        boxes = run_page.evaluate(
-            "[...document.querySelectorAll('[data-axes]')].map((one) =>"
-            " [one, one.querySelector('svg')].map((part) => part.getBoundingClientRect().width))"
-        )
-        assert len(boxes) > 6
-        assert [outer for outer, drawing in boxes] == pytest.approx([drawing for outer, drawing in boxes])
-
     def test_a_click_on_a_curve_goes_to_its_instant(self, run_page):
         axes = json.loads(run_page.evaluate("document.querySelector('[data-axes]').dataset.axes"))
         share = axes["left"] + 0.75 * (axes["right"] - axes["left"])
         run_page.click("[data-axes]", x=share)
         expected = axes["x"][0] + 0.75 * (axes["x"][1] - axes["x"][0])
         assert run_page.evaluate(CLOCK) == pytest.approx(expected, abs=0.01)
-
-    def test_what_is_shown_can_be_chosen(self, run_page):
-        changes = [
-            "exaggeration.selectedIndex = 0; exaggeration.dispatchEvent(new Event('change'))",
-            "forces.checked = false; forces.dispatchEvent(new Event('change'))",
-            "stress.checked = false; stress.dispatchEvent(new Event('change'))",
-            "mesh.checked = true; mesh.dispatchEvent(new Event('change'))",
-        ]
-        shown = {run_page.evaluate("stage.toDataURL()")}
-        for change in changes:
-            run_page.evaluate(f"{{ {change} }}")
-            shown.add(run_page.evaluate("stage.toDataURL()"))
-        assert len(shown) == 1 + len(changes)
 
     def test_who_asks_for_less_motion_gets_stills(self, run_page):
         reduced = {"name": "prefers-reduced-motion", "value": "reduce"}
@@ -267,18 +209,6 @@ class TestTheAnimation:
             assert run_page.evaluate(CLOCK) in (pytest.approx(1.0), pytest.approx(1.5), pytest.approx(2.0))
         finally:
             run_page.call("Emulation.setEmulatedMedia", features=[])
-
-
-def test_assumptions_and_exclusions_stand_on_the_first_page(run_page, tmp_path):
-    pdf = tmp_path / "run.pdf"
-    pdf.write_bytes(run_page.pdf())
-    if shutil.which("pdftotext") is None:
-        pytest.skip("no pdftotext: apt-get install poppler-utils")
-    first = subprocess.run(
-        ["pdftotext", "-l", "1", pdf, "-"], capture_output=True, text=True, check=True
-    ).stdout
-    for words in ("rocks and stands", "The case", "Assumptions and exclusions", "asks for three or more"):
-        assert words in first
 
 
 def test_what_is_typed_is_kept_in_the_copy(run_page):
@@ -316,9 +246,3 @@ class TestTheMap:
         assert "contact.mu_static=0.6" in after
         assert "peak_acceleration_m_s2=9" in after
         assert "rotation ratio" in sweep_page.evaluate("document.getElementById('cell').textContent")
-
-    def test_another_quantity_has_other_colours(self, sweep_page):
-        shown = sweep_page.evaluate("map.toDataURL()")
-        sweep_page.evaluate("quantity.value = 'max_slip_m'; quantity.dispatchEvent(new Event('change'));")
-        assert sweep_page.evaluate("map.toDataURL()") != shown
-        assert "mm" in sweep_page.evaluate("document.getElementById('legend').textContent")

@@ -6,7 +6,6 @@ import pytest
 
 from fem.figures.cache import drawings_of
 from fem.model.model import build_model
-from fem.render.caption import caption
 from fem.report.animation import animation_of
 
 
@@ -32,9 +31,3 @@ def test_the_animation_moves_the_boxes_as_the_history_does(run):
     lower, upper = run.history["centre_x_m"][instant], run.history["box_2_x_m"][instant]
     assert last.centre[:, 0] - last.floor[0] == pytest.approx([lower, upper], abs=1e-6)
     assert abs(upper - lower) > 1e-3
-
-
-def test_frames_name_their_boxes_in_files_and_in_memory(run):
-    frame = run.frame(0.5)
-    assert set(frame.box.tolist()) == {1, 2}
-    assert caption(run, frame)[1].startswith("t = 0.500 s")

@@ -6,19 +6,13 @@ import re
 import shutil
 
 import pytest
-from gallery import SHORT
 
-from fem.__main__ import main
 from fem.case.case import read_case
 from fem.html.units import typeset
 from fem.model.model import build_model
 from fem.report.animation import animation_of
 from fem.report.run_page import Signature, run_report
 from fem.results.reader import open_run
-from fem.run.joints import unbolted
-
-SECTIONS = """verdict-title asked assumptions static motion-title band modes block joints sheet
-numerics provenance"""
 
 
 @pytest.fixture(scope="module")
@@ -30,16 +24,6 @@ def folder(gallery):
 @pytest.fixture(scope="module")
 def page(folder):
     return run_report(open_run(folder), signature=Signature(author="A. Author <a@b>"))
-
-
-def test_the_page_has_every_part_in_the_order_of_reading(page):
-    assert re.findall(r'<h2 id="([a-z-]+)"', page) == SECTIONS.split()
-    assert page.index('class="sentence"') < page.index("The case")
-
-
-def test_what_the_command_line_changed_stands_under_the_title(page):
-    above = page[: page.index("<main")]
-    assert all(f"<code>{override}</code>" in above for override in SHORT)
 
 
 def test_the_page_loads_nothing_and_fits_into_a_mail(page):
@@ -67,35 +51,6 @@ def test_the_animation_of_a_rigid_run_has_no_stress(gallery):
     assert shown.frames[0].von_mises is None and len(shown.frames) == 13
 
 
-def rows_of(page, label):
-    """The texts of the cells of a table."""
-    table = re.search(rf'aria-label="{label}">.*?</table>', page, re.DOTALL)[0]
-    return [re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", row) for row in re.findall(r"<tr.*?</tr>", table)[1:]]
-
-
-def test_the_codes_rows_are_not_compared_even_where_their_base_shear_is_that_of_the_run(page):
-    found = {row[1]: row[6] for row in rows_of(page, "static rule and run")}
-    assert [found[action] for action in found if action.startswith("code")] == ["not compared"] * 2
-    assert "not compared" not in [found[action] for action in found if action.startswith("own")]
-
-
-def test_the_page_says_what_each_joint_would_do_without_bolts(page, folder):
-    joints = open_run(folder).typed_result.joints
-    assert [row[-1] for row in rows_of(page, "joints between the boxes")] == list(map(unbolted, joints))
-
-
-def test_no_note_of_the_page_names_a_key(page):
-    notes = re.findall(r'<p class="note">(.*?)</p>', page, re.DOTALL)
-    assert any("joints" in note for note in notes) and any("variations" in note for note in notes)
-    assert not [note for note in notes if re.search(r"\[[a-z]+\]|[a-z]_[a-z]+\b|\b[a-z]+\.[a-z]+\b", note)]
-
-
-def test_only_a_page_with_the_forces_in_the_joints_says_that_they_are_below(page, folder):
-    listed = "the forces in the joints are listed below"
-    short = run_report(open_run(folder), brief=True)
-    assert listed in page and "The boxes are bolted" in short and listed not in short
-
-
 def test_a_run_of_which_no_input_was_varied_is_not_called_sure(folder, tmp_path):
     copied = shutil.copytree(folder, tmp_path / "copied")
     result = json.loads((copied / "run.json").read_text())
@@ -105,20 +60,8 @@ def test_a_run_of_which_no_input_was_varied_is_not_called_sure(folder, tmp_path)
     (copied / "run.json").write_text(json.dumps(result))
     page = run_report(open_run(copied), brief=True)
     assert "No input was varied" in page and "no input varied" in page and ">sure<" not in page
-
-
-@pytest.mark.parametrize(
-    ("folder", "file", "words"),
-    [
-        ("nothing", "other.txt", "no such folder"),
-        (".", "other.txt", "run.json"),
-        (".", "study.json", "not the result of a study"),
-    ],
-)
-def test_a_folder_without_results_or_with_damaged_ones_is_refused(tmp_path, capsys, folder, file, words):
-    (tmp_path / file).write_text('{"groups": 3}')
-    assert main(["report", str(tmp_path / folder)]) == 2
-    assert words in capsys.readouterr().err
+    (copied / "run.json").write_text(json.dumps(result | {"status": "interrupted"}))
+    assert 'id="signature"' in page and 'id="signature"' not in run_report(open_run(copied), brief=True)
 
 
 @pytest.mark.parametrize(
