@@ -201,16 +201,6 @@ def test_a_free_rigid_block_stays_on_its_orbit_in_the_phase_portrait(tmp_path):
     assert len(arcs) > 3 and len(lands) == 1 and not lines(figure.axes[0], "in the air")
 
 
-def test_forces_of_impacts_are_cut_off_and_given_in_words(runs, drawn):
-    normal = 1e-3 * runs["rigid"].history["normal_force_N"]
-    figure = drawn["rigid"]["forces"]
-    assert normal.max() > figure.axes[0].get_ylim()[1]
-    assert any(rounded(normal.max(), 4) in text.get_text() for text in figure.texts)
-    marks = [line for line in figure.axes[0].lines if line.get_marker() == "^"]
-    assert len(marks[0].get_xdata()) > 0
-    assert not any("beyond the scale" in text.get_text() for text in drawn["rests"]["forces"].texts)
-
-
 def test_the_energy_balances_at_every_instant(runs, drawn):
     panel = drawn["rigid"]["energy"].axes[1]
     work, stored, *taken = (
@@ -278,23 +268,6 @@ def test_no_peak_is_lost_in_a_long_curve():
     assert {1234, 1239} <= set(both.tolist())
     values[100:] = np.nan  # a block no longer followed
     assert style.kept_samples(values)[-1] == 199_999
-
-
-def test_the_cursor_axes_of_a_panel_over_time_are_its_frame(runs):
-    with style.house_style():
-        figure, axes = style.time_panels((1.0, 1.0), history=runs["rests"].history)
-        axes[0].plot([0.0, 6.0], [0.0, 1.0])
-    svg = style.svg_of(figure)
-    place = style.cursor_axes(figure)
-    assert (place["kind"], place["x"]) == ("time", [0.0, 6.0])
-    # The frame of the axes in the SVG, whose y points down.
-    size = [float(figure.get_size_inches()[i]) * 72.0 for i in (0, 1)]
-    spine = re.search(r'id="patch_2">\s*<path d="M ([\d.]+) ([\d.]+)', svg)
-    assert float(spine[1]) / size[0] == pytest.approx(place["left"], abs=1e-4)
-    upper, lower = (panel.get_position() for panel in axes[:2])
-    assert 1.0 - float(spine[2]) / size[1] == pytest.approx(upper.y0, abs=1e-4)
-    assert (place["top"], place["bottom"]) == (upper.y1, lower.y0) and upper.y0 > lower.y1
-    assert figure.axes[-1].get_xlabel() == style.TIME
 
 
 def test_a_fault_in_the_drawing_does_not_spoil_a_run(tmp_path, monkeypatch):

@@ -6,7 +6,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-import matplotlib.figure
 import numpy as np
 import pytest
 import pyvista
@@ -14,8 +13,6 @@ import pyvista
 import fem
 from fem.case.case import load_case
 from fem.case.columns import ALWAYS
-from fem.figures import style
-from fem.figures.run import FIGURES
 from fem.results.errors import FolderError
 from fem.results.fields import FieldError
 from fem.run.run import RunOptions, run_case
@@ -63,33 +60,6 @@ def test_result_case_and_history_are_those_of_the_files(folder):
     assert repr(run) == f"<run 'free_rocking' in {str(folder)!r}: completed, rock>"
     assert repr(run.fields) == "<fields: 5 frames from 0 to 1 s>"
     assert repr(run.history).startswith("<history: 201 samples of time_s, base_displacement_m")
-
-
-@pytest.mark.parametrize("name", ["rotation", "slip", "energy", "rigid_check"])
-def test_a_figure_is_that_of_the_page(folder, name):
-    run = fem.open_run(folder)
-    drawn = run.plot(name)
-    assert isinstance(drawn, matplotlib.figure.Figure)
-    with style.house_style():
-        expected = FIGURES[name](run)
-    assert [one.get_text() for one in drawn.texts] == [one.get_text() for one in expected.texts]
-
-
-def test_frames_hold_the_rigid_motion_of_the_history(folder):
-    run = fem.open_run(folder)
-    assert run.fields.times == pytest.approx([0.0, 0.25, 0.5, 0.75, 1.0])
-    assert [frame.time for frame in run.fields] == run.fields.times.tolist()
-    frame = run.frame(0.6)
-    assert frame.time == 0.5
-    base = frame.points[:, 1] == 0.0
-    left, right = (
-        np.argmin(np.where(base, frame.points[:, 0], 9.0)),
-        np.argmax(np.where(base, frame.points[:, 0], -9.0)),
-    )
-    across = (frame.points + frame.displacement)[right] - (frame.points + frame.displacement)[left]
-    tilt = -np.arctan2(across[1], across[0])
-    sample = np.searchsorted(run.history["time_s"], 0.5)
-    assert tilt == pytest.approx(run.history["rotation_rad"][sample], abs=1e-6)
 
 
 def test_a_grid_is_what_pyvista_reads_from_the_file(folder):

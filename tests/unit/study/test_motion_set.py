@@ -8,7 +8,7 @@ from fem.case.case import CaseError, read_case
 from fem.model.motion import build_motion
 from fem.records.intensity import intensity
 from fem.records.spectrum import response_spectrum
-from fem.study.axes import first_motion, read_axis, with_following
+from fem.study.axes import read_axis
 from fem.study.motions import read_motion_set, spectra_of
 
 CASE = """
@@ -36,18 +36,6 @@ def base(tmp_path):
     for k, name in enumerate(("a", "b", "c")):
         write_pair(tmp_path, name, frequency=2.0 + k)
     return read_case(CASE, folder=tmp_path)
-
-
-def test_names_and_pairs_stand_side_by_side():
-    axis = read_axis("motion.file", ["a.at2", ["b_h.at2", "b_v.at2"]])
-    assert axis.values == ("a.at2", "b_h.at2")
-    assert with_following([axis], {"motion.file": "a.at2"}) == {
-        "motion.file": "a.at2",
-        "vertical.kind": "none",
-    }
-    second = {"motion.file": "b_h.at2", "vertical.kind": "table", "vertical.file": "b_v.at2"}
-    assert with_following([axis], {"motion.file": "b_h.at2"}) == second
-    assert first_motion([axis]) == second  # the base case has a vertical motion if any motion has
 
 
 def test_the_motions_are_read_as_the_case_takes_them(base):
@@ -92,10 +80,3 @@ def test_two_motions_of_one_file_are_refused(base, tmp_path):
         read_motion_set(base, [read_axis("motion.file", ["both.csv#1", "both.csv#2"])])
     with pytest.raises(CaseError, match=r"'a_h.csv' and './a_h.csv' are motions of one file"):
         read_motion_set(base, [read_axis("motion.file", ["a_h.csv", "./a_h.csv"])])
-
-
-@pytest.mark.parametrize(("length", "step"), [(0.3, 0.02), (0.5, 0.01)])
-def test_components_of_quite_different_length_or_step_are_refused(base, tmp_path, length, step):
-    write_motion(tmp_path, "other.csv", frequency=3.0, length=length, step=step)
-    with pytest.raises(CaseError, match=r"a_h.csv and other.csv do not belong together"):
-        read_motion_set(base, [read_axis("motion.file", [["a_h.csv", "other.csv"]])])
