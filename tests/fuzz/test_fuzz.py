@@ -7,7 +7,7 @@ import pytest
 from data_inputs import BY_A_FILE, HOSTILE, NAMED, SIZES, SPECIAL, hostile, special
 from fuzz import KINDS, end_of, warm_up
 from hypothesis import HealthCheck, given, settings
-from inputs import FIELDS, LISTS, values_of, values_of_type
+from inputs import FIELDS, values_of
 from random_cases import random_case
 
 import fem
@@ -77,19 +77,6 @@ def test_every_key_of_the_schema_is_fuzzed():
     assert {f"{table}.{key}" for table, model in TABLES.items() for key in known_keys(model)} <= set(FIELDS)
     for key in FIELDS:
         values_of(key, None).validate()
-
-
-@pytest.mark.parametrize("name", LISTS)
-def test_every_key_of_a_stop_a_tie_and_a_neighbour_is_fuzzed(name):
-    seen = set()
-
-    @settings(max_examples=100, derandomize=True, suppress_health_check=list(HealthCheck))
-    @given(values_of_type(name, LISTS[name], None, None))
-    def draw(rows):
-        seen.update(*rows)
-
-    draw()
-    assert seen == set(known_keys(LISTS[name]))
 
 
 def outcome_of(case):

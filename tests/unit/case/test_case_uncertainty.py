@@ -138,7 +138,7 @@ def test_a_stiff_floor_is_thirty_times_as_stiff():
     }
 
 
-@pytest.mark.parametrize("width", [0.4, 1.1, 1.35, 1.41, 1.45, 1.6, 2.5])
+@pytest.mark.parametrize("width", [0.4, 1.41, 1.45, 2.5])
 @pytest.mark.parametrize("ratio", [None, 0.95])
 def test_the_impacts_of_a_squat_box_make_cases_that_can_be_read(width, ratio):
     """Housner's restitution falls through zero at a width of 1.41 times the height."""

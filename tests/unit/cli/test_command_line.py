@@ -273,19 +273,6 @@ class TestRun:
         assert read_case(kept).resolved() == load_case("seed_box").resolved()
 
 
-class TestModes:
-    def test_writes_the_shapes_and_prints_the_frequencies(self, tmp_path, capsys):
-        arguments = ["modes", "seed_box", "--count", "2", "--out", str(tmp_path / "m"), "--json"]
-        assert command_line.main(arguments) == 0
-        document = json.loads(capsys.readouterr().out)
-        assert [row["mode"] for row in document["modes"]] == [1, 2]
-        assert (tmp_path / "m" / "modes.vtu").is_file()
-        figure = (tmp_path / "m" / "modes.svg").read_text(encoding="utf-8")
-        assert document["figure"] == str(tmp_path / "m" / "modes.svg")
-        for row in document["modes"]:
-            assert f">{row['mode']}: {row['frequency_Hz']:.4g} Hz<" in figure
-
-
 class TestDoctor:
     def test_names_versions_and_the_line_that_mends_missing_pictures(self, monkeypatch, capsys):
         monkeypatch.setattr(doctor_command, "probe_rendering", lambda: "rendering ended with signal 11")

@@ -169,54 +169,6 @@ def test_a_free_block_returns_from_within_the_curve_of_the_phase_portrait(drawn)
             assert (motion.overturned_at is not None) == falls, (index, factor)
 
 
-def arcs_of(figure):
-    """Rotation [rad] and angular velocity [rad/s] of each stretch of a phase portrait on the floor."""
-    (line,) = lines(figure.axes[0], "on the floor")
-    points = np.radians([line.get_xdata(), line.get_ydata()])
-    gaps = np.flatnonzero(np.isnan(points[0]))
-    return [arc[:, ~np.isnan(arc[0])] for arc in np.split(points, gaps, axis=1) if arc.shape[1] > 2]
-
-
-def test_a_free_rigid_block_stays_on_its_orbit_in_the_phase_portrait(tmp_path):
-    rocking = (
-        "motion.kind=none",
-        "initial.rotation_rad=0.12",
-        "solver.duration_s=4",
-        "contact.mu_static=0.8",
-        "output.figures=false",
-    )
-    run = run_into(tmp_path / "r", "seed_stack_plateau", *rocking, "contact.mu_kinetic=0.8")
-    angle, parameter = run.slenderness_angle, run.typed_result.static.frequency_parameter_1_s
-    figure = figures_of(run)["phase_portrait"]
-    arcs, lands = arcs_of(figure), lines(figure.axes[0], "lands")
-    energies = []  # over m g R: omega^2/(2 p^2) + cos(alpha - |theta|), constant between impacts
-    for rotation, rate in arcs:
-        energy = rate**2 / (2.0 * parameter**2) + np.cos(angle - np.abs(rotation)) - np.cos(angle)
-        energies.append(energy.mean())
-        # 1.4e-3 of it next to an impact, where the springs of both corners bear; 6e-4 beyond 0.01 of the angle
-        assert np.ptp(energy) < 2e-3 * energies[0]
-    left = 1.0 - 1.5 * np.sin(angle) ** 2  # of the angular velocity at an impact (Housner)
-    assert energies[0] == pytest.approx(np.cos(angle - 0.12) - np.cos(angle), rel=1e-3)
-    assert np.divide(energies[1:], energies[:-1]) == pytest.approx(left**2, rel=0.02)
-    assert len(arcs) > 3 and len(lands) == 1 and not lines(figure.axes[0], "in the air")
-
-
-def test_the_energy_balances_at_every_instant(runs, drawn):
-    panel = drawn["rigid"]["energy"].axes[1]
-    work, stored, *taken = (
-        1e3 * lines(panel, name)[0].get_ydata()
-        for name in ("work", "stored", "friction", "contact damping", "material damping")
-    )
-    history = runs["rigid"].history
-    assert work.max() > 100.0  # J: the floor does work
-    assert work - stored - sum(taken) == pytest.approx(history["imbalance_J"], abs=1e-6)
-    # Of what is stored, the contact springs hold the rest: at the start half the weight times its sinking.
-    seen = sum(history[name] - history[name][0] for name in ("kinetic_J", "strain_J", "potential_J"))
-    at_rest = 0.5 * 98100.0 * runs["rigid"].result["numerics"]["static_penetration_m"]
-    springs = stored - seen + at_rest
-    assert springs.min() > -1e-6 and np.median(springs) < 3.0 * at_rest < springs.max()
-
-
 def test_what_bolts_hold_is_drawn_from_the_instant_that_an_unbolted_joint_opens_or_slides(runs, drawn):
     run, figure = runs["rigid"], drawn["rigid"]["joints"]
     joints = run.result["joints"]

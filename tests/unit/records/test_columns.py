@@ -1,12 +1,10 @@
 """Columns of numbers: what is understood, and one message for each way to be wrong."""
 
-import os
 from pathlib import Path
 
 import pytest
 
 from fem.records.files import read_record
-from fem.records.source import LARGEST_FILE
 
 G = 9.80665
 
@@ -76,24 +74,6 @@ def test_no_message_quotes_what_is_in_the_file(tmp_path):
         with pytest.raises(ValueError, match=r"record\.csv") as found:
             table(tmp_path, text)
         assert "secret" not in str(found.value)
-
-
-def test_missing_files_folders_and_oversized_files_are_refused_before_reading(tmp_path):
-    os.mkfifo(tmp_path / "endless")
-    pipe = "is a device or a pipe, not a regular file"
-    for path, reason in (
-        (tmp_path / "none.csv", "does not exist or is not a file"),
-        (tmp_path, "is a folder, not a file"),
-        (tmp_path / "endless", pipe),
-        (Path("/dev/zero"), pipe),
-    ):
-        with pytest.raises(ValueError, match=reason):
-            read_record(path)
-    large = tmp_path / "large.csv"
-    with large.open("wb") as file:
-        file.truncate(LARGEST_FILE + 1)  # sparse: takes no room
-    with pytest.raises(ValueError, match="larger than 33"):
-        read_record(large)
 
 
 def test_files_of_the_kernel_that_never_end_are_taken_at_the_size_they_state():

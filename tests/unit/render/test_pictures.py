@@ -13,7 +13,7 @@ import fem.render.movie
 from fem import __main__ as command_line
 from fem.case.case import load_case
 from fem.render import opengl as rendering
-from fem.render.caption import caption, symbols
+from fem.render.caption import caption
 from fem.render.movie import write_movie
 from fem.render.picture import Scene, time_of_largest_rotation, write_picture
 from fem.render.scene import summarise_frames
@@ -98,17 +98,6 @@ class TestScene:
         assert colour_of(second, pixel(scene.view, 0.3, at)).max() < 60.0
         foot = (0, first.height - 25, 200, first.height)
         assert np.array_equal(np.asarray(first.crop(foot)), np.asarray(second.crop(foot)))
-
-    def test_an_arrow_stands_below_a_node_that_is_pressed(self, run, scene):
-        frame = run.fields.frame(0)
-        pressed = frame.points[np.argmax(frame.contact_pressure)]
-        below = pixel(scene.view, pressed[0], -0.1 * scene.view.depth)
-        blue = colour_of(scene.image(frame), below)
-        assert blue[2] > blue[0] + 100.0
-        free = dataclasses.replace(frame, contact_pressure=np.zeros(len(frame.points)))
-        grey = colour_of(scene.image(free), below)
-        assert np.ptp(grey) < 30.0
-        assert "up to" in symbols(frame) and "no contact at this instant" in symbols(free)
 
 
 def test_the_grid_of_an_elastic_container_is_coloured_by_its_stress(run):

@@ -8,7 +8,6 @@ import pytest
 import pyvista
 
 from fem.results.fields import PROMPT_FRAMES, FieldWriter, FrameFields, open_fields
-from fem.runtime import own_files
 
 POINTS = np.array([[x, z] for z in (0.0, 0.5, 1.0) for x in (0.0, 0.5, 1.0, 1.5, 2.0)])
 QUADS = np.array([[0, 2, 12, 10], [2, 4, 14, 12]])
@@ -130,21 +129,6 @@ def test_long_series_are_listed_in_time_and_completely_at_the_end(tmp_path):
         assert 0 <= 3 * PROMPT_FRAMES + i + 1 - listed <= 3
     out.close()
     assert len(open_fields(tmp_path)) == 3 * PROMPT_FRAMES + 5
-
-
-def test_a_frame_that_cannot_be_written_is_neither_left_nor_listed(tmp_path, monkeypatch):
-    out = writer(tmp_path)
-    out.write(at(0.0, **fields()))
-
-    def full(part, path):
-        assert part.exists()
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr(own_files.os, "replace", full)
-    with pytest.raises(OSError, match="No space left"):
-        out.write(at(1.0, **fields()))
-    assert sorted(p.name for p in tmp_path.iterdir()) == ["frame_00000.vtu", "run.pvd"]
-    assert len(open_fields(tmp_path)) == 1
 
 
 def test_a_series_that_names_files_elsewhere_or_is_damaged_is_refused(tmp_path):

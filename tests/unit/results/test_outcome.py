@@ -3,8 +3,6 @@
 import json
 import pickle
 
-import pytest
-
 from contact.stepping import modes
 from fem.results.outcome import MODES, Ending, Outcome, ending_of
 
@@ -20,14 +18,6 @@ def test_every_mode_of_the_kernel_is_an_outcome():
     assert MODES[modes.REST] == "rest" and MODES[modes.FALLEN] == "overturned"
     assert MODES[modes.ROCK + modes.SLIDE] == "slide-rock"
     assert len(MODES) == len(Outcome) - 1 == modes.HOP + 1 and Outcome.INVALID not in MODES.values()
-
-
-@pytest.mark.parametrize(
-    ("slides", "rocks", "word"),
-    [(False, False, "rest"), (True, False, "slide"), (False, True, "rock"), (True, True, "slide-rock")],
-)
-def test_what_did_not_overturn_slid_or_rocked(slides, rocks, word):
-    assert Outcome.of(slides=slides, rocks=rocks) == word
 
 
 def test_what_failed_or_is_not_valid_never_stands():

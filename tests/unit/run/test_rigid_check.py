@@ -186,9 +186,3 @@ class TestPeaks:
         peaks = first_peaks(time, 0.2 * np.cos(2.0 * np.pi * time / 1.7), 0.01)
         assert [instant for instant, _ in peaks] == pytest.approx([0.85, 1.7, 2.55], abs=1e-5)
         assert [rotation for _, rotation in peaks] == pytest.approx([-0.2, 0.2, -0.2], abs=1e-6)
-
-    def test_small_swings_and_ends_are_none(self):
-        time = np.linspace(0.0, 1.0, 101)
-        assert first_peaks(time, 0.005 * np.sin(9.0 * time), 0.01) == []
-        assert first_peaks(time, 0.2 * time, 0.01) == []
-        assert first_peaks(time, 0.2 * np.cos(time), 0.01) == []

@@ -99,13 +99,6 @@ class TestEnd:
         assert found.result["verdict"]["band"] is None
         assert "rigid_check" not in found.result
 
-    def test_the_last_sample_and_frame_fall_on_the_end_although_rounding_puts_them_beyond(self, tmp_path):
-        assert 12 * 0.1 > 1.2
-        every = ("output.history_s=0.1", "output.fields_s=0.1")
-        run(tmp_path, "free_rocking", "solver.duration_s=1.2", *every, band=False)
-        assert len(history_of(tmp_path).modes) == 13
-        assert (tmp_path / "fields" / "frame_00012.vtu").is_file()
-
     def test_bad_input_leaves_no_folder_and_exits_with_2(self, tmp_path, capsys):
         folder = tmp_path / "r"
         assert command(folder, "rocking", "contact.mu_static=-1") == 2

@@ -175,12 +175,10 @@ def test_on_a_floor_the_period_of_the_building_is_varied(tmp_path, brief):
     assert any("4.3.5.2" in method.source for method in result.methods)
 
 
-def records(folder, *, twice=False, scale=1.0):
+def records(folder, *, scale=1.0):
     """Three pairs of record files, sampled at 0.01 s."""
     action = load_site("site").action
     made = artificial_motions(action, count=3, seed=5)
-    if twice:
-        made[2] = made[0]
     names = []
     for number, motion in enumerate(made):
         pair = []

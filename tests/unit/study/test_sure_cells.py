@@ -73,20 +73,6 @@ def test_a_copy_of_a_cell_is_the_member_of_the_band_of_its_run(sweep_of):
         )
 
 
-LOOSE = SMALL.replace("[axes]", '"container.joints" = "loose"\n[axes]')
-
-
-def test_copies_of_a_loose_cell_change_floor_and_joints_apart(sweep_of):
-    sweep = sweep_of(LOOSE.replace("count = 5", "count = 2"))
-    copies = copies_of(sweep)
-    own = sweep.case(0).joint_friction
-    for copy in copies:
-        case = sweep.make.case(sweep.item(0)._replace(more=copy.values))
-        kept = not any(f"joints.{key}" in copy.change.values for key in own)
-        assert (case.joint_friction == own) == kept
-    assert keys_of(sweep) >= {*(f"joints.{key}" for key in own), "joints.damping_ratio"}
-
-
 @pytest.mark.parametrize(
     ("table", "gone"),
     [
