@@ -133,17 +133,3 @@ def test_an_edge_wins_more_width_than_a_casting_as_it_sinks_in_and_feet_none():
 def test_a_corner_is_destroyed_where_it_has_sunk_in_by_10_mm_or_by_a_side_of_its_patch(patch, deepest):
     slab = slab_with(f"floor.corner_patch_m={patch}", "floor.bearing_strength_Pa=500e6")
     assert slab.deepest == pytest.approx(deepest)
-
-
-@pytest.mark.parametrize("percent", [2.0, -2.0])
-@pytest.mark.parametrize("model", ["rigid", "reduced", "full"])
-def test_on_a_slope_friction_holds_the_part_of_the_weight_along_it(model, percent):
-    keys = [*COARSE, f"solver.model={model}", f"floor.slope_percent={percent}", "motion.kind=none"]
-    begun = build_model(load_case("seed_stack", keys))
-    slope, weight = math.atan(0.01 * percent), begun.case.weight
-    along, normal = begun.run.old.force.sum(axis=0)
-    assert along == pytest.approx(-weight * math.sin(slope), rel=1e-9)
-    assert normal == pytest.approx(weight * math.cos(slope), rel=1e-9)
-    # The resultant passes through the mass centre, up to the tilt of the springs.
-    moment = begun.run.old.force[:, 1] @ begun.run.old.point[:, 0]
-    assert moment == pytest.approx(weight * math.sin(slope) * begun.static.centroid, rel=1e-3)

@@ -7,7 +7,6 @@ import csv
 import json
 import math
 
-import numpy as np
 import pytest
 from floors import sine_floor
 
@@ -56,16 +55,6 @@ def rotation_of_block(frequency, section, periods):
     return max(late) / BLOCK.slenderness_angle
 
 
-def test_it_covers_the_range_of_the_paper_and_the_frequency_of_the_case(result):
-    frequencies = [at["frequency_Hz"] for at in result["frequencies"]]
-    assert frequencies[0] == pytest.approx(0.3, abs=0.001) and frequencies[-1] == pytest.approx(3.0, abs=0.01)
-    assert min(abs(np.array(frequencies) - 6.928 / (2.0 * math.pi))) < 1e-9
-    rate = math.sqrt(3.0 * 9.81 / (4.0 * math.hypot(0.55, 2.0)))  # Eq. (3) of the paper, homogeneous
-    assert [at["eta"] * rate for at in result["frequencies"]] == pytest.approx(
-        [2.0 * math.pi * f for f in frequencies], rel=5e-3
-    )
-
-
 def test_every_point_is_valid_or_overturned_with_a_reason(result):
     for point in result["points"]:
         assert point["status"] in ("completed", "overturned") and point["motion"] != "invalid"
@@ -91,17 +80,3 @@ def test_motions_of_period_three_are_found_beside_the_curve(result, sections):
         section = sections["start", round(at["frequency_Hz"], 6)]
         exact = rotation_of_block(at["frequency_Hz"], section, 24)
         assert largest["rotation_ratio"] == pytest.approx(exact, rel=0.01)
-
-
-def test_the_first_sentence_names_the_largest_motion_and_what_falls_and_figures_show_it(folder, result):
-    largest = max(motion["rotation_ratio"] for at in result["frequencies"] for motion in at["motions"])
-    first = f"frequency: largest lasting motion {largest:.2g} of the slenderness angle, "
-    assert result["answer"].startswith(first)
-    fell, starts = (sum(at[key] for at in result["frequencies"]) for key in ("fell", "starts"))
-    assert starts == 8 * 28
-    share = f"; {100.0 * fell / starts:.0f} % of 224 random starts overturn; overturned at 0.3007"
-    assert share in result["answer"]
-    figures = {path.stem: path.read_text() for path in (folder / "figures").iterdir()}
-    for words in ("η = Ω/ω", "that of the case, 1.103 Hz"):
-        assert words in figures["response_curve"]
-    assert figures["portraits"].count("rock of period 1") == 5

@@ -126,10 +126,11 @@ def closes(found: Finished) -> bool:
 @pytest.mark.parametrize(
     ("case", "links", "beside", "until"),
     [
+        (ROW, ENDS, (), 0.8),
         (FOUR, WALLS, (), 0.3),
         (ROW, ENDS, (BESIDE,), 0.8),
     ],  # boxes that rattle soon tell rounding errors apart
-    ids=["loose boxes", "row"],
+    ids=["one", "loose boxes", "row"],
 )
 def test_the_mirror_image_and_another_order_hit_alike_and_the_ledger_closes(case, links, beside, until):
     one = run(held(case, *links, tie=(TIE,), neighbour=beside))

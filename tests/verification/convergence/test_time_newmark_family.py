@@ -21,7 +21,6 @@ SECOND_ORDER = {
     "rho 1": generalised_alpha(1.0),
     "average acceleration": newmark(0.25, 0.5),
 }
-SCHEMES = SECOND_ORDER | {"damped Newmark": newmark(0.3025, 0.6)}
 FREQUENCY, DAMPING = 20.0, 0.02  #: of the oscillator [rad/s], [-]
 START, START_RATE = 0.3, -2.0
 
@@ -70,8 +69,3 @@ def test_steps_that_change_all_the_time_keep_the_second_order(scheme):
         pattern = np.tile([0.9, 0.3, 0.5, 0.7], round(1.0 / (2.4 * h)) + 4)
         errors.append(oscillator_error(scheme, h, breaks=np.cumsum(pattern) * h))
     assert observed_order(STEPS, errors) == pytest.approx(2.0, abs=0.1)
-
-
-def test_numerical_damping_by_gamma_costs_newmark_its_second_order():
-    errors = [oscillator_error(SCHEMES["damped Newmark"], h) for h in STEPS]
-    assert observed_order(STEPS, errors) == pytest.approx(1.0, abs=0.05)
