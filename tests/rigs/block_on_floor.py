@@ -9,10 +9,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from contacts import contact_of
 
 from contact.arrays import FloatArray
 from contact.interface.equilibrium import Stance, standing
-from contact.interface.laws import ELASTIC_STICK
 from contact.interface.penalty import relaxation_time
 from contact.interface.workspace import Contact
 from contact.motion.base_motion import HarmonicMotion, NoMotion, PulseMotion
@@ -33,7 +33,7 @@ LOOSE = 1e30  #: a tolerance that never shortens a step
 
 @dataclass(frozen=True, kw_only=True)
 class Block:
-    """Width a, height c and mass of a homogeneous block on two corners, and the floor under it."""
+    """Width a, height c and mass of a homogeneous block on two corners, and the level floor under it."""
 
     width: float = 1.1  #: [m]
     height: float = 4.0  #: [m]
@@ -43,11 +43,8 @@ class Block:
     damping_ratio: float = 2.0  #: c/(2 sqrt(k m)), the whole mass on one corner
     mu_static: float = 0.4
     mu_kinetic: float = 0.4
-    weakening: float = 0.0  #: [m]
-    stribeck_velocity: float = 0.0  #: [m/s]
     cap: float = math.inf  #: of the normal force of a corner [N]
     cap_growth: float = 0.0  #: with the indentation, over the cap [1/m]
-    slope: float = 0.0  #: angle of the floor, > 0: it falls toward +x [rad]
     impact_share: float = 1.0  #: of the angular momentum that an exchange of the pivot leaves
 
     @property
@@ -81,34 +78,26 @@ class Block:
         return 0.5 * np.array([[-self.width, -self.height], [self.width, -self.height]])
 
     def contact(self) -> Contact:
-        springs = np.full(2, 0.5 * self.base_stiffness)
-        return Contact(
-            normal_stiffness=springs,
-            tangential_stiffness=springs,
+        return contact_of(
+            np.full(2, 0.5 * self.base_stiffness),
+            force_scale=self.mass * GRAVITY,
             cap=np.full(2, self.cap),
             cap_growth=np.full(2, self.cap_growth),
             relaxation_time=np.full(2, self.relaxation_time),
             mu_static=np.full(2, self.mu_static),
             mu_kinetic=np.full(2, self.mu_kinetic),
-            weakening=np.full(2, self.weakening),
-            camber=np.zeros(2),
-            stribeck_velocity=self.stribeck_velocity,
-            friction=ELASTIC_STICK,
-            regularisation_velocity=1e-3,
-            force_scale=self.mass * GRAVITY,
             resolution=1e-15 * (self.width + self.height),
         )
 
     def standing(self) -> Stance:
         """Settled under gravity, in the middle of a floor at x = 0."""
         return standing(
-            weight=self.mass * self.gravity * math.cos(self.slope),
+            weight=self.mass * self.gravity,
             centroid=(0.0, 0.5 * self.height),
             point=self.point,
             compliance=np.zeros((4, 4)),
             normal_stiffness=self.contact().normal_stiffness,
             camber=np.zeros(2),
-            shear_ratio=min(math.tan(self.slope), self.mu_static),
         )
 
 
@@ -200,8 +189,7 @@ def rig(
     body = make_modal_body(
         mass=block.mass,
         inertia=block.inertia,
-        gravity=block.gravity * math.cos(block.slope),
-        downhill=block.gravity * math.sin(block.slope),
+        gravity=block.gravity,
         point=block.point,
         rest=(0.0, 0.5 * block.height),
         shape=shape,
@@ -235,11 +223,10 @@ def rig(
     return Rig(block, body, run)
 
 
-def piecewise_motion(knots: list[float], accelerations: list[float]) -> FloorMotion:
-    """A floor of constant accelerations [m/s2], each from its knot [s] on; at rest before the first."""
-    velocity = displacement = 0.0
-    rows = [[0.0, 0.0, 0.0, 0.0]]
-    for s, acceleration in zip(np.diff(knots, append=math.inf), accelerations, strict=True):
+def piecewise_motion(knots: list[float], accelerations: list[float], *, velocity: float = 0.0) -> FloorMotion:
+    """A floor of constant accelerations [m/s2], each from its knot [s] on; before the first it moves evenly [m/s]."""
+    displacement, rows = 0.0, [[0.0, velocity, 0.0, 0.0]]
+    for s, acceleration in zip(np.diff(knots, append=knots[-1:]), accelerations, strict=True):
         rows.append([displacement, velocity, acceleration, 0.0])
         displacement += s * (velocity + 0.5 * s * acceleration)
         velocity += s * acceleration
@@ -270,11 +257,11 @@ def limits_of(block: Block, largest_step: float, fixed_step: bool, energy_scale:
         closing_share=scale * 2e-3 * max(1.0 - rigid.housner_restitution**2, 0.02),
         mass=block.mass,
         inertia=block.inertia,
-        gravity=GRAVITY * math.cos(block.slope),
-        downhill=GRAVITY * math.sin(block.slope),
+        gravity=GRAVITY,
+        downhill=0.0,
         force_window=0.01 / rigid.frequency_parameter,
         frequency_parameter=rigid.frequency_parameter,
-        resting_energy=block.mass * block.gravity * math.cos(block.slope) * 0.5 * block.height,
+        resting_energy=block.mass * block.gravity * 0.5 * block.height,
         slowest_rocking=rigid.frequency_parameter,
         slenderness_angle=rigid.slenderness_angle,
         width=block.width,

@@ -1,6 +1,9 @@
 """The strength of a motion that overturns a rigid block in its first swing, by bisection of the event-driven block."""
 
+import math
 from collections.abc import Callable
+
+from runs import bisected
 
 from contact.reference.floor_acceleration import FloorAcceleration
 from contact.reference.planar_block import PlanarMode
@@ -35,9 +38,7 @@ def first_swing_threshold(
         motion = simulate_rocking(block, floor_of_peak(peak), duration=duration, stop_at_impact=True)
         return motion.outcome is PlanarMode.OVERTURNED
 
-    if overturns(low) or not overturns(high):
+    peak = bisected(overturns, low, high, resolution=relative_tolerance)
+    if math.isnan(peak):
         raise ValueError(f"first swing: no change from standing to overturned between {low} and {high} m/s2")
-    while high - low > relative_tolerance * high:
-        middle = 0.5 * (low + high)
-        low, high = (low, middle) if overturns(middle) else (middle, high)
-    return 0.5 * (low + high)
+    return peak

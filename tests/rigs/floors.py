@@ -19,8 +19,6 @@ def sine_floor(*, amplitude: float, angular_frequency: float, phase: float = 0.0
         angular_frequency: Omega [rad/s].
         phase: [rad].
     """
-    if not angular_frequency > 0.0:
-        raise ValueError(f"sine floor: angular_frequency must be positive, got {angular_frequency} rad/s")
     peak = amplitude * angular_frequency**2
     return FloorAcceleration(
         function=lambda time: -peak * math.sin(angular_frequency * time + phase),
@@ -56,8 +54,6 @@ def one_sine_pulse(*, peak: float, duration: float) -> FloorAcceleration:
 def _pulse(
     shape: Callable[[float], float], *, duration: float, delay: float, longest_step: float
 ) -> FloorAcceleration:
-    if not duration > 0.0:
-        raise ValueError(f"pulse: duration must be positive, got {duration} s")
     end = delay + duration
 
     def acceleration(time: float) -> float:

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 from block_on_floor import GRAVITY, Block, Motion, limits_of
+from contacts import contact_of
 
 from contact.arrays import FloatArray
 from contact.interface.contact_points import points_of_joint
@@ -65,34 +66,20 @@ def stack_rig(
     motion: Motion = NoMotion(),  # noqa: B008 - frozen
     mu: float = 0.4,
     joint_mu: float | None = None,
-    mu_kinetic: float | None = None,
-    bounce_frequency: float = 117.0,
-    damping_ratio: float = 2.0,
-    largest_step: float = 5e-3,
-    energy_scale: float = 1.0,
     sampled: float = 5e-3,
     elastic: tuple[FloatArray, FloatArray, float] | None = None,
-    room: int = 8000,
 ) -> StackRig:
     """Put boxes on one another and on a floor, settled; the floor's laws hold in the joints.
 
     Args:
         boxes: from the floor up.
         motion: of the floor along x.
-        mu: static friction on the floor; joint_mu: in the joints; mu_kinetic: in all, default as static.
+        mu: friction on the floor; joint_mu: in the joints, as on the floor if None.
         elastic: mode shapes (4, 2, m), frequencies (m,) [rad/s] and damping ratio of every box.
     """
     n, points = len(boxes), 4 * len(boxes) - 2
     mass, height = sum(box.mass for box in boxes), sum(box.height for box in boxes)
-    whole = Block(
-        width=boxes[0].width,
-        height=height,
-        mass=mass,
-        bounce_frequency=bounce_frequency,
-        damping_ratio=damping_ratio,
-        mu_static=mu,
-        mu_kinetic=mu if mu_kinetic is None else mu_kinetic,
-    )
+    whole = Block(width=boxes[0].width, height=height, mass=mass, mu_static=mu, mu_kinetic=mu)
     springs = np.full(points, 0.5 * whole.base_stiffness)
     bodies, x, z = [], 0.0, 0.0
     for box in boxes:
@@ -109,7 +96,7 @@ def stack_rig(
                 shape=shape,
                 frequencies=frequencies,
                 damping_ratios=None if frequencies is None else np.full(len(frequencies), ratio),
-                tolerance=1e-6 * GRAVITY / (2.0 * math.pi * bounce_frequency) ** 2,
+                tolerance=1e-6 * GRAVITY / (2.0 * math.pi * whole.bounce_frequency) ** 2,
             )
         )
         z += box.height
@@ -119,16 +106,13 @@ def stack_rig(
     old = make_state(n * (3 + stack.body.modes), points, 0, n)
     mus = np.full(points, mu)
     mus[2:] = mu if joint_mu is None else joint_mu
-    contact = whole.contact()._replace(
-        normal_stiffness=springs.copy(),
-        tangential_stiffness=springs.copy(),
-        cap=np.full(points, math.inf),
-        cap_growth=np.zeros(points),
-        camber=np.zeros(points),
+    contact = contact_of(
+        springs.copy(),
+        force_scale=mass * GRAVITY,
         relaxation_time=np.full(points, whole.relaxation_time),
         mu_static=mus,
-        mu_kinetic=mus.copy() if mu_kinetic is None else np.full(points, mu_kinetic),
-        weakening=np.zeros(points),
+        mu_kinetic=mus.copy(),
+        resolution=1e-15 * (whole.width + height),
     )
     settle_stack(stack, contact, old, gravity=GRAVITY, place=(place, 0.0), velocity=(velocity, 0.0))
     run = make_run(
@@ -136,9 +120,9 @@ def stack_rig(
         contact=contact,
         motion=along,
         breaks=np.zeros(0),
-        control=limits_of(whole, largest_step, False, energy_scale),
+        control=limits_of(whole, 5e-3, False, 1.0),
         old=old,
-        history=make_samples(sampled, room, points, columns=True, boxes=n),
+        history=make_samples(sampled, 8000, points, columns=True, boxes=n),
         frames=make_samples(math.inf, 4, points),
         joints=make_joints(
             [box.mass for box in boxes],

@@ -20,7 +20,6 @@ from two_blocks import (
     Normals,
     Pattern,
     TwoBlockStack,
-    Vector,
     angular_accelerations,
     carried,
     contact_normals,
@@ -46,46 +45,18 @@ ROUNDING = 1e-9  #: share of a force, impulse or rate that counts as none
 
 
 @dataclass(frozen=True, kw_only=True)
-class TwoBlockTransition:
-    """A footing is taken."""
-
-    time: float  #: [s]
-    footing: Footing
-    reason: str  #: the event that led to it
-
-    @property
-    def pattern(self) -> Pattern:
-        """How the stack moves from then on."""
-        return self.footing.pattern
-
-
-@dataclass(frozen=True, kw_only=True)
-class TwoBlockImpact:
-    """An interface closes."""
-
-    time: float  #: [s]
-    interface: str  #: base | joint
-    footing: Footing  #: before
-    state: FloatArray  #: before, shape (4,)
-    rates: tuple[float, float]  #: of rotation after it, lower and upper block [rad/s]
-
-
-@dataclass(frozen=True, kw_only=True)
 class TwoBlockMotion:
     """Motion of a stack of two blocks."""
 
     stack: TwoBlockStack
-    transitions: tuple[TwoBlockTransition, ...]
-    impacts: tuple[TwoBlockImpact, ...]
-    end: float  #: duration asked for, or when it overturned or left the model [s]
-    ended_by: str | None  #: overturned | leaves | None: the duration is over
+    impacts: tuple[float, ...]  #: when an interface closes [s]
     pieces: tuple[Piece, ...]
     footings: tuple[Footing, ...]  #: numbered by the regimes of the pieces
 
     @property
     def patterns(self) -> tuple[Pattern, ...]:
         """Those that it moved in, in order, without repetition."""
-        seen = dict.fromkeys(transition.pattern for transition in self.transitions)
+        seen = dict.fromkeys(footing.pattern for footing in self.footings)
         return tuple(pattern for pattern in seen if pattern is not Pattern.REST)
 
     def at(self, times: FloatArray) -> FloatArray:
@@ -107,60 +78,34 @@ def simulate_two_blocks(
         duration: [s].
 
     Raises:
-        ValueError: a start beyond 90 degrees, or a duration that is not positive.
         EventError: more than 100 000 events.
     """
-    if not 0.0 < duration < math.inf:
-        raise ValueError(f"two blocks: duration must be positive and finite, got {duration} s")
-    values = np.array(state, dtype=float)
-    if not np.abs(values[[0, 2]]).max() < 0.5 * math.pi:
-        raise ValueError(f"two blocks: the start must lie below 90 degrees, got {values[0]}, {values[2]} rad")
-    least = least_rate(stack)
+    values, least, time = np.array(state, dtype=float), least_rate(stack), 0.0
     pieces: list[Piece] = []
     footings: list[Footing] = []
-    transitions: list[TwoBlockTransition] = []
-    impacts: list[TwoBlockImpact] = []
-
-    time, reason = 0.0, "start"
+    impacts: list[float] = []
     footing = select(stack, values, floor.just_after(0.0))
     for _ in range(MAX_EVENTS):
-        if footing is None:
-            reason = "leaves"
+        if footing is None:  # it leaves an interface
             break
-        transitions.append(TwoBlockTransition(time=time, footing=footing, reason=reason))
         passage = _follow(stack, footing, values, time, duration, floor, regime=len(footings))
         footings.append(footing)
         pieces.extend(passage.pieces)
         time, values = passage.time, passage.state.copy()
         if passage.event is None or passage.event in ("overturned", "leaves"):
-            reason = passage.event or ""
             break
-        reason, acceleration = passage.event, floor.just_after(time)
-        if reason == "opens":
-            footing = select(stack, values, acceleration)
-            continue
-        before = values.copy()
-        _close(values, footing, reason)
-        rates = impact(stack, footing, values, acceleration, least)
-        if rates is None:
-            reason = "leaves"
-            break
-        values[1], values[3] = rates
-        impacts.append(
-            TwoBlockImpact(time=time, interface=reason, footing=footing, state=before, rates=rates)
-        )
+        acceleration = floor.just_after(time)
+        if passage.event != "opens":
+            _close(values, footing, passage.event)
+            rates = impact(stack, footing, values, acceleration, least)
+            if rates is None:
+                break
+            values[1], values[3] = rates
+            impacts.append(time)
         footing = select(stack, values, acceleration)
     else:
         raise EventError(f"t = {time:.6g} s: {MAX_EVENTS} events of two blocks")
-    return TwoBlockMotion(
-        stack=stack,
-        transitions=tuple(transitions),
-        impacts=tuple(impacts),
-        end=time,
-        ended_by=reason if reason in ("overturned", "leaves") else None,
-        pieces=tuple(pieces),
-        footings=tuple(footings),
-    )
+    return TwoBlockMotion(stack=stack, impacts=tuple(impacts), pieces=tuple(pieces), footings=tuple(footings))
 
 
 def least_rate(stack: TwoBlockStack) -> float:
@@ -221,7 +166,7 @@ def _projected(stack: TwoBlockStack, before: Motion, state: FloatArray) -> tuple
         after = state.copy()
         after[1], after[3] = rates
         change = velocities(stack, footing, after).minus(before)
-        impulses = carried(footing, normals(stack, footing, state, change, Vector(0.0, 0.0)))
+        impulses = carried(footing, normals(stack, footing, state, change, 0j))
         turning = footing.base * rates[0], footing.joint * (rates[1] - rates[0])
         shut = len(base) > 1, len(joint) > 1
         opens = all(turn >= -ROUNDING * speed for turn, closed in zip(turning, shut, strict=True) if closed)

@@ -59,62 +59,33 @@ class Normals(NamedTuple):
     joint_right: float
 
 
-class Vector(NamedTuple):
-    """A vector in the plane."""
+Vector = complex  #: x + i z
 
-    x: float
-    z: float
 
-    def plus(self, other: "Vector") -> "Vector":
-        """The sum."""
-        return Vector(self.x + other.x, self.z + other.z)
+def dot(one: Vector, other: Vector) -> float:
+    """The scalar product."""
+    return one.real * other.real + one.imag * other.imag
 
-    def minus(self, other: "Vector") -> "Vector":
-        """The difference."""
-        return Vector(self.x - other.x, self.z - other.z)
 
-    def times(self, factor: float) -> "Vector":
-        """The multiple."""
-        return Vector(factor * self.x, factor * self.z)
+def turned(vector: Vector, rotation: float) -> Vector:
+    """The vector turned toward +x by an angle [rad]."""
+    return vector * complex(math.cos(rotation), -math.sin(rotation))
 
-    def dot(self, other: "Vector") -> float:
-        """The scalar product."""
-        return self.x * other.x + self.z * other.z
 
-    def turned(self, rotation: float) -> "Vector":
-        """Turned toward +x by an angle [rad]."""
-        cosine, sine = math.cos(rotation), math.sin(rotation)
-        return Vector(cosine * self.x + sine * self.z, -sine * self.x + cosine * self.z)
-
-    @property
-    def swept(self) -> "Vector":
-        """Velocity of its tip when it turns toward +x at 1 rad/s."""
-        return Vector(self.z, -self.x)
-
-    def moment(self, force: "Vector") -> float:
-        """Moment of a force at its tip, positive where it turns toward +x."""
-        return self.z * force.x - self.x * force.z
+def swept(arm: Vector) -> Vector:
+    """Velocity of the tip of an arm that turns toward +x at 1 rad/s."""
+    return complex(arm.imag, -arm.real)
 
 
 @dataclass(frozen=True, kw_only=True)
 class StackedBlock:
-    """A rigid block of a stack.
-
-    Raises:
-        ValueError: a quantity that is not positive and finite.
-    """
+    """A rigid block of a stack; every quantity is positive."""
 
     half_width: float  #: [m]
     height: float  #: [m]
     mass: float  #: [kg]
     centroid_height: float  #: of the mass centre above its base [m]
     inertia: float  #: about the mass centre [kg m2]
-
-    def __post_init__(self) -> None:
-        for name in ("half_width", "height", "mass", "centroid_height", "inertia"):
-            value = getattr(self, name)
-            if not 0.0 < value < math.inf:  # also refuses nan
-                raise ValueError(f"stacked block {name} must be positive and finite, got {value}")
 
     @classmethod
     def homogeneous(cls, *, width: float, height: float, mass: float) -> Self:
@@ -130,25 +101,12 @@ class StackedBlock:
 
 @dataclass(frozen=True, kw_only=True)
 class TwoBlockStack:
-    """Two blocks, one on the other, on a floor that they cannot slide on.
-
-    Raises:
-        ValueError: the mass centre of the upper block is not over the face that the blocks share, or gravity is not
-            positive.
-    """
+    """Two blocks on a floor that they cannot slide on, the upper mass centre over the face that they share."""
 
     lower: StackedBlock
     upper: StackedBlock
     gravity: float  #: [m/s2]
     offset: float = 0.0  #: of the axis of the upper block from that of the lower one, along x [m]
-
-    def __post_init__(self) -> None:
-        if not 0.0 < self.gravity < math.inf:
-            raise ValueError(f"two blocks: gravity must be positive and finite, got {self.gravity} m/s2")
-        if not self.joint_end(-1) < self.offset < self.joint_end(1):
-            raise ValueError(
-                f"two blocks: offset {self.offset} m puts the upper mass centre beyond the lower block"
-            )
 
     def joint_end(self, side: int) -> float:
         """Distance of an end of the joint from the axis of the lower block, along x [m]."""
@@ -180,9 +138,9 @@ class Motion(NamedTuple):
     def minus(self, other: "Motion") -> "Motion":
         """The change from another one."""
         return Motion(
-            self.lower.minus(other.lower),
+            self.lower - other.lower,
             self.lower_spin - other.lower_spin,
-            self.upper.minus(other.upper),
+            self.upper - other.upper,
             self.upper_spin - other.upper_spin,
         )
 
@@ -193,22 +151,18 @@ def geometry(stack: TwoBlockStack, footing: Footing, state: FloatArray) -> Geome
     foot = side * stack.lower.half_width
     end = stack.joint_end(footing.joint or 1)
     return Geometry(
-        foot=Vector(foot, 0.0),
-        lower=Vector(-foot, stack.lower.centroid_height).turned(rotation),
-        joint=Vector(end - foot, stack.lower.height).turned(rotation),
-        upper=Vector(stack.offset - end, stack.upper.centroid_height).turned(upper),
+        foot=complex(foot, 0.0),
+        lower=turned(complex(-foot, stack.lower.centroid_height), rotation),
+        joint=turned(complex(end - foot, stack.lower.height), rotation),
+        upper=turned(complex(stack.offset - end, stack.upper.centroid_height), upper),
     )
 
 
 def velocities(stack: TwoBlockStack, footing: Footing, state: FloatArray) -> Motion:
     """Velocities of the mass centres relative to the floor, and the rates of rotation."""
     here, rate, upper = geometry(stack, footing, state), float(state[1]), float(state[3])
-    return Motion(
-        here.lower.swept.times(rate),
-        rate,
-        here.joint.swept.times(rate).plus(here.upper.swept.times(upper)),
-        upper,
-    )
+    joint = rate * swept(here.joint)
+    return Motion(rate * swept(here.lower), rate, joint + upper * swept(here.upper), upper)
 
 
 def angular_accelerations(
@@ -216,15 +170,12 @@ def angular_accelerations(
 ) -> tuple[float, float]:
     """Angular accelerations of the lower and the upper block [rad/s2]."""
     here = geometry(stack, footing, state)
-    force = Vector(-floor.x, -stack.gravity - floor.z)  # per mass
+    force = complex(-floor.x, -stack.gravity - floor.z)  # per mass
     first, second = stack.lower.mass, stack.upper.mass
-    bend = second * here.joint.dot(here.upper.swept)
-    loads = (
-        first * here.lower.swept.dot(force)
-        + second * here.joint.swept.dot(force)
-        - bend * float(state[3]) ** 2,
-        second * here.upper.swept.dot(force) + bend * float(state[1]) ** 2,
-    )
+    bend = second * dot(here.joint, swept(here.upper))
+    lower = first * dot(swept(here.lower), force) + second * dot(swept(here.joint), force)
+    upper = second * dot(swept(here.upper), force)
+    loads = lower - bend * float(state[3]) ** 2, upper + bend * float(state[1]) ** 2
     return _solved(stack, footing, here, loads)
 
 
@@ -235,13 +186,11 @@ def accelerations(
     here, rate, upper = geometry(stack, footing, state), float(state[1]), float(state[3])
 
     def of(arm: Vector, spin: float, turning: float) -> Vector:
-        return arm.swept.times(turning).minus(arm.times(spin**2))
+        return turning * swept(arm) - spin**2 * arm
 
+    joint = of(here.joint, rate, angular[0])
     return Motion(
-        of(here.lower, rate, angular[0]),
-        angular[0],
-        of(here.joint, rate, angular[0]).plus(of(here.upper, upper, angular[1])),
-        angular[1],
+        of(here.lower, rate, angular[0]), angular[0], joint + of(here.upper, upper, angular[1]), angular[1]
     )
 
 
@@ -258,17 +207,15 @@ def normals(
     """
     here = geometry(stack, footing, state)
     first, second = stack.lower, stack.upper
-    on_upper = change.upper.minus(force).times(second.mass)
-    on_lower = change.lower.minus(force).times(first.mass)
-    centre = here.foot.plus(here.lower)
-    top = here.foot.plus(here.joint).plus(here.upper)
+    on_upper, on_lower = second.mass * (change.upper - force), first.mass * (change.lower - force)
+    centre, top = here.foot + here.lower, here.foot + here.joint + here.upper
 
     def about(x: float, height: float, both: bool) -> float:
         """Moment needed about a point of the lower block."""
-        point = centre.plus(Vector(x, height - first.centroid_height).turned(float(state[0])))
-        moment = second.inertia * change.upper_spin + top.minus(point).moment(on_upper)
+        point = centre + turned(complex(x, height - first.centroid_height), float(state[0]))
+        moment = second.inertia * change.upper_spin + dot(swept(top - point), on_upper)
         if both:
-            moment += first.inertia * change.lower_spin + centre.minus(point).moment(on_lower)
+            moment += first.inertia * change.lower_spin + dot(swept(centre - point), on_lower)
         return moment
 
     base = [side * about(side * first.half_width, 0.0, True) for side in (1, -1)]
@@ -287,7 +234,7 @@ def contact_normals(
 ) -> tuple[Normals, tuple[float, float]]:
     """Normal forces at the ends of the interfaces [N], and the angular accelerations [rad/s2]."""
     angular = angular_accelerations(stack, footing, state, floor)
-    force = Vector(-floor.x, -stack.gravity - floor.z)
+    force = complex(-floor.x, -stack.gravity - floor.z)
     return normals(stack, footing, state, accelerations(stack, footing, state, angular), force), angular
 
 
@@ -304,9 +251,9 @@ def rates_after_impact(
     second = stack.upper.mass
     momenta = (
         stack.lower.inertia * before.lower_spin
-        + stack.lower.mass * here.lower.swept.dot(before.lower)
-        + second * here.joint.swept.dot(before.upper),
-        stack.upper.inertia * before.upper_spin + second * here.upper.swept.dot(before.upper),
+        + stack.lower.mass * dot(swept(here.lower), before.lower)
+        + second * dot(swept(here.joint), before.upper),
+        stack.upper.inertia * before.upper_spin + second * dot(swept(here.upper), before.upper),
     )
     return _solved(stack, footing, here, momenta)
 
@@ -315,10 +262,10 @@ def energy(stack: TwoBlockStack, footing: Footing, state: FloatArray) -> float:
     """Kinetic energy relative to the floor plus potential energy above rest [J]."""
     here, moving = geometry(stack, footing, state), velocities(stack, footing, state)
     first, second = stack.lower, stack.upper
-    kinetic = first.mass * moving.lower.dot(moving.lower) + second.mass * moving.upper.dot(moving.upper)
+    kinetic = first.mass * dot(moving.lower, moving.lower) + second.mass * dot(moving.upper, moving.upper)
     kinetic += first.inertia * moving.lower_spin**2 + second.inertia * moving.upper_spin**2
-    rise = first.mass * (here.lower.z - first.centroid_height)
-    rise += second.mass * (here.joint.z + here.upper.z - first.height - second.centroid_height)
+    rise = first.mass * (here.lower.imag - first.centroid_height)
+    rise += second.mass * (here.joint.imag + here.upper.imag - first.height - second.centroid_height)
     return 0.5 * kinetic + stack.gravity * rise
 
 
@@ -334,9 +281,11 @@ def _solved(
 ) -> tuple[float, float]:
     """Angular accelerations under generalised forces, or rates of momenta, that a footing allows."""
     first, second = stack.lower, stack.upper
-    lower = first.inertia + first.mass * here.lower.dot(here.lower) + second.mass * here.joint.dot(here.joint)
-    upper = second.inertia + second.mass * here.upper.dot(here.upper)
-    coupling = second.mass * here.joint.dot(here.upper)
+    lower = (
+        first.inertia + first.mass * dot(here.lower, here.lower) + second.mass * dot(here.joint, here.joint)
+    )
+    upper = second.inertia + second.mass * dot(here.upper, here.upper)
+    coupling = second.mass * dot(here.joint, here.upper)
     if footing.base and footing.joint:
         determinant = lower * upper - coupling**2
         return (

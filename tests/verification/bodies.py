@@ -8,11 +8,10 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
+from contacts import contact_of
 from runs import STACK, with_steps_of
 
 from contact.interface.equilibrium import Stance
-from contact.interface.laws import ELASTIC_STICK
-from contact.interface.workspace import Contact
 from contact.motion.kernel import UNIFORM, as_floor_motion
 from contact.stepping import modal_kernels
 from contact.stepping.body import State, make_state
@@ -123,7 +122,13 @@ def free_run(
     samples = coordinates if isinstance(body, ModalBody) else 0
     run = make_run(
         scheme=scheme,
-        contact=_contact(np.full(points, 1.0) if springs is None else springs, caps, growth, body.mass),
+        contact=contact_of(
+            np.full(points, 1.0) if springs is None else springs,
+            force_scale=body.mass,
+            mu=1e-9,
+            cap=np.full(points, math.inf) if caps is None else caps,
+            cap_growth=np.full(points, growth),
+        ),
         motion=as_floor_motion(UNIFORM, (0.0, 0.0, 0.0)),
         breaks=np.full(1, until),
         control=with_steps_of(build_model(STACK), step).run.problem.control._replace(
@@ -147,22 +152,3 @@ def full_body(elements: FiniteElements, *, gravity: float = 1e-3) -> FullBody:
     """A body of these elements on the ends of its base, nearly without weight."""
     ends, no_monitors = elements.base_nodes[[0, -1]], elements.base_nodes[:0]
     return FullBody(elements, ends, no_monitors, gravity=gravity, damping=0.0)
-
-
-def _contact(springs: FloatArray, caps: FloatArray | None, growth: float, mass: float) -> Contact:
-    return Contact(
-        normal_stiffness=springs,
-        tangential_stiffness=springs.copy(),
-        cap=np.full(springs.size, math.inf) if caps is None else caps,
-        cap_growth=np.full(springs.size, growth),
-        relaxation_time=np.zeros(springs.size),
-        mu_static=np.full(springs.size, 1e-9),
-        mu_kinetic=np.full(springs.size, 1e-9),
-        weakening=np.zeros(springs.size),
-        camber=np.zeros(springs.size),
-        stribeck_velocity=0.0,
-        friction=ELASTIC_STICK,
-        regularisation_velocity=1e-3,
-        force_scale=mass,
-        resolution=1e-15,
-    )

@@ -9,13 +9,13 @@ import math
 
 import numpy as np
 import runs
+from block_on_floor import piecewise_motion
 from evidence.findings import Convergence, Finding, analytic
 from meshes import graded_block
 from verification.bodies import Flight, free_run, full_body
 from verification.checks import PROGRAM, Findings, check
 from verification.manufactured import moving_body_error
 
-from contact.motion.kernel import PIECEWISE, FloorMotion, as_floor_motion
 from contact.stepping.modal_body import ModalBody, make_modal_body
 from contact.stepping.scheme import Scheme, generalised_alpha, newmark
 from fem.model.model import build_model
@@ -172,16 +172,11 @@ def scaling() -> Findings:
 @check("time", "Galilean invariance", inputs=PROGRAM)
 def galilei() -> Findings:
     """A constant velocity of 3 m/s added to the floor and the container: the same relative motion."""
+    knots, case = [0.0, 0.25, 0.75, 1.0], runs.STACK.with_values(VIOLENT | {"solver.duration_s": 2.0})
+    floors = (piecewise_motion(knots, [4.0, -4.0, 4.0, 0.0], velocity=drift) for drift in (0.0, 3.0))
     still, travelling = (
-        runs.finish(
-            runs.with_motion(
-                runs.with_steps_of(
-                    build_model(runs.STACK.with_values(VIOLENT | {"solver.duration_s": 2.0})), 1e-5
-                ),
-                *stepped_floor(drift),
-            )
-        )
-        for drift in (0.0, 3.0)
+        runs.finish(runs.with_motion(runs.with_steps_of(build_model(case), 1e-5), floor, (0.25, 0.75, 1.0)))
+        for floor in floors
     )
     yield same_rotation(
         "rigid stack, rocking for 2 s on a floor with 3 m/s added",
@@ -273,18 +268,6 @@ def angular_momentum(flight: Flight, elements: FiniteElements) -> float:
     position, velocity = (array.reshape(-1, 2) for array in (flight.state.position, flight.state.velocity))
     momentum, arm = elements.mass @ velocity, position - flight.state.pose[2:4]
     return float(np.sum(arm[:, 1] * momentum[:, 0] - arm[:, 0] * momentum[:, 1]))
-
-
-def stepped_floor(drift: float) -> tuple[FloorMotion, tuple[float, ...]]:
-    """Accelerations of +4, -4 and +4 m/s2 for 0.25, 0.5 and 0.25 s, with a constant velocity added [m/s]."""
-    knots = (0.0, 0.25, 0.75, 1.0)
-    rows, displacement, velocity = [[0.0, drift, 0.0, 0.0]], 0.0, drift
-    for acceleration, length in zip((4.0, -4.0, 4.0, 0.0), (0.25, 0.5, 0.25, 0.0), strict=True):
-        rows.append([displacement, velocity, acceleration, 0.0])
-        displacement += length * (velocity + 0.5 * length * acceleration)
-        velocity += length * acceleration
-    motion = as_floor_motion(PIECEWISE, breaks=np.array(knots), coefficients=np.array(rows))
-    return motion, knots[1:]
 
 
 def same_rotation(

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from contacts import contact_of
 
 from contact.arrays import FloatArray
 from contact.interface.contact_points import make_faces
@@ -13,7 +14,6 @@ from contact.interface.faces import (
     share_forces,
     weigh_points,
 )
-from contact.interface.laws import ELASTIC_STICK
 from contact.interface.workspace import Contact, make_workspace
 
 SIZES = [(1.1, 1.0), (0.9, 1.2), (1.3, 0.7)]  #: width and height of the boxes, from the floor up [m]
@@ -46,24 +46,8 @@ def faces_of(corners: FloatArray) -> Faces:
     return make_faces(corners, springs, 0.5 * springs)
 
 
-def contact_of(faces: Faces) -> Contact:
-    n = faces.weight.size
-    return Contact(
-        normal_stiffness=np.zeros(n),
-        tangential_stiffness=np.zeros(n),
-        cap=np.full(n, np.inf),
-        cap_growth=np.zeros(n),
-        relaxation_time=np.zeros(n),
-        mu_static=np.ones(n),
-        mu_kinetic=np.ones(n),
-        weakening=np.zeros(n),
-        camber=np.zeros(n),
-        stribeck_velocity=0.0,
-        friction=ELASTIC_STICK,
-        regularisation_velocity=1e-3,
-        force_scale=1.0,
-        resolution=1e-15,
-    )
+def contact_at(faces: Faces) -> Contact:
+    return contact_of(np.zeros(faces.weight.size), force_scale=1.0, mu=1.0)
 
 
 def placed(faces: Faces, corners: FloatArray) -> FloatArray:
@@ -152,7 +136,7 @@ def test_forces_do_not_jump_where_corners_pass_the_edge_of_a_face():
     width, depth, lean = 1.1, 3e-5, 1e-5
     start = undeformed([(width, 1.0), (width, 1.0)])
     faces = faces_of(start)
-    contact, n = contact_of(faces), faces.weight.size
+    contact, n = contact_at(faces), faces.weight.size
     offsets = np.linspace(-2e-3, 2e-3, 801) * width
     totals, moments, weights = [], [], []
     for offset in offsets:
@@ -177,7 +161,7 @@ def test_forces_do_not_jump_where_corners_pass_the_edge_of_a_face():
 def test_a_corner_that_comes_from_beside_a_face_is_not_on_it():
     start = undeformed([(1.0, 1.0), (1.0, 1.0)])
     faces = faces_of(start)
-    contact = contact_of(faces)
+    contact = contact_at(faces)
     corners = start.copy()
     corners[4:] += [0.3, -0.01]  # the left corner on the face, far too deep
     away = np.full((6, 2), 1.0)  # gaps of the length of the face: all points were off their faces
@@ -193,6 +177,6 @@ def test_a_corner_that_slides_onto_a_face_takes_over_where_it_is():
     corners = start.copy()
     corners[4:] += [0.3, -1e-5]
     points = np.full((6, 2), 1.0)  # all were off their faces
-    weigh_points(faces, corners, points, contact_of(faces))
+    weigh_points(faces, corners, points, contact_at(faces))
     assert points[2] == pytest.approx([0.3 + faces.origin[2], -1e-5], abs=1e-12)
     assert faces.weight[4] == 0.0 and points[4, 1] == 1.0  # the right one is beside it

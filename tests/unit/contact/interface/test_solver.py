@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
+from contacts import contact_of
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
@@ -73,23 +74,15 @@ def random_problem(seed: int, points: int, *, friction: int = ELASTIC_STICK) -> 
     reach = weight / (points * stiffness)
     slope = 1.875 / step
     mu = draw.uniform(0.0, 0.6)
-    contact = Contact(
-        normal_stiffness=stiffness * draw.uniform(0.5, 2.0, points),
+    contact = contact_of(
+        stiffness * draw.uniform(0.5, 2.0, points),
         tangential_stiffness=stiffness * draw.uniform(0.5, 2.0, points),
-        cap=np.full(points, np.inf),
-        cap_growth=np.zeros(points),
         relaxation_time=np.full(
             points, draw.choice([0.0, 0.1, 1.0]) * step * 10.0 ** draw.uniform(-1.0, 1.0)
         ),
-        mu_static=np.full(points, mu),
-        mu_kinetic=np.full(points, mu),
-        weakening=np.zeros(points),
-        camber=np.zeros(points),
-        stribeck_velocity=0.0,
+        mu=mu,
         friction=friction,
-        regularisation_velocity=1e-3,
         force_scale=weight,
-        resolution=1e-15,
     )
     scale = reach * 10.0 ** draw.uniform(-1.0, 1.0)
     return Problem(

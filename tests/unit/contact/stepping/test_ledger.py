@@ -2,27 +2,18 @@
 
 import numpy as np
 import pytest
+from contacts import contact_of
 
-from contact.interface.laws import ELASTIC_STICK
-from contact.interface.workspace import Contact
 from contact.stepping.body import make_state
 from contact.stepping.ledger import contact_losses, dissipation, spring_energy
 
-CONTACT = Contact(
-    normal_stiffness=np.array([2e9, 3e9]),
+CONTACT = contact_of(
+    np.array([2e9, 3e9]),
     tangential_stiffness=np.array([1e9, 4e9]),
-    cap=np.full(2, np.inf),
-    cap_growth=np.zeros(2),
     relaxation_time=np.full(2, 5e-3),
     mu_static=np.full(2, 0.4),
     mu_kinetic=np.full(2, 0.2),
-    weakening=np.zeros(2),
-    camber=np.zeros(2),
-    stribeck_velocity=0.0,
-    friction=ELASTIC_STICK,
-    regularisation_velocity=1e-3,
     force_scale=1e5,
-    resolution=1e-15,
 )
 
 
