@@ -301,30 +301,6 @@ def random_motion(seed: int) -> np.ndarray:
     return np.column_stack([times, noise * envelope / np.abs(noise).max()])
 
 
-def ensemble_of(count: int) -> Cost:
-    """An ensemble of so many motions of 20 to 40 s, each with a friction of its own, on two cores."""
-    names = [f"m{seed}.csv" for seed in range(count)]
-    for seed, name in enumerate(names):
-        header, columns = "time_s,acceleration_m_s2", random_motion(seed)[: 4000 + 40 * (37 * seed % 101)]
-        np.savetxt(place() / name, columns, "%.6g", ",", header=header, comments="")
-    friction = '{ distribution = "uniform", from = 0.3, to = 0.6 }'
-    (place() / "many.toml").write_text(
-        f'case = "seed_stack_plateau"\ndraws = {count}\nprobability = 0.5\n'
-        '[set]\n"solver.model" = "rigid"\n"floor.kind" = "rigid"\n[axes]\n"motion.scale_to_m_s2" = [3.8]\n'
-        f'[random]\n"motion.file" = {names}\n"contact.mu_static" = {friction}\n',
-        encoding="utf-8",
-    )
-    return out("ensemble", str(place() / "many.toml"), "-j", "2")
-
-
-@cache
-def ten_thousand() -> tuple[float, float]:
-    """Wall time [s] and memory [MB] of ten thousand motions, from the difference of two ensembles."""
-    _, few, many = ensemble_of(100), ensemble_of(100), ensemble_of(300)
-    more = (10_000 - 300) / 200
-    return many.wall + more * (many.wall - few.wall), many.peak + more * max(0.0, many.peak - few.peak)
-
-
 ACTION = SiteAction(shape=eurocode_shape(1, "D"), reference_acceleration=1.6)
 
 
@@ -427,8 +403,6 @@ band             <= 6     8.6    * band of the default case [CPU s]
 figures          <= 5     -      * figures of a run of 20 s [CPU s]
 map              <= 30    -      * 100 x 100 rigid cells, two cores [s]
 map-reduced      <= 300   -        50 x 50 reduced cells [s]
-motions          <= 300   -        ten thousand motions, two cores, extrapolated [s]
-motions-memory   <= 1000  -        their memory, extrapolated [MB]
 artificial       <= 0.02  0.019  * an artificial motion with its vertical one [CPU s]
 memory-run       <= 1000  247    * memory of a run with its band [MB]
 memory-sweep     <= 1000  491      of the sweep `outcome_map` [MB]
@@ -456,8 +430,6 @@ MEASURES: dict[str, Callable[[], Measured]] = {
     "figures": figures,
     "map": lambda: map_seconds(outcome_map("rigid", 100)),
     "map-reduced": lambda: map_seconds(outcome_map("reduced", 50)),
-    "motions": lambda: ten_thousand()[0],
-    "motions-memory": lambda: ten_thousand()[1],
     "artificial": artificial,
     "memory-run": partial(memory_of, "run", "rocking"),
     "memory-sweep": command("sweep", "outcome_map"),

@@ -63,15 +63,6 @@ def test_on_rubber_the_width_of_the_block_decides_and_on_concrete_it_does_not():
     assert hard == pytest.approx([1.01, 1.01], abs=0.01)
 
 
-def test_measured_restitutions():
-    found = impacts.compute()
-    assert found.tests == 3
-    assert not found.missed
-    judged = [one for one in found.findings if one.holds is not None]
-    assert [one.reference for one in judged] == [0.67]
-    assert "fitted" in judged[0].what
-
-
 def test_a_folder_of_another_kind_is_refused(tmp_path):
     with pytest.raises(ShakeTestError, match=r"neither granite_rock_motions.* nor outcomes.csv"):
         require(tmp_path)

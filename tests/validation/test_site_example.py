@@ -17,6 +17,7 @@ from fem.case.case import case_from
 from fem.run.rigid_check import floor_of
 from fem.seismic.artificial import artificial_motions, artificial_set
 
+pytestmark = pytest.mark.slow
 CASE = case_from(
     {
         "container": {"width_m": 1.1, "height_m": 4.0, "mass_kg": 10_000.0},
@@ -68,7 +69,6 @@ def test_slip_with_little_friction_is_that_of_the_independent_set(sets):
         assert 0.5 * high < found.max() < 1.5 * high
 
 
-@pytest.mark.slow
 def test_the_analytic_block_rests_and_rocks_under_the_same_motions():
     """Friction holds here, so the block without sliding is a second solver; impacts differ, so single peaks may."""
     block = k1().block

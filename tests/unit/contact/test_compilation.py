@@ -136,58 +136,6 @@ def test_an_empty_cache_takes_the_machine_code_of_the_wheel_where_that_fits(tmp_
 
 
 @struct
-class Inner(NamedTuple):
-    small: bool
-    matrix: Any
-    count: int
-
-
-@struct
-class Outer(NamedTuple):
-    first: Inner
-    factor: float
-    second: Inner
-    records: Any
-
-
-def outer():
-    records = np.zeros(2, [("flag", "i8"), ("value", "f8")]).view(np.recarray)
-    first, second = (Inner(k == 0, np.arange(6.0).reshape(2, 3) + k, 7 + k) for k in range(2))
-    return Outer(first, 2.5, second, records)
-
-
-@compiled
-def sum_of(data):
-    return data.factor * data.first.matrix[1, 2] + data.second.matrix[0, 0] + data.second.count
-
-
-@compiled
-def sum_exchanged(data):
-    return sum_of(Outer(data.second, 2.0 * data.factor, data.first, data.records))
-
-
-@compiled
-def change(data, steps):
-    data.records[1].value = data.factor
-    total = 0.0
-    for k in range(steps):
-        total += data.first.matrix[1, 2]
-        data.first.matrix[1, 2] = k
-    return total if data.first.small and not data.second.small else 0.0
-
-
-def test_fields_of_structs_are_read_and_arrays_and_records_change_in_place():
-    data = outer()
-    assert sum_of(data) == 2.5 * 5.0 + 1.0 + 8.0
-    assert sum_exchanged(data) == 5.0 * 6.0 + 0.0 + 7.0
-    assert change(data, 4) == 5.0 + 0.0 + 1.0 + 2.0
-    assert data.first.matrix[1, 2] == 3.0 and data.records[1].value == 2.5
-    before = len(sum_of.entry.overloads)
-    sum_of(data._replace(first=data.first._replace(matrix=np.ones((4, 5)))))
-    assert len(sum_of.entry.overloads) == before  # shapes of one rank share a kernel
-
-
-@struct
 class Points(NamedTuple):
     place: Annotated[FloatArray, "n", 2]
     speed: Annotated[FloatArray, "n"]

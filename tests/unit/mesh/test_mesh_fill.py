@@ -1,11 +1,10 @@
 """Weight and centroid height of the filled box, met by the cells themselves."""
 
-import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mesh.container import build_container_mesh
+from mesh.container import build_container_mesh, with_mass_beside
 from mesh.errors import MeshError
 from mesh.fill import MassFill
 from mesh.geometry import ContainerGeometry, Section
@@ -60,21 +59,6 @@ def test_solid_meets_mass_and_centroid_within_the_middle_third(height, position,
     assert mesh.areal_density.min() >= 0.0
 
 
-def test_level_of_a_low_fill_is_that_of_statics():
-    # Fill from the inner floor t up to L has its centroid at (t + L)/2. Spreading the fill over the cut row,
-    # of height h, raises that by at most h^2/(8 (L - t)), so the level lies lower by at most twice as much.
-    steel = 7850.0 * ((1.1 - 1.084 * 0.984) * 1.1 + 1.084 * 0.984 * 0.016)
-    fill_centroid = (2500.0 * 0.4 - steel * 0.5) / (2500.0 - steel)
-    level = 2.0 * fill_centroid - 0.008
-    mesh = build_container_mesh(BOX, MassFill(mass=2500.0, centroid_height=0.4), element_size=0.01)
-    column = mesh.region == Region.FILL
-    extra = mesh.areal_density[column] - 7850.0 * 0.016
-    heights = np.ptp(mesh.points[mesh.quads[column], 1], axis=1)
-    widths = np.ptp(mesh.points[mesh.quads[column], 0], axis=1)
-    filled_height = (extra * heights * widths).sum() / (extra.max() * 1.084)
-    assert filled_height == pytest.approx(level - 0.008, abs=0.01**2 / (4.0 * (level - 0.008)))
-
-
 def test_a_box_of_walls_alone_stands_at_the_centroid_of_its_walls():
     steel = 7850.0 * ((1.1 - 1.084 * 0.984) * 1.1 + 1.084 * 0.984 * 0.016)
     mesh = build_container_mesh(BOX, MassFill(mass=steel, centroid_height=0.5), element_size=0.1)
@@ -95,3 +79,13 @@ def test_centroid_out_of_reach_is_refused_with_the_range(centroid):
     for inside in (0.13193, 0.86807):
         mesh = build_container_mesh(BOX, MassFill(mass=2500.0, centroid_height=inside), element_size=0.1)
         assert mesh.centroid[1] == pytest.approx(inside, rel=1e-9)
+
+
+@pytest.mark.parametrize("distance", [0.011, -0.03])
+def test_a_mass_beside_the_axis_moves_the_centre_by_the_distance_and_nothing_else(distance):
+    mesh = build_container_mesh(BOX, MassFill(mass=2500.0, centroid_height=0.45), element_size=0.1)
+    moved = with_mass_beside(mesh, distance)
+    assert moved.centroid == pytest.approx((distance, mesh.centroid[1]), rel=1e-12)
+    assert moved.mass == pytest.approx(mesh.mass, rel=1e-12)
+    with pytest.raises(MeshError, match=r"cannot lie 0.4 m beside the axis"):
+        with_mass_beside(mesh, 0.4)

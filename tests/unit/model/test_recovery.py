@@ -43,7 +43,7 @@ def test_of_a_symmetric_container_both_nodes_of_a_pair_are_watched():
     assert len(nodes) > 4 and distance.max() < 1e-9
 
 
-@pytest.mark.parametrize("changes", [[], ["container.joints=loose"]])
+@pytest.mark.parametrize("changes", [[], pytest.param(["container.joints=loose"], marks=pytest.mark.slow)])
 def test_the_stress_of_a_run_is_that_of_its_steps_whatever_is_sampled(changes):
     # Reference: the largest over frames of 0.2 ms, interpolated in the steps of the same run.
     coarse = ["solver.element_size_m=0.25", "solver.order=1", "solver.duration_s=1.0"]

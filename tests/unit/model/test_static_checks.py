@@ -58,11 +58,6 @@ def test_on_a_slope_uplift_and_sliding_begin_earlier():
     )
 
 
-def test_a_floor_as_steep_as_its_friction_slides_the_container_without_any_motion():
-    at_rest = block(slope=math.atan(0.4), peak_floor_acceleration=0.0)
-    assert at_rest.own_motion.sliding.utilisation == pytest.approx(1.0)
-
-
 def test_a_vertical_motion_on_a_slope_takes_its_part_of_the_weight_toward_the_floor():
     static = block(slope=SLOPE, peak_vertical_acceleration=2.0)
     assert static.own_motion_vertical.least_weight == pytest.approx(1000.0 * (9.81 * math.cos(SLOPE) - 2.0))

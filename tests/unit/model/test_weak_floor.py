@@ -95,21 +95,8 @@ def block(times):
     [
         (1.25, "half-sine", 0.5, 4.5),  # about the edge: 25 % less
         (2.0, "half-sine", 0.5, 4.5),
-        (3.0, "sine", 1.0, 3.4),
-        (3.0, "sine", 1.0, 3.6),
-        (3.0, "sine", 1.0, 3.8),
-        (3.9, "sine", 1.0, 3.4),
-        (3.9, "sine", 1.0, 3.8),
-        (4.2, "sine", 1.0, 3.4),
-        (4.2, "sine", 1.0, 3.8),
-        (4.5, "sine", 1.0, 3.4),
-        (4.5, "sine", 1.0, 3.8),
-        (4.9, "sine", 1.0, 3.4),
-        (4.9, "sine", 1.0, 3.8),
-        (5.5, "sine", 1.0, 3.4),
-        (5.5, "sine", 1.0, 3.8),
-        (12.0, "sine", 1.0, 3.8),
-        (20.0, "sine", 1.0, 3.8),
+        *((times, "sine", 1.0, peak) for times in (3.0, 3.9, 4.2, 4.5, 4.9, 5.5) for peak in (3.4, 3.8)),
+        *((times, "sine", 1.0, 3.8) for times in (12.0, 20.0)),
     ],
 )
 def test_it_rocks_as_an_event_driven_block_of_that_width(times, shape, seconds, peak):

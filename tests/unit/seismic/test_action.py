@@ -74,16 +74,6 @@ def test_german_zones(subsoil):
     np.testing.assert_allclose(vertical, [0.64, 1.92, 0.192], rtol=1e-12)
 
 
-def test_the_running_example():
-    """Ground D, type 1, a_g S = 2.4 m/s2: 2.4, 6.0, 4.8, 2.4, 0.6 m/s2 at 0, plateau, 1, 2, 4 s; d_g 0.096 m."""
-    action = SiteAction(shape=eurocode_shape(1, "D"), reference_acceleration=2.4 / 1.35)
-    np.testing.assert_allclose(
-        action.horizontal(np.array([0.0, 0.4, 1.0, 2.0, 4.0])), [2.4, 6.0, 4.8, 2.4, 0.6]
-    )
-    assert action.ground_displacement == pytest.approx(0.096)
-    assert action.vertical_acceleration == pytest.approx(1.6)
-
-
 def test_displacement_beyond_four_seconds_falls_to_that_of_the_ground():
     """Annex A: 2.5 d_g at T_E, d_g from 10 s on, linear between; the code rounds 1/(4 pi^2) to 0.025."""
     action = unit_action(1, "D")

@@ -28,8 +28,6 @@ def verdict(name: str, *changes: str) -> Verdict:
         ((), HOUSNER, 2e-3),
         (SHELL, 0.894, 2e-3),  # by the peaks around it
         ((*SHELL, "contact.mu_static=0.3"), 0.896, 2e-3),
-        ((*SHELL, "contact.normal_penalty_Pa_m=1e8"), 0.883, 8e-3),
-        ((*SHELL, "contact.normal_penalty_Pa_m=1e11"), 0.883, 8e-3),
         ((*SHELL, "support.kind=feet"), 0.925, 2e-3),
         ((*SHELL, "support.kind=flat"), 0.950, 2e-3),
     ],
@@ -48,7 +46,7 @@ def test_ringing_does_not_enter_under_a_moving_floor(model, expected, within):
     assert found.restitution_first == pytest.approx(expected, abs=within)
 
 
-@pytest.mark.parametrize("changes", [(), ("contact.mu_kinetic=0.4",), ("container.section=solid",)])
+@pytest.mark.parametrize("changes", [("contact.mu_kinetic=0.4",), ("container.section=solid",)])
 def test_a_container_that_slides_at_the_impact_has_no_restitution(changes):
     found = verdict("seed_stack_plateau", "solver.duration_s=2", *changes)
     assert found.impacts > 0

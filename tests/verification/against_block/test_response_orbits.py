@@ -126,29 +126,6 @@ def test_the_steady_slip_is_that_of_a_rigid_slider(friction_ratio, stroke):
     assert 0.5 * stroke * amplitude < point.row.slip_excursion_m <= 1.001 * stroke * amplitude
 
 
-def test_a_slider_on_a_slope_walks_and_sways():
-    request = request_of(
-        first=1.0,
-        last=1.01,
-        count=2,
-        settle=20,
-        observe=12,
-        container__width_m=4.0,
-        container__height_m=1.0,
-        contact__mu_static=0.2,
-        contact__mu_kinetic=0.2,
-        motion__amplitude_m=0.1,
-        motion__frequency_Hz=1.0,
-        floor__slope_percent=2.0,
-        floor__motion_along="floor",
-    )
-    row = followed(request).row
-    walked = 12 * abs(row.slip_walk_m)
-    assert walked > 0.02 and row.slip_stroke_m > 0.02
-    # in the last period it sways on both sides of where it ends
-    assert walked * 1.005 < row.slip_excursion_m < walked + row.slip_stroke_m
-
-
 def test_rest_and_rocking_coexist_below_uplift_and_rest_ends_at_uplift():
     # A Omega^2 = g tan al is where rest ends on the way up; the rocking motion is kept on the way down.
     uplift = math.sqrt(GRAVITY * math.tan(BLOCK.slenderness_angle) / 0.08) / (2.0 * math.pi)

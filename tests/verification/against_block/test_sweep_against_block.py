@@ -19,7 +19,7 @@ case = "seed_stack_plateau"
 [set]
 "solver.model" = "rigid"
 "container.section" = "solid"
-"solver.duration_s" = {duration}
+"solver.duration_s" = 20.0
 "output.history_s" = 0.02
 # the block has this friction and this start
 "uncertainty.mu_kinetic" = "known"
@@ -28,8 +28,8 @@ case = "seed_stack_plateau"
 "uncertainty.start" = "known"
 "uncertainty.ramp" = "known"
 [axes]
-"motion.angular_frequency_rad_s" = {{ from = 1.5, to = 10.0, count = {count}, scale = "log" }}
-"motion.peak_acceleration_m_s2" = {{ from = 1.7, to = 13.3, count = {count} }}
+"motion.angular_frequency_rad_s" = { from = 1.5, to = 10.0, count = 24, scale = "log" }
+"motion.peak_acceleration_m_s2" = { from = 1.7, to = 13.3, count = 24 }
 """
 
 
@@ -52,12 +52,10 @@ def block_overturns(sweep, cell, container):
     return None
 
 
-@pytest.mark.parametrize(
-    ("count", "duration"), [(6, 5.0), pytest.param(24, 20.0, marks=pytest.mark.slow)], ids=["small", "large"]
-)
-def test_sure_cells_agree_with_the_block(tmp_path, count, duration):
+@pytest.mark.slow
+def test_sure_cells_agree_with_the_block(tmp_path):
     path = tmp_path / "map.toml"
-    path.write_text(MAP.format(count=count, duration=duration), encoding="utf-8")
+    path.write_text(MAP, encoding="utf-8")
     sweep = load_sweep(path)
     info = run_sweep(sweep, tmp_path / "out")
     table = open_sweep(tmp_path / "out")

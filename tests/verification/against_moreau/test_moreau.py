@@ -14,6 +14,7 @@ from contact.reference.floor_acceleration import FloorAcceleration
 from contact.reference.planar_block import PlanarBlock, simulate_planar_block
 from contact.reference.rigid_block import RigidBlock
 
+pytestmark = pytest.mark.slow  # as what is compared with it
 WHOLE = RigidBlock.homogeneous(width=1.1, height=4.0)
 ONE = Boxes.homogeneous([1.1], [4.0], [10e3])
 OMEGA = 6.928  # of the default motion [rad/s]

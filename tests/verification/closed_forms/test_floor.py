@@ -11,7 +11,6 @@ from contact.stepping.control import most_attempts
 from contact.stepping.integrator import REACHED, enter_floor_frame_compiled
 from contact.stepping.ledger import BASE_WORK, CRUSHING, FRICTION, IMBALANCE
 from contact.stepping.outcome import FREE, is_over
-from fem.case.case import load_case, to_toml
 from fem.model.model import Model, build_model
 from fem.run.output import CheckpointWriter, read_state
 from fem.run.recorder import Recorder
@@ -107,46 +106,6 @@ def test_a_container_comes_to_rest_where_it_has_slid(downhill):
     assert (run.joints[0].slip > 0.0) == downhill
     assert run.joints[0].max_slip > 0.01
     assert 0.0 < over < 1.5
-
-
-def slip_of_a_point(times, acceleration, *, mu, slope, along):
-    """Largest slip down a slope of a point mass, whose floor accelerates uphill, by its own integration [m]."""
-    cosine, sine = math.cos(math.atan(slope)), math.sin(math.atan(slope))
-    step = 1e-5
-    a = np.interp(np.arange(0.0, 3.0, step), times, acceleration, right=0.0)
-    turned = along == "horizontal"
-    pushed = GRAVITY * sine + a * (cosine if turned else 1.0)
-    held = mu * (GRAVITY * cosine - a * (sine if turned else 0.0))
-    velocity = slip = 0.0
-    for push, hold in zip(pushed, held, strict=True):
-        velocity = max(velocity + step * (push - hold), 0.0)
-        slip += step * velocity
-    return slip
-
-
-@pytest.mark.parametrize(("along", "slip"), [("horizontal", 0.0425), ("floor", 0.0289)])
-@pytest.mark.parametrize("model", ["rigid", "full"])
-def test_a_horizontal_motion_on_a_slope_takes_weight_off_it(model, along, slip, tmp_path):
-    # braking at 0.42 g within 0.05 s, for 0.5 s, on a bed that falls 5 % forward; the figures are printed
-    times, braking = np.array([0.0, 0.05, 0.55, 0.6]), 0.42 * GRAVITY * np.array([0.0, 1.0, 1.0, 0.0])
-    (tmp_path / "case.toml").write_text(to_toml(BOX))
-    case = (
-        load_case(tmp_path / "case.toml")
-        .with_motion(times, -braking)
-        .with_values(
-            MODELS[model]
-            | {"floor.slope_percent": 5.0, "floor.motion_along": along, "contact.mu_static": 0.45}
-            | {
-                "contact.mu_kinetic": 0.45,
-                "solver.duration_s": 1.2,
-                "motion.gaps": "bridge",
-            }
-        )
-    )
-    done = stepped(build_model(case), 1.0)
-    exact = slip_of_a_point(times, braking, mu=0.45, slope=0.05, along=along)
-    assert exact == pytest.approx(slip, abs=1e-4)
-    assert done.run.joints[0].max_slip == pytest.approx(exact, rel=0.01)
 
 
 def test_a_horizontal_motion_slips_where_the_closed_form_says():

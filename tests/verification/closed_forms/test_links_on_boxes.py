@@ -66,21 +66,6 @@ def test_a_stop_holds_the_upper_box_while_the_lower_one_slides_out_below():
     )
 
 
-@pytest.mark.parametrize("model", ["rigid", pytest.param("full", marks=pytest.mark.slow)])
-def test_a_tie_to_a_wall_holds_the_upper_box_while_the_lower_one_slides_out_below(model):
-    push, mu, time = 4.0, 0.1, 0.5
-    keys = pulse(-push, 1.0) | {"contact.mu_static": mu, "joints.mu_static": mu, "solver.duration_s": time}
-    if model == "full":
-        keys |= SOLID | {"solver.model": model, "solver.element_size_m": 0.5, "solver.order": 1}
-    tie = {"from": "left", "to": "wall", "height_m": 1.5, "slack_m": 0.0, "stiffness_N_m": 1e9}
-    found = run(held(TWO.with_values(keys), tie=(tie,)))
-    force = found.history["tie_1_force_N"][found.history["time_s"] > 0.1]
-    assert force.mean() == pytest.approx(MASS * (push + mu * GRAVITY), rel=0.05)
-    slid = 0.5 * (push - 3.0 * mu * GRAVITY) * time**2
-    assert found.history["slip_m"][-1] == pytest.approx(slid, rel=0.02)
-    assert abs(found.history["box_2_x_m"][-1]) < 5e-3
-
-
 def test_a_tie_holds_down_the_lower_box_and_the_upper_one_stands_on_it_by_itself():
     push, keys = 7.0, {"contact.mu_static": 3.0, "solver.duration_s": 0.5}
     case = TWO.with_values({**pulse(-push, 1.0), **keys})

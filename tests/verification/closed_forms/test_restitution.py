@@ -116,17 +116,6 @@ def test_neither_slip_nor_vibration_is_changed():
     assert before.energy.sum() - after.energy.sum() == pytest.approx(asked.run.ledger[IMPACTS], rel=1e-9)
 
 
-def test_the_motion_after_an_impact_converges_with_the_step():
-    block = replace(HELD, impact_share=0.9, bounce_frequency=30.0)
-    ends = [
-        leaving(block, largest_step=h, fixed_step=True).advance(1.6).run.old.pose[0]
-        for h in (2e-4, 1e-4, 5e-5, 6.25e-6)
-    ]
-    errors = np.abs(np.array(ends[:-1]) - ends[-1])
-    assert errors[0] < 1e-3 * block.slenderness_angle
-    assert errors[2] < 0.5 * errors[0]
-
-
 @pytest.mark.parametrize("section", ["shell", "solid"])
 @pytest.mark.parametrize("kind", ["corners", "feet", "flat"])
 def test_elastic_containers_keep_the_same_share_of_what_their_impact_leaves(section, kind):

@@ -8,13 +8,13 @@ import math
 import numpy as np
 import pytest
 from moreau import slide_in_a_row
-from runs import STACK, Finished, harmonic, pulse, run
+from runs import STACK, Finished, pulse, run
 
 from contact.stepping.body import stands_loose
 from contact.stepping.joints import holding_force
 from contact.stepping.ledger import CONTACT_DAMPING, FRICTION
 from contact.stepping.links import links_of
-from fem.case.case import Case, CaseError, load_case
+from fem.case.case import Case, CaseError
 from fem.case.tables.neighbours import case_of
 from fem.model.geometry import build_container
 from fem.model.model import build_model
@@ -74,13 +74,6 @@ def test_a_gap_that_is_not_used_up_changes_no_bit_however_wide_it_is():
     )
     assert wide.history["neighbour_1_rotation_rad"] == pytest.approx(wide.history["rotation_rad"], abs=1e-12)
     assert wide.history["neighbour_1_x_m"][0] == pytest.approx(WIDTH + 0.3, abs=1e-12)
-
-
-@pytest.mark.parametrize("height", [4.0, 2.0])
-def test_the_gap_that_is_left_is_the_one_between_the_sides_however_high_they_are(height):
-    still = HELD.with_values({"motion.kind": "none", "solver.duration_s": 0.1})
-    found = run(in_a_row(still, {**BESIDE, "gap_m": 3.0, "height_m": height, "centroid_m": 0.5 * height}))
-    assert found.model.run.links[0].least_gap == pytest.approx(3.0, abs=1e-6)
 
 
 def test_a_light_neighbour_of_a_large_container_moves_as_precisely_as_alone():
@@ -182,33 +175,6 @@ def test_of_what_presses_a_row_against_a_wall_friction_holds_what_the_next_does_
         holding, normal = holding_force(found.model.run, number, stands_loose(body), links_of(body))
         assert holding == pytest.approx(beside - MASS * push, rel=1e-5)
         assert normal == pytest.approx(MASS * GRAVITY, rel=1e-5)
-
-
-SHAKEN = STACK.with_values(
-    {**harmonic(0.12, 6.0), "contact.mu_static": 0.4, "contact.mu_kinetic": 0.3, "solver.duration_s": 4.0}
-)
-PAIR = (
-    {**BESIDE, "gap_m": 0.01, "mu": 0.3, "height_m": 3.0, "mass_kg": 8e3},
-    {**BESIDE, "gap_m": 0.02, "side": "left", "width_m": 1.5, "restitution": 0.4},
-)
-
-
-def test_the_ledger_of_a_row_closes_with_friction_between_the_sides():
-    found = run(in_a_row(SHAKEN, *PAIR))
-    ledger, reference = found.model.run.ledger, found.model.run.problem.control.reference_energy
-    assert found.model.run.links.hits.min() > 0
-    assert abs(ledger[-1]) < 0.01 * (ledger[FRICTION] + ledger[CONTACT_DAMPING]) + 1e-3 * reference
-
-
-def test_a_corner_that_slides_onto_a_side_takes_the_load_over_without_a_gain_of_energy():
-    low = {**BESIDE, "gap_m": 0.01, "height_m": 0.8, "damping_ratio": 0.5}
-    shell = load_case("seed_stack_plateau", ["solver.model=rigid", "floor.kind=rigid", "contact.mu_static=3"])
-    found = run(
-        in_a_row(shell, low), {**pulse(4.5, 0.4), "contact.mu_kinetic": 3.0, "solver.duration_s": 2.0}
-    )
-    reference = found.model.run.problem.control.reference_energy
-    assert found.model.run.links[0].hits > 0
-    assert -float(found.model.run.clock[0].least_imbalance) < 1e-4 * reference
 
 
 def test_friction_between_the_sides_drags_containers_that_rock_together():

@@ -39,26 +39,6 @@ def test_the_number_of_threads_changes_no_byte(tmp_path, overrides):
     require_same(tmp_path / "1", tmp_path / "2")
 
 
-@pytest.mark.slow
-def test_numbas_own_passes_give_the_same_bytes_and_are_announced(tmp_path):
-    said = []
-    plain = {"UNANCHORED_COMPILER": "plain", "NUMBA_OPT": "1", "NUMBA_CACHE_DIR": str(tmp_path)}
-    for name, environment in (("pieces", {}), ("plain", plain)):
-        words = run_command("seed_stack_plateau", tmp_path / name, *THREADED[2], "output.figures=false")
-        words.remove("-q")
-        done = subprocess.run(
-            [sys.executable, "-m", "fem", *words, "--no-band"],
-            env=os.environ | environment,
-            check=True,
-            timeout=1200,
-            stderr=subprocess.PIPE,
-            text=True,
-        )
-        said.append(done.stderr.count("own passes"))
-    assert said == [0, 1]
-    require_same(tmp_path / "pieces", tmp_path / "plain")
-
-
 def test_a_resolved_case_with_its_files_beside_it_gives_the_same_bytes(tmp_path, monkeypatch):
     (tmp_path / "case" / "data").mkdir(parents=True)
     monkeypatch.chdir(tmp_path / "case")  # paths relative to the current folder, as a user gives them
@@ -105,14 +85,12 @@ def pulsed(sign: float, overrides: tuple[str, ...]) -> tuple[Model, Recorder]:
     [
         # rounding alone until the first impact at 0.68 s; an impact multiplies it, and near a limit of the step
         # control it decides on a step: from there on two runs differ by what a step may err, forces by ten times that
-        (("solver.model=rigid", "solver.duration_s=4"), 1e-11, 1e-9),
         (("solver.model=rigid", "solver.duration_s=4", *VERTICAL), 1e-11, 1e-9),
-        (("solver.duration_s=2",), 1e-11, 1e-4),
         (("support.kind=flat", "solver.duration_s=0.8"), 1e-10, 1e-8),
         # Its posts ring: what two runs differ by, 1e-9 at 0.8 s, is 4e-2 of the angular velocity at 1.2 s.
         pytest.param((*COARSE, "solver.duration_s=0.8"), 1e-8, 1e-6, marks=pytest.mark.slow),
     ],
-    ids=["rigid", "rigid, vertical motion", "reduced", "reduced, flat base", "full"],
+    ids=["rigid, vertical motion", "reduced, flat base", "full"],
 )
 def test_a_mirrored_floor_gives_the_mirrored_history(overrides, before, after):
     (model, right), (_, left) = pulsed(1.0, overrides), pulsed(-1.0, overrides)

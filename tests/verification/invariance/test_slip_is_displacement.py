@@ -85,27 +85,19 @@ def test_the_slip_of_an_upright_shipped_case_is_what_it_has_moved(name):
     assert difference(run) <= allowed(run)
 
 
-def test_the_slip_of_random_rigid_containers_is_what_they_have_moved():
-    cases = [random_case(number, "rigid", 5.0).replace(NO_FRAMES) for number in range(100)]
-    runs = fem.compute_many(cases, jobs=1, **ALONE, errors="return")
+@pytest.mark.parametrize(
+    ("model", "seconds", "count", "least"),
+    [("rigid", 5.0, 100, 50), pytest.param("reduced", 2.0, 12, 4, marks=pytest.mark.slow)],
+)
+def test_the_slip_of_random_containers_is_what_they_have_moved(model, seconds, count, least):
+    cases = [random_case(number, model, seconds).replace(NO_FRAMES) for number in range(count)]
     followed = 0
-    for number, run in enumerate(runs):
+    for number, run in enumerate(fem.compute_many(cases, jobs=1, **ALONE, errors="return")):
         apart = None if isinstance(run, Exception) or len(run.history.modes) == 0 else difference(run)
         if apart is not None:
             followed += 1
             assert apart <= allowed(run), number
-    assert followed >= 50
-
-
-def test_the_slip_of_random_elastic_containers_is_what_they_have_moved():
-    cases = [random_case(number, "reduced", 2.0).replace(NO_FRAMES) for number in range(12)]
-    followed = 0
-    for run in fem.compute_many(cases, jobs=1, **ALONE, errors="return"):
-        apart = None if isinstance(run, Exception) or len(run.history.modes) == 0 else difference(run)
-        if apart is not None:
-            followed += 1
-            assert apart <= allowed(run)
-    assert followed >= 4
+    assert followed >= least
 
 
 def test_what_a_container_moves_in_the_air_is_slip():
@@ -133,28 +125,6 @@ def test_the_boxes_of_a_loose_stack_slip_as_far_as_they_move_over_what_is_below(
         slip = np.asarray(history[f"box_{k}_slip_m"])
         assert np.abs(slip)[upright].max() > 1e-3
         assert np.abs(slip - (over - over[0]))[upright].max() < 5e-5
-
-
-def test_a_box_that_hops_slips_as_far_as_the_slider_in_two_directions():
-    # a squat box on a floor that falls away from under it: own steps of `slide_in_plane`, which knows flight
-    keys = {
-        "container.boxes": 1,
-        "container.section": "solid",
-        "container.height_m": 0.1,
-        "container.centroid_m": 0.05,
-        "solver.model": "rigid",
-        "solver.duration_s": 2.0,
-        "floor.kind": "rigid",
-        "contact.mu_static": 0.3,
-        "contact.mu_kinetic": 0.3,
-    }
-    time = np.arange(0.0, 2.001, 0.005)
-    along, up = 4.0 * np.sin(9.0 * time), 12.0 * np.sin(20.0 * time)
-    case = fem.load_case("seed_box").replace(keys | NO_FRAMES)
-    run = fem.compute(case.with_motion(time, along, up), **ALONE)
-    plane = fem.slide_in_plane(time, along, 0.0 * along, up, mu_static=0.3)
-    assert abs(run.verdict.slip_in_air_m) > 1e-3
-    assert run.history["slip_m"][-1] == pytest.approx(plane[-1, 0], rel=0.1)
 
 
 @pytest.mark.parametrize(("mu", "gap"), [(0.3, 0.05), (0.9, 0.02)])

@@ -69,7 +69,7 @@ def test_a_pull_beyond_stiction_slides_and_friction_decides_how_far(tmp_path):
     assert high > 10.0 * low
 
 
-@pytest.mark.parametrize("section", ["shell", "solid"])
+@pytest.mark.parametrize("section", ["shell", pytest.param("solid", marks=pytest.mark.slow)])
 def test_the_default_motion_hangs_on_the_fall_of_friction(tmp_path, section):
     values = {"container.section": section, "container.fill": "none", "solver.duration_s": 8.0}
     values["uncertainty.restitution_over_housner"] = "held"

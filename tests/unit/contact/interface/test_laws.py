@@ -137,13 +137,6 @@ def test_regularised_friction_opposes_the_slip_within_static_friction(load, velo
     assert abs(force) <= 0.4 * load * (1.0 + 1e-15)
 
 
-@pytest.mark.parametrize("share", [0.1, 0.5, 0.9])
-def test_regularised_friction_creeps_at_the_stated_speed(share):
-    # A load s mu N is carried at v_reg atanh(s): no true stick.
-    force = laws.regularised_friction(3e4, 1e-3 * math.atanh(share), 0.4, 0.4, 1e-3)[0]
-    assert force == pytest.approx(-share * 0.4 * 3e4, rel=1e-14)
-
-
 def test_friction_weakens_linearly_over_its_distance_and_stays_weak():
     assert laws.weakened_mu(0.4, 0.2, 1e-4, 0.0) == 0.4
     assert laws.weakened_mu(0.4, 0.2, 1e-4, 2.5e-5) == pytest.approx(0.35, rel=1e-14)

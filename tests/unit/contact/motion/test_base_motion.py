@@ -101,8 +101,8 @@ def test_break_times_within_the_run():
     assert MOTIONS["rectangular"].break_times == pytest.approx([0.25, 0.95])
 
 
-@pytest.mark.parametrize("ramp_cycles", [0.3, 0.5, 1.0, 2.0, 3.0, 10.0])
-@pytest.mark.parametrize("phase", [0.0, 0.9, 2.0])
+@pytest.mark.parametrize("ramp_cycles", [0.3, 1.0, 10.0])
+@pytest.mark.parametrize("phase", [0.0, 0.9])
 def test_peak_acceleration_includes_what_a_steep_ramp_adds(ramp_cycles, phase):
     motion = tapered(ramp_cycles=ramp_cycles, phase=phase)
     dense = np.abs(motion.evaluate(np.linspace(0.0, 20.0, 2_000_001))[2]).max()

@@ -77,7 +77,7 @@ def test_the_error_is_of_fourth_order_in_the_step() -> None:
     assert errors[2] < errors[1] / 8.0
 
 
-@pytest.mark.parametrize("model", ["rigid", "reduced"])
+@pytest.mark.parametrize("model", ["rigid", pytest.param("reduced", marks=pytest.mark.slow)])
 def test_the_acceleration_does_not_depend_on_the_intervals_of_the_output(model: str) -> None:
     case = load_case("rocking", (f"solver.model={model}", "solver.duration_s=1.5", "output.fields_s=0"))
     found = [

@@ -18,16 +18,6 @@ def test_generalised_alpha_fulfils_the_conditions_of_chung_and_hulbert(radius):
     assert scheme.newmark_beta >= 0.25 + 0.5 * (scheme.alpha_f - scheme.alpha_m) - 1e-15
 
 
-@pytest.mark.parametrize("radius", RADII)
-def test_both_roots_at_infinite_frequency_are_the_spectral_radius(radius):
-    # At infinity the principal roots tend to (alpha_f - alpha_m - 1)/(alpha_f - alpha_m + 1) and the
-    # spurious one to alpha_f/(alpha_f - 1): equal moduli in Chung and Hulbert's optimal case (Eqs. 19, 25).
-    scheme = generalised_alpha(radius)
-    lag = scheme.alpha_f - scheme.alpha_m
-    assert abs((lag - 1.0) / (lag + 1.0)) == pytest.approx(radius, abs=1e-15)
-    assert abs(scheme.alpha_f / (scheme.alpha_f - 1.0)) == pytest.approx(radius, abs=1e-15)
-
-
 def test_the_default_radius_gives_the_printed_coefficients():
     # rho = 1/2: alpha_m = 0, alpha_f = 1/3, beta = 4/9, gamma = 5/6.
     assert generalised_alpha(0.5) == pytest.approx((4.0 / 9.0, 5.0 / 6.0, 0.0, 1.0 / 3.0))
