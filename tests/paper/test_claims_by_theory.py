@@ -25,7 +25,7 @@ def experiments():
         (quasi_static.sign_beyond_balance, Conclusion.CONFIRMED),  # statics: it falls beyond balance
         (rocking.eq_2, Conclusion.BOUNDED),  # sqrt(3/4) of the block's period at small rotation
         # T p/4 = arccosh(1/(1 - theta/al)), which 2 pi/4 meets near 0.6 al
-        (rocking.eq_3, Conclusion.BOUNDED),
+        pytest.param(rocking.eq_3, Conclusion.BOUNDED, marks=pytest.mark.slow),
         (rocking.control_periods, Conclusion.BOUNDED),  # the same
         # Coulomb: what stands on a box that sticks to the floor slides as one box on a floor with that friction
         (stacking.slip_between_loose_boxes, Conclusion.CONFIRMED),

@@ -20,6 +20,7 @@ SLOW = {
     "elastica",
     "penalties, steps, meshes",
     "a stated restitution under a pulse",
+    "a start at rest",
 }
 
 

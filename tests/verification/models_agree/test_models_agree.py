@@ -10,7 +10,12 @@ import pytest
 from container_runs import difference, first_impact, stack, times, velocity_ratio
 from runs import run
 
-CASES = [("solid", "corners"), ("shell", "feet"), ("shell", "flat"), ("thin shell", "corners")]
+CASES = [
+    ("solid", "corners"),
+    pytest.param("shell", "feet", marks=pytest.mark.slow),
+    ("shell", "flat"),
+    ("thin shell", "corners"),
+]
 
 
 @pytest.mark.parametrize(("section", "kind"), CASES)

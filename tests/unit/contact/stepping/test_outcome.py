@@ -63,7 +63,7 @@ def test_an_outcome_is_that_of_the_run(model_of, values, status):
         assert found.run.clock[name][0] == expected.run.clock[name][0]
 
 
-@pytest.mark.parametrize("model", ["rigid", "reduced"])
+@pytest.mark.parametrize("model", ["rigid", pytest.param("reduced", marks=pytest.mark.slow)])
 def test_instances_of_a_class_have_fields_of_one_type(model):
     """So a run for its outcome is called by class."""
     cases = [
