@@ -17,7 +17,7 @@ from fem.model.geometry import build_container, node_count
 from fem.model.motion_summary import summary_from_keys
 from fem.results.disk import in_units
 from fem.results.run_result import MotionResult
-from fem.run.described import covered_in_words, floor_rows, is_cut, link_rows, missing_peak, motion_in_words
+from fem.run.described import floor_rows, link_rows, motion_in_words, part_covered
 from fem.run.preview import Preview
 from fem.run.static_words import sides_in_words, sides_of
 from fem.runtime.terminal import say
@@ -111,10 +111,7 @@ def _page(preview: Preview, document: dict[str, Any]) -> str:
             if (upward := preview.motion.vertical)
             else ()
         ),
-        *(
-            [f"  run         {covered_in_words(preview.motion)}{missing_peak(preview.motion)}"]
-            * is_cut(preview.motion)
-        ),
+        *([f"  run         {part}"] if (part := part_covered(preview.motion)) else ()),
         *(
             fill(f"{name:<11} {value}", WIDTH, initial_indent="  ", subsequent_indent=14 * " ")
             for name, value in [*floor_rows(preview.floor), *link_rows(case)]

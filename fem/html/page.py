@@ -143,9 +143,14 @@ def html_of(
 
 def text_of(template: str, **shown: Any) -> str:
     """A page for a terminal, by a template of `fem/html/templates`."""
+    return _text_environment().get_template(template).render(shown).rstrip()
+
+
+@cache
+def _text_environment() -> Environment:
     environment = _environment().overlay(autoescape=False)
     environment.filters = {**environment.filters, "form": format}
-    return environment.get_template(template).render(shown).rstrip()
+    return environment
 
 
 @cache

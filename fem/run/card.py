@@ -22,7 +22,7 @@ from fem.results.run_result import (
     StaticResult,
     Verdict,
 )
-from fem.run.described import covered_in_words, fall_in_row, is_cut, links_in_words, missing_peak
+from fem.run.described import fall_in_row, links_in_words, part_covered
 from fem.run.joints import fall_in_words, joints_in_words, leaning_in_words
 from fem.run.ranges import largest_rotation, largest_slip, of_band, reach_of
 from fem.run.static_words import rule_says, sides_in_words
@@ -110,7 +110,7 @@ def does(result: RunResult) -> str:
     if result.status in RUN.finished and (other := _other_ends(verdict)):
         own = f"{other}; as given it {own}"
     motion = result.motion or MotionResult()
-    under = f" (under {covered_in_words(motion)}{missing_peak(motion)})" if is_cut(motion) else ""
+    under = f" (under {part})" if (part := part_covered(motion)) else ""
     return f"{own}{_leaning(verdict, result.static)}{under}"
 
 

@@ -15,8 +15,8 @@ from fem.case.tables.all_tables import TABLES
 from fem.case.tables.links import ROWS
 from fem.case.tables.quantities import Quantity, with_unit
 from fem.case.validation import TOP, choices_of, did_you_mean, known_keys, quantity_of, requirement_of
+from fem.records.units import STANDARD_GRAVITY
 from fem.results.json_block import JsonBlock
-from fem.run.described import STANDARD_GRAVITY
 from fem.runtime.units import plain_number
 
 #: keys that do not change a result, and why

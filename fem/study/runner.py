@@ -25,7 +25,7 @@ from fem.results.figures import BOXES, SCALARS
 from fem.results.run_result import Verdict
 from fem.run.checks import WantedChecks
 from fem.run.compute import Run, compute_on, require_case
-from fem.run.described import covered_in_words, is_cut, missing_peak
+from fem.run.described import part_covered
 from fem.run.expected import say_expected
 from fem.run.recorder import Recorder
 from fem.run.simulation import run_without_history, simulate
@@ -233,7 +233,7 @@ def motion_left_out(case: Case) -> str | None:
         motion = motion_result(case, *build_motions(case))
     except CaseError:  # a row of the study says so
         return None
-    return f"{covered_in_words(motion)}{missing_peak(motion)}" if is_cut(motion) else None
+    return part_covered(motion) or None
 
 
 def run_chunk(make: Callable[[ItemT], Case], items: Sequence[ItemT]) -> list[Row]:

@@ -16,7 +16,7 @@ from fem.cli.check import preview_of
 from fem.model.model import build_model
 from fem.model.motion import build_motion, build_motions, motion_result
 from fem.results.reader import open_run
-from fem.run.described import covered_in_words
+from fem.run.described import part_covered
 from fem.run.run import RunOptions, run_case
 from fem.study.runner import run_model
 
@@ -129,7 +129,7 @@ def test_a_record_of_negative_times_is_covered_from_zero_on(tmp_path):
     case = record_case(tmp_path, RECORD - [1.0, 0.0])
     found = motion_result(case, *build_motions(case))
     assert found.covered == pytest.approx(0.75)
-    assert covered_in_words(found) == "3 of 4 s, from 1 s of it on"
+    assert part_covered(found) == "3 of 4 s, from 1 s of it on"
     with pytest.raises(CaseError, match="its times end at -1 s, and the run begins at t = 0; shift them"):
         build_motion(record_case(tmp_path, RECORD - [5.0, 0.0]))
 

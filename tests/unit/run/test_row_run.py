@@ -41,7 +41,7 @@ def test_what_falls_is_named_and_the_container_is_compared_with_its_own_rule(fal
     assert fallen.verdict.neighbours[0].outcome == "overturned" and fallen.verdict.rotation_ratio < 0.001
     leant = replace(fallen.verdict, rotation_ratio=4.9)
     assert "ratio < 0.001" in run_tilted(fallen.verdict) and "ratio 4.9" in run_tilted(leant)
-    assert governing(fallen.typed_result) == ()
+    assert governing(fallen.typed_result) == []
 
 
 def test_the_margin_begins_below_what_the_most_slender_of_the_row_bears(fallen):
