@@ -16,7 +16,7 @@ from functools import cache, partial
 from importlib import metadata, resources
 from typing import Any
 
-from jinja2 import Environment, PackageLoader, StrictUndefined, UndefinedError
+from jinja2 import Environment, PackageLoader, StrictUndefined, Template, UndefinedError
 from markupsafe import Markup, escape
 
 from fem.html.drawing import require_drawing
@@ -143,7 +143,12 @@ def html_of(
 
 def text_of(template: str, **shown: Any) -> str:
     """A page for a terminal, by a template of `fem/html/templates`."""
-    return _text_environment().get_template(template).render(shown).rstrip()
+    return text_template(template).render(shown).rstrip()
+
+
+def text_template(name: str) -> Template:
+    """A template of `fem/html/templates` for plain text."""
+    return _text_environment().get_template(name)
 
 
 @cache

@@ -17,7 +17,7 @@ from fem.report.animation import packed, packed_floats
 from fem.report.sweep_map import OUTCOMES, outcome_numbers
 from fem.results.errors import FolderError
 from fem.results.outcome import ending_of
-from fem.run.card import DOES, deciding_in_words, how_far, static_line
+from fem.run.card import DOES, deciding_in_words, line
 from fem.run.compute import Run
 from fem.run.sureness import REGIME_UNSURE, SURE, UNSURE
 from fem.runtime.arrays import FloatArray
@@ -136,7 +136,7 @@ def _shown(run: Run, table: SweepTable, cell: int) -> dict[str, Any]:
     decided = str(table["decided_by"][cell]).split() if sure else []
     does = DOES[ending_of(str(table["status"][cell]), str(table["outcome"][cell]))]
     said = sure.format(does=does, count=int(table["perturbed"][cell])) if sure else "How sure: not tried."
-    far, rule = how_far(result), static_line(result)
+    far, rule = line(result, "how_far"), line(result, "static_line")
     return {
         "first": result.verdict.first_line if result.verdict else "",
         "far": f"{far[:1].upper()}{far[1:]}.",

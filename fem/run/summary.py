@@ -8,7 +8,7 @@ margin.
 
 import io
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -23,10 +23,11 @@ from fem.results.outcome import ENDINGS, SLIDING, Outcome
 from fem.run.card import card_of
 from fem.run.described import fall_in_row, floor_rows, motion_in_words
 from fem.run.joints import box_table, joint_tables, largest_joint_slip, titled_table
-from fem.run.ranges import bolt_forces, crushes, in_words, largest_ratio, largest_slip, of_band
+from fem.run.ranges import bolt_forces, in_words, largest_ratio, largest_slip, of_band
 from fem.run.static_words import code_note, governing, rule_says
+from fem.run.words import rows
 from fem.runtime.terminal import shown
-from fem.runtime.units import INVISIBLE, MILLIMETRES, PERCENT, RATIO, SHORT_MILLIMETRES, visible_number
+from fem.runtime.units import MILLIMETRES, visible_number
 
 TEXT_WIDTH = 80
 CRUSHED = 1e-4  #: indentation from which a floor counts as crushed [m]
@@ -61,9 +62,7 @@ def _brief_parts(result: run_result.RunResult, folder: Path) -> Iterator[Rendera
     # Text, never markup: titles, folders and warnings may hold anything.
     yield from _heading(result, folder)
     verdict, motion = result.verdict or run_result.Verdict(), result.motion or run_result.MotionResult()
-    rows = [("floor motion", motion_in_words(motion)), *_figure_rows(result, BRIEF)]
-    rows.append(("outcomes of the variations", _band(verdict.band)))
-    yield from _table_of_pairs(_of_whom(verdict), [row for row in rows if row[1]])
+    yield from _table_of_pairs(_of_whom(verdict), _rows(result, "brief_results", BRIEF))
     of_record = (*motion.notes, *(motion.vertical.notes if motion.vertical else ()))
     if of_record:  # what was read is no detail
         yield Text("".join(f"Warning: {note}\n" for note in of_record))
@@ -93,7 +92,7 @@ def _parts(result: run_result.RunResult, folder: Path) -> Iterator[RenderableTyp
         yield Text(f"{note}\n")
     if result.warnings:
         yield Text("".join(f"Warning: {warning}\n" for warning in result.warnings))
-    yield from _table_of_pairs("Numerics", numerics_rows(result))
+    yield from _table_of_pairs("Numerics", _rows(result, "computation"))
 
 
 def band_note(band: run_result.Band | None) -> str:
@@ -221,178 +220,41 @@ def _table_of_pairs(title: str, rows: Sequence[tuple[str, str]]) -> Iterator[Tab
 
 def result_rows(result: run_result.RunResult) -> list[tuple[str, str]]:
     """Name and value of each result in reading order; results that were not reached are left out."""
-    verdict, motion = result.verdict or run_result.Verdict(), result.motion or run_result.MotionResult()
+    return _rows(result, "results")
+
+
+def _rows(result: run_result.RunResult, macro: str, place: Place = SUMMARY) -> list[tuple[str, str]]:
+    """Name and value of what a macro of `summary.txt.j2` says, with the figures of a place."""
+    verdict, numerics = result.verdict or run_result.Verdict(), result.numerics or run_result.Numerics()
     turns = verdict.outcome not in (Outcome.REST, Outcome.SLIDE, Outcome.HOP)
-    #: rows behind that of a figure
-    behind = {
-        "slip_travel_m": [
-            ("largest slip between boxes", ", ".join(filter(None, largest_joint_slip(verdict))))
-        ],
-        "max_corner_force_N": [*floor_rows(result.floor, lands=turns), ("crushing", _crushing(verdict))],
-    }
-    states = [mode for mode in verdict.modes if mode != Outcome.OVERTURNED or not fall_in_row(verdict)]
-    rows = [
-        ("floor motion", motion_in_words(motion)),
-        ("vertical motion", motion_in_words(motion.vertical or run_result.MotionResult())),
-        ("simulated time", _simulated(verdict, result.numerics or run_result.Numerics())),
-        ("states seen", ", ".join(states) + _uncounted(verdict)),
-    ]
-    rows += _figure_rows(result, SUMMARY, behind)
-    rows.append(("analytic block, same motion", _analytic(verdict.analytic)))
-    rows += [
-        ("bolts, largest tension and shear", bolt_forces(result)),
-        ("margin in detail", _margin(verdict.margin)),
-        ("outcomes of the variations", _band(verdict.band)),
-        *_rigid_rows(result.rigid_check, (result.static or run_result.StaticResult()).slenderness_angle_rad),
-    ]
-    return [(name, value) for name, value in rows if value]
-
-
-def _figure_rows(
-    result: run_result.RunResult, place: Place, behind: Mapping[str, list[tuple[str, str]]] | None = None
-) -> list[tuple[str, str]]:
-    """Name and value of the figures of a place, each with the rows behind it."""
-    lowest = " of box 1" if result.verdict and result.verdict.boxes else ""
-    rows = []
-    for key in summary_order():
-        if place in FIGURES[key].places:
-            name = FIGURES[key].words + (lowest if FIGURES[key].lowest else "")
-            rows += [(name, in_words(result, key)), *(behind or {}).get(key, [])]
-    return rows
-
-
-def _uncounted(verdict: run_result.Verdict) -> str:
-    """That a slip is no sliding, which the rows of the history call so; empty where none is."""
-    if verdict.slipped < MILLIMETRES.least or not {*SLIDING}.isdisjoint({*verdict.modes, verdict.outcome}):
-        return ""
-    return f"; slips of {MILLIMETRES.text(verdict.slipped, figures=2)} in history.csv are too small to count as sliding"
-
-
-def _simulated(verdict: run_result.Verdict, numerics: run_result.Numerics) -> str:
-    if numerics.simulated_s is None:
-        return ""
-    at_rest = "" if verdict.at_rest_s is None else f", at rest from {verdict.at_rest_s:.4g} s on"
-    return f"{numerics.simulated_s:.4g} s{at_rest}"
-
-
-def numerics_rows(result: run_result.RunResult) -> list[tuple[str, str]]:
-    """Name and value of the accuracy and the cost of the computation."""
-    numerics = result.numerics or run_result.Numerics()
-    rows = [
-        ("energy balance error", _balance(result)),
-        ("steps", _steps(numerics)),
-        ("filters", _filters(numerics)),
-        ("computing time", _times(result, numerics)),
-    ]
-    return [(name, value) for name, value in rows if value]
-
-
-def _crushing(verdict: run_result.Verdict) -> str:
-    """Whether a corner was crushed; by how much is no result."""
-    if not crushes(verdict):
-        return ""
-    depth = verdict.max_indentation_m or 0.0
-    if depth >= CRUSHED:
-        return "a corner crushes at the surface strength; depth not predicted"
-    return f"none to speak of: {SHORT_MILLIMETRES.text(depth)}" if depth else "none"
-
-
-def _margin(margin: run_result.Margin | None) -> str:
-    """What was tried for the margin, and what the case does beyond it; empty where nothing was."""
-    if margin is None:
-        return ""
-    few = ".3g"
-    parts = [f"{margin.runs} factors from {margin.least_tried:{few}} to {margin.largest_tried:{few}}"]
-    again = [
-        f"{low:{few}}" if low == high else f"{low:{few}} to {high:{few}}" for low, high in margin.islands
-    ]
-    parts += [f"stands again at {' and at '.join(again)}"] if again else []
-    if (governs := margin.governing) is not None and governs.variations:
-        counts = (
-            (governs.variations_overturned, "overturn"),
-            (governs.variations_destroyed, "destroy a corner"),
-        )
-        does = [f"{count} {verb}" for count, verb in counts if count] or ["none overturns"]
-        most = margin.draws_tried_to or margin.largest_tried
-        parts.append(f"of the {governs.variations} worst variations {' and '.join(does)} up to {most:{few}}")
-    if governs is not None and governs.step:
-        parts.append(f"steps of at most {PERCENT.text(governs.step, figures=1)} below what governs")
-    if margin.without_links_tried_to is not None:
-        factor = margin.factor_without_links
-        falls = f"not up to {margin.without_links_tried_to:{few}}" if factor is None else f"at {factor:{few}}"
-        parts.append(f"alone, without what holds it or stands beside it, it overturns {falls}")
-    return "; ".join(parts)
-
-
-def _band(band: run_result.Band | None) -> str:
-    if band is None:
-        return ""
-    runs = len(band.members)
-    failed = sum(member.outcome is None for member in band.members)
-    counts = f"{runs} runs" + (f", {failed} failed" if failed else "")
-    return f"{', '.join(band.outcomes)} in {counts}"
-
-
-def _analytic(block: run_result.AnalyticBlock | None) -> str:
-    """What the analytic rigid block does under the same motion on rigid ground; empty where there is none."""
-    if block is None:
-        return ""
-    if block.outcome is None:
-        return "leaves the floor, which its formulas do not follow"
-    reached = f"{Outcome(block.outcome).verb}, to {RATIO.text(block.rotation_ratio)} of the slenderness angle"
-    return f"{reached}, slip {MILLIMETRES.text(block.max_slip_m)}"
-
-
-def _rigid_rows(check: run_result.RigidCheckResult | None, angle: float | None) -> list[tuple[str, str]]:
-    """The run beside the analytic rigid block."""
-    if check is None:
-        return []
-    rows = []
-    for pair, name, unit, none in (
-        (check.first_impact_s or run_result.RunAndBlock(), "first impact", " s", "none"),
-        (check.velocity_ratio or run_result.RunAndBlock(), "restitution", "", "not measured"),
-    ):
-        if pair != run_result.RunAndBlock():
-            run, block = (
-                none if value is None else visible_number(value, 1.0, ".4f") + unit
-                for value in (pair.run, pair.block)
-            )
-            rows.append((f"rigid check, {name}", f"{run} (block {block})"))
-    if check.peaks and angle:
-        run = ", ".join(f"{peak.run_rad / angle:.3f}" for peak in check.peaks[:4])
-        block = ", ".join(f"{peak.block_rad / angle:.3f}" for peak in check.peaks[:4])
-        rows.append(("rigid check, first peaks", f"{run} (block {block}) of the slenderness angle"))
-    verdict = "a fair comparison" if check.meaningful else "no fair comparison: "
-    return [*rows, ("rigid check", verdict + "; ".join(check.reasons))]
-
-
-def _balance(result: run_result.RunResult) -> str:
-    energy = result.energy or run_result.Energy()
-    whose = run_result.to_overturn(bool((result.verdict or run_result.Verdict()).neighbours))
-    error, reference, final = energy.closure_error, energy.reference_J, energy.numerical_J
-    if error is None or reference is None:
-        return ""
-    side = ""
-    if final and abs(final) >= INVISIBLE * reference:
-        side = f"; numerical {'loss' if final > 0.0 else 'gain'} {abs(final):.3g} J"
-    return f"{visible_number(error, 1.0, '.2g')} of the {reference:.4g} J that it takes {whose}{side}"
-
-
-def _steps(numerics: run_result.Numerics) -> str:
-    if numerics.steps is None:
-        return ""
-    return f"{numerics.steps}, {numerics.rejected or 0} rejected, {numerics.unknowns} unknowns"
-
-
-def _times(result: run_result.RunResult, numerics: run_result.Numerics) -> str:
-    if result.wall_s is None:
-        return ""
-    parts = []
-    if result.compile_s:  # zero in every run but the first ones
-        parts.append(f"compilation {result.compile_s:.3g} s (once after installation)")
-    if numerics.stepping_cpu_s is not None:
-        parts.append(f"stepping {numerics.stepping_cpu_s:.3g} s")
-    return f"{result.wall_s:.3g} s" + (f", of which {', '.join(parts)}" if parts else "")
+    slides = not {*SLIDING}.isdisjoint({*verdict.modes, verdict.outcome})
+    figures = {key: FIGURES[key] for key in summary_order() if place in FIGURES[key].places}
+    return rows(
+        "summary.txt.j2",
+        macro,
+        result=result,
+        verdict=verdict,
+        numerics=numerics,
+        energy=result.energy or run_result.Energy(),
+        motion=result.motion or run_result.MotionResult(),
+        angle=(result.static or run_result.StaticResult()).slenderness_angle_rad,
+        brief=place is BRIEF,
+        states=[mode for mode in verdict.modes if mode != Outcome.OVERTURNED or not fall_in_row(verdict)],
+        uncounted=verdict.slipped >= MILLIMETRES.least and not slides,
+        figures_of={
+            key: figure.words + (" of box 1" if figure.lowest and verdict.boxes else "")
+            for key, figure in figures.items()
+        },
+        joint_slip=largest_joint_slip(verdict),
+        floor=floor_rows(result.floor, lands=turns),
+        bolts=bolt_forces(result),
+        failed=sum(member.outcome is None for member in (verdict.band or run_result.Band()).members),
+        to_overturn=run_result.to_overturn(bool(verdict.neighbours)),
+        figure_in_words=in_words,
+        motion_in_words=motion_in_words,
+        seen=visible_number,
+        CRUSHED=CRUSHED,
+    )
 
 
 def _files(folder: Path) -> list[str]:
@@ -408,12 +270,3 @@ def _files(folder: Path) -> list[str]:
         else ["ParaView: no fields were written; output.fields_s > 0 writes them"]
     )
     return [*paraview, f"History: {folder / 'history.csv'}", f"All results: {folder / 'run.json'}"]
-
-
-def _filters(numerics: run_result.Numerics) -> str:
-    """How forces and accelerations of an impact, whose instantaneous values mean nothing, are averaged."""
-    if numerics.contents_filter is None or numerics.contents_filter_Hz is None:
-        return ""
-    window = numerics.corner_force_window_s
-    force = "" if window is None else f"; corner force: mean over {1e3 * window:.2g} ms"
-    return f"contents: {numerics.contents_filter}, {numerics.contents_filter_Hz:g} Hz{force}"

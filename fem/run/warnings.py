@@ -19,7 +19,7 @@ from fem.results.run_result import (
     Verdict,
     to_overturn,
 )
-from fem.run.card import sureness
+from fem.run.card import line
 from fem.run.described import doubts
 from fem.run.ranges import plastic_corner
 from fem.run.sureness import numerical
@@ -67,7 +67,7 @@ def warnings_for(result: RunResult, case: Case) -> list[str]:
         static=static,
         own=static.ruling,
         numerics=numerics,
-        sureness=sureness(result),
+        sureness=line(result, "sureness"),
         by_weakening=_changed_alone(verdict, WEAKENING),
         by_dashpot=own_dashpot | varied,
         scatter=_scatter(verdict, width),

@@ -1,29 +1,51 @@
-"""The words of a run: templates of `fem/html/templates` that read like what is said."""
+"""The words of a run: templates of `fem/html/templates` that read like what is said.
+
+A blank line ends a text; other white space counts as one space.
+"""
 
 import re
+from collections.abc import Sequence
 from typing import Any
 
 from fem.case.tables.unknown_inputs import in_words
-from fem.html.page import text_of
+from fem.html.page import text_template
 from fem.results.outcome import SLIDING, Outcome
 from fem.runtime import units
 
-#: what every template may name
-NAMED: dict[str, Any] = {"units": units, "in_words": in_words, "Outcome": Outcome, "SLIDING": SLIDING}
+
+def _parts(text: str) -> list[str]:
+    return [words for part in re.split(r"\n\s*\n", text) if (words := " ".join(part.split()))]
+
+
+#: what every template may name; `listed` joins the texts of a macro
+NAMED: dict[str, Any] = {
+    "units": units,
+    "in_words": in_words,
+    "Outcome": Outcome,
+    "SLIDING": SLIDING,
+    "listed": lambda text: "; ".join(_parts(text)),
+}
 
 
 def paragraphs(template: str, **shown: Any) -> list[str]:
-    """The texts of a template that are not empty: a blank line ends one, and other white space is a space."""
-    parts = re.split(r"\n\s*\n", text_of(template, **NAMED, **shown))
-    return [text for part in parts if (text := " ".join(part.split()))]
+    """The texts of a template that are not empty."""
+    return _parts(text_template(template).render(NAMED | shown))
 
 
 def sentence(template: str, **shown: Any) -> str:
-    """The one text of a template; empty where it says nothing."""
+    """All that a template says; empty where it says nothing."""
     return " ".join(paragraphs(template, **shown))
 
 
-def rows(template: str, **shown: Any) -> list[tuple[str, str]]:
-    """Name and value of each row of a template, `name | value`; a row without a value is left out."""
-    pairs = (text.partition("|") for text in paragraphs(template, **shown))
+def said(template: str, macros: Sequence[str], **shown: Any) -> list[str]:
+    """What macros of a template say."""
+    module = text_template(template).make_module(NAMED | shown)
+    return [" ".join(getattr(module, macro)().split()) for macro in macros]
+
+
+def rows(template: str, macro: str = "", **shown: Any) -> list[tuple[str, str]]:
+    """Name and value of each row of a template, or of one of its macros: `name | value`; none without a value."""
+    source = text_template(template)
+    text = getattr(source.make_module(NAMED | shown), macro)() if macro else source.render(NAMED | shown)
+    pairs = (part.partition("|") for part in _parts(text))
     return [(name.strip(), value.strip()) for name, _, value in pairs if value.strip()]

@@ -4,7 +4,7 @@ import fem
 from fem.case.case import Case, load_case
 from fem.case.tables.input_ranges import UnknownChoice
 from fem.case.tables.unknown_inputs import UNKNOWN
-from fem.run.card import sureness
+from fem.run.card import line
 
 BESIDE = {"side": "right", "gap_m": 0.03, "stiffness_N_m": 1e8, "mu": 0.2}
 KERBS = [
@@ -62,7 +62,7 @@ def test_every_input_of_links_is_varied_alone_and_with_the_others():
 def test_a_gap_that_decides_is_named_and_one_that_is_known_is_not_varied():
     wide = unsure_of("stop_gap_m", stop=KERBS, **{"uncertainty.stop_gap_m": [0.0, 0.2]})
     found = fem.compute(wide, band=True, margin=False)
-    said = sureness(found.typed_result)
+    said = line(found.typed_result, "sureness")
     assert (found.verdict.outcome, found.verdict.sure) == ("overturned", "unsure")
     assert "gap of the stops 0.2 m" in said
     known = fem.compute(unsure_of(stop=KERBS), band=True, margin=False)

@@ -10,7 +10,7 @@ from fem.results.run_result import (
     RunResult,
     Verdict,
 )
-from fem.run.card import sureness
+from fem.run.card import line
 from fem.run.sureness import judged
 from fem.run.warnings import warnings_for
 
@@ -161,7 +161,7 @@ def test_ranges_are_those_of_the_members_that_end_as_the_run():
 
 
 def words(*found, **own):
-    return sureness(RunResult(status="completed", verdict=verdict(*found, **own)))
+    return line(RunResult(status="completed", verdict=verdict(*found, **own)), "sureness")
 
 
 def test_draws_that_overturn_are_counted_with_their_interval_and_the_value_that_decides():

@@ -9,7 +9,7 @@ from runs import BOX, SOLID, STACK, Finished, harmonic, pulse, run
 from contact.stepping.ledger import CONTACT_DAMPING, FRICTION
 from fem.case.case import Case
 from fem.results.run_result import RunResult
-from fem.run.card import does
+from fem.run.card import line
 from fem.run.verdict import verdict_of
 
 MASS, SPEED, GRAVITY = 2500.0, 0.5, 9.81  # of a box of 1.1 x 1.0 m
@@ -203,7 +203,7 @@ def test_what_rests_on_a_stop_beyond_its_slenderness_angle_is_said_to_lean_and_h
     verdict = verdict_of(found.model, found.history, None)
     assert (found.status, verdict.outcome, verdict.leans) == ("overturned", "overturned", True)
     assert 0.0 < np.abs(found.model.run.joints.max_rotation).max() < 0.5 * math.pi or boxes == 1
-    said = does(RunResult(status=found.status, verdict=verdict))
+    said = line(RunResult(status=found.status, verdict=verdict), "does")
     assert ("box 2 came" in said) == (boxes == 2)
     if boxes == 1:
         upright = run(held(case, stop), {"initial.rotation_rad": 0.25, "solver.duration_s": 10.0})
