@@ -41,27 +41,6 @@ RECORDED, BODY = "recorder.", "body."
 Arrays = dict[str, NDArray[Any]]
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class SavedState:
-    """A simulation as a checkpoint holds it."""
-
-    progress: Progress = BEGINNING
-    arrays: Arrays = field(default_factory=dict)  #: as `state_of` names them; empty: t = 0
-    notes: Mapping[str, Any] = field(default_factory=dict)  #: stored with them
-
-    def restore(self, model: Model, recorder: Recorder) -> None:
-        """Give run, body and recorder this state; they stay as they are at t = 0."""
-        if not self.arrays:
-            return
-        for name, array in changing(model).items():
-            np.copyto(array, self.arrays[name])
-        for name, array in _waiting(model.run, model.run.clock).items():  # the clock is restored by now
-            np.copyto(array, self.arrays[name])
-        if not isinstance(model.body, ModalBody | LooseStack | LinkedBody):
-            model.body.recall(_named(self.arrays, BODY))
-        recorder.recall(_named(self.arrays, RECORDED))
-
-
 class CheckpointWriter:
     """Writes the checkpoint of a simulation: every 15 s, and when it is interrupted.
 
@@ -102,30 +81,6 @@ class CheckpointWriter:
         }
         write_archive(self._path, about, state_of(self._model, self._recorder))
         self._last = time.monotonic()
-
-
-def read_state(path: Path, model: Model, case_hash: str) -> SavedState:
-    """The state in a checkpoint; nothing is restored yet.
-
-    Raises:
-        CheckpointError: damaged, of another case or another version, or not of this model's run.
-    """
-    archive = read_checkpoint(path, case_hash=case_hash, program=program_identity())
-    require_same(path, archive.arrays, changing(model))
-    require_same(path, archive.arrays, _waiting(model.run, archive.arrays["clock"]))
-    try:
-        about = archive.about["progress"]
-        undriven, under_way = about["undriven"], about["slice"]
-        progress = Progress(
-            stepping_cpu_s=float(about["stepping_cpu_s"]),
-            undriven=None
-            if undriven is None
-            else (float(undriven[0]), float(undriven[1]), float(undriven[2])),
-            slice=None if under_way is None else (float(under_way[0]), int(under_way[1])),
-        )
-    except (KeyError, TypeError, ValueError, IndexError) as error:
-        raise misfit(path, f"its notes cannot be read ({error!r})") from None
-    return SavedState(progress=progress, arrays=archive.arrays, notes=archive.about)
 
 
 def misfit(path: Path, reason: str) -> CheckpointError:
@@ -219,7 +174,8 @@ def _readings() -> FloatArray:
 class Start:
     """Where a run starts: at t = 0, or at a checkpoint."""
 
-    state: SavedState = field(default_factory=SavedState)
+    progress: Progress = BEGINNING
+    arrays: Arrays = field(default_factory=dict)  #: as `state_of` names them; empty: t = 0
     history_bytes: int | None = None  #: of the history that stay; None: it is new
     frames_s: tuple[float, ...] = ()  #: times of the frames that stay
     spent: Spent = field(default_factory=lambda: NOTHING_SPENT)
@@ -227,34 +183,60 @@ class Start:
     @property
     def is_resumed(self) -> bool:
         """Whether there is a checkpoint."""
-        return bool(self.state.arrays)
+        return bool(self.arrays)
+
+    def restore(self, model: Model, recorder: Recorder) -> None:
+        """Give run, body and recorder this state; they stay as they are at t = 0."""
+        if not self.arrays:
+            return
+        for name, array in changing(model).items():
+            np.copyto(array, self.arrays[name])
+        for name, array in _waiting(model.run, model.run.clock).items():  # the clock is restored by now
+            np.copyto(array, self.arrays[name])
+        if not isinstance(model.body, ModalBody | LooseStack | LinkedBody):
+            model.body.recall(_named(self.arrays, BODY))
+        recorder.recall(_named(self.arrays, RECORDED))
 
 
 def read_start(files: RunFiles, model: Model, case_hash: str) -> Start:
     """The start that the checkpoint of a run asks for, after a check of all that it refers to; without one, t = 0.
 
     Raises:
-        CheckpointError: damaged, of another case or version, or history and frames have changed since. Nothing has
-            been changed then.
+        CheckpointError: damaged, of another case or version, not of this model's run, or history and frames have
+            changed since. Nothing has been changed then.
     """
     path = files.checkpoint
     if not path.exists():
         return Start()
-    state = read_state(path, model, case_hash)
+    archive = read_checkpoint(path, case_hash=case_hash, program=program_identity())
+    require_same(path, archive.arrays, changing(model))
+    require_same(path, archive.arrays, _waiting(model.run, archive.arrays["clock"]))
     try:
-        notes = state.notes
+        notes, about = archive.about, archive.about["progress"]
+        undriven, under_way = about["undriven"], about["slice"]
         length, digest = int(notes["history"]["bytes"]), str(notes["history"]["sha256"])
-        frames_s = tuple(float(instant) for instant in notes["frames_s"])
         wall_s, cpu_s, compile_s = (float(notes["spent"][name]) for name in Spent.__annotations__)
-        spent = Spent(wall_s=wall_s, cpu_s=cpu_s, compile_s=compile_s)
-    except (KeyError, TypeError, ValueError) as error:
+        start = Start(
+            progress=Progress(
+                stepping_cpu_s=float(about["stepping_cpu_s"]),
+                undriven=None
+                if undriven is None
+                else (float(undriven[0]), float(undriven[1]), float(undriven[2])),
+                slice=None if under_way is None else (float(under_way[0]), int(under_way[1])),
+            ),
+            arrays=archive.arrays,
+            history_bytes=length,
+            frames_s=tuple(float(instant) for instant in notes["frames_s"]),
+            spent=Spent(wall_s=wall_s, cpu_s=cpu_s, compile_s=compile_s),
+        )
+    except (KeyError, TypeError, ValueError, IndexError) as error:
         raise misfit(path, f"its notes cannot be read ({error!r})") from None
     if _digest_of_first(files.history, length) != digest:
         raise misfit(path, f"{files.history.name} was changed since, or is missing")
-    for i in range(len(frames_s)):
+    for i in range(len(start.frames_s)):
         if not (files.fields / frame_name(i)).is_file():
             raise misfit(path, f"{files.fields.name}/{frame_name(i)} is missing")
-    return Start(state=state, history_bytes=length, frames_s=frames_s, spent=spent)
+    return start
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -293,7 +275,7 @@ def open_output(files: RunFiles, model: Model, start: Start) -> Iterator[RunOutp
             stack.callback(fields.close)
         recorder = Recorder(model, recovery_of(model), history.append, fields.write if fields else None)
         if start.is_resumed:
-            start.state.restore(model, recorder)
+            start.restore(model, recorder)
             recorder.resume(read_history(files.history))
         yield RunOutput(recorder=recorder, history=history, fields=fields)
 

@@ -4,28 +4,32 @@ from collections.abc import Sequence
 
 from fem.results.figures import FIGURES, SLIPPED, TURNED, Place
 from fem.results.run_result import Band, JointDemand, Numerics, RunResult, StaticResult, Verdict
+from fem.run.words import sentence
 from fem.runtime.units import FEW, KILONEWTONS, Reach, figures_of
 
 IMPACT = "impact, not for design unless the floor is known"
-STRUCK = "of spring and dashpot, not for design unless both are known"
 #: note for a floor that crushes, whose strength and stiffness nothing has varied
 UNTRIED = "impact; the band tries other floors (--band)"
 
 
 def in_words(result: RunResult, key: str) -> str:
     """A figure of the verdict for the summary; empty where there is none."""
-    verdict, figure = result.verdict or Verdict(), FIGURES[key]
-    match key:
-        case "max_rotation_rad":
-            return rotation_in_words(verdict)
-        case "restitution_first":
-            return first_restitution(verdict, result.static or StaticResult())
-        case "max_von_mises_Pa":
-            return largest_stress(verdict)
-    if not (words := of_band(verdict, key)):
-        return ""
-    struck = f"; {STRUCK}" if figure.struck and getattr(verdict, key) else ""
-    return f"{words}{_filtered(result, key)}{impact_note(verdict) if figure.impact else ''}{struck}"
+    verdict, numerics, figure = result.verdict or Verdict(), result.numerics or Numerics(), FIGURES[key]
+    return sentence(
+        "figure.txt.j2",
+        key=key,
+        figure=figure,
+        verdict=verdict,
+        of_band=of_band,
+        reach_of=reach_of,
+        largest_rotation=largest_rotation(verdict),
+        largest_ratio=of_band(verdict, TURNED),
+        housner=(result.static or StaticResult()).housner_restitution,
+        cutoff=numerics[figure.cutoff] if figure.cutoff else None,
+        window=numerics[figure.window] if figure.window else None,
+        plastic_corner=plastic_corner(verdict),
+        impact_note=impact_note(verdict),
+    )
 
 
 def of_band(verdict: Verdict, key: str) -> str:
@@ -39,16 +43,6 @@ def reach_of(verdict: Verdict, key: str) -> Reach | None:
     """The range of a figure of the verdict over its band."""
     reach: Reach | None = getattr(verdict.band or Band(), key)
     return reach
-
-
-def _filtered(result: RunResult, key: str) -> str:
-    """How a figure is filtered, or averaged: its instantaneous value in an impact means nothing."""
-    numerics, figure = result.numerics or Numerics(), FIGURES[key]
-    cutoff = numerics[figure.cutoff] if figure.cutoff else None
-    window = numerics[figure.window] if figure.window else None
-    if cutoff is not None:
-        return f", low-pass {cutoff:g} Hz"
-    return "" if window is None else f", mean over {1e3 * window:.2g} ms"
 
 
 def impact_note(verdict: Verdict) -> str:
@@ -79,33 +73,6 @@ def largest_rotation(verdict: Verdict) -> str:
     reach = reach_of(verdict, TURNED)
     figures = FEW if reach is None else figures_of(reach, figure.unit.figures)
     return figure.unit.text(verdict.max_rotation_rad, figures=figures)
-
-
-def rotation_in_words(verdict: Verdict) -> str:
-    """The largest rotation, and over the slenderness angle with its range."""
-    turned, ratio = largest_rotation(verdict), largest_ratio(verdict)
-    return f"{turned}, {ratio} of the slenderness angle" if turned and ratio else ""
-
-
-def first_restitution(verdict: Verdict, static: StaticResult) -> str:
-    """That of the first impact, beside Housner's; empty where none could be measured."""
-    housner = static.housner_restitution
-    if verdict.restitution_first is None:
-        return ""
-    return f"{verdict.restitution_first:.3f}" + (f" (Housner {housner:.3f})" if housner is not None else "")
-
-
-def largest_stress(verdict: Verdict) -> str:
-    """The largest stress; beyond yield, the elastic value is not the stress in the container."""
-    words, reach = of_band(verdict, "max_von_mises_Pa"), reach_of(verdict, "max_von_mises_Pa")
-    stress, limit = verdict.max_von_mises_Pa, verdict.yield_strength_Pa
-    if words and verdict.stress_from_corner_m is not None:
-        words += f", {1e3 * verdict.stress_from_corner_m:.3g} mm and more from a corner"
-    if stress is None or limit is None or max(reach or (0.0,)) <= limit >= stress:
-        return f"{words}{impact_note(verdict)}" if words else ""
-    where = "beyond yield" if stress > limit else "beyond yield within the band"
-    plastic = f"; {corner}" if stress > limit and (corner := plastic_corner(verdict)) else ""
-    return f"{where} ({1e-6 * limit:g} MPa); the shell stays elastic and has {words}{plastic}{impact_note(verdict)}"
 
 
 def plastic_corner(verdict: Verdict) -> str:

@@ -170,9 +170,8 @@ def compute_into(
                 return output.sync() | {"spent": watch.spent()}
 
             save = CheckpointWriter(files.checkpoint, model, recorder, case_hash=request, notes=notes)
-            progress = start.state.progress
             result, _ = stepped(
-                model, result, recorder, reporter=reporter, stop=stop, save=save, progress=progress
+                model, result, recorder, reporter=reporter, stop=stop, save=save, progress=start.progress
             )
     return result
 

@@ -7,7 +7,7 @@ stack this holds for every box and every joint, and a fall is the same if the sa
 
 import math
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -53,11 +53,8 @@ def judged(
     numerically = OTHER_END in (level for level, change in pairs if numerical(change))
     missing = [run for run in left_out if run.kind != "draw"]
     no_outcome = any(other.outcome is None for other in others)
-    destroyed = own.outcome == Outcome.INVALID
-    if no_outcome or missing or OTHER_END in levels or below_uplift(members) or destroyed:
-        sure = UNSURE
-    else:
-        sure = REGIME_UNSURE if OTHER_REGIME in levels else SURE
+    unknown = no_outcome or missing or below_uplift(members) or own.outcome == Outcome.INVALID
+    sure = UNSURE if unknown else how_sure(levels)
     outcomes = {member.outcome for member in members}
     alike = [member for member in members if ending(member) == ending(own) and member.outcome is not None]
     draws = [other for other in others if other.kind == "draw"]
@@ -83,6 +80,11 @@ def judged(
         decided_by=tuple(key for key in dict.fromkeys(deciding) if key != TOLERANCE),
         band=band,
     )
+
+
+def how_sure(levels: Iterable[int]) -> str:
+    """The word for an outcome whose variations differ from it by these levels: the worst decides."""
+    return (SURE, REGIME_UNSURE, UNSURE)[max(levels, default=SAME)]
 
 
 def below_uplift(members: Sequence[ChangedRun]) -> bool:

@@ -29,13 +29,13 @@ from fem.run.bracket import Change, changes_of, least_width, values_to_try
 from fem.run.solve import chosen_values
 from fem.run.sureness import (
     OTHER_END,
-    OTHER_REGIME,
     REGIME_UNSURE,
     SAME,
     SURE,
     UNSURE,
     deciding_inputs,
     difference,
+    how_sure,
 )
 from fem.runtime.arrays import BoolArray, FloatArray, IntArray
 from fem.study.axes import Axis, lines_along, shape_of
@@ -200,8 +200,7 @@ class Copies:
             replace(change, values=dict([*change.values.items()][:1])) if change.share == SMALL else change
             for change in (row.copy.change for row in rows)
         ]
-        word = {SAME: SURE, OTHER_REGIME: REGIME_UNSURE, OTHER_END: UNSURE}[most]
-        return word, tuple(deciding_inputs(levels, alone))
+        return how_sure(levels), tuple(deciding_inputs(levels, alone))
 
     def _overturned_share(self, cell: int) -> float | None:
         """Share of a cell and all its copies that do not stand; None of a cell that failed.

@@ -12,9 +12,8 @@ from contact.stepping.integrator import REACHED, enter_floor_frame_compiled
 from contact.stepping.ledger import BASE_WORK, CRUSHING, FRICTION, IMBALANCE
 from contact.stepping.outcome import FREE, is_over
 from fem.model.model import Model, build_model
-from fem.run.output import CheckpointWriter, read_state
+from fem.run.output import Start, state_of
 from fem.run.recorder import Recorder
-from fem.run.simulation import BEGINNING
 from fem.solid.nodal_body import advance_body
 
 MODELS = {
@@ -146,15 +145,12 @@ def test_every_model_crushes_the_floor_alike(model):
 
 
 @pytest.mark.parametrize("model", MODELS)
-def test_an_interrupted_run_keeps_its_indentations_to_the_byte(model, tmp_path):
+def test_a_state_that_is_kept_has_its_indentations_to_the_byte(model):
     whole, first, second = (tilted_box(model) for _ in range(3))
     for one in (whole, first):
         stepped(one, 0.1)
     assert first.run.old.crushed.max() > 0.0
-    recorder = Recorder(first)
-    write = CheckpointWriter(tmp_path / "checkpoint.npz", first, recorder, case_hash="", notes=dict)
-    write(BEGINNING, True)
-    read_state(tmp_path / "checkpoint.npz", second, "").restore(second, Recorder(second))
+    Start(arrays=state_of(first, Recorder(first))).restore(second, Recorder(second))
     for one in (whole, second):
         stepped(one, 0.12)
     assert second.run.old.numbers.tobytes() == whole.run.old.numbers.tobytes()
