@@ -13,28 +13,17 @@ from contact.stepping.modes import ROCKING
 from fem.results.figures import BOX_FIGURES, BoxResult
 from fem.results.outcome import least_slide
 from fem.results.run_result import BoxReach, JointDemand, RunResult, StaticResult, Verdict
-from fem.run.ranges import crushes, impact_note
+from fem.run.ranges import impact_note
+from fem.run.words import cells, sentence
 from fem.runtime.units import FEW, JOINT_MILLIMETRES, SHORT_MILLIMETRES, in_figures
 
 MOST_JOINTS = 8  #: joints shown; of more, those with a largest value
-JOINTS_NOTE = (
-    "The boxes are bolted and move as one. The table gives the forces in their joints (means over the interval "
-    "of the history), the tension in the bolts along one edge, the shear in the bolts beyond static friction as on the "
-    "floor, and when a joint without bolts would open at an edge or slide."
-)
-OVERSTATED = (
-    "Where impacts are elastic, means over them overstate the friction needed, the forces in the bolts, and how often "
-    "joints without bolts would open or slide."
-)
-LOOSE_RUN = "A run of the stack with loose joints finds what boxes without bolts do."
 LARGEST = ("max_shear_N", "max_moment_Nm", "bolt_tension_left_N", "bolt_tension_right_N", "bolt_shear_N")
 
 
-def joints_note(verdict: Verdict) -> str:
-    """How to read the joints of a bolted stack, whose table is only an estimate of what loose boxes do."""
-    return " ".join(
-        [JOINTS_NOTE, *([OVERSTATED] if verdict.impacts and not crushes(verdict) else []), LOOSE_RUN]
-    )
+def note(verdict: Verdict, which: str) -> str:
+    """How to read the joints of a stack: `bolted_note` or `loose_note`."""
+    return sentence("joints.txt.j2", which, verdict=verdict)
 
 
 def titled_table(title: str, *columns: str) -> Table:
@@ -49,37 +38,28 @@ def titled_table(title: str, *columns: str) -> Table:
 
 def joint_tables(every: Sequence[JointDemand], verdict: Verdict) -> Iterator[RenderableType]:
     """Forces, and what bolts carry; one row a joint, from the floor up."""
-    note, kilo = impact_note(verdict), partial(in_figures, figures=FEW, factor=1e-3)
-    forces = titled_table(
-        f"Forces in the joints between boxes{note}", "joint at", ">normal kN", ">shear kN", ">moment kNm"
-    )
-    bolts = titled_table(
-        f"Bolts{note}",
-        "joint at",
-        ">tension left, right kN",
-        ">shear kN",
-        ">friction needed",
-        "without bolts it",
-    )
-    joints = _shown(every)
-    for joint in joints:
-        place, normal = f"{joint.height_m:.4g} m", (joint.min_normal_N, joint.max_normal_N)
-        tension = (joint.bolt_tension_left_N, joint.bolt_tension_right_N)
-        used = "" if joint.bolt_utilisation is None else f" ({joint.bolt_utilisation:.2g})"
-        needed = "none suffices" if joint.friction_needed is None else f"{joint.friction_needed:.2g}"
-        forces.add_row(
-            place, " .. ".join(map(kilo, normal)), kilo(joint.max_shear_N), kilo(joint.max_moment_Nm)
-        )
-        bolts.add_row(
-            place, ", ".join(map(kilo, tension)) + used, kilo(joint.bolt_shear_N), needed, unbolted(joint)
-        )
-    yield from (forces, bolts)
+    heads = {
+        "forces": ("Forces in the joints between boxes", ">normal kN", ">shear kN", ">moment kNm"),
+        "bolts": (
+            *("Bolts", ">tension left, right kN", ">shear kN", ">friction needed", "without bolts it"),
+        ),
+    }
+    joints, kilo = _shown(every), partial(in_figures, figures=FEW, factor=1e-3)
+    for macro, (title, *columns) in heads.items():
+        table = titled_table(f"{title}{impact_note(verdict)}", "joint at", *columns)
+        for row in cells(
+            "joints.txt.j2", macro, joints=joints, verdict=verdict, kilo=kilo, unbolted=unbolted
+        ):
+            table.add_row(*row)
+        yield table
     if any(joint.bolt_utilisation is not None for joint in joints):
         yield Text("In parentheses: the larger tension over the capacity of a bolt.\n")
-    left_out = len(every) - len(joints)
-    yield Text(
-        joints_note(verdict) + (f" {left_out} more joints are in run.json." if left_out else "") + "\n"
-    )
+    yield _note(verdict, "bolted_note", len(every) - len(joints), "joints")
+
+
+def _note(verdict: Verdict, which: str, left_out: int, of: str) -> Text:
+    more = f" {left_out} more {of} are in run.json." if left_out else ""
+    return Text(f"{note(verdict, which)}{more}\n")
 
 
 def _shown(joints: Sequence[JointDemand]) -> Sequence[JointDemand]:
@@ -98,11 +78,6 @@ def unbolted(joint: JointDemand) -> str:
 
 AS_ONE = "the boxes moved as one"
 MOST_BOXES = 12  #: boxes in a table; of more, those with a largest value
-BOXES_NOTE = (
-    "The boxes stand on one another without bolts. Slip and opening of a box are over what is below it: the floor or "
-    "the next box; less slip than 1 mm is not resolved, because the dashpot of the joints decides it. The rotation "
-    "ratio is the largest rotation of any box over the slenderness angle of the whole stack."
-)
 
 
 def leaning_in_words(what: str, verdict: Verdict) -> str:
@@ -200,8 +175,7 @@ def box_table(result: RunResult) -> Iterator[RenderableType]:
     for k in indices:
         table.add_row(*(cell.replace(" (", "\n(").replace(", ", ",\n") for cell in rows[k]))
     yield table
-    left_out = len(rows) - len(indices)
-    yield Text(BOXES_NOTE + (f" {left_out} more boxes are in run.json." if left_out else "") + "\n")
+    yield _note(result.verdict or Verdict(), "loose_note", len(rows) - len(indices), "boxes")
 
 
 def _boxes_shown(boxes: Sequence[BoxResult]) -> Sequence[int]:

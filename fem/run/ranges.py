@@ -62,11 +62,6 @@ def largest_slip(verdict: Verdict) -> str:
     return of_band(verdict, SLIPPED)
 
 
-def largest_ratio(verdict: Verdict) -> str:
-    """The largest rotation over the slenderness angle, with its range."""
-    return of_band(verdict, TURNED)
-
-
 def largest_rotation(verdict: Verdict) -> str:
     """The largest rotation alone, with the figures that the range of its ratio leaves."""
     figure = FIGURES["max_rotation_rad"]

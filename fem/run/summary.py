@@ -10,6 +10,7 @@ import io
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 from rich.console import Console, RenderableType
@@ -17,15 +18,15 @@ from rich.table import Table
 from rich.text import Text
 
 from fem.results import run_result
-from fem.results.figures import BRIEF, FIGURES, SUMMARY, Place, summary_order
+from fem.results.figures import BRIEF, FIGURES, SUMMARY, TURNED, Place, summary_order
 from fem.results.kinds import RUN
-from fem.results.outcome import ENDINGS, SLIDING, Outcome
+from fem.results.outcome import SLIDING, Outcome
 from fem.run.card import card_of
 from fem.run.described import fall_in_row, floor_rows, motion_in_words
 from fem.run.joints import box_table, joint_tables, largest_joint_slip, titled_table
-from fem.run.ranges import bolt_forces, in_words, largest_ratio, largest_slip, of_band
+from fem.run.ranges import bolt_forces, in_words, largest_slip, of_band
 from fem.run.static_words import code_note, governing, rule_says
-from fem.run.words import rows
+from fem.run.words import cells, rows, sentence
 from fem.runtime.terminal import shown
 from fem.runtime.units import MILLIMETRES, visible_number
 
@@ -98,14 +99,7 @@ def _parts(result: run_result.RunResult, folder: Path) -> Iterator[RenderableTyp
 def band_note(band: run_result.Band | None) -> str:
     """What the band tried and what its ranges are; empty where nothing was varied."""
     kinds = {member.kind for member in band.members[1:]} if band is not None else set()
-    if not kinds:
-        return ""
-    at_once = ", and with all of them changed at random at once" if "draw" in kinds else ""
-    return (
-        "The variations repeat the run with changed inputs: one at a time to the ends of their ranges, which the case "
-        f"states or which follow from it{at_once}. Numbers in parentheses are the least and the largest of the runs "
-        "that stand, or overturn, as this one does."
-    )
+    return sentence("summary.txt.j2", "band_note", kinds=kinds)
 
 
 def to_compare(result: run_result.RunResult) -> run_result.Verdict:
@@ -117,47 +111,15 @@ def _static_table(static: run_result.StaticResult, verdict: run_result.Verdict) 
     """Sliding and overturning under each action, one below the other."""
     columns = ("action", "check", "demand / limit", "use", "rule says", "run found")
     table = titled_table(f"Static rules, {own_motion_name(static)}", *columns)
-    sliding, restoring = static.sliding_limit_static_N, static.restoring_moment_Nm
-    for action, name in (
-        (static.own_motion, "own peak"),
-        (static.own_motion_vertical, "own, vertical"),
-        (static.code, "code, q"),
-        (static.code_q1, "q = 1"),
-        (static.wind, "wind"),
-    ):
-        if action is not None:
-            slid, tilted = (run_slid(verdict), run_tilted(verdict)) if name.startswith("own") else ("", "")
-            factor = 1e-3 * share_of_weight(action, static)
-            use = _use(action.utilisation_sliding, action.base_shear_N)
-            if name == "wind" and use:  # it may have a partial factor on friction
-                sliding, factor = (action.base_shear_N or 0.0) / use, 1e-3
-            demand = f"{visible_number(action.base_shear_N, 1e-3)} / {visible_number(sliding, factor)} kN"
-            table.add_row(
-                name, "sliding", demand, visible_number(use, 1.0, ".3f"), rule_says("sliding", use), slid
-            )
-            factor = 1e-3 * share_of_weight(action, static)
-            demand = (
-                f"{visible_number(action.tilting_moment_Nm, 1e-3)} / {visible_number(restoring, factor)} kNm"
-            )
-            use, check = _use(action.utilisation_overturning, action.tilting_moment_Nm), "overturning"
-            table.add_row("", check, demand, visible_number(use, 1.0, ".3f"), rule_says(check, use), tilted)
-            if (use := action.utilisation_lifting) is not None and use > 1.0:
-                lifted, weight = run_lifted(verdict), visible_number(static.weight_N, 1e-3)
-                demand = f"{visible_number(static.weight_N, 1e-3 * use)} / {weight} kN"
-                table.add_row("", "lifting", demand, f"{use:.3f}", rule_says("lifting", use), lifted)
+
+    def use(utilisation: float | None, demand: float | None) -> float | None:
+        """A utilisation as `run.json` has it, where a demand without any capacity has none: infinite."""
+        return math.inf if utilisation is None and demand else utilisation
+
+    named = {"use": use, "seen": visible_number, "rule_says": rule_says, "found": partial(run_found, verdict)}
+    for row in cells("summary.txt.j2", "static_rules", static=static, **named):
+        table.add_row(*row)
     return table
-
-
-def _use(utilisation: float | None, demand: float | None) -> float | None:
-    """A utilisation as `run.json` has it, where a demand without any capacity has none: infinite."""
-    return math.inf if utilisation is None and demand else utilisation
-
-
-def share_of_weight(action: run_result.ActionResult, static: run_result.StaticResult) -> float:
-    """The least weight under a vertical motion over the weight; 1 of an action without one."""
-    if action.least_weight_N is None or not static.weight_N:
-        return 1.0
-    return action.least_weight_N / static.weight_N
 
 
 def own_motion_name(static: run_result.StaticResult) -> str:
@@ -171,38 +133,18 @@ def own_motion_name(static: run_result.StaticResult) -> str:
     return f"own peak, {use * (uplift + downhill) - downhill:.3g} m/s2{slope}"
 
 
-def run_slid(verdict: run_result.Verdict) -> str:
-    """Whether the run slid, and how far; of a loose stack, on the floor and between the boxes."""
-    slip = largest_slip(verdict)
-    if not slip:
-        return "-"
-    if verdict.outcome == Outcome.INVALID:
-        return Outcome.INVALID.verb
-    sliding = not {verdict.outcome, *verdict.modes}.isdisjoint(SLIDING)
-    if not verdict.boxes:
-        return f"{'slid' if sliding else 'held'}, slip {slip}"
-    between, _ = largest_joint_slip(verdict)
-    return f"slip {slip}" + (f", {between} between boxes" if between else "")
-
-
-def run_lifted(verdict: run_result.Verdict) -> str:
-    """Whether all of the base left the floor at once."""
-    if verdict.outcome == Outcome.INVALID:
-        return Outcome.INVALID.verb
-    hopped = Outcome.HOP in {verdict.outcome, *verdict.modes}
-    return f"{'hopped' if hopped else 'stayed'}, uplift {of_band(verdict, 'max_uplift_m')}"
-
-
-def run_tilted(verdict: run_result.Verdict) -> str:
-    """Whether the run overturned, and how far it turned; in a row the container itself."""
-    if verdict.outcome == Outcome.OVERTURNED and fall_in_row(verdict):
-        beyond = (verdict.rotation_ratio or 0.0) > 1.0
-        how = "had turned beyond its slenderness angle when" if beyond else "stood until"
-        return f"{how} a neighbour fell, ratio {largest_ratio(verdict)}"
-    if verdict.outcome and verdict.outcome in ENDINGS:
-        return Outcome(verdict.outcome).verb
-    ratio = largest_ratio(verdict)
-    return f"stood, ratio {ratio}" if ratio else "-"
+def run_found(verdict: run_result.Verdict, check: str) -> str:
+    """What the run found, beside what the static rule says of `sliding`, `overturning` or `lifting`."""
+    return sentence(
+        "found.txt.j2",
+        check,
+        verdict=verdict,
+        slip=largest_slip(verdict),
+        between=largest_joint_slip(verdict)[0],
+        ratio=of_band(verdict, TURNED),
+        uplift=of_band(verdict, "max_uplift_m"),
+        in_row=bool(fall_in_row(verdict)),
+    )
 
 
 def _of_whom(verdict: run_result.Verdict) -> str:

@@ -27,25 +27,31 @@ NAMED: dict[str, Any] = {
 }
 
 
-def paragraphs(template: str, **shown: Any) -> list[str]:
-    """The texts of a template that are not empty."""
-    return _parts(text_template(template).render(NAMED | shown))
+def paragraphs(template: str, macro: str = "", **shown: Any) -> list[str]:
+    """The texts of a template, or of one of its macros, that are not empty."""
+    source = text_template(template)
+    return _parts(
+        getattr(source.make_module(NAMED | shown), macro)() if macro else source.render(NAMED | shown)
+    )
 
 
-def sentence(template: str, **shown: Any) -> str:
-    """All that a template says; empty where it says nothing."""
-    return " ".join(paragraphs(template, **shown))
+def sentence(template: str, macro: str = "", **shown: Any) -> str:
+    """All that a template or one of its macros says; empty where it says nothing."""
+    return " ".join(paragraphs(template, macro, **shown))
 
 
 def said(template: str, macros: Sequence[str], **shown: Any) -> list[str]:
-    """What macros of a template say."""
+    """What macros of a template say, of the same."""
     module = text_template(template).make_module(NAMED | shown)
     return [" ".join(getattr(module, macro)().split()) for macro in macros]
 
 
 def rows(template: str, macro: str = "", **shown: Any) -> list[tuple[str, str]]:
     """Name and value of each row of a template, or of one of its macros: `name | value`; none without a value."""
-    source = text_template(template)
-    text = getattr(source.make_module(NAMED | shown), macro)() if macro else source.render(NAMED | shown)
-    pairs = (part.partition("|") for part in _parts(text))
+    pairs = (text.partition("|") for text in paragraphs(template, macro, **shown))
     return [(name.strip(), value.strip()) for name, _, value in pairs if value.strip()]
+
+
+def cells(template: str, macro: str, **shown: Any) -> list[list[str]]:
+    """The cells of each row of a table by a macro of a template: `cell | cell | cell`."""
+    return [[cell.strip() for cell in text.split("|")] for text in paragraphs(template, macro, **shown)]

@@ -10,7 +10,7 @@ from fem.model.model import build_model
 from fem.model.motion import build_motions
 from fem.run.solve import resolve
 from fem.run.static_words import governing
-from fem.run.summary import run_tilted
+from fem.run.summary import run_found
 
 SQUAT = {
     "container": {"width_m": 4.0, "height_m": 1.5, "depth_m": 1.1, "mass_kg": 1e4},
@@ -40,7 +40,8 @@ def test_what_falls_is_named_and_the_container_is_compared_with_its_own_rule(fal
     assert fallen.verdict.outcome == "overturned"
     assert fallen.verdict.neighbours[0].outcome == "overturned" and fallen.verdict.rotation_ratio < 0.001
     leant = replace(fallen.verdict, rotation_ratio=4.9)
-    assert "ratio < 0.001" in run_tilted(fallen.verdict) and "ratio 4.9" in run_tilted(leant)
+    assert "ratio < 0.001" in run_found(fallen.verdict, "overturning")
+    assert "ratio 4.9" in run_found(leant, "overturning")
     assert governing(fallen.typed_result) == []
 
 
