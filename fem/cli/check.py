@@ -17,9 +17,8 @@ from fem.model.geometry import build_container, node_count
 from fem.model.motion_summary import summary_from_keys
 from fem.results.disk import in_units
 from fem.results.run_result import MotionResult
-from fem.run.described import floor_rows, link_rows, motion_in_words, part_covered
+from fem.run.described import floor_rows, link_rows, motion_in_words, part_covered, sides_in_words, sides_of
 from fem.run.preview import Preview
-from fem.run.static_words import sides_in_words, sides_of
 from fem.runtime.terminal import say
 
 MOST_NODES = 20_000  #: up to which a container is settled on its floor, in some 2 s

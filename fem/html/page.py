@@ -16,7 +16,7 @@ from functools import cache, partial
 from importlib import metadata, resources
 from typing import Any
 
-from jinja2 import Environment, PackageLoader, StrictUndefined, Template, UndefinedError
+from jinja2 import Environment, PackageLoader, StrictUndefined, UndefinedError
 from markupsafe import Markup, escape
 
 from fem.html.drawing import require_drawing
@@ -45,6 +45,7 @@ FILTERS = {
     "degrees": degrees,
     "drawing": lambda text, label, prefix: svg_element(text, label=label, prefix=prefix),
     "figure_of": FIGURES.__getitem__,
+    "form": format,
     "formula": formula_markup,
     "head": lambda figure: f"#{figure_head(figure)}",
     "mm": millimetres,
@@ -141,21 +142,10 @@ def html_of(
         raise KeyError(str(error)) from None  # of a damaged result, like any key that is missing
 
 
-def text_of(template: str, **shown: Any) -> str:
-    """A page for a terminal, by a template of `fem/html/templates`."""
-    return text_template(template).render(shown).rstrip()
-
-
-def text_template(name: str) -> Template:
-    """A template of `fem/html/templates` for plain text."""
-    return _text_environment().get_template(name)
-
-
-@cache
-def _text_environment() -> Environment:
-    environment = _environment().overlay(autoescape=False)
-    environment.filters = {**environment.filters, "form": format}
-    return environment
+def text_of(template: str, macro: str = "", **shown: Any) -> str:
+    """A text for a terminal, by a template of `fem/html/templates` or by one of its macros."""
+    source = _environment(autoescape=False).get_template(template)
+    return str(getattr(source.make_module(shown), macro)() if macro else source.render(shown)).rstrip()
 
 
 @cache
@@ -183,10 +173,10 @@ def svg_element(text: str, *, label: str, prefix: str) -> Markup:
 
 
 @cache
-def _environment() -> Environment:
+def _environment(*, autoescape: bool = True) -> Environment:
     environment = Environment(
         loader=PackageLoader("fem.html", TEMPLATES),
-        autoescape=True,
+        autoescape=autoescape,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,

@@ -33,7 +33,7 @@ from fem.results.kinds import RUN
 from fem.results.outcome import Outcome
 from fem.results.reader import OpenedRun
 from fem.results.run_result import RigidCheckResult, RunResult, Verdict, to_overturn
-from fem.run import described, joints, ranges, static_words, summary
+from fem.run import described, joints, ranges, summary
 from fem.run.card import card_of
 from fem.run.drawn_links import drawn_links
 from fem.run.rigid_check import check_against_rigid_block
@@ -46,8 +46,7 @@ MOTION = ("rotation", "slip", "base_motion", "spectrum", "uplift", "forces", "ph
 SHORT_MOTION = ("rotation", "slip")
 #: modules whose words the template takes
 SAID: dict[str, Any] = {
-    module.__name__.rpartition(".")[2]: module
-    for module in (described, joints, ranges, static_words, summary)
+    module.__name__.rpartition(".")[2]: module for module in (described, joints, ranges, summary)
 }
 
 

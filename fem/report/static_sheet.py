@@ -22,7 +22,7 @@ from fem.model.static_checks import (
     CodeChecks,
     StaticChecks,
 )
-from fem.run.static_words import rule_says
+from fem.run.described import rule_says
 
 PAPER = "Knoedel and Hrabowski"
 

@@ -17,10 +17,9 @@ from fem.results.run_result import (
     StaticResult,
     Verdict,
 )
-from fem.run.described import fall_in_row, links_in_words, part_covered
+from fem.run.described import fall_in_row, links_in_words, part_covered, rule_says, sides_in_words
 from fem.run.joints import fall_in_words, joints_in_words, leaning_in_words
 from fem.run.ranges import largest_rotation, largest_slip, of_band, reach_of
-from fem.run.static_words import rule_says, sides_in_words
 from fem.run.sureness import (
     below_uplift,
     ending,
@@ -29,7 +28,7 @@ from fem.run.sureness import (
     stands,
     static_use,
 )
-from fem.run.words import said
+from fem.run.words import sentence
 from fem.runtime.intervals import binomial_interval
 from fem.runtime.units import PERCENT, in_figures
 
@@ -110,7 +109,7 @@ def _lines(result: RunResult, names: Sequence[str]) -> list[str]:
     }
     named = {"SEEN": SEEN, "STAYS": STAYS, "PLACES": PLACES, "OUTCOMES": OUTCOMES, "times": times}
     named |= {"rule_says": rule_says, "deciding_in_words": deciding_in_words}
-    return said("card.txt.j2", names, **shown, **named)
+    return [sentence("card.txt.j2", name, **shown, **named) for name in names]
 
 
 def _others(verdict: Verdict) -> dict[str, Any] | None:

@@ -19,8 +19,7 @@ from fem.model.support import build_support, normal_penalty
 from fem.model.validity import require_bearing, require_memory, require_stiff_contact
 from fem.results.disk import BYTES_BESIDE, in_units, table_bytes
 from fem.results.run_result import FloorNumbers, MotionResult
-from fem.run.described import doubts
-from fem.run.static_words import code_note
+from fem.run.described import code_note, doubts
 from mesh.container import ContainerMesh
 
 #: model, step and scheme of most runs; weight over walls times stiffness, for one element, that squeezes no container

@@ -24,9 +24,9 @@ from fem.model.support import normal_penalty
 from fem.results.history import History
 from fem.results.run_result import LinkResult, RunResult
 from fem.run.card import card_of
+from fem.run.described import sides_of
 from fem.run.recorder import Recorder
 from fem.run.simulation import BEGINNING, Progress, simulate
-from fem.run.static_words import sides_of
 from fem.run.verdict import energy_of, joint_demands, numerics_of, verdict_of
 from fem.run.warnings import warnings_for
 from fem.runtime.identity import versions

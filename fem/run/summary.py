@@ -22,10 +22,9 @@ from fem.results.figures import BRIEF, FIGURES, SUMMARY, TURNED, Place, summary_
 from fem.results.kinds import RUN
 from fem.results.outcome import SLIDING, Outcome
 from fem.run.card import card_of
-from fem.run.described import fall_in_row, floor_rows, motion_in_words
+from fem.run.described import code_note, fall_in_row, floor_rows, governing, motion_in_words, rule_says
 from fem.run.joints import box_table, joint_tables, largest_joint_slip, titled_table
 from fem.run.ranges import bolt_forces, in_words, largest_slip, of_band
-from fem.run.static_words import code_note, governing, rule_says
 from fem.run.words import cells, rows, sentence
 from fem.runtime.terminal import shown
 from fem.runtime.units import MILLIMETRES, visible_number

@@ -4,11 +4,10 @@ A blank line ends a text; other white space counts as one space.
 """
 
 import re
-from collections.abc import Sequence
 from typing import Any
 
 from fem.case.tables.unknown_inputs import in_words
-from fem.html.page import text_template
+from fem.html.page import text_of
 from fem.results.outcome import SLIDING, Outcome
 from fem.runtime import units
 
@@ -29,21 +28,12 @@ NAMED: dict[str, Any] = {
 
 def paragraphs(template: str, macro: str = "", **shown: Any) -> list[str]:
     """The texts of a template, or of one of its macros, that are not empty."""
-    source = text_template(template)
-    return _parts(
-        getattr(source.make_module(NAMED | shown), macro)() if macro else source.render(NAMED | shown)
-    )
+    return _parts(text_of(template, macro, **NAMED, **shown))
 
 
 def sentence(template: str, macro: str = "", **shown: Any) -> str:
     """All that a template or one of its macros says; empty where it says nothing."""
     return " ".join(paragraphs(template, macro, **shown))
-
-
-def said(template: str, macros: Sequence[str], **shown: Any) -> list[str]:
-    """What macros of a template say, of the same."""
-    module = text_template(template).make_module(NAMED | shown)
-    return [" ".join(getattr(module, macro)().split()) for macro in macros]
 
 
 def rows(template: str, macro: str = "", **shown: Any) -> list[tuple[str, str]]:

@@ -15,8 +15,7 @@ from fem.model.geometry import build_container
 from fem.model.model import static_checks_of
 from fem.results.run_result import ChangedRun, RunResult, Verdict
 from fem.run.card import card_of
-from fem.run.described import links_in_words
-from fem.run.static_words import governing
+from fem.run.described import governing, links_in_words
 from fem.run.summary import brief_summary, plain_summary
 from fem.run.sureness import judged
 from fem.run.warnings import warnings_for

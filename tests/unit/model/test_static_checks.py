@@ -11,7 +11,7 @@ from fem.case.tables.run_tables import StaticTable
 from fem.case.validation import CaseError
 from fem.model.geometry import build_container
 from fem.model.static_checks import static_checks, static_checks_of
-from fem.run.static_words import code_note
+from fem.run.described import code_note
 
 CODE = StaticTable(ground_acceleration_m_s2=1.6, soil_factor=1.5, corner_period_s=0.8, behaviour_factor=1.5)
 
