@@ -5,7 +5,6 @@ Rotation > 0 toward +x.
 """
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import takewhile
 
@@ -29,18 +28,19 @@ from fem.model.model import Model
 from fem.results.history import ANALYTIC_COLUMN, History
 from fem.results.run_result import AnalyticBlock, PeakPair, RigidCheckResult, RunAndBlock, Verdict
 from fem.run.joints import AS_ONE, joints_in_words
+from fem.run.words import paragraphs
 from fem.runtime.arrays import FloatArray
 
-STIFF_CONTAINER = 7.0  #: first elastic over contact frequency, from which an impact is a rigid block's
-SOFT_FLOOR = 1e-3  #: static penetration over width times slenderness angle: the gap that counts as an impact
-BOUNCING_CONTACT = 1.0  #: contact damping ratio below which an impact is not plastic
-OFF_CENTRE = 1e-6  #: of the mass centre, over the width
+LIMITS = {
+    "STIFF_CONTAINER": 7.0,  #: first elastic over contact frequency, from which an impact is a rigid block's
+    "SOFT_FLOOR": 1e-3,  #: static penetration over width times slenderness angle: the gap that counts as an impact
+    "BOUNCING_CONTACT": 1.0,  #: contact damping ratio below which an impact is not plastic
+    "OFF_CENTRE": 1e-6,  #: of the mass centre, over the width
+}
 #: modes of a block that a block which cannot slide does not have
 SLIPPING = {PlanarMode.SLIDE, PlanarMode.SLIDE_ROCK, PlanarMode.OUTSIDE}
 SAMPLES_OF_SLIP, SAMPLES_OF_FORCES = 200.0, 500.0  #: of the analytic block, a second
 PEAKS = 6  #: turning points that are compared
-#: times [s] -> rotation [rad], angular velocity [rad/s], each of shape (n,)
-RotationAt = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
 COLUMNS = ("time_s", "rotation_rad", ANALYTIC_COLUMN, "analytic_angular_velocity_rad_s")
 
 
@@ -67,7 +67,7 @@ class Reference:
     """The motion of the rigid block."""
 
     name: str
-    at: RotationAt
+    motion: RockingMotion | PlanarMotion
     impact: PlanarImpact | None  #: the first after it had tilted
     left_model_at: float | None = None  #: outside its model from here on [s]
 
@@ -86,7 +86,7 @@ def check_against_rigid_block(model: Model, history: History, verdict: Verdict) 
         raise ValueError(f"rigid check: the history needs two samples and has {len(history.modes)}")
     time, angle = history["time_s"], model.static.slenderness_angle
     reference = follow_block(model, float(time[-1]))
-    rotation, rate = reference.at(time)
+    rotation, rate = reference.motion.at(time)[:2]
     peaks = zip(
         first_peaks(time, history["rotation_rad"], ROCKING * angle)[:PEAKS],
         first_peaks(time, rotation, ROCKING * angle)[:PEAKS],
@@ -121,28 +121,18 @@ def analytic_block(model: Model, end: float) -> AnalyticBlock:
     Raises:
         EventError: the block changes its state too often.
     """
-    case, angle = model.case, model.static.slenderness_angle
-    floor, start = _floor_and_start(model)
-    rotation, rate = case.initial.rotation_rad, case.initial.angular_velocity_rad_s
-    friction = PlanarBlock(
-        body=block_of(model), mu_static=case.contact.mu_static, mu_kinetic=case.contact.mu_kinetic
-    )
-    block = simulate_planar_block(
-        friction, floor, duration=end, rotation=rotation, angular_velocity=rate, slip_velocity=start
-    )
+    angle, (block, floor) = model.static.slenderness_angle, _with_friction(model, end)
     times = np.linspace(0.0, block.end, max(2, math.ceil(SAMPLES_OF_SLIP * block.end)))
     slip = block.at(times).slip
     swings: RockingMotion | PlanarMotion = block
     if block.modes & SLIPPING or any(impact.slides for impact in block.impacts):
-        swings = simulate_rocking(
-            friction.body, floor, duration=end, rotation=rotation, angular_velocity=rate
-        )
+        swings = _without_sliding(model, floor, end)
     fell = swings.outcome is PlanarMode.OVERTURNED
     return AnalyticBlock(
         outcome=None if block.outcome is PlanarMode.OUTSIDE else block.outcome.value,
         rotation_ratio=block.largest_rotation / angle,
         max_slip_m=float(np.nanmax(np.abs(slip))) if np.isfinite(slip).any() else None,
-        friction_needed=None if fell else friction_needed(friction.body, swings, floor),
+        friction_needed=None if fell else friction_needed(block_of(model), swings, floor),
     )
 
 
@@ -193,51 +183,52 @@ def follow_block(model: Model, end: float) -> Reference:
     block never slides, the block that cannot slide is the reference. In the frame of a floor that moves up and down,
     gravity is g + a_v; on a slope, the part of gravity along it is an acceleration of the floor uphill.
     """
-    case, block = model.case, block_of(model)
-    floor, start = _floor_and_start(model)
-    rotation, rate = case.initial.rotation_rad, case.initial.angular_velocity_rad_s
+    block, floor = _with_friction(model, end)
+    outside = block.outcome is PlanarMode.OUTSIDE
+    slides = block.modes & {PlanarMode.SLIDE, PlanarMode.SLIDE_ROCK} or (model.case.has_normal and outside)
+    motion: RockingMotion | PlanarMotion = block if slides else _without_sliding(model, floor, end)
 
-    def had_tilted(at: RotationAt, impact: PlanarImpact) -> bool:
-        before, _ = at(np.linspace(0.0, impact.time, 512))
+    def had_tilted(impact: PlanarImpact) -> bool:
+        before = motion.at(np.linspace(0.0, impact.time, 512))[0]
         return bool(np.nanmax(np.abs(before)) > ROCKING * model.static.slenderness_angle)
 
-    sliding = simulate_planar_block(
-        PlanarBlock(body=block, mu_static=case.contact.mu_static, mu_kinetic=case.contact.mu_kinetic),
-        floor,
-        duration=end,
-        rotation=rotation,
-        angular_velocity=rate,
-        slip_velocity=start,
-    )
-    left = case.has_normal and sliding.outcome is PlanarMode.OUTSIDE
-    if left or sliding.modes & {PlanarMode.SLIDE, PlanarMode.SLIDE_ROCK}:
-
-        def at(times: FloatArray) -> tuple[FloatArray, FloatArray]:
-            history = sliding.at(times)
-            return history.rotation, history.angular_velocity
-
-        return Reference(
-            name="rigid block with friction",
-            at=at,
-            impact=next((impact for impact in sliding.impacts if had_tilted(at, impact)), None),
-            left_model_at=sliding.end if sliding.outcome is PlanarMode.OUTSIDE else None,
-        )
-    rocking = simulate_rocking(block, floor, duration=end, rotation=rotation, angular_velocity=rate)
     return Reference(
-        name="rigid block that does not slide",
-        at=rocking.at,
-        impact=next((impact for impact in rocking.impacts if had_tilted(rocking.at, impact)), None),
+        name="rigid block with friction" if slides else "rigid block that does not slide",
+        motion=motion,
+        impact=next(filter(had_tilted, motion.impacts), None),
+        left_model_at=block.end if slides and outside else None,
     )
 
 
-def _floor_and_start(model: Model) -> tuple[FloorAcceleration, float]:
-    """The acceleration of a run's floor, with its slope and vertical motion, and the slip velocity at t = 0 [m/s]."""
+def _with_friction(model: Model, end: float) -> tuple[PlanarMotion, FloorAcceleration]:
+    """The block that may slide, and the acceleration of its floor, with its slope and vertical motion."""
     case = model.case
     floor = floor_of(model.motion, driven_until=model.duration).on_slope(case.gravity_downhill)
     if case.has_normal:
         floor = floor.with_vertical(floor_of(model.vertical, driven_until=model.duration))
     jerk = 0.0 if case.starts_moving else floor_motion(model.motion.compiled(), 0.0)[1]
-    return floor, case.initial.velocity_m_s - jerk
+    motion = simulate_planar_block(
+        PlanarBlock(
+            body=block_of(model), mu_static=case.contact.mu_static, mu_kinetic=case.contact.mu_kinetic
+        ),
+        floor,
+        duration=end,
+        rotation=case.initial.rotation_rad,
+        angular_velocity=case.initial.angular_velocity_rad_s,
+        slip_velocity=case.initial.velocity_m_s - jerk,
+    )
+    return motion, floor
+
+
+def _without_sliding(model: Model, floor: FloorAcceleration, end: float) -> RockingMotion:
+    start = model.case.initial
+    return simulate_rocking(
+        block_of(model),
+        floor,
+        duration=end,
+        rotation=start.rotation_rad,
+        angular_velocity=start.angular_velocity_rad_s,
+    )
 
 
 def floor_of(motion: BaseMotion, *, driven_until: float) -> FloorAcceleration:
@@ -285,56 +276,29 @@ def first_peaks(time: FloatArray, rotation: FloatArray, least: float) -> list[tu
 
 def reasons_against(model: Model, history: History, verdict: Verdict, reference: Reference) -> list[str]:
     """Reasons why the container differs from the rigid block; empty if there are none."""
-    mesh, static = model.container.mesh, model.static
-    kind, impact = model.case.support.kind, reference.impact
-    sinking = static.weight / model.base_stiffness / (mesh.width * static.slenderness_angle)
-    stiffness = _first_elastic_frequency(model) / contact_frequency(mesh.mass, model.base_stiffness)
+    case, mesh, static, impact = model.case, model.container.mesh, model.static, reference.impact
+    elastic = math.inf  #: first frequency of the container [Hz]
+    if case.solver.model != "rigid":
+        full = case.solver.model == "full"
+        elastic = float(model.container.lowest_modes(1).frequencies_Hz[0] if full else model.spectra[0][0])
+    moved = joints_in_words(verdict, static.to_result())
     block_slides = impact is not None and (impact.slides or impact.slip_velocity_before != 0.0)
-    reasons = []
-    if not static.housner_credible:
-        reasons.append(
-            f"squat container: Housner's restitution is {static.housner_restitution:.3f}, below 0.5"
-        )
-    if kind != "corners":
-        what = f"support {kind!r}" if kind != "corners" else "castings"
-        reasons.append(f"{what}: the container turns about a moving region, the block about its corners")
-    if (moved := joints_in_words(verdict, static.to_result())) not in ("", AS_ONE):
-        reasons.append(f"its boxes are loose: {moved}")
-    if block_slides or _slides_at_impact(model, history, verdict):
-        reasons.append("it slides at the first impact, which Housner's block does not")
-    if stiffness < STIFF_CONTAINER:
-        reasons.append(
-            f"it deforms: first elastic over contact frequency is {stiffness:.2g}, below {STIFF_CONTAINER:g}"
-        )
-    # the crushing of a slab takes the energy
-    if model.damping_ratio < BOUNCING_CONTACT and not model.case.floor.is_slab:
-        reasons.append(
-            f"the contact bounces: its damping ratio is {model.damping_ratio:g}, below {BOUNCING_CONTACT:g}"
-        )
-    if sinking > SOFT_FLOOR:
-        reasons.append(f"soft floor: the weight alone sinks in by {sinking:.1e} of width x slenderness angle")
-    if abs(mesh.centroid[0]) > OFF_CENTRE * mesh.width:
-        reasons.append(f"the mass centre is {mesh.centroid[0]:.3g} m beside the middle of the base")
-    if reference.left_model_at is not None:
-        reasons.append(
-            f"the block leaves the floor, or its impact has no solution, at {reference.left_model_at:.4g} s"
-        )
-    if not model.case.starts_moving and floor_motion(model.vertical.compiled(), 0.0)[1] != 0.0:
-        reasons.append("the floor starts with a jerk up or down, which the block does not feel")
-    if model.case.links:
-        reasons.append("stops or ties hold it")
-    if model.case.neighbour:
-        reasons.append("it stands in a row")
-    if impact is None and verdict.first_impact_s is None:
-        reasons.append("no impact in the run or the block")
-    return reasons
-
-
-def _first_elastic_frequency(model: Model) -> float:
-    """Of the container [Hz]; infinite for the rigid model."""
-    if model.case.solver.model == "full":
-        return float(model.container.lowest_modes(1).frequencies_Hz[0])
-    return math.inf if model.case.solver.model == "rigid" else float(model.spectra[0][0])
+    return paragraphs(
+        "reasons.txt.j2",
+        case=case,
+        mesh=mesh,
+        static=static,
+        quoted=repr,
+        moved="" if moved == AS_ONE else moved,
+        slides=block_slides or _slides_at_impact(model, history, verdict),
+        stiffness=elastic / contact_frequency(mesh.mass, model.base_stiffness),
+        damping_ratio=model.damping_ratio,
+        sinking=static.weight / model.base_stiffness / (mesh.width * static.slenderness_angle),
+        left_model_at=reference.left_model_at,
+        jerk=not case.starts_moving and floor_motion(model.vertical.compiled(), 0.0)[1] != 0.0,
+        no_impact=impact is None and verdict.first_impact_s is None,
+        **LIMITS,
+    )
 
 
 def _slides_at_impact(model: Model, history: History, verdict: Verdict) -> bool:
