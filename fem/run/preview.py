@@ -20,6 +20,7 @@ from fem.model.validity import require_bearing, require_memory, require_stiff_co
 from fem.results.disk import BYTES_BESIDE, in_units, table_bytes
 from fem.results.run_result import FloorNumbers, MotionResult
 from fem.run.described import code_note, doubts
+from fem.run.words import paragraphs
 from mesh.container import ContainerMesh
 
 #: model, step and scheme of most runs; weight over walls times stiffness, for one element, that squeezes no container
@@ -132,52 +133,18 @@ class Preview:
     @property
     def notes(self) -> list[str]:
         """What to keep in mind when the run is read."""
-        case, static = self.case, self.static
-        kicks = [
-            motion.amplitude * motion.angular_frequency * abs(math.cos(motion.phase_rad))
-            for motion in (case.motion, case.vertical)
-        ]
-        upward = f" along x and {kicks[1]:.3g} m/s vertically" if case.vertical.kind == "harmonic" else ""
-        notes = [
-            (
-                abs(case.initial.rotation_rad) >= static.slenderness_angle,
-                f"initial.rotation_rad = {case.initial.rotation_rad:g} is beyond the slenderness angle, "
-                f"{static.slenderness_angle:.4g} rad: without help from the floor the container falls",
-            ),
-            (
-                not static.housner_credible,
-                f"Housner's restitution is {static.housner_restitution:.3f}, below 0.5: for a container so squat "
-                "the rigid block's impact model is not credible",
-            ),
-            (
-                static.own_motion.sliding.utilisation > 1.0 and self.peak == 0.0,
-                "the floor is steeper than static friction holds: the container slides from the beginning",
-            ),
-            (static.by_code is not None or static.wind is not None, code_note(static.to_result())),
-            *((True, note) for note in doubts(self.motion, case.gravity_m_s2)),
-            (
-                not case.contact.sticks,
-                "friction regularised in velocity creeps under constant load; elastic-stick does not",
-            ),
-            (
-                case.solver.model != "rigid"
-                and case.contact.sticks
-                and case.contact.mu_kinetic < case.contact.mu_static
-                and case.contact.weakening_m == case.contact.stribeck_velocity_m_s == 0.0,
-                "friction drops at once from mu_static to mu_kinetic: an elastic container rings after impacts, and an "
-                "instant of that may decide whether it slides or rocks; contact.stribeck_velocity_m_s = 0.3 or "
-                "contact.weakening_m = 0.005 lets friction fall gradually, and the band shows what depends on it",
-            ),
-            (
-                case.motion.start == "rest" and case.motion.kind == "harmonic",
-                f'start = "rest": the floor begins with a jerk of {kicks[0]:.3g} m/s{upward}',
-            ),
-            (
-                static.ruling.overturning.utilisation >= 1.0 and static.ruling.sliding.passed,
-                "the floor reaches the acceleration of uplift, and friction holds until then: expect rocking",
-            ),
-        ]
-        return [note for applies, note in notes if applies]
+        return paragraphs(
+            "notes.txt.j2",
+            case=self.case,
+            static=self.static,
+            peak=self.peak,
+            code_note=code_note(self.static.to_result()),
+            doubts=doubts(self.motion, self.case.gravity_m_s2),
+            kicks=[
+                motion.amplitude * motion.angular_frequency * abs(math.cos(motion.phase_rad))
+                for motion in (self.case.motion, self.case.vertical)
+            ],
+        )
 
     def to_json(self) -> dict[str, Any]:
         """Everything but the hash of the case, as JSON types."""
