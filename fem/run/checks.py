@@ -64,31 +64,32 @@ def add_checks(
     verdict, check = result.verdict, None
     if result.status not in RUN.finished or verdict is None:
         return result, None
-    if _lacks_rigid_check(result, model.case, wanted):
-        history = history_of()
+    case, missing = model.case, lacking(result, model.case, wanted)
+    analytic = wanted.analytic and verdict.analytic is None and has_analytic_block(case)
+    if "rigid check" in missing or analytic:  # with scipy.integrate
         block = importlib.import_module("fem.run.rigid_check")
         events = importlib.import_module("contact.reference.event_driven")
+    if "rigid check" in missing:
+        history = history_of()
         try:
             check = block.check_against_rigid_block(model, history, verdict)
             result = replace(result, rigid_check=check.result)
         except (ValueError, events.EventError) as error:  # a run too short, a block that bounces without end
             result = replace(result, rigid_check=RigidCheckResult(reasons=(str(error),)))
-    if wanted.analytic and verdict.analytic is None and has_analytic_block(model.case):
-        block = importlib.import_module("fem.run.rigid_check")
-        events = importlib.import_module("contact.reference.event_driven")
+    if analytic:
         end = (result.numerics or Numerics()).simulated_s or 0.0
         with suppress(ValueError, events.EventError):  # a block that bounces without end has no row
             verdict = replace(verdict, analytic=block.analytic_block(model, end))
             result = replace(result, verdict=verdict)
-    if lacks_band(result, model.case, wanted) and not stop():
+    if "band" in missing and not stop():
         judged = with_band(
             model, result, stop=stop, reporter=reporter, kept_in=members, inner_forces=wanted.inner_forces
         )
         if judged is not None:
             result = replace(result, verdict=judged)
-    elif verdict.sure is None and wanted.band is None and rests_far_below_limits(model.case, result):
+    elif verdict.sure is None and wanted.band is None and rests_far_below_limits(case, result):
         result = replace(result, verdict=replace(verdict, sure=SURE))
-    if lacks_margin(result, model.case, wanted) and not stop():
+    if "margin" in missing and not stop():
         reporter.message("margin: repeating the run under stronger and weaker motions")
         margin = margin_of(model, result, drawn=wanted.band is not False, stop=stop)
         if margin is not None:
@@ -96,27 +97,18 @@ def add_checks(
     return result, check
 
 
-def lacks_checks(result: RunResult, case: Case, wanted: WantedChecks) -> bool:
-    """Whether a finished run is still to have its rigid check, its band or its margin."""
-    return (
-        _lacks_rigid_check(result, case, wanted)
-        or lacks_band(result, case, wanted)
-        or lacks_margin(result, case, wanted)
-    )
-
-
-def lacks_margin(result: RunResult, case: Case, wanted: WantedChecks) -> bool:
-    """Whether a finished run is still to have its margin."""
+def lacking(result: RunResult, case: Case, wanted: WantedChecks) -> set[str]:
+    """What a finished run is still to have, of `rigid check`, `band` and `margin`."""
     verdict = result.verdict
-    if verdict is None or verdict.margin is not None or (wanted.band is False and not wanted.margin):
-        return False
-    return wants_margin(wanted.margin, case, result)
-
-
-def lacks_band(result: RunResult, case: Case, wanted: WantedChecks) -> bool:
-    """Whether a finished run is still to have its band."""
-    verdict = result.verdict
-    return verdict is not None and wants_band(wanted.band, case, result) and verdict.band is None
+    if verdict is None:
+        return set()
+    margin = (wanted.band is not False or bool(wanted.margin)) and wants_margin(wanted.margin, case, result)
+    missing = {
+        "rigid check": result.rigid_check is None and wants_rigid_check(wanted.check_rigid, case),
+        "band": verdict.band is None and wants_band(wanted.band, case, result),
+        "margin": verdict.margin is None and margin,
+    }
+    return {check for check, is_missing in missing.items() if is_missing}
 
 
 def has_analytic_block(case: Case) -> bool:
@@ -131,10 +123,6 @@ def has_analytic_block(case: Case) -> bool:
 def wants_rigid_check(choice: bool, case: Case) -> bool:
     """Free rocking always has the check, other runs on request."""
     return choice or (case.motion.kind == "none" and case.initial.rotation_rad != 0.0)
-
-
-def _lacks_rigid_check(result: RunResult, case: Case, wanted: WantedChecks) -> bool:
-    return wants_rigid_check(wanted.check_rigid, case) and result.rigid_check is None
 
 
 #: share of a static limit from which a container at rest may be brought to move by what is not known

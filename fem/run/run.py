@@ -11,7 +11,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from contact.motion.base_motion import BaseMotion
 from fem.case.case import Case, case_hash, to_toml
 from fem.model.container import discretise
 from fem.model.geometry import build_container, node_count
@@ -25,7 +24,7 @@ from fem.results.reader import OpenedRun, open_run
 from fem.results.run_files import RunFiles, copy_data_files, require_free_names
 from fem.results.run_result import RunResult
 from fem.run.changed_runs import ChangedRunsFile
-from fem.run.checks import WantedChecks, add_checks, lacks_band, lacks_checks, lacks_margin
+from fem.run.checks import WantedChecks, add_checks, lacking
 from fem.run.expected import expected_s, say_expected, with_band_s
 from fem.run.output import CheckpointWriter, Start, Stopwatch, open_output, read_start
 from fem.run.preview import required_disk, size_in_words
@@ -37,7 +36,6 @@ from fem.runtime.progress import Reporter
 from fem.runtime.signals import ending_at_once, interruptible
 from fem.runtime.threads import cores
 from fem.solid.nodal_body import advance_body
-from mesh.container import ContainerMesh
 
 WAY_ON = "--resume continues from the last checkpoint"
 
@@ -76,9 +74,10 @@ def run_case(
     motions = build_motions(case)
     case = resolve(case, mesh, motions)  # what is changed later on is this case, too
     request = case_hash(case)
-    known = finished_result(folder, request, options)
-    if known is not None:
-        complete = not lacks_checks(known, case, options) and not _lacks_figures(files, case)
+    mark, known = find_result(folder, RUN, request, force=options.force), None
+    if mark is not None and mark.get("status") in RUN.finished:
+        known = typed_result(RunResult, mark, folder / RUN.mark)
+        complete = not lacking(known, case, options) and not _lacks_figures(files, case)
         what = "; --force computes it again" if complete else ", but for what is added now"
         reporter.message(f"{folder} holds this run already{what}")
         if complete:
@@ -99,7 +98,9 @@ def run_case(
             alone = options.band is False or (case.solver.model == "full" and not options.band)
             seconds = expected_s(case) if alone else with_band_s(case, cores())
             say_expected(reporter, "the run", seconds)
-        model = set_up(case, mesh, motions)
+        with ending_at_once():
+            model = build_model(case, discretise(case, mesh), motions=motions)
+            advance_body(model.body, model.run, 0.0)  # no step: compiles
         with interruptible(reporter) as stop:
             result = known
             if result is None:
@@ -133,8 +134,7 @@ def run_case(
 def was_stopped(run: OpenedRun, options: RunOptions) -> bool:
     """Whether the stepping of a run was interrupted, or the band or the margin after it."""
     if run.status in RUN.finished:
-        result = run.typed_result
-        return lacks_band(result, run.case, options) or lacks_margin(result, run.case, options)
+        return bool(lacking(run.typed_result, run.case, options) & {"band", "margin"})
     return run.status == "interrupted"
 
 
@@ -174,14 +174,6 @@ def compute_into(
                 model, result, recorder, reporter=reporter, stop=stop, save=save, progress=start.progress
             )
     return result
-
-
-def finished_result(folder: Path, request: str, options: RunOptions) -> RunResult | None:
-    """The result of a finished run of this case in a folder, unless it is to be overwritten."""
-    mark = find_result(folder, RUN, request, force=options.force)
-    if mark is None or mark.get("status") not in RUN.finished:
-        return None
-    return typed_result(RunResult, mark, folder / RUN.mark)
 
 
 @contextmanager
@@ -228,18 +220,6 @@ def draw(model: Model, folder: Path, reporter: Reporter) -> None:
         reporter.message(
             f"figures were not drawn ({type(error).__name__}: {error}); the results are complete"
         )
-
-
-def set_up(case: Case, mesh: ContainerMesh, motions: tuple[BaseMotion, BaseMotion]) -> Model:
-    """Build the model of a case and compile the kernels that step it.
-
-    Raises:
-        CaseError, MeshError: it cannot be built.
-    """
-    with ending_at_once():
-        model = build_model(case, discretise(case, mesh), motions=motions)
-        advance_body(model.body, model.run, 0.0)  # no step: compiles
-    return model
 
 
 def _history_of(files: RunFiles) -> History:
