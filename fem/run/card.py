@@ -18,7 +18,7 @@ from fem.results.run_result import (
     Verdict,
 )
 from fem.run.described import fall_in_row, links_in_words, part_covered, rule_says, sides_in_words
-from fem.run.joints import fall_in_words, joints_in_words, leaning_in_words
+from fem.run.joints import joints_in_words
 from fem.run.ranges import largest_rotation, largest_slip, of_band, reach_of
 from fem.run.sureness import (
     below_uplift,
@@ -87,12 +87,11 @@ def _lines(result: RunResult, names: Sequence[str]) -> list[str]:
     verdict, static = result.verdict or Verdict(), result.static or StaticResult()
     motion, angle, tilt = result.motion or MotionResult(), static.slenderness_angle_rad, verdict.tilt_rad
     leans = angle and tilt is not None and abs(tilt) >= LEANING * angle and not verdict.restored
-    leaning = leaning_in_words("", verdict) if verdict.leans else ""
     shown = {
         "verdict": verdict,
         "static": static,
         "motion": motion,
-        "fell": fall_in_words(verdict) or fall_in_row(verdict) or leaning,
+        "in_row": fall_in_row(verdict),
         "others": _others(verdict) if result.status in RUN.finished else None,
         "most": max((*(reach_of(verdict, SLIPPED) or ()), verdict.slipped)),
         "slip": largest_slip(verdict),

@@ -15,7 +15,7 @@ from fem.results.run_result import (
     StaticResult,
     Verdict,
 )
-from fem.run.joints import largest_joint_slip, leaning_in_words, limits
+from fem.run.joints import largest_joint_slip, limits
 from fem.run.sureness import below_uplift, rests_on_stiff_floor
 from fem.run.words import paragraphs, rows, sentence
 from fem.runtime.units import MANY, METRES, in_figures
@@ -94,20 +94,11 @@ def links_in_words(result: RunResult) -> str:
     return "; ".join(paragraphs("held.txt.j2", result=result, neighbours=neighbours))
 
 
-def fall_in_row(verdict: Verdict) -> str:
-    """Who overturned first in a row, and when; empty where there are no neighbours or none of them did."""
-    fallen = [
-        (one.overturned_at_s, number, one.side)
-        for number, one in enumerate(verdict.neighbours or (), 1)
-        if one.overturned_at_s is not None
-    ]
-    if not fallen:
-        return ""
-    at, number, side = min(fallen)
-    name = f"neighbour {number} on the {side}"
-    if verdict.leans:
-        return leaning_in_words(name, verdict)
-    return f"{name} overturned at t = {at:.3f} s, where the run ends"
+def fall_in_row(verdict: Verdict) -> tuple[float, int, str] | None:
+    """When the first neighbour of a row overturned [s], its number and side; None where none did."""
+    beside = enumerate(verdict.neighbours or (), 1)
+    fallen = ((one.overturned_at_s, number, one.side) for number, one in beside)
+    return min(((at, number, side) for at, number, side in fallen if at is not None), default=None)
 
 
 def rule_says(check: str, utilisation: float | None) -> str:

@@ -80,24 +80,6 @@ AS_ONE = "the boxes moved as one"
 MOST_BOXES = 12  #: boxes in a table; of more, those with a largest value
 
 
-def leaning_in_words(what: str, verdict: Verdict) -> str:
-    """That what is at rest where it cannot stand by itself counts as overturned; `what`: empty for the container."""
-    at = "" if verdict.overturned_at_s is None else f" from t = {verdict.overturned_at_s:.3f} s on"
-    rests = "came to rest where only what it leans on or hangs on holds it, and counts as overturned"
-    return f"{what} {rests}{at}".strip()
-
-
-def fall_in_words(verdict: Verdict) -> str:
-    """Which box of a loose stack fell, and when; empty if none did."""
-    if verdict.fell_box is None:
-        return ""
-    at, above = verdict.overturned_at_s, verdict.fell_box < len(verdict.boxes or ())
-    if verdict.leans:
-        return leaning_in_words(f"box {verdict.fell_box}", verdict)
-    when = f" at t = {at:.3f} s" if at is not None else ""
-    return f"box {verdict.fell_box} fell{when}{', with what stood on it' if above else ''}"
-
-
 def joints_in_words(verdict: Verdict, static: StaticResult | None) -> str:
     """How the boxes of a loose stack moved on one another: the largest slip and opening; empty of one body."""
     boxes = verdict.boxes or ()
@@ -166,20 +148,16 @@ def _reaches(verdict: Verdict) -> Sequence[BoxReach | None]:
 
 def box_table(result: RunResult) -> Iterator[RenderableType]:
     """One row a box, from the floor up; nothing of a container that moves as one body."""
-    rows = box_rows(result)
+    rows, boxes = box_rows(result), (result.verdict or Verdict()).boxes or ()
     if not rows:
         return
-    indices = _boxes_shown((result.verdict or Verdict()).boxes or ())
+    indices: Sequence[int] = range(len(boxes))
+    if len(boxes) > MOST_BOXES:
+        fallen = {k for k, box in enumerate(boxes) if box.fell}
+        indices = sorted(fallen | {_most(boxes, key) for key in BOX_FIGURES})
     heads = (f">{figure.words} {figure.unit.name}" for figure in BOX_FIGURES.values())
     table = titled_table("Boxes, from the floor up", "box", *heads, "")
     for k in indices:
         table.add_row(*(cell.replace(" (", "\n(").replace(", ", ",\n") for cell in rows[k]))
     yield table
     yield _note(result.verdict or Verdict(), "loose_note", len(rows) - len(indices), "boxes")
-
-
-def _boxes_shown(boxes: Sequence[BoxResult]) -> Sequence[int]:
-    if len(boxes) <= MOST_BOXES:
-        return range(len(boxes))
-    chosen = {_most(boxes, key) for key in BOX_FIGURES}
-    return sorted(chosen | {k for k, box in enumerate(boxes) if box.fell})

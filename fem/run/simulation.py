@@ -32,6 +32,7 @@ from fem.results.outcome import MODES
 from fem.results.run_result import Verdict
 from fem.run.recorder import Recorder
 from fem.run.verdict import audit, end_of_drive, softer_contact, verdict_from
+from fem.run.words import sentence
 from fem.runtime.progress import Reporter
 from fem.solid.elasticity import least_volume_ratio
 from fem.solid.nodal_body import FullBody, advance_body, leave_body_alone
@@ -236,30 +237,19 @@ def crushing_failure(model: Model) -> str | None:
 
 def stepping_failure(model: Model, residual: float) -> str:
     """Where and why the stepping failed, and what to try; `residual` is that of the contact forces [N]."""
-    control, clock, softer = model.run.problem.control, model.run.clock[0], softer_contact(model.case)
-    if _attempts(model.run) >= most_attempts(control, float(clock.time)):
-        smallest = min(float(clock.smallest_step), control.largest_step)
-        return (
-            f"t = {float(clock.time):.6g} s: no progress: {int(clock.steps)} steps accepted, "
-            f"{int(clock.rejected)} rejected, the smallest of {smallest:.1g} s; try {softer}, "
-            "contact.weakening_m > 0, or a larger solver.energy_tolerance"
-        )
-    prefix = f"step {int(clock.steps) + 1}, t = {float(clock.time):.6g} s: "
-    smallest_tried = f"at the smallest step ({control.smallest_step:.1g} s)"
-    if not math.isfinite(residual):
-        return (
-            f"{prefix}the trial solution is not finite, even {smallest_tried}; try a smaller solver.step_s, "
-            "a larger container.youngs_modulus_Pa, or a weaker motion"
-        )
-    if residual <= BALANCED * control.mass * control.gravity:
-        return (
-            f"{prefix}the iteration between container and floor did not converge {smallest_tried}, although "
-            f"the contact forces balance within {residual:.2g} N; try a smaller solver.step_s, a larger "
-            f"container.youngs_modulus_Pa, or {softer}"
-        )
-    return (
-        f"{prefix}the contact forces are out of balance by {residual:.2g} N after the last iteration {smallest_tried}; "
-        f"try {softer}, contact.weakening_m > 0, or a smaller solver.step_s"
+    control, clock = model.run.problem.control, model.run.clock[0]
+    return sentence(
+        "failure.txt.j2",
+        time=float(clock.time),
+        steps=int(clock.steps),
+        rejected=int(clock.rejected),
+        smallest=min(float(clock.smallest_step), control.largest_step),
+        smallest_tried=control.smallest_step,
+        stuck=_attempts(model.run) >= most_attempts(control, float(clock.time)),
+        finite=math.isfinite(residual),
+        balanced=residual <= BALANCED * control.mass * control.gravity,
+        residual=residual,
+        softer=softer_contact(model.case),
     )
 
 

@@ -138,8 +138,13 @@ def verdict_from(
     destroyed = destroyed_corner(model)
     track, joint = _numbers(run.track), _numbers(run.joints)
     capacity = steel_capacity(model.case)
-    boxes = box_results(model)
+    joints = [_numbers(run.joints[k:]) for k in range(len(run.joints) if _is_loose(model) else 0)]
+    boxes = tuple(
+        BoxResult(**_recorded(BOX_FIGURES, joint=one), fell=math.isfinite(one.fell_at)) for one in joints
+    )
+    first = min(range(len(joints)), key=lambda k: joints[k].fell_at, default=0)
     rotation = max((box.max_rotation_rad for box in boxes), default=track.max_rotation)
+    turned = run.old.boxes[:, ROTATION] if boxes else run.old.pose[ROTATION]
     neighbours = neighbour_results(model)
     followed = end is not None and end > 0.0 and not model.case.output.stop_when_still
     rocked = outcome in (Outcome.ROCK, Outcome.SLIDE_ROCK)
@@ -156,9 +161,12 @@ def verdict_from(
         slip_peak_to_peak_m=_peak_to_peak(model, end, time, slip),
         max_indentation_m=_indentation(model),
         tilt_rad=None if outcome == Outcome.OVERTURNED else _tilt(model),
-        restored=rocked and _largest_rotation(model) < ROCKING * angle,
+        restored=rocked and float(np.abs(turned).max()) < ROCKING * angle,
         at_rest_s=_finite(float(run.clock[0].rest_since)),
-        restitution_first=None if model.container.row else _restitution(track),
+        # of the first impact; none where it has none, or where other energy entered
+        restitution_first=track.restitution
+        if 0.0 < track.restitution < MOST_RESTITUTION and not model.container.row
+        else None,
         max_top_displacement_m=track.max_top_displacement if followed else None,
         max_acceleration_m_s2=track.max_acceleration if followed else None,
         max_von_mises_Pa=largest_von_mises,
@@ -169,7 +177,7 @@ def verdict_from(
         if capacity is None
         else plastic_work(track.max_corner_force, capacity, 0.5 * model.base_stiffness),
         boxes=boxes or None,
-        fell_box=first_fallen_box(model),
+        fell_box=1 + first if boxes and boxes[first].fell else None,
         neighbours=neighbours or None,
         **_of_links(model, neighbours),
         **_of_row(model, outcome, neighbours),
@@ -181,15 +189,6 @@ def _recorded(figures: Mapping[str, Shown], **records: Any) -> dict[str, Any]:
     sources = {key: figure.of.split(".") for key, figure in figures.items() if figure.of}
     values = {key: getattr(records[record], name) for key, (record, name) in sources.items()}
     return {key: _finite(value) if figures[key].unit is SECONDS else value for key, value in values.items()}
-
-
-def box_results(model: Model) -> tuple[BoxResult, ...]:
-    """What each box of a loose stack did, from the floor up; empty for a container that moves as one body."""
-    joints = [_numbers(model.run.joints[k:]) for k in range(len(model.run.joints) if _is_loose(model) else 0)]
-    return tuple(
-        BoxResult(**_recorded(BOX_FIGURES, joint=joint), fell=math.isfinite(joint.fell_at))
-        for joint in joints
-    )
 
 
 def _is_loose(model: Model) -> bool:
@@ -260,20 +259,6 @@ def _of_links(model: Model, neighbours: Sequence[NeighbourResult]) -> dict[str, 
         "link_slack_m": float(whole["least_gap"].min()) if whole.size else None,
         "neighbour_rotation_ratio": max((neighbour.rotation_ratio for neighbour in neighbours), default=None),
     }
-
-
-def first_fallen_box(model: Model) -> int | None:
-    """Number of the box of a loose stack that fell first, from 1 at the floor; None where none did."""
-    fell_at = model.run.joints["fell_at"]
-    if not _is_loose(model) or not np.isfinite(fell_at).any():
-        return None
-    return 1 + int(np.argmin(fell_at))
-
-
-def _largest_rotation(model: Model) -> float:
-    """|rotation| of a container, neighbours aside, or of the box of a loose stack that is turned most [rad]."""
-    state = model.run.old
-    return float(np.abs(state.boxes[:, ROTATION] if _is_loose(model) else state.pose[ROTATION]).max())
 
 
 def _tilt(model: Model) -> float | None:
@@ -383,11 +368,6 @@ def numerics_of(model: Model, stepping_cpu: float) -> Numerics:
 
 def _finite(value: float) -> float | None:
     return value if math.isfinite(value) else None
-
-
-def _restitution(track: SimpleNamespace) -> float | None:
-    """Restitution of the first impact; None where it has none, or where other energy entered (`MOST_RESTITUTION`)."""
-    return track.restitution if 0.0 < track.restitution < MOST_RESTITUTION else None
 
 
 def _modes_seen(modes: int, outcome: Outcome, *, slides: bool) -> tuple[str, ...]:
