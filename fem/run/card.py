@@ -7,7 +7,7 @@ from typing import Any
 from fem.case.tables.unknown_inputs import WORDS, in_words, value_in_words
 from fem.results.figures import SLIPPED, TURNED
 from fem.results.kinds import RUN
-from fem.results.outcome import Ending, Outcome
+from fem.results.outcome import Ending
 from fem.results.run_result import (
     Band,
     ChangedRun,
@@ -38,24 +38,8 @@ STAYS = 0.9  #: slip at the end over the largest, from which the one says the ot
 CONFIDENCE = 0.95
 MOST_NAMED, DECIDING = 2, 3  #: changes in a sentence; inputs that decide
 DOES = {Ending.STANDING: "stands", Ending.OVERTURNED: "overturns", Ending.INVALID: "destroys a corner"}
-OUTCOMES = {
-    Outcome.REST: "rests",
-    Outcome.SLIDE: "slides and stands",
-    Outcome.HOP: "leaves the floor for moments and stands",
-    Outcome.ROCK: "rocks and stands",
-    Outcome.SLIDE_ROCK: "slides, rocks and stands",
-}
-#: what variations that stand do otherwise
-ONLY = {
-    Outcome.REST: "rests",
-    Outcome.SLIDE: "slides only",
-    Outcome.HOP: "leaves the floor for moments",
-    Outcome.ROCK: "rocks only",
-    Outcome.SLIDE_ROCK: "slides and rocks",
-}
 #: the lines of a card: what it does, the margin that governs, how far it moves, how sure that is, the static rule
 LINES = ("does", "margin_line", "how_far", "sureness", "static_line")
-PLACES = {"limit": "the limit of", "width": "its own width of", "gap": "a gap beside it of"}
 
 
 def times(factor: float) -> str:
@@ -106,24 +90,18 @@ def _lines(result: RunResult, names: Sequence[str]) -> list[str]:
         "of": _variations(verdict.band) if verdict.band and verdict.band.members else None,
         "sides": sides_in_words(result.sides),
     }
-    named = {"SEEN": SEEN, "STAYS": STAYS, "PLACES": PLACES, "OUTCOMES": OUTCOMES, "times": times}
-    named |= {"rule_says": rule_says, "deciding_in_words": deciding_in_words}
+    named = {"SEEN": SEEN, "STAYS": STAYS, "times": times, "rule_says": rule_says}
+    named |= {"deciding_in_words": deciding_in_words}
     return [sentence("card.txt.j2", name, **shown, **named) for name in names]
 
 
-def _others(verdict: Verdict) -> dict[str, Any] | None:
-    """How many variations under this very motion do not stand, and what these do; None where all stand."""
-    tried = [
-        run for run in (verdict.band or Band()).members[1:] if run.outcome is not None and not numerical(run)
-    ]
-    for kind, verb in ((Ending.OVERTURNED, "overturn"), (Ending.INVALID, "destroy a corner")):
-        if count := sum(ending(run) == kind for run in tried):
-            return {
-                "verb": verb,
-                "verbs": DOES[kind] if count == 1 else verb,
-                "count": count,
-                "tried": len(tried),
-            }
+def _others(verdict: Verdict) -> tuple[str, int, int] | None:
+    """What variations do under this very motion that do not stand, how many, of how many; None where all stand."""
+    members = (verdict.band or Band()).members[1:]
+    tried = [ending(run) for run in members if run.outcome is not None and not numerical(run)]
+    for kind, verb in ((Ending.OVERTURNED, "overturn"), (Ending.INVALID, "destroy")):
+        if kind in tried:
+            return verb, tried.count(kind), len(tried)
     return None
 
 
@@ -142,9 +120,7 @@ def _variations(band: Band) -> dict[str, Any]:
         "does": DOES[ending(own)],
         "tried": len(tried),
         "numerical_alone": all(map(numerical, tried)),
-        "other_ways": [
-            ONLY[Outcome(other)] for other in band.outcomes if other != own.outcome and other in ONLY
-        ],
+        "other_ways": [other for other in band.outcomes if other != own.outcome],
         "crossing": len(crossing),
         "alone": [(what, changes_in_words(runs)) for what, runs in by_kind if runs],
         "draws": len(draws),
