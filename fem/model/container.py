@@ -223,18 +223,30 @@ def _loose(case: Case, mesh: ContainerMesh, elements: FiniteElements, support: S
         place = np.empty(len(boxes[-1].elements.nodes), dtype=np.int64)
         place[boxes[-1].elements.cells] = elements.cells[mesh.box == number]
         nodes.append(place)
-    container = Container(
+    # Those of the uppermost box first, with its upper corners; then box by box downwards.
+    monitors = [
+        place[box.monitors[0 if place is nodes[-1] else 2 :]] for box, place in zip(boxes, nodes, strict=True)
+    ]
+    container = _of_bodies(mesh, elements, support, np.concatenate(monitors[::-1]), boxes, nodes)
+    touching = make_faces(elements.nodes[container.corners], np.ones(0), np.ones(0)).corner[:, TOUCHING]
+    return replace(container, nodes=np.append(container.corners[touching], _nodes_held(case, container)))
+
+
+def _of_bodies(
+    mesh: ContainerMesh,
+    elements: FiniteElements,
+    support: Support,
+    monitors: IntArray,
+    boxes: Sequence[BoxModel],
+    nodes: Sequence[IntArray],
+) -> Container:
+    """A container of several bodies, and the node of it for each node of each; its contact nodes are still to come."""
+    return Container(
         mesh=mesh,
         elements=elements,
         support=support,
         nodes=np.zeros(0, dtype=np.int64),
-        # Those of the uppermost box first, with its upper corners; then box by box downwards.
-        monitors=np.concatenate(
-            [
-                place[box.monitors[0 if place is nodes[-1] else 2 :]]
-                for box, place in zip(boxes, nodes, strict=True)
-            ][::-1]
-        ),
+        monitors=monitors,
         response=_no_response(elements),
         basis=_no_modes(elements),
         free_modes=0,
@@ -242,8 +254,6 @@ def _loose(case: Case, mesh: ContainerMesh, elements: FiniteElements, support: S
         boxes=tuple(boxes),
         box_nodes=tuple(nodes),
     )
-    touching = make_faces(elements.nodes[container.corners], np.ones(0), np.ones(0)).corner[:, TOUCHING]
-    return replace(container, nodes=np.append(container.corners[touching], _nodes_held(case, container)))
 
 
 def _beside_one_another(case: Case, row: Sequence[Container]) -> Container:
@@ -270,20 +280,9 @@ def _beside_one_another(case: Case, row: Sequence[Container]) -> Container:
         )
         for alone, at in zip(row, struck, strict=True)
     )
-    container = Container(
-        mesh=meshes[0],
-        elements=elements,
-        support=row[0].support,
-        nodes=np.zeros(0, dtype=np.int64),
-        monitors=nodes[0][row[0].monitors],
-        response=_no_response(elements),
-        basis=_no_modes(elements),
-        free_modes=0,
-        first=min(alone.first for alone in row),
-        boxes=boxes,
-        row=tuple(row),
-        box_nodes=tuple(nodes),
-    )
+    monitors = nodes[0][row[0].monitors]
+    container = _of_bodies(meshes[0], elements, row[0].support, monitors, boxes, nodes)
+    container = replace(container, row=tuple(row))
     corners = container.corners
     touching = make_row(np.ones((corners.size, 2)), *facing(places), np.zeros(len(row)), *np.zeros((2, 0)))
     touched = corners[touching.corner[:, TOUCHING]]

@@ -5,14 +5,13 @@ from functools import cached_property
 
 import numpy as np
 
-from fem.case.case import Case
+from fem.model.container import BoxModel, Container
 from fem.model.model import Model
 from fem.model.peaks import ROUNDING, counted_nodes, stress_bounds
 from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid.assembly import FiniteElements
 from fem.solid.elasticity import von_mises
 from fem.solid.nodal_body import rotation_matrix
-from fem.solid.reduction import ReducedBasis
 
 ROWS_AT_ONCE = 32  #: of coordinates whose stress is recovered
 
@@ -138,44 +137,32 @@ class Recovery:
 def recovery_of(model: Model) -> Recovery:
     """Recovery of the fields of this model."""
     container, full = model.container, model.case.solver.model == "full"
-    if not container.boxes:
-        centroid = np.asarray(container.mesh.centroid)
-        whole = PlacedBody(
-            body=_of_body(model.case, container.elements, container.basis, centroid),
-            coordinates=slice(None),
-            nodes=slice(None),
-            place=np.zeros(2),
-        )
-        return Recovery(elements=container.elements, full=full, bodies=(whole,))
+    standing: list[tuple[Container | BoxModel, IntArray | slice]] = [
+        *zip(container.boxes, container.box_nodes, strict=True)
+    ] or [(container, slice(None))]
     known: dict[int, BodyRecovery] = {}
     bodies, start = [], 0
-    size = 3 + max(box.basis.angular_frequencies.size for box in container.boxes)
-    for box, nodes in zip(container.boxes, container.box_nodes, strict=True):
-        if id(box) not in known:
-            centroid = np.asarray(box.mesh.centroid)
-            known[id(box)] = _of_body(model.case, box.elements, box.basis, centroid)
-        own = 2 * len(nodes) if full else 3 + box.basis.angular_frequencies.size
-        bodies.append(
-            PlacedBody(
-                body=known[id(box)],
-                coordinates=slice(start, start + own),
-                nodes=nodes,
-                place=container.elements.nodes[nodes[0]] - box.elements.nodes[0]
-                if not container.row
-                else np.zeros(2),  # its coordinates are in a frame of its own
+    size = 3 + max(body.basis.angular_frequencies.size for body, _ in standing)
+    for body, nodes in standing:
+        elements, basis = body.elements, body.basis
+        if id(body) not in known:
+            known[id(body)] = BodyRecovery(
+                elements=elements,
+                centroid=np.asarray(body.mesh.centroid),
+                shapes=basis.shapes,
+                full=full,
+                angular_frequencies=basis.angular_frequencies,
+                counted=counted_nodes(model.case, elements),
+                _stress=basis.stress,
             )
+        own = 2 * len(elements.nodes) if full else 3 + basis.angular_frequencies.size
+        moved = (
+            np.zeros(2)  # of a row the coordinates are in a frame of their own
+            if container.row
+            else container.elements.nodes[nodes][0] - elements.nodes[0]
+        )
+        bodies.append(
+            PlacedBody(body=known[id(body)], coordinates=slice(start, start + own), nodes=nodes, place=moved)
         )
         start += own if full else size
     return Recovery(elements=container.elements, full=full, bodies=tuple(bodies))
-
-
-def _of_body(case: Case, elements: FiniteElements, basis: ReducedBasis, centroid: FloatArray) -> BodyRecovery:
-    return BodyRecovery(
-        elements=elements,
-        centroid=centroid,
-        shapes=basis.shapes,
-        full=case.solver.model == "full",
-        angular_frequencies=basis.angular_frequencies,
-        counted=counted_nodes(case, elements),
-        _stress=basis.stress,
-    )
