@@ -7,7 +7,7 @@ not from the clock, so that a resumed or repeated study is the same.
 """
 
 import time
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -161,7 +161,6 @@ def run_changes(
     *,
     numerics: Numerics,
     stop: Callable[[], bool],
-    known: Iterable[ChangedRun] = (),
     kept_in: ChangedRunsFile | None = None,
     inner_forces: bool = True,
 ) -> list[ChangedRun]:
@@ -172,7 +171,6 @@ def run_changes(
         changes: what to change.
         numerics: of the run.
         stop: called in pauses; true ends the work.
-        known: finished runs that need no computing.
         kept_in: a file of finished runs, to resume from and to add to.
         inner_forces: find stresses and the forces in joints of a stack, which takes twice as long.
 
@@ -192,7 +190,6 @@ def run_changes(
         one_at_a_time=Lock(),
     )
     kept = {key_of(run.values): run for run in (kept_in.read() if kept_in else ())}
-    by_key = {key_of(run.values): run for run in known} | kept
     one_at_a_time, broken = Lock(), Event()
     stored, unstored = time.monotonic(), False
 
@@ -202,15 +199,15 @@ def run_changes(
     def run_of(change: InputChange) -> ChangedRun:
         nonlocal stored, unstored
         key = key_of(change.values)
-        if key in by_key:
-            return replace(by_key[key], kind=change.kind, change=change.label)
+        if key in kept:
+            return replace(kept[key], kind=change.kind, change=change.label)
         if halted():
             return _without_outcome(change, "interrupted")
         try:
             run = _run_changed(model, change, shared, halted)
             with one_at_a_time:
                 if run.status != "interrupted":
-                    by_key[key] = kept[key] = run
+                    kept[key] = run
                     unstored = True
                     if kept_in and (not short or time.monotonic() - stored > STORED_S):
                         kept_in.store(list(kept.values()))
