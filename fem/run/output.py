@@ -6,7 +6,7 @@ place is cut off when the run resumes, and what lies before it must not have cha
 
 import hashlib
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -24,6 +24,7 @@ from fem.model.model import Model
 from fem.model.recovery import recovery_of
 from fem.results.archive import CheckpointError, read_checkpoint, write_archive
 from fem.results.fields import FieldWriter, frame_name
+from fem.results.folder import ResultFolder
 from fem.results.history import HistoryWriter, read_history
 from fem.results.run_files import RunFiles
 from fem.run.drawn_links import LinkCells
@@ -39,48 +40,6 @@ CHECKPOINT_S = 15.0
 RECORDED, BODY = "recorder.", "body."
 
 Arrays = dict[str, NDArray[Any]]
-
-
-class CheckpointWriter:
-    """Writes the checkpoint of a simulation: every 15 s, and when it is interrupted.
-
-    Args:
-        path: of the checkpoint.
-        case_hash: of the case that is simulated.
-        notes: called before a checkpoint is written; makes sure that it may be, and that the files it refers to have
-            reached the disk; returns what is stored with the state.
-    """
-
-    def __init__(
-        self,
-        path: Path,
-        model: Model,
-        recorder: Recorder,
-        *,
-        case_hash: str,
-        notes: Callable[[], Mapping[str, Any]],
-    ) -> None:
-        self._path, self._model, self._recorder = path, model, recorder
-        self._case_hash, self._notes, self._program = case_hash, notes, program_identity()
-        self._last = time.monotonic()
-
-    def __call__(self, progress: Progress, now: bool) -> None:
-        """Write the checkpoint if the last one is old enough, or `now`.
-
-        Raises:
-            OSError: it cannot be written, or the folder was lost.
-        """
-        if not now and time.monotonic() - self._last < CHECKPOINT_S:
-            return
-        about = {
-            "case_hash": self._case_hash,
-            "program": self._program,
-            "time_s": float(self._model.run.clock[0].time),
-            "progress": asdict(progress),
-            **self._notes(),
-        }
-        write_archive(self._path, about, state_of(self._model, self._recorder))
-        self._last = time.monotonic()
 
 
 def misfit(path: Path, reason: str) -> CheckpointError:
@@ -239,45 +198,73 @@ def read_start(files: RunFiles, model: Model, case_hash: str) -> Start:
     return start
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
 class RunOutput:
-    """History and frames of a run, written as they come."""
+    """History and frames of a run, written as they come, and its checkpoint.
 
-    recorder: Recorder  #: of the samples
-    history: HistoryWriter
-    fields: FieldWriter | None
+    Args:
+        place: the folder of the run.
+        case_hash: of its case.
+        watch: counts its times.
+        recorder: of its samples, and where history and frames of them go.
+    """
 
-    def sync(self) -> dict[str, Any]:
-        """Bring the files to the disk; returns how long they are, for a checkpoint."""
-        self.history.sync()
-        if self.fields is not None:
-            self.fields.sync()
-        return {
-            "history": {"bytes": self.history.position, "sha256": self.history.digest},
-            "frames_s": list(self.fields.times) if self.fields is not None else [],
+    def __init__(
+        self,
+        place: ResultFolder,
+        model: Model,
+        case_hash: str,
+        watch: Stopwatch,
+        recorder: Recorder,
+        history: HistoryWriter,
+        fields: FieldWriter | None,
+    ) -> None:
+        self._place, self._model, self._watch = place, model, watch
+        self.recorder, self._history, self._fields = recorder, history, fields
+        self._owner = {"case_hash": case_hash, "program": program_identity()}
+        self._last = time.monotonic()
+
+    def save(self, progress: Progress, now: bool) -> None:
+        """Write the checkpoint if the last one is old enough, or `now`; history and frames reach the disk before.
+
+        Raises:
+            OSError: it cannot be written, or the folder was lost.
+        """
+        if not now and time.monotonic() - self._last < CHECKPOINT_S:
+            return
+        self._place.check()
+        self._history.sync()
+        if self._fields is not None:
+            self._fields.sync()
+        about = {
+            **self._owner,
+            "time_s": float(self._model.run.clock[0].time),
+            "progress": asdict(progress),
+            "history": {"bytes": self._history.position, "sha256": self._history.digest},
+            "frames_s": list(self._fields.times) if self._fields is not None else [],
+            "spent": self._watch.spent(),
         }
+        write_archive(RunFiles(self._place.path).checkpoint, about, state_of(self._model, self.recorder))
+        self._last = time.monotonic()
 
 
 @contextmanager
-def open_output(files: RunFiles, model: Model, start: Start) -> Iterator[RunOutput]:
+def open_output(
+    place: ResultFolder, model: Model, case_hash: str, watch: Stopwatch, start: Start
+) -> Iterator[RunOutput]:
     """Open the files of a run, and put its model where it starts."""
-    case, fields = model.case, None
+    case, fields, files = model.case, None, RunFiles(place.path)
     with ExitStack() as stack:
         history = stack.enter_context(
             HistoryWriter(files.history, history_columns(case), position=start.history_bytes)
         )
         if case.output.fields_s != 0.0:
-            fields = FieldWriter(
-                files.fields,
-                **LinkCells(model).mesh,
-                kept_times=start.frames_s,
-            )
+            fields = FieldWriter(files.fields, **LinkCells(model).mesh, kept_times=start.frames_s)
             stack.callback(fields.close)
         recorder = Recorder(model, recovery_of(model), history.append, fields.write if fields else None)
         if start.is_resumed:
             start.restore(model, recorder)
             recorder.resume(read_history(files.history))
-        yield RunOutput(recorder=recorder, history=history, fields=fields)
+        yield RunOutput(place, model, case_hash, watch, recorder, history, fields)
 
 
 def _digest_of_first(path: Path, count: int) -> str | None:

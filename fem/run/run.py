@@ -9,7 +9,6 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 from fem.case.case import Case, case_hash, to_toml
 from fem.model.container import discretise
@@ -26,7 +25,7 @@ from fem.results.run_result import RunResult
 from fem.run.changed_runs import ChangedRunsFile
 from fem.run.checks import WantedChecks, add_checks, lacking
 from fem.run.expected import expected_s, say_expected, with_band_s
-from fem.run.output import CheckpointWriter, Start, Stopwatch, open_output, read_start
+from fem.run.output import Start, Stopwatch, open_output, read_start
 from fem.run.preview import required_disk, size_in_words
 from fem.run.solve import begun, in_words, resolve, stepped
 from fem.run.summary import plain_summary
@@ -160,18 +159,17 @@ def compute_into(
     place.begin(result.to_json(), texts, keep=start.is_resumed)
     with failure_noted(place, result):
         copy_data_files(case, place.path)
-        with open_output(files, model, start) as output:
-            recorder = output.recorder
+        with open_output(place, model, request, watch, start) as output:
             if start.is_resumed:
                 reporter.message(f"resuming at t = {float(model.run.clock[0].time):.6g} s")
-
-            def notes() -> dict[str, Any]:
-                place.check()
-                return output.sync() | {"spent": watch.spent()}
-
-            save = CheckpointWriter(files.checkpoint, model, recorder, case_hash=request, notes=notes)
             result, _ = stepped(
-                model, result, recorder, reporter=reporter, stop=stop, save=save, progress=start.progress
+                model,
+                result,
+                output.recorder,
+                reporter=reporter,
+                stop=stop,
+                save=output.save,
+                progress=start.progress,
             )
     return result
 
