@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator, Sequence
 from functools import partial
+from typing import Any
 
 from rich.box import SIMPLE
 from rich.console import RenderableType
@@ -14,7 +15,7 @@ from fem.results.figures import BOX_FIGURES, BoxResult
 from fem.results.outcome import least_slide
 from fem.results.run_result import BoxReach, JointDemand, RunResult, StaticResult, Verdict
 from fem.run.ranges import impact_note
-from fem.run.words import cells, sentence
+from fem.run.words import paragraphs, sentence
 from fem.runtime.units import FEW, JOINT_MILLIMETRES, SHORT_MILLIMETRES, in_figures
 
 MOST_JOINTS = 8  #: joints shown; of more, those with a largest value
@@ -36,22 +37,26 @@ def titled_table(title: str, *columns: str) -> Table:
     return table
 
 
+def table_by(template: str, macro: str, **shown: Any) -> Table:
+    """A table by a macro of a template: `title | head | head`, then one row after the other."""
+    lines = [[cell.strip() for cell in text.split("|")] for text in paragraphs(template, macro, **shown)]
+    table = titled_table(*lines[0])
+    for row in lines[1:]:
+        table.add_row(*row)
+    return table
+
+
 def joint_tables(every: Sequence[JointDemand], verdict: Verdict) -> Iterator[RenderableType]:
     """Forces, and what bolts carry; one row a joint, from the floor up."""
-    heads = {
-        "forces": ("Forces in the joints between boxes", ">normal kN", ">shear kN", ">moment kNm"),
-        "bolts": (
-            *("Bolts", ">tension left, right kN", ">shear kN", ">friction needed", "without bolts it"),
-        ),
-    }
-    joints, kilo = _shown(every), partial(in_figures, figures=FEW, factor=1e-3)
-    for macro, (title, *columns) in heads.items():
-        table = titled_table(f"{title}{impact_note(verdict)}", "joint at", *columns)
-        for row in cells(
-            "joints.txt.j2", macro, joints=joints, verdict=verdict, kilo=kilo, unbolted=unbolted
-        ):
-            table.add_row(*row)
-        yield table
+    joints = every
+    if len(every) > MOST_JOINTS:
+        chosen = {max(range(len(every)), key=lambda j: getattr(every[j], key)) for key in LARGEST}
+        joints = [every[j] for j in sorted(chosen)]
+    named = {"kilo": partial(in_figures, figures=FEW, factor=1e-3), "unbolted": unbolted}
+    for macro in ("forces", "bolts"):
+        yield table_by(
+            "joints.txt.j2", macro, joints=joints, verdict=verdict, impact_note=impact_note(verdict), **named
+        )
     if any(joint.bolt_utilisation is not None for joint in joints):
         yield Text("In parentheses: the larger tension over the capacity of a bolt.\n")
     yield _note(verdict, "bolted_note", len(every) - len(joints), "joints")
@@ -60,13 +65,6 @@ def joint_tables(every: Sequence[JointDemand], verdict: Verdict) -> Iterator[Ren
 def _note(verdict: Verdict, which: str, left_out: int, of: str) -> Text:
     more = f" {left_out} more {of} are in run.json." if left_out else ""
     return Text(f"{note(verdict, which)}{more}\n")
-
-
-def _shown(joints: Sequence[JointDemand]) -> Sequence[JointDemand]:
-    if len(joints) <= MOST_JOINTS:
-        return joints
-    chosen = {max(range(len(joints)), key=lambda j: getattr(joints[j], key)) for key in LARGEST}
-    return [joints[j] for j in sorted(chosen)]
 
 
 def unbolted(joint: JointDemand) -> str:

@@ -23,9 +23,9 @@ from fem.results.kinds import RUN
 from fem.results.outcome import SLIDING, Outcome
 from fem.run.card import card_of
 from fem.run.described import code_note, fall_in_row, floor_rows, governing, motion_in_words, rule_says
-from fem.run.joints import box_table, joint_tables, largest_joint_slip, titled_table
+from fem.run.joints import box_table, joint_tables, largest_joint_slip, table_by, titled_table
 from fem.run.ranges import bolt_forces, in_words, largest_slip, of_band
-from fem.run.words import cells, rows, sentence
+from fem.run.words import rows, sentence
 from fem.runtime.terminal import shown
 from fem.runtime.units import MILLIMETRES, visible_number
 
@@ -108,17 +108,21 @@ def to_compare(result: run_result.RunResult) -> run_result.Verdict:
 
 def _static_table(static: run_result.StaticResult, verdict: run_result.Verdict) -> Table:
     """Sliding and overturning under each action, one below the other."""
-    columns = ("action", "check", "demand / limit", "use", "rule says", "run found")
-    table = titled_table(f"Static rules, {own_motion_name(static)}", *columns)
 
     def use(utilisation: float | None, demand: float | None) -> float | None:
         """A utilisation as `run.json` has it, where a demand without any capacity has none: infinite."""
         return math.inf if utilisation is None and demand else utilisation
 
-    named = {"use": use, "seen": visible_number, "rule_says": rule_says, "found": partial(run_found, verdict)}
-    for row in cells("summary.txt.j2", "static_rules", static=static, **named):
-        table.add_row(*row)
-    return table
+    return table_by(
+        "summary.txt.j2",
+        "static_rules",
+        static=static,
+        own_motion=own_motion_name(static),
+        use=use,
+        seen=visible_number,
+        rule_says=rule_says,
+        found=partial(run_found, verdict),
+    )
 
 
 def own_motion_name(static: run_result.StaticResult) -> str:

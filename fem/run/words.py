@@ -40,8 +40,3 @@ def rows(template: str, macro: str = "", **shown: Any) -> list[tuple[str, str]]:
     """Name and value of each row of a template, or of one of its macros: `name | value`; none without a value."""
     pairs = (text.partition("|") for text in paragraphs(template, macro, **shown))
     return [(name.strip(), value.strip()) for name, _, value in pairs if value.strip()]
-
-
-def cells(template: str, macro: str, **shown: Any) -> list[list[str]]:
-    """The cells of each row of a table by a macro of a template: `cell | cell | cell`."""
-    return [[cell.strip() for cell in text.split("|")] for text in paragraphs(template, macro, **shown)]
