@@ -46,7 +46,6 @@ class StudyTable(dict[str, np.ndarray]):
     """The table of a study: name of a column -> its values, shape (n_rows,); a number that is missing is nan.
 
     Cells of a sweep, points of an ensemble, rows of a list, steps of a response curve, runs of a site.
-    `pandas.DataFrame(table)` takes it as it is.
     """
 
     def __init__(self, result: Mapping[str, Any], rows: Iterable[Mapping[str, Any]]) -> None:
@@ -54,6 +53,13 @@ class StudyTable(dict[str, np.ndarray]):
         names = dict.fromkeys(name for row in rows for name in row)
         super().__init__({name: _column([row.get(name) for row in rows]) for name in names})
         self.result = result  #: all that the marking file holds
+
+    def to_dataframe(self) -> Any:
+        """The table as a `pandas.DataFrame`; ImportError, in words, where pandas is not installed."""
+        try:
+            return importlib.import_module("pandas").DataFrame(self)
+        except ImportError:
+            raise ImportError("to_dataframe needs pandas: python -m pip install pandas") from None
 
     def __repr__(self) -> str:
         """One line, with what was found."""

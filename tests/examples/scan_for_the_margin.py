@@ -5,14 +5,9 @@ import fem
 PULSE = {"motion.kind": "pulse", "motion.shape": "rectangular", "motion.pulse_s": 1.0}
 ACCELERATIONS = [2.2 + 0.1 * k for k in range(11)]  # m/s2
 
-
-def main() -> float:
-    """The first acceleration that rocks the container [m/s2]."""
+if __name__ == "__main__":
     base = fem.load_case("rocking", ["solver.model=rigid", "contact.mu_static=1", "output.fields_s=0"])
     cases = [base.replace(PULSE | {"motion.peak_acceleration_m_s2": -a}) for a in ACCELERATIONS]
     runs = fem.compute_many(cases, band=False)
-    return next(a for a, run in zip(ACCELERATIONS, runs, strict=True) if run.verdict.outcome != "rest")
-
-
-if __name__ == "__main__":
-    print(f"rocks from {main():.1f} m/s2 on")
+    first = next(a for a, run in zip(ACCELERATIONS, runs, strict=True) if run.verdict.outcome != "rest")
+    print(f"rocks from {first:.1f} m/s2 on")

@@ -2,13 +2,17 @@
 
 import math
 import runpy
+import sys
 from pathlib import Path
+from types import ModuleType
 
 import numpy as np
 import pytest
 
 import fem
 from contact.reference.rigid_block import RigidBlock
+from fem.run.opened import StudyTable
+from fem.runtime.progress import watched
 
 FOLDER = Path(__file__).parent
 EXAMPLES = sorted(path.stem for path in FOLDER.glob("*.py") if not path.stem.startswith("test_"))
@@ -23,7 +27,7 @@ def example(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
 
     def run(name):
-        names = runpy.run_path(str(FOLDER / f"{name}.py"))
+        names = runpy.run_path(str(FOLDER / f"{name}.py"), run_name="__main__")
         assert len(capsys.readouterr().out.splitlines()) <= 3
         return names
 
@@ -33,10 +37,7 @@ def example(tmp_path, monkeypatch, capsys):
 def test_examples_are_short_and_use_every_public_function():
     texts = [(FOLDER / f"{name}.py").read_text() for name in EXAMPLES]
     assert max(len(text.splitlines()) for text in texts) <= LONGEST
-    studies = {
-        name for name in fem.__all__ if fem.PLACES[name] == "fem.cli.python"
-    }  # unit/study/test_from_python.py
-    assert all(any(f"fem.{name}(" in text for text in texts) for name in {*fem.__all__} - studies)
+    assert all(any(f"fem.{name}(" in text for text in texts) for name in fem.__all__)
     assert any(".with_motion(" in text for text in texts)
 
 
@@ -64,7 +65,7 @@ def test_a_case_from_a_mapping_slides_within_the_friction_cone(example):
 
 def test_a_scan_finds_the_uplift_acceleration(example):
     uplift = STACK.uplift_acceleration
-    first = example("scan_for_the_margin")["main"]()
+    first = example("scan_for_the_margin")["first"]
     assert uplift < first < uplift + 0.1
 
 
@@ -90,3 +91,87 @@ def test_two_components_of_a_circle_slide_on_a_circle(example):
     both, alone = example("slide_in_two_directions")["across"]
     assert both == pytest.approx(2.0 * math.sqrt(0.1**2 - (0.2 * GRAVITY / 49.0) ** 2), rel=1e-3)
     assert alone < 0.9 * both
+
+
+@pytest.fixture
+def study(example, tmp_path, monkeypatch, capsys):
+    """The table of the example of a study, which is not computed again, and says so where it is watched."""
+
+    def run(name):
+        table = example(name)["table"]
+        assert isinstance(table, StudyTable)
+        assert len({len(column) for column in table.values()}) == 1
+        marks = {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*.json")}
+        monkeypatch.setattr("fem.cli.python.watched", lambda: True)
+        runpy.run_path(str(FOLDER / f"{name}.py"), run_name="__main__")
+        assert "holds this" in capsys.readouterr().err
+        assert marks == {path: path.stat().st_mtime_ns for path in marks}
+        return table
+
+    return run
+
+
+def test_a_sweep_slides_where_the_floor_is_stronger_than_friction(study):
+    table = study("compute_a_sweep")
+    mu, peak = table["contact.mu_static"], table["motion.peak_acceleration_m_s2"]
+    assert peak.max() < 1.2 * STACK.uplift_acceleration  # friction holds less than what lifts it
+    assert ((table["outcome"] == "slide") == (peak > mu * GRAVITY)).all()
+    assert table.result["status"] == "completed"
+
+
+def test_an_ensemble_counts_what_cannot_overturn_as_clopper_and_pearson_do(study):
+    table = study("compute_an_ensemble")
+    weak, strong = table["motion.peak_acceleration_m_s2"]
+    assert weak < STACK.uplift_acceleration < strong
+    none_of_16 = 1.0 - 0.025 ** (1 / 16)
+    assert (table["probability"][0], table["high"][0]) == (0.0, pytest.approx(none_of_16, rel=1e-9))
+    assert table["probability"][1] > 0.5
+
+
+def test_a_list_ranks_by_the_narrower_side(study):
+    table = study("compute_a_list")
+    peak, height, sides = 0.05 * 6.928**2, 1.0, np.array([0.4, 1.1])  # of the wide one its depth
+    assert table["utilisation_overturning"] == pytest.approx(peak * height / GRAVITY / sides, rel=1e-3)
+    assert [*table["name"][np.argsort(table["rank"])]] == ["narrow", "wide"]
+
+
+def test_a_response_curve_leaves_rest_where_the_floor_is_stronger_than_friction(study):
+    table = study("compute_a_response_curve")
+    strength = 0.05 * (2.0 * math.pi * table["frequency_Hz"]) ** 2
+    assert ((table["motion"] == "rest") == (strength < 0.4 * GRAVITY)).all()
+    assert [*table["direction"]] == ["up"] * 3 + ["down"] * 3
+
+
+def test_a_site_where_a_run_overturns_is_not_fulfilled(study):
+    table = study("assess_a_site")
+    assert table.result["action"]["ag_S_m_s2"] == pytest.approx(
+        1.35 * 3.5
+    )  # EN 1998-1:2004, Table 3.2, ground D
+    assert "overturned" in table["outcome"]
+    assert table.result["answer"].startswith("Not fulfilled")
+
+
+def test_bad_input_of_a_study_is_a_value_error_in_words(tmp_path):
+    still = fem.load_case("seed_box", ("solver.model=rigid", "motion.kind=none"))
+    with pytest.raises(ValueError, match="no sweep"):
+        fem.compute_sweep("nothing", tmp_path / "out")
+    with pytest.raises(ValueError, match="harmonic"):
+        fem.compute_response(still, tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_notebook_is_shown_the_progress(monkeypatch):
+    assert not watched()
+    monkeypatch.setattr("rich.console._is_jupyter", lambda: True)
+    assert watched()
+
+
+def test_a_table_becomes_a_data_frame_where_pandas_is(monkeypatch):
+    table = StudyTable({"answer": "It stands."}, [{"outcome": "rest", "slip_m": "0.1"}, {"outcome": "slide"}])
+    made = ModuleType("pandas")
+    made.DataFrame = dict
+    monkeypatch.setitem(sys.modules, "pandas", made)
+    assert [*table.to_dataframe()] == ["outcome", "slip_m"]
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    with pytest.raises(ImportError, match="pip install pandas"):
+        table.to_dataframe()
