@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-
 FIRST_ROWS = 10  #: shown in a notebook
 
 
@@ -53,6 +52,7 @@ class StudyTable(dict[str, np.ndarray]):
         names = dict.fromkeys(name for row in rows for name in row)
         super().__init__({name: _column([row.get(name) for row in rows]) for name in names})
         self.result = result  #: all that the marking file holds
+        self.answer = str(result.get("answer") or "no answer yet")  #: in one sentence
 
     def to_dataframe(self) -> Any:
         """The table as a `pandas.DataFrame`; ImportError, in words, where pandas is not installed."""
@@ -64,16 +64,14 @@ class StudyTable(dict[str, np.ndarray]):
     def __repr__(self) -> str:
         """One line, with what was found."""
         rows = len(next(iter(self.values()), ()))
-        return f"<study: {rows} rows of {', '.join(self)}; {self.result.get('answer') or 'no answer yet'}>"
+        return f"<study: {rows} rows of {', '.join(self)}; {self.answer}>"
 
     def _repr_html_(self) -> str:
         """The answer and the first rows, for a notebook."""
         head = "".join(f"<th>{escape(name)}</th>" for name in self)
         rows = zip(*(column[:FIRST_ROWS] for column in self.values()), strict=True)
         body = "".join(f"<tr>{''.join(f'<td>{escape(str(cell))}</td>' for cell in row)}</tr>" for row in rows)
-        return (
-            f"<p>{escape(str(self.result.get('answer') or 'no answer yet'))}</p><table>{head}{body}</table>"
-        )
+        return f"<p>{escape(self.answer)}</p><table>{head}{body}</table>"
 
 
 def _column(cells: list[Any]) -> np.ndarray:
@@ -99,12 +97,8 @@ def open_run(folder: str | Path) -> PlottedRun | StudyTable:
         if mark.is_file():
             result = kinds.read_result(mark, kind)
             try:
-                table = (
-                    csv.DictReader(read_text(mark.parent / kind.results).splitlines())
-                    if not key
-                    else result[key]
-                )
-                return StudyTable(result, table)
+                text = "" if key else read_text(mark.parent / kind.results)
+                return StudyTable(result, result[key] if key else csv.DictReader(text.splitlines()))
             except (AttributeError, LookupError, OSError, TypeError, ValueError, csv.Error) as error:
                 raise FolderError(f"{mark}: damaged, it has no table ({error})") from None
     run = reader.open_run(folder)
