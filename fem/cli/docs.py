@@ -1,5 +1,6 @@
 """`docs`: the documents that are installed with the program."""
 
+from importlib import metadata
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -7,6 +8,7 @@ from fem.results.errors import FolderError
 from fem.runtime.terminal import say
 from fem.runtime.user_files import read_text
 
+START = "start"  #: the README of the project, which is part of its metadata wherever it is installed
 #: the packages whose folders hold a README for each room, and further pages
 PACKAGES = ("fem", "mesh", "contact")
 
@@ -17,18 +19,21 @@ def docs(room: str = "", /) -> None:
     Parameters
     ----------
     room:
-        Of which to print the text, such as case, keys or contact.
+        Of which to print the text, such as start, case, keys or contact.
     """
     places = found()
-    if not room:
+    if room == START:
+        say(str(metadata.metadata("unanchored").get_payload()))
+    elif not room:
+        say(f"{START:<12}what the program answers, and the first five minutes")
         for name, path in places.items():
             title = read_text(path).partition("\n")[0].lstrip("# ")
             say(f"{name:<12}{title}\n{'':12}{path}")
         say("\npython -m fem docs NAME prints one of them.")
-        return
-    if room not in places:
-        raise FolderError(f"docs {room}: no such document; there are {', '.join(places)}")
-    say(read_text(places[room]))
+    elif room not in places:
+        raise FolderError(f"docs {room}: no such document; there are {', '.join([START, *places])}")
+    else:
+        say(read_text(places[room]))
 
 
 def found() -> dict[str, Path]:

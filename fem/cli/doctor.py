@@ -52,11 +52,11 @@ def _version(name: str) -> str | None:
 
 
 def _page(report: dict[str, Any]) -> str:
-    lines = [f"python {report['python']} on {report['platform']}"]
-    lines += [f"  {name:<12} {version or 'missing'}" for name, version in report["versions"].items()]
-    lines += [
-        f"  {'rendering':<12} {'works' if report['rendering'] else 'does not work'}",
-        f"  {'threads':<12} {report['threads']}",
-        f"  {'disk':<12} {report['disk_free_GB']:g} GB free here",
+    rows = {name: version or "missing" for name, version in report["versions"].items()}
+    rows |= {"rendering": "works" if report["rendering"] else "does not work", "threads": report["threads"]}
+    rows |= {"disk": f"{report['disk_free_GB']:g} GB free here"}
+    lines = [
+        f"python {report['python']} on {report['platform']}",
+        *(f"  {k:<12} {v}" for k, v in rows.items()),
     ]
     return "\n".join(lines + [""] + (report["remedies"] or ["nothing is missing"]))

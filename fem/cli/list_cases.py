@@ -24,13 +24,7 @@ def list_cases(*, as_json: AsJson = False) -> None:
         say(f"{collection.kind.capitalize()}s: python -m fem {COMMANDS[collection.kind]} NAME")
         for name in collection.names:
             mark = " (default)" if name == DEFAULT_CASE else ""
-            say(
-                fill(
-                    collection.description(name) + mark,
-                    WIDTH,
-                    initial_indent=f"{name:{width}}  ",
-                    subsequent_indent=" " * (width + 2),
-                )
-            )
+            text = f"{name:{width}}  {collection.description(name)}{mark}"
+            say(fill(text, WIDTH, subsequent_indent=" " * (width + 2)))
         say()
     say("python -m fem init NAME writes any of them to a file.")
