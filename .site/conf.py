@@ -13,6 +13,7 @@ from gallery import shown
 
 project = "unanchored"
 author = "The developers of unanchored"
+copyright = author
 version = release = metadata.version("unanchored").partition("+")[0]
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
 source_suffix = {".md": "markdown"}

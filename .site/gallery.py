@@ -26,12 +26,13 @@ def pages_of(folder: Path) -> list[Path]:
 
 
 def said_in(folder: Path) -> str:
-    """The first sentences of a result; empty where its page says it with numbers."""
+    """What a result says first, of a run with the static rule beside it; empty where a page says it with numbers."""
     try:
         result = fem.open_run(folder).result
     except ValueError:
         return ""
-    return result.get("answer") or " ".join(result["verdict"]["card"])
+    card = result.get("verdict", {}).get("card")
+    return f"{card[0]} {card[-1]}" if card else result.get("answer") or ""
 
 
 def picture_of(page: Path) -> None:
@@ -58,7 +59,7 @@ def _figure(link: re.Match[str]) -> str:
         return "*Not computed here: the command makes it.*"
     said = html.escape((GALLERY / f"{name}.txt").read_text(encoding="utf-8"))
     picture = (
-        f'<img src="../gallery/{name}.png" width="{WIDTH}" height="{HEIGHT}" alt="How the page begins.">'
+        f'<img src="../gallery/{name}.png" alt="How the page begins." style="border: 1px solid #bbb">'
     )
     drawn = picture if page.with_suffix(".png").is_file() else ""
     link_to = f'<a href="../gallery/{name}.html">'
