@@ -132,14 +132,14 @@ BUDGET = {
     "results": ("fem/results", 2_916, 96),
     "seismic": ("fem/seismic", 2_315, 62),
     "solid": ("fem/solid", 1_873, 64),
-    "model": ("fem/model", 3_976, 120),
-    "run": ("fem/run", 5_880, 198),
-    "pages": ("fem/html fem/figures fem/render fem/report", 5_013, 128),
-    "study": ("fem/study fem/response", 7_372, 205),
+    "model": ("fem/model", 3_962, 120),
+    "run": ("fem/run", 4_820, 162),
+    "pages": ("fem/html fem/figures fem/render fem/report", 5_012, 128),
+    "study": ("fem/study fem/response", 7_371, 205),
     "site": ("fem/site", 4_747, 123),
-    "cli": ("fem/cli fem/__init__.py fem/__main__.py", 2_061, 47),
-    "product": ("mesh contact fem", 56_103, 1_668),
-    "tests": ("tests", 43_552, 2_552),
+    "cli": ("fem/cli fem/__init__.py fem/__main__.py", 2_056, 47),
+    "product": ("mesh contact fem", 55_022, 1_632),
+    "tests": ("tests", 39_200, 2_244),
 }
 
 
