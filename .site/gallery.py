@@ -58,9 +58,7 @@ def _figure(link: re.Match[str]) -> str:
     if not page.is_file():
         return "*Not computed here: the command makes it.*"
     said = html.escape((GALLERY / f"{name}.txt").read_text(encoding="utf-8"))
-    picture = (
-        f'<img src="../gallery/{name}.png" alt="How the page begins." style="border: 1px solid #bbb">'
-    )
+    picture = f'<img src="../gallery/{name}.png" alt="How the page begins." style="border: 1px solid #bbb">'
     drawn = picture if page.with_suffix(".png").is_file() else ""
     link_to = f'<a href="../gallery/{name}.html">'
     return f"<figure>\n{link_to}{drawn}</a>\n<figcaption>{said} {link_to}{words}</a></figcaption>\n</figure>"
