@@ -76,7 +76,12 @@ COMMANDS = [name for commands in GROUPS.values() for name in commands]
 #: commands that compute; `run` looks at its case before it asks for memory
 COMPUTING = {*COMMANDS} - {"check", "init", "list", "completion", "schema", "docs", "doctor", "run"}
 #: import strings of commands that are not `fem.cli.NAME:NAME`
-PLACES = {"list": "fem.cli.list_cases:list_cases", "completion": "fem.__main__:completion"}
+PLACES = {
+    "list": "fem.cli.shipped:list_cases",
+    "completion": "fem.__main__:completion",
+    "movie": "fem.cli.picture:movie",
+}
+PLACES |= {name: f"fem.cli.shipped:{name}" for name in ("init", "docs")}
 PLACES |= {name: f"fem.cli.evidence:{name}" for name in ("verify", "validate", "study")}
 PLACES |= {
     name: f"fem.cli.studies:{name}"

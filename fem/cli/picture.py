@@ -1,7 +1,8 @@
-"""`picture`: one instant of a run, or a recorded motion and its response spectrum."""
+"""`picture` and `movie`: one instant of a run, or a recorded motion and its response spectrum; a run as GIF or MP4."""
 
 import importlib
 import io
+import math
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -10,14 +11,17 @@ from cyclopts import Parameter
 from fem.case.data_files import split_channel
 from fem.case.plausible import doubts
 from fem.case.validation import CaseError
-from fem.cli.console import ELSEWHERE_TO
+from fem.cli.console import ELSEWHERE_TO, Quiet, RunFolder
 from fem.records.files import read_record
 from fem.records.processing import Baseline, Processing, baseline_change, processed
 from fem.records.record import Component
 from fem.render.opengl import require_rendering
+from fem.results.disk import BYTES_BESIDE
 from fem.results.errors import require_writable, writing_into
 from fem.results.reader import open_run
-from fem.runtime.own_files import write_atomically
+from fem.run.expected import say_expected
+from fem.runtime.own_files import make_folder, place_in, write_atomically
+from fem.runtime.progress import ScreenReporter
 from fem.runtime.terminal import say
 
 Source = Annotated[
@@ -25,6 +29,7 @@ Source = Annotated[
     Parameter(name="RUN", help="Folder of a run, such as outputs/my-stack, or a motion file; FILE#CHANNEL."),
 ]
 SUFFIXES = (".png", ".svg")
+OF_A_FRAME_S = 0.09  #: to draw it, without a graphics card [s]
 
 
 def picture(
@@ -105,3 +110,29 @@ def _write_motion(components: list[Component], path: Path, to: Path | None) -> P
             figure.savefig(drawn, dpi=160)
             write_atomically(target, drawn.getvalue())
     return target
+
+
+def movie(
+    run: RunFolder,
+    /,
+    *,
+    to: Annotated[Path | None, Parameter(help="A .gif or .mp4; default: its figures/movie.gif.")] = None,
+    begin: Annotated[float, Parameter(name="--from", help="Begin at this time of the run [s].")] = 0.0,
+    until: Annotated[float, Parameter(help="End at this time of the run [s].")] = math.inf,
+    fps: Annotated[float, Parameter(help="Most frames a second.")] = 25.0,
+    quiet: Quiet = False,
+) -> None:
+    """Animate the frames of a run in real time; MP4 needs imageio-ffmpeg."""
+    opened, path = open_run(run), to or run / "figures/movie.gif"
+    count = len(opened.fields)  # raises where there are no frames to draw
+    require_writable(to.parent if to else run, ELSEWHERE_TO, BYTES_BESIDE)
+    require_rendering()
+    say_expected(ScreenReporter(quiet=quiet), f"up to {count} frames", OF_A_FRAME_S * count)
+    with writing_into(path.parent, ELSEWHERE_TO):
+        if to is None:
+            place_in(run, "figures/movie.gif")
+        else:
+            make_folder(path.parent)
+        film = importlib.import_module("fem.render.movie")  # loads pyvista
+        film.write_movie(opened, path, begin=begin, until=until, rate=fps)
+    say(path)

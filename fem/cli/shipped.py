@@ -1,0 +1,127 @@
+"""`list`, `init`, `docs`: what is installed with the program, cases, files to start from, and documents."""
+
+import json
+import tomllib
+from importlib import metadata
+from importlib.util import find_spec
+from pathlib import Path
+from textwrap import fill
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from fem.case.case import CaseError, load_case
+from fem.case.files import CASES, COLLECTIONS, COMMANDS, DEFAULT_CASE
+from fem.case.template import case_template
+from fem.cli.console import WIDTH, AsJson
+from fem.results.errors import FolderError
+from fem.runtime.own_files import created
+from fem.runtime.terminal import say
+from fem.runtime.user_files import read_text
+
+START = "start"  #: the README of the project, which is part of its metadata wherever it is installed
+#: the packages whose folders hold a README for each room, and further pages
+PACKAGES = ("fem", "mesh", "contact")
+
+
+def list_cases(*, as_json: AsJson = False) -> None:
+    """List the shipped cases, sweeps, ensembles and sites, each with its description."""
+    if as_json:
+        document = {
+            f"{collection.kind}s": [
+                {"name": name, "description": collection.description(name)} for name in collection.names
+            ]
+            for collection in COLLECTIONS
+        }
+        say(json.dumps({"default": DEFAULT_CASE} | document, indent=2))
+        return
+    width = max(len(name) for collection in COLLECTIONS for name in collection.names)
+    for collection in COLLECTIONS:
+        say(f"{collection.kind.capitalize()}s: python -m fem {COMMANDS[collection.kind]} NAME")
+        for name in collection.names:
+            mark = " (default)" if name == DEFAULT_CASE else ""
+            text = f"{name:{width}}  {collection.description(name)}{mark}"
+            say(fill(text, WIDTH, subsequent_indent=" " * (width + 2)))
+        say()
+    say("python -m fem init NAME writes any of them to a file.")
+
+
+def init(
+    name: str | None = None,
+    /,
+    *,
+    to: Annotated[Path | None, Parameter(help="The file; default: NAME.toml, or case.toml.")] = None,
+) -> None:
+    """Write a commented case, sweep, ensemble or site file to start from; an existing file is never overwritten.
+
+    Parameters
+    ----------
+    name:
+        A shipped case, sweep, ensemble or site (see `python -m fem list`); default: a case file with every key.
+    """
+    of = next((each for each in COLLECTIONS if name in each.names), CASES)
+    text = case_template(load_case()) if name is None else of.text(name)
+    if name is not None and of is CASES:
+        text = _for_another_box(text)
+    path = to if to is not None else Path(f"{name or 'case'}.toml")
+    try:
+        with created(path) as stream:
+            stream.write(text.encode())
+    except FileExistsError:
+        raise CaseError(f"{path} exists and is not overwritten; give another name with --to") from None
+    except OSError as error:
+        raise CaseError(
+            f"{path}: cannot be written ({error.strerror or error}); choose another place with --to"
+        ) from None
+    say(f"{path} written; next:")
+    if of is CASES:
+        say(f"  python -m fem check {path}    static checks and settings, nothing is computed")
+    say(f"  python -m fem {COMMANDS[of.kind]} {path}")
+
+
+def _for_another_box(text: str) -> str:
+    """Without [static] and what the box of the file alone has below it: a freight container keeps its corners."""
+    left = {"static", "floor.corner_patch_m"}
+    if "corner_post_N" not in tomllib.loads(text)["container"]:  # posts and castings by ISO 1496-1
+        left |= {"support", "container.post_m"}
+    table, kept = "", []
+    for line in text.splitlines(keepends=True):
+        if line.startswith("["):
+            table = line[1:].partition("]")[0]
+        if left.isdisjoint((table, f"{table}.{line.partition('=')[0].strip()}")):
+            kept.append(line)
+    return "".join(kept)
+
+
+def docs(room: str = "", /) -> None:
+    """Print where the documents are, for each room of the program, or the text of one.
+
+    Parameters
+    ----------
+    room:
+        Of which to print the text, such as start, case, keys or contact.
+    """
+    places = found()
+    if room == START:
+        say(str(metadata.metadata("unanchored").get_payload()))
+    elif not room:
+        say(f"{START:<12}what the program answers, and the first five minutes")
+        for name, path in places.items():
+            title = read_text(path).partition("\n")[0].lstrip("# ")
+            say(f"{name:<12}{title}\n{'':12}{path}")
+        say("\npython -m fem docs NAME prints one of them.")
+    elif room not in places:
+        raise FolderError(f"docs {room}: no such document; there are {', '.join([START, *places])}")
+    else:
+        say(read_text(places[room]))
+
+
+def found() -> dict[str, Path]:
+    """The documents, by the names of their rooms; further pages by their own."""
+    places = {}
+    for package in PACKAGES:
+        spec = find_spec(package)
+        for folder in (spec and spec.submodule_search_locations) or ():
+            for path in sorted(Path(folder).rglob("*.md")):
+                places[path.parent.name if path.stem == "README" else path.stem] = path
+    return places
