@@ -26,7 +26,7 @@ from fem.cli.console import (
 )
 from fem.results.disk import BYTES_BESIDE
 from fem.results.errors import require_writable, writing_into
-from fem.results.json_text import to_json
+from fem.results.json_block import to_json
 from fem.runtime.own_files import make_folder, write_atomically
 from fem.runtime.progress import ScreenReporter
 from fem.runtime.terminal import say

@@ -72,7 +72,7 @@ def report(
     reporter = ScreenReporter(quiet=quiet)
     pages = importlib.import_module("fem.report.run_page")
     signature = pages.Signature(author=author, checker=checker, revision=revision)
-    mark = next((mark for mark in PAGES if (folder / mark).is_file()), "run.json")
+    mark = next((mark for mark in PAGES if (folder / mark).exists()), "run.json")
     try:
         if mark in PAGES:
             module, _, name = PAGES[mark].partition(":")

@@ -12,7 +12,7 @@ from typing import Any
 
 from fem.html.drawing import Drawing, require_drawing
 from fem.model.container import Container
-from fem.results.json_text import to_json
+from fem.results.json_block import to_json
 from fem.results.reader import OpenedRun
 from fem.results.run_files import RunFiles
 from fem.runtime.identity import program_identity

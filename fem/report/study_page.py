@@ -271,9 +271,9 @@ def response_report(folder: Path, *, signature: Signature | None = None) -> str:
     counts = Counter(point.words for point in info.points).most_common()
     counted = ", ".join(f"{words} at {count}" for words, count in counts)
     given = {f"--{name.replace('_', '-')}": name for name in OPTIONS} | RENAMED
-    asked_for = {option: asked[key] for option, key in given.items() if key in asked}
+    asked_for = {option: asked[key] for option, key in given.items()}
     options = [word for option, value in asked_for.items() for word in (option, str(value))]
-    options += ["--shell"] * bool(asked.get("shell"))
+    options += ["--shell"] * bool(asked["shell"])
     options += [] if case.solver.model == "rigid" else ["--set", f"solver.model={case.solver.model}"]
     unit, factor = ("mm", 1e3) if asked["held"] == "displacement" else ("m/s²", 1.0)
     stable = stable_in_words(info)

@@ -2,10 +2,10 @@
 
 import json
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import asdict, astuple, dataclass, field, fields, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, astuple, dataclass, fields, replace
 from itertools import groupby
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from fem.response.orbit import (
     amplitude_growth,
     amplitudes_diverge,
 )
-from fem.response.request import SAMPLES_PER_PERIOD, ResponseRequest
+from fem.response.request import ASKED, SAMPLES_PER_PERIOD, ResponseRequest
 from fem.results.figures import TURNED
 from fem.results.json_block import JsonBlock
 from fem.results.outcome import Outcome
@@ -209,12 +209,16 @@ def packed(records: Sequence[PointRecord]) -> dict[str, np.ndarray]:
 
 
 def unpacked(arrays: dict[str, np.ndarray]) -> list[PointRecord]:
-    """The points that `packed` made these arrays of."""
-    ends = np.cumsum(arrays["counts"], axis=0)[:-1]
-    parts = {name: np.split(arrays[name], ends[:, k]) for k, name in enumerate(ARRAYS)}
+    """The points that `packed` made these arrays of; ValueError, LookupError or TypeError where it did not."""
+    rows, counts = parsed_json(str(arrays["rows"])), arrays["counts"]
+    parts = dict[str, list[np.ndarray]]()
+    for (name, columns), lengths in zip(ARRAYS.items(), counts.T, strict=True):
+        if arrays[name].shape != (lengths.sum(), len(columns)) or arrays[name].dtype != float:
+            raise ValueError(f"{name} is no table of its points")
+        parts[name] = np.split(arrays[name], np.cumsum(lengths)[:-1])
     return [
-        PointRecord(row=PointRow(**row), **{name: parts[name][k] for name in ARRAYS})
-        for k, row in enumerate(parsed_json(str(arrays["rows"])))
+        PointRecord(row=PointRow.from_json(row), **dict(zip(ARRAYS, own, strict=True)))
+        for row, *own in zip(rows, *parts.values(), strict=True)
     ]
 
 
@@ -386,7 +390,9 @@ class ResponseResult(StudyResult):
     asked: str  #: hash of the request
     case: str = ""  #: its name
     title: str = ""
-    request: dict[str, Any] = field(default_factory=dict)  #: without the case
+    request: dict[str, Any]  #: without the case
+    columns_of: ClassVar[Mapping[str, Mapping[str, Any]]] = {"request": ASKED}
+    needed = frozenset(ASKED) - {"shell"}
     points: tuple[PointRow, ...] = ()  #: up and down, in the order in which they were swept
     frequencies: tuple[AtFrequency, ...] = ()  #: what lasts at each, whatever led to it
     coexisting: tuple[Coexistence, ...] = ()

@@ -10,6 +10,9 @@ from fem.case.case import Case, CaseError, case_hash
 from fem.study.driver import hash_of
 
 Hold = Literal["displacement", "acceleration"]
+#: what a result states of its request
+ASKED = dict.fromkeys(("count", "starts", "settle", "observe"), int) | {"shell": bool, "held": Hold}
+ASKED |= dict.fromkeys(("first_Hz", "last_Hz", "held_value"), float)
 
 #: of the case's own frequency, in steps of an eleventh: 0.3 to 3 Hz of the paper's motion, which is one of them
 FROM, TO, COUNT = 3.0 / 11.0, 30.0 / 11.0, 28

@@ -22,6 +22,7 @@ from fem.response.figures import response_figures
 from fem.response.lasting import (
     PORTRAYED,
     PointRecord,
+    PointRow,
     ResponseResult,
     differ,
     lasting_at,
@@ -46,7 +47,8 @@ from fem.response.orbit import (
     step_until,
     stop_drive,
 )
-from fem.response.request import SAMPLES_PER_PERIOD, ResponseRequest
+from fem.response.request import SAMPLES_PER_PERIOD, TURN, ResponseRequest
+from fem.results.archive import CheckpointError
 from fem.results.disk import table_bytes
 from fem.results.folder import ResultFolder
 from fem.results.kinds import RESPONSE
@@ -276,6 +278,20 @@ def run_response(
     return run_study(study, folder, **options)
 
 
+def _require_planned(request: ResponseRequest, done: Sequence[Task], rows: Sequence[PointRow]) -> None:
+    """Hold points against the tasks that they are said to be of; ValueError where they are of others."""
+    drives = {task: request.case_at(task.number, task.model).motion for task in done}
+    made = [
+        Task(row.began if row.direction == "start" else row.direction, row.number, row.model) for row in rows
+    ]
+    if [task for task in made if task.carries] != [task for task in done if task.carries]:
+        raise ValueError("its points are others")
+    for task, row in zip(made, rows, strict=True):
+        drive = drives[task]
+        if (row.frequency_Hz, row.amplitude_m) != (drive.angular_frequency / TURN, drive.amplitude):
+            raise ValueError(f"its point {task.way} {task.number} has another drive")
+
+
 def _follow(
     request: ResponseRequest, plan: Sequence[Task], results: ResultFolder, runner: Runner
 ) -> tuple[int, list[PointRecord]]:
@@ -285,7 +301,11 @@ def _follow(
     containers = {model: discretise(request.case_at(0, model)) for model in {task.model for task in plan}}
     control = build_model(request.case, containers[request.case.solver.model]).run.problem.control
     if saved is not None:
-        records, done = unpacked(saved), int(saved["done"])
+        try:
+            records, done = unpacked(saved), int(saved["done"])
+            _require_planned(request, plan[:done], [record.row for record in records])
+        except (AttributeError, LookupError, TypeError, ValueError) as error:
+            raise CheckpointError(results.path / STATE, f"is of no such response curve ({error})") from None
         if "clock" in saved:
             last = plan[done - 1]
             before = driven_model(request.case_at(last.number, last.model), containers[last.model])

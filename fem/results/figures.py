@@ -12,6 +12,7 @@ from enum import Flag, auto
 from typing import Annotated, Any, Generic, TypeVar, get_args, get_origin, get_type_hints
 
 from fem.results.json_block import JsonBlock
+from fem.results.outcome import Outcome
 from fem.runtime import units
 from fem.runtime.units import JOINT_MILLIMETRES as JOINT_MM
 from fem.runtime.units import MILLIMETRES as MM
@@ -260,7 +261,7 @@ JOINT_OPENING = Shown(
 class RunOutcome(JsonBlock):
     """What happened in one run."""
 
-    outcome: str | None = None  #: rest | slide | rock | slide-rock | overturned; None where the run failed
+    outcome: Outcome | None = None  #: None where the run failed
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -18,7 +18,7 @@ import numpy as np
 from fem.results.archive import read_archive, write_archive
 from fem.results.disk import free_disk, in_units
 from fem.results.errors import OTHER_FOLDER, FolderError, writing_into
-from fem.results.json_text import to_json
+from fem.results.json_block import to_json
 from fem.results.kinds import KINDS, ResultKind, read_result
 from fem.results.lock import LOCK_NAME, OWNER_NAME, FolderLock, locked_folder
 from fem.runtime.identity import program_identity, versions

@@ -1,15 +1,39 @@
-"""A dataclass that is written as a JSON object and read back, with its fields as keys."""
+"""Results as strict JSON: a dataclass is written as an object and read back, with its fields as keys."""
 
-from collections.abc import Callable, Mapping
+import json
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import fields
+from enum import StrEnum
 from functools import cache
+from pathlib import Path
 from types import NoneType, UnionType
-from typing import Any, ClassVar, Self, TypeVar, Union, get_args, get_origin, get_type_hints
+from typing import Any, ClassVar, Literal, Self, TypeVar, Union, get_args, get_origin, get_type_hints
 
 from fem.runtime.terminal import one_line
 
 #: types of JSON, and what messages call them
 NAMED = {float: "number", int: "whole number", str: "text", bool: "truth value"}
+IS_MISSING = "is missing"
+
+
+def to_json(content: Mapping[str, Any]) -> str:
+    """Strict JSON: numpy scalars and arrays as numbers and lists, nan and infinity as null."""
+    return json.dumps(_as_json(content), indent=2, allow_nan=False, ensure_ascii=False) + "\n"
+
+
+def _as_json(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {str(key): _as_json(item) for key, item in value.items()}
+    if hasattr(value, "tolist"):  # of numpy, which takes long to load
+        return _as_json(value.tolist())
+    if isinstance(value, str | Path):
+        return str(value)
+    if isinstance(value, Sequence | set | frozenset):
+        return [_as_json(item) for item in (sorted(value) if isinstance(value, set | frozenset) else value)]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value
 
 
 class JsonBlock:
@@ -17,24 +41,27 @@ class JsonBlock:
 
     #: keys that are left out where they are None, in place of null
     written_where_given: ClassVar[frozenset[str]] = frozenset()
-    #: of fields that hold rows, the types of their columns
-    columns_of: ClassVar[Mapping[str, Mapping[str, type]]] = {}
+    #: of fields that hold rows, or one, the types of their columns
+    columns_of: ClassVar[Mapping[str, Mapping[str, Any]]] = {}
+    #: of these columns, those that no row lacks; the others are None where one has no such key
+    needed: ClassVar[frozenset[str]] = frozenset()
 
     @classmethod
     def from_json(cls, block: Mapping[str, Any]) -> Self:
         """Read a block; missing keys and null take the default, unknown keys are ignored.
 
         Raises:
-            ValueError: the block is no table, a required key is missing, or one has a value of another type.
+            ValueError: the block is no table, a required key is missing, or one has a value of another type; with the
+                key.
         """
-        if not isinstance(block, Mapping):
-            raise _WrongTypeError("", "table")
-        try:
-            readers = _readers(cls)  # type: ignore[arg-type]
-            given = [name for name in readers if block.get(name) is not None]
-            return cls(**{name: _within(name, readers[name], block[name]) for name in given})
-        except TypeError as error:
-            raise ValueError(f"cannot be read as {cls.__name__} ({error})") from None
+        _require(isinstance(block, Mapping), "is no table")
+        readers = _readers(cls)  # type: ignore[arg-type]
+        named = [name for name in readers if block.get(name) is not None]
+        given = {name: _within(name, readers[name], block[name]) for name in named}
+        for field in fields(cls):  # type: ignore[arg-type]
+            optional = field.default is not field.default_factory  # both are missing of another
+            _require(optional or field.name in given, IS_MISSING, field.name)
+        return cls(**given)
 
     def __getitem__(self, key: str) -> Any:
         """A value by its key in the file; KeyError names the keys there are."""
@@ -59,11 +86,16 @@ def _plain(value: Any) -> Any:
     return [_plain(item) for item in value] if isinstance(value, tuple) else value
 
 
-class _WrongTypeError(ValueError):
-    """A value of another type than its key has."""
+def _require(right: bool, what: str, key: str = "") -> None:
+    if not right:
+        raise _WrongValueError(key, what)
+
+
+class _WrongValueError(ValueError):
+    """A value that its key cannot have."""
 
     def __init__(self, key: str, what: str) -> None:
-        super().__init__(f"{key} is no {what}")
+        super().__init__(f"{key} {what}")
         self.key, self.what = key, what
 
 
@@ -72,7 +104,10 @@ def _readers(kind: type[JsonBlock]) -> dict[str, Callable[[Any], Any]]:
     """For each field, what makes its value from JSON types."""
     hints = get_type_hints(kind)
     readers = {field.name: _reader(hints[field.name], _given(kind)) for field in fields(kind)}  # type: ignore[arg-type]
-    return readers | {name: _listed(_row(columns)) for name, columns in kind.columns_of.items()}
+    for name, columns in kind.columns_of.items():
+        row = _row(columns, kind.needed)
+        readers[name] = row if get_origin(hints[name]) is dict else _listed(row)
+    return readers
 
 
 def _given(kind: type) -> dict[Any, Any]:
@@ -85,68 +120,90 @@ def _given(kind: type) -> dict[Any, Any]:
     return given
 
 
-def _row(columns: Mapping[str, type]) -> Callable[[Any], Any]:
+def _row(columns: Mapping[str, Any], needed: frozenset[str]) -> Callable[[Any], Any]:
     """A row with typed columns, and others as they are."""
-    readers = {name: _scalar((kind,)) for name, kind in columns.items()}
+    numbers = tuple[float, ...]  # of a column with several
+    hints = {name: numbers if kind is tuple else kind for name, kind in columns.items()}
+    readers = {name: _reader(hint if name in needed else hint | None, {}) for name, hint in hints.items()}
 
     def read(value: Any) -> Any:
-        if not isinstance(value, dict):
-            raise _WrongTypeError("", "table")
-        given = ((name, reader) for name, reader in readers.items() if name in value)
-        return value | {name: _within(f".{name}", reader, value[name]) for name, reader in given}
+        _require(isinstance(value, dict), "is no table")
+        return value | {
+            name: _within(f".{name}", reader, value.get(name)) for name, reader in readers.items()
+        }
 
     return read
 
 
 def _reader(hint: Any, given: Mapping[Any, Any]) -> Callable[[Any], Any]:
-    """What makes a value from JSON types, where null is one of any type; given: what type variables stand for."""
+    """What makes a value of a list, table or row from JSON types; given: what type variables stand for."""
     hint = given.get(hint, hint) if isinstance(hint, TypeVar) else hint
+    read, may_lack = _of_type(hint, given), hint is Any or NoneType in get_args(hint)
+
+    def present(value: Any) -> Any:
+        _require(value is not None or may_lack, IS_MISSING)
+        return None if value is None else read(value)
+
+    return present
+
+
+def _of_type(hint: Any, given: Mapping[Any, Any]) -> Callable[[Any], Any]:
     parts = [part for part in get_args(hint) if part is not NoneType]
     if get_origin(hint) in (UnionType, Union):
         return _reader(parts[0], given) if len(parts) == 1 else _scalar(tuple(parts))
     kind = get_origin(hint) or hint
+    if kind is Literal:
+        return _choice(parts)
+    if isinstance(kind, type) and issubclass(kind, StrEnum):
+        return _choice(kind)
     if isinstance(kind, type) and issubclass(kind, JsonBlock):
         return kind.from_json
     if kind is tuple:
         return _listed(_reader(parts[0], given), None if Ellipsis in parts else len(parts))
-    if kind is dict:
-        return _table(_reader(parts[1], given))
-    return _scalar((kind,)) if kind in NAMED else lambda value: value
+    if kind in (dict, Mapping):
+        return _table(_reader(parts[0], given), _reader(parts[1], given))
+    return _scalar((kind,)) if kind in NAMED else lambda value: value  # Any
+
+
+def _choice(choices: Iterable[str]) -> Callable[[Any], Any]:
+    """One of some words."""
+    known = {str(choice): choice for choice in choices}
+
+    def read(value: Any) -> Any:
+        _require(isinstance(value, str) and value in known, f"is none of {', '.join(known)}")
+        return known[value]
+
+    return read
 
 
 def _scalar(kinds: tuple[type, ...]) -> Callable[[Any], Any]:
     """A value of one of some types; a whole number is a number, and true is none."""
-    if not set(kinds) <= set(NAMED):
-        return lambda value: value
     taken = (*kinds, int) if float in kinds else kinds
+    other = "is no " + " and no ".join(NAMED[kind] for kind in kinds)
 
     def read(value: Any) -> Any:
-        right = isinstance(value, taken) and (not isinstance(value, bool) or bool in kinds)
-        if value is not None and not right:
-            raise _WrongTypeError("", " and no ".join(NAMED[kind] for kind in kinds))
+        _require(isinstance(value, taken) and (bool in kinds or not isinstance(value, bool)), other)
         return one_line(value) if isinstance(value, str) else value
 
     return read
 
 
 def _listed(read: Callable[[Any], Any], count: int | None = None) -> Callable[[Any], Any]:
-    """A list; of `count` items, none of which is null, where that is given."""
+    """A list; of `count` items where that is given."""
 
     def items(values: Any) -> Any:
-        if not isinstance(values, list):
-            raise _WrongTypeError("", "list")
-        if count is not None and (len(values) != count or None in values):
-            raise _WrongTypeError("", f"list of {count} values")
+        _require(isinstance(values, list), "is no list")
+        _require(count in (None, len(values)), f"is no list of {count} values")
         return tuple(_within(f"[{k}]", read, value) for k, value in enumerate(values))
 
     return items
 
 
-def _table(read: Callable[[Any], Any]) -> Callable[[Any], Any]:
+def _table(read_key: Callable[[Any], Any], read: Callable[[Any], Any]) -> Callable[[Any], Any]:
     def items(values: Any) -> Any:
-        if not isinstance(values, dict):
-            raise _WrongTypeError("", "table")
-        return {(name := one_line(key)): _within(f".{name}", read, value) for key, value in values.items()}
+        _require(isinstance(values, dict), "is no table")
+        names = {key: _within(f".{one_line(key)}", read_key, key) for key in values}
+        return {names[key]: _within(f".{names[key]}", read, value) for key, value in values.items()}
 
     return items
 
@@ -155,6 +212,6 @@ def _within(key: str, read: Callable[[Any], Any], value: Any) -> Any:
     """A value of a list or table, whose key is in the message."""
     try:
         return read(value)
-    except _WrongTypeError as error:
+    except _WrongValueError as error:
         inner = f".{error.key}" if error.key and error.key[0] not in ".[" else error.key
-        raise _WrongTypeError(key + inner, error.what) from None
+        raise _WrongValueError(key + inner, error.what) from None

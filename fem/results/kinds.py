@@ -125,6 +125,7 @@ VERIFICATION = ResultKind(
     results="verify.json",
     own=(),
 )
+AGAIN = "compute it again with --force"
 KINDS = (RUN, SWEEP, ENSEMBLE, RESPONSE, SITE, SIZE, HALL, PAPER, VERIFICATION)
 
 
@@ -134,17 +135,20 @@ def read_result(path: Path, kind: ResultKind = RUN) -> dict[str, Any]:
     Raises:
         FolderError: there is none, or it is damaged.
     """
-    again = "compute it again with --force"
     try:
         result = read_json(path)
     except OSError as error:
         raise FolderError(
             f"{path}: cannot be read ({error.strerror}); is this the folder of {kind.article} {kind.name}?"
         ) from None
-    except ValueError:
-        result = None
+    except ValueError as error:
+        result, why = None, str(error)
+    else:
+        why = f"{kind.request} is no text"
     if not isinstance(result, dict) or not isinstance(result.get(kind.request), str):
-        raise FolderError(f"{path}: damaged, or not the result of {kind.article} {kind.name}; {again}")
+        raise FolderError(
+            f"{path}: damaged, or not the result of {kind.article} {kind.name} ({why}); {AGAIN}"
+        )
     return result
 
 
@@ -157,4 +161,4 @@ def typed_result(result: type[BlockT], content: Mapping[str, Any], path: Path) -
     try:
         return result.from_json(content)
     except ValueError as error:
-        raise FolderError(f"{path}: damaged, {error}; compute it again with --force") from None
+        raise FolderError(f"{path}: damaged, {error}; {AGAIN}") from None

@@ -164,7 +164,7 @@ def open_run(folder: str | Path) -> OpenedRun:
     if not path.is_dir():
         raise FolderError(f"{path}: no such folder; give the folder of a run, such as outputs/NAME")
     for kind in KINDS:
-        if (path / kind.mark).is_file() and not (path / RUN.mark).is_file():
+        if (path / kind.mark).exists() and not (path / RUN.mark).exists():
             if read_result(path / kind.mark, kind).get("status") in ("running", "interrupted"):
                 raise FolderError(f"{path}: the {kind.name} is not finished; continue it with --resume")
             raise FolderError(

@@ -162,7 +162,7 @@ class Band(LinkFigures[Reach], Figures[Reach]):
     Its figures are the [low, high] of the members that stand where the run stands, or overturn where it overturns.
     """
 
-    outcomes: tuple[str, ...] = ()  #: that were found, from rest to overturned
+    outcomes: tuple[Outcome, ...] = ()  #: that were found, from rest to overturned
     unsure: bool = False  #: the outcome is unsure: see `Verdict.sure`
     draws: int | None = None  #: members in which all inputs are drawn at once
     draws_overturned: int | None = None
@@ -226,7 +226,7 @@ class NeighbourResult(JsonBlock):
     """What a neighbour did, and what happened across the gap before it."""
 
     side: str  #: of the container: left | right
-    outcome: str  #: of the neighbour: rest | slide | rock | slide-rock | overturned
+    outcome: Outcome  #: of the neighbour
     max_rotation_rad: float
     rotation_ratio: float  #: over its own slenderness angle
     max_slip_m: float  #: over the floor
@@ -243,7 +243,7 @@ class NeighbourResult(JsonBlock):
 class AnalyticBlock(JsonBlock):
     """The analytic rigid block of a container under the same motion, on rigid ground."""
 
-    outcome: str | None = None  #: rest | slide | rock | slide-rock | overturned; None: it left the floor
+    outcome: Outcome | None = None  #: None: it left the floor
     rotation_ratio: float | None = None  #: up to there
     max_slip_m: float | None = None
     friction_needed: float | None = (

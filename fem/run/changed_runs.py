@@ -24,7 +24,7 @@ from fem.model.motion import build_motions
 from fem.model.recovery import Recovery, recovery_of
 from fem.model.validity import runs_in_memory
 from fem.results.figures import FELL_FIRST, Place
-from fem.results.json_text import to_json
+from fem.results.json_block import to_json
 from fem.results.run_result import ChangedRun, JointDemand, Numerics, Verdict
 from fem.run.ranges import largest_bolt_forces
 from fem.run.recorder import Recorder

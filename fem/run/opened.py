@@ -94,7 +94,7 @@ def open_run(folder: str | Path) -> PlottedRun | StudyTable:
     place = Path(folder).expanduser()
     for kind, key in STUDIES.items():
         mark = place if place.name == kind.mark else place / kind.mark
-        if mark.is_file():
+        if mark.exists():
             result = kinds.read_result(mark, kind)
             try:
                 text = "" if key else read_text(mark.parent / kind.results)

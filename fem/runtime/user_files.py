@@ -3,16 +3,19 @@ that nobody fills, or a link."""
 
 import errno
 import json
-import math
 import os
 import stat
 from pathlib import Path
 from typing import Any
 
-LARGEST_RESULT = 2**31  #: file of a result [bytes]
+from fem.runtime.terminal import one_line
+
+LARGEST_RESULT, LARGEST_JSON = 2**31, 2**29  #: files of a result [bytes]
 #: flags of what is opened for reading
 UNBLOCKED = sum(getattr(os, name, 0) for name in ("O_NONBLOCK", "O_CLOEXEC", "O_BINARY"))
 MOST_NESTED = 40  #: lists and tables in each other, in JSON
+NESTED = "its lists are nested too deeply"
+LARGEST_NUMBER = 1e150  #: whose square is finite
 
 
 def read_regular(path: Path, most: int) -> bytes:
@@ -48,37 +51,30 @@ def read_text(path: Path, errors: str = "strict") -> str:
 
 def read_json(path: Path) -> Any:
     """What a file of a result holds as JSON; OSError as `read_own`, ValueError where it is none."""
-    return parsed_json(read_text(path))
+    return parsed_json(read_own(path, LARGEST_JSON).decode())
 
 
 def parsed_json(text: str) -> Any:
-    """What a text holds as JSON; ValueError where it is none, too deeply nested, or a number is not finite."""
+    """What a text holds as JSON; ValueError where it is none or too deeply nested, and with the key of a number that is
+    not finite or huge.
+    """
     try:
-        content = json.loads(text, parse_float=_finite, parse_int=_whole, parse_constant=_finite)
+        content = json.loads(text)
     except RecursionError:
-        raise ValueError("its lists are nested too deeply") from None
-    level = [content]
-    for _ in range(MOST_NESTED):
-        level = [
-            item
-            for one in level
-            if isinstance(one, dict | list)
-            for item in (one.values() if isinstance(one, dict) else one)
-        ]
+        raise ValueError(NESTED) from None
+    level: list[tuple[str, Any]] = [("", {"": content})]
+    for _ in range(MOST_NESTED + 1):
+        above, level = level, []
+        for place, block in above:
+            for key, item in block.items() if isinstance(block, dict) else enumerate(block):
+                if isinstance(item, dict | list):
+                    name = f"[{key}]" if isinstance(block, list) else f".{one_line(str(key))}"
+                    level.append((place + name, item))
+                elif isinstance(item, int | float) and not abs(item) < LARGEST_NUMBER:
+                    raise ValueError(f"{place[1:]}.{one_line(str(key))} is no number of a result".strip("."))
     if level:
-        raise ValueError("its lists are nested too deeply")
+        raise ValueError(NESTED)
     return content
-
-
-def _finite(digits: str) -> float:
-    if not math.isfinite(number := float(digits)):
-        raise ValueError(f"{digits:.20} is no finite number")
-    return number
-
-
-def _whole(digits: str) -> int:
-    _finite(digits)
-    return int(digits)
 
 
 def _require_regular(status: os.stat_result, most: int, path: Path) -> int:

@@ -49,11 +49,11 @@ from fem.site.result import (
     motion_stem,
 )
 from fem.site.rule import governing_run
-from fem.site.runs import COLUMNS, CONFIRMING, RunCases, cells_of
+from fem.site.runs import COLUMNS, CONFIRMING, KEYS, RunCases, cells_of
 from fem.site.stages import Stages
 from fem.study.driver import COMPLETED, INTERRUPTED, LoggedRuns, Study, StudyOptions, hash_of, run_study
 from fem.study.runner import NamedStages, Runner, compute_many
-from fem.study.table import row_of
+from fem.study.table import line_of, row_of
 
 RUNS, PAGE = "runs.csv", "report.html"
 OF_A_MOTION = 75_000  #: numbers, in three files
@@ -183,20 +183,27 @@ class Verification:
         names += [OTHER_FACTORS] * scans + [DECIDING] * (not left_out)
         told = NamedStages([] if varied else names, runner.reporter)  # of a value of `size` none is named
 
+        begun: list[str] = []  #: the stage whose runs follow
+
         def batches() -> Iterator[Sequence[RunKey]]:
             for name, keys in zip(names, stages.of_the_answer(runner, quick=self.quick), strict=False):
-                told.begin(name, len(keys))
+                begun[:] = [name]
                 yield keys
                 if varied and now().answer == NOT_FULFILLED:
                     return
             if scans:
+                begun.clear()
                 told.begin(OTHER_FACTORS, stages.most_scanned, up_to=True)
                 yield from stages.of_the_margin()
 
+        def begin(count: int) -> None:
+            if begun:
+                told.begin(begun.pop(), count)
+
         def note(line: str) -> None:
             row = row_of(columns, line)
-            if row.pop("value", value) == value:
-                rows.add(row)
+            row.pop("value", None)
+            rows.add(row)
 
         if motions.valid:
             cases = RunCases.of(self.request, stages.folder)
@@ -207,7 +214,10 @@ class Verification:
                 make=cases,
                 model_of=lambda key: key.model,
                 key=lambda key: (value, *cells_of(key)) if varied else cells_of(key),
+                ids=len(KEYS) + len(varied),
+                of=f"{line_of([value])}," if varied else "",
                 note=note,
+                told=begin,
             ).run(runner, batches())
             if not (runner.stop() or left_out) and not (varied and now().answer != FULFILLED):
                 runs, own = rows.in_order(), rows.of(stages.of_set())

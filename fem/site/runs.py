@@ -114,7 +114,6 @@ class RunRows:
     def add(self, row: Row) -> None:
         """Add the row of a run."""
         key = key_of(row)
-        _place(key)  # ValueError for a stage that there is not
         self.runs[key] = SiteRun(**vars(key), **{name: row[name] for name in FOUND})
         self.rows[key] = row
 

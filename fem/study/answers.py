@@ -114,9 +114,7 @@ def answer_axis(axes: Sequence[Axis]) -> Axis | None:
 
     An axis of two opposite signs is not a strength.
     """
-    numeric = {
-        axis.key: axis for axis in axes if axis.is_numeric and len({abs(value) for value in axis.values}) > 1
-    }
+    numeric = {axis.key: axis for axis in axes if axis.is_numeric and len({*map(abs, axis.numbers)}) > 1}
     for key in (*STRENGTHS, *GAPS):
         if key in numeric:
             return numeric[key]
@@ -132,7 +130,7 @@ def is_rising(axis: Axis, trials: Iterable[Trial]) -> bool:
     kinds: dict[float, set[Ending]] = defaultdict(set)
     for trial in trials:
         kinds[trial.value].add(trial.kind)
-    return not (Ending.OVERTURNED in kinds[axis.values[0]] and kinds[axis.values[-1]] == {Ending.STANDING})
+    return not (Ending.OVERTURNED in kinds[axis.numbers[0]] and kinds[axis.numbers[-1]] == {Ending.STANDING})
 
 
 def answer_of(trials: Sequence[Trial], *, rising: bool, limit_slip: float | None = None) -> Answer:

@@ -54,7 +54,7 @@ class Axis(JsonBlock):
     """A key and its values, in the order of the file."""
 
     key: str  #: dotted
-    values: tuple[Any, ...]
+    values: tuple[float | str | bool, ...]
     scale: str = "list"  #: linear | log | list
     unit: str = ""  #: of the key
     #: further keys that each value sets, and what to; None: not set
@@ -65,10 +65,14 @@ class Axis(JsonBlock):
         return {key: value for key, value in super().to_json().items() if value or key == "unit"}
 
     @cached_property
+    def numbers(self) -> list[float]:
+        """Those of its values that are no words."""
+        return [value for value in self.values if not isinstance(value, bool | str)]
+
+    @cached_property
     def is_numeric(self) -> bool:
         """Whether its values are rising numbers, so that points have neighbours along it."""
-        numbers = [value for value in self.values if not isinstance(value, bool | str)]
-        return len(numbers) == len(self.values) > 1 and bool(np.all(np.diff(numbers) > 0.0))
+        return len(self.numbers) == len(self.values) > 1 and bool(np.all(np.diff(self.numbers) > 0.0))
 
 
 def shape_of(axes: Sequence[Axis]) -> tuple[int, ...]:
@@ -107,7 +111,7 @@ def set_axis(axes: Iterable[Axis]) -> Axis | None:
 
 def sign_axes(axes: Sequence[Axis]) -> list[Axis]:
     """The axes that only reverse the sign of a motion."""
-    return [axis for axis in axes if axis.key in SIGNS and len({abs(value) for value in axis.values}) == 1]
+    return [axis for axis in axes if axis.key in SIGNS and len({abs(value) for value in axis.numbers}) == 1]
 
 
 def first_motion(axes: Iterable[Axis]) -> dict[str, Any]:
@@ -342,7 +346,7 @@ def place_in_words(axes: Iterable[Axis], point: Mapping[str, Any]) -> str:
 
 def unit_of_people(axis: Axis) -> tuple[str, float]:
     """The unit that `in_words` takes, and the factor from that of the key; it depends on the largest value."""
-    largest = max((abs(value) for value in axis.values if not isinstance(value, bool | str)), default=0.0)
+    largest = max(map(abs, axis.numbers), default=0.0)
     if axis.unit == "m/s2" and axis.key.startswith(("motion.", "vertical.")):
         return "g", 1.0 / STANDARD_GRAVITY
     for least, unit, factor in PEOPLE.get(axis.unit, ()):

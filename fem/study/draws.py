@@ -113,7 +113,7 @@ def read_random(key: str, entry: Any) -> RandomQuantity:
         raise AxisError(f"must be a distribution or a list of values, got {entry!r}; {example}")
     spread = read_inline(Distribution, entry, example)
     kind, needed = spread.distribution, NEEDS[spread.distribution]
-    missing = [name for name in needed if name not in entry]
+    missing = [name for name in needed if entry.get(name) is None]
     idle = [name for name in entry if any(name in names for names in NEEDS.values()) and name not in needed]
     if missing or idle:
         problem = f"needs {' and '.join(missing)}" if missing else f"has no use for {' and '.join(idle)}"

@@ -10,7 +10,7 @@ which is cut off when the study is resumed.
 import hashlib
 import json
 import os
-from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, closing, contextmanager
 from dataclasses import dataclass, field, replace
 from itertools import islice
@@ -30,7 +30,7 @@ from fem.runtime.progress import Reporter
 from fem.runtime.signals import interruptible
 from fem.runtime.threads import cores
 from fem.study.runner import ChunkWork, ItemT, Row, Runner
-from fem.study.table import READERS, Columns, fields_of, is_row, line_of, read_lines, row_of, table_of_lines
+from fem.study.table import Columns, fields_of, is_row, line_of, read_lines, row_of, table_of_lines
 from fem.study.workers import LocalWorkers, WorkersOf
 
 INTERRUPTED, FAILED, COMPLETED = "interrupted", "failed", "completed"
@@ -175,20 +175,23 @@ def hash_of(request: Any) -> str:
 
 @dataclass(frozen=True, kw_only=True)
 class LoggedRuns(Generic[ItemT]):
-    """Runs of one kind whose rows are kept in a log: none is computed twice, whatever interrupts the study."""
+    """Runs of one kind whose rows are kept in a log: none is computed twice, whatever interrupts the study.
+
+    A row that is already there counts for the item that the study itself makes, if it says the same of what the item is
+    made of. All other rows are left out.
+    """
 
     what: str  #: they are, for the line of progress
     path: Path  #: of the log
     columns: Columns  #: of the log
     key: Callable[[ItemT], Iterable[Any]]  #: values of the first columns; the others are of its row
-    ids: int = 0  #: of these, how many tell the items apart, whose lines are kept; 0: none are
-    known: Container[tuple[Any, ...]] | None = None  #: these, where they are known beforehand; None: any
+    ids: int  #: of these, how many tell the items apart
+    of: str = ""  #: what the lines of these runs begin with; those of others stay as they are
     make: Callable[[ItemT], Case]  #: the case of an item; picklable
     model_of: Callable[[ItemT], str]
     work: ChunkWork | None = None  #: what is done with some items in place of their runs
     logged: Callable[[Row], Row] = lambda row: row  #: a row as the log holds it
-    #: called with every line of the log, old and new; raises a LookupError for one of no item
-    note: Callable[[str], None] = lambda line: None
+    note: Callable[[str], None] = lambda line: None  #: called with every line of the log, old and new
     told: Callable[[int], None] = lambda count: None  #: called with the size of every batch before its runs
     #: of the log, by what tells apart
     lines: dict[tuple[Any, ...], str] = field(default_factory=dict, init=False)
@@ -207,34 +210,32 @@ class LoggedRuns(Generic[ItemT]):
         return table_of_lines(self.columns, (line for _, line in sorted(self.lines.items())))
 
     def run(self, runner: Runner, batches: Iterable[Sequence[ItemT]]) -> None:
-        """Note the rows of earlier attempts, then run the items that are missing.
+        """Note the rows of earlier attempts, and run the items that have none.
 
         Args:
             runner: says when to stop.
-            batches: of missing items; each is asked for when all rows before are noted.
+            batches: of items that are not noted; each is asked for when all rows before are noted.
 
         Raises:
-            FolderError: the log holds a row of another study.
-            FolderLostError: it was removed; OSError: it cannot be written.
+            FolderLostError: the log was removed; OSError: it cannot be written.
         """
-        there = read_lines(self.path, self.columns)
-        whole = [line for line in there if is_row(self.columns, line)]
-        kept = table_of_lines(self.columns, whole).encode()
-        if damaged := len(there) - len(whole):  # as after a fault of the disk
+        there, known = read_lines(self.path, self.columns), dict[str, str]()
+        for line in there:
+            if not line.startswith(self.of):
+                known[line] = line
+            elif is_row(self.columns, line):
+                known.setdefault(line_of(fields_of(line)[: self.ids]), line)
+        kept = table_of_lines(self.columns, known.values()).encode()
+        if damaged := len(there) - len(known):  # as after a fault of the disk
             runner.reporter.warning(f"{self.path}: damaged rows, which are computed again: {damaged}")
             write_atomically(self.path, kept)
-        with closing(appended(self.path, len(kept) if whole else 0)) as file, ExitStack() as ended:
+        earlier = {name: line for name, line in known.items() if line.startswith(self.of)}
+        with closing(appended(self.path, len(kept) if known else 0)) as file, ExitStack() as ended:
             ended.callback(os.fsync, file.fileno())  # what was written is to survive a power cut as well
-            if not whole:
+            if not known:
                 file.write(kept)
-            for line in whole:
-                try:
-                    self._note(line)
-                except (AttributeError, LookupError, TypeError, ValueError):
-                    raise FolderError(
-                        f"{self.path}: damaged, no run of this study has the row {line:.60}; start over with --force"
-                    ) from None
-            for items in batches:
+            for wanted in batches:
+                items = [item for item in wanted if not self._recalled(item, earlier)]
                 if runner.stop():
                     break
                 self.told(len(items))
@@ -245,22 +246,35 @@ class LoggedRuns(Generic[ItemT]):
                     data = "".join(f"{line}\n" for line in lines).encode()
                     while data:
                         data = data[file.write(data) :]
-                    for line in lines:
-                        self._note(line)
+                    for item, line in zip(chunk, lines, strict=True):
+                        self._note(item, line)
+        if earlier and not runner.stop():
+            runner.reporter.warning(
+                f"{self.path}: rows that say otherwise than this study, which are left out: {len(earlier)}"
+            )
+            left_out = {*earlier.values()}
+            there = [line for line in read_lines(self.path, self.columns) if line not in left_out]
+            write_atomically(self.path, table_of_lines(self.columns, there))
 
     def _id(self, item: ItemT) -> tuple[Any, ...]:
         return tuple(islice(self.key(item), self.ids))
 
-    def _note(self, line: str) -> None:
-        if self.ids:
-            first = zip(islice(self.columns.values(), self.ids), fields_of(line), strict=False)
-            known = tuple(READERS[kind](field) for kind, field in first)
-            if self.known is not None and known not in self.known:
-                raise LookupError(line)
-            if known in self.lines:
-                return
-            self.lines[known] = line
+    def _recalled(self, item: ItemT, earlier: dict[str, str]) -> bool:
+        """Whether an item has a row among earlier ones, which is noted and leaves them."""
+        name = line_of(self._id(item)) if earlier else ""
+        line = earlier.get(name)
+        if line is None or not f"{line},".startswith(f"{line_of(self.key(item))},"):
+            return False
+        try:
+            self._note(item, line)
+        except (AttributeError, LookupError, TypeError, ValueError):
+            return False
+        del earlier[name]
+        return True
+
+    def _note(self, item: ItemT, line: str) -> None:
         self.note(line)
+        self.lines[self._id(item)] = line
 
     def _line(self, item: ItemT, row: Row) -> str:
         key, cells = tuple(self.key(item)), self.logged(row)

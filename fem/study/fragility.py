@@ -5,7 +5,8 @@ p(a) = Phi(ln(a/median)/deviation), by maximum binomial likelihood of the counts
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from itertools import product
+from typing import Any, ClassVar, Literal, Self
 
 import numpy as np
 from scipy.special import bdtr, ndtr
@@ -15,7 +16,9 @@ from fem.results.json_block import JsonBlock
 from fem.results.outcome import COUNTED, NOT_STANDING, Ending, counts_of
 from fem.runtime.arrays import FloatArray
 from fem.runtime.intervals import estimate
+from fem.study.axes import AxisError
 from fem.study.design import DesignResult, Ensemble
+from fem.study.draws import read_random
 from fem.study.table import Columns
 
 
@@ -50,7 +53,8 @@ class Fragility(JsonBlock):
 
 POINT_COLUMNS: Columns = dict.fromkeys(("draws", *COUNTED), int)
 POINT_COLUMNS |= dict.fromkeys(("probability", "low", "high"), float) | {"region": str, SLIPPED: float}
-TYPED = {"points": POINT_COLUMNS}
+#: where the probability of overturning is at most, neither, more than what is asked for
+Region = Literal["below", "undecided", "above"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,7 +63,11 @@ class EnsembleResult(DesignResult):
 
     asked: str  #: hash of the request
     ensemble: str = ""  #: its name
-    columns_of = TYPED
+    columns_of: ClassVar[Mapping[str, Mapping[str, Any]]] = {
+        "points": POINT_COLUMNS | {"region": Region},
+        "motions": {"file": str} | dict.fromkeys(COUNTED, int),
+    }
+    needed: ClassVar[frozenset[str]] = frozenset({"low", "high", "region", "file"})
     draws: int = 0  #: at each point
     seed: int = 0
     sampling: str = ""
@@ -72,9 +80,25 @@ class EnsembleResult(DesignResult):
     motions: tuple[dict[str, Any], ...] | None = None  #: measures and counts of each motion of a set
     motion_figures: tuple[str, ...] = ()
     points: tuple[Mapping[str, Any], ...] = ()  #: by the keys of the axes and `statistics.POINT_COLUMNS`
-    regions: dict[str, int] = field(default_factory=dict)
+    regions: dict[Region, int] = field(default_factory=dict)
     failed: int = 0
     fragility: Fragility | None = None
+
+    @classmethod
+    def from_json(cls, block: Mapping[str, Any]) -> Self:
+        """As every block; its points have the keys of the axes, and what is drawn can be."""
+        result = super().from_json(block)
+        if result.state == "finished" and not result.points:
+            raise ValueError("points is missing")
+        for axis, (k, point) in product(result.axes, enumerate(result.points)):
+            if point.get(axis.key) not in axis.values:
+                raise ValueError(f"points[{k}].{axis.key} is none of the values of its axis")
+        for key, spread in result.random.items():
+            try:
+                read_random(key, spread)
+            except AxisError as error:
+                raise ValueError(f"random.{key} {error}") from None
+        return result
 
 
 SCORINGS = 60  #: of Fisher's method

@@ -16,7 +16,7 @@ from functools import cache, cached_property, partial
 from itertools import groupby
 from operator import itemgetter
 from pathlib import Path
-from typing import Any, Literal, Unpack, get_args
+from typing import Any, ClassVar, Literal, Unpack, get_args
 
 from fem.case.case import Case, case_hash
 from fem.case.data_files import as_named_from
@@ -71,7 +71,7 @@ FIRST = ("status", "reason", "outcome", *[*CHECKED][:3], TURNED, SLIPPED, "tilt_
 ROW_COLUMNS = {"row": int, "line": int, "name": str, "count": int, "tag": str, "command": str}
 #: behind the columns of the list
 RESULT_COLUMNS = {name: COLUMNS[name] for name in (*FIRST, *STATIC, *OF_MOTIONS, *CHECKED, *COLUMNS)}
-TYPED = {"table": RESULT_COLUMNS | ROW_COLUMNS, "tags": {"tag": str, "containers": int, "margin": float}}
+OF_A_TAG = {"tag": str, "containers": int, "counts": dict[str, int], "margin": float}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,7 +79,11 @@ class HallResult(StudyResult):
     """All results of a hall."""
 
     written_where_given = StudyResult.written_where_given | {"allow_outside", "one_side"}
-    columns_of = TYPED
+    columns_of: ClassVar[Mapping[str, Mapping[str, Any]]] = {
+        "table": RESULT_COLUMNS | ROW_COLUMNS,
+        "tags": OF_A_TAG,
+    }
+    needed: ClassVar[frozenset[str]] = frozenset({"status", *ROW_COLUMNS, *OF_A_TAG}) - {"command", "margin"}
     hall: str
     case: str
     asked: str  #: hash of what is computed
@@ -493,10 +497,10 @@ def run_hall(
 
 def _compute(hall: Hall, begun: HallResult, results: ResultFolder, runner: Runner) -> HallResult:
     """Compute what is missing, and write the list with its results."""
-    items, known = hall.items, {item[:2] for item in hall.items}
+    items = hall.items
     named: dict[str, Any] = {"what": "runs", "path": results.path / RUNS, "columns": RUN_COLUMNS}
-    runs = hall.runs(**named, key=lambda item: item[:2], ids=2, known=known)
-    runs.run(runner, iter(partial(runs.missing, items), []))
+    runs = hall.runs(**named, key=lambda item: item[:2], ids=2)
+    runs.run(runner, [items])
     begun = replace(begun, runs=len(runs.lines))
     if runs.missing(items):
         words = f"{begun.runs} of {len(items)} runs are computed"
@@ -507,7 +511,7 @@ def _compute(hall: Hall, begun: HallResult, results: ResultFolder, runner: Runne
     count = {"none": 0, "all": len(able)}.get(begun.checks, max(math.ceil(SHARE * len(found)), LEAST))
     named = {"path": results.path / CHECKS, "columns": CHECK_COLUMNS, "work": check_chunk}
     named["what"] = "containers repeated with other inputs and stronger motions"
-    checks = hall.runs(**named, key=lambda item: item[:1], ids=1, known={item[:1] for item, _ in found})
+    checks = hall.runs(**named, key=lambda item: item[:1], ids=1)
     to_check = partial(checks.missing, able[:count])
     checks.run(runner, iter(to_check, []))
     begun = replace(begun, checked=len(checks.lines))

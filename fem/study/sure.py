@@ -392,7 +392,7 @@ def refine(
         return None
     along = wanted.axis
     axis = next(axis for axis in sweep.axes if axis.key == along)
-    least = least_width(axis.values, wanted.resolution)
+    least = least_width(axis.numbers, wanted.resolution)
     #: outcomes by value along the axis, by the first cell of each line of cells
     lines = {
         line[0]: {float(value): runs[cell].kind.word for value, cell in zip(axis.values, line, strict=True)}

@@ -156,9 +156,6 @@ def _compute(sweep: Sweep, begun: SweepResult, place: ResultFolder, runner: Runn
         row = row_of(columns, line)
         runs[cells[row["cell"]]] = shown_in(row)
 
-    def missing() -> Iterator[list[Item]]:
-        yield log.missing(sweep.by_container(cells))
-
     columns: Columns = {"cell": int} | dict.fromkeys((*keys, *sweep.derived), str) | FOUND
     further = [COPIES] * sweep.has_copies + [BETWEEN] * (sweep.threshold is not None)
     stages = NamedStages([CELLS, *further], runner.reporter)
@@ -171,7 +168,7 @@ def _compute(sweep: Sweep, begun: SweepResult, place: ResultFolder, runner: Runn
         kept = (line_of(fields_of(line)[: len(columns)]) for line in read_lines(table, with_band))
         place.write(ROWS, table_of_lines(columns, kept))
     place.remove(TABLE)
-    log.run(runner, missing())
+    log.run(runner, [sweep.by_container(cells)])
     copies = Copies(sweep, runs) if sweep.has_copies and not stop() else None
     members = copies.compute(runner, place.path / MEMBERS, partial(stages.begin, COPIES)) if copies else ""
     told, tried = partial(stages.begin, BETWEEN), place.path / TRIED

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from fem.results.errors import FolderError
 from fem.results.figures import FELL_FIRST, RUN_COLUMNS, TURNED, Place, Shown, columns_of
-from fem.results.kinds import SWEEP, read_result
+from fem.results.kinds import SWEEP, read_result, typed_result
 from fem.runtime.units import RATIO
 from fem.study.axes import Axis, shape_of
 from fem.study.design import DesignResult
@@ -105,9 +105,9 @@ def open_sweep(folder: Path | str) -> SweepTable:
         FolderError: it is not the folder of a sweep, or it is damaged.
     """
     folder = Path(folder)
-    content = read_result(folder / SWEEP.mark, SWEEP)
+    mark = folder / SWEEP.mark
+    info = typed_result(SweepResult, read_result(mark, SWEEP), mark)
     try:
-        info = SweepResult.from_json(content)
         names: list[str] = ["cell", *(axis.key for axis in info.axes), "status", "outcome", TURNED]
         sources = [path for name in ("table.csv", "rows.csv") if (path := folder / name).is_file()]
         for source in sources[:1]:

@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from fem.results.outcome import COUNTED, UPRIGHT_OR_FALLEN, Outcome
 from fem.runtime.user_files import read_text
 
 #: by the names in the header, what the fields hold: text, one number, true or false; a tuple: several numbers
@@ -37,6 +38,8 @@ READERS: dict[type, Callable[[str], Any]] = {
 }
 
 
+#: what the columns of these names can hold in a log, besides nothing
+WORDS = {"status": {None, *UPRIGHT_OR_FALLEN, "failed"}, "outcome": {None, *Outcome, *COUNTED}}
 #: what other programs may take for a field of its own, and apostrophes that stand before a formula in it
 PART = re.compile(r"(?P<blanks> *)(?P<marks>'*)(?P<text>[^;|]+)")
 
@@ -70,12 +73,13 @@ def row_of(columns: Columns, line: str) -> dict[str, Any]:
 
 
 def is_row(columns: Columns, line: str) -> bool:
-    """Whether a line has a value of the right type for each column."""
+    """Whether a line has a value for each column that it can hold."""
     try:
-        row_of(columns, line)
+        row = row_of(columns, line)
     except (ValueError, StopIteration, csv.Error):
         return False
-    return True
+    known = all(row.get(name) in words for name, words in WORDS.items())
+    return known and "\ufffd" not in line  # of bytes that are no text
 
 
 def table_text(columns: Iterable[str], rows: Iterable[Iterable[Any]]) -> str:

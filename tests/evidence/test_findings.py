@@ -12,7 +12,7 @@ from verification.suite import CHECKS as ALL
 from verification.suite import chosen_checks
 
 from fem.__main__ import main
-from fem.results.json_text import to_json
+from fem.results.json_block import to_json
 from fem.runtime.progress import Reporter
 
 

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 from running_example import SITE
 
-from fem.results.json_text import to_json
+from fem.results.json_block import to_json
 from fem.site.methods import site_methods
 from fem.site.result import MOTIONS, RESULT_FILE, SiteBody, SiteMotion, SiteResult, SiteRun
 

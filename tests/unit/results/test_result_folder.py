@@ -10,7 +10,7 @@ from interrupted_runs import files_of
 
 from fem.results.errors import FolderError, writing_into
 from fem.results.folder import open_result_folder, program_of_results, read_result
-from fem.results.json_text import to_json
+from fem.results.json_block import to_json
 from fem.results.kinds import RUN, SWEEP
 from fem.runtime.own_files import write_atomically
 

@@ -12,7 +12,7 @@ from site_example import example, write_example
 
 from fem.html.formula import formula_markup
 from fem.results.errors import FolderError
-from fem.results.json_text import to_json
+from fem.results.json_block import to_json
 from fem.site.page import site_report
 from fem.site.result import RESULT_FILE, SiteResult
 

@@ -6,7 +6,7 @@ import pytest
 from site_answers import FRICTION, WIDTH, ends, size
 from site_example import INPUTS
 
-from fem.results.json_text import to_json
+from fem.results.json_block import to_json
 from fem.site.figures import draw_size
 from fem.site.size import SizeResult
 
