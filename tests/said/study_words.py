@@ -112,7 +112,7 @@ def record(row):
 
 def curve(*points, missing=None):
     """The sentence, and what lasts at each frequency."""
-    result = result_of(ResponseResult(asked=""), [record(row) for row in points], missing)
+    result = result_of(ResponseResult(asked="", request={}), [record(row) for row in points], missing)
     return "\n".join([str(result.answer), *(words for _, words in lasting_in_words(result))])
 
 
