@@ -284,7 +284,7 @@ def _require_planned(request: ResponseRequest, done: Sequence[Task], rows: Seque
     made = [
         Task(row.began if row.direction == "start" else row.direction, row.number, row.model) for row in rows
     ]
-    if [task for task in made if task.carries] != [task for task in done if task.carries]:
+    if not done or [task for task in made if task.carries] != [task for task in done if task.carries]:
         raise ValueError("its points are others")
     for task, row in zip(made, rows, strict=True):
         drive = drives[task]
@@ -306,8 +306,8 @@ def _follow(
             _require_planned(request, plan[:done], [record.row for record in records])
         except (AttributeError, LookupError, TypeError, ValueError) as error:
             raise CheckpointError(results.path / STATE, f"is of no such response curve ({error})") from None
-        if "clock" in saved:
-            last = plan[done - 1]
+        last = plan[done - 1]
+        if last.carries and records[-1].stands:
             before = driven_model(request.case_at(last.number, last.model), containers[last.model])
             parts = changing(before.model)
             require_same(results.path / STATE, saved, parts)
