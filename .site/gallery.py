@@ -32,7 +32,8 @@ def said_in(folder: Path) -> str:
     except ValueError:
         return ""
     card = result.get("verdict", {}).get("card")
-    return f"{card[0]} {card[-1]}" if card else result.get("answer") or ""
+    said = f"{card[0]} {card[-1]}" if card else result.get("answer") or ""
+    return said and f"{said[0].upper()}{said[1:].rstrip('.')}."
 
 
 def picture_of(page: Path) -> None:
